@@ -1,0 +1,33 @@
+# How every target of the project is made: one static library a folder, sources listed by hand,
+# PUBLIC/PRIVATE link visibility as the dependency rule.
+
+add_library(attest_flags INTERFACE)
+target_compile_features(attest_flags INTERFACE cxx_std_20 c_std_11)
+# The law is defined in IEEE binary32 without contraction (a*b+c rounds twice); a compiler that
+# fuses it changes bits. The harness computes stimuli under the same rule, so that gcc and clang
+# agree to the bit on x86-64.
+target_compile_options(attest_flags INTERFACE -ffp-contract=off -fno-math-errno)
+target_include_directories(attest_flags INTERFACE ${PROJECT_SOURCE_DIR})
+
+add_library(attest_warnings INTERFACE)
+target_compile_options(
+  attest_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion
+                            $<$<BOOL:${ATTEST_WERROR}>:-Werror>)
+
+# attest_library(NAME SOURCES a.cpp ... [PUBLIC target ...] [PRIVATE target ...])
+function(attest_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(${name} PUBLIC attest_flags ${ARG_PUBLIC} PRIVATE attest_warnings
+                                                                          ${ARG_PRIVATE})
+endfunction()
+
+# attest_test(NAME SOURCES a.cpp ... LINK target ...): one GoogleTest program a folder.
+function(attest_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE attest_flags attest_warnings ${ARG_LINK} GTest::gmock
+                                        GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE ATTEST_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
+endfunction()

@@ -1,0 +1,238 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/*
+ * attest_unit.h - the C ABI that a controller implements to be tested by attest.
+ *
+ * A port of the multicopter attitude controller is a shared library that exports one symbol,
+ * attest_unit_v1(), which returns a table of functions. This header is all a port author has
+ * to read. It compiles as C11 and as C++17.
+ *
+ * Life cycle, in the order the host calls:
+ *
+ *     unit = attest_unit_v1();
+ *     self = unit->create("px4-v1.5.5");
+ *     unit->set_parameter(self, "MC_ROLL_P", 6.5f);     any number of times
+ *     for each control_state sample:
+ *         unit->set_parameter(...)                      only before a step that has
+ *                                                       ATTEST_UPDATED_PARAMETER_UPDATE set
+ *         unit->step(self, &in, &out);
+ *     unit->destroy(self);
+ *
+ * Frames: world is NED, body is FRD. Quaternions are Hamilton, scalar first {w, x, y, z}, and
+ * rotate body into world: v_NED = R(q) v_FRD. Angles are radians, rates rad/s, unless a parameter's
+ * own unit says degrees. Names are those of the PX4 topics and fields that carry the signal.
+ *
+ * Time: `timestamp` is the only clock. A unit must not read another one.
+ *
+ * Threads: the host calls one instance from one thread at a time; several instances may exist.
+ *
+ * Memory: the host owns both structs. The unit owns what create() returned until destroy().
+ * A step should neither allocate nor block.
+ */
+#ifndef ATTEST_UNIT_H
+#define ATTEST_UNIT_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(_WIN32)
+#define ATTEST_EXPORT __declspec(dllexport)
+#elif defined(__GNUC__)
+#define ATTEST_EXPORT __attribute__((visibility("default")))
+#else
+#define ATTEST_EXPORT
+#endif
+
+#define ATTEST_UNIT_ABI_VERSION 1u
+
+/* ---- inputs ----------------------------------------------------------------------------------
+ *
+ * `updated` says which topics were published since the previous step. A topic whose bit is clear
+ * still shows its last published sample; before its first publication it is all zero. A port
+ * copies a topic only when its bit is set (and keeps the bit pending where the law latches the
+ * topic only in some modes). control_state is new in every step and has no bit.
+ *
+ * Flags are bytes: zero is false and ANY other value is true (multirotor_motor_limits arrives as
+ * bit masks 1, 2, 4).
+ */
+enum {
+  ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT = 1 << 0,
+  ATTEST_UPDATED_VEHICLE_RATES_SETPOINT = 1 << 1,
+  ATTEST_UPDATED_MANUAL_CONTROL_SETPOINT = 1 << 2,
+  ATTEST_UPDATED_VEHICLE_CONTROL_MODE = 1 << 3,
+  ATTEST_UPDATED_ACTUATOR_ARMED = 1 << 4,
+  ATTEST_UPDATED_VEHICLE_STATUS = 1 << 5,
+  ATTEST_UPDATED_MULTIROTOR_MOTOR_LIMITS = 1 << 6,
+  ATTEST_UPDATED_BATTERY_STATUS = 1 << 7,
+  ATTEST_UPDATED_PARAMETER_UPDATE = 1 << 8 /* set_parameter() was called for what changed */
+};
+
+typedef struct attest_inputs {
+  uint64_t timestamp; /* [us] of the control_state sample; never decreases */
+  uint32_t updated;   /* ATTEST_UPDATED_... bits */
+
+  struct {            /* topic control_state: the estimate this step acts on */
+    float q[4];       /* attitude, body FRD to world NED; norm 1 except in robustness cases */
+    float roll_rate;  /* [rad/s] about body x (forward) */
+    float pitch_rate; /* [rad/s] about body y (right) */
+    float yaw_rate;   /* [rad/s] about body z (down) */
+  } control_state;
+
+  struct {                          /* topic vehicle_attitude_setpoint */
+    float q_d[4];                   /* desired attitude, body FRD to world NED */
+    float thrust;                   /* [0..1] collective thrust along -z body */
+    float yaw_sp_move_rate;         /* [rad/s] yaw rate commanded by the pilot, fed forward */
+    float landing_gear;             /* [-1..1] passed through to control[7] */
+    uint8_t disable_mc_yaw_control; /* flag: weather-vane, let the wind turn the nose */
+  } vehicle_attitude_setpoint;
+
+  struct {       /* topic vehicle_rates_setpoint: from outside, used in offboard rates mode */
+    float roll;  /* [rad/s] about body x */
+    float pitch; /* [rad/s] about body y */
+    float yaw;   /* [rad/s] about body z */
+    float thrust; /* [0..1] collective thrust along -z body */
+  } vehicle_rates_setpoint;
+
+  struct {   /* topic manual_control_setpoint: the sticks */
+    float x; /* [-1..1] pitch stick, positive forward (nose down) */
+    float y; /* [-1..1] roll stick, positive right */
+    float z; /* [0..1] throttle stick */
+    float r; /* [-1..1] yaw stick, positive clockwise seen from above */
+  } manual_control_setpoint;
+
+  struct {       /* topic battery_status */
+    float scale; /* [1] multiplies all controls, to make up for a low voltage */
+  } battery_status;
+
+  struct { /* topic vehicle_control_mode: flags, see above */
+    uint8_t flag_control_manual_enabled;
+    uint8_t flag_control_auto_enabled;
+    uint8_t flag_control_rates_enabled;
+    uint8_t flag_control_attitude_enabled;
+    uint8_t flag_control_rattitude_enabled;
+    uint8_t flag_control_velocity_enabled;
+  } vehicle_control_mode;
+
+  struct { /* topic actuator_armed */
+    uint8_t armed;
+  } actuator_armed;
+
+  struct {                  /* topic vehicle_status */
+    uint8_t is_rotary_wing; /* the unit starts with this true, before the first sample */
+    uint8_t is_vtol;
+  } vehicle_status;
+
+  struct {               /* topic multirotor_motor_limits: saturation seen by the mixer */
+    uint8_t lower_limit; /* a motor is at its minimum */
+    uint8_t upper_limit; /* a motor is at its maximum */
+    uint8_t yaw;         /* yaw was cut to keep roll and pitch */
+  } multirotor_motor_limits;
+} attest_inputs;
+
+/* ---- outputs ---------------------------------------------------------------------------------
+ *
+ * `published` is 1 in a step that publishes the topic and 0 in one that does not; with 0 the other
+ * fields keep the values last published. The host passes the same struct to every step, zeroed
+ * before the first, so a unit that writes only what it publishes does the right thing.
+ */
+typedef struct attest_outputs {
+  struct {        /* topic vehicle_rates_setpoint: result of the attitude loop */
+    float roll;   /* [rad/s] about body x */
+    float pitch;  /* [rad/s] about body y */
+    float yaw;    /* [rad/s] about body z */
+    float thrust; /* [0..1] passed through */
+    uint8_t published;
+  } vehicle_rates_setpoint;
+
+  struct {            /* topic actuator_controls_0: result of the rate loop */
+    float control[8]; /* roll, pitch, yaw, thrust, 0, 0, 0, landing gear; dimensionless */
+    uint8_t published;
+  } actuator_controls_0;
+
+  struct { /* topic mc_att_ctrl_status: the integral parts after this step's update */
+    float roll_rate_integ;
+    float pitch_rate_integ;
+    float yaw_rate_integ;
+    uint8_t published;
+  } mc_att_ctrl_status;
+} attest_outputs;
+
+/* ---- the unit --------------------------------------------------------------------------------*/
+
+enum {
+  ATTEST_OK = 0,
+  ATTEST_UNSUPPORTED = 1, /* this port does not do that: the case is counted as unsupported */
+  ATTEST_INVALID = 2,     /* the call makes no sense (unknown parameter name, value not allowed) */
+  ATTEST_FAILED = 3       /* the port broke: the case fails */
+};
+
+typedef struct attest_unit {
+  uint32_t abi_version; /* ATTEST_UNIT_ABI_VERSION of the header the port was compiled with */
+  const char *name;     /* short and stable, for reports: "acme-fc-rust" */
+  const char *version;  /* of the port */
+
+  /* A new instance in its power-on state with default parameters. `profile` names the version of
+   * the law, such as "px4-v1.5.5". NULL: profile not supported, its cases are skipped. */
+  void *(*create)(const char *profile);
+
+  /* Frees an instance. Called once per successful create(). */
+  void (*destroy)(void *self);
+
+  /* Sets one parameter by its PX4 name. Integer parameters arrive as the float of the same value.
+   * Legal before the first step, and before a step that has ATTEST_UPDATED_PARAMETER_UPDATE set;
+   * takes effect in that step. Parameters never set have the default of the law. */
+  int (*set_parameter)(void *self, const char *name, float value);
+
+  /* One control step. Must work for every input, NaN and infinities included. */
+  int (*step)(void *self, const attest_inputs *in, attest_outputs *out);
+
+  /* Growth without breaking the ABI: a pointer to the interface named `id`, or NULL. May itself be
+   * NULL when a port has no extensions. */
+  const void *(*extension)(const char *id);
+} attest_unit;
+
+/* The one exported symbol. The table is static: it outlives every instance. */
+ATTEST_EXPORT const attest_unit *attest_unit_v1(void);
+
+/* ---- layout, fixed for ever ------------------------------------------------------------------*/
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+#define ATTEST_LAYOUT(type, field, offset) \
+  static_assert(offsetof(type, field) == (offset), "attest ABI layout: " #type "." #field)
+#define ATTEST_SIZE(type, size) static_assert(sizeof(type) == (size), "attest ABI size: " #type)
+#else
+#define ATTEST_LAYOUT(type, field, offset) \
+  _Static_assert(offsetof(type, field) == (offset), "attest ABI layout: " #type "." #field)
+#define ATTEST_SIZE(type, size) _Static_assert(sizeof(type) == (size), "attest ABI size: " #type)
+#endif
+
+ATTEST_LAYOUT(attest_inputs, timestamp, 0);
+ATTEST_LAYOUT(attest_inputs, updated, 8);
+ATTEST_LAYOUT(attest_inputs, control_state, 12);
+ATTEST_LAYOUT(attest_inputs, vehicle_attitude_setpoint, 40);
+ATTEST_LAYOUT(attest_inputs, vehicle_rates_setpoint, 72);
+ATTEST_LAYOUT(attest_inputs, manual_control_setpoint, 88);
+ATTEST_LAYOUT(attest_inputs, battery_status, 104);
+ATTEST_LAYOUT(attest_inputs, vehicle_control_mode, 108);
+ATTEST_LAYOUT(attest_inputs, actuator_armed, 114);
+ATTEST_LAYOUT(attest_inputs, vehicle_status, 115);
+ATTEST_LAYOUT(attest_inputs, multirotor_motor_limits, 117);
+ATTEST_SIZE(attest_inputs, 120);
+
+ATTEST_LAYOUT(attest_outputs, vehicle_rates_setpoint, 0);
+ATTEST_LAYOUT(attest_outputs, actuator_controls_0, 20);
+ATTEST_LAYOUT(attest_outputs, mc_att_ctrl_status, 56);
+ATTEST_SIZE(attest_outputs, 72);
+
+#undef ATTEST_LAYOUT
+#undef ATTEST_SIZE
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* ATTEST_UNIT_H */

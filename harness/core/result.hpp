@@ -1,0 +1,32 @@
+// A value, or an error that a person can act on.
+//
+// Three kinds of failure, three channels: bad input is an Error with its place; a bug of ours
+// aborts; a fault of a port under test is a verdict (suite/verdict.hpp), never an Error.
+#pragma once
+
+#include <string>
+
+#include <tl/expected.hpp>
+
+namespace attest {
+
+// What is wrong, where, and what to do. `file` is empty when there is no file; `line` and `column`
+// count from 1 and are 0 when unknown.
+struct Error {
+  std::string message;
+  std::string file;
+  int line = 0;
+  int column = 0;
+
+  // "file:line:column: message", leaving out what is unknown.
+  std::string to_string() const;
+};
+
+template <typename T>
+using Result = tl::expected<T, Error>;
+
+// For the return statement: `return fail("no such group");`
+tl::unexpected<Error> fail(std::string message);
+tl::unexpected<Error> fail_at(std::string file, std::string message, int line = 0, int column = 0);
+
+}  // namespace attest
