@@ -88,10 +88,10 @@ typedef struct attest_inputs {
     uint8_t disable_mc_yaw_control; /* flag: weather-vane, let the wind turn the nose */
   } vehicle_attitude_setpoint;
 
-  struct {       /* topic vehicle_rates_setpoint: from outside, used in offboard rates mode */
-    float roll;  /* [rad/s] about body x */
-    float pitch; /* [rad/s] about body y */
-    float yaw;   /* [rad/s] about body z */
+  struct {        /* topic vehicle_rates_setpoint: from outside, used in offboard rates mode */
+    float roll;   /* [rad/s] about body x */
+    float pitch;  /* [rad/s] about body y */
+    float yaw;    /* [rad/s] about body z */
     float thrust; /* [0..1] collective thrust along -z body */
   } vehicle_rates_setpoint;
 
@@ -170,31 +170,31 @@ enum {
 
 typedef struct attest_unit {
   uint32_t abi_version; /* ATTEST_UNIT_ABI_VERSION of the header the port was compiled with */
-  const char *name;     /* short and stable, for reports: "acme-fc-rust" */
-  const char *version;  /* of the port */
+  const char* name;     /* short and stable, for reports: "acme-fc-rust" */
+  const char* version;  /* of the port */
 
   /* A new instance in its power-on state with default parameters. `profile` names the version of
    * the law, such as "px4-v1.5.5". NULL: profile not supported, its cases are skipped. */
-  void *(*create)(const char *profile);
+  void* (*create)(const char* profile);
 
   /* Frees an instance. Called once per successful create(). */
-  void (*destroy)(void *self);
+  void (*destroy)(void* self);
 
   /* Sets one parameter by its PX4 name. Integer parameters arrive as the float of the same value.
    * Legal before the first step, and before a step that has ATTEST_UPDATED_PARAMETER_UPDATE set;
    * takes effect in that step. Parameters never set have the default of the law. */
-  int (*set_parameter)(void *self, const char *name, float value);
+  int (*set_parameter)(void* self, const char* name, float value);
 
   /* One control step. Must work for every input, NaN and infinities included. */
-  int (*step)(void *self, const attest_inputs *in, attest_outputs *out);
+  int (*step)(void* self, const attest_inputs* in, attest_outputs* out);
 
   /* Growth without breaking the ABI: a pointer to the interface named `id`, or NULL. May itself be
    * NULL when a port has no extensions. */
-  const void *(*extension)(const char *id);
+  const void* (*extension)(const char* id);
 } attest_unit;
 
 /* The one exported symbol. The table is static: it outlives every instance. */
-ATTEST_EXPORT const attest_unit *attest_unit_v1(void);
+ATTEST_EXPORT const attest_unit* attest_unit_v1(void);
 
 /* ---- layout, fixed for ever ------------------------------------------------------------------*/
 

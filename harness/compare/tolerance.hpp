@@ -1,0 +1,56 @@
+// How strictly outputs are compared.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include "harness/core/result.hpp"
+#include "harness/trace/channels.hpp"
+
+namespace attest {
+
+enum class Level {
+  exact,    // the bits of float32, any NaN equals any NaN
+  numeric,  // |got - want| <= max(absolute, relative * |want|)
+};
+
+std::string_view name_of(Level level);
+Result<Level> parse_level(std::string_view text);
+
+struct Tolerance {
+  double absolute = 0;  // in the channel's unit
+  double relative = 0;
+};
+
+// The tolerance of every channel, and how that of the rates setpoint widens near a tilt of 180 deg.
+class Tolerances {
+ public:
+  // Defaults, with room on both sides: correct builds (other optimisation, FMA, double, another
+  // atan2, a quaternion form) were measured to stay within 5e-6 rad/s, 8e-7 and 5e-7 over 10 s of
+  // open loop; wrong controllers to differ by more than 1e-3 somewhere.
+  static constexpr Tolerance rate{2e-4, 1e-5};
+  static constexpr Tolerance control{1e-4, 1e-5};
+  static constexpr Tolerance integral{2e-5, 1e-5};
+  static constexpr Tolerance passed_through{1e-6, 1e-6};  // thrust: copied, at most scaled
+
+  explicit Tolerances(Level level = Level::numeric);
+
+  Level level() const { return level_; }
+  Tolerance of(std::size_t channel) const { return of_channel_[channel]; }
+
+  // Replaces the tolerance of every output channel whose name begins with `prefix` (without
+  // "out/"): "vehicle_rates_setpoint" or "actuator_controls_0.control[2]". False: no such channel.
+  bool set(std::string_view prefix, Tolerance tolerance);
+
+  // Addition to the rates setpoint's absolute tolerance at this tilt error [rad]. The direction of
+  // the tilt axis becomes undefined at 180 deg and float noise in it grows as 1/(pi - tilt);
+  // `gain` is the attitude gain [1/s], 6.5 by default.
+  static double widening(double tilt_rad, double gain);
+
+ private:
+  Level level_;
+  std::array<Tolerance, max_channels> of_channel_;
+};
+
+}  // namespace attest

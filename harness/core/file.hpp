@@ -1,0 +1,40 @@
+// Whole files: read, hashed, and written so that a reader never sees half of one.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "harness/core/result.hpp"
+
+namespace attest {
+
+Result<std::string> read_file(const std::filesystem::path& path);
+
+// SHA-256 as 64 lower-case hex digits, as `sha256sum` prints it.
+std::string sha256(std::string_view bytes);
+Result<std::string> sha256_of_file(const std::filesystem::path& path);
+
+// A file that is written beside its place and renamed at commit(). Opening it early shows an
+// unwritable path before the work, not after; without commit() nothing is left behind.
+class AtomicFile {
+ public:
+  static Result<AtomicFile> open(const std::filesystem::path& path);
+  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile& operator=(AtomicFile&&) = delete;
+  ~AtomicFile();
+
+  const std::filesystem::path& path() const { return path_; }
+  Result<void> write(std::string_view bytes);
+  // Flushes to disk and renames. Errors (disk full, directory gone) leave the old file as it was.
+  Result<void> commit();
+
+ private:
+  AtomicFile(std::filesystem::path path, std::filesystem::path temporary, int descriptor);
+
+  std::filesystem::path path_;
+  std::filesystem::path temporary_;
+  int descriptor_;
+};
+
+}  // namespace attest

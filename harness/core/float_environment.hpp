@@ -1,0 +1,24 @@
+// A port may change the floating point environment of the process it is loaded into (a library
+// linked with -ffast-math sets flush-to-zero when it is loaded). The harness computes and compares
+// in the default environment and gives the port its own back.
+#pragma once
+
+#include <cfenv>
+
+namespace attest {
+
+class DefaultFloatEnvironment {
+ public:
+  DefaultFloatEnvironment() {
+    std::fegetenv(&saved_);
+    std::fesetenv(FE_DFL_ENV);
+  }
+  ~DefaultFloatEnvironment() { std::fesetenv(&saved_); }
+  DefaultFloatEnvironment(const DefaultFloatEnvironment&) = delete;
+  DefaultFloatEnvironment& operator=(const DefaultFloatEnvironment&) = delete;
+
+ private:
+  std::fenv_t saved_;
+};
+
+}  // namespace attest

@@ -1,0 +1,17 @@
+// Time in the harness: integer nanoseconds, never a floating point clock.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace attest {
+
+// int64 on every platform we build for: +-292 years.
+using Nanoseconds = std::chrono::nanoseconds;
+
+// The `timestamp` of a sample: microseconds, rounded down, as the firmware's clock gives them.
+constexpr std::uint64_t timestamp_us(Nanoseconds time) {
+  return static_cast<std::uint64_t>(time.count() / 1000);
+}
+
+}  // namespace attest

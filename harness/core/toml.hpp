@@ -1,0 +1,103 @@
+// Strict reading of TOML files: each key that a file has must have been asked for, and each error
+// names file, line and column. toml++ stays inside toml.cpp.
+//
+// Errors are collected while reading, so that the reader reads straight on and a file's author sees
+// all mistakes at once:
+//
+//     auto file = TomlFile::read(path);              // syntax errors
+//     if (!file) return tl::unexpected(file.error());
+//     const TomlTable root = file->root();
+//     const std::string why = root.text("why");      // required: its absence is an error
+//     const double thrust = root.number("thrust", 0.5);
+//     if (auto done = file->finish(); !done) ...     // first error, or the first unknown key
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "harness/core/result.hpp"
+
+namespace attest {
+
+enum class TomlKind { absent, boolean, integer, number, text, array, table };
+
+// A view of one table; valid as long as its TomlFile. Copies share what was asked for.
+class TomlTable {
+ public:
+  TomlKind kind(std::string_view key) const;
+  bool has(std::string_view key) const { return kind(key) != TomlKind::absent; }
+
+  // Keys in the order of the file. Does not count as asking for them.
+  std::vector<std::string> keys() const;
+
+  // Required keys: absent or of another type is an error and gives an empty value.
+  // An integer is accepted where a number is asked for; nan and inf are numbers.
+  std::string text(std::string_view key) const;
+  double number(std::string_view key) const;
+  std::int64_t integer(std::string_view key) const;
+  std::vector<double> numbers(std::string_view key) const;
+  std::vector<std::string> texts(std::string_view key) const;
+  std::vector<std::int64_t> integers(std::string_view key) const;
+  TomlTable table(std::string_view key) const;
+
+  // Optional keys: absent gives the fallback.
+  std::string text(std::string_view key, std::string fallback) const;
+  double number(std::string_view key, double fallback) const;
+  std::int64_t integer(std::string_view key, std::int64_t fallback) const;
+  bool boolean(std::string_view key, bool fallback) const;
+
+  // Records an error at the key's place (at the table's when the key is absent).
+  void error(std::string_view key, std::string message) const;
+
+  struct Impl;
+  explicit TomlTable(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+ private:
+  std::shared_ptr<Impl> impl_;
+};
+
+class TomlFile {
+ public:
+  static Result<TomlFile> read(const std::filesystem::path& path);
+  // `name` stands for the file in messages.
+  static Result<TomlFile> parse(std::string_view text, const std::string& name);
+
+  TomlTable root() const;
+
+  // The first error in file order: of those recorded, and of keys nobody asked for ("unknown key
+  // `thurst`; did you mean `thrust`?"). Later errors are appended to its message, one a line.
+  Result<void> finish() const;
+
+  struct Document;
+
+ private:
+  explicit TomlFile(std::shared_ptr<Document> document) : document_(std::move(document)) {}
+  std::shared_ptr<Document> document_;
+};
+
+// Builds a file: tables and values are written in alphabetical order of their keys.
+class TomlWriter {
+ public:
+  TomlWriter();
+  ~TomlWriter();
+  TomlWriter(const TomlWriter&) = delete;
+  TomlWriter& operator=(const TomlWriter&) = delete;
+
+  // `table` is empty for the root.
+  void set(std::string_view table, std::string_view key, std::string_view value);
+  void set(std::string_view table, std::string_view key, double value);
+  void set(std::string_view table, std::string_view key, std::int64_t value);
+
+  std::string to_string() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace attest

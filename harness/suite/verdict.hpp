@@ -1,0 +1,68 @@
+// The verdict on one case at one rate.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/compare/compare.hpp"
+#include "harness/schedule/rate.hpp"
+
+namespace attest {
+
+// Only pass counts as conformant. unsupported, skip and xfail do not fail a run; all else does.
+enum class Verdict {
+  pass,
+  fail,         // an output differs, or the port said it failed
+  crash,        // the port's process died
+  timeout,      // no answer in time
+  protocol,     // the port broke the rules of the ABI
+  non_finite,   // NaN or Inf where the golden has a number
+  unsupported,  // the port declared that it does not do this
+  skip,         // not run, with a reason (profile not supported, exact-level case)
+  xfail,        // failed, as expected
+  xpass,        // passed although expected to fail
+};
+
+inline constexpr int verdict_count = 10;
+
+std::string_view name_of(Verdict verdict);  // "non-finite"
+std::optional<Verdict> parse_verdict(std::string_view name);
+bool fails_a_run(Verdict verdict);
+
+struct CaseResult {
+  std::string profile;  // "px4-v1.5.5"
+  std::string group;    // "attitude"
+  std::string name;     // "roll_30": with profile and group, the stem in cases/ and golden/
+  Rate rate = Rate::hz(1);
+  Verdict verdict = Verdict::pass;
+  std::string reason;     // one line; empty for a plain pass
+  std::size_t ticks = 0;  // compared
+  std::size_t deviating_ticks = 0;
+  std::optional<Deviation> first;
+  std::optional<Headroom> tightest;
+  double elapsed_s = 0;  // of wall time, for JUnit only: everything else is deterministic
+
+  std::string case_id() const { return profile + "/" + group + "/" + name; }
+  // "px4-v1.5.5/attitude/roll_30@250hz": what --filter matches and what a report names.
+  std::string id() const { return case_id() + "@" + rate.label(); }
+};
+
+// Everything the reports say, in the order of the cases, for any number of jobs.
+struct RunResult {
+  std::string attest_version;
+  std::string port;       // as given: "lib:./libmine.so"
+  std::string port_name;  // as the port says
+  std::string port_version;
+  Level level = Level::numeric;
+  std::vector<Rate> rates;  // selected, ascending
+  std::vector<CaseResult> results;
+  std::vector<Error> errors;   // of the environment: a golden that cannot be read, ...
+  bool stopped_early = false;  // --fail-fast
+
+  std::size_t count(Verdict verdict) const;
+  bool failed() const;  // any verdict that fails a run
+};
+
+}  // namespace attest

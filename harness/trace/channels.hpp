@@ -1,0 +1,79 @@
+// The one table of signals: what a CSV column, a ULog field, a case key, a report line and a member
+// of the ABI structs have in common. A channel is a member of Sample, found by its offset, so the
+// table is the struct.
+//
+// Names are `in/<topic>.<field>` and `out/<topic>.<field>`; `in/updated.<topic>` are the bits of
+// attest_inputs.updated. `timestamp` has no prefix. Parameters are not channels: they are the
+// columns `in/parameter.<NAME>` (trace.hpp).
+#pragma once
+
+#include <bitset>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "controller/attest_unit.h"
+
+namespace attest {
+
+// One step of the unit: what it was given and what it answered.
+struct Sample {
+  attest_inputs in;
+  attest_outputs out;
+};
+
+enum class ChannelType : std::uint8_t { u64, f32, u8, bit };
+
+// What a channel carries, which decides its tolerance (compare/tolerance.hpp) and its unit.
+enum class Quantity : std::uint8_t {
+  time,        // us
+  flag,        // 0 false, anything else true
+  quaternion,  // 1
+  rate,        // rad/s
+  thrust,      // 0..1
+  stick,       // -1..1
+  control,     // dimensionless actuator control
+  integral,    // dimensionless, of the rate law
+  scale,       // 1
+};
+
+// The stage of the law that writes an output, in the order the data flows: the first stage that
+// differs is the one to look at.
+enum class Stage : std::uint8_t { input, attitude_law, rate_law, integrator };
+
+struct Channel {
+  std::string_view name;  // with its prefix
+  ChannelType type;
+  Quantity quantity;
+  Stage stage;
+  std::size_t offset;  // of the member in Sample [bytes]
+  std::uint32_t bit;   // of attest_inputs.updated, for ChannelType::bit
+
+  bool is_output() const { return stage != Stage::input; }
+};
+
+// All channels in column order: timestamp, inputs, freshness, outputs.
+std::span<const Channel> channels();
+inline constexpr std::size_t max_channels = 64;
+using ChannelSet = std::bitset<max_channels>;  // by index into channels()
+
+// Index into channels(); empty when there is no such name.
+std::optional<std::size_t> find_channel(std::string_view name);
+
+// The channels whose name begins with `prefix`, for example "out/".
+ChannelSet channels_with_prefix(std::string_view prefix);
+
+// The topics that have a freshness bit, in bit order: "vehicle_attitude_setpoint", ...
+std::span<const std::string_view> updated_topics();
+
+std::string_view unit_of(Quantity quantity);  // "rad/s"; empty for dimensionless
+std::string_view name_of(Stage stage);        // "attitude law"
+
+// Reads a member as double: exact for f32, u8 and bit; for u64 up to 2^53 (285 years of us).
+double value_of(const Channel& channel, const Sample& sample);
+void set_value(const Channel& channel, Sample& sample, double value);
+float float_of(const Channel& channel, const Sample& sample);  // REQUIRES: type f32
+
+}  // namespace attest

@@ -1,0 +1,43 @@
+// Traces as CSV: one header line with channel names, one row a tick, floats in the shortest decimal
+// form that reads back to the same bits. `nan`, `inf` and `-inf` are numbers; CRLF is accepted.
+//
+// A file that stands beside a provenance.toml leaves out what never changes: the constants there
+// are columns too (provenance.hpp).
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "harness/core/file.hpp"
+#include "harness/core/result.hpp"
+#include "harness/trace/trace.hpp"
+
+namespace attest {
+
+// What a file must contain, beside timestamp.
+enum class CsvNeed {
+  inputs,             // every in/ channel: to feed a port
+  outputs,            // at least one out/ channel: to compare
+  inputs_and_outputs  // to replay
+};
+
+// Reads the whole trace, with the constants of the provenance.toml beside it if there is one.
+// Parameter columns become changes: at tick 0, and at each tick with in/updated.parameter_update.
+// Errors, each as file:line:column with what to do: unreadable file, no header, unknown or repeated
+// column, missing channel, short or long row, a cell that is not a number of its channel's type,
+// timestamps that do not increase, no rows.
+Result<Trace> read_csv(const std::filesystem::path& path, CsvNeed need);
+
+// Which columns to write. Constant channels are left to the provenance.
+struct CsvColumns {
+  ChannelSet channels;                  // in the order of channels()
+  std::vector<std::string> parameters;  // names, written after the inputs
+};
+
+// Everything the trace has.
+CsvColumns all_columns(const Trace& trace);
+
+Result<void> write_csv(const Trace& trace, const CsvColumns& columns, AtomicFile& file);
+
+}  // namespace attest

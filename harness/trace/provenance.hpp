@@ -1,0 +1,42 @@
+// provenance.toml: where the traces of a folder came from and the values that are the same in all
+// of them, so that each trace together with this file is complete.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "harness/core/result.hpp"
+#include "harness/trace/csv.hpp"
+
+namespace attest {
+
+struct Provenance {
+  std::string profile;                      // "px4-v1.5.5"
+  std::string case_id;                      // empty for traces that no case made
+  std::string case_sha256;                  // of the case file
+  std::string reference;                    // "attest 0.1.0"
+  std::string compiler;                     // "gcc 12.2.0"
+  std::string reason;                       // why this golden was blessed
+  std::map<std::string, double> constants;  // channel or in/parameter.<NAME> -> value
+  std::map<std::string, std::string>
+      mixers;  // stem of a mixer trace -> "R: 4x 8000 9000 5000 1500"
+  std::map<std::string, std::string> sha256;  // file name -> hash
+};
+
+inline constexpr const char* provenance_name = "provenance.toml";
+
+Result<Provenance> read_provenance(const std::filesystem::path& file);
+std::string to_toml(const Provenance& provenance);
+
+// Divides the columns of traces that will stand in one folder: what has the same value in every
+// sample of all of them goes to `constants`, the rest stays a column in each.
+// REQUIRES: all traces have the same channels and parameter names; none is empty.
+struct Division {
+  CsvColumns columns;
+  std::map<std::string, double> constants;
+};
+Division divide(const std::vector<Trace>& traces);
+
+}  // namespace attest
