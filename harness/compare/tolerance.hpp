@@ -50,7 +50,7 @@ class Tolerances {
 
  private:
   Level level_;
-  std::array<Tolerance, max_channels> of_channel_;
+  std::array<Tolerance, max_channels> of_channel_{};
 };
 
 }  // namespace attest

@@ -16,7 +16,8 @@ std::string sha256(std::string_view bytes);
 Result<std::string> sha256_of_file(const std::filesystem::path& path);
 
 // A file that is written beside its place and renamed at commit(). Opening it early shows an
-// unwritable path before the work, not after; without commit() nothing is left behind.
+// unwritable path before the work, not after; without commit() nothing is left behind. What is not
+// an ordinary file (/dev/stdout, /dev/null, a pipe) is written to directly.
 class AtomicFile {
  public:
   static Result<AtomicFile> open(const std::filesystem::path& path);
@@ -25,16 +26,19 @@ class AtomicFile {
   ~AtomicFile();
 
   const std::filesystem::path& path() const { return path_; }
+  // REQUIRES, for both: not committed yet.
   Result<void> write(std::string_view bytes);
   // Flushes to disk and renames. Errors (disk full, directory gone) leave the old file as it was.
   Result<void> commit();
 
  private:
-  AtomicFile(std::filesystem::path path, std::filesystem::path temporary, int descriptor);
+  AtomicFile(std::filesystem::path path, std::filesystem::path target,
+             std::filesystem::path temporary, int descriptor);
 
-  std::filesystem::path path_;
-  std::filesystem::path temporary_;
-  int descriptor_;
+  std::filesystem::path path_;       // as given, for messages
+  std::filesystem::path target_;     // with symbolic links followed
+  std::filesystem::path temporary_;  // empty: written directly, or committed
+  int descriptor_;                   // -1 once committed
 };
 
 }  // namespace attest

@@ -14,7 +14,7 @@ namespace attest {
 // count from 1 and are 0 when unknown.
 struct Error {
   std::string message;
-  std::string file;
+  std::string file = {};
   int line = 0;
   int column = 0;
 

@@ -26,16 +26,20 @@ namespace attest {
 
 enum class TomlKind { absent, boolean, integer, number, text, array, table };
 
-// A view of one table; valid as long as its TomlFile. Copies share what was asked for.
+// A view of one table. Copies, and views of the same table got another way, share what was asked
+// for.
 class TomlTable {
  public:
+  // A date or time without quotes counts as text, so that text() can say what is wrong with it.
+  // Looking is not asking: a key that was looked at but never read is an error in finish().
   TomlKind kind(std::string_view key) const;
   bool has(std::string_view key) const { return kind(key) != TomlKind::absent; }
 
   // Keys in the order of the file. Does not count as asking for them.
   std::vector<std::string> keys() const;
 
-  // Required keys: absent or of another type is an error and gives an empty value.
+  // Required keys: absent or of another type is an error and gives an empty value. A table() that
+  // is absent gives an empty table whose own missing keys are not reported again.
   // An integer is accepted where a number is asked for; nan and inf are numbers.
   std::string text(std::string_view key) const;
   double number(std::string_view key) const;
@@ -51,7 +55,7 @@ class TomlTable {
   std::int64_t integer(std::string_view key, std::int64_t fallback) const;
   bool boolean(std::string_view key, bool fallback) const;
 
-  // Records an error at the key's place (at the table's when the key is absent).
+  // Records an error at the key's place (at the table's when the key is absent). Counts as asking.
   void error(std::string_view key, std::string message) const;
 
   struct Impl;
@@ -70,7 +74,8 @@ class TomlFile {
   TomlTable root() const;
 
   // The first error in file order: of those recorded, and of keys nobody asked for ("unknown key
-  // `thurst`; did you mean `thrust`?"). Later errors are appended to its message, one a line.
+  // `thurst`; did you mean `thrust`?"). Later errors are appended to its message, one a line, each
+  // with its own place. Keys of a table that nobody asked for are not listed: the table is.
   Result<void> finish() const;
 
   struct Document;

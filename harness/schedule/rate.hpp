@@ -27,6 +27,9 @@ class Rate {
   // The number of ticks in [0, duration): the smallest k with tick(k) >= duration.
   std::int64_t ticks_in(Nanoseconds duration) const;
 
+  // The rate of every n-th tick. REQUIRES: n positive.
+  Rate divided_by(std::int64_t n) const { return hz(numerator_, denominator_ * n); }
+
   double hertz() const {
     return static_cast<double>(numerator_) / static_cast<double>(denominator_);
   }

@@ -63,6 +63,11 @@ struct RunResult {
 
   std::size_t count(Verdict verdict) const;
   bool failed() const;  // any verdict that fails a run
+
+  // What the reports call conformant: a complete run without errors in which something passed,
+  // nothing failed and no failure was expected. What was skipped or is unsupported stands beside
+  // it in the totals.
+  bool conformant() const;
 };
 
 }  // namespace attest

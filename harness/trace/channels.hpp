@@ -49,7 +49,7 @@ struct Channel {
   Quantity quantity;
   Stage stage;
   std::size_t offset;  // of the member in Sample [bytes]
-  std::uint32_t bit;   // of attest_inputs.updated, for ChannelType::bit
+  std::uint32_t bit;   // for ChannelType::bit, its ATTEST_UPDATED_... mask; 0 for the others
 
   bool is_output() const { return stage != Stage::input; }
 };
@@ -62,6 +62,10 @@ using ChannelSet = std::bitset<max_channels>;  // by index into channels()
 // Index into channels(); empty when there is no such name.
 std::optional<std::size_t> find_channel(std::string_view name);
 
+// "in/parameter.MC_ROLL_P" <-> "MC_ROLL_P"; empty for other names.
+inline constexpr std::string_view parameter_prefix = "in/parameter.";
+std::optional<std::string_view> parameter_of(std::string_view column);
+
 // The channels whose name begins with `prefix`, for example "out/".
 ChannelSet channels_with_prefix(std::string_view prefix);
 
@@ -73,6 +77,7 @@ std::string_view name_of(Stage stage);        // "attitude law"
 
 // Reads a member as double: exact for f32, u8 and bit; for u64 up to 2^53 (285 years of us).
 double value_of(const Channel& channel, const Sample& sample);
+// REQUIRES: 0 <= value < 2^53 for u64, an integer 0..255 for u8; any value for f32 and bit.
 void set_value(const Channel& channel, Sample& sample, double value);
 float float_of(const Channel& channel, const Sample& sample);  // REQUIRES: type f32
 

@@ -22,6 +22,9 @@ struct Provenance {
   std::map<std::string, double> constants;  // channel or in/parameter.<NAME> -> value
   std::map<std::string, std::string>
       mixers;  // stem of a mixer trace -> "R: 4x 8000 9000 5000 1500"
+  // Stem of a trace -> absolute tolerance of its outputs, where their bits are the platform's (its
+  // transcendental functions) and not the law's.
+  std::map<std::string, double> tolerances;
   std::map<std::string, std::string> sha256;  // file name -> hash
 };
 

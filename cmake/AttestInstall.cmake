@@ -1,0 +1,31 @@
+# What `cmake --install` gives a port author: the attest binary, the ABI header, the cases with
+# their goldens, the starters, and the CMake package `attest` with
+#
+#     attest::unit     the ABI header, for the port to link (C or C++)
+#     attest::attest   the binary, for add_test(COMMAND attest::attest run --port lib:...)
+include(CMakePackageConfigHelpers)
+
+set(ATTEST_INSTALL_CMAKEDIR ${CMAKE_INSTALL_LIBDIR}/cmake/attest)
+set(ATTEST_INSTALL_DATADIR ${CMAKE_INSTALL_DATADIR}/attest)
+
+install(TARGETS attest_unit EXPORT attestTargets)
+install(TARGETS attest EXPORT attestTargets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(FILES controller/attest_unit.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(DIRECTORY cases golden DESTINATION ${ATTEST_INSTALL_DATADIR})
+# Without what a build in the source tree leaves there.
+install(
+  DIRECTORY controller/starters
+  DESTINATION ${ATTEST_INSTALL_DATADIR}
+  REGEX "/(build|target|__pycache__)$" EXCLUDE)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+install(EXPORT attestTargets NAMESPACE attest:: DESTINATION ${ATTEST_INSTALL_CMAKEDIR})
+configure_package_config_file(cmake/attestConfig.cmake.in attestConfig.cmake
+                              INSTALL_DESTINATION ${ATTEST_INSTALL_CMAKEDIR}
+                              PATH_VARS ATTEST_INSTALL_DATADIR)
+# ARCH_INDEPENDENT: the header serves a port that is cross-compiled for another word size.
+write_basic_package_version_file(attestConfigVersion.cmake COMPATIBILITY SameMajorVersion
+                                 ARCH_INDEPENDENT)
+install(FILES ${PROJECT_BINARY_DIR}/attestConfig.cmake
+              ${PROJECT_BINARY_DIR}/attestConfigVersion.cmake
+        DESTINATION ${ATTEST_INSTALL_CMAKEDIR})

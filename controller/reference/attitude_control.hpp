@@ -1,0 +1,173 @@
+// The attitude loop: from an attitude and its setpoint to a setpoint of body rates.
+//
+// The law of PX4 v1.5.5 mc_att_control, control_attitude(): the tilt is corrected along the
+// shortest arc of the thrust axis, yaw is corrected about the desired thrust axis with a weight
+// that vanishes as the desired tilt approaches 90 deg, and beyond 90 deg of tilt error the result
+// is blended with the shortest rotation of the whole attitude.
+//
+// Frames: W world NED, B body FRD, D desired body. R_WB maps body into world. Angles [rad], rates
+// [rad/s]. Pure: no state beyond the gains, no clock, no allocation; const calls from any thread.
+#pragma once
+
+#include <cmath>
+
+#include "controller/reference/gains.hpp"
+#include "controller/reference/inline.hpp"
+#include "controller/reference/ordered.hpp"
+#include "controller/reference/profile.hpp"
+#include "controller/reference/rotation.hpp"
+
+namespace attest::reference {
+
+template <typename Scalar>
+struct AttitudeInput {
+  Quaternion<Scalar> q_WB;
+  Quaternion<Scalar> q_WD;
+  Scalar yaw_sp_move_rate_rad_s;  // commanded by the pilot
+  bool autonomous;                // the vehicle, not a pilot, sets the attitude
+  bool weathervane;               // and lets the wind turn the nose
+};
+
+// Rotation error of the thrust axis: how the body has to turn to thrust where it should.
+template <typename Scalar>
+struct TiltError {
+  Vector3<Scalar> rotation_B;  // axis times angle
+  Vector3<Scalar> axis_B;      // unset when sine is 0
+  Scalar sine;
+  Scalar cosine;
+};
+
+// The stages of the law, in the order they run. Each is a pure function of what it names.
+template <typename Scalar>
+struct AttitudeStages {
+  using Vector = Vector3<Scalar>;
+  using Matrix = Matrix3<Scalar>;
+
+  ATTEST_ALWAYS_INLINE static TiltError<Scalar> tilt_error(const Matrix& R_WB, const Matrix& R_WD) {
+    const Vector z_B_W = R_WB.col(2);
+    const Vector z_D_W = R_WD.col(2);
+    TiltError<Scalar> tilt;
+    tilt.rotation_B = ordered::transpose_times(R_WB, ordered::cross(z_B_W, z_D_W));
+    tilt.sine = ordered::length(tilt.rotation_B);
+    tilt.cosine = ordered::dot(z_B_W, z_D_W);
+    if (tilt.sine > Scalar(0)) {
+      const Scalar angle = std::atan2(tilt.sine, tilt.cosine);
+      tilt.axis_B = tilt.rotation_B / tilt.sine;
+      tilt.rotation_B = tilt.axis_B * angle;
+    }
+    return tilt;
+  }
+
+  // Where the nose points after the tilt alone is corrected: the first column of
+  // R_WB ((I + K sin) + K K (1 - cos)), Rodrigues' formula. The law uses no other column.
+  ATTEST_ALWAYS_INLINE static Vector nose_after_tilt(const Matrix& R_WB,
+                                                     const TiltError<Scalar>& tilt) {
+    if (!(tilt.sine > Scalar(0))) return R_WB.col(0);
+    const Matrix K = cross_product_matrix(tilt.axis_B);
+    const Vector K_x = K.col(0);
+    const Vector x(Scalar(1), Scalar(0), Scalar(0));
+    const Vector turned =
+        (x + K_x * tilt.sine) + ordered::product_column(K, K_x) * (Scalar(1) - tilt.cosine);
+    return ordered::product_column(R_WB, turned);
+  }
+
+  // 1 when the desired attitude is level (or upside down), 0 at 90 deg where yaw has no meaning.
+  ATTEST_ALWAYS_INLINE static Scalar yaw_weight(const Matrix& R_WD) {
+    return R_WD(2, 2) * R_WD(2, 2);
+  }
+
+  // Angle from the tilted nose to the desired nose about the desired thrust axis.
+  ATTEST_ALWAYS_INLINE static Scalar yaw_error(const Vector& nose_W, const Matrix& R_WD,
+                                               Scalar weight) {
+    const Vector x_D_W = R_WD.col(0);
+    const Vector z_D_W = R_WD.col(2);
+    return std::atan2(ordered::dot(ordered::cross(nose_W, x_D_W), z_D_W),
+                      ordered::dot(nose_W, x_D_W)) *
+           weight;
+  }
+
+  // Twice the imaginary part of the error quaternion of the whole attitude, on its shorter side.
+  static Vector direct_error(const Matrix& R_WB, const Matrix& R_WD) {
+    const Quaternion<Scalar> q_BD = quaternion_of(ordered::transpose_product(R_WB, R_WD));
+    const Vector imaginary = imaginary_part(q_BD);
+    return q_BD.w() >= Scalar(0) ? Vector(imaginary * Scalar(2)) : Vector(-imaginary * Scalar(2));
+  }
+
+  // The direct share grows from 0 at 90 deg of tilt error.
+  ATTEST_ALWAYS_INLINE static Vector blend(const Vector& error_B, const Vector& direct_B,
+                                           Scalar tilt_cosine, Scalar weight) {
+    const Scalar share = tilt_cosine * tilt_cosine * weight;
+    return error_B * (Scalar(1) - share) + direct_B * share;
+  }
+
+  // Rotation [rad, body axes] that takes the body to the desired attitude.
+  ATTEST_ALWAYS_INLINE static Vector attitude_error(const Matrix& R_WB, const Matrix& R_WD,
+                                                    Scalar weight) {
+    const TiltError<Scalar> tilt = tilt_error(R_WB, R_WD);
+    Vector error_B = tilt.rotation_B;
+    error_B[2] = yaw_error(nose_after_tilt(R_WB, tilt), R_WD, weight);
+    if (tilt.cosine < Scalar(0)) {
+      error_B = blend(error_B, direct_error(R_WB, R_WD), tilt.cosine, weight);
+    }
+    return error_B;
+  }
+
+  ATTEST_ALWAYS_INLINE static Vector proportional(const Vector& error_B,
+                                                  const AttitudeGains<Scalar>& gains) {
+    return gains.proportional_1_s.cwiseProduct(error_B);
+  }
+
+  ATTEST_ALWAYS_INLINE static Vector limit(const Vector& rates_sp_B, bool autonomous,
+                                           const AttitudeGains<Scalar>& gains) {
+    return clamp_each(rates_sp_B, autonomous ? gains.auto_rate_max_rad_s : gains.rate_max_rad_s);
+  }
+
+  ATTEST_ALWAYS_INLINE static Scalar yaw_feed_forward(Scalar yaw_rate_sp, Scalar move_rate,
+                                                      Scalar weight,
+                                                      const AttitudeGains<Scalar>& gains) {
+    return yaw_rate_sp + move_rate * weight * gains.yaw_feed_forward;
+  }
+
+  ATTEST_ALWAYS_INLINE static Scalar weathervane_limit(Scalar yaw_rate_sp,
+                                                       const AttitudeGains<Scalar>& gains) {
+    const Scalar bound = gains.auto_rate_max_rad_s[2] * gains.weathervane_scale;
+    return clamp(yaw_rate_sp, -bound, bound);
+  }
+};
+
+template <typename Scalar>
+class AttitudeControl {
+ public:
+  using Stages = AttitudeStages<Scalar>;
+
+  explicit AttitudeControl(Profile profile) : profile_(profile) {}
+
+  void set_gains(const AttitudeGains<Scalar>& gains) { gains_ = gains; }
+
+  // The setpoint of the body rates [rad/s]. REQUIRES: set_gains() was called.
+  Vector3<Scalar> update(const AttitudeInput<Scalar>& in) const;
+
+ private:
+  Profile profile_;
+  AttitudeGains<Scalar> gains_{};
+};
+
+template <typename Scalar>
+ATTEST_ALWAYS_INLINE Vector3<Scalar> AttitudeControl<Scalar>::update(
+    const AttitudeInput<Scalar>& in) const {
+  const Matrix3<Scalar> R_WB = rotation_matrix(in.q_WB);
+  const Matrix3<Scalar> R_WD = rotation_matrix(in.q_WD);
+  const Scalar weight = Stages::yaw_weight(R_WD);
+  const Vector3<Scalar> error_B = Stages::attitude_error(R_WB, R_WD, weight);
+  Vector3<Scalar> rates_sp =
+      Stages::limit(Stages::proportional(error_B, gains_), in.autonomous, gains_);
+  Scalar& yaw = rates_sp[2];
+  if (in.weathervane && profile_ == Profile::kPx4V1_3_4) {
+    yaw = Stages::weathervane_limit(yaw, gains_);
+  }
+  yaw = Stages::yaw_feed_forward(yaw, in.yaw_sp_move_rate_rad_s, weight, gains_);
+  if (in.weathervane) yaw = Stages::weathervane_limit(yaw, gains_);
+  return rates_sp;
+}
+
+}  // namespace attest::reference

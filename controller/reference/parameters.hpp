@@ -1,0 +1,58 @@
+// The parameters of the law: one table of names, defaults, units and meanings, and the raw values.
+//
+// Names and defaults are those of PX4 v1.5.5 (mc_att_control, vtol_att_control, commander). Angles
+// and angular rates of parameters are in degrees; everything computed from them is in radians
+// (gains.hpp). The law uses whatever value it is given: `min` and `max` are the range in which a
+// vehicle can be expected to fly, for documentation and for whoever draws random parameters.
+//
+// The table is static and constant; `Parameters` is a plain value. Any thread.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace attest::reference {
+
+// Raw values, as set. Integer parameters are held as the float of the same value.
+struct Parameters {
+  float mc_roll_tc, mc_pitch_tc;
+  float mc_roll_p, mc_pitch_p, mc_yaw_p, mc_yaw_ff;
+  float mc_rollrate_p, mc_rollrate_i, mc_rollrate_d, mc_rollrate_ff;
+  float mc_pitchrate_p, mc_pitchrate_i, mc_pitchrate_d, mc_pitchrate_ff;
+  float mc_yawrate_p, mc_yawrate_i, mc_yawrate_d, mc_yawrate_ff;
+  float mc_rollrate_max, mc_pitchrate_max, mc_yawrate_max, mc_yawrauto_max;
+  float mc_acro_r_max, mc_acro_p_max, mc_acro_y_max;
+  float mc_ratt_th;
+  float mc_tpa_break, mc_tpa_slope;
+  float mc_bat_scale_en;
+  float vt_wv_yawr_scl, vt_type, vt_opt_recov_en;
+  float cbrk_rate_ctrl;
+};
+
+enum class ParameterType { kFloat, kInteger };
+
+struct ParameterInfo {
+  std::string_view name;
+  float Parameters::*member;
+  float default_value;
+  float min;
+  float max;
+  std::string_view unit;  // "1" when dimensionless
+  ParameterType type;
+  std::string_view description;
+};
+
+// Every parameter of the law, in a fixed order.
+std::span<const ParameterInfo> parameter_table();
+
+// The entry of that name, or nullptr.
+const ParameterInfo* find_parameter(std::string_view name);
+
+// The values of a new controller.
+Parameters default_parameters();
+
+// Sets one value by name. Returns false, and changes nothing, when no parameter has that name or
+// when an integer parameter is given a value that is no integer.
+bool set_parameter(Parameters& parameters, std::string_view name, float value);
+
+}  // namespace attest::reference

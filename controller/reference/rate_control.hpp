@@ -1,0 +1,157 @@
+// The rate loop: from body rates and their setpoint to dimensionless torque controls.
+//
+// The law of PX4 v1.5.5 mc_att_control, control_attitude_rates(): P with throttle attenuation, D on
+// the measured rates, an integral that holds still near saturation, and a feed-forward.
+//
+// Body axes FRD, in the order roll, pitch, yaw; rates [rad/s], time [s], thrust [0..1]. The state
+// is the integral and the samples of the last update. No clock, no allocation; one thread at a
+// time.
+#pragma once
+
+#include <cmath>
+
+#include "controller/reference/gains.hpp"
+#include "controller/reference/inline.hpp"
+#include "controller/reference/ordered.hpp"
+#include "controller/reference/profile.hpp"
+
+namespace attest::reference {
+
+// The integral and the control that feeds it stay inside this bound.
+inline constexpr float kIntegralLimit = 0.3f;
+
+// At less thrust the vehicle is taken to stand on the ground, where integrals would wind up.
+inline constexpr float kTakeoffThrust = 0.2f;
+
+// What the mixer had to give up: see multirotor_motor_limits.
+struct MotorLimits {
+  bool lower = false;
+  bool upper = false;
+  bool yaw = false;
+};
+
+template <typename Scalar>
+struct RateInput {
+  Vector3<Scalar> rates_B;
+  Vector3<Scalar> rates_sp_B;
+  Scalar thrust_sp;            // thrust of this step
+  Scalar published_thrust_sp;  // thrust of the latest vehicle_rates_setpoint
+  Scalar dt_s;
+  MotorLimits limits;
+  bool flying;  // armed as a rotary wing; otherwise the integral starts from zero
+};
+
+// The stages of the law, in the order they run. Each is a pure function of what it names.
+template <typename Scalar>
+struct RateStages {
+  using Vector = Vector3<Scalar>;
+
+  // Factor on the P term. A NaN thrust gives 1: neither comparison holds.
+  ATTEST_ALWAYS_INLINE static Scalar throttle_attenuation(Scalar thrust,
+                                                          const RateGains<Scalar>& gains) {
+    const Scalar one = 1;
+    const Scalar factor = one - gains.tpa_slope * (std::abs(thrust) - gains.tpa_break);
+    const Scalar at_most_one = factor < one ? factor : one;
+    return at_most_one > Scalar(0) ? at_most_one : Scalar(0);
+  }
+
+  ATTEST_ALWAYS_INLINE static Vector proportional(const Vector& error, Scalar attenuation,
+                                                  const RateGains<Scalar>& gains) {
+    return gains.proportional.cwiseProduct(error * attenuation);
+  }
+
+  // On the measurement, so that a step of the setpoint gives no kick.
+  ATTEST_ALWAYS_INLINE static Vector derivative(const Vector& rates_prev, const Vector& rates,
+                                                Scalar dt_s, const RateGains<Scalar>& gains) {
+    return gains.derivative.cwiseProduct(rates_prev - rates) / dt_s;
+  }
+
+  ATTEST_ALWAYS_INLINE static Vector feed_forward(const Vector& rates_sp,
+                                                  const RateGains<Scalar>& gains) {
+    return gains.feed_forward.cwiseProduct(rates_sp);
+  }
+
+  // v1.3.4: the change of the setpoint is fed forward.
+  ATTEST_ALWAYS_INLINE static Vector feed_forward_change(const Vector& rates_sp,
+                                                         const Vector& rates_sp_prev, Scalar dt_s,
+                                                         const RateGains<Scalar>& gains) {
+    return gains.feed_forward.cwiseProduct(rates_sp - rates_sp_prev) / dt_s;
+  }
+
+  ATTEST_ALWAYS_INLINE static bool may_integrate(Scalar thrust_sp, const MotorLimits& limits) {
+    return thrust_sp > Scalar(kTakeoffThrust) && !limits.lower && !limits.upper;
+  }
+
+  // One axis of the integral after this step: unchanged when any gate is shut.
+  ATTEST_ALWAYS_INLINE static Scalar integrate_axis(Scalar integral, Scalar control,
+                                                    Scalar thrust_sp, Scalar growth, bool frozen) {
+    const Scalar limit = Scalar(kIntegralLimit);
+    if (!(std::abs(control) < thrust_sp)) return integral;
+    const Scalar next = integral + growth;
+    const bool inside = next > -limit && next < limit && control > -limit && control < limit;
+    return inside && !frozen ? next : integral;
+  }
+
+  ATTEST_ALWAYS_INLINE static Vector integrate(const Vector& integral, const Vector& control,
+                                               const Vector& error, const RateInput<Scalar>& in,
+                                               const RateGains<Scalar>& gains, bool yaw_frozen) {
+    if (!may_integrate(in.thrust_sp, in.limits)) return integral;
+    const Vector growth = gains.integral.cwiseProduct(error) * in.dt_s;
+    return {integrate_axis(integral[0], control[0], in.thrust_sp, growth[0], false),
+            integrate_axis(integral[1], control[1], in.thrust_sp, growth[1], false),
+            integrate_axis(integral[2], control[2], in.thrust_sp, growth[2], yaw_frozen)};
+  }
+};
+
+template <typename Scalar>
+class RateControl {
+ public:
+  using Stages = RateStages<Scalar>;
+
+  explicit RateControl(Profile profile) : profile_(profile) {}
+
+  void set_gains(const RateGains<Scalar>& gains) { gains_ = gains; }
+
+  // The torque controls: dimensionless, not limited, NaN where an input was.
+  // REQUIRES: set_gains() was called.
+  Vector3<Scalar> update(const RateInput<Scalar>& in);
+
+  void reset_yaw_integral() { integral_[2] = Scalar(0); }
+
+  const Vector3<Scalar>& integral() const { return integral_; }
+
+ private:
+  Vector3<Scalar> feed_forward(const RateInput<Scalar>& in) const;
+
+  Profile profile_;
+  RateGains<Scalar> gains_{};
+  Vector3<Scalar> integral_ = Vector3<Scalar>::Zero();
+  Vector3<Scalar> rates_prev_ = Vector3<Scalar>::Zero();
+  Vector3<Scalar> rates_sp_prev_ = Vector3<Scalar>::Zero();
+};
+
+template <typename Scalar>
+ATTEST_ALWAYS_INLINE Vector3<Scalar> RateControl<Scalar>::feed_forward(
+    const RateInput<Scalar>& in) const {
+  if (profile_ == Profile::kPx4V1_5_5) return Stages::feed_forward(in.rates_sp_B, gains_);
+  return Stages::feed_forward_change(in.rates_sp_B, rates_sp_prev_, in.dt_s, gains_);
+}
+
+template <typename Scalar>
+ATTEST_ALWAYS_INLINE Vector3<Scalar> RateControl<Scalar>::update(const RateInput<Scalar>& in) {
+  const bool v1_5_5 = profile_ == Profile::kPx4V1_5_5;
+  if (!in.flying) integral_.setZero();
+  const Scalar attenuation =
+      v1_5_5 ? Stages::throttle_attenuation(in.published_thrust_sp, gains_) : Scalar(1);
+  const Vector3<Scalar> error = in.rates_sp_B - in.rates_B;
+  const Vector3<Scalar> control = ((Stages::proportional(error, attenuation, gains_) +
+                                    Stages::derivative(rates_prev_, in.rates_B, in.dt_s, gains_)) +
+                                   integral_) +
+                                  feed_forward(in);
+  rates_prev_ = in.rates_B;
+  rates_sp_prev_ = in.rates_sp_B;
+  integral_ = Stages::integrate(integral_, control, error, in, gains_, v1_5_5 && in.limits.yaw);
+  return control;
+}
+
+}  // namespace attest::reference

@@ -1,0 +1,61 @@
+// The outer loop of a tailsitter that recovers from a large tilt along an optimal path.
+//
+// The law of PX4 v1.5.5 TailsitterRecovery: beyond 30 deg of tilt error, and until it is below
+// 5 deg, the rate setpoint is a fitted function of the tilt and of the direction of its axis; else
+// a plain quaternion law. It replaces AttitudeControl when VT_TYPE is 0 and VT_OPT_RECOV_EN is set.
+//
+// Frames: W world NED, B body FRD, D desired body. Angles [rad], rates [rad/s]. The only state is
+// whether a recovery is under way. No clock, no allocation; one thread at a time.
+#pragma once
+
+#include "controller/reference/gains.hpp"
+#include "controller/reference/ordered.hpp"
+#include "controller/reference/rotation.hpp"
+
+namespace attest::reference {
+
+// The tilt error as the fitted functions take it.
+template <typename Scalar>
+struct RecoveryTilt {
+  Scalar angle_rad;       // 0 .. pi between thrust axis and desired thrust axis
+  Scalar direction_rad;   // of the tilt axis in the body's x-y plane, folded into 0 .. pi/2
+  Vector3<Scalar> signs;  // that undo the folding
+};
+
+// The stages of the law, in the order they run.
+template <typename Scalar>
+struct RecoveryStages {
+  using Vector = Vector3<Scalar>;
+
+  static RecoveryTilt<Scalar> tilt(const Quaternion<Scalar>& q_WB, const Quaternion<Scalar>& q_WD);
+  static bool latch(bool recovering, Scalar tilt_rad);
+  static Vector optimal_rates(const RecoveryTilt<Scalar>& tilt);
+  static Vector quaternion_rates(const Quaternion<Scalar>& q_WB, const Quaternion<Scalar>& q_WD,
+                                 const AttitudeGains<Scalar>& gains);
+  static Scalar yaw_feed_forward(Scalar yaw_rate_sp, Scalar move_rate,
+                                 const Quaternion<Scalar>& q_WB,
+                                 const AttitudeGains<Scalar>& gains);
+};
+
+template <typename Scalar>
+class TailsitterRecovery {
+ public:
+  using Stages = RecoveryStages<Scalar>;
+
+  void set_gains(const AttitudeGains<Scalar>& gains) { gains_ = gains; }
+
+  // The setpoint of the body rates [rad/s]. REQUIRES: set_gains() was called.
+  Vector3<Scalar> update(const Quaternion<Scalar>& q_WB, const Quaternion<Scalar>& q_WD,
+                         Scalar yaw_sp_move_rate_rad_s);
+
+ private:
+  AttitudeGains<Scalar> gains_{};
+  bool recovering_ = false;
+};
+
+extern template struct RecoveryStages<float>;
+extern template struct RecoveryStages<double>;
+extern template class TailsitterRecovery<float>;
+extern template class TailsitterRecovery<double>;
+
+}  // namespace attest::reference

@@ -1,0 +1,57 @@
+#include "controller/reference/unit.hpp"
+
+#include <new>
+
+#include "controller/reference/mc_att_control.hpp"
+#include "controller/reference/profile.hpp"
+
+#ifndef ATTEST_REFERENCE_SCALAR
+#define ATTEST_REFERENCE_SCALAR float
+#endif
+
+#ifndef ATTEST_REFERENCE_VERSION
+#define ATTEST_REFERENCE_VERSION "unversioned"
+#endif
+
+namespace attest::reference {
+namespace {
+
+using Controller = McAttControl<ATTEST_REFERENCE_SCALAR>;
+
+// Every function is noexcept: an exception must not cross into a host written in C.
+
+void* create(const char* profile_name) noexcept {
+  if (profile_name == nullptr) return nullptr;
+  const auto profile = profile_from_name(profile_name);
+  return profile ? new (std::nothrow) Controller(*profile) : nullptr;
+}
+
+void destroy(void* self) noexcept { delete static_cast<Controller*>(self); }
+
+int set_parameter(void* self, const char* name, float value) noexcept {
+  if (self == nullptr || name == nullptr) return ATTEST_INVALID;
+  return static_cast<Controller*>(self)->set_parameter(name, value) ? ATTEST_OK : ATTEST_INVALID;
+}
+
+int step(void* self, const attest_inputs* in, attest_outputs* out) noexcept {
+  if (self == nullptr || in == nullptr || out == nullptr) return ATTEST_INVALID;
+  static_cast<Controller*>(self)->step(*in, *out);
+  return ATTEST_OK;
+}
+
+constexpr attest_unit kUnit{
+    ATTEST_UNIT_ABI_VERSION,
+    "attest-reference",
+    ATTEST_REFERENCE_VERSION,
+    create,
+    destroy,
+    set_parameter,
+    step,
+    nullptr,
+};
+
+}  // namespace
+
+const attest_unit* reference_unit() { return &kUnit; }
+
+}  // namespace attest::reference

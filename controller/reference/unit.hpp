@@ -1,0 +1,12 @@
+// The reference controller behind the C ABI of attest_unit.h.
+#pragma once
+
+#include "controller/attest_unit.h"
+
+namespace attest::reference {
+
+// The static table of the reference; never NULL, outlives every instance. Computes in binary32
+// unless compiled with ATTEST_REFERENCE_SCALAR=double.
+const attest_unit* reference_unit();
+
+}  // namespace attest::reference

@@ -1,0 +1,93 @@
+// A case: a situation that a controller must handle like the reference, as plain data.
+//
+// Read from cases/<profile>/<group>/<behaviour>.toml (parse.hpp, SCHEMA.md), made into the inputs
+// of a unit at one loop rate by stimulus.hpp.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/casefile/signal.hpp"
+#include "harness/compare/tolerance.hpp"
+#include "harness/schedule/rate.hpp"
+
+namespace attest {
+
+// When the samples of a topic are published.
+struct Publication {
+  enum class When {
+    automatic,  // every tick if a field varies, else at the first tick
+    every_tick,
+    periodic,  // `period` or `rate`, from `phase` on
+    at_times,
+    never,
+  };
+  When when = When::automatic;
+  std::optional<Rate> rate;  // periodic: this, or
+  Span period;
+  Span phase;
+  std::vector<Span> times;
+};
+
+struct FieldStimulus {
+  std::size_t channel;  // index into channels(), an input
+  Signal signal;
+};
+
+struct AttitudeStimulus {
+  std::size_t channel;  // of q[0]; q[1..3] follow
+  AttitudeSignal attitude;
+};
+
+struct TopicStimulus {
+  std::string topic;
+  std::uint32_t updated_bit = 0;  // 0 for control_state, which is new at every tick
+  Publication publication;
+  std::vector<FieldStimulus> fields;
+  std::vector<AttitudeStimulus> attitudes;
+};
+
+// A parameter and its value over time; a varying one is sent with parameter_update at the ticks
+// where its value changes.
+struct ParameterStimulus {
+  std::string name;
+  Signal signal;
+};
+
+// The unit's own ticks: late by jitter, or missing.
+struct UnitTiming {
+  Span start{5.0, Span::In::seconds};  // timestamp of the first tick
+  double jitter = 0;                   // late by up to this fraction of a period
+  std::uint64_t seed = 1;
+  std::vector<std::int64_t> drop_ticks;
+};
+
+struct ToleranceOverride {
+  std::string channels;  // prefix without "out/"
+  Tolerance tolerance;
+};
+
+struct Case {
+  std::filesystem::path file;
+  std::string sha256;   // of the file: a golden of another version of it is stale
+  std::string profile;  // version of the law: "px4-v1.5.5"
+  std::string group;
+  std::string name;  // stem of the file
+  std::string why;   // which mistake or property it is there for
+  std::vector<Rate> rates;
+  Span duration;
+  UnitTiming unit;
+  std::vector<ParameterStimulus> parameters;
+  std::vector<TopicStimulus> topics;
+  std::vector<ToleranceOverride> tolerances;
+  std::string tolerance_why;
+  bool exact_only = false;  // on a threshold of the law, where correct arithmetic may differ
+
+  std::string id() const { return profile + "/" + group + "/" + name; }
+};
+
+}  // namespace attest

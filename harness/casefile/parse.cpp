@@ -1,0 +1,177 @@
+#include "harness/casefile/parse.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "controller/reference/parameters.hpp"
+#include "harness/casefile/parse_signal.hpp"
+#include "harness/casefile/parse_topic.hpp"
+#include "harness/core/file.hpp"
+#include "harness/core/nearest.hpp"
+#include "harness/core/toml.hpp"
+
+namespace attest {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Of the format of case files; a file with another one was written for another attest.
+constexpr std::int64_t schema_version = 1;
+
+std::vector<Rate> parse_rates(const TomlTable& root) {
+  constexpr const char* key = "rates_hz";
+  if (!root.has(key)) {
+    if (root.has("rates_why")) root.error("rates_why", "explains `rates_hz`, which is not there");
+    return standard_rates();
+  }
+  root.text("rates_why");  // required: a case that leaves out rates must say why
+  std::vector<Rate> rates;
+  for (const double hertz : root.numbers(key)) {
+    const auto rate = Rate::parse(fmt::format("{}", hertz));
+    if (!rate) {
+      root.error(key, rate.error().message);
+    } else {
+      rates.push_back(*rate);
+    }
+  }
+  std::sort(rates.begin(), rates.end());
+  if (rates.empty()) root.error(key, "names no rate");
+  if (std::adjacent_find(rates.begin(), rates.end()) != rates.end()) {
+    root.error(key, "names a rate twice");
+  }
+  return rates;
+}
+
+UnitTiming parse_unit(const TomlTable& root) {
+  UnitTiming unit;
+  if (!root.has("unit")) return unit;
+  const TomlTable table = root.table("unit");
+  unit.start.amount = table.number("start_s", unit.start.amount);
+  // Up to 285 years of microseconds, the last that a double holds.
+  if (!(unit.start.amount >= 0 && unit.start.amount < 9e9)) {
+    table.error("start_s", "must be from 0 up to 9e9");
+  }
+  unit.jitter = table.number("jitter", 0);
+  if (!(unit.jitter >= 0 && unit.jitter < 1)) {
+    table.error("jitter", "is a fraction of a period: from 0 up to, but not, 1");
+  }
+  unit.seed = static_cast<std::uint64_t>(table.integer("seed", 1));
+  if (table.has("drop_ticks")) unit.drop_ticks = table.integers("drop_ticks");
+  return unit;
+}
+
+std::vector<std::string> parameter_names() {
+  std::vector<std::string> names;
+  for (const auto& info : reference::parameter_table()) names.emplace_back(info.name);
+  return names;
+}
+
+std::vector<ParameterStimulus> parse_parameters(const TomlTable& root) {
+  std::vector<ParameterStimulus> parameters;
+  if (!root.has("parameters")) return parameters;
+  const TomlTable table = root.table("parameters");
+  for (const std::string& name : table.keys()) {
+    parameters.push_back({name, parse_signal(table, name)});
+    if (!reference::find_parameter(name)) {
+      table.error(name, fmt::format("unknown parameter `{}`{}; `attest list --parameters` shows "
+                                    "them all",
+                                    name, suggestion(name, parameter_names())));
+    }
+  }
+  return parameters;
+}
+
+void parse_tolerances(const TomlTable& root, Case& parsed) {
+  if (!root.has("tolerance")) return;
+  const TomlTable table = root.table("tolerance");
+  parsed.tolerance_why = table.text("why");
+  for (const std::string& name : table.keys()) {
+    if (name == "why") continue;
+    const TomlTable values = table.table(name);
+    const Tolerance tolerance{values.number("absolute"), values.number("relative", 0)};
+    if (!(tolerance.absolute >= 0 && tolerance.relative >= 0)) {
+      values.error("absolute", "tolerances must not be negative");
+    }
+    if (!Tolerances().set(name, tolerance)) {
+      table.error(name, fmt::format("`{}` is no output topic or channel; `attest list --channels` "
+                                    "shows them all",
+                                    name));
+    }
+    parsed.tolerances.push_back({name, tolerance});
+  }
+}
+
+// The place of a case is its name: cases/<profile>/<group>/<name>.toml.
+void parse_identity(const TomlTable& root, const fs::path& file, Case& parsed) {
+  const fs::path folder = fs::absolute(file).parent_path();
+  parsed.name = file.stem().string();
+  parsed.profile = root.text("profile");
+  parsed.group = root.text("group");
+  parsed.why = root.text("why");
+  if (parsed.group != folder.filename()) {
+    root.error("group", fmt::format("is `{}`, but the folder is `{}`", parsed.group,
+                                    folder.filename().string()));
+  }
+  if (parsed.profile != folder.parent_path().filename()) {
+    root.error("profile", fmt::format("is `{}`, but the folder is `{}`", parsed.profile,
+                                      folder.parent_path().filename().string()));
+  }
+  if (parsed.why.empty()) root.error("why", "must say why the case exists");
+}
+
+void parse_body(const TomlTable& root, Case& parsed) {
+  if (root.integer("schema") != schema_version) {
+    root.error("schema", fmt::format("must be {}", schema_version));
+  }
+  parsed.rates = parse_rates(root);
+  parsed.duration = parse_span(root, "duration");
+  if (!(parsed.duration.amount >= 1e-6)) root.error("duration_ticks", "must be positive");
+  const bool whole_ticks = parsed.duration.amount == std::floor(parsed.duration.amount);
+  if (parsed.duration.in == Span::In::ticks && !whole_ticks) {
+    root.error("duration_ticks", "must be a whole number");
+  }
+  const std::string level = root.text("level", "numeric");
+  parsed.exact_only = level == "exact";
+  if (level != "numeric" && level != "exact") root.error("level", "must be numeric or exact");
+  parsed.unit = parse_unit(root);
+  parsed.parameters = parse_parameters(root);
+  parsed.topics = parse_topics(root);
+  parse_tolerances(root, parsed);
+}
+
+}  // namespace
+
+Result<Case> parse_case(const fs::path& file) {
+  auto text = read_file(file);
+  if (!text) return tl::unexpected(text.error());
+  auto toml = TomlFile::parse(*text, file.string());
+  if (!toml) return tl::unexpected(toml.error());
+  Case parsed;
+  parsed.file = file;
+  parsed.sha256 = sha256(*text);
+  const TomlTable root = toml->root();
+  parse_identity(root, file, parsed);
+  parse_body(root, parsed);
+  if (auto done = toml->finish(); !done) return tl::unexpected(done.error());
+  return parsed;
+}
+
+Result<std::vector<fs::path>> find_case_files(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (fs::recursive_directory_iterator it(folder, error), end; it != end; it.increment(error)) {
+    if (error) break;
+    if (it->is_regular_file() && it->path().extension() == ".toml") files.push_back(it->path());
+  }
+  if (error) return fail_at(folder.string(), fmt::format("cannot be read: {}", error.message()));
+  if (files.empty()) {
+    return fail_at(folder.string(), "no case files (<profile>/<group>/<behaviour>.toml) in here");
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace attest

@@ -1,0 +1,20 @@
+// Reads case files. SCHEMA.md lists every key.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "harness/casefile/case.hpp"
+#include "harness/core/result.hpp"
+
+namespace attest {
+
+// Reads cases/<profile>/<group>/<name>.toml. Errors, all of them at once with file:line: syntax,
+// unknown keys (with the nearest known one), values out of range, a profile or group that is not
+// that of the folder.
+Result<Case> parse_case(const std::filesystem::path& file);
+
+// The case files below a folder, in the order of their paths. Errors: no such folder, no cases.
+Result<std::vector<std::filesystem::path>> find_case_files(const std::filesystem::path& folder);
+
+}  // namespace attest

@@ -1,0 +1,168 @@
+#include "harness/casefile/parse_signal.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "harness/core/nearest.hpp"
+
+namespace attest {
+namespace {
+
+// The one of two spellings that is there: the unit is part of the key.
+struct Spelled {
+  std::string key;
+  bool first = true;
+};
+
+std::optional<Spelled> spelled(const TomlTable& table, const std::string& first,
+                               const std::string& second) {
+  const bool has_first = table.has(first);
+  const bool has_second = table.has(second);
+  if (has_first && has_second) {
+    table.error(second, fmt::format("`{}` is given too; keep one of them", first));
+  }
+  if (!has_first && !has_second) return std::nullopt;
+  return Spelled{has_first ? first : second, has_first};
+}
+
+Frequency parse_frequency(const TomlTable& table, const std::string& hertz,
+                          const std::string& cycles) {
+  const auto found = spelled(table, hertz, cycles);
+  if (!found) {
+    table.error("", fmt::format("needs `{}` (over the whole case) or `{}`", cycles, hertz));
+    return {};
+  }
+  return {table.number(found->key), found->first ? Frequency::In::hertz : Frequency::In::cycles};
+}
+
+Step parse_step(const TomlTable& table) {
+  return {table.number("from"), table.number("to"), parse_span(table, "at")};
+}
+
+Ramp parse_ramp(const TomlTable& table) {
+  const Span start = parse_optional_span(table, "start").value_or(Span{});
+  const Ramp ramp{table.number("from"), table.number("to"), start, parse_span(table, "end")};
+  if (start.in == ramp.end.in && !(start.amount < ramp.end.amount)) {
+    table.error("", "the ramp must end after its start");
+  }
+  return ramp;
+}
+
+Sine parse_sine(const TomlTable& table) {
+  return {table.number("mean", 0), table.number("amplitude"), table.number("phase_deg", 0),
+          parse_frequency(table, "frequency_hz", "cycles")};
+}
+
+Chirp parse_chirp(const TomlTable& table) {
+  return {table.number("mean", 0), table.number("amplitude"),
+          parse_frequency(table, "from_hz", "from_cycles"),
+          parse_frequency(table, "to_hz", "to_cycles")};
+}
+
+RandomWalk parse_random_walk(const TomlTable& table) {
+  const RandomWalk walk{static_cast<std::uint64_t>(table.integer("seed")),
+                        table.number("start", 0),
+                        table.number("step"),
+                        table.number("min"),
+                        table.number("max"),
+                        parse_optional_span(table, "every").value_or(Span{1, Span::In::ticks})};
+  if (!(walk.min < walk.max)) table.error("max", "must be above `min`");
+  if (!(walk.start >= walk.min && walk.start <= walk.max)) {
+    table.error("start", "must lie between `min` and `max`");
+  }
+  if (!(walk.every.amount > 0)) table.error("every_ticks", "must be positive");
+  return walk;
+}
+
+Samples parse_samples(const TomlTable& table) {
+  Samples samples{parse_spans(table, "times"), table.numbers("values"),
+                  table.boolean("linear", false)};
+  if (samples.times.empty() || samples.times.size() != samples.values.size()) {
+    table.error("values", fmt::format("has {} values for {} times; give one value a time, at least "
+                                      "one",
+                                      samples.values.size(), samples.times.size()));
+    return {{Span{}}, {0}, false};
+  }
+  return samples;
+}
+
+Signal parse_signal_table(const TomlTable& table) {
+  const std::string kind = table.text("signal");
+  if (kind == "constant") return Constant{table.number("value")};
+  if (kind == "step") return parse_step(table);
+  if (kind == "ramp") return parse_ramp(table);
+  if (kind == "sine") return parse_sine(table);
+  if (kind == "chirp") return parse_chirp(table);
+  if (kind == "random_walk") return parse_random_walk(table);
+  if (kind == "samples") return parse_samples(table);
+  static const std::vector<std::string> kinds = {"constant", "step",        "ramp",   "sine",
+                                                 "chirp",    "random_walk", "samples"};
+  if (!kind.empty()) {
+    table.error("signal", fmt::format("unknown signal `{}`{}; the kinds are {}", kind,
+                                      suggestion(kind, kinds), fmt::join(kinds, ", ")));
+  }
+  return Constant{};
+}
+
+}  // namespace
+
+std::optional<Span> parse_optional_span(const TomlTable& table, const std::string& stem) {
+  const auto found = spelled(table, stem + "_ticks", stem + "_s");
+  if (!found) return std::nullopt;
+  const double amount = table.number(found->key);
+  if (!(amount >= 0 && amount < 1e9)) table.error(found->key, "must be a time from 0 up to 1e9");
+  return Span{amount, found->first ? Span::In::ticks : Span::In::seconds};
+}
+
+Span parse_span(const TomlTable& table, const std::string& stem) {
+  const auto span = parse_optional_span(table, stem);
+  if (!span) {
+    table.error("", fmt::format("needs `{0}_ticks` (of the unit's loop) or `{0}_s`", stem));
+  }
+  return span.value_or(Span{});
+}
+
+std::vector<Span> parse_spans(const TomlTable& table, const std::string& stem) {
+  const auto found = spelled(table, stem + "_ticks", stem + "_s");
+  if (!found) {
+    table.error("", fmt::format("needs `{0}_ticks` (of the unit's loop) or `{0}_s`", stem));
+    return {};
+  }
+  std::vector<Span> spans;
+  double last = -1;
+  for (const double amount : table.numbers(found->key)) {
+    if (!(amount > last && amount < 1e9)) {
+      table.error(found->key, "must increase, from 0 up to 1e9");
+      break;
+    }
+    spans.push_back({amount, found->first ? Span::In::ticks : Span::In::seconds});
+    last = amount;
+  }
+  return spans;
+}
+
+Signal parse_signal(const TomlTable& table, const std::string& key) {
+  switch (table.kind(key)) {
+    case TomlKind::boolean:
+      return Constant{table.boolean(key, false) ? 1.0 : 0.0};
+    case TomlKind::table:
+      return parse_signal_table(table.table(key));
+    default:
+      return Constant{table.number(key)};
+  }
+}
+
+AttitudeSignal parse_attitude(const TomlTable& table, const std::string& key) {
+  const TomlTable angles = table.table(key);
+  AttitudeSignal attitude;
+  if (angles.has("tilt_deg")) attitude.tilt_deg = parse_signal(angles, "tilt_deg");
+  if (angles.has("azimuth_deg")) attitude.azimuth_deg = parse_signal(angles, "azimuth_deg");
+  if (angles.has("yaw_deg")) attitude.yaw_deg = parse_signal(angles, "yaw_deg");
+  attitude.sign = angles.number("sign", 1);
+  attitude.norm = angles.number("norm", 1);
+  if (attitude.sign != 1 && attitude.sign != -1) angles.error("sign", "must be 1 or -1");
+  return attitude;
+}
+
+}  // namespace attest

@@ -1,0 +1,209 @@
+#include "harness/casefile/parse_topic.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "harness/casefile/flight_mode.hpp"
+#include "harness/casefile/parse_signal.hpp"
+#include "harness/core/nearest.hpp"
+#include "harness/trace/channels.hpp"
+
+namespace attest {
+namespace {
+
+constexpr std::string_view input_prefix = "in/";
+constexpr std::string_view control_state = "control_state";
+constexpr std::string_view control_mode = "vehicle_control_mode";
+
+// What a vehicle shows that hovers level and armed; all that is not named is zero.
+double baseline(std::string_view name) {
+  static const std::map<std::string_view, double> values = {
+      {"in/control_state.q[0]", 1},
+      {"in/vehicle_attitude_setpoint.q_d[0]", 1},
+      {"in/vehicle_attitude_setpoint.thrust", 0.5},
+      {"in/manual_control_setpoint.z", 0.5},
+      {"in/battery_status.scale", 1},
+      {"in/actuator_armed.armed", 1},
+      {"in/vehicle_status.is_rotary_wing", 1},
+      {"in/vehicle_control_mode.flag_control_manual_enabled", 1},
+      {"in/vehicle_control_mode.flag_control_rates_enabled", 1},
+      {"in/vehicle_control_mode.flag_control_attitude_enabled", 1},
+      {"in/vehicle_control_mode.flag_control_rattitude_enabled", 1},
+  };
+  const auto found = values.find(name);
+  return found == values.end() ? 0 : found->second;
+}
+
+// Flags are bytes: a signal that passes through other values has no meaning for them.
+bool is_byte_signal(const Signal& signal) {
+  const auto is_byte = [](double v) { return v >= 0 && v <= 255 && v == std::floor(v); };
+  if (const auto* constant = std::get_if<Constant>(&signal)) return is_byte(constant->value);
+  if (const auto* step = std::get_if<Step>(&signal))
+    return is_byte(step->from) && is_byte(step->to);
+  if (const auto* samples = std::get_if<Samples>(&signal)) {
+    return !samples->linear && std::all_of(samples->values.begin(), samples->values.end(), is_byte);
+  }
+  return false;
+}
+
+void parse_field(const TomlTable& table, const std::string& key, FieldStimulus& field) {
+  if (!table.has(key)) return;
+  field.signal = parse_signal(table, key);
+  if (channels()[field.channel].type == ChannelType::u8 && !is_byte_signal(field.signal)) {
+    table.error(key, "is a flag: a constant, a step or samples of whole numbers from 0 to 255");
+  }
+}
+
+// `q = [w, x, y, z]` or `q = { tilt_deg = ..., ... }`; `first` is the field of the w component.
+void parse_quaternion(const TomlTable& table, const std::string& key, TopicStimulus& topic,
+                      std::size_t first) {
+  switch (table.kind(key)) {
+    case TomlKind::absent:
+      return;
+    case TomlKind::array: {
+      const std::vector<double> q = table.numbers(key);
+      if (q.size() != 4) return table.error(key, "needs four numbers: [w, x, y, z]");
+      for (std::size_t i = 0; i < 4; ++i) topic.fields[first + i].signal = Constant{q[i]};
+      return;
+    }
+    default: {
+      topic.attitudes.push_back({topic.fields[first].channel, parse_attitude(table, key)});
+      const auto begin = topic.fields.begin() + static_cast<std::ptrdiff_t>(first);
+      topic.fields.erase(begin, begin + 4);
+    }
+  }
+}
+
+std::vector<std::string> mode_names() {
+  std::vector<std::string> names;
+  for (const FlightMode& mode : flight_modes()) names.emplace_back(mode.name);
+  return names;
+}
+
+// `flight_mode = "ACRO"`, or `{ times_ticks = [0, 20], modes = ["ACRO", "POSCTL"] }`.
+void parse_flight_mode(const TomlTable& table, TopicStimulus& topic) {
+  constexpr const char* key = "flight_mode";
+  if (!table.has(key)) return;
+  std::vector<Span> times{Span{}};
+  std::vector<std::string> names;
+  if (table.kind(key) == TomlKind::table) {
+    const TomlTable sequence = table.table(key);
+    times = parse_spans(sequence, "times");
+    names = sequence.texts("modes");
+  } else {
+    names = {table.text(key)};
+  }
+  if (names.size() != times.size() || names.empty()) {
+    return table.error(key, "needs one mode a time, at least one");
+  }
+  for (std::size_t flag = 0; flag < topic.fields.size(); ++flag) {
+    Samples samples{times, {}, false};
+    for (const std::string& name : names) {
+      const FlightMode* mode = find_flight_mode(name);
+      if (!mode) {
+        return table.error(
+            key, fmt::format("unknown flight mode `{}`{}", name, suggestion(name, mode_names())));
+      }
+      samples.values.push_back(mode->flags[flag]);
+    }
+    if (names.size() == 1) {
+      topic.fields[flag].signal = Constant{samples.values[0]};
+    } else {
+      topic.fields[flag].signal = samples;
+    }
+  }
+}
+
+Publication parse_publication(const TomlTable& table) {
+  using When = Publication::When;
+  Publication publication;
+  const bool at_times = table.has("publish_at_ticks") || table.has("publish_at_s");
+  const bool by_period = table.has("period_ticks") || table.has("period_s");
+  const bool by_rate = table.has("rate_hz");
+  const std::string publish = table.text("publish", "");
+  if (at_times + by_period + by_rate + !publish.empty() > 1) {
+    table.error("", "give one of `publish`, `publish_at_...`, `period_...` and `rate_hz`");
+  }
+  if (publish == "never") publication.when = When::never;
+  if (publish == "every_tick") publication.when = When::every_tick;
+  if (!publish.empty() && publication.when == When::automatic) {
+    table.error("publish", "must be \"never\" or \"every_tick\"");
+  }
+  if (at_times) {
+    publication.when = When::at_times;
+    publication.times = parse_spans(table, "publish_at");
+  }
+  if (by_period) {
+    publication.when = When::periodic;
+    publication.period = parse_span(table, "period");
+    if (!(publication.period.amount > 0)) table.error("period_ticks", "must be positive");
+  }
+  if (by_rate) {
+    publication.when = When::periodic;
+    const auto rate = Rate::parse(fmt::format("{}", table.number("rate_hz")));
+    if (rate) publication.rate = *rate;
+    if (!rate) table.error("rate_hz", rate.error().message);
+  }
+  if (const auto phase = parse_optional_span(table, "phase")) {
+    publication.phase = *phase;
+    if (publication.when != When::periodic) table.error("", "a phase needs a period or a rate");
+  }
+  return publication;
+}
+
+std::string_view topic_of(std::string_view channel) {
+  const std::string_view name = channel.substr(input_prefix.size());
+  return name.substr(0, name.find('.'));
+}
+
+std::string_view field_of(std::string_view channel) {
+  return channel.substr(channel.find('.') + 1);
+}
+
+// The topic with its baseline values.
+TopicStimulus baseline_topic(std::string_view name, std::uint32_t updated_bit) {
+  TopicStimulus topic{std::string(name), updated_bit, {}, {}, {}};
+  const auto table = channels();
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const bool is_field = table[i].name.starts_with(input_prefix) &&
+                          table[i].type != ChannelType::bit && topic_of(table[i].name) == name;
+    if (is_field) topic.fields.push_back({i, Constant{baseline(table[i].name)}});
+  }
+  return topic;
+}
+
+void parse_topic(const TomlTable& table, TopicStimulus& topic) {
+  if (topic.topic == control_mode) parse_flight_mode(table, topic);
+  for (FieldStimulus& field : topic.fields) {
+    const std::string name(field_of(channels()[field.channel].name));
+    if (!name.starts_with('q')) parse_field(table, name, field);
+  }
+  for (std::size_t i = 0; i < topic.fields.size(); ++i) {
+    const std::string_view name = field_of(channels()[topic.fields[i].channel].name);
+    if (!name.ends_with("[0]")) continue;
+    parse_quaternion(table, std::string(name.substr(0, name.size() - 3)), topic, i);
+    break;
+  }
+  // control_state is what makes a step: it has no publication of its own.
+  if (topic.topic != control_state) topic.publication = parse_publication(table);
+}
+
+}  // namespace
+
+std::vector<TopicStimulus> parse_topics(const TomlTable& root) {
+  std::vector<TopicStimulus> topics{baseline_topic(control_state, 0)};
+  std::uint32_t bit = 1;
+  for (const std::string_view name : updated_topics()) {
+    if (bit != ATTEST_UPDATED_PARAMETER_UPDATE) topics.push_back(baseline_topic(name, bit));
+    bit <<= 1;
+  }
+  for (TopicStimulus& topic : topics) {
+    if (root.has(topic.topic)) parse_topic(root.table(topic.topic), topic);
+  }
+  return topics;
+}
+
+}  // namespace attest

@@ -1,0 +1,103 @@
+// Signals: how one field of a topic changes over the time of a case.
+//
+// All arithmetic is double; a value is rounded once, when it is written into the ABI struct. Times
+// count from the begin of the case. A time may be given in ticks of the unit, so that one case
+// exercises the same steps at every loop rate, or in seconds.
+#pragma once
+
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "harness/core/time.hpp"
+#include "harness/schedule/rate.hpp"
+
+namespace attest {
+
+// The unit's loop rate and how long the case lasts: what turns ticks and cycles into seconds.
+struct Timeline {
+  Rate rate = Rate::hz(250);
+  Nanoseconds duration{0};
+};
+
+struct Span {
+  enum class In { ticks, seconds };
+  double amount = 0;
+  In in = In::ticks;
+
+  Nanoseconds on(const Rate& unit_rate) const;
+};
+
+struct Frequency {
+  enum class In { hertz, cycles };  // cycles: over the whole case
+  double amount = 0;
+  In in = In::cycles;
+
+  double hertz_on(const Timeline& timeline) const;
+};
+
+struct Constant {
+  double value = 0;
+};
+struct Step {  // `from` before `at`, `to` from then on
+  double from = 0, to = 0;
+  Span at;
+};
+struct Ramp {  // straight from `from` at `start` to `to` at `end`, held outside
+  double from = 0, to = 0;
+  Span start, end;
+};
+struct Sine {  // mean + amplitude sin(2 pi f t + phase)
+  double mean = 0, amplitude = 0, phase_deg = 0;
+  Frequency frequency;
+};
+struct Chirp {  // a sine whose frequency goes linearly from `from` to `to` over the case
+  double mean = 0, amplitude = 0;
+  Frequency from, to;
+};
+struct RandomWalk {  // moves by a uniform +-step each `every`, reflected at the bounds
+  std::uint64_t seed = 1;
+  double start = 0, step = 0, min = 0, max = 0;
+  Span every;
+};
+struct Samples {  // values[i] from times[i] on; before the first time the first value
+  std::vector<Span> times;
+  std::vector<double> values;
+  bool linear = false;  // straight lines between the samples, instead of holding
+};
+
+using Signal = std::variant<Constant, Step, Ramp, Sine, Chirp, RandomWalk, Samples>;
+
+// Attitude by tilt of the thrust axis, as angles a person can picture, each a signal of its own:
+// q = norm * sign * q_tilt * q_yaw, where q_yaw turns by `yaw_deg` about world down and then q_tilt
+// by `tilt_deg` about the horizontal world axis at `azimuth_deg` from north (0: roll right of a
+// vehicle that heads north, 90: pitch up).
+struct AttitudeSignal {
+  Signal tilt_deg = Constant{}, azimuth_deg = Constant{}, yaw_deg = Constant{};
+  double sign = 1;  // -1: the antipodal quaternion, the same attitude
+  double norm = 1;
+};
+
+// A signal on a timeline, to be sampled at any time of the case.
+class Sampler {
+ public:
+  Sampler(const Signal& signal, const Timeline& timeline);
+
+  double at(Nanoseconds time) const;
+
+ private:
+  Signal signal_;
+  Timeline timeline_;
+  std::vector<double> walk_;  // of a RandomWalk, one value a step
+};
+
+// {w, x, y, z} of the attitude with these angles [deg].
+struct Quaternion {
+  double w, x, y, z;
+};
+Quaternion attitude_from(double tilt_deg, double azimuth_deg, double yaw_deg);
+
+// A signal that may have another value at another time.
+bool varies(const Signal& signal);
+
+}  // namespace attest

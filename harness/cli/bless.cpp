@@ -1,0 +1,219 @@
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "harness/casefile/stimulus.hpp"
+#include "harness/cli/command.hpp"
+#include "harness/cli/suite_folder.hpp"
+#include "harness/port/port.hpp"
+#include "harness/run/golden.hpp"
+#include "harness/run/open_loop.hpp"
+#include "harness/suite/recorded_check.hpp"
+
+namespace attest::cli {
+namespace {
+
+struct BlessOptions {
+  SelectionOptions select;
+  std::string reason;
+  bool yes = false;
+};
+
+// A golden that only our own code has seen proves nothing: the reference must first agree with what
+// the firmware computed.
+Result<void> check_reference(const SuiteFolder& suite) {
+  const auto check = check_recorded(suite.recorded());
+  if (!check) return tl::unexpected(check.error());
+  if (check->conforming == check->traces) return {};
+  return fail(
+      fmt::format("nothing is blessed: the reference of this build differs from {} of {} "
+                  "traces recorded from the firmware; first: {}",
+                  check->traces - check->conforming, check->traces, check->first_difference));
+}
+
+Result<Trace> reference_trace(const Case& the_case, const Rate& rate, Port& port) {
+  Trace trace = stimulate(the_case, rate);
+  const auto unit = port.create(the_case.profile);
+  if (!unit) {
+    return fail_at(the_case.file.string(),
+                   fmt::format("the reference has no profile `{}`", the_case.profile));
+  }
+  if (const auto fault = drive(*unit, trace)) {
+    return fail_at(the_case.file.string(), fmt::format("the reference: {}", fault->what));
+  }
+  return trace;
+}
+
+// What blessing would change in one trace, beside the traces that do not change.
+struct Change {
+  ChannelSet channels;
+  std::size_t ticks = 0;
+  double max_deviation = 0;
+  std::size_t max_channel = 0;
+};
+
+double deviation(double a, double b) {
+  if (std::isnan(a) && std::isnan(b)) return 0;
+  const double difference = std::abs(a - b);
+  return std::isnan(difference) ? HUGE_VAL : difference;
+}
+
+// Of every channel, inputs too, over the ticks that both have.
+Change change_between(const Trace& old_trace, const Trace& new_trace) {
+  Change change;
+  const std::size_t common = std::min(old_trace.samples.size(), new_trace.samples.size());
+  for (std::size_t tick = 0; tick < common; ++tick) {
+    bool differs = false;
+    for (std::size_t i = 0; i < channels().size(); ++i) {
+      const double off = deviation(value_of(channels()[i], old_trace.samples[tick]),
+                                   value_of(channels()[i], new_trace.samples[tick]));
+      if (off == 0) continue;
+      differs = true;
+      change.channels.set(i);
+      if (off <= change.max_deviation) continue;
+      change.max_deviation = off;
+      change.max_channel = i;
+    }
+    change.ticks += differs ? 1 : 0;
+  }
+  change.ticks += std::max(old_trace.samples.size(), new_trace.samples.size()) - common;
+  return change;
+}
+
+// One line about a case; empty when its golden is what would be written now.
+std::string summary(const Case& the_case, const std::vector<Trace>& traces,
+                    const std::filesystem::path& golden_root) {
+  Case as_blessed = the_case;
+  const auto path = golden_folder(golden_root, the_case) / provenance_name;
+  const auto provenance = read_provenance(path);
+  if (!provenance) return fmt::format("{}: new, {} traces", the_case.id(), traces.size());
+  as_blessed.sha256 = provenance->case_sha256;  // what it was made from does not matter here
+  const auto golden = Golden::open(golden_root, as_blessed);
+  if (!golden) return fmt::format("{}: replaced; {}", the_case.id(), golden.error().to_string());
+
+  std::size_t changed = 0;
+  Change total;
+  for (std::size_t i = 0; i < traces.size(); ++i) {
+    const auto old_trace = golden->read(the_case.rates[i]);
+    if (!old_trace) {
+      ++changed;
+      continue;
+    }
+    const Change change = change_between(*old_trace, traces[i]);
+    if (change.ticks == 0) continue;
+    ++changed;
+    total.channels |= change.channels;
+    total.ticks += change.ticks;
+    if (change.max_deviation <= total.max_deviation) continue;
+    total.max_deviation = change.max_deviation;
+    total.max_channel = change.max_channel;
+  }
+  const bool same_case = provenance->case_sha256 == the_case.sha256;
+  if (changed == 0 && same_case) return "";
+  if (changed == 0) return fmt::format("{}: no value changes, the case file did", the_case.id());
+  return fmt::format("{}: {} of {} traces, {} ticks, {} channels; at most by {:.3g} in {}",
+                     the_case.id(), changed, traces.size(), total.ticks, total.channels.count(),
+                     total.max_deviation, channels()[total.max_channel].name);
+}
+
+// Everything written beside its place, and what would change.
+struct Pending {
+  std::vector<NewGolden> goldens;
+  std::size_t unchanged = 0;
+};
+
+Result<Pending> write_beside(const std::vector<SelectedCase>& cases, const SuiteFolder& suite,
+                             const std::string& reason) {
+  auto port = open_port("builtin");
+  if (!port) return tl::unexpected(port.error());
+  Pending pending;
+  for (const SelectedCase& selected : cases) {
+    const Case& the_case = selected.the_case;
+    std::vector<Trace> traces;
+    for (const Rate& rate : the_case.rates) {  // a provenance speaks of all rates of a case
+      auto trace = reference_trace(the_case, rate, **port);
+      if (!trace) return tl::unexpected(trace.error());
+      traces.push_back(std::move(*trace));
+    }
+    const std::string line = summary(the_case, traces, suite.golden());
+    if (line.empty()) {
+      ++pending.unchanged;
+      continue;
+    }
+    fmt::print("{}\n", line);
+    auto golden = NewGolden::write(suite.golden(), the_case, traces, reason);
+    if (!golden) return tl::unexpected(golden.error());
+    pending.goldens.push_back(std::move(*golden));
+  }
+  return pending;
+}
+
+bool confirmed(const BlessOptions& options, std::size_t count) {
+  if (options.yes) return true;
+  fmt::print("replace the golden of {} case{}? [y/N] ", count, count == 1 ? "" : "s");
+  std::fflush(stdout);
+  std::string answer;
+  std::getline(std::cin, answer);
+  return answer == "y" || answer == "yes";
+}
+
+Result<int> bless_selected(const BlessOptions& options, const Globals& globals) {
+  const auto suite = find_suite(globals.suite);
+  if (!suite) return tl::unexpected(suite.error());
+  const auto selection = options.select.selection();
+  if (!selection) return tl::unexpected(selection.error());
+  const auto cases = select_cases(suite->cases(), *selection);
+  if (!cases) return tl::unexpected(cases.error());
+  if (auto checked = check_reference(*suite); !checked) return tl::unexpected(checked.error());
+  auto pending = write_beside(*cases, *suite, options.reason);
+  if (!pending) return tl::unexpected(pending.error());
+
+  if (pending->unchanged > 0) fmt::print("{} unchanged\n", pending->unchanged);
+  if (pending->goldens.empty()) return exit_ok;
+  if (!confirmed(options, pending->goldens.size())) {
+    fmt::print("nothing was changed\n");
+    return exit_failed;
+  }
+  for (NewGolden& golden : pending->goldens) {
+    if (auto placed = golden.put_in_place(); !placed) return tl::unexpected(placed.error());
+  }
+  fmt::print("blessed {}\n", pending->goldens.size());
+  return exit_ok;
+}
+
+int bless(const BlessOptions& options, const Globals& globals) {
+  if (options.reason.empty()) {
+    return report_error({"say why with --reason \"...\"; it is kept in provenance.toml"});
+  }
+  if (!options.yes && !::isatty(STDIN_FILENO)) {
+    return report_error({"nobody is there to ask; pass --yes to replace goldens unasked"});
+  }
+  const auto code = bless_selected(options, globals);
+  return code ? *code : report_error(code.error());
+}
+
+}  // namespace
+
+void add_bless(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<BlessOptions>();
+  CLI::App* command = app.add_subcommand(
+      "bless",
+      "Make the golden traces of cases anew from the reference, after showing what changes");
+  options->select.add_to(*command);
+  command->add_option("--reason", options->reason, "Why, for provenance.toml (required)")
+      ->type_name("TEXT");
+  command->add_flag("--yes", options->yes, "Do not ask");
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return bless(*options, globals); };
+  });
+}
+
+}  // namespace attest::cli

@@ -1,0 +1,69 @@
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "harness/cli/command.hpp"
+#include "harness/report/failure_text.hpp"
+#include "harness/trace/csv.hpp"
+
+namespace attest::cli {
+namespace {
+
+struct CompareOptions {
+  std::string got, want;
+  std::string level = "numeric";
+};
+
+// What the report tells of a result; files have neither port nor case.
+CaseResult as_result(const Comparison& comparison) {
+  CaseResult result;
+  result.ticks = comparison.ticks;
+  result.deviating_ticks = comparison.deviating_ticks;
+  result.first = comparison.first;
+  return result;
+}
+
+int compare_files(const CompareOptions& options, const Globals& globals) {
+  const auto level = parse_level(options.level);
+  if (!level) return report_error(level.error());
+  const auto got = read_csv(options.got, CsvNeed::outputs);
+  if (!got) return report_error(got.error());
+  const auto want = read_csv(options.want, CsvNeed::outputs);
+  if (!want) return report_error(want.error());
+
+  const Comparison comparison = compare(*got, *want, Tolerances(*level));
+  if (!comparison.agrees()) {
+    fmt::print("differ: {} (got), {} (want)\n", options.got, options.want);
+    if (!comparison.mismatch.empty()) fmt::print("  {}\n", comparison.mismatch);
+    fmt::print("{}", finding_text(as_result(comparison), *level));
+    return exit_failed;
+  }
+  if (!globals.quiet) {
+    fmt::print("agree: {} ticks, {}", comparison.ticks, name_of(*level));
+    if (comparison.tightest) {
+      fmt::print(", tightest headroom {:.3g}x on {} at tick {}", comparison.tightest->ratio,
+                 channels()[comparison.tightest->channel].name, comparison.tightest->tick);
+    }
+    fmt::print("\n");
+  }
+  return exit_ok;
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<CompareOptions>();
+  CLI::App* command =
+      app.add_subcommand("compare", "Compare the outputs of two traces, tick by tick");
+  command->add_option("got", options->got, "The trace to judge (CSV)")->type_name("A")->required();
+  command->add_option("want", options->want, "The trace to judge it by (CSV)")
+      ->type_name("B")
+      ->required();
+  command->add_option("--level", options->level, "`exact` or `numeric`")->capture_default_str();
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return compare_files(*options, globals); };
+  });
+}
+
+}  // namespace attest::cli

@@ -1,0 +1,123 @@
+#include <cfenv>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "controller/reference/profile.hpp"
+#include "harness/casefile/parse.hpp"
+#include "harness/cli/command.hpp"
+#include "harness/cli/suite_folder.hpp"
+#include "harness/core/version.hpp"
+#include "harness/run/golden.hpp"
+#include "harness/suite/recorded_check.hpp"
+#include "harness/suite/worker.hpp"
+
+namespace attest::cli {
+namespace {
+
+struct DoctorOptions {
+  std::string port = "builtin";
+};
+
+// Prints one line a check and remembers whether any was bad.
+class Examination {
+ public:
+  void good(const std::string& what, const std::string& finding) const {
+    fmt::print("ok     {:<10} {}\n", what, finding);
+  }
+  void bad(const std::string& what, const std::string& finding) {
+    fmt::print("BAD    {:<10} {}\n", what, finding);
+    all_good_ = false;
+  }
+  void check(bool is_good, const std::string& what, const std::string& finding) {
+    is_good ? good(what, finding) : bad(what, finding);
+  }
+  bool all_good() const { return all_good_; }
+
+ private:
+  bool all_good_ = true;
+};
+
+void examine_arithmetic(Examination& examination) {
+  // volatile: the question is what this machine does now, not what the compiler knows.
+  volatile float tiny = std::numeric_limits<float>::denorm_min();
+  volatile float product = tiny * 1.0f;
+  examination.check(product != 0 && std::fegetround() == FE_TONEAREST, "arithmetic",
+                    "binary32, round to nearest, denormals kept");
+}
+
+void examine_cases(const SuiteFolder& suite, Examination& examination) {
+  const auto files = find_case_files(suite.cases());
+  if (!files) return examination.bad("cases", files.error().to_string());
+  std::size_t vectors = 0;
+  std::vector<std::string> stale;
+  for (const auto& file : *files) {
+    const auto parsed = parse_case(file);
+    if (!parsed) return examination.bad("cases", parsed.error().to_string());
+    vectors += parsed->rates.size();
+    if (const auto golden = Golden::open(suite.golden(), *parsed); !golden) {
+      stale.push_back(golden.error().to_string());
+    }
+  }
+  examination.good("cases", fmt::format("{} cases, {} with all their rates, in {}", files->size(),
+                                        vectors, suite.cases().string()));
+  if (stale.empty()) return examination.good("golden", "one for each case, none stale");
+  examination.bad("golden", fmt::format("{} missing or stale; first: {}", stale.size(), stale[0]));
+}
+
+void examine_reference(const SuiteFolder& suite, Examination& examination) {
+  const auto check = check_recorded(suite.recorded());
+  if (!check) return examination.bad("reference", check.error().to_string());
+  const std::string finding = fmt::format("agrees with {} of {} traces recorded from the firmware",
+                                          check->conforming, check->traces);
+  if (check->conforming == check->traces) return examination.good("reference", finding);
+  examination.bad("reference", fmt::format("{}; first: {}", finding, check->first_difference));
+}
+
+void examine_port(const std::string& specification, Examination& examination) {
+  const auto known = reference::profile_names();
+  const auto port = describe_port(specification, {known.begin(), known.end()}, 10);
+  if (!port) return examination.bad("port", port.error().to_string());
+  const std::string who = fmt::format("{}: {} {}", specification, port->name, port->version);
+  if (port->profiles.empty()) {
+    return examination.bad("port", fmt::format("{}; create() returned NULL for each of {}", who,
+                                               fmt::join(known, ", ")));
+  }
+  examination.good("port", fmt::format("{}, profiles {}", who, fmt::join(port->profiles, ", ")));
+}
+
+int doctor(const DoctorOptions& options, const Globals& globals) {
+  Examination examination;
+  examination.good("attest", fmt::format("{}, built by {}", version, compiler()));
+  examination.good("machine", fmt::format("{} processors", std::thread::hardware_concurrency()));
+  examine_arithmetic(examination);
+  if (const auto suite = find_suite(globals.suite)) {
+    examine_cases(*suite, examination);
+    examine_reference(*suite, examination);
+  } else {
+    examination.bad("suite", suite.error().to_string());
+  }
+  examine_port(options.port, examination);
+  return examination.all_good() ? exit_ok : exit_usage;
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<DoctorOptions>();
+  CLI::App* command = app.add_subcommand(
+      "doctor", "Check the machine, the suite, the reference and a port, and say what is wrong");
+  command->add_option("--port", options->port, "`builtin` or `lib:PATH`")
+      ->type_name("PORT")
+      ->capture_default_str();
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return doctor(*options, globals); };
+  });
+}
+
+}  // namespace attest::cli

@@ -1,0 +1,118 @@
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "controller/reference/parameters.hpp"
+#include "harness/casefile/flight_mode.hpp"
+#include "harness/cli/command.hpp"
+#include "harness/cli/suite_folder.hpp"
+#include "harness/trace/channels.hpp"
+
+namespace attest::cli {
+namespace {
+
+struct ListOptions {
+  SelectionOptions select;
+  bool groups = false, parameters = false, channels = false, modes = false;
+};
+
+void list_parameters() {
+  fmt::print("{:<17}{:>9}{:>8}{:>8}  {:<8} {}\n", "parameter", "default", "min", "max", "unit",
+             "what it does");
+  for (const auto& info : reference::parameter_table()) {
+    fmt::print("{:<17}{:>9}{:>8}{:>8}  {:<8} {}\n", info.name, info.default_value, info.min,
+               info.max, info.unit, info.description);
+  }
+}
+
+std::string_view type_name(ChannelType type) {
+  switch (type) {
+    case ChannelType::u64:
+      return "uint64";
+    case ChannelType::f32:
+      return "float32";
+    case ChannelType::u8:
+      return "uint8";
+    default:
+      return "bit";
+  }
+}
+
+void list_channels() {
+  fmt::print("{:<58}{:<9}{:<7}{}\n", "channel", "type", "unit", "written by");
+  for (const Channel& channel : channels()) {
+    fmt::print("{:<58}{:<9}{:<7}{}\n", channel.name, type_name(channel.type),
+               unit_of(channel.quantity), channel.is_output() ? name_of(channel.stage) : "");
+  }
+}
+
+void list_modes() {
+  fmt::print("{:<19}manual auto rates attitude rattitude velocity\n", "flight_mode");
+  for (const FlightMode& mode : flight_modes()) {
+    const auto& flag = mode.flags;
+    fmt::print("{:<19}{:>6} {:>4} {:>5} {:>8} {:>9} {:>8}\n", mode.name, flag[0], flag[1], flag[2],
+               flag[3], flag[4], flag[5]);
+  }
+}
+
+// The first sentence is enough for a list.
+std::string first_sentence(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  const auto end = text.find(". ");
+  return end == std::string::npos ? text : text.substr(0, end + 1);
+}
+
+void list_cases(const std::vector<SelectedCase>& cases) {
+  for (const auto& [the_case, rates] : cases) {
+    fmt::print("{:<50} {:>2} rates{}  {}\n", the_case.id(), rates.size(),
+               the_case.exact_only ? ", exact only" : "", first_sentence(the_case.why));
+  }
+}
+
+void list_groups(const std::vector<SelectedCase>& cases) {
+  std::map<std::string, std::pair<std::size_t, std::size_t>> groups;
+  for (const auto& [the_case, rates] : cases) {
+    auto& [count, vectors] = groups[the_case.profile + "/" + the_case.group];
+    ++count;
+    vectors += rates.size();
+  }
+  for (const auto& [name, counts] : groups) {
+    fmt::print("{:<40} {:>4} cases {:>6} with all rates\n", name, counts.first, counts.second);
+  }
+}
+
+int list(const ListOptions& options, const Globals& globals) {
+  if (options.parameters) list_parameters();
+  if (options.channels) list_channels();
+  if (options.modes) list_modes();
+  if (options.parameters || options.channels || options.modes) return exit_ok;
+
+  const auto suite = find_suite(globals.suite);
+  if (!suite) return report_error(suite.error());
+  const auto selection = options.select.selection();
+  if (!selection) return report_error(selection.error());
+  const auto cases = select_cases(suite->cases(), *selection);
+  if (!cases) return report_error(cases.error());
+  options.groups ? list_groups(*cases) : list_cases(*cases);
+  return exit_ok;
+}
+
+}  // namespace
+
+void add_list(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<ListOptions>();
+  CLI::App* command =
+      app.add_subcommand("list", "List the cases, with why each exists; or one of the tables");
+  options->select.add_to(*command);
+  command->add_flag("--groups", options->groups, "Only the groups, with how many cases");
+  command->add_flag("--parameters", options->parameters, "The parameters of the law");
+  command->add_flag("--channels", options->channels, "The signals: trace columns and ABI members");
+  command->add_flag("--flight-modes", options->modes, "Flight modes and the flags they set");
+  command->callback(
+      [options, &globals, &action] { action = [=, &globals] { return list(*options, globals); }; });
+}
+
+}  // namespace attest::cli

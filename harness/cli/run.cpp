@@ -1,0 +1,179 @@
+#include <chrono>
+#include <optional>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "harness/cli/command.hpp"
+#include "harness/cli/interrupt.hpp"
+#include "harness/cli/suite_folder.hpp"
+#include "harness/core/file.hpp"
+#include "harness/core/version.hpp"
+#include "harness/report/json.hpp"
+#include "harness/report/junit.hpp"
+#include "harness/report/progress.hpp"
+#include "harness/report/terminal.hpp"
+#include "harness/suite/worker.hpp"
+
+namespace attest::cli {
+namespace {
+
+struct RunOptions {
+  SelectionOptions select;
+  WorkerOptions worker;
+  std::string level = "numeric";
+  std::string shard = "1/1";
+  std::string junit;
+  std::string json;
+};
+
+int default_jobs() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+// A report file, opened before the run so that a path that cannot be written is said at once.
+struct ReportFile {
+  AtomicFile file;
+  std::string (*render)(const RunResult&);
+};
+
+Result<std::vector<ReportFile>> open_reports(const RunOptions& options) {
+  std::vector<ReportFile> reports;
+  using Render = std::string (*)(const RunResult&);
+  const std::pair<const std::string&, Render> wanted[] = {{options.junit, junit_report},
+                                                          {options.json, json_report}};
+  for (const auto& [path, render] : wanted) {
+    if (path.empty()) continue;
+    auto file = AtomicFile::open(path);
+    if (!file) return tl::unexpected(file.error());
+    reports.push_back({std::move(*file), render});
+  }
+  return reports;
+}
+
+Result<void> write_reports(std::vector<ReportFile>& reports, const RunResult& run) {
+  for (auto& [file, render] : reports) {
+    if (auto written = file.write(render(run)); !written) return written;
+    if (auto committed = file.commit(); !committed) return committed;
+  }
+  return {};
+}
+
+// What is to be run, complete and checked, before the first case runs.
+struct Plan {
+  RunResult run;
+  Batches batches;
+  std::size_t results = 0;
+};
+
+Result<Plan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
+  auto selection = options.select.selection();
+  if (!selection) return tl::unexpected(selection.error());
+  auto shard = Shard::parse(options.shard);
+  if (!shard) return tl::unexpected(shard.error());
+  selection->shard = *shard;
+  auto level = parse_level(options.level);
+  if (!level) return tl::unexpected(level.error());
+  auto cases = select_cases(suite.cases(), *selection);
+  if (!cases) return tl::unexpected(cases.error());
+  auto port = describe_port(options.worker.port, {}, options.worker.timeout_s);
+  if (!port) return tl::unexpected(port.error());
+
+  Plan plan;
+  plan.run.attest_version = version;
+  plan.run.port = options.worker.port;
+  plan.run.port_name = port->name;
+  plan.run.port_version = port->version;
+  plan.run.level = *level;
+  std::set<Rate> rates;
+  for (SelectedCase& selected : *cases) {
+    rates.insert(selected.rates.begin(), selected.rates.end());
+    plan.results += selected.rates.size();
+    plan.batches.push_back(std::make_unique<CaseBatch>(
+        std::move(selected.the_case), std::move(selected.rates), suite.golden(), *level));
+  }
+  plan.run.rates.assign(rates.begin(), rates.end());
+  return plan;
+}
+
+// 0 only when something was compared: a port that supports nothing has not conformed.
+int exit_code(const RunResult& run) {
+  if (!run.errors.empty()) return exit_usage;
+  if (run.failed()) return exit_failed;
+  const bool compared = run.count(Verdict::pass) + run.count(Verdict::xfail) > 0;
+  if (!compared) {
+    return report_error({"nothing was compared: every selected case was skipped or unsupported"});
+  }
+  return exit_ok;
+}
+
+int run_suite(const RunOptions& options, const Globals& globals) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto suite = find_suite(globals.suite);
+  if (!suite) return report_error(suite.error());
+  auto plan = make_plan(options, *suite);
+  if (!plan) return report_error(plan.error());
+  auto reports = open_reports(options);
+  if (!reports) return report_error(reports.error());
+
+  note_interrupts();
+  Progress progress(plan->results, Progress::on_stderr(globals.quiet));
+  WorkerOptions worker = options.worker;
+  worker.on_result = [&](const CaseResult& result) { progress.add(result); };
+  worker.stop = interrupted;
+  WorkerOutcome outcome = run_batches(plan->batches, worker);
+  progress.finish();
+  if (interrupted()) {
+    fmt::print(stderr, "attest: interrupted; no report was written\n");
+    return exit_interrupted;
+  }
+
+  RunResult& run = plan->run;
+  run.results = std::move(outcome.results);
+  run.errors = std::move(outcome.errors);
+  run.stopped_early = outcome.stopped_early;
+  const int code = exit_code(run);
+  if (!globals.quiet || code != exit_ok) {
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+    fmt::print("{}", render_summary(run, wall.count(), terminal_style(stdout)));
+  }
+  if (auto written = write_reports(*reports, run); !written) return report_error(written.error());
+  return code;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<RunOptions>();
+  options->worker.port = "builtin";
+  options->worker.jobs = default_jobs();
+  CLI::App* command = app.add_subcommand(
+      "run", "Run a port through the cases and compare it with the golden traces");
+  command->add_option("--port", options->worker.port, "`builtin` (the reference) or `lib:PATH`")
+      ->type_name("PORT")
+      ->capture_default_str();
+  options->select.add_to(*command);
+  command
+      ->add_option("--level", options->level,
+                   "How strictly: `exact` (float32 bits) or `numeric` (a tolerance a channel)")
+      ->capture_default_str();
+  command->add_option("--jobs,-j", options->worker.jobs, "Cases at a time")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->add_option("--shard", options->shard, "Only part I of N of the cases")
+      ->type_name("I/N")
+      ->capture_default_str();
+  command->add_flag("--fail-fast", options->worker.fail_fast, "Stop after the first failing case");
+  command->add_option("--timeout", options->worker.timeout_s, "Limit for one case at one rate [s]")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
+  command->add_flag("--in-process", options->worker.in_process,
+                    "No worker processes: for a debugger, or a sanitizer in the port");
+  command->add_option("--junit", options->junit, "Write a JUnit XML report")->type_name("FILE");
+  command->add_option("--json", options->json, "Write a JSON report")->type_name("FILE");
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return run_suite(*options, globals); };
+  });
+}
+
+}  // namespace attest::cli

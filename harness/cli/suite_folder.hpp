@@ -1,0 +1,24 @@
+// Where the cases and goldens are.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "harness/core/result.hpp"
+
+namespace attest::cli {
+
+struct SuiteFolder {
+  std::filesystem::path root;
+
+  std::filesystem::path cases() const { return root / "cases"; }
+  std::filesystem::path golden() const { return root / "golden"; }
+  std::filesystem::path recorded() const { return golden() / "recorded"; }
+};
+
+// `given` if it is not empty; else $ATTEST_SUITE; else share/attest of the installation this
+// program is in; else the nearest folder above the program that has cases/ and golden/, which is
+// the source tree of a build in it.
+Result<SuiteFolder> find_suite(const std::string& given);
+
+}  // namespace attest::cli

@@ -1,0 +1,76 @@
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "harness/casefile/stimulus.hpp"
+#include "harness/cli/command.hpp"
+#include "harness/cli/suite_folder.hpp"
+#include "harness/trace/csv.hpp"
+
+namespace attest::cli {
+namespace {
+
+struct VectorOptions {
+  SelectionOptions select;
+  std::string folder;
+};
+
+// All inputs and no outputs, constants too, so that one file is all a port on a board needs.
+Result<void> write_vector(const Case& the_case, const Rate& rate,
+                          const std::filesystem::path& path) {
+  Trace trace = stimulate(the_case, rate);
+  trace.present &= ~channels_with_prefix("out/");
+  auto file = AtomicFile::open(path);
+  if (!file) return tl::unexpected(file.error());
+  if (auto written = write_csv(trace, all_columns(trace), *file); !written) return written;
+  return file->commit();
+}
+
+Result<std::size_t> write_vectors(const VectorOptions& options, const Globals& globals) {
+  const auto suite = find_suite(globals.suite);
+  if (!suite) return tl::unexpected(suite.error());
+  const auto selection = options.select.selection();
+  if (!selection) return tl::unexpected(selection.error());
+  const auto cases = select_cases(suite->cases(), *selection);
+  if (!cases) return tl::unexpected(cases.error());
+  std::size_t count = 0;
+  for (const auto& [the_case, rates] : *cases) {
+    const std::filesystem::path folder = std::filesystem::path(options.folder) / the_case.id();
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) return fail_at(folder.string(), fmt::format("cannot be made: {}", error.message()));
+    for (const Rate& rate : rates) {
+      auto written = write_vector(the_case, rate, folder / (rate.label() + ".csv"));
+      if (!written) return tl::unexpected(written.error());
+      ++count;
+    }
+  }
+  return count;
+}
+
+int vectors(const VectorOptions& options, const Globals& globals) {
+  const auto count = write_vectors(options, globals);
+  if (!count) return report_error(count.error());
+  if (!globals.quiet) fmt::print("{} input traces in {}\n", *count, options.folder);
+  return exit_ok;
+}
+
+}  // namespace
+
+void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<VectorOptions>();
+  CLI::App* command = app.add_subcommand(
+      "vectors", "Write the inputs of the cases as CSV, for a port that runs elsewhere");
+  command->add_option("folder", options->folder, "Where: DIR/PROFILE/GROUP/NAME/RATEhz.csv")
+      ->type_name("DIR")
+      ->required();
+  options->select.add_to(*command);
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return vectors(*options, globals); };
+  });
+}
+
+}  // namespace attest::cli

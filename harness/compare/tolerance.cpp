@@ -1,0 +1,68 @@
+#include "harness/compare/tolerance.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include <fmt/format.h>
+
+namespace attest {
+namespace {
+
+Tolerance default_of(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::rate:
+      return Tolerances::rate;
+    case Quantity::control:
+      return Tolerances::control;
+    case Quantity::integral:
+      return Tolerances::integral;
+    case Quantity::thrust:
+      return Tolerances::passed_through;
+    default:
+      return {};  // time and flags agree or do not
+  }
+}
+
+}  // namespace
+
+std::string_view name_of(Level level) { return level == Level::exact ? "exact" : "numeric"; }
+
+Result<Level> parse_level(std::string_view text) {
+  for (const Level level : {Level::exact, Level::numeric}) {
+    if (text == name_of(level)) return level;
+  }
+  return fail(fmt::format("unknown level `{}`; use exact or numeric", text));
+}
+
+Tolerances::Tolerances(Level level) : level_(level) {
+  if (level == Level::exact) return;
+  const auto table = channels();
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (table[i].is_output()) of_channel_[i] = default_of(table[i].quantity);
+  }
+}
+
+bool Tolerances::set(std::string_view prefix, Tolerance tolerance) {
+  const ChannelSet chosen = channels_with_prefix(fmt::format("out/{}", prefix));
+  const auto table = channels();
+  bool any = false;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (!chosen[i] || table[i].type != ChannelType::f32) continue;
+    any = true;
+    if (level_ == Level::numeric) of_channel_[i] = tolerance;
+  }
+  return any;
+}
+
+double Tolerances::widening(double tilt_rad, double gain) {
+  // Measured over correct builds: 3e-6 rad/s at one radian from 180 deg with the default gain.
+  constexpr double noise_rad_s = 3e-6;
+  constexpr double default_gain = 6.5;
+  // 0.1 deg, where the widening is as large as a wrong port's smallest error: nearer vectors belong
+  // to the exact level.
+  constexpr double nearest_rad = 1.7e-3;
+  const double distance = std::max(std::numbers::pi - tilt_rad, nearest_rad);
+  return noise_rad_s * (gain / default_gain) / distance;
+}
+
+}  // namespace attest

@@ -1,0 +1,211 @@
+#include "harness/core/file.hpp"
+
+#include <array>
+#include <cerrno>
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <random>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <openssl/evp.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace attest {
+namespace {
+
+namespace fs = std::filesystem;
+
+// REQUIRES: a system call has just failed.
+tl::unexpected<Error> system_failure(const fs::path& path, std::string_view what) {
+  const std::string reason = std::generic_category().message(errno);
+  return fail_at(path.string(), fmt::format("{}: {}", what, reason));
+}
+
+class Descriptor {
+ public:
+  explicit Descriptor(int descriptor) : descriptor_(descriptor) {}
+  ~Descriptor() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
+
+// Calls use(block) for each block of the file.
+template <typename Use>
+Result<void> for_each_block(const fs::path& path, Use use) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() < 0) return system_failure(path, "cannot open the file");
+  std::array<char, std::size_t{64} * 1024> block;
+  while (true) {
+    const ssize_t count = ::read(file.get(), block.data(), block.size());
+    if (count == 0) return {};
+    if (count > 0) use(std::string_view(block.data(), static_cast<std::size_t>(count)));
+    if (count < 0 && errno != EINTR) return system_failure(path, "cannot read the file");
+  }
+}
+
+// OpenSSL fails here only for want of memory or with a broken installation: nothing to report to.
+void must(int ok) {
+  if (ok != 1) std::abort();
+}
+
+class Sha256 {
+ public:
+  Sha256() { must(EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr)); }
+
+  void add(std::string_view bytes) {
+    must(EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()));
+  }
+
+  std::string hex() {
+    std::array<unsigned char, 32> digest;
+    must(EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr));
+    std::string text;
+    for (const unsigned char byte : digest) text += fmt::format("{:02x}", byte);
+    return text;
+  }
+
+ private:
+  struct Free {
+    void operator()(EVP_MD_CTX* context) const { EVP_MD_CTX_free(context); }
+  };
+  std::unique_ptr<EVP_MD_CTX, Free> context_{EVP_MD_CTX_new()};
+};
+
+}  // namespace
+
+Result<std::string> read_file(const fs::path& path) {
+  std::string text;
+  const auto done = for_each_block(path, [&](std::string_view block) { text += block; });
+  if (!done) return tl::unexpected(done.error());
+  return text;
+}
+
+std::string sha256(std::string_view bytes) {
+  Sha256 hash;
+  hash.add(bytes);
+  return hash.hex();
+}
+
+Result<std::string> sha256_of_file(const fs::path& path) {
+  Sha256 hash;
+  const auto done = for_each_block(path, [&](std::string_view block) { hash.add(block); });
+  if (!done) return tl::unexpected(done.error());
+  return hash.hex();
+}
+
+namespace {
+
+// Is there something at `path` that must be written to where it is: a terminal, pipe or device?
+// /dev/stdout may lead to an ordinary file, whose other writers would lose it in a rename.
+bool is_written_in_place(const fs::path& path, const struct stat& status) {
+  if (!S_ISREG(status.st_mode)) return true;
+  std::error_code ignored;
+  const fs::path directory = fs::canonical(fs::absolute(path, ignored).parent_path(), ignored);
+  return directory == "/dev" || directory.string().starts_with("/proc/");
+}
+
+std::string random_suffix() {
+  constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz0123456789";
+  std::random_device random;
+  std::string suffix;
+  for (int i = 0; i < 6; ++i) suffix += letters[random() % letters.size()];
+  return suffix;
+}
+
+// A new file beside `target`; its descriptor, or -1 with errno.
+int create_beside(const fs::path& target, fs::path& temporary) {
+  constexpr int attempts = 100;
+  constexpr mode_t mode = 0644;  // less the umask, as for any new file
+  for (int i = 0; i < attempts; ++i) {
+    temporary = target;
+    temporary.replace_filename(fmt::format(".{}.{}", target.filename().string(), random_suffix()));
+    const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+    if (file >= 0 || errno != EEXIST) return file;
+  }
+  return -1;
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(fs::path path, fs::path target, fs::path temporary, int descriptor)
+    : path_(std::move(path)),
+      target_(std::move(target)),
+      temporary_(std::move(temporary)),
+      descriptor_(descriptor) {}
+
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept
+    : path_(std::move(other.path_)),
+      target_(std::move(other.target_)),
+      temporary_(std::exchange(other.temporary_, fs::path())),
+      descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+Result<AtomicFile> AtomicFile::open(const fs::path& path) {
+  if (!path.has_filename()) return fail_at(path.string(), "not a file name; name a file");
+  struct stat status;
+  const bool exists = ::stat(path.c_str(), &status) == 0;
+  if (exists && S_ISDIR(status.st_mode)) {
+    return fail_at(path.string(), "is a directory; name a file");
+  }
+  if (exists && ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0) {
+    return system_failure(path, "cannot write the file");
+  }
+  if (exists && is_written_in_place(path, status)) {
+    const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+    if (file < 0) return system_failure(path, "cannot write the file");
+    return AtomicFile(path, path, "", file);
+  }
+  // A symbolic link stays, and what it points to is replaced.
+  std::error_code failed;
+  fs::path target = exists ? fs::canonical(path, failed) : path;
+  if (failed) return fail_at(path.string(), "cannot find the file: " + failed.message());
+  fs::path temporary;
+  const int file = create_beside(target, temporary);
+  if (file < 0) return system_failure(path, "cannot create the file");
+  return AtomicFile(path, std::move(target), std::move(temporary), file);
+}
+
+Result<void> AtomicFile::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return system_failure(path_, "cannot write the file");
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+  }
+  return {};
+}
+
+Result<void> AtomicFile::commit() {
+  const bool in_place = temporary_.empty();
+  // A pipe or terminal has nothing to flush.
+  if (!in_place && ::fsync(descriptor_) != 0) {
+    return system_failure(path_, "cannot write the file");
+  }
+  if (::close(std::exchange(descriptor_, -1)) != 0) {
+    return system_failure(path_, "cannot write the file");
+  }
+  if (in_place) return {};
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
+    return system_failure(path_, "cannot replace the file");
+  }
+  temporary_.clear();
+  return {};
+}
+
+}  // namespace attest

@@ -1,0 +1,53 @@
+#include "harness/core/nearest.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include <fmt/format.h>
+
+namespace attest {
+namespace {
+
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+// Edits that turn `a` into `b`: insertions, deletions, substitutions, swaps of two neighbours.
+// Letters of different case are the same: mc_roll_p is meant as MC_ROLL_P.
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> two_above(b.size() + 1);
+  std::vector<std::size_t> above(b.size() + 1);
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    two_above.swap(above);
+    above.swap(row);
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const bool same = lower(a[i - 1]) == lower(b[j - 1]);
+      row[j] = std::min({above[j] + 1, row[j - 1] + 1, above[j - 1] + (same ? 0u : 1u)});
+      const bool swapped = i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) &&
+                           lower(a[i - 2]) == lower(b[j - 1]);
+      if (swapped) row[j] = std::min(row[j], two_above[j - 2] + 1);
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+std::string suggestion(std::string_view unknown, const std::vector<std::string>& candidates) {
+  // Longer names are misspelt in more places. Beyond 200 bytes it is not a name but another file.
+  constexpr std::size_t longest_name = 200;
+  if (unknown.size() > longest_name) return "";
+  const std::size_t allowed = (unknown.size() + 1) / 3;
+  const std::string* best = nullptr;
+  std::size_t best_distance = allowed + 1;
+  for (const std::string& candidate : candidates) {
+    const std::size_t d = distance(unknown, candidate);
+    if (d >= best_distance) continue;
+    best = &candidate;
+    best_distance = d;
+  }
+  return best == nullptr ? "" : fmt::format("; did you mean `{}`?", *best);
+}
+
+}  // namespace attest

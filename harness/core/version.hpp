@@ -1,0 +1,13 @@
+// Which attest this is and what built it.
+#pragma once
+
+#include <string>
+
+namespace attest {
+
+inline constexpr const char* version = ATTEST_VERSION;
+
+// "gcc 12.2.0" or "clang 14.0.6".
+std::string compiler();
+
+}  // namespace attest

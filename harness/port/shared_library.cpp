@@ -1,0 +1,69 @@
+#include "harness/port/shared_library.hpp"
+
+#include <filesystem>
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include "harness/port/abi_port.hpp"
+
+namespace attest {
+namespace {
+
+constexpr const char* symbol_name = "attest_unit_v1";
+
+std::string last_error() {
+  const char* text = dlerror();
+  return text ? text : "unknown error";
+}
+
+std::string missing_function(const attest_unit& unit) {
+  if (!unit.name) return "name";
+  if (!unit.version) return "version";
+  if (!unit.create) return "create";
+  if (!unit.destroy) return "destroy";
+  if (!unit.set_parameter) return "set_parameter";
+  if (!unit.step) return "step";
+  return "";
+}
+
+Result<void> check_table(const attest_unit* unit, const std::string& path) {
+  if (!unit) return fail_at(path, fmt::format("{}() returned NULL; return the table", symbol_name));
+  if (unit->abi_version != ATTEST_UNIT_ABI_VERSION) {
+    return fail_at(path, fmt::format("its ABI version is {}, this attest speaks {}; rebuild the "
+                                     "port with the attest_unit.h of this attest",
+                                     unit->abi_version, ATTEST_UNIT_ABI_VERSION));
+  }
+  if (const std::string name = missing_function(*unit); !name.empty()) {
+    return fail_at(path, fmt::format("attest_unit.{} is NULL; every member but extension must be "
+                                     "set",
+                                     name));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Port>> open_shared_library(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path)) {
+    return fail_at(path, "no such library; `--port lib:PATH` takes the path of a shared library");
+  }
+  // An absolute path keeps dlopen from searching the system's library folders.
+  const std::string absolute = std::filesystem::absolute(path).string();
+  // Undefined symbols are errors now, not in the middle of a step.
+  void* handle = dlopen(absolute.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!handle) return fail_at(path, fmt::format("cannot be loaded: {}", last_error()));
+  std::shared_ptr<void> library(handle, [](void* opened) { dlclose(opened); });
+
+  void* symbol = dlsym(handle, symbol_name);
+  if (!symbol) {
+    return fail_at(path, fmt::format("exports no {}(); is it declared with ATTEST_EXPORT and, in "
+                                     "C++, extern \"C\"?",
+                                     symbol_name));
+  }
+  const auto* unit = reinterpret_cast<const attest_unit* (*)()>(symbol)();
+  if (auto checked = check_table(unit, path); !checked) return tl::unexpected(checked.error());
+  return std::make_unique<AbiPort>(*unit, std::move(library));
+}
+
+}  // namespace attest

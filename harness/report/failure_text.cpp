@@ -1,0 +1,139 @@
+#include "harness/report/failure_text.hpp"
+
+#include <bit>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "harness/report/text.hpp"
+
+namespace attest {
+namespace {
+
+// Said when a result carries no reason of its own.
+std::string_view meaning_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return "agrees with the golden";
+    case Verdict::fail:
+      return "differs from the golden";
+    case Verdict::crash:
+      return "the port's process died";
+    case Verdict::timeout:
+      return "the port did not answer in time";
+    case Verdict::protocol:
+      return "the port broke the rules of the ABI";
+    case Verdict::non_finite:
+      return "NaN or infinity where the golden has a number";
+    case Verdict::unsupported:
+      return "the port does not do this";
+    case Verdict::skip:
+      return "not run";
+    case Verdict::xfail:
+      return "failed, as expected";
+    case Verdict::xpass:
+      return "passed although it is listed as an expected failure";
+  }
+  return "";
+}
+
+// The shortest decimal that reads back as the same value.
+std::string decimal(const Channel& channel, double value) {
+  if (channel.type == ChannelType::f32) return fmt::format("{}", static_cast<float>(value));
+  return fmt::format("{:.0f}", value);
+}
+
+std::string bits(double value) {
+  return fmt::format("0x{:08x}", std::bit_cast<std::uint32_t>(static_cast<float>(value)));
+}
+
+std::string channel_with_unit(const Channel& channel) {
+  const std::string_view unit = unit_of(channel.quantity);
+  return unit.empty() ? std::string(channel.name) : fmt::format("{} [{}]", channel.name, unit);
+}
+
+std::string values(const Channel& channel, const Deviation& deviation) {
+  const std::string got = decimal(channel, deviation.got);
+  const std::string want = decimal(channel, deviation.want);
+  if (channel.type != ChannelType::f32) {
+    return fmt::format("    got   {}\n    want  {}\n", got, want);
+  }
+  const std::size_t width = std::max(got.size(), want.size());
+  return fmt::format("    got   {:<{}}  {}\n    want  {:<{}}  {}\n", got, width,
+                     bits(deviation.got), want, width, bits(deviation.want));
+}
+
+std::string times(double ratio) {
+  if (ratio < 10) return fmt::format("{:.2f}", ratio);
+  return ratio < 1e6 ? fmt::format("{:.0f}", ratio) : fmt::format("{:.0e}", ratio);
+}
+
+// How far off, and how far it may be. Empty where a difference means nothing (flags).
+std::string distance(const Channel& channel, const Deviation& deviation, Level level) {
+  if (channel.type != ChannelType::f32) return {};
+  if (!std::isfinite(deviation.want)) return "    the golden is not finite here, on purpose\n";
+  if (!std::isfinite(deviation.got)) return "    not a finite number where the golden has one\n";
+  const double difference = std::abs(deviation.got - deviation.want);
+  std::string out = fmt::format("    off by {:.3g}", difference);
+  if (deviation.ulp != 0) out += fmt::format(" ({} ulp)", deviation.ulp);
+  if (level == Level::exact) return out + "; the exact level allows no other bits\n";
+  out += fmt::format(", allowed {:.3g}", deviation.tolerance);
+  if (deviation.tolerance > 0) {
+    out += fmt::format(": {} times the tolerance", times(difference / deviation.tolerance));
+  }
+  return out + "\n";
+}
+
+std::string first_deviation(const Deviation& deviation, Level level) {
+  const Channel& channel = channels()[deviation.channel];
+  return fmt::format(
+      "  first at tick {}, timestamp {} us, in {}\n{}{}"
+      "  look first at the {}: all before it agrees up to this tick\n",
+      deviation.tick, deviation.timestamp_us, channel_with_unit(channel),
+      values(channel, deviation), distance(channel, deviation, level), name_of(channel.stage));
+}
+
+}  // namespace
+
+std::string failure_headline(const CaseResult& result) {
+  std::string out = one_line(result.reason);
+  if (out.empty()) out = meaning_of(result.verdict);
+  if (!result.first) return out;
+  const Deviation& deviation = *result.first;
+  const Channel& channel = channels()[deviation.channel];
+  return fmt::format("{}; first at tick {}: {} got {}, want {} ({})", out, deviation.tick,
+                     channel.name, decimal(channel, deviation.got),
+                     decimal(channel, deviation.want), name_of(channel.stage));
+}
+
+std::string reproduce_command(const CaseResult& result, const RunResult& run) {
+  std::string out = fmt::format("attest run --port {} --filter {}", shell_word(run.port),
+                                shell_quoted(result.id()));
+  if (run.level != Level::numeric) out += fmt::format(" --level {}", name_of(run.level));
+  return one_line(out);
+}
+
+std::string finding_text(const CaseResult& result, Level level) {
+  std::string out;
+  if (result.first) out += first_deviation(*result.first, level);
+  if (result.deviating_ticks > 0) {
+    out +=
+        fmt::format("  {} of {} deviate\n", result.deviating_ticks, counted(result.ticks, "tick"));
+  }
+  return out;
+}
+
+std::string failure_text(const CaseResult& result, const RunResult& run) {
+  const std::string reason = one_line(result.reason);
+  std::string out = fmt::format("{}\n  {}: {}\n", one_line(result.id()), name_of(result.verdict),
+                                reason.empty() ? meaning_of(result.verdict) : reason);
+  out += finding_text(result, run.level);
+  const std::string id = one_line(result.case_id());
+  out += fmt::format("  case:      cases/{}.toml\n", id);
+  if (result.first) out += fmt::format("  golden:    golden/{}/{}.csv\n", id, result.rate.label());
+  out += "  reproduce: " + reproduce_command(result, run);
+  const bool hides = result.verdict == Verdict::crash || result.verdict == Verdict::timeout;
+  return hides ? out + "\n  debug:     the same with --in-process, under a debugger" : out;
+}
+
+}  // namespace attest

@@ -1,0 +1,26 @@
+// The one text about a failing result that the terminal and JUnit share. It is read in a CI log by
+// someone who has nothing else at hand: what is wrong, where it first shows, which stage of the law
+// to look at, and the command that runs this one case again.
+#pragma once
+
+#include <string>
+
+#include "harness/suite/verdict.hpp"
+
+namespace attest {
+
+// One line, without the id: "outputs differ; first at tick 17: out/... got -1.5, want -1".
+std::string failure_headline(const CaseResult& result);
+
+// Several lines, the first of which is the id; no newline at the end. `run` gives the port and the
+// level for the command to reproduce it.
+std::string failure_text(const CaseResult& result, const RunResult& run);
+
+// What differs and where, without id and commands: for traces that are no cases. Empty when only
+// the verdict is known.
+std::string finding_text(const CaseResult& result, Level level);
+
+// "attest run --port lib:./mine.so --filter 'px4-v1.5.5/attitude/roll_30@250hz'"
+std::string reproduce_command(const CaseResult& result, const RunResult& run);
+
+}  // namespace attest

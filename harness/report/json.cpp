@@ -1,0 +1,73 @@
+#include "harness/report/json.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "harness/suite/verdict_json.hpp"
+
+namespace attest {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json totals(const RunResult& run) {
+  ordered_json out;
+  for (int i = 0; i < verdict_count; ++i) {
+    const auto verdict = static_cast<Verdict>(i);
+    out[std::string(name_of(verdict))] = run.count(verdict);
+  }
+  return out;
+}
+
+ordered_json rates(const RunResult& run) {
+  ordered_json out = ordered_json::array();
+  for (const Rate& rate : run.rates) out.push_back(rate.to_string());
+  return out;
+}
+
+ordered_json errors(const RunResult& run) {
+  ordered_json out = ordered_json::array();
+  for (const Error& error : run.errors) {
+    out.push_back({{"message", error.message},
+                   {"file", error.file},
+                   {"line", error.line},
+                   {"column", error.column}});
+  }
+  return out;
+}
+
+// In an order to read in, and without the time it took.
+ordered_json results(const RunResult& run) {
+  ordered_json out = ordered_json::array();
+  for (const CaseResult& result : run.results) {
+    const nlohmann::json all = to_json(result);
+    ordered_json entry;
+    for (const char* key : {"id", "profile", "group", "name", "rate", "verdict", "reason", "ticks",
+                            "deviating_ticks", "first", "tightest"}) {
+      if (all.contains(key)) entry[key] = all[key];
+    }
+    out.push_back(std::move(entry));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string json_report(const RunResult& run) {
+  const ordered_json port = {
+      {"specification", run.port}, {"name", run.port_name}, {"version", run.port_version}};
+  const ordered_json report = {
+      {"schema", "attest-report-1"},
+      {"attest_version", run.attest_version},
+      {"port", port},
+      {"level", name_of(run.level)},
+      {"rates", rates(run)},
+      {"totals", totals(run)},
+      {"conformant", run.conformant()},
+      {"stopped_early", run.stopped_early},
+      {"errors", errors(run)},
+      {"results", results(run)},
+  };
+  return report.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace attest

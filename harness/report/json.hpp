@@ -1,0 +1,14 @@
+// The machine-readable report. Its format is report.schema.json, beside this file; a change that
+// readers can notice changes `schema`. Deterministic: the same run gives the same bytes, so it
+// holds no times.
+#pragma once
+
+#include <string>
+
+#include "harness/suite/verdict.hpp"
+
+namespace attest {
+
+std::string json_report(const RunResult& run);
+
+}  // namespace attest

@@ -1,0 +1,214 @@
+#include "harness/report/junit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <pugixml.hpp>
+
+#include "harness/report/failure_text.hpp"
+#include "harness/report/text.hpp"
+
+namespace attest {
+namespace {
+
+enum class Outcome { passed, failure, error, skipped };
+
+Outcome outcome_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return Outcome::passed;
+    case Verdict::fail:
+    case Verdict::non_finite:
+    case Verdict::xpass:
+      return Outcome::failure;
+    case Verdict::crash:
+    case Verdict::timeout:
+    case Verdict::protocol:
+      return Outcome::error;
+    case Verdict::unsupported:
+    case Verdict::skip:
+    case Verdict::xfail:
+      return Outcome::skipped;
+  }
+  return Outcome::error;
+}
+
+const char* element_of(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::passed:
+      return "";
+    case Outcome::failure:
+      return "failure";
+    case Outcome::error:
+      return "error";
+    case Outcome::skipped:
+      return "skipped";
+  }
+  return "";
+}
+
+struct Counts {
+  std::size_t tests = 0;
+  std::size_t failures = 0;
+  std::size_t errors = 0;
+  std::size_t skipped = 0;
+  double time_s = 0;
+
+  void add(Outcome outcome, double elapsed_s) {
+    tests += 1;
+    failures += outcome == Outcome::failure ? 1 : 0;
+    errors += outcome == Outcome::error ? 1 : 0;
+    skipped += outcome == Outcome::skipped ? 1 : 0;
+    time_s += elapsed_s;
+  }
+};
+
+void set(pugi::xml_node node, const char* name, const std::string& value) {
+  node.append_attribute(name).set_value(value.c_str());
+}
+
+// Readers take digits and a point only, no exponent.
+std::string seconds(double time_s) {
+  return fmt::format("{:.6f}", std::isfinite(time_s) && time_s > 0 ? time_s : 0.0);
+}
+
+double usable(double elapsed_s) { return std::isfinite(elapsed_s) ? std::max(elapsed_s, 0.0) : 0; }
+
+void set_counts(pugi::xml_node node, const Counts& counts) {
+  set(node, "tests", fmt::to_string(counts.tests));
+  set(node, "failures", fmt::to_string(counts.failures));
+  set(node, "errors", fmt::to_string(counts.errors));
+}
+
+void add_properties(pugi::xml_node suite, const RunResult& run) {
+  pugi::xml_node properties = suite.append_child("properties");
+  const std::pair<const char*, std::string> all[] = {
+      {"attest.version", run.attest_version},
+      {"port", run.port},
+      {"port.name", run.port_name},
+      {"port.version", run.port_version},
+      {"level", std::string(name_of(run.level))},
+      {"stopped_early", run.stopped_early ? "true" : "false"},
+  };
+  for (const auto& [name, value] : all) {
+    pugi::xml_node property = properties.append_child("property");
+    set(property, "name", name);
+    set(property, "value", one_line(value));
+  }
+}
+
+// `type` must not be one of the words that ActiveSupport (GitLab) casts by: "file", "float", ...
+void add_outcome(pugi::xml_node test, Outcome outcome, std::string_view type,
+                 const std::string& message, const std::string& content) {
+  pugi::xml_node node = test.append_child(element_of(outcome));
+  set(node, "type", std::string(type));
+  set(node, "message", message);
+  node.text().set(content.c_str());
+}
+
+pugi::xml_node add_test(pugi::xml_node suite, const std::string& classname, const std::string& name,
+                        double elapsed_s) {
+  pugi::xml_node test = suite.append_child("testcase");
+  set(test, "classname", classname);
+  set(test, "name", name);
+  set(test, "time", seconds(elapsed_s));
+  return test;
+}
+
+std::string suite_name(const CaseResult& result) {
+  return one_line(result.profile + "." + result.group);
+}
+
+void add_result(pugi::xml_node suite, const CaseResult& result, const RunResult& run) {
+  const std::string name = one_line(result.name + "@" + result.rate.label());
+  const pugi::xml_node test = add_test(suite, suite_name(result), name, result.elapsed_s);
+  const Outcome outcome = outcome_of(result.verdict);
+  if (outcome == Outcome::passed) return;
+  const std::string headline = failure_headline(result);
+  add_outcome(test, outcome, name_of(result.verdict), headline,
+              outcome == Outcome::skipped ? headline : failure_text(result, run));
+}
+
+pugi::xml_node add_suite(pugi::xml_node root, const std::string& name, const Counts& counts,
+                         const RunResult& run) {
+  pugi::xml_node suite = root.append_child("testsuite");
+  set(suite, "name", name);
+  set_counts(suite, counts);
+  set(suite, "skipped", fmt::to_string(counts.skipped));
+  set(suite, "time", seconds(counts.time_s));
+  add_properties(suite, run);
+  return suite;
+}
+
+struct Suite {
+  std::string name;
+  Counts counts;
+  std::vector<const CaseResult*> results;
+};
+
+std::vector<Suite> suites_of(const RunResult& run) {
+  std::vector<Suite> suites;
+  for (const CaseResult& result : run.results) {
+    const std::string name = suite_name(result);
+    auto suite = std::find_if(suites.begin(), suites.end(),
+                              [&name](const Suite& known) { return known.name == name; });
+    if (suite == suites.end()) suite = suites.insert(suite, Suite{name, {}, {}});
+    suite->counts.add(outcome_of(result.verdict), usable(result.elapsed_s));
+    suite->results.push_back(&result);
+  }
+  return suites;
+}
+
+void add_environment(pugi::xml_node root, const RunResult& run) {
+  if (run.errors.empty()) return;
+  const std::string name = "attest.environment";
+  Counts counts;
+  for (std::size_t i = 0; i < run.errors.size(); ++i) counts.add(Outcome::error, 0);
+  const pugi::xml_node suite = add_suite(root, name, counts, run);
+  for (std::size_t i = 0; i < run.errors.size(); ++i) {
+    const std::string text = run.errors[i].to_string();
+    const pugi::xml_node test = add_test(suite, name, fmt::format("error_{}", i + 1), 0);
+    add_outcome(test, Outcome::error, "environment", one_line(text), printable(text));
+  }
+}
+
+struct StringWriter : pugi::xml_writer {
+  std::string text;
+  void write(const void* data, std::size_t size) override {
+    text.append(static_cast<const char*>(data), size);
+  }
+};
+
+}  // namespace
+
+std::string junit_report(const RunResult& run) {
+  const std::vector<Suite> suites = suites_of(run);
+  Counts all;
+  for (const CaseResult& result : run.results) {
+    all.add(outcome_of(result.verdict), usable(result.elapsed_s));
+  }
+  for (std::size_t i = 0; i < run.errors.size(); ++i) all.add(Outcome::error, 0);
+
+  pugi::xml_document document;
+  pugi::xml_node declaration = document.append_child(pugi::node_declaration);
+  set(declaration, "version", "1.0");
+  set(declaration, "encoding", "UTF-8");
+  pugi::xml_node root = document.append_child("testsuites");
+  set(root, "name", "attest");
+  // No `skipped` here: the schema of Jenkins' xUnit plugin has none and rejects the file.
+  set_counts(root, all);
+  set(root, "time", seconds(all.time_s));
+  for (const Suite& suite : suites) {
+    const pugi::xml_node node = add_suite(root, suite.name, suite.counts, run);
+    for (const CaseResult* result : suite.results) add_result(node, *result, run);
+  }
+  add_environment(root, run);
+  StringWriter writer;
+  document.save(writer, "  ", pugi::format_default, pugi::encoding_utf8);
+  return writer.text;
+}
+
+}  // namespace attest

@@ -1,0 +1,59 @@
+#include "harness/report/progress.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "harness/report/terminal.hpp"
+#include "harness/report/text.hpp"
+
+namespace attest {
+namespace {
+
+constexpr std::size_t bar_width = 24;
+constexpr const char* erase_line = "\r\x1b[K";
+
+}  // namespace
+
+Progress::Options Progress::on_stderr(bool quiet) {
+  const char* term = std::getenv("TERM");
+  const bool moves_cursor = term != nullptr && std::string_view(term) != "dumb";
+  Options options;
+  options.visible = !quiet && moves_cursor && isatty(fileno(stderr)) != 0;
+  if (const int width = terminal_style(stderr).width; width > 0) options.width = width;
+  return options;
+}
+
+void Progress::add(const CaseResult& result, Clock::time_point now) {
+  ++done_;
+  if (fails_a_run(result.verdict)) ++failed_;
+  if (!options_.visible || (drawn_ && now - last_drawn_ < redraw_interval)) return;
+  draw(result);
+  drawn_ = true;
+  last_drawn_ = now;
+}
+
+void Progress::draw(const CaseResult& latest) const {
+  const std::size_t filled = total_ == 0 ? bar_width : std::min(done_, total_) * bar_width / total_;
+  std::string line =
+      fmt::format("[{:#<{}}{:-<{}}] {}/{}", "", filled, "", bar_width - filled, done_, total_);
+  if (failed_ > 0) line += fmt::format(", {} failed", failed_);
+  line += "  " + one_line(latest.id());
+  // A line that wraps could not be erased.
+  line.resize(std::min(line.size(), static_cast<std::size_t>(std::max(options_.width - 1, 0))));
+  std::fputs((erase_line + line).c_str(), options_.stream);
+  std::fflush(options_.stream);
+}
+
+void Progress::finish() {
+  if (!drawn_) return;
+  std::fputs(erase_line, options_.stream);
+  std::fflush(options_.stream);
+  drawn_ = false;
+}
+
+}  // namespace attest

@@ -1,0 +1,48 @@
+// One line on a terminal that says how far a run is; nothing anywhere else.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdio>
+
+#include "harness/suite/verdict.hpp"
+
+namespace attest {
+
+// Used from one thread. The line is erased when the object goes, so that what is printed next
+// starts on a clean line; finish() does it earlier.
+class Progress {
+ public:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds redraw_interval{50};
+
+  struct Options {
+    std::FILE* stream = stderr;
+    bool visible = false;
+    int width = 80;  // columns of the terminal
+  };
+
+  // Visible when stderr is a terminal that can move its cursor and `quiet` is false.
+  static Options on_stderr(bool quiet);
+
+  Progress(std::size_t total, Options options) : options_(options), total_(total) {}
+  ~Progress() { finish(); }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  // One more result is there. Draws at most once an interval.
+  void add(const CaseResult& result, Clock::time_point now = Clock::now());
+  void finish();
+
+ private:
+  void draw(const CaseResult& latest) const;
+
+  Options options_;
+  std::size_t total_;
+  std::size_t done_ = 0;
+  std::size_t failed_ = 0;
+  bool drawn_ = false;
+  Clock::time_point last_drawn_{};
+};
+
+}  // namespace attest

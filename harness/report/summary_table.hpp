@@ -1,0 +1,24 @@
+// The table of a summary: a row a group, a column a rate.
+//
+//     group \ Hz   100    250  1000/3  total
+//     attitude      12  10/12       -  22/24
+//     mixed        5+1      6       6   17+1
+//     total       17+1  16/18       6  39/41+1
+//     n/m: n of m passed; +k: k counted apart
+//
+// A cell is the number of cases that passed; "10/12" when two of twelve failed; "5+1" with one that
+// was counted apart (unsupported, skip, xfail); "-" when there was none.
+#pragma once
+
+#include <string>
+
+#include "harness/report/terminal.hpp"
+#include "harness/suite/verdict.hpp"
+
+namespace attest {
+
+// Broken into several blocks of columns when it is wider than the style allows. Rows are prefixed
+// by the profile when there are several. Empty when there are no results.
+std::string render_table(const RunResult& run, TerminalStyle style);
+
+}  // namespace attest

@@ -1,0 +1,282 @@
+#include "harness/report/terminal.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include "harness/report/failure_text.hpp"
+#include "harness/report/summary_table.hpp"
+#include "harness/report/text.hpp"
+
+namespace attest {
+namespace {
+
+// Results that are told together, in the order of the run.
+using Together = std::vector<const CaseResult*>;
+
+// Puts the results for which `wanted` into groups whose members are all `alike`.
+template <typename Wanted, typename Alike>
+std::vector<Together> grouped(const RunResult& run, Wanted wanted, Alike alike) {
+  std::vector<Together> groups;
+  for (const CaseResult& result : run.results) {
+    if (!wanted(result)) continue;
+    const auto group = std::find_if(groups.begin(), groups.end(), [&](const Together& known) {
+      return alike(*known.front(), result);
+    });
+    if (group != groups.end())
+      group->push_back(&result);
+    else
+      groups.push_back({&result});
+  }
+  return groups;
+}
+
+std::string header(const RunResult& run) {
+  return fmt::format("{} {} ({}) at the {} level, attest {}\n\n", one_line(run.port_name),
+                     one_line(run.port_version), one_line(run.port), name_of(run.level),
+                     run.attest_version);
+}
+
+std::string failure(const Together& group, const RunResult& run, TerminalStyle style) {
+  const CaseResult& told = *group.front();
+  const std::string text = failure_text(told, run);
+  const std::size_t line = text.find('\n');
+  std::string out = painted(text.substr(0, line), Colour::red, style) + text.substr(line) + "\n";
+  if (group.size() > 1) {
+    std::vector<std::string> others;
+    for (const CaseResult* result : group) others.push_back(result->rate.to_string());
+    others.erase(others.begin());
+    out += fmt::format("  also at {} Hz: --filter {}\n", fmt::join(others, ", "),
+                       shell_quoted(one_line(told.case_id()) + "@*"));
+  }
+  return out + "\n";
+}
+
+// Which stage is to blame for most: one line for a log with hundreds of failures.
+std::string stages(const RunResult& run) {
+  constexpr std::array order{Stage::input, Stage::attitude_law, Stage::rate_law, Stage::integrator};
+  std::array<std::size_t, order.size()> counts{};
+  for (const CaseResult& result : run.results) {
+    if (!fails_a_run(result.verdict) || !result.first) continue;
+    ++counts[static_cast<std::size_t>(channels()[result.first->channel].stage)];
+  }
+  std::vector<std::string> parts;
+  for (const Stage stage : order) {
+    const std::size_t count = counts[static_cast<std::size_t>(stage)];
+    if (count > 0) parts.push_back(fmt::format("{} in {}", name_of(stage), count));
+  }
+  if (parts.empty()) return {};
+  return fmt::format("first stage to differ: {}\n\n", fmt::join(parts, ", "));
+}
+
+std::string failures(const RunResult& run, TerminalStyle style) {
+  const auto groups = grouped(
+      run, [](const CaseResult& result) { return fails_a_run(result.verdict); },
+      [](const CaseResult& a, const CaseResult& b) {
+        return a.verdict == b.verdict && a.case_id() == b.case_id();
+      });
+  std::string out;
+  std::size_t untold = 0;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (i < failures_told)
+      out += failure(groups[i], run, style);
+    else
+      untold += groups[i].size();
+  }
+  if (untold > 0) out += fmt::format("and {} more; see --json or --junit\n\n", untold);
+  return out + stages(run);
+}
+
+std::string cases_of(const Together& group) {
+  constexpr std::size_t named = 3;
+  std::vector<std::string> ids;
+  for (const CaseResult* result : group) {
+    const std::string id = one_line(result->case_id());
+    if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
+  }
+  const std::size_t unnamed = ids.size() - std::min(ids.size(), named);
+  ids.resize(ids.size() - unnamed);
+  std::string out = fmt::format("{}", fmt::join(ids, ", "));
+  if (unnamed > 0) out += fmt::format(" and {} more", unnamed);
+  return out;
+}
+
+std::string counted_apart(const RunResult& run) {
+  std::string out;
+  for (const Verdict verdict : {Verdict::unsupported, Verdict::skip, Verdict::xfail}) {
+    const auto groups = grouped(
+        run, [verdict](const CaseResult& result) { return result.verdict == verdict; },
+        [](const CaseResult& a, const CaseResult& b) { return a.reason == b.reason; });
+    for (const Together& group : groups) {
+      const std::string reason = one_line(group.front()->reason);
+      out += fmt::format("  {} {}: {}\n      {}\n", group.size(), name_of(verdict),
+                         reason.empty() ? "no reason given" : reason, cases_of(group));
+    }
+  }
+  return out.empty() ? out : "counted apart, not as conformant:\n" + out + "\n";
+}
+
+std::string_view plural_of(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::rate:
+      return "rates";
+    case Quantity::control:
+      return "controls";
+    case Quantity::integral:
+      return "integrals";
+    case Quantity::thrust:
+      return "thrust";
+    default:
+      return "others";
+  }
+}
+
+Quantity quantity_of(const CaseResult& result) {
+  return channels()[result.tightest->channel].quantity;
+}
+
+// A result knows its one tightest channel, so a quantity is listed only where it is the tightest of
+// some case, and the first line is the tightest of all.
+std::string headroom(const RunResult& run) {
+  if (run.level == Level::exact || run.count(Verdict::pass) == 0) return {};
+  const auto groups = grouped(
+      run,
+      [](const CaseResult& result) {
+        return result.verdict == Verdict::pass && result.tightest &&
+               std::isfinite(result.tightest->ratio);
+      },
+      [](const CaseResult& a, const CaseResult& b) { return quantity_of(a) == quantity_of(b); });
+  if (groups.empty()) return "tightest headroom: every value that passed agrees to the bit\n\n";
+  const auto tighter = [](const CaseResult* a, const CaseResult* b) {
+    return a->tightest->ratio < b->tightest->ratio;
+  };
+  Together tightest;
+  for (const Together& group : groups) {
+    tightest.push_back(*std::min_element(group.begin(), group.end(), tighter));
+  }
+  std::stable_sort(tightest.begin(), tightest.end(), tighter);
+  std::string out = "tightest headroom (tolerance / difference, where it is a case's tightest):\n";
+  for (const CaseResult* result : tightest) {
+    const Headroom& headroom = *result->tightest;
+    out += fmt::format("  {:<9}  {:.1f}x on {} in {} at tick {}\n", plural_of(quantity_of(*result)),
+                       headroom.ratio, channels()[headroom.channel].name, one_line(result->id()),
+                       headroom.tick);
+  }
+  return out + "\n";
+}
+
+// A golden that is missing is missing at every rate: equal errors are told once.
+std::string errors(const RunResult& run, TerminalStyle style) {
+  std::vector<std::pair<std::string, std::size_t>> told;
+  for (const Error& error : run.errors) {
+    const std::string text = printable(error.to_string());
+    const auto same = std::find_if(told.begin(), told.end(),
+                                   [&text](const auto& known) { return known.first == text; });
+    if (same == told.end())
+      told.emplace_back(text, 1);
+    else
+      ++same->second;
+  }
+  std::string out;
+  for (std::size_t i = 0; i < std::min(told.size(), errors_told); ++i) {
+    const auto& [text, times] = told[i];
+    out += fmt::format("{} {}{}\n", painted("error:", Colour::red, style), text,
+                       times > 1 ? fmt::format(" ({} times)", times) : "");
+  }
+  if (told.size() > errors_told) {
+    out += fmt::format("and {}; see --json or --junit\n",
+                       counted(told.size() - errors_told, "other error"));
+  }
+  return out.empty() ? out : out + "\n";
+}
+
+// "9 fail, 2 crash", of the verdicts for which `wanted`.
+template <typename Wanted>
+std::string verdict_counts(const RunResult& run, Wanted wanted) {
+  std::vector<std::string> parts;
+  for (int i = 0; i < verdict_count; ++i) {
+    const auto verdict = static_cast<Verdict>(i);
+    if (run.count(verdict) == 0 || !wanted(verdict)) continue;
+    parts.push_back(fmt::format("{} {}", run.count(verdict), name_of(verdict)));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string setting(const RunResult& run) {
+  std::vector<std::string> profiles;
+  for (const CaseResult& result : run.results) {
+    const std::string profile = one_line(result.profile);
+    if (std::find(profiles.begin(), profiles.end(), profile) == profiles.end()) {
+      profiles.push_back(profile);
+    }
+  }
+  std::string out = fmt::format("{}", fmt::join(profiles, ", "));
+  if (!out.empty()) out += ", ";
+  return fmt::format("{}{}, {}", out, name_of(run.level), counted(run.rates.size(), "rate"));
+}
+
+std::string last_line(const RunResult& run, double wall_s, TerminalStyle style) {
+  const std::size_t all = run.results.size();
+  const std::size_t passed = run.count(Verdict::pass);
+  const bool bad = run.failed() || !run.errors.empty();
+  const bool compared = passed + run.count(Verdict::xfail) > 0;
+  const std::string_view word = bad ? "FAIL" : compared ? "PASS" : "NONE";
+  const Colour colour = bad ? Colour::red : compared ? Colour::green : Colour::yellow;
+
+  std::string out = painted(word, colour, style) + " ";
+  const auto failed = static_cast<std::size_t>(
+      std::count_if(run.results.begin(), run.results.end(),
+                    [](const CaseResult& result) { return fails_a_run(result.verdict); }));
+  if (failed > 0) {
+    out += fmt::format("{} failed ({}); ", failed, verdict_counts(run, fails_a_run));
+  }
+  if (!run.errors.empty()) out += counted(run.errors.size(), "error") + "; ";
+  out += fmt::format("{} of {} conform", passed, counted(all, "case"));
+  const std::string apart = verdict_counts(
+      run, [](Verdict verdict) { return verdict != Verdict::pass && !fails_a_run(verdict); });
+  if (!apart.empty()) out += ", " + apart;
+  out += fmt::format(" ({}) in {:.1f} s", setting(run), wall_s);
+  if (run.stopped_early) out += "; stopped early, the rest was not run";
+  return out + "\n";
+}
+
+}  // namespace
+
+bool wants_colour(bool is_terminal, const char* no_color, const char* term) {
+  const bool refused = no_color != nullptr && *no_color != '\0';
+  return is_terminal && !refused && term != nullptr && std::string_view(term) != "dumb";
+}
+
+TerminalStyle terminal_style(std::FILE* stream) {
+  const bool is_terminal = isatty(fileno(stream)) != 0;
+  TerminalStyle style;
+  style.colour = wants_colour(is_terminal, std::getenv("NO_COLOR"), std::getenv("TERM"));
+  winsize size{};
+  if (is_terminal && ioctl(fileno(stream), TIOCGWINSZ, &size) == 0) style.width = size.ws_col;
+  return style;
+}
+
+std::string painted(std::string_view text, Colour colour, TerminalStyle style) {
+  if (!style.colour || colour == Colour::none) return std::string(text);
+  constexpr std::array codes{"0", "1", "32", "33", "31"};
+  return fmt::format("\x1b[{}m{}\x1b[0m", codes[static_cast<std::size_t>(colour)], text);
+}
+
+std::string render_summary(const RunResult& run, double wall_s, TerminalStyle style) {
+  std::string out = header(run);
+  if (const std::string table = render_table(run, style); !table.empty()) out += table + "\n";
+  out += failures(run, style);
+  out += counted_apart(run);
+  out += headroom(run);
+  out += errors(run, style);
+  return out + last_line(run, wall_s, style);
+}
+
+}  // namespace attest

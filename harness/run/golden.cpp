@@ -1,0 +1,144 @@
+#include "harness/run/golden.hpp"
+
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "harness/core/file.hpp"
+#include "harness/core/version.hpp"
+
+namespace attest {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string file_name(const Rate& rate) { return rate.label() + ".csv"; }
+
+std::string how_to_bless(const Case& the_case) {
+  return fmt::format("`attest bless --filter '{}' --reason \"...\"` makes it", the_case.id());
+}
+
+Result<void> write_text(const fs::path& path, const std::string& text) {
+  auto file = AtomicFile::open(path);
+  if (!file) return tl::unexpected(file.error());
+  if (auto written = file->write(text); !written) return written;
+  return file->commit();
+}
+
+Result<std::string> write_trace(const fs::path& path, const Trace& trace,
+                                const CsvColumns& columns) {
+  auto file = AtomicFile::open(path);
+  if (!file) return tl::unexpected(file.error());
+  if (auto written = write_csv(trace, columns, *file); !written) {
+    return tl::unexpected(written.error());
+  }
+  if (auto committed = file->commit(); !committed) return tl::unexpected(committed.error());
+  return sha256_of_file(path);
+}
+
+Result<void> write_folder(const fs::path& folder, const Case& the_case,
+                          const std::vector<Trace>& traces, const std::string& reason) {
+  const Division division = divide(traces);
+  Provenance provenance;
+  provenance.profile = the_case.profile;
+  provenance.case_id = the_case.id();
+  provenance.case_sha256 = the_case.sha256;
+  provenance.reference = fmt::format("attest {}", version);
+  provenance.compiler = compiler();
+  provenance.reason = reason;
+  provenance.constants = division.constants;
+  for (std::size_t i = 0; i < traces.size(); ++i) {
+    const std::string name = file_name(the_case.rates[i]);
+    auto hash = write_trace(folder / name, traces[i], division.columns);
+    if (!hash) return tl::unexpected(hash.error());
+    provenance.sha256[name] = *hash;
+  }
+  return write_text(folder / provenance_name, to_toml(provenance));
+}
+
+}  // namespace
+
+fs::path golden_folder(const fs::path& golden_root, const Case& the_case) {
+  return golden_root / the_case.profile / the_case.group / the_case.name;
+}
+
+Golden::Golden(fs::path folder, Provenance provenance)
+    : folder_(std::move(folder)), provenance_(std::move(provenance)) {}
+
+Result<Golden> Golden::open(const fs::path& golden_root, const Case& the_case) {
+  const fs::path folder = golden_folder(golden_root, the_case);
+  if (!fs::exists(folder / provenance_name)) {
+    return fail_at(folder.string(),
+                   fmt::format("no golden for {}; {}", the_case.id(), how_to_bless(the_case)));
+  }
+  auto provenance = read_provenance(folder / provenance_name);
+  if (!provenance) return tl::unexpected(provenance.error());
+  if (provenance->case_sha256 != the_case.sha256) {
+    return fail_at((folder / provenance_name).string(),
+                   fmt::format("the golden is stale: {} has changed since it was blessed; {} anew",
+                               the_case.file.string(), how_to_bless(the_case)));
+  }
+  return Golden(folder, std::move(*provenance));
+}
+
+Result<Trace> Golden::read(const Rate& rate) const {
+  const std::string name = file_name(rate);
+  const fs::path path = folder_ / name;
+  const auto blessed = provenance_.sha256.find(name);
+  if (blessed == provenance_.sha256.end()) {
+    return fail_at((folder_ / provenance_name).string(),
+                   fmt::format("no golden at {} Hz; `attest bless` makes it", rate.to_string()));
+  }
+  auto hash = sha256_of_file(path);
+  if (!hash) return tl::unexpected(hash.error());
+  if (*hash != blessed->second) {
+    return fail_at(path.string(),
+                   "is not the file that was blessed (its SHA-256 is another than in "
+                   "provenance.toml); restore it from version control, or bless it anew");
+  }
+  return read_csv(path, CsvNeed::inputs_and_outputs);
+}
+
+NewGolden::NewGolden(fs::path folder, fs::path written)
+    : folder_(std::move(folder)), written_(std::move(written)) {}
+
+NewGolden::NewGolden(NewGolden&& other) noexcept
+    : folder_(std::move(other.folder_)), written_(std::exchange(other.written_, {})) {}
+
+NewGolden::~NewGolden() {
+  std::error_code ignored;
+  if (!written_.empty()) fs::remove_all(written_, ignored);
+}
+
+Result<NewGolden> NewGolden::write(const fs::path& golden_root, const Case& the_case,
+                                   const std::vector<Trace>& traces, const std::string& reason) {
+  const fs::path folder = golden_folder(golden_root, the_case);
+  NewGolden golden(folder, fs::path(folder).concat(".new"));
+  std::error_code error;
+  fs::remove_all(golden.written_, error);  // left by a run that was killed
+  fs::create_directories(golden.written_, error);
+  if (error) {
+    return fail_at(golden.written_.string(), fmt::format("cannot be made: {}", error.message()));
+  }
+  auto done = write_folder(golden.written_, the_case, traces, reason);
+  if (!done) return tl::unexpected(done.error());
+  return golden;
+}
+
+Result<void> NewGolden::put_in_place() {
+  // The old golden steps aside first, so that at each moment a complete one is there.
+  const fs::path old = fs::path(folder_).concat(".old");
+  std::error_code error;
+  fs::remove_all(old, error);
+  if (fs::exists(folder_)) fs::rename(folder_, old, error);
+  if (!error) fs::rename(written_, folder_, error);
+  if (error) {
+    return fail_at(folder_.string(), fmt::format("cannot be replaced: {}", error.message()));
+  }
+  written_.clear();
+  fs::remove_all(old, error);
+  return {};
+}
+
+}  // namespace attest

@@ -1,0 +1,24 @@
+// Seeded randomness with the same values on every platform: the engine's output is fixed by the
+// C++ standard, which the standard distributions' is not.
+#pragma once
+
+#include <cstdint>
+#include <random>
+
+namespace attest {
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+
+  // Uniform in [0, 1), a multiple of 2^-53.
+  double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
+
+  // Uniform in [low, high).
+  double uniform(double low, double high) { return low + (high - low) * uniform(); }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+}  // namespace attest

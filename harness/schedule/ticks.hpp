@@ -1,0 +1,39 @@
+// When things happen: the ticks of the unit's task and the releases of the topics it reads, as
+// times since the case began.
+//
+// Order at one instant: a topic released at the time of a tick is seen by that tick.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "harness/core/time.hpp"
+#include "harness/schedule/rate.hpp"
+
+namespace attest {
+
+// A periodic task: release k at phase + k / rate, made late by seeded jitter, some left out.
+struct TickSchedule {
+  Rate rate = Rate::hz(250);
+  Nanoseconds phase{0};
+  double jitter = 0;                // late by up to this fraction of a period, uniform; in [0, 1)
+  std::uint64_t seed = 1;           // of the jitter
+  std::vector<std::int64_t> drops;  // values of k that do not happen
+};
+
+// The ticks with k in [0, periods), strictly increasing. The same arguments give the same ticks on
+// every machine.
+std::vector<Nanoseconds> ticks(const TickSchedule& schedule, std::int64_t periods);
+
+// When the samples of a topic are published: periodically, at given times, or both empty: never.
+struct ReleaseSchedule {
+  std::optional<Rate> rate;
+  Nanoseconds phase{0};
+  std::vector<Nanoseconds> times;  // increasing; used when there is no rate
+
+  // The latest release at or before `time`; empty when there was none.
+  std::optional<Nanoseconds> latest(Nanoseconds time) const;
+};
+
+}  // namespace attest

@@ -1,0 +1,57 @@
+// A child process that does some work and answers in lines over a pipe. Whatever a port does in
+// there (crash, hang, exit, print, change the floating point mode) stays in there.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+#include "harness/core/result.hpp"
+
+namespace attest {
+
+// Sends one line (without its end) to the parent. In the child only.
+using SendLine = std::function<void(const std::string& line)>;
+
+class Child {
+ public:
+  // Forks; `work` runs in the child, which then ends. The child dies with its parent and leaves no
+  // core file; its stdout and stderr are kept apart (last_words), its stdin is empty.
+  static Result<Child> spawn(const std::function<void(const SendLine&)>& work);
+
+  Child(Child&& other) noexcept;
+  Child& operator=(Child&& other) noexcept;
+  ~Child();  // kills and reaps
+
+  // Readable when the child sent something or ended. For poll().
+  int descriptor() const { return pipe_; }
+
+  // The complete lines that have arrived; sets `ended` when the child closed its end.
+  std::vector<std::string> read_lines(bool& ended);
+
+  // The first line it sends; empty when it ended, or said nothing in time (then it is killed).
+  std::optional<std::string> wait_for_line(double timeout_s);
+
+  void kill();
+
+  // How it ended, as a verb: "was killed by signal 11 (Segmentation fault)", "exited with status
+  // 0". Waits for the end.
+  std::string end();
+
+  // The last line that the child printed on stdout or stderr; empty when it printed nothing.
+  std::string last_words() const;
+
+ private:
+  Child(pid_t pid, int pipe, int output) : pid_(pid), pipe_(pipe), output_(output) {}
+  void release();
+
+  pid_t pid_ = -1;
+  int pipe_ = -1;
+  int output_ = -1;  // file that holds what the child prints
+  std::string partial_;
+};
+
+}  // namespace attest

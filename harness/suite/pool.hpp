@@ -1,0 +1,60 @@
+// The parent's side of the worker processes: starts them, listens, and gives a verdict on those
+// that die or fall silent.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "harness/suite/child.hpp"
+#include "harness/suite/message.hpp"
+#include "harness/suite/worker.hpp"
+
+namespace attest {
+
+class Pool {
+ public:
+  Pool(const Batches& batches, const WorkerOptions& options);
+
+  WorkerOutcome run();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  // A batch on its way.
+  struct Worker {
+    std::size_t batch;
+    Child child;
+    std::size_t task;  // that runs, or will
+    Clock::time_point deadline;
+    bool readable = false;
+    bool finished = false;  // said so
+    bool over = false;
+  };
+  struct Outcome {
+    std::vector<CaseResult> results;
+    std::vector<Error> errors;
+  };
+
+  void start_workers();
+  void start(std::size_t batch, std::size_t first_task);
+  void wait();
+  void serve(Worker& worker);
+  void take(Worker& worker, const Message& message);
+  void add(Worker& worker, const CaseResult& result);
+  void conclude(Worker& worker, bool timed_out);
+  CaseResult verdict_on_the_dead(Worker& worker, bool timed_out);
+  void stop_after_failure(std::size_t batch);
+  Clock::time_point deadline() const;
+  WorkerOutcome collect();
+
+  const Batches& batches_;
+  const WorkerOptions& options_;
+  std::vector<Outcome> outcomes_;
+  std::vector<Worker> workers_;
+  std::size_t next_ = 0;  // batch to start
+  std::size_t end_;       // of the batches that are wanted
+};
+
+}  // namespace attest

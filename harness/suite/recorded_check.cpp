@@ -1,0 +1,103 @@
+#include "harness/suite/recorded_check.hpp"
+
+#include <algorithm>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "harness/port/port.hpp"
+#include "harness/run/mixer_replay.hpp"
+#include "harness/suite/evaluate.hpp"
+#include "harness/trace/csv.hpp"
+#include "harness/trace/mixer_csv.hpp"
+#include "harness/trace/provenance.hpp"
+
+namespace attest {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> traces_below(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end;
+       it.increment(error)) {
+    if (it->path().extension() == ".csv") files.push_back(it->path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// A recording that was edited is no judge any more.
+Result<void> check_bytes(const fs::path& file, const Provenance& provenance) {
+  const auto recorded = provenance.sha256.find(file.filename().string());
+  if (recorded == provenance.sha256.end()) {
+    return fail_at(file.string(), "is not listed under [sha256] in provenance.toml");
+  }
+  const auto hash = sha256_of_file(file);
+  if (!hash) return tl::unexpected(hash.error());
+  if (*hash == recorded->second) return {};
+  return fail_at(file.string(),
+                 "is not what was recorded (its SHA-256 is another than in "
+                 "provenance.toml); restore it from version control");
+}
+
+// What differs, in words; empty when nothing does.
+Result<std::string> mixer_difference(const fs::path& file) {
+  const auto definition = mixer_of(file.string());
+  if (!definition) return fail_at(file.string(), "no mixer is named for it in provenance.toml");
+  const auto recorded = read_mixer_csv(file);
+  if (!recorded) return tl::unexpected(recorded.error());
+  const auto replay = replay_mixer(*recorded, *definition);
+  if (!replay) return tl::unexpected(replay.error());
+  return replay->first;
+}
+
+Tolerances tolerances_for(const fs::path& file, const Provenance& provenance) {
+  const auto stated = provenance.tolerances.find(file.stem().string());
+  if (stated == provenance.tolerances.end()) return Tolerances(Level::exact);
+  Tolerances tolerances(Level::numeric);
+  tolerances.set("", {stated->second, 0});
+  return tolerances;
+}
+
+Result<std::string> trace_difference(const fs::path& file, const Provenance& provenance) {
+  const auto recorded = read_csv(file, CsvNeed::inputs_and_outputs);
+  if (!recorded) return tl::unexpected(recorded.error());
+  const auto port = open_port("builtin");
+  if (!port) return tl::unexpected(port.error());
+  const CaseResult result =
+      evaluate_trace(*recorded, provenance.profile, **port, tolerances_for(file, provenance));
+  if (result.verdict == Verdict::pass) return std::string();
+  if (!result.first) return result.reason;
+  return fmt::format("{} at tick {}", channels()[result.first->channel].name, result.first->tick);
+}
+
+Result<std::string> difference(const fs::path& file) {
+  const auto provenance = read_provenance(file.parent_path() / provenance_name);
+  if (!provenance) return tl::unexpected(provenance.error());
+  if (auto intact = check_bytes(file, *provenance); !intact) {
+    return tl::unexpected(intact.error());
+  }
+  return looks_like_mixer_csv(file) ? mixer_difference(file) : trace_difference(file, *provenance);
+}
+
+}  // namespace
+
+Result<RecordedCheck> check_recorded(const fs::path& folder) {
+  RecordedCheck check;
+  for (const fs::path& file : traces_below(folder)) {
+    const auto found = difference(file);
+    if (!found) return tl::unexpected(found.error());
+    ++check.traces;
+    check.conforming += found->empty() ? 1 : 0;
+    if (!found->empty() && check.first_difference.empty()) {
+      check.first_difference = fmt::format("{}: {}", file.string(), *found);
+    }
+  }
+  if (check.traces == 0) return fail_at(folder.string(), "no recorded traces in here");
+  return check;
+}
+
+}  // namespace attest

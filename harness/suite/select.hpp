@@ -1,0 +1,45 @@
+// Which cases, at which rates.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/casefile/case.hpp"
+#include "harness/core/result.hpp"
+
+namespace attest {
+
+// Part I of N, I from 1: cases I, I+N, I+2N, ... of those that are selected otherwise.
+struct Shard {
+  std::size_t index = 1;
+  std::size_t count = 1;
+
+  static Result<Shard> parse(const std::string& text);  // "2/4"
+};
+
+// Empty lists select everything.
+struct Selection {
+  // Shell patterns (* ? [..]); one must match the id `<profile>/<group>/<name>@<rate>hz`, or that
+  // id without rate, or without profile, or without both, or the name alone.
+  std::vector<std::string> filters;
+  std::vector<std::string> groups;
+  std::vector<std::string> profiles;
+  std::vector<Rate> rates;
+  Shard shard;
+};
+
+struct SelectedCase {
+  Case the_case;
+  std::vector<Rate> rates;  // ascending, not empty
+};
+
+// Reads the case files below `folder` that can match and keeps what is selected, in the order of
+// their ids. Errors: a malformed case file, an unknown group, profile or rate, nothing selected;
+// each says what there is.
+Result<std::vector<SelectedCase>> select_cases(const std::filesystem::path& folder,
+                                               const Selection& selection);
+
+}  // namespace attest

@@ -1,0 +1,85 @@
+#include "harness/suite/worker.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "harness/suite/child.hpp"
+#include "harness/suite/error_json.hpp"
+#include "harness/suite/pool.hpp"
+
+namespace attest {
+namespace {
+
+using nlohmann::json;
+
+bool any_failed(const WorkerOutcome& outcome) {
+  return !outcome.errors.empty() ||
+         std::any_of(outcome.results.begin(), outcome.results.end(),
+                     [](const CaseResult& result) { return fails_a_run(result.verdict); });
+}
+
+WorkerOutcome run_here(const Batches& batches, const WorkerOptions& options) {
+  WorkerOutcome outcome;
+  auto port = open_port(options.port);
+  if (!port) return {{}, {port.error()}, false};
+  for (std::size_t index = 0; index < batches.size(); ++index) {
+    for (std::size_t i = 0; i < batches[index]->size(); ++i) {
+      auto result = batches[index]->evaluate(i, **port);
+      if (result) {
+        options.on_result(*result);
+        outcome.results.push_back(std::move(*result));
+      } else {
+        outcome.errors.push_back(result.error());
+      }
+    }
+    if (options.fail_fast && any_failed(outcome)) {
+      outcome.stopped_early = index + 1 < batches.size();
+      break;
+    }
+  }
+  return outcome;
+}
+
+void send_description(const std::string& specification, const std::vector<std::string>& profiles,
+                      const SendLine& send) {
+  auto port = open_port(specification);
+  if (!port) return send(json{{"error", to_json(port.error())}}.dump());
+  json supported = json::array();
+  for (const std::string& profile : profiles) {
+    if ((*port)->create(profile)) supported.push_back(profile);
+  }
+  const json description = {
+      {"name", (*port)->name()}, {"version", (*port)->version()}, {"profiles", supported}};
+  send(description.dump(-1, ' ', false, json::error_handler_t::replace));
+}
+
+}  // namespace
+
+WorkerOutcome run_batches(const Batches& batches, const WorkerOptions& options) {
+  return options.in_process ? run_here(batches, options) : Pool(batches, options).run();
+}
+
+Result<PortDescription> describe_port(const std::string& port,
+                                      const std::vector<std::string>& profiles, double timeout_s) {
+  auto child = Child::spawn([&](const SendLine& send) { send_description(port, profiles, send); });
+  if (!child) return tl::unexpected(child.error());
+  const auto line = child->wait_for_line(timeout_s);
+  if (!line) {
+    return fail_at(port, fmt::format("gave no answer when it was loaded and asked for its name and "
+                                     "profiles: its process {}",
+                                     child->end()));
+  }
+  const json answer = json::parse(*line, nullptr, false);
+  if (answer.is_object() && answer.contains("error")) {
+    auto error = error_from_json(answer["error"]);
+    return tl::unexpected(error ? *error : error.error());
+  }
+  if (!answer.is_object()) return fail_at(port, "gave no sensible description of itself");
+  return PortDescription{answer.value("name", ""), answer.value("version", ""),
+                         answer.value("profiles", std::vector<std::string>{})};
+}
+
+}  // namespace attest

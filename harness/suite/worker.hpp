@@ -1,0 +1,45 @@
+// Runs batches in worker processes, so that a port that crashes, hangs, exits or corrupts its
+// memory costs one verdict and nothing else.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "harness/suite/batch.hpp"
+#include "harness/suite/verdict.hpp"
+
+namespace attest {
+
+struct WorkerOptions {
+  std::string port;         // as for open_port
+  int jobs = 1;             // worker processes at a time
+  double timeout_s = 10;    // of one task; they take milliseconds
+  bool fail_fast = false;   // nothing after the first batch, in their order, that fails a run
+  bool in_process = false;  // for a debugger: no children, no protection, one after the other
+  std::function<void(const CaseResult&)> on_result = [](const CaseResult&) {};
+  std::function<bool()> stop = [] { return false; };  // true: end soon, results do not matter
+};
+
+struct WorkerOutcome {
+  std::vector<CaseResult> results;  // in the order of batches and tasks, whatever finished first
+  std::vector<Error> errors;        // in the same order
+  bool stopped_early = false;
+};
+
+using Batches = std::vector<std::unique_ptr<Batch>>;
+
+// The results are the same for any number of jobs.
+WorkerOutcome run_batches(const Batches& batches, const WorkerOptions& options);
+
+// What a port says of itself, asked in a child process.
+struct PortDescription {
+  std::string name;
+  std::string version;
+  std::vector<std::string> profiles;  // of those asked for, the ones it supports
+};
+Result<PortDescription> describe_port(const std::string& port,
+                                      const std::vector<std::string>& profiles, double timeout_s);
+
+}  // namespace attest

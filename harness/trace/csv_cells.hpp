@@ -1,0 +1,104 @@
+// Cells of a CSV file: from text to a value of a column's type, and what to say when that fails.
+#pragma once
+
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "harness/trace/channels.hpp"
+
+namespace attest {
+
+// The rare floats: with a plus sign, too small (which are zero) or too large for 32 bits. Returns
+// the end of the number, or null if [first, last) does not begin with one.
+const char* parse_unusual_float(const char* first, const char* last, float& value);
+
+// "`1.2.3` is not a number for in/battery_status.scale; write a decimal number, nan, inf or -inf".
+// REQUIRES: `cell` is not a value of that type.
+std::string cell_error(std::string_view cell, ChannelType type, std::string_view column);
+
+// For messages: between backquotes, shortened, with what cannot be printed as \xNN.
+std::string in_backquotes(std::string_view text);
+
+// The parsers below read a value at `first`, store it at `to`, and return its end, or null if there
+// is none. REQUIRES: *last can be read and is no digit. They are here to be inlined: half of the
+// cells of a trace are flags of one digit, for which a call costs more than the work.
+
+// Where the cells of a column go.
+struct CsvColumn {
+  ChannelType type;
+  std::size_t offset;  // of the member in the row's struct [bytes]
+  std::uint32_t bit;   // mask, for ChannelType::bit
+};
+
+inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+inline bool is_single_digit(const char* first, const char* last) {
+  return is_digit(*first) && (first + 1 == last || first[1] == ',');
+}
+
+inline const char* parse_float(const char* first, const char* last, void* to) {
+  float value = 0;
+  const char* end = first + 1;
+  if (is_single_digit(first, last)) {
+    value = static_cast<float>(*first - '0');
+  } else {
+    const auto parsed = std::from_chars(first, last, value);
+    end = parsed.ec == std::errc() ? parsed.ptr : parse_unusual_float(first, last, value);
+    if (value != value) value = std::numeric_limits<float>::quiet_NaN();  // one NaN, one sign
+  }
+  std::memcpy(to, &value, sizeof value);
+  return end;
+}
+
+inline const char* parse_byte(const char* first, const char* last, void* to) {
+  std::uint8_t value = 0;
+  const char* end = first + 1;
+  if (is_single_digit(first, last)) {
+    value = static_cast<std::uint8_t>(*first - '0');
+  } else {
+    const auto parsed = std::from_chars(first, last, value);
+    end = parsed.ec == std::errc() ? parsed.ptr : nullptr;
+  }
+  std::memcpy(to, &value, sizeof value);
+  return end;
+}
+
+inline const char* parse_bit(const char* first, const char* last, std::uint32_t bit, void* to) {
+  if (!is_single_digit(first, last) || *first > '1') return nullptr;
+  std::uint32_t word = 0;
+  std::memcpy(&word, to, sizeof word);
+  word = *first == '1' ? word | bit : word & ~bit;
+  std::memcpy(to, &word, sizeof word);
+  return first + 1;
+}
+
+inline const char* parse_integer(const char* first, const char* last, void* to) {
+  std::uint64_t value = 0;
+  const auto parsed = std::from_chars(first, last, value);
+  std::memcpy(to, &value, sizeof value);
+  return parsed.ec == std::errc() ? parsed.ptr : nullptr;
+}
+
+inline const char* parse_cell(const char* first, const char* last, const CsvColumn& column,
+                              char* row) {
+  char* const to = row + column.offset;
+  switch (column.type) {
+    case ChannelType::f32:
+      return parse_float(first, last, to);
+    case ChannelType::u8:
+      return parse_byte(first, last, to);
+    case ChannelType::bit:
+      return parse_bit(first, last, column.bit, to);
+    case ChannelType::u64:
+      return parse_integer(first, last, to);
+  }
+  return nullptr;
+}
+
+}  // namespace attest

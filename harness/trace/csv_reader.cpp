@@ -1,0 +1,183 @@
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <optional>
+#include <set>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "harness/core/nearest.hpp"
+#include "harness/trace/csv.hpp"
+#include "harness/trace/csv_rows.hpp"
+#include "harness/trace/provenance.hpp"
+
+namespace attest {
+namespace {
+
+constexpr std::size_t timestamp_channel = 0;  // of channels()
+
+// A row is a Sample followed by the values of the parameter columns.
+struct Layout {
+  std::vector<CsvColumn> columns;
+  std::vector<std::string> parameters;
+  ChannelSet present;
+};
+
+Result<Layout> layout_of(const CsvRows& rows) {
+  Layout layout;
+  for (std::size_t i = 0; i < rows.header().size(); ++i) {
+    const std::string_view name = rows.header()[i];
+    if (const auto index = find_channel(name)) {
+      const Channel& channel = channels()[*index];
+      layout.columns.push_back({channel.type, channel.offset, channel.bit});
+      layout.present.set(*index);
+    } else if (const auto parameter = parameter_of(name)) {
+      const std::size_t offset = sizeof(Sample) + sizeof(float) * layout.parameters.size();
+      layout.columns.push_back({ChannelType::f32, offset, 0});
+      layout.parameters.emplace_back(*parameter);
+    } else {
+      std::vector<std::string> names;
+      for (const Channel& channel : channels()) names.emplace_back(channel.name);
+      return rows.fail_at_name(
+          i, fmt::format("unknown column {}{}", in_backquotes(name), suggestion(name, names)));
+    }
+  }
+  return layout;
+}
+
+// The constants of the provenance.toml beside the file; none if there is no such file.
+Result<std::map<std::string, double>> constants_beside(const std::filesystem::path& path) {
+  const std::filesystem::path beside = path.parent_path() / provenance_name;
+  std::error_code ignored;
+  if (!std::filesystem::exists(beside, ignored)) return {};
+  const auto provenance = read_provenance(beside);
+  if (!provenance) return tl::unexpected(provenance.error());
+  return provenance->constants;
+}
+
+// Fills what every row has in common: channels into `sample`, parameters as changes at tick 0.
+Result<void> apply_constants(const std::map<std::string, double>& constants, const CsvRows& rows,
+                             Sample& sample, Trace& trace) {
+  for (std::size_t i = 0; i < rows.header().size(); ++i) {
+    if (!constants.contains(rows.header()[i])) continue;
+    return rows.fail_at_name(i, fmt::format("{} is a column and also a constant of {}; remove one",
+                                            in_backquotes(rows.header()[i]), provenance_name));
+  }
+  for (const auto& [name, value] : constants) {
+    if (const auto index = find_channel(name)) {
+      set_value(channels()[*index], sample, value);
+      trace.present.set(*index);
+    } else if (const auto parameter = parameter_of(name)) {
+      trace.parameters.push_back({0, std::string(*parameter), static_cast<float>(value)});
+    }
+  }
+  return {};
+}
+
+Result<void> check_need(const ChannelSet& present, CsvNeed need, const std::string& file) {
+  const auto missing = [&](std::string_view name, std::size_t others, std::string_view what_to_do) {
+    const std::string more = others == 0 ? "" : fmt::format(" (nor {} others)", others);
+    return fail_at(file, fmt::format("no column {}{}; {}", name, more, what_to_do), 1);
+  };
+  if (!present[timestamp_channel]) {
+    return missing("timestamp", 0, "add the time of each sample in microseconds");
+  }
+  const ChannelSet absent = channels_with_prefix("in/") & ~present;
+  if (need != CsvNeed::outputs && absent.any()) {
+    const std::string_view name = channels()[absent._Find_first()].name;
+    return missing(
+        name, absent.count() - 1,
+        fmt::format("add the column, or an entry \"{}\" under [constants] in a {} beside "
+                    "the file",
+                    name, provenance_name));
+  }
+  if (need != CsvNeed::inputs && (present & channels_with_prefix("out/")).none()) {
+    return missing("out/...", 0, "add at least one output of the unit");
+  }
+  return {};
+}
+
+// Turns the values of parameter columns into changes.
+class ParameterColumns {
+ public:
+  explicit ParameterColumns(std::vector<std::string> names)
+      : names_(std::move(names)), values_(names_.size()) {}
+
+  std::size_t size() const { return names_.size() * sizeof(float); }
+
+  // `row` points to size() bytes, a float for each name.
+  void record(std::size_t tick, const char* row, std::vector<ParameterChange>& changes) {
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      float value = 0;
+      std::memcpy(&value, row + i * sizeof value, sizeof value);
+      // By bits, so that NaN is equal to itself and -0 is not 0.
+      const auto bits = std::bit_cast<std::uint32_t>(value);
+      if (values_[i] == bits) continue;
+      values_[i] = bits;
+      changes.push_back({tick, names_[i], value});
+    }
+  }
+
+ private:
+  std::vector<std::string> names_;
+  std::vector<std::optional<std::uint32_t>> values_;  // last set
+};
+
+Result<void> read_samples(CsvRows& rows, const Sample& common, ParameterColumns parameters,
+                          Trace& trace) {
+  std::vector<char> row(sizeof(Sample) + parameters.size());
+  std::memcpy(row.data(), &common, sizeof common);
+  while (true) {
+    const auto more = rows.next(row.data());
+    if (!more) return tl::unexpected(more.error());
+    if (!*more) return {};
+    Sample sample;
+    std::memcpy(&sample, row.data(), sizeof sample);
+    const std::size_t tick = trace.samples.size();
+    if (tick > 0 && sample.in.timestamp <= trace.samples.back().in.timestamp) {
+      const auto column = std::find(rows.header().begin(), rows.header().end(), "timestamp");
+      return rows.fail_at_cell(static_cast<std::size_t>(column - rows.header().begin()),
+                               fmt::format("timestamp {} is not after the {} of the row above; "
+                                           "timestamps must increase",
+                                           sample.in.timestamp, trace.samples.back().in.timestamp));
+    }
+    if (tick == 0 || (sample.in.updated & ATTEST_UPDATED_PARAMETER_UPDATE) != 0) {
+      parameters.record(tick, row.data() + sizeof sample, trace.parameters);
+    }
+    trace.samples.push_back(sample);
+  }
+}
+
+}  // namespace
+
+Result<Trace> read_csv(const std::filesystem::path& path, CsvNeed need) {
+  auto rows = CsvRows::open(path);
+  if (!rows) return tl::unexpected(rows.error());
+  auto layout = layout_of(*rows);
+  if (!layout) return tl::unexpected(layout.error());
+  const auto constants = constants_beside(path);
+  if (!constants) return tl::unexpected(constants.error());
+
+  Trace trace;
+  trace.source = rows->file();
+  trace.present = layout->present;
+  Sample common{};
+  if (const auto done = apply_constants(*constants, *rows, common, trace); !done) {
+    return tl::unexpected(done.error());
+  }
+  if (const auto done = check_need(trace.present, need, rows->file()); !done) {
+    return tl::unexpected(done.error());
+  }
+  rows->set_columns(std::move(layout->columns));
+  ParameterColumns parameters(std::move(layout->parameters));
+  if (const auto done = read_samples(*rows, common, std::move(parameters), trace); !done) {
+    return tl::unexpected(done.error());
+  }
+  if (trace.samples.empty()) {
+    return fail_at(rows->file(), "no rows; a trace has a row for each tick", 2);
+  }
+  return trace;
+}
+
+}  // namespace attest

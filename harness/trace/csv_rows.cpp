@@ -1,0 +1,181 @@
+#include "harness/trace/csv_rows.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace attest {
+namespace {
+
+// Fits the first-level cache or nearly; also the longest line that is taken for one.
+constexpr std::size_t buffer_size = std::size_t{64} * 1024;
+
+std::vector<std::string_view> split(std::string_view line) {
+  std::vector<std::string_view> cells;
+  while (true) {
+    const std::size_t comma = line.find(',');
+    cells.push_back(line.substr(0, comma));
+    if (comma == std::string_view::npos) return cells;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+// The place of a cell in its line, in characters (a UTF-8 sequence is one), from 1.
+int place_of(std::string_view line, std::string_view cell) {
+  const auto before = line.substr(0, static_cast<std::size_t>(cell.data() - line.data()));
+  const auto is_first_byte = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; };
+  return 1 + static_cast<int>(std::count_if(before.begin(), before.end(), is_first_byte));
+}
+
+}  // namespace
+
+Result<CsvRows> CsvRows::open(const std::filesystem::path& path) {
+  CsvRows rows;
+  rows.file_ = path.string();
+  rows.stream_.reset(std::fopen(path.c_str(), "rbe"));
+  if (!rows.stream_) {
+    return fail_at(rows.file_,
+                   fmt::format("cannot open the file: {}", std::generic_category().message(errno)));
+  }
+  std::setvbuf(rows.stream_.get(), nullptr, _IONBF, 0);  // buffer_ is the buffer
+  rows.buffer_ = std::make_unique_for_overwrite<char[]>(buffer_size + 1);
+  if (const auto done = rows.read_header(); !done) return tl::unexpected(done.error());
+  return rows;
+}
+
+Result<void> CsvRows::read_header() {
+  const auto more = next_line();
+  if (!more) return tl::unexpected(more.error());
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (line_.starts_with(byte_order_mark)) line_.remove_prefix(byte_order_mark.size());
+  if (!*more || line_.empty() || is_digit(line_.front())) {
+    return fail_at(file_, "no header; the first line must name the columns", 1, 1);
+  }
+  for (const std::string_view name : split(line_)) {
+    const int place = place_of(line_, name);
+    if (name.empty()) {
+      return fail_at(file_, "a column without a name; name it or remove the comma", 1, place);
+    }
+    if (std::find(header_.begin(), header_.end(), name) != header_.end()) {
+      return fail_at(file_, fmt::format("repeated column {}; remove one", in_backquotes(name)), 1,
+                     place);
+    }
+    header_.emplace_back(name);
+    header_places_.push_back(place);
+  }
+  return {};
+}
+
+// Moves what is left to the front of the buffer and reads behind it.
+Result<void> CsvRows::fill() {
+  std::memmove(buffer_.get(), buffer_.get() + begin_, end_ - begin_);
+  end_ -= std::exchange(begin_, 0);
+  const std::size_t room = buffer_size - end_;
+  const std::size_t count = std::fread(buffer_.get() + end_, 1, room, stream_.get());
+  if (count < room) {
+    if (std::ferror(stream_.get()) != 0) {
+      return fail_at(
+          file_, fmt::format("cannot read the file: {}", std::generic_category().message(errno)));
+    }
+    at_end_of_file_ = true;
+  }
+  end_ += count;
+  return {};
+}
+
+Result<bool> CsvRows::next_line() {
+  const char* newline = nullptr;
+  while (true) {
+    const char* const begin = buffer_.get() + begin_;
+    newline = static_cast<const char*>(std::memchr(begin, '\n', end_ - begin_));
+    if (newline != nullptr || at_end_of_file_) break;
+    if (begin_ == 0 && end_ == buffer_size) {
+      return fail_at(file_, "line is longer than any trace's; is this a CSV trace?",
+                     line_number_ + 1);
+    }
+    if (const auto done = fill(); !done) return tl::unexpected(done.error());
+  }
+  if (newline == nullptr) {
+    if (begin_ == end_) return false;
+    buffer_[end_] = '\n';  // parsers look one character past the line
+    newline = buffer_.get() + end_;
+  }
+  const char* const begin = buffer_.get() + begin_;
+  const auto length = static_cast<std::size_t>(newline - begin);
+  line_ = std::string_view(begin, length);
+  if (line_.ends_with('\r')) line_.remove_suffix(1);
+  begin_ = std::min(begin_ + length + 1, end_);
+  ++line_number_;
+  return true;
+}
+
+Result<bool> CsvRows::next(void* row) {
+  auto more = next_line();
+  if (!more || !*more) return more;
+  if (!line_.empty()) {
+    if (!parse_line(static_cast<char*>(row))) return diagnose(static_cast<char*>(row));
+    return true;
+  }
+  const int empty_line = line_number_;
+  while (line_.empty()) {
+    more = next_line();
+    if (!more || !*more) return more;
+  }
+  return fail_at(file_, "empty line between rows; remove it", empty_line, 1);
+}
+
+bool CsvRows::parse_line(char* row) const {
+  const char* first = line_.data();
+  const char* const last = first + line_.size();
+  const CsvColumn* const back = &columns_.back();
+  for (const CsvColumn& column : columns_) {
+    const char* const end = parse_cell(first, last, column, row);
+    if (end == nullptr) return false;
+    if (&column == back) return end == last;
+    if (end == last || *end != ',') return false;
+    first = end + 1;
+  }
+  return false;
+}
+
+// Called when parse_line() gave up: looks again, slowly, for what to say. A row of the wrong length
+// comes first, because in it cells are compared with columns that are not theirs.
+tl::unexpected<Error> CsvRows::diagnose(char* row) const {
+  const std::vector<std::string_view> cells = split(line_);
+  const std::size_t want = columns_.size();
+  if (cells.size() < want) {
+    const std::string_view end_of_line = line_.substr(line_.size());
+    return fail_at_place(end_of_line, fmt::format("row has {} of {} cells, {} is missing; complete "
+                                                  "or remove the row",
+                                                  cells.size(), want, header_[cells.size()]));
+  }
+  if (cells.size() > want) {
+    return fail_at_place(cells[want],
+                         fmt::format("row has {} cells, the header has {}; remove what is too much",
+                                     cells.size(), want));
+  }
+  const auto is_bad = [&](std::size_t i) {
+    const char* const last = cells[i].data() + cells[i].size();
+    return parse_cell(cells[i].data(), last, columns_[i], row) != last;
+  };
+  std::size_t bad = 0;
+  while (bad + 1 < want && !is_bad(bad)) ++bad;
+  return fail_at_cell(bad, cell_error(cells[bad], columns_[bad].type, header_[bad]));
+}
+
+tl::unexpected<Error> CsvRows::fail_at_name(std::size_t column, std::string message) const {
+  return fail_at(file_, std::move(message), 1, header_places_[column]);
+}
+
+tl::unexpected<Error> CsvRows::fail_at_cell(std::size_t column, std::string message) const {
+  return fail_at_place(split(line_)[column], std::move(message));
+}
+
+tl::unexpected<Error> CsvRows::fail_at_place(std::string_view place, std::string message) const {
+  return fail_at(file_, std::move(message), line_number_, place_of(line_, place));
+}
+
+}  // namespace attest

@@ -1,0 +1,75 @@
+// Rows of numbers, streamed from a CSV file into structs. What the readers of traces and of mixer
+// traces share; everything else reads through csv.hpp or mixer_csv.hpp.
+//
+//     auto rows = CsvRows::open(path);             // reads the header
+//     rows->set_columns(...);                      // where each column of rows->header() goes
+//     while (auto more = rows->next(&sample)) {    // an Error when false
+//       if (!*more) break;                         // end of file
+//       ...
+//     }
+//
+// The text takes a fixed amount of memory, whatever the length of the file.
+#pragma once
+
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "harness/core/result.hpp"
+#include "harness/trace/csv_cells.hpp"
+
+namespace attest {
+
+class CsvRows {
+ public:
+  // Errors: unreadable file, no header, a column repeated or without a name.
+  static Result<CsvRows> open(const std::filesystem::path& path);
+
+  const std::string& file() const { return file_; }
+  const std::vector<std::string>& header() const { return header_; }
+
+  // REQUIRES: one for each name of header(), in the same order.
+  void set_columns(std::vector<CsvColumn> columns) { columns_ = std::move(columns); }
+
+  // Writes the next row's values to `row`; false at the end of the file. NaN is always the same
+  // quiet NaN. Errors: a cell that is not a value of its column's type, short or long row, empty
+  // line before the last row, a line that is too long for any trace.
+  Result<bool> next(void* row);
+
+  // An error at a column's name, and at its cell in the row last read.
+  tl::unexpected<Error> fail_at_name(std::size_t column, std::string message) const;
+  tl::unexpected<Error> fail_at_cell(std::size_t column, std::string message) const;
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+
+  CsvRows() = default;
+  Result<bool> next_line();
+  Result<void> fill();
+  Result<void> read_header();
+  bool parse_line(char* row) const;
+  tl::unexpected<Error> diagnose(char* row) const;
+  tl::unexpected<Error> fail_at_place(std::string_view place, std::string message) const;
+
+  std::string file_;
+  std::unique_ptr<std::FILE, Close> stream_;
+  std::unique_ptr<char[]> buffer_;
+  std::size_t begin_ = 0;  // of the text not yet handed out, in buffer_
+  std::size_t end_ = 0;
+  bool at_end_of_file_ = false;
+
+  std::string_view line_;  // the line last read, without its end
+  int line_number_ = 0;
+  std::vector<std::string> header_;
+  std::vector<int> header_places_;  // character in line 1, from 1
+  std::vector<CsvColumn> columns_;
+};
+
+}  // namespace attest

@@ -1,0 +1,120 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "harness/trace/csv.hpp"
+#include "harness/trace/csv_text.hpp"
+
+namespace attest {
+namespace {
+
+// A column takes every change of its parameter, and the reader finds it again: a value from the
+// first row on, and PARAMETER_UPDATE where it changes.
+Result<void> check_changes(const Trace& trace, const std::string& parameter) {
+  bool has_value = false;
+  for (const ParameterChange& change : trace.parameters) {
+    if (change.name != parameter) continue;
+    has_value = has_value || change.tick == 0;
+    if (!has_value) {
+      return fail_at(trace.source, fmt::format("parameter {} changes at tick {} but has no value "
+                                               "before; set it at tick 0",
+                                               parameter, change.tick));
+    }
+    const bool in_trace = change.tick < trace.samples.size();
+    const bool announced =
+        in_trace && (trace.samples[change.tick].in.updated & ATTEST_UPDATED_PARAMETER_UPDATE) != 0;
+    if (change.tick > 0 && !announced) {
+      return fail_at(trace.source, fmt::format("parameter {} changes at tick {}, which does not "
+                                               "have in/updated.parameter_update; set it there",
+                                               parameter, change.tick));
+    }
+  }
+  if (!has_value && !trace.samples.empty()) {
+    return fail_at(trace.source,
+                   fmt::format("parameter {} has no value; set it at tick 0", parameter));
+  }
+  return {};
+}
+
+void write_cell(const Channel& channel, const Sample& sample, CsvText& text) {
+  switch (channel.type) {
+    case ChannelType::f32:
+      return text.number(float_of(channel, sample));
+    case ChannelType::u64:
+      return text.integer(sample.in.timestamp);
+    case ChannelType::u8:
+    case ChannelType::bit:
+      return text.integer(static_cast<std::uint64_t>(value_of(channel, sample)));
+  }
+}
+
+// The values of the parameter columns as the ticks go by.
+class ParameterValues {
+ public:
+  ParameterValues(const Trace& trace, const std::vector<std::string>& names)
+      : names_(names),
+        next_(trace.parameters.begin()),
+        end_(trace.parameters.end()),
+        values_(names.size()) {}
+
+  const std::vector<float>& at(std::size_t tick) {
+    for (; next_ != end_ && next_->tick <= tick; ++next_) {
+      const auto name = std::find(names_.begin(), names_.end(), next_->name);
+      if (name == names_.end()) continue;
+      values_[static_cast<std::size_t>(name - names_.begin())] = next_->value;
+    }
+    return values_;
+  }
+
+ private:
+  const std::vector<std::string>& names_;
+  std::vector<ParameterChange>::const_iterator next_;
+  std::vector<ParameterChange>::const_iterator end_;
+  std::vector<float> values_;
+};
+
+std::vector<const Channel*> chosen(const ChannelSet& set, bool outputs) {
+  std::vector<const Channel*> list;
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    if (set[i] && channels()[i].is_output() == outputs) list.push_back(&channels()[i]);
+  }
+  return list;
+}
+
+}  // namespace
+
+CsvColumns all_columns(const Trace& trace) {
+  CsvColumns columns{trace.present, {}};
+  for (const ParameterChange& change : trace.parameters) {
+    const auto found = std::find(columns.parameters.begin(), columns.parameters.end(), change.name);
+    if (found == columns.parameters.end()) columns.parameters.push_back(change.name);
+  }
+  return columns;
+}
+
+Result<void> write_csv(const Trace& trace, const CsvColumns& columns, AtomicFile& file) {
+  for (const std::string& parameter : columns.parameters) {
+    if (auto checked = check_changes(trace, parameter); !checked) return checked;
+  }
+  const std::vector<const Channel*> inputs = chosen(columns.channels, false);
+  const std::vector<const Channel*> outputs = chosen(columns.channels, true);
+  CsvText text(file);
+  for (const Channel* channel : inputs) text.name(channel->name);
+  for (const std::string& parameter : columns.parameters) {
+    text.name(fmt::format("{}{}", parameter_prefix, parameter));
+  }
+  for (const Channel* channel : outputs) text.name(channel->name);
+  text.end_row();
+
+  ParameterValues parameters(trace, columns.parameters);
+  for (std::size_t tick = 0; tick < trace.samples.size(); ++tick) {
+    const Sample& sample = trace.samples[tick];
+    for (const Channel* channel : inputs) write_cell(*channel, sample, text);
+    for (const float value : parameters.at(tick)) text.number(value);
+    for (const Channel* channel : outputs) write_cell(*channel, sample, text);
+    text.end_row();
+  }
+  return text.finish();
+}
+
+}  // namespace attest

@@ -1,0 +1,190 @@
+#include "harness/trace/provenance.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "harness/core/nearest.hpp"
+#include "harness/core/toml.hpp"
+
+namespace attest {
+namespace {
+
+constexpr const char* constants_table = "constants";
+
+bool is_integer_up_to(double value, double highest) {
+  return value >= 0 && value <= highest && value == std::floor(value);
+}
+
+// What is wrong with a constant; empty if nothing.
+std::string complaint_about(std::string_view name, double value) {
+  const auto index = find_channel(name);
+  if (!index && !parameter_of(name)) {
+    std::vector<std::string> names;
+    for (const Channel& channel : channels()) names.emplace_back(channel.name);
+    return fmt::format("unknown channel `{}`{}", name, suggestion(name, names));
+  }
+  switch (index ? channels()[*index].type : ChannelType::f32) {
+    case ChannelType::u64:
+      return fmt::format("`{}` cannot be a constant; record it as a column", name);
+    case ChannelType::f32:
+      if (!std::isfinite(value) || std::isfinite(static_cast<float>(value))) return "";
+      return fmt::format("{} is too large for `{}`, a 32-bit float", value, name);
+    case ChannelType::u8:
+      if (is_integer_up_to(value, 255)) return "";
+      return fmt::format("{} is not a flag for `{}`; write an integer from 0 to 255", value, name);
+    case ChannelType::bit:
+      if (is_integer_up_to(value, 1)) return "";
+      return fmt::format("{} is not a bit for `{}`; write 0 or 1", value, name);
+  }
+  return "";
+}
+
+std::map<std::string, double> read_constants(const TomlTable& table) {
+  std::map<std::string, double> constants;
+  for (const std::string& name : table.keys()) {
+    const double value = table.number(name);
+    const std::string complaint = complaint_about(name, value);
+    if (!complaint.empty()) table.error(name, complaint);
+    constants[name] = value;
+  }
+  return constants;
+}
+
+std::map<std::string, std::string> read_texts(const TomlTable& root, std::string_view key) {
+  std::map<std::string, std::string> texts;
+  if (!root.has(key)) return texts;
+  const TomlTable table = root.table(key);
+  for (const std::string& name : table.keys()) texts[name] = table.text(name);
+  return texts;
+}
+
+std::map<std::string, double> read_tolerances(const TomlTable& root) {
+  constexpr const char* key = "tolerances";
+  std::map<std::string, double> tolerances;
+  if (!root.has(key)) return tolerances;
+  const TomlTable table = root.table(key);
+  for (const std::string& stem : table.keys()) {
+    tolerances[stem] = table.number(stem);
+    if (!(tolerances[stem] >= 0)) table.error(stem, "a tolerance must not be negative");
+  }
+  return tolerances;
+}
+
+// Distinguishes what a trace file distinguishes: -0 from 0, but no NaN from another.
+std::uint64_t canonical_bits(double value) {
+  return std::bit_cast<std::uint64_t>(std::isnan(value) ? std::numeric_limits<double>::quiet_NaN()
+                                                        : value);
+}
+
+// The value of a channel if it is the same in every sample.
+std::optional<double> constant_value(const Channel& channel, const std::vector<Trace>& traces) {
+  const double first = value_of(channel, traces.front().samples.front());
+  const std::uint64_t bits = canonical_bits(first);
+  for (const Trace& trace : traces) {
+    for (const Sample& sample : trace.samples) {
+      if (canonical_bits(value_of(channel, sample)) != bits) return std::nullopt;
+    }
+  }
+  return first;
+}
+
+// The value of a parameter if it is set at tick 0 of every trace and never to anything else.
+std::optional<double> constant_value(const std::string& parameter,
+                                     const std::vector<Trace>& traces) {
+  std::optional<double> value;
+  for (const Trace& trace : traces) {
+    bool is_set = false;
+    for (const ParameterChange& change : trace.parameters) {
+      if (change.name != parameter) continue;
+      is_set = is_set || change.tick == 0;
+      const auto changed = static_cast<double>(change.value);
+      if (!is_set || (value && canonical_bits(*value) != canonical_bits(changed))) {
+        return std::nullopt;
+      }
+      value = changed;
+    }
+    if (!is_set) return std::nullopt;
+  }
+  return value;
+}
+
+void write_constants(const std::map<std::string, double>& constants, TomlWriter& toml) {
+  for (const auto& [name, value] : constants) {
+    const auto index = find_channel(name);
+    const bool is_flag = index && channels()[*index].type != ChannelType::f32;
+    if (is_flag) {
+      toml.set(constants_table, name, static_cast<std::int64_t>(value));
+    } else {
+      toml.set(constants_table, name, value);
+    }
+  }
+}
+
+}  // namespace
+
+Result<Provenance> read_provenance(const std::filesystem::path& file) {
+  const auto toml = TomlFile::read(file);
+  if (!toml) return tl::unexpected(toml.error());
+  const TomlTable root = toml->root();
+  Provenance provenance;
+  provenance.profile = root.text("profile", "");
+  provenance.case_id = root.text("case_id", "");
+  provenance.case_sha256 = root.text("case_sha256", "");
+  provenance.reference = root.text("reference", "");
+  provenance.compiler = root.text("compiler", "");
+  provenance.reason = root.text("reason", "");
+  if (root.has(constants_table)) {
+    provenance.constants = read_constants(root.table(constants_table));
+  }
+  provenance.mixers = read_texts(root, "mixers");
+  provenance.tolerances = read_tolerances(root);
+  provenance.sha256 = read_texts(root, "sha256");
+  if (const auto done = toml->finish(); !done) return tl::unexpected(done.error());
+  return provenance;
+}
+
+std::string to_toml(const Provenance& provenance) {
+  TomlWriter toml;
+  const auto set = [&](std::string_view key, const std::string& value) {
+    if (!value.empty()) toml.set("", key, value);
+  };
+  set("profile", provenance.profile);
+  set("case_id", provenance.case_id);
+  set("case_sha256", provenance.case_sha256);
+  set("reference", provenance.reference);
+  set("compiler", provenance.compiler);
+  set("reason", provenance.reason);
+  write_constants(provenance.constants, toml);
+  for (const auto& [stem, geometry] : provenance.mixers) toml.set("mixers", stem, geometry);
+  for (const auto& [stem, value] : provenance.tolerances) toml.set("tolerances", stem, value);
+  for (const auto& [name, hash] : provenance.sha256) toml.set("sha256", name, hash);
+  return toml.to_string();
+}
+
+Division divide(const std::vector<Trace>& traces) {
+  const CsvColumns all = all_columns(traces.front());
+  Division division{{all.channels, {}}, {}};
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    const Channel& channel = channels()[i];
+    if (!all.channels[i] || channel.type == ChannelType::u64) continue;
+    if (const auto value = constant_value(channel, traces)) {
+      division.columns.channels.reset(i);
+      division.constants[std::string(channel.name)] = *value;
+    }
+  }
+  for (const std::string& parameter : all.parameters) {
+    if (const auto value = constant_value(parameter, traces)) {
+      division.constants[std::string(parameter_prefix) + parameter] = *value;
+    } else {
+      division.columns.parameters.push_back(parameter);
+    }
+  }
+  return division;
+}
+
+}  // namespace attest

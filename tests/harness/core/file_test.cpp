@@ -1,0 +1,219 @@
+#include "harness/core/file.hpp"
+
+#include <thread>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "tests/harness/core/temporary_directory.hpp"
+
+namespace attest {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::IsEmpty;
+
+std::vector<std::string> names_in(const fs::path& directory) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(directory)) {
+    names.push_back(entry.path().filename().string());
+  }
+  return names;
+}
+
+TEST(ReadFile, GivesEveryByte) {
+  const TemporaryDirectory directory;
+  std::string bytes(200000, '\0');
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * 31);
+  EXPECT_EQ(read_file(directory.write("a", bytes)), bytes);
+  EXPECT_EQ(read_file(directory.write("empty", "")), "");
+}
+
+TEST(ReadFile, SaysWhyItCannot) {
+  const TemporaryDirectory directory;
+  const std::string missing = (directory.path() / "missing").string();
+  EXPECT_EQ(read_file(missing).error().to_string(),
+            missing + ": cannot open the file: No such file or directory");
+  EXPECT_EQ(read_file(directory.path()).error().to_string(),
+            directory.path().string() + ": cannot read the file: Is a directory");
+}
+
+TEST(Sha256, IsThatOfTheStandard) {
+  // FIPS 180-2, appendix B, and the empty message.
+  const TemporaryDirectory directory;
+  EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256_of_file(directory.write("million", std::string(1000000, 'a'))),
+            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+  EXPECT_EQ(sha256_of_file(directory.path() / "missing").error().message,
+            "cannot open the file: No such file or directory");
+}
+
+TEST(AtomicFile, IsThereOnlyAfterCommit) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "a.csv";
+  auto file = AtomicFile::open(path);
+  ASSERT_TRUE(file) << file.error().to_string();
+  EXPECT_EQ(file->path(), path);
+  ASSERT_TRUE(file->write("one\n"));
+  ASSERT_TRUE(file->write("two\n"));
+  EXPECT_FALSE(fs::exists(path));
+  ASSERT_TRUE(file->commit());
+  EXPECT_EQ(read_file(path), "one\ntwo\n");
+  EXPECT_EQ(names_in(directory.path()), std::vector<std::string>{"a.csv"});
+}
+
+TEST(AtomicFile, LeavesNothingBehindWithoutCommit) {
+  const TemporaryDirectory directory;
+  {
+    auto file = AtomicFile::open(directory.path() / "a.csv");
+    ASSERT_TRUE(file->write("half"));
+  }
+  EXPECT_THAT(names_in(directory.path()), IsEmpty());
+}
+
+TEST(AtomicFile, KeepsTheOldFileUntilCommit) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.write("a.csv", "old");
+  {
+    auto file = AtomicFile::open(path);
+    ASSERT_TRUE(file->write("new"));
+  }
+  EXPECT_EQ(read_file(path), "old");
+  auto file = AtomicFile::open(path);
+  ASSERT_TRUE(file->write("new"));
+  ASSERT_TRUE(file->commit());
+  EXPECT_EQ(read_file(path), "new");
+}
+
+TEST(AtomicFile, MovesWithoutLosingItsTemporary) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "a.csv";
+  auto first = AtomicFile::open(path);
+  AtomicFile second = std::move(*first);
+  first = fail("gone");
+  ASSERT_TRUE(second.write("kept"));
+  ASSERT_TRUE(second.commit());
+  EXPECT_EQ(read_file(path), "kept");
+}
+
+TEST(AtomicFile, HasTheModeOfAnyNewFile) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "a.csv";
+  const mode_t mask = ::umask(027);
+  auto file = AtomicFile::open(path);
+  ::umask(mask);
+  ASSERT_TRUE(file->commit());
+  struct stat status;
+  ASSERT_EQ(::stat(path.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0640u);
+}
+
+TEST(AtomicFile, ReplacesWhatASymbolicLinkPointsTo) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.write("a.csv", "old");
+  const fs::path link = directory.path() / "link.csv";
+  fs::create_symlink(path, link);
+  auto file = AtomicFile::open(link);
+  ASSERT_TRUE(file->write("new"));
+  ASSERT_TRUE(file->commit());
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(read_file(path), "new");
+}
+
+TEST(AtomicFile, WritesDirectlyToWhatIsNoOrdinaryFile) {
+  auto null = AtomicFile::open("/dev/null");
+  ASSERT_TRUE(null) << null.error().to_string();
+  EXPECT_TRUE(null->write("anything"));
+  EXPECT_TRUE(null->commit());
+  EXPECT_FALSE(fs::is_regular_file("/dev/null"));
+
+  const TemporaryDirectory directory;
+  const fs::path pipe = directory.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  Result<std::string> received;
+  std::thread reader([&] { received = read_file(pipe); });
+  auto file = AtomicFile::open(pipe);
+  EXPECT_TRUE(file->write("through"));
+  EXPECT_TRUE(file->commit());
+  reader.join();
+  EXPECT_EQ(received, "through");
+}
+
+TEST(AtomicFile, AppendsToAnOrdinaryFileBehindAFileDescriptor) {
+  // As `attest sim --out /dev/stdout > file` has it: renaming would lose the other writers' text.
+  const TemporaryDirectory directory;
+  const fs::path path = directory.write("a.csv", "before\n");
+  std::FILE* stream = std::fopen(path.c_str(), "a");
+  ASSERT_NE(stream, nullptr);
+  auto file = AtomicFile::open("/dev/fd/" + std::to_string(::fileno(stream)));
+  ASSERT_TRUE(file) << file.error().to_string();
+  EXPECT_TRUE(file->write("after\n"));
+  EXPECT_TRUE(file->commit());
+  std::fclose(stream);
+  EXPECT_EQ(read_file(path), "before\nafter\n");
+}
+
+TEST(AtomicFile, SaysAtOnceWhyItCannot) {
+  const TemporaryDirectory directory;
+  const std::string here = directory.path().string();
+  EXPECT_EQ(AtomicFile::open(here).error().to_string(), here + ": is a directory; name a file");
+  EXPECT_EQ(AtomicFile::open(here + "/").error().to_string(),
+            here + "/: not a file name; name a file");
+  EXPECT_EQ(AtomicFile::open("").error().to_string(), "not a file name; name a file");
+  EXPECT_EQ(AtomicFile::open(here + "/no/a.csv").error().to_string(),
+            here + "/no/a.csv: cannot create the file: No such file or directory");
+}
+
+// Root may write everywhere: for such a test it is somebody else.
+class OrdinaryUser {
+ public:
+  explicit OrdinaryUser(const fs::path& directory) {
+    constexpr uid_t nobody = 65534;
+    if (::geteuid() != 0) return;
+    is_root_ = ::chown(directory.c_str(), nobody, nobody) == 0 && ::seteuid(nobody) == 0;
+  }
+  ~OrdinaryUser() {
+    if (is_root_ && ::seteuid(0) != 0) std::abort();
+  }
+
+ private:
+  bool is_root_ = false;
+};
+
+TEST(AtomicFile, RefusesWhatItMayNotWrite) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.write("a.csv", "old");
+  fs::permissions(path, fs::perms::owner_read);
+  fs::permissions(directory.path(), fs::perms::owner_read | fs::perms::owner_exec);
+  {
+    const OrdinaryUser user(directory.path());
+    EXPECT_EQ(AtomicFile::open(path).error().message, "cannot write the file: Permission denied");
+    EXPECT_EQ(AtomicFile::open(directory.path() / "b.csv").error().message,
+              "cannot create the file: Permission denied");
+  }
+  fs::permissions(directory.path(), fs::perms::owner_all);
+}
+
+TEST(AtomicFile, ReportsAFullDisk) {
+  auto file = AtomicFile::open("/dev/full");
+  ASSERT_TRUE(file) << file.error().to_string();
+  EXPECT_EQ(file->write("more").error().to_string(),
+            "/dev/full: cannot write the file: No space left on device");
+}
+
+TEST(AtomicFile, ReportsADirectoryThatIsGone) {
+  const TemporaryDirectory directory;
+  const fs::path folder = directory.path() / "folder";
+  fs::create_directory(folder);
+  auto file = AtomicFile::open(folder / "a.csv");
+  fs::remove_all(folder);
+  EXPECT_EQ(file->commit().error().to_string(),
+            (folder / "a.csv").string() + ": cannot replace the file: No such file or directory");
+}
+
+}  // namespace
+}  // namespace attest

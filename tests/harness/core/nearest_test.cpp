@@ -1,0 +1,36 @@
+#include "harness/core/nearest.hpp"
+
+#include <gtest/gtest.h>
+
+namespace attest {
+namespace {
+
+const std::vector<std::string> names = {"thrust", "roll_rate", "pitch_rate", "MC_ROLL_P", "x"};
+
+TEST(Suggestion, NamesTheNearestCandidate) {
+  EXPECT_EQ(suggestion("thurst", names), "; did you mean `thrust`?");
+  EXPECT_EQ(suggestion("thrus", names), "; did you mean `thrust`?");
+  EXPECT_EQ(suggestion("rol_rate", names), "; did you mean `roll_rate`?");
+  EXPECT_EQ(suggestion("picth_rate", names), "; did you mean `pitch_rate`?");
+}
+
+TEST(Suggestion, TakesLettersOfOtherCaseForTheSame) {
+  EXPECT_EQ(suggestion("mc_roll_p", names), "; did you mean `MC_ROLL_P`?");
+}
+
+TEST(Suggestion, IsEmptyWhenNothingIsNear) {
+  EXPECT_EQ(suggestion("battery", names), "");
+  EXPECT_EQ(suggestion("y", names), "");
+  EXPECT_EQ(suggestion("", names), "");
+  EXPECT_EQ(suggestion("thrust", {}), "");
+  EXPECT_EQ(suggestion(std::string(1000, 't'), names), "");
+}
+
+TEST(Suggestion, AllowsAThirdOfTheLength) {
+  EXPECT_EQ(suggestion("control_state.q[0]", {"in/control_state.q[0]"}),
+            "; did you mean `in/control_state.q[0]`?");
+  EXPECT_EQ(suggestion("abcxxx", {"abcdef"}), "");
+}
+
+}  // namespace
+}  // namespace attest

@@ -1,0 +1,87 @@
+#include "harness/report/progress.hpp"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/harness/report/sample_run.hpp"
+
+namespace attest {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::HasSubstr;
+
+class ProgressTest : public testing::Test {
+ protected:
+  void SetUp() override { ASSERT_NE(stream_, nullptr); }
+  void TearDown() override { std::fclose(stream_); }
+
+  Progress::Options visible(int width = 120) const { return {stream_, true, width}; }
+
+  std::string written() const {
+    std::string out;
+    std::rewind(stream_);
+    for (int c = std::fgetc(stream_); c != EOF; c = std::fgetc(stream_)) {
+      out += static_cast<char>(c);
+    }
+    return out;
+  }
+
+  std::FILE* stream_ = std::tmpfile();
+  Progress::Clock::time_point start_{};
+  CaseResult result_ = passed("attitude", "roll_30", Rate::hz(250));
+};
+
+TEST_F(ProgressTest, IsSilentUnlessVisible) {
+  {
+    Progress progress(2, {stream_, false, 80});
+    progress.add(result_);
+  }
+  EXPECT_EQ(written(), "");
+}
+
+TEST_F(ProgressTest, DrawsOneLineAndErasesIt) {
+  {
+    Progress progress(4, visible());
+    progress.add(result_, start_);
+  }
+  EXPECT_EQ(written(),
+            "\r\x1b[K[######------------------] 1/4  px4-v1.5.5/attitude/roll_30@250hz\r\x1b[K");
+}
+
+TEST_F(ProgressTest, CountsEveryResultButDrawsAtMostTwentyTimesASecond) {
+  {
+    Progress progress(1000, visible());
+    for (int ms = 0; ms < 1000; ++ms) progress.add(result_, start_ + milliseconds(ms));
+  }
+  const std::string text = written();
+  const auto drawn = std::count(text.begin(), text.end(), '[') / 2;  // one in the erase code
+  EXPECT_EQ(drawn, 20);
+  EXPECT_THAT(text, HasSubstr(" 951/1000 "));
+}
+
+TEST_F(ProgressTest, CountsFailures) {
+  result_.verdict = Verdict::crash;
+  Progress progress(1, visible());
+  progress.add(result_, start_);
+  EXPECT_THAT(written(), HasSubstr(" 1/1, 1 failed  "));
+}
+
+TEST_F(ProgressTest, NeverWraps) {
+  Progress progress(4, visible(20));
+  progress.add(result_, start_);
+  EXPECT_EQ(written(), "\r\x1b[K[######------------");
+}
+
+TEST_F(ProgressTest, SurvivesMoreResultsThanAnnounced) {
+  Progress progress(0, visible());
+  progress.add(result_, start_);
+  EXPECT_THAT(written(), HasSubstr("[########################] 1/0 "));
+}
+
+TEST(ProgressOptions, QuietIsInvisible) { EXPECT_FALSE(Progress::on_stderr(true).visible); }
+
+}  // namespace
+}  // namespace attest

@@ -1,0 +1,154 @@
+#include "tests/harness/report/sample_run.hpp"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace attest {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+CaseResult result(Verdict verdict, const std::string& group, const std::string& name, Rate rate,
+                  const std::string& reason) {
+  CaseResult out = passed(group, name, rate);
+  out.verdict = verdict;
+  out.reason = reason;
+  out.tightest.reset();
+  return out;
+}
+
+CaseResult failing(const std::string& group, const std::string& name, Rate rate, Deviation first,
+                   std::size_t deviating_ticks) {
+  CaseResult out = result(Verdict::fail, group, name, rate, "");
+  out.first = first;
+  out.deviating_ticks = deviating_ticks;
+  return out;
+}
+
+CaseResult died(Verdict verdict, const std::string& name, Rate rate, const std::string& reason) {
+  CaseResult out = result(verdict, "robustness", name, rate, reason);
+  out.ticks = 0;
+  return out;
+}
+
+CaseResult with_headroom(CaseResult out, const char* channel, double ratio, std::size_t tick) {
+  out.tightest = Headroom{ratio, tick, *find_channel(channel)};
+  return out;
+}
+
+// A sign error in the yaw law: the same case fails alike at three rates.
+void add_attitude(std::vector<CaseResult>& results) {
+  const char* yaw = "out/vehicle_rates_setpoint.yaw";
+  const Rate slow = Rate::hz(100);
+  const Rate fast = Rate::hz(250);
+  const Rate odd = Rate::hz(1000, 3);
+  results.push_back(with_headroom(passed("attitude", "roll_30", slow),
+                                  "out/vehicle_rates_setpoint.roll", 12.34, 17));
+  results.push_back(with_headroom(passed("attitude", "roll_30", fast),
+                                  "out/actuator_controls_0.control[0]", 40, 3));
+  results.push_back(with_headroom(passed("attitude", "roll_30", odd),
+                                  "out/mc_att_ctrl_status.roll_rate_integ", 150.5, 499));
+  for (const Rate rate : {slow, fast, odd}) {
+    results.push_back(
+        failing("attitude", "yaw_step", rate, deviation(yaw, 17, -1.5F, 0.3F, 2e-4), 483));
+  }
+  CaseResult nan_control = result(Verdict::non_finite, "attitude", "zero_thrust", fast, "");
+  nan_control.first = deviation("out/actuator_controls_0.control[1]", 0, nan, -0.0625F, 1e-4);
+  nan_control.deviating_ticks = 1;
+  results.push_back(nan_control);
+}
+
+void add_mixed(std::vector<CaseResult>& results) {
+  const Rate rate = Rate::hz(250);
+  results.push_back(failing(
+      "mixed", "a_case_whose_name_is_as_long_as_names_of_cases_get_when_they_say_all_they_check",
+      rate, deviation("out/vehicle_rates_setpoint.published", 4, 0, 1, 0), 1));
+  results.push_back(failing(
+      "mixed", "integral_limit", rate,
+      deviation("out/mc_att_ctrl_status.pitch_rate_integ", 120, 0.30002F, 0.3F, 2e-5), 380));
+  results.push_back(result(Verdict::unsupported, "mixed", "rattitude", rate, "the port said so"));
+  results.push_back(result(Verdict::unsupported, "mixed", "acro", rate, "the port said so"));
+  results.push_back(result(Verdict::skip, "mixed", "on_threshold", rate,
+                           "decides on a threshold: exact level only"));
+  results.push_back(result(Verdict::skip, "mixed", "on_threshold", Rate::hz(1000, 3),
+                           "decides on a threshold: exact level only"));
+  CaseResult expected =
+      result(Verdict::xfail, "mixed", "yaw_freeze", rate, "known: see <issue 12> & \"friends\"");
+  expected.first = deviation("out/actuator_controls_0.control[2]", 9, 0.25F, 0.125F, 1e-4);
+  expected.deviating_ticks = 9;
+  results.push_back(expected);
+  results.push_back(result(Verdict::xpass, "mixed", "yaw_limit", rate, ""));
+}
+
+void add_robustness(std::vector<CaseResult>& results) {
+  const Rate rate = Rate::hz(3000);
+  results.push_back(died(Verdict::crash, "nan_input", rate,
+                         "killed by signal 11 (SIGSEGV); last words: </failure>]]><script>alert(1)"
+                         "</script> \x1b[2J\x01 \xff and\na second line"));
+  results.push_back(died(Verdict::timeout, "inf_input", rate, "no answer within 10 s"));
+  results.push_back(died(Verdict::protocol, "denormals", rate, "step() returned 7"));
+}
+
+}  // namespace
+
+CaseResult passed(const std::string& group, const std::string& name, Rate rate) {
+  CaseResult out;
+  out.profile = "px4-v1.5.5";
+  out.group = group;
+  out.name = name;
+  out.rate = rate;
+  out.ticks = 500;
+  out.elapsed_s = 0.0125;
+  return out;
+}
+
+Deviation deviation(const char* channel, std::size_t tick, float got, float want,
+                    double tolerance) {
+  Deviation out;
+  out.tick = tick;
+  out.timestamp_us = 4000 * tick;
+  out.channel = *find_channel(channel);
+  out.got = static_cast<double>(got);
+  out.want = static_cast<double>(want);
+  out.tolerance = tolerance;
+  const bool same_sign = std::isfinite(got) && (got < 0) == (want < 0);
+  if (same_sign && channels()[out.channel].type == ChannelType::f32) {
+    out.ulp = std::abs(std::bit_cast<std::int32_t>(got) - std::bit_cast<std::int32_t>(want));
+  }
+  return out;
+}
+
+RunResult sample_run() {
+  RunResult run;
+  run.attest_version = "0.1.0";
+  run.port = "lib:./it's mine.so";
+  run.port_name = "acme <fc> & \x1b[31mco";
+  run.port_version = "1.2-\"rc\"";
+  run.level = Level::numeric;
+  run.rates = {Rate::hz(100), Rate::hz(250), Rate::hz(1000, 3), Rate::hz(3000)};
+  add_attitude(run.results);
+  add_mixed(run.results);
+  add_robustness(run.results);
+  run.errors = {Error{"row 4 has 21 columns, expected 22",
+                      "golden/px4-v1.5.5/mixed/take_off/250hz.csv", 4, 0},
+                Error{"cannot fork: <out of memory>", "", 0, 0}};
+  run.stopped_early = true;
+  return run;
+}
+
+RunResult passing_run() {
+  RunResult run;
+  run.attest_version = "0.1.0";
+  run.port = "builtin";
+  run.port_name = "reference";
+  run.port_version = "0.1.0";
+  run.level = Level::exact;
+  run.rates = {Rate::hz(50), Rate::hz(250)};
+  for (const char* name : {"pitch_5", "roll_30", "yaw_step"}) {
+    for (const Rate& rate : run.rates) run.results.push_back(passed("attitude", name, rate));
+  }
+  return run;
+}
+
+}  // namespace attest

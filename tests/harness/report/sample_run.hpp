@@ -1,0 +1,23 @@
+// Runs made by hand that show every kind of result.
+#pragma once
+
+#include <string>
+
+#include "harness/suite/verdict.hpp"
+
+namespace attest {
+
+// Numeric level. Every verdict, three groups and four rates, a NaN and a flag that deviate, words
+// hostile to XML, HTML, shells and terminals, a long name, errors.
+RunResult sample_run();
+
+// Exact level: 3 cases at 2 rates, all passed.
+RunResult passing_run();
+
+// A plain pass.
+CaseResult passed(const std::string& group, const std::string& name, Rate rate);
+
+// The first value of `channel` that differs. The ulp are those of float32 where both are finite.
+Deviation deviation(const char* channel, std::size_t tick, float got, float want, double tolerance);
+
+}  // namespace attest

@@ -1,0 +1,174 @@
+#include "harness/report/terminal.hpp"
+
+#include <limits>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/harness/report/baseline.hpp"
+#include "tests/harness/report/sample_run.hpp"
+
+namespace attest {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr double wall_s = 1.24;
+
+std::string summary(const RunResult& run) { return render_summary(run, wall_s, {}); }
+
+TEST(Summary, IsTheReviewedOne) {
+  const RunResult run = sample_run();
+  EXPECT_TRUE(is_baseline("summary.txt", summary(run)));
+  EXPECT_TRUE(is_baseline("summary_colour.txt",
+                          render_summary(run, wall_s, {.colour = true, .width = 40})));
+  EXPECT_TRUE(is_baseline("summary_pass.txt", summary(passing_run())));
+}
+
+TEST(Summary, WithoutColourHasNoEscapeCodes) {
+  EXPECT_THAT(summary(sample_run()), Not(HasSubstr("\x1b")));
+}
+
+TEST(Summary, TheLastLineIsTheConformanceStatement) {
+  RunResult run = passing_run();
+  EXPECT_THAT(summary(run),
+              EndsWith("\n\nPASS 6 of 6 cases conform (px4-v1.5.5, exact, 2 rates) in 1.2 s\n"));
+  run.results[0].verdict = Verdict::skip;
+  run.results[1].verdict = Verdict::xfail;
+  EXPECT_THAT(summary(run), EndsWith("\nPASS 4 of 6 cases conform, 1 skip, 1 xfail (px4-v1.5.5, "
+                                     "exact, 2 rates) in 1.2 s\n"));
+  run.results[2].verdict = Verdict::crash;
+  run.stopped_early = true;
+  EXPECT_THAT(summary(run), EndsWith("\nFAIL 1 failed (1 crash); 3 of 6 cases conform, 1 skip, 1 "
+                                     "xfail (px4-v1.5.5, exact, 2 rates) in 1.2 s; stopped early, "
+                                     "the rest was not run\n"));
+}
+
+TEST(Summary, AnErrorIsNoPass) {
+  RunResult run = passing_run();
+  run.errors.push_back(Error{"cannot read", "golden/a.csv", 3, 0});
+  EXPECT_THAT(summary(run), HasSubstr("\nerror: golden/a.csv:3: cannot read\n"));
+  EXPECT_THAT(summary(run), HasSubstr("\nFAIL 1 error; 6 of 6 cases conform"));
+}
+
+TEST(Summary, EqualErrorsAreToldOnceAndTwentyOfThem) {
+  RunResult run = passing_run();
+  for (int i = 0; i < 22; ++i) {
+    for (int rate = 0; rate < 11; ++rate) {
+      run.errors.push_back(Error{fmt::format("no golden {:02}", i), "", 0, 0});
+    }
+  }
+  const std::string text = summary(run);
+  EXPECT_THAT(text,
+              HasSubstr("\nerror: no golden 00 (11 times)\nerror: no golden 01 (11 times)\n"));
+  EXPECT_THAT(text, HasSubstr("\nerror: no golden 19 (11 times)\nand 2 other errors; see --json"));
+  EXPECT_THAT(text, HasSubstr("\nFAIL 242 errors; "));
+}
+
+TEST(Summary, NothingComparedIsNoPass) {
+  RunResult run = passing_run();
+  for (CaseResult& result : run.results) result.verdict = Verdict::unsupported;
+  EXPECT_THAT(summary(run), HasSubstr("\nNONE 0 of 6 cases conform, 6 unsupported"));
+  run.results[0].verdict = Verdict::xfail;
+  EXPECT_THAT(summary(run), HasSubstr("\nPASS 0 of 6 cases conform, 5 unsupported, 1 xfail"));
+  run.results.clear();
+  EXPECT_THAT(summary(run), HasSubstr("\nNONE 0 of 0 cases conform (exact, 2 rates)"));
+}
+
+TEST(Summary, ACaseThatFailsAlikeAtSeveralRatesIsToldOnce) {
+  RunResult run = passing_run();
+  for (CaseResult& result : run.results) result.verdict = Verdict::fail;
+  run.results[1].verdict = Verdict::crash;
+  const std::string text = summary(run);
+  EXPECT_THAT(text, HasSubstr("roll_30@50hz\n"));
+  EXPECT_THAT(text, Not(HasSubstr("roll_30@250hz\n")));
+  EXPECT_THAT(text, HasSubstr("  also at 250 Hz: --filter 'px4-v1.5.5/attitude/roll_30@*'\n"));
+  EXPECT_THAT(text, HasSubstr("pitch_5@50hz\n  fail: "));
+  EXPECT_THAT(text, HasSubstr("pitch_5@250hz\n  crash: "));
+}
+
+TEST(Summary, TellsTwentyFailuresAndCountsTheOthers) {
+  RunResult run = passing_run();
+  run.results.clear();
+  for (int i = 0; i < 22; ++i) {
+    for (const Rate& rate : run.rates) {
+      CaseResult result = passed("attitude", fmt::format("case_{:02}", i), rate);
+      result.verdict = Verdict::timeout;
+      run.results.push_back(result);
+    }
+  }
+  const std::string text = summary(run);
+  EXPECT_THAT(text, HasSubstr("case_19@50hz\n"));
+  EXPECT_THAT(text, Not(HasSubstr("case_20@50hz")));
+  EXPECT_THAT(text, HasSubstr("\nand 4 more; see --json or --junit\n"));
+}
+
+TEST(Summary, CountsTheStagesThatDifferFirst) {
+  EXPECT_THAT(summary(sample_run()),
+              HasSubstr("\nfirst stage to differ: attitude law in 4, rate law in 1, "));
+}
+
+TEST(Summary, ReasonsOfWhatIsCountedApartAreAggregated) {
+  RunResult run = passing_run();
+  for (CaseResult& result : run.results) {
+    result.verdict = Verdict::skip;
+    result.reason = "no profile";
+  }
+  run.results.push_back(passed("mixed", "d", Rate::hz(50)));
+  run.results.back().verdict = Verdict::skip;
+  run.results.back().reason = "no profile";
+  EXPECT_THAT(summary(run), HasSubstr("  7 skip: no profile\n"
+                                      "      px4-v1.5.5/attitude/pitch_5, "
+                                      "px4-v1.5.5/attitude/roll_30, "
+                                      "px4-v1.5.5/attitude/yaw_step and 1 more\n"));
+}
+
+TEST(Headroom, NamesTheTightestFirst) {
+  RunResult run = passing_run();
+  run.level = Level::numeric;
+  const std::size_t control = *find_channel("out/actuator_controls_0.control[0]");
+  const std::size_t rate = *find_channel("out/vehicle_rates_setpoint.yaw");
+  run.results[0].tightest = Headroom{30, 4, control};
+  run.results[1].tightest = Headroom{20, 5, control};
+  run.results[2].tightest = Headroom{7.26, 6, rate};
+  run.results[3].tightest = Headroom{1, 7, rate};
+  run.results[3].verdict = Verdict::fail;  // it has none to boast of
+  EXPECT_THAT(summary(run), HasSubstr("\n  rates      7.3x on out/vehicle_rates_setpoint.yaw in "
+                                      "px4-v1.5.5/attitude/roll_30@50hz at tick 6\n"
+                                      "  controls   20.0x on out/actuator_controls_0.control[0] in "
+                                      "px4-v1.5.5/attitude/pitch_5@250hz at tick 5\n\n"));
+}
+
+TEST(Headroom, IsUnboundedWhenEveryValueAgrees) {
+  RunResult run = passing_run();
+  EXPECT_THAT(summary(run), Not(HasSubstr("headroom"))) << "the exact level has none";
+  run.level = Level::numeric;
+  EXPECT_THAT(summary(run), HasSubstr("every value that passed agrees to the bit"));
+  run.results[0].tightest = Headroom{std::numeric_limits<double>::infinity(), 0, 0};
+  EXPECT_THAT(summary(run), HasSubstr("every value that passed agrees to the bit"));
+}
+
+TEST(Colour, OnlyOnATerminalThatCanAndMay) {
+  EXPECT_TRUE(wants_colour(true, nullptr, "xterm-256color"));
+  EXPECT_TRUE(wants_colour(true, "", "xterm"));
+  EXPECT_FALSE(wants_colour(true, "1", "xterm"));
+  EXPECT_FALSE(wants_colour(true, "0", "xterm")) << "any value of NO_COLOR counts";
+  EXPECT_FALSE(wants_colour(true, nullptr, "dumb"));
+  EXPECT_FALSE(wants_colour(true, nullptr, nullptr));
+  EXPECT_FALSE(wants_colour(false, nullptr, "xterm"));
+}
+
+TEST(Colour, AFileHasNeitherColourNorWidth) {
+  std::FILE* file = std::tmpfile();
+  ASSERT_NE(file, nullptr);
+  const TerminalStyle style = terminal_style(file);
+  EXPECT_FALSE(style.colour);
+  EXPECT_EQ(style.width, 0);
+  std::fclose(file);
+}
+
+}  // namespace
+}  // namespace attest

@@ -1,0 +1,143 @@
+#include "harness/trace/channels.hpp"
+
+#include <cmath>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/harness/trace/sheet.hpp"
+
+namespace attest {
+namespace {
+
+using testing::ElementsAre;
+
+const Channel& channel(std::string_view name) { return channels()[find_channel(name).value()]; }
+
+TEST(Channels, AreTheColumnsOfTheRecordedFilesInTheirOrder) {
+  // Those files leave out three controls that are always zero.
+  const std::string text = Sheet::recorded().text();
+  std::string names;
+  for (const Channel& c : channels()) {
+    const std::string_view name = c.name;
+    const bool recorded = name.find("control[4]") == name.npos &&
+                          name.find("control[5]") == name.npos &&
+                          name.find("control[6]") == name.npos;
+    if (recorded) names += (names.empty() ? "" : ",") + std::string(name);
+  }
+  EXPECT_EQ(names, text.substr(0, text.find('\n')));
+  EXPECT_EQ(channels().size(), max_channels);
+}
+
+TEST(Channels, CoverEveryByteOfTheAbiOnce) {
+  // All but padding: a member without a channel would be neither recorded nor compared.
+  std::multiset<std::size_t> bytes;
+  for (const Channel& c : channels()) {
+    if (c.type == ChannelType::bit) continue;
+    const std::size_t size = c.type == ChannelType::u64 ? 8 : c.type == ChannelType::f32 ? 4 : 1;
+    for (std::size_t i = 0; i < size; ++i) bytes.insert(c.offset + i);
+  }
+  const std::set<std::size_t> distinct(bytes.begin(), bytes.end());
+  EXPECT_EQ(distinct.size(), bytes.size());
+  // 120 bytes of inputs and 72 of outputs, less `updated` (4) and the paddings: 3 after
+  // disable_mc_yaw_control, and 3 after each `published`.
+  EXPECT_EQ(distinct.size(), 192u - 4u - 4u * 3u);
+}
+
+TEST(Channels, HaveDistinctNames) {
+  std::set<std::string_view> names;
+  for (const Channel& c : channels()) EXPECT_TRUE(names.insert(c.name).second) << c.name;
+}
+
+TEST(Channels, AreFoundByName) {
+  EXPECT_EQ(find_channel("timestamp"), 0u);
+  EXPECT_EQ(channel("in/control_state.q[3]").name, "in/control_state.q[3]");
+  EXPECT_FALSE(find_channel("in/control_state.q[4]"));
+  EXPECT_FALSE(find_channel("control_state.q[3]"));
+  EXPECT_FALSE(find_channel("in/parameter.MC_ROLL_P"));
+  EXPECT_FALSE(find_channel(""));
+}
+
+TEST(Channels, AreTheirMembers) {
+  Sample sample{};
+  sample.in.timestamp = 5;
+  sample.in.control_state.q[2] = 0.25f;
+  sample.in.vehicle_status.is_vtol = 7;
+  sample.in.updated = ATTEST_UPDATED_BATTERY_STATUS;
+  sample.out.actuator_controls_0.control[7] = -1.5f;
+  sample.out.mc_att_ctrl_status.published = 1;
+  EXPECT_EQ(value_of(channel("timestamp"), sample), 5);
+  EXPECT_EQ(value_of(channel("in/control_state.q[2]"), sample), 0.25);
+  EXPECT_EQ(float_of(channel("in/control_state.q[2]"), sample), 0.25f);
+  EXPECT_EQ(value_of(channel("in/vehicle_status.is_vtol"), sample), 7);
+  EXPECT_EQ(value_of(channel("in/updated.battery_status"), sample), 1);
+  EXPECT_EQ(value_of(channel("in/updated.vehicle_status"), sample), 0);
+  EXPECT_EQ(value_of(channel("out/actuator_controls_0.control[7]"), sample), -1.5);
+  EXPECT_EQ(value_of(channel("out/mc_att_ctrl_status.published"), sample), 1);
+}
+
+TEST(Channels, ReadBackWhatWasSetAndNothingElseChanges) {
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    Sample sample{};
+    set_value(channels()[i], sample, 1);
+    for (std::size_t j = 0; j < channels().size(); ++j) {
+      EXPECT_EQ(value_of(channels()[j], sample), i == j ? 1 : 0) << channels()[j].name;
+    }
+    set_value(channels()[i], sample, 0);
+    EXPECT_EQ(value_of(channels()[i], sample), 0);
+  }
+}
+
+TEST(Channels, KeepNumbersThatAreNone) {
+  Sample sample{};
+  const Channel& scale = channel("in/battery_status.scale");
+  set_value(scale, sample, NAN);
+  EXPECT_TRUE(std::isnan(value_of(scale, sample)));
+  set_value(scale, sample, -0.0);
+  EXPECT_TRUE(std::signbit(value_of(scale, sample)));
+}
+
+TEST(Channels, HaveTheStageThatWritesThem) {
+  EXPECT_EQ(channel("in/vehicle_rates_setpoint.roll").stage, Stage::input);
+  EXPECT_EQ(channel("out/vehicle_rates_setpoint.roll").stage, Stage::attitude_law);
+  EXPECT_EQ(channel("out/actuator_controls_0.control[0]").stage, Stage::rate_law);
+  EXPECT_EQ(channel("out/mc_att_ctrl_status.yaw_rate_integ").stage, Stage::integrator);
+  for (const Channel& c : channels()) EXPECT_EQ(c.is_output(), c.name.starts_with("out/"));
+  EXPECT_EQ(name_of(Stage::attitude_law), "attitude law");
+}
+
+TEST(Channels, HaveUnits) {
+  EXPECT_EQ(unit_of(channel("timestamp").quantity), "us");
+  EXPECT_EQ(unit_of(channel("out/vehicle_rates_setpoint.yaw").quantity), "rad/s");
+  EXPECT_EQ(unit_of(channel("out/vehicle_rates_setpoint.thrust").quantity), "");
+  EXPECT_EQ(channel("out/vehicle_rates_setpoint.published").quantity, Quantity::flag);
+}
+
+TEST(Channels, AreChosenByPrefix) {
+  EXPECT_EQ(channels_with_prefix("").count(), channels().size());
+  EXPECT_EQ(channels_with_prefix("in/").count(), 45u);
+  EXPECT_EQ(channels_with_prefix("out/").count(), 18u);
+  EXPECT_EQ(channels_with_prefix("in/updated.").count(), 9u);
+}
+
+TEST(Channels, NameTheTopicsOfTheFreshnessBitsInBitOrder) {
+  EXPECT_THAT(
+      updated_topics(),
+      ElementsAre("vehicle_attitude_setpoint", "vehicle_rates_setpoint", "manual_control_setpoint",
+                  "vehicle_control_mode", "actuator_armed", "vehicle_status",
+                  "multirotor_motor_limits", "battery_status", "parameter_update"));
+  for (std::size_t i = 0; i < updated_topics().size(); ++i) {
+    EXPECT_EQ(channel("in/updated." + std::string(updated_topics()[i])).bit, 1u << i);
+  }
+}
+
+TEST(Channels, ParameterColumnsHaveAPrefix) {
+  EXPECT_EQ(parameter_of("in/parameter.MC_ROLL_P"), "MC_ROLL_P");
+  EXPECT_FALSE(parameter_of("in/parameter."));
+  EXPECT_FALSE(parameter_of("in/battery_status.scale"));
+  EXPECT_FALSE(parameter_of("MC_ROLL_P"));
+}
+
+}  // namespace
+}  // namespace attest

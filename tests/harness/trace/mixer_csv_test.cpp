@@ -1,0 +1,129 @@
+#include "harness/trace/mixer_csv.hpp"
+
+#include <bit>
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include "tests/harness/core/temporary_directory.hpp"
+
+namespace attest {
+namespace {
+
+// The first rows of a recorded trace of the original mixer (hexarotor x).
+constexpr std::string_view recorded =
+    "roll,pitch,yaw,thrust,delta_out_max,out[0],out[1],out[2],out[3],out[4],out[5],lower_limit,"
+    "upper_limit,yaw_limit\n"
+    "-0.17471729,1.663724,0.65914774,0.91745275,0,0.302702308,-1,1,-1,0.198113203,-1,1,1,1\n"
+    "0.24177188,0.23538092,1.575626,0.93697256,0,-0.898926616,1,0.234080553,-0.133007288,"
+    "0.682375908,-0.581302524,0,1,1\n";
+
+class MixerCsv : public testing::Test {
+ protected:
+  std::string error_of(std::string_view text) {
+    const auto trace = read_mixer_csv(directory_.write("6x.csv", text));
+    if (trace) return "";
+    return trace.error().to_string().substr(directory_.path().string().size() + 1);
+  }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(MixerCsv, ReadsARecordedTrace) {
+  const auto trace = read_mixer_csv(directory_.write("6x.csv", recorded));
+  ASSERT_TRUE(trace) << trace.error().to_string();
+  EXPECT_EQ(trace->source, (directory_.path() / "6x.csv").string());
+  EXPECT_EQ(trace->rotors, 6u);
+  ASSERT_EQ(trace->samples.size(), 2u);
+  const MixerSample& last = trace->samples[1];
+  EXPECT_EQ(last.roll, 0.24177188f);
+  EXPECT_EQ(last.thrust, 0.93697256f);
+  EXPECT_EQ(last.delta_out_max, 0.0f);
+  EXPECT_EQ(last.out[5], -0.581302524f);
+  EXPECT_EQ(last.out[6], 0.0f);
+  EXPECT_EQ(last.lower_limit, 0);
+  EXPECT_EQ(last.yaw_limit, 1);
+}
+
+TEST_F(MixerCsv, IsKnownByItsHeader) {
+  EXPECT_TRUE(looks_like_mixer_csv(directory_.write("a", recorded)));
+  EXPECT_TRUE(looks_like_mixer_csv(directory_.write("a", "rol,pitch\n")));
+  EXPECT_FALSE(looks_like_mixer_csv(directory_.write("a", "timestamp,in/battery_status.scale\n")));
+  EXPECT_FALSE(looks_like_mixer_csv(directory_.write("a", "")));
+  EXPECT_FALSE(looks_like_mixer_csv(directory_.path() / "missing"));
+}
+
+TEST_F(MixerCsv, NamesErrorsByPlace) {
+  constexpr std::string_view four = "roll,pitch,yaw,thrust,delta_out_max,out[0],out[1],out[2],";
+  const std::string header = std::string(four) + "out[3],lower_limit,upper_limit,yaw_limit\n";
+  EXPECT_EQ(error_of(header + "1,2,3,4,0,1,1,1,x,0,0,0\n"),
+            "6x.csv:2:17: `x` is not a number for out[3]; write a decimal number, nan, inf or "
+            "-inf");
+  EXPECT_EQ(error_of(header + "1,2,3,4,0,1,1,1,1,0,0,-1\n"),
+            "6x.csv:2:23: `-1` is not a flag for yaw_limit; write an integer from 0 to 255");
+  EXPECT_EQ(error_of(header + "1,2\n"),
+            "6x.csv:2:4: row has 2 of 12 cells, yaw is missing; complete or remove the row");
+  EXPECT_EQ(error_of(header), "6x.csv:2: no rows; a mixer trace has a row for each call");
+  EXPECT_EQ(error_of(std::string(four) + "out[4],lower_limit,upper_limit,yaw_limit\n"),
+            "6x.csv:1: no column out[3]; add it");
+  EXPECT_EQ(error_of(std::string(four) + "lower_limit,upper_limit,yaw_limit\n"),
+            "6x.csv:1: 3 out[] columns; a mixer has 4, 6 or 8 rotors");
+  EXPECT_EQ(error_of(std::string(four) + "out[3],lower_limit,upper_limit\n"),
+            "6x.csv:1: no column yaw_limit; add it");
+  EXPECT_EQ(error_of("rolll,pitch\n"),
+            "6x.csv:1:1: unknown column `rolll` in a mixer trace; did you mean `roll`?");
+  EXPECT_EQ(error_of("roll,pitch,roll\n"), "6x.csv:1:12: repeated column `roll`; remove one");
+  EXPECT_EQ(error_of(""), "6x.csv:1:1: no header; the first line must name the columns");
+  EXPECT_EQ(read_mixer_csv("missing").error().to_string(),
+            "missing: cannot open the file: No such file or directory");
+}
+
+TEST_F(MixerCsv, TruncationAtAnyByteReadsOrFails) {
+  for (std::size_t size = 0; size <= recorded.size(); ++size) {
+    const auto trace = read_mixer_csv(directory_.write("a", recorded.substr(0, size)));
+    if (!trace) {
+      EXPECT_GE(trace.error().line, 1);
+    }
+  }
+}
+
+bool same(float a, float b) {
+  return (a != a && b != b) || std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
+}
+
+RC_GTEST_PROP(MixerCsvRoundTrip, KeepsEveryBit, ()) {
+  const auto bits = [] {
+    return *rc::gen::resize(rc::kNominalSize, rc::gen::arbitrary<std::uint32_t>());
+  };
+  MixerTrace trace{"", *rc::gen::element<std::size_t>(4, 6, 8), {}};
+  for (int i = 0; i < 3; ++i) {
+    MixerSample sample{};
+    for (float* value :
+         {&sample.roll, &sample.pitch, &sample.yaw, &sample.thrust, &sample.delta_out_max}) {
+      *value = std::bit_cast<float>(bits());
+    }
+    for (std::size_t k = 0; k < trace.rotors; ++k) sample.out[k] = std::bit_cast<float>(bits());
+    sample.upper_limit = static_cast<std::uint8_t>(bits());
+    trace.samples.push_back(sample);
+  }
+  const TemporaryDirectory directory;
+  auto file = AtomicFile::open(directory.path() / "m.csv");
+  RC_ASSERT(write_mixer_csv(trace, *file).has_value());
+  RC_ASSERT(file->commit().has_value());
+  const auto read = read_mixer_csv(directory.path() / "m.csv");
+  RC_ASSERT(read.has_value());
+  RC_ASSERT(read->rotors == trace.rotors);
+  RC_ASSERT(read->samples.size() == trace.samples.size());
+  for (std::size_t i = 0; i < trace.samples.size(); ++i) {
+    const MixerSample& a = trace.samples[i];
+    const MixerSample& b = read->samples[i];
+    RC_ASSERT(same(a.roll, b.roll) && same(a.pitch, b.pitch) && same(a.yaw, b.yaw));
+    RC_ASSERT(same(a.thrust, b.thrust) && same(a.delta_out_max, b.delta_out_max));
+    for (std::size_t k = 0; k < max_rotors; ++k) RC_ASSERT(same(a.out[k], b.out[k]));
+    RC_ASSERT(a.upper_limit == b.upper_limit);
+  }
+}
+
+}  // namespace
+}  // namespace attest

@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Judged: fail, in every case that pitches. A pitch rate taken positive nose-down, the commonest
+ * mistake between frames. */
+#include "wrapper.h"
+
+static int step(void* self, const attest_inputs* in, attest_outputs* out) {
+  attest_inputs flipped = *in;
+  flipped.control_state.pitch_rate = -in->control_state.pitch_rate;
+  return wrapper_step(self, &flipped, out);
+}
+
+WRAPPER_UNIT("sign-flip", wrapper_create, step);

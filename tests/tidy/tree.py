@@ -1,0 +1,71 @@
+"""The files that the rules look at."""
+
+import pathlib
+import posixpath
+import sys
+from typing import NamedTuple
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+import repository  # noqa: E402  (the path had to be set first)
+
+CXX_HEADERS = (".h", ".hpp")
+CXX = (".c", ".cpp", *CXX_HEADERS)
+# Recorded numbers and reviewed output: made by programs, and large.
+_DATA = (".csv", ".ulg", ".json", ".xml", ".html", ".svg", ".png")
+
+
+class Finding(NamedTuple):
+    path: str
+    line: int
+    message: str  # what is wrong, and what to do
+
+    def __str__(self) -> str:
+        return f"{self.path}:{self.line}: {self.message}"
+
+
+class Tree:
+    """Paths with their text. `texts` stands in for the repository in the self-test."""
+
+    def __init__(self, texts: dict[str, str] | None = None):
+        self._texts = texts if texts is not None else dict(_texts())
+
+    def text(self, path: str) -> str:
+        return self._texts[path]
+
+    def paths(self) -> list[str]:
+        return list(self._texts)
+
+    def cxx(self, *under: str, suffixes: tuple[str, ...] = CXX) -> list[str]:
+        """C and C++ files, all or those under one of the folders `under`."""
+        return [
+            path
+            for path in self._texts
+            if path.endswith(suffixes) and (not under or path.startswith(under))
+        ]
+
+    def cmake(self) -> list[str]:
+        return [
+            path
+            for path in self._texts
+            if posixpath.basename(path) == "CMakeLists.txt" or path.endswith(".cmake")
+        ]
+
+    def code(self) -> list[str]:
+        """What people write for a program to read: C, C++, CMake, Python, Rust, shell."""
+        cmake = set(self.cmake())
+        return [
+            path
+            for path, text in self._texts.items()
+            if path.endswith((*CXX, ".py", ".rs", ".sh", ".bats"))
+            or path in cmake
+            or text.startswith("#!")
+        ]
+
+
+def _texts():
+    for path in repository.files():
+        if path.endswith(_DATA) or path.startswith("tests/baselines/"):
+            continue
+        content = (repository.ROOT / path).read_bytes()
+        if b"\0" not in content:
+            yield path, content.decode("utf-8")
