@@ -16,8 +16,9 @@ struct BatteryOptions {
   int cell_count = 3;
   float empty_cell_V = 3.4f;
   float full_cell_V = 4.05f;
-  float load_drop_V = 0.3f;                      // of one cell at full throttle
-  std::optional<float> internal_resistance_ohm;  // of one cell; used instead of load_drop_V
+  float load_drop_V = 0.3f;  // of one cell at full throttle
+  // Of one cell; where it is known it is used instead of load_drop_V.
+  std::optional<float> internal_resistance_ohm = std::nullopt;
 };
 
 struct BatterySample {

@@ -43,7 +43,7 @@ struct AttitudeStages {
   using Vector = Vector3<Scalar>;
   using Matrix = Matrix3<Scalar>;
 
-  ATTEST_ALWAYS_INLINE static TiltError<Scalar> tilt_error(const Matrix& R_WB, const Matrix& R_WD) {
+  ATTEST_INLINE static TiltError<Scalar> tilt_error(const Matrix& R_WB, const Matrix& R_WD) {
     const Vector z_B_W = R_WB.col(2);
     const Vector z_D_W = R_WD.col(2);
     TiltError<Scalar> tilt;
@@ -60,8 +60,7 @@ struct AttitudeStages {
 
   // Where the nose points after the tilt alone is corrected: the first column of
   // R_WB ((I + K sin) + K K (1 - cos)), Rodrigues' formula. The law uses no other column.
-  ATTEST_ALWAYS_INLINE static Vector nose_after_tilt(const Matrix& R_WB,
-                                                     const TiltError<Scalar>& tilt) {
+  ATTEST_INLINE static Vector nose_after_tilt(const Matrix& R_WB, const TiltError<Scalar>& tilt) {
     if (!(tilt.sine > Scalar(0))) return R_WB.col(0);
     const Matrix K = cross_product_matrix(tilt.axis_B);
     const Vector K_x = K.col(0);
@@ -72,13 +71,10 @@ struct AttitudeStages {
   }
 
   // 1 when the desired attitude is level (or upside down), 0 at 90 deg where yaw has no meaning.
-  ATTEST_ALWAYS_INLINE static Scalar yaw_weight(const Matrix& R_WD) {
-    return R_WD(2, 2) * R_WD(2, 2);
-  }
+  ATTEST_INLINE static Scalar yaw_weight(const Matrix& R_WD) { return R_WD(2, 2) * R_WD(2, 2); }
 
   // Angle from the tilted nose to the desired nose about the desired thrust axis.
-  ATTEST_ALWAYS_INLINE static Scalar yaw_error(const Vector& nose_W, const Matrix& R_WD,
-                                               Scalar weight) {
+  ATTEST_INLINE static Scalar yaw_error(const Vector& nose_W, const Matrix& R_WD, Scalar weight) {
     const Vector x_D_W = R_WD.col(0);
     const Vector z_D_W = R_WD.col(2);
     return std::atan2(ordered::dot(ordered::cross(nose_W, x_D_W), z_D_W),
@@ -94,15 +90,15 @@ struct AttitudeStages {
   }
 
   // The direct share grows from 0 at 90 deg of tilt error.
-  ATTEST_ALWAYS_INLINE static Vector blend(const Vector& error_B, const Vector& direct_B,
-                                           Scalar tilt_cosine, Scalar weight) {
+  ATTEST_INLINE static Vector blend(const Vector& error_B, const Vector& direct_B,
+                                    Scalar tilt_cosine, Scalar weight) {
     const Scalar share = tilt_cosine * tilt_cosine * weight;
     return error_B * (Scalar(1) - share) + direct_B * share;
   }
 
   // Rotation [rad, body axes] that takes the body to the desired attitude.
-  ATTEST_ALWAYS_INLINE static Vector attitude_error(const Matrix& R_WB, const Matrix& R_WD,
-                                                    Scalar weight) {
+  ATTEST_INLINE static Vector attitude_error(const Matrix& R_WB, const Matrix& R_WD,
+                                             Scalar weight) {
     const TiltError<Scalar> tilt = tilt_error(R_WB, R_WD);
     Vector error_B = tilt.rotation_B;
     error_B[2] = yaw_error(nose_after_tilt(R_WB, tilt), R_WD, weight);
@@ -112,24 +108,23 @@ struct AttitudeStages {
     return error_B;
   }
 
-  ATTEST_ALWAYS_INLINE static Vector proportional(const Vector& error_B,
-                                                  const AttitudeGains<Scalar>& gains) {
+  ATTEST_INLINE static Vector proportional(const Vector& error_B,
+                                           const AttitudeGains<Scalar>& gains) {
     return gains.proportional_1_s.cwiseProduct(error_B);
   }
 
-  ATTEST_ALWAYS_INLINE static Vector limit(const Vector& rates_sp_B, bool autonomous,
-                                           const AttitudeGains<Scalar>& gains) {
+  ATTEST_INLINE static Vector limit(const Vector& rates_sp_B, bool autonomous,
+                                    const AttitudeGains<Scalar>& gains) {
     return clamp_each(rates_sp_B, autonomous ? gains.auto_rate_max_rad_s : gains.rate_max_rad_s);
   }
 
-  ATTEST_ALWAYS_INLINE static Scalar yaw_feed_forward(Scalar yaw_rate_sp, Scalar move_rate,
-                                                      Scalar weight,
-                                                      const AttitudeGains<Scalar>& gains) {
+  ATTEST_INLINE static Scalar yaw_feed_forward(Scalar yaw_rate_sp, Scalar move_rate, Scalar weight,
+                                               const AttitudeGains<Scalar>& gains) {
     return yaw_rate_sp + move_rate * weight * gains.yaw_feed_forward;
   }
 
-  ATTEST_ALWAYS_INLINE static Scalar weathervane_limit(Scalar yaw_rate_sp,
-                                                       const AttitudeGains<Scalar>& gains) {
+  ATTEST_INLINE static Scalar weathervane_limit(Scalar yaw_rate_sp,
+                                                const AttitudeGains<Scalar>& gains) {
     const Scalar bound = gains.auto_rate_max_rad_s[2] * gains.weathervane_scale;
     return clamp(yaw_rate_sp, -bound, bound);
   }
@@ -153,7 +148,7 @@ class AttitudeControl {
 };
 
 template <typename Scalar>
-ATTEST_ALWAYS_INLINE Vector3<Scalar> AttitudeControl<Scalar>::update(
+ATTEST_INLINE Vector3<Scalar> AttitudeControl<Scalar>::update(
     const AttitudeInput<Scalar>& in) const {
   const Matrix3<Scalar> R_WB = rotation_matrix(in.q_WB);
   const Matrix3<Scalar> R_WD = rotation_matrix(in.q_WD);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "controller/reference/inline.hpp"
+
 namespace attest::reference {
 namespace {
 
@@ -46,14 +48,14 @@ void McAttControl<Scalar>::step(const attest_inputs& in, attest_outputs& out) {
 }
 
 template <typename Scalar>
-Scalar McAttControl<Scalar>::advance_clock(std::uint64_t timestamp_us) {
+ATTEST_INLINE Scalar McAttControl<Scalar>::advance_clock(std::uint64_t timestamp_us) {
   const Scalar dt_s = Scalar(timestamp_us - last_timestamp_us_) / Scalar(1000000);
   last_timestamp_us_ = timestamp_us;
   return clamp(dt_s, Scalar(kShortestStep_s), Scalar(kLongestStep_s));
 }
 
 template <typename Scalar>
-void McAttControl<Scalar>::latch_topics(const attest_inputs& in) {
+ATTEST_INLINE void McAttControl<Scalar>::latch_topics(const attest_inputs& in) {
   const auto updated = [&in](std::uint32_t topic) { return (in.updated & topic) != 0; };
   pending_ |= in.updated & kLatchedOnDemand;
   if (first_step_ || updated(ATTEST_UPDATED_PARAMETER_UPDATE)) apply_parameters();
@@ -73,7 +75,7 @@ void McAttControl<Scalar>::latch_topics(const attest_inputs& in) {
 }
 
 template <typename Scalar>
-bool McAttControl<Scalar>::take_pending(std::uint32_t topic) {
+ATTEST_INLINE bool McAttControl<Scalar>::take_pending(std::uint32_t topic) {
   const bool was_pending = (pending_ & topic) != 0;
   pending_ &= ~topic;
   return was_pending;
@@ -94,7 +96,7 @@ void McAttControl<Scalar>::apply_parameters() {
 // Clears the flag in the latched copy: it stays cleared until vehicle_control_mode is updated,
 // also when the stick comes back.
 template <typename Scalar>
-void McAttControl<Scalar>::apply_rattitude() {
+ATTEST_INLINE void McAttControl<Scalar>::apply_rattitude() {
   if (topics_.mode.flag_control_rattitude_enabled == 0) return;
   const bool rolling = std::abs(Scalar(topics_.manual.y)) > gains_.rattitude_threshold;
   const bool pitching = std::abs(Scalar(topics_.manual.x)) > gains_.rattitude_threshold;
@@ -102,7 +104,8 @@ void McAttControl<Scalar>::apply_rattitude() {
 }
 
 template <typename Scalar>
-RateCommand<Scalar> McAttControl<Scalar>::outer_loop(const attest_inputs& in, attest_outputs& out) {
+ATTEST_INLINE RateCommand<Scalar> McAttControl<Scalar>::outer_loop(const attest_inputs& in,
+                                                                   attest_outputs& out) {
   const bool attitude = topics_.mode.flag_control_attitude_enabled != 0;
   const bool manual = topics_.mode.flag_control_manual_enabled != 0;
   if (!attitude && !manual) return follow_rates_setpoint(in);
@@ -112,7 +115,7 @@ RateCommand<Scalar> McAttControl<Scalar>::outer_loop(const attest_inputs& in, at
 }
 
 template <typename Scalar>
-RateCommand<Scalar> McAttControl<Scalar>::control_attitude(const attest_inputs& in) {
+ATTEST_INLINE RateCommand<Scalar> McAttControl<Scalar>::control_attitude(const attest_inputs& in) {
   if (take_pending(ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT)) {
     topics_.attitude_setpoint = in.vehicle_attitude_setpoint;
   }
@@ -133,7 +136,7 @@ RateCommand<Scalar> McAttControl<Scalar>::control_attitude(const attest_inputs& 
 }
 
 template <typename Scalar>
-RateCommand<Scalar> McAttControl<Scalar>::control_acro() const {
+ATTEST_INLINE RateCommand<Scalar> McAttControl<Scalar>::control_acro() const {
   const auto& manual = topics_.manual;
   const Vector3<Scalar> sticks(Scalar(manual.y), Scalar(-manual.x), Scalar(manual.r));
   // Written so that a NaN throttle gives the maximum.
@@ -142,7 +145,8 @@ RateCommand<Scalar> McAttControl<Scalar>::control_acro() const {
 }
 
 template <typename Scalar>
-RateCommand<Scalar> McAttControl<Scalar>::follow_rates_setpoint(const attest_inputs& in) {
+ATTEST_INLINE RateCommand<Scalar> McAttControl<Scalar>::follow_rates_setpoint(
+    const attest_inputs& in) {
   if (take_pending(ATTEST_UPDATED_VEHICLE_RATES_SETPOINT)) {
     topics_.rates_setpoint = in.vehicle_rates_setpoint;
   }
@@ -152,8 +156,8 @@ RateCommand<Scalar> McAttControl<Scalar>::follow_rates_setpoint(const attest_inp
 }
 
 template <typename Scalar>
-void McAttControl<Scalar>::publish_rates_setpoint(const RateCommand<Scalar>& command,
-                                                  attest_outputs& out) {
+ATTEST_INLINE void McAttControl<Scalar>::publish_rates_setpoint(const RateCommand<Scalar>& command,
+                                                                attest_outputs& out) {
   const Vector3<Scalar>& rates_sp = command.rates_sp_B;
   topics_.rates_setpoint = {float(rates_sp[0]), float(rates_sp[1]), float(rates_sp[2]),
                             float(command.thrust_sp)};
@@ -165,8 +169,9 @@ void McAttControl<Scalar>::publish_rates_setpoint(const RateCommand<Scalar>& com
 }
 
 template <typename Scalar>
-void McAttControl<Scalar>::inner_loop(const attest_inputs& in, const RateCommand<Scalar>& command,
-                                      Scalar dt_s, attest_outputs& out) {
+ATTEST_INLINE void McAttControl<Scalar>::inner_loop(const attest_inputs& in,
+                                                    const RateCommand<Scalar>& command, Scalar dt_s,
+                                                    attest_outputs& out) {
   const auto& state = in.control_state;
   RateInput<Scalar> input;
   input.rates_B =
@@ -183,8 +188,9 @@ void McAttControl<Scalar>::inner_loop(const attest_inputs& in, const RateCommand
 }
 
 template <typename Scalar>
-void McAttControl<Scalar>::publish_actuators(const Vector3<Scalar>& control, Scalar thrust_sp,
-                                             attest_outputs& out) const {
+ATTEST_INLINE void McAttControl<Scalar>::publish_actuators(const Vector3<Scalar>& control,
+                                                           Scalar thrust_sp,
+                                                           attest_outputs& out) const {
   const bool v1_5_5 = profile_ == Profile::kPx4V1_5_5;
   auto& actuators = out.actuator_controls_0;
   for (int i = 0; i < 3; ++i) actuators.control[i] = finite_or_zero(float(control[i]));
@@ -198,7 +204,7 @@ void McAttControl<Scalar>::publish_actuators(const Vector3<Scalar>& control, Sca
 }
 
 template <typename Scalar>
-void McAttControl<Scalar>::publish_status(attest_outputs& out) const {
+ATTEST_INLINE void McAttControl<Scalar>::publish_status(attest_outputs& out) const {
   const Vector3<Scalar>& integral = rate_.integral();
   out.mc_att_ctrl_status = {float(integral[0]), float(integral[1]), float(integral[2]), 1};
 }

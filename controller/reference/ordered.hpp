@@ -26,25 +26,25 @@ namespace ordered {
 
 // a . b
 template <typename Scalar>
-ATTEST_ALWAYS_INLINE Scalar dot(const Vector3<Scalar>& a, const Vector3<Scalar>& b) {
+ATTEST_INLINE Scalar dot(const Vector3<Scalar>& a, const Vector3<Scalar>& b) {
   return Scalar(0) + a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 template <typename Scalar>
-ATTEST_ALWAYS_INLINE Scalar length(const Vector3<Scalar>& v) {
+ATTEST_INLINE Scalar length(const Vector3<Scalar>& v) {
   return std::sqrt(dot(v, v));
 }
 
 // a x b. Each component is one difference, so there is no sum to order.
 template <typename Scalar>
-ATTEST_ALWAYS_INLINE Vector3<Scalar> cross(const Vector3<Scalar>& a, const Vector3<Scalar>& b) {
+ATTEST_INLINE Vector3<Scalar> cross(const Vector3<Scalar>& a, const Vector3<Scalar>& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
 // A v. Unlike the other sums this one starts at its first product: that is seen in the sign of a
 // zero rate setpoint at tilt errors of exactly 0 and 180 deg.
 template <typename Scalar>
-ATTEST_ALWAYS_INLINE Vector3<Scalar> times(const Matrix3<Scalar>& A, const Vector3<Scalar>& v) {
+ATTEST_INLINE Vector3<Scalar> times(const Matrix3<Scalar>& A, const Vector3<Scalar>& v) {
   return {A(0, 0) * v[0] + A(0, 1) * v[1] + A(0, 2) * v[2],
           A(1, 0) * v[0] + A(1, 1) * v[1] + A(1, 2) * v[2],
           A(2, 0) * v[0] + A(2, 1) * v[1] + A(2, 2) * v[2]};
@@ -52,8 +52,7 @@ ATTEST_ALWAYS_INLINE Vector3<Scalar> times(const Matrix3<Scalar>& A, const Vecto
 
 // A^T v, like A v.
 template <typename Scalar>
-ATTEST_ALWAYS_INLINE Vector3<Scalar> transpose_times(const Matrix3<Scalar>& A,
-                                                     const Vector3<Scalar>& v) {
+ATTEST_INLINE Vector3<Scalar> transpose_times(const Matrix3<Scalar>& A, const Vector3<Scalar>& v) {
   return {A(0, 0) * v[0] + A(1, 0) * v[1] + A(2, 0) * v[2],
           A(0, 1) * v[0] + A(1, 1) * v[1] + A(2, 1) * v[2],
           A(0, 2) * v[0] + A(1, 2) * v[1] + A(2, 2) * v[2]};
@@ -61,8 +60,8 @@ ATTEST_ALWAYS_INLINE Vector3<Scalar> transpose_times(const Matrix3<Scalar>& A,
 
 // One column of A B, from that column of B.
 template <typename Scalar>
-ATTEST_ALWAYS_INLINE Vector3<Scalar> product_column(const Matrix3<Scalar>& A,
-                                                    const Vector3<Scalar>& column) {
+ATTEST_INLINE Vector3<Scalar> product_column(const Matrix3<Scalar>& A,
+                                             const Vector3<Scalar>& column) {
   const Vector3<Scalar>& b = column;
   return {Scalar(0) + A(0, 0) * b[0] + A(0, 1) * b[1] + A(0, 2) * b[2],
           Scalar(0) + A(1, 0) * b[0] + A(1, 1) * b[1] + A(1, 2) * b[2],
@@ -71,8 +70,8 @@ ATTEST_ALWAYS_INLINE Vector3<Scalar> product_column(const Matrix3<Scalar>& A,
 
 // A^T B
 template <typename Scalar>
-ATTEST_ALWAYS_INLINE Matrix3<Scalar> transpose_product(const Matrix3<Scalar>& A,
-                                                       const Matrix3<Scalar>& B) {
+ATTEST_INLINE Matrix3<Scalar> transpose_product(const Matrix3<Scalar>& A,
+                                                const Matrix3<Scalar>& B) {
   const Matrix3<Scalar> A_transposed = A.transpose();
   Matrix3<Scalar> C;
   C.col(0) = product_column<Scalar>(A_transposed, B.col(0));

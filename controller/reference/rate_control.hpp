@@ -47,44 +47,42 @@ struct RateStages {
   using Vector = Vector3<Scalar>;
 
   // Factor on the P term. A NaN thrust gives 1: neither comparison holds.
-  ATTEST_ALWAYS_INLINE static Scalar throttle_attenuation(Scalar thrust,
-                                                          const RateGains<Scalar>& gains) {
+  ATTEST_INLINE static Scalar throttle_attenuation(Scalar thrust, const RateGains<Scalar>& gains) {
     const Scalar one = 1;
     const Scalar factor = one - gains.tpa_slope * (std::abs(thrust) - gains.tpa_break);
     const Scalar at_most_one = factor < one ? factor : one;
     return at_most_one > Scalar(0) ? at_most_one : Scalar(0);
   }
 
-  ATTEST_ALWAYS_INLINE static Vector proportional(const Vector& error, Scalar attenuation,
-                                                  const RateGains<Scalar>& gains) {
+  ATTEST_INLINE static Vector proportional(const Vector& error, Scalar attenuation,
+                                           const RateGains<Scalar>& gains) {
     return gains.proportional.cwiseProduct(error * attenuation);
   }
 
   // On the measurement, so that a step of the setpoint gives no kick.
-  ATTEST_ALWAYS_INLINE static Vector derivative(const Vector& rates_prev, const Vector& rates,
-                                                Scalar dt_s, const RateGains<Scalar>& gains) {
+  ATTEST_INLINE static Vector derivative(const Vector& rates_prev, const Vector& rates, Scalar dt_s,
+                                         const RateGains<Scalar>& gains) {
     return gains.derivative.cwiseProduct(rates_prev - rates) / dt_s;
   }
 
-  ATTEST_ALWAYS_INLINE static Vector feed_forward(const Vector& rates_sp,
-                                                  const RateGains<Scalar>& gains) {
+  ATTEST_INLINE static Vector feed_forward(const Vector& rates_sp, const RateGains<Scalar>& gains) {
     return gains.feed_forward.cwiseProduct(rates_sp);
   }
 
   // v1.3.4: the change of the setpoint is fed forward.
-  ATTEST_ALWAYS_INLINE static Vector feed_forward_change(const Vector& rates_sp,
-                                                         const Vector& rates_sp_prev, Scalar dt_s,
-                                                         const RateGains<Scalar>& gains) {
+  ATTEST_INLINE static Vector feed_forward_change(const Vector& rates_sp,
+                                                  const Vector& rates_sp_prev, Scalar dt_s,
+                                                  const RateGains<Scalar>& gains) {
     return gains.feed_forward.cwiseProduct(rates_sp - rates_sp_prev) / dt_s;
   }
 
-  ATTEST_ALWAYS_INLINE static bool may_integrate(Scalar thrust_sp, const MotorLimits& limits) {
+  ATTEST_INLINE static bool may_integrate(Scalar thrust_sp, const MotorLimits& limits) {
     return thrust_sp > Scalar(kTakeoffThrust) && !limits.lower && !limits.upper;
   }
 
   // One axis of the integral after this step: unchanged when any gate is shut.
-  ATTEST_ALWAYS_INLINE static Scalar integrate_axis(Scalar integral, Scalar control,
-                                                    Scalar thrust_sp, Scalar growth, bool frozen) {
+  ATTEST_INLINE static Scalar integrate_axis(Scalar integral, Scalar control, Scalar thrust_sp,
+                                             Scalar growth, bool frozen) {
     const Scalar limit = Scalar(kIntegralLimit);
     if (!(std::abs(control) < thrust_sp)) return integral;
     const Scalar next = integral + growth;
@@ -92,9 +90,9 @@ struct RateStages {
     return inside && !frozen ? next : integral;
   }
 
-  ATTEST_ALWAYS_INLINE static Vector integrate(const Vector& integral, const Vector& control,
-                                               const Vector& error, const RateInput<Scalar>& in,
-                                               const RateGains<Scalar>& gains, bool yaw_frozen) {
+  ATTEST_INLINE static Vector integrate(const Vector& integral, const Vector& control,
+                                        const Vector& error, const RateInput<Scalar>& in,
+                                        const RateGains<Scalar>& gains, bool yaw_frozen) {
     if (!may_integrate(in.thrust_sp, in.limits)) return integral;
     const Vector growth = gains.integral.cwiseProduct(error) * in.dt_s;
     return {integrate_axis(integral[0], control[0], in.thrust_sp, growth[0], false),
@@ -131,14 +129,13 @@ class RateControl {
 };
 
 template <typename Scalar>
-ATTEST_ALWAYS_INLINE Vector3<Scalar> RateControl<Scalar>::feed_forward(
-    const RateInput<Scalar>& in) const {
+ATTEST_INLINE Vector3<Scalar> RateControl<Scalar>::feed_forward(const RateInput<Scalar>& in) const {
   if (profile_ == Profile::kPx4V1_5_5) return Stages::feed_forward(in.rates_sp_B, gains_);
   return Stages::feed_forward_change(in.rates_sp_B, rates_sp_prev_, in.dt_s, gains_);
 }
 
 template <typename Scalar>
-ATTEST_ALWAYS_INLINE Vector3<Scalar> RateControl<Scalar>::update(const RateInput<Scalar>& in) {
+ATTEST_INLINE Vector3<Scalar> RateControl<Scalar>::update(const RateInput<Scalar>& in) {
   const bool v1_5_5 = profile_ == Profile::kPx4V1_5_5;
   if (!in.flying) integral_.setZero();
   const Scalar attenuation =

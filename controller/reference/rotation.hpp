@@ -20,18 +20,18 @@ using Quaternion = Eigen::Quaternion<Scalar, Eigen::DontAlign>;
 
 // A decimal angle in degrees to rad, in the order of operations of PX4's math::radians().
 template <typename Scalar>
-ATTEST_ALWAYS_INLINE constexpr Scalar radians(Scalar degrees) {
+ATTEST_INLINE constexpr Scalar radians(Scalar degrees) {
   return (degrees / Scalar(180)) * Scalar(3.14159265358979323846f);
 }
 
 template <typename Scalar>
-ATTEST_ALWAYS_INLINE Quaternion<Scalar> quaternion_from(const float (&wxyz)[4]) {
+ATTEST_INLINE Quaternion<Scalar> quaternion_from(const float (&wxyz)[4]) {
   return {Scalar(wxyz[0]), Scalar(wxyz[1]), Scalar(wxyz[2]), Scalar(wxyz[3])};
 }
 
 // R(q) for a quaternion of any norm; the result is |q|^2 times a rotation.
 template <typename Scalar>
-ATTEST_ALWAYS_INLINE Matrix3<Scalar> rotation_matrix(const Quaternion<Scalar>& q) {
+ATTEST_INLINE Matrix3<Scalar> rotation_matrix(const Quaternion<Scalar>& q) {
   const Scalar a = q.w(), b = q.x(), c = q.y(), d = q.z();
   const Scalar aa = a * a, bb = b * b, cc = c * c, dd = d * d;
   const Scalar two = 2;
@@ -78,14 +78,13 @@ Quaternion<Scalar> quaternion_of(const Matrix3<Scalar>& D) {
 }
 
 template <typename Scalar>
-ATTEST_ALWAYS_INLINE Quaternion<Scalar> conjugate(const Quaternion<Scalar>& q) {
+ATTEST_INLINE Quaternion<Scalar> conjugate(const Quaternion<Scalar>& q) {
   return {q.w(), -q.x(), -q.y(), -q.z()};
 }
 
 // p * q: first q, then p.
 template <typename Scalar>
-ATTEST_ALWAYS_INLINE Quaternion<Scalar> product(const Quaternion<Scalar>& p,
-                                                const Quaternion<Scalar>& q) {
+ATTEST_INLINE Quaternion<Scalar> product(const Quaternion<Scalar>& p, const Quaternion<Scalar>& q) {
   return {p.w() * q.w() - p.x() * q.x() - p.y() * q.y() - p.z() * q.z(),
           p.w() * q.x() + p.x() * q.w() + p.y() * q.z() - p.z() * q.y(),
           p.w() * q.y() - p.x() * q.z() + p.y() * q.w() + p.z() * q.x(),
@@ -93,13 +92,13 @@ ATTEST_ALWAYS_INLINE Quaternion<Scalar> product(const Quaternion<Scalar>& p,
 }
 
 template <typename Scalar>
-ATTEST_ALWAYS_INLINE Vector3<Scalar> imaginary_part(const Quaternion<Scalar>& q) {
+ATTEST_INLINE Vector3<Scalar> imaginary_part(const Quaternion<Scalar>& q) {
   return {q.x(), q.y(), q.z()};
 }
 
 // The matrix K with K v = axis x v.
 template <typename Scalar>
-ATTEST_ALWAYS_INLINE Matrix3<Scalar> cross_product_matrix(const Vector3<Scalar>& axis) {
+ATTEST_INLINE Matrix3<Scalar> cross_product_matrix(const Vector3<Scalar>& axis) {
   Matrix3<Scalar> K;
   K << Scalar(0), -axis[2], axis[1],  //
       axis[2], Scalar(0), -axis[0],   //
@@ -109,13 +108,12 @@ ATTEST_ALWAYS_INLINE Matrix3<Scalar> cross_product_matrix(const Vector3<Scalar>&
 
 // The law's clamp: both comparisons fail for NaN, which therefore passes.
 template <typename Scalar>
-ATTEST_ALWAYS_INLINE constexpr Scalar clamp(Scalar value, Scalar low, Scalar high) {
+ATTEST_INLINE constexpr Scalar clamp(Scalar value, Scalar low, Scalar high) {
   return value < low ? low : (value > high ? high : value);
 }
 
 template <typename Scalar>
-ATTEST_ALWAYS_INLINE Vector3<Scalar> clamp_each(const Vector3<Scalar>& v,
-                                                const Vector3<Scalar>& bound) {
+ATTEST_INLINE Vector3<Scalar> clamp_each(const Vector3<Scalar>& v, const Vector3<Scalar>& bound) {
   return {clamp(v[0], -bound[0], bound[0]), clamp(v[1], -bound[1], bound[1]),
           clamp(v[2], -bound[2], bound[2])};
 }

@@ -14,10 +14,10 @@
 
 namespace attest::reference {
 
-// The tilt error as the fitted functions take it.
+// The error rotation q_WB q_WD^-1, a rotation of the world, as the fitted functions take it.
 template <typename Scalar>
 struct RecoveryTilt {
-  Scalar angle_rad;       // 0 .. pi between thrust axis and desired thrust axis
+  Scalar angle_rad;       // 0 .. pi by which it tilts the vertical
   Scalar direction_rad;   // of the tilt axis in the body's x-y plane, folded into 0 .. pi/2
   Vector3<Scalar> signs;  // that undo the folding
 };
