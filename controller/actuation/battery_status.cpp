@@ -6,12 +6,12 @@
 namespace attest::actuation {
 namespace {
 
-constexpr float kFilterKeep = 0.99f;
-constexpr float kFilterTake = 0.01f;
-constexpr float kScaleMax = 1.3f;
+constexpr float filter_keep = 0.99f;
+constexpr float filter_take = 0.01f;
+constexpr float scale_max = 1.3f;
 
 // The drop under load is fitted to throttle plus this share, so that it is not zero at idle.
-constexpr float kIdleShare = 0.1f;
+constexpr float idle_share = 0.1f;
 
 }  // namespace
 
@@ -25,11 +25,11 @@ float BatteryStatus::update(const BatterySample& sample) {
 float BatteryStatus::load_drop_V(const BatterySample& sample) const {
   if (options_.internal_resistance_ohm) return sample.current_A * *options_.internal_resistance_ohm;
   if (!sample.armed) return 0.0f;
-  return options_.load_drop_V * (std::abs(sample.throttle) + kIdleShare) / (1.0f + kIdleShare);
+  return options_.load_drop_V * (std::abs(sample.throttle) + idle_share) / (1.0f + idle_share);
 }
 
 void BatteryStatus::filter_remaining(float measured) {
-  const float filtered = started_ ? remaining_ * kFilterKeep + measured * kFilterTake : measured;
+  const float filtered = started_ ? remaining_ * filter_keep + measured * filter_take : measured;
   started_ = true;
   remaining_ = std::clamp(filtered, 0.0f, 1.0f);
 }
@@ -39,7 +39,7 @@ float BatteryStatus::scale() const {
   const float range_V = options_.full_cell_V - options_.empty_cell_V;
   const float factor = options_.full_cell_V / (options_.empty_cell_V + range_V * remaining_);
   if (!std::isfinite(factor) || factor < 1.0f) return 1.0f;
-  return std::min(factor, kScaleMax);
+  return std::min(factor, scale_max);
 }
 
 }  // namespace attest::actuation

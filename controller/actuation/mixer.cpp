@@ -11,11 +11,11 @@ namespace attest::actuation {
 namespace {
 
 // Thrust may be raised to 1.5 times, or lowered to 0.6 times, what was asked for roll and pitch.
-constexpr float kThrustRaise = 1.5f;
-constexpr float kThrustLower = 0.6f;
+constexpr float thrust_raise = 1.5f;
+constexpr float thrust_lower = 0.6f;
 
 // Thrust that one rotor may give up so that yaw keeps authority.
-constexpr float kThrustForYawMax = 0.15f;
+constexpr float thrust_for_yaw_max = 0.15f;
 
 // Lets NaN through, as both comparisons fail.
 float clamp(float value, float low, float high) {
@@ -28,9 +28,9 @@ float without_yaw(const Rotor& rotor, const Controls& c, float roll_pitch_scale)
 
 // The next word of `text`, which is consumed; empty at the end.
 std::string_view next_word(std::string_view& text) {
-  constexpr std::string_view kBlank = " \t\r\n";
-  const std::size_t start = std::min(text.find_first_not_of(kBlank), text.size());
-  const std::size_t end = std::min(text.find_first_of(kBlank, start), text.size());
+  constexpr std::string_view blank = " \t\r\n";
+  const std::size_t start = std::min(text.find_first_not_of(blank), text.size());
+  const std::size_t end = std::min(text.find_first_of(blank, start), text.size());
   const std::string_view word = text.substr(start, end - start);
   text.remove_prefix(end);
   return word;
@@ -65,10 +65,10 @@ tl::expected<Mixer, std::string> Mixer::parse(std::string_view text) {
   }
   const auto rotors = find_rotors(next_word(text));
   if (!rotors) return tl::unexpected(rotors.error());
-  constexpr std::array<std::string_view, 4> kFields{"roll", "pitch", "yaw", "deadband"};
+  constexpr std::array<std::string_view, 4> fields{"roll", "pitch", "yaw", "deadband"};
   std::array<float, 4> values{};
-  for (std::size_t i = 0; i < kFields.size(); ++i) {
-    const auto value = parse_scale(next_word(text), kFields[i]);
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const auto value = parse_scale(next_word(text), fields[i]);
     if (!value) return tl::unexpected(value.error());
     values[i] = *value;
   }
@@ -108,8 +108,8 @@ Controls Mixer::scaled(const Controls& controls) const {
 
 // min_out and max_out are of all rotors, without yaw.
 Mixer::Fit Mixer::fit(float min_out, float max_out, float thrust) {
-  const float up = thrust * kThrustRaise - thrust;
-  const float down = thrust - thrust * kThrustLower;
+  const float up = thrust * thrust_raise - thrust;
+  const float down = thrust - thrust * thrust_lower;
   const auto boosted_from_below = [=](float boost) {
     return Fit{boost, (thrust + boost) / (thrust - min_out)};
   };
@@ -132,8 +132,8 @@ Mixer::Fit Mixer::fit(float min_out, float max_out, float thrust) {
   }
   if (below && above) {
     return boosted_from_below(clamp(-(max_out - 1.0f + min_out) / 2.0f,
-                                    kThrustLower * thrust - thrust,
-                                    kThrustRaise * thrust - thrust));
+                                    thrust_lower * thrust - thrust,
+                                    thrust_raise * thrust - thrust));
   }
   return {};
 }
@@ -150,7 +150,7 @@ bool Mixer::yield_yaw(Controls& c, const Fit& fit) const {
       c.yaw = has_yaw ? -(roll_pitch + c.thrust + fit.boost) / rotor.yaw : 0.0f;
       cut = true;
     } else if (out > 1.0f) {
-      c.thrust -= std::fmin(kThrustForYawMax, out - 1.0f);
+      c.thrust -= std::fmin(thrust_for_yaw_max, out - 1.0f);
       c.yaw = has_yaw ? (1.0f - (roll_pitch + c.thrust + fit.boost)) / rotor.yaw : 0.0f;
       cut = true;
     }

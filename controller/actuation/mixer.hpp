@@ -43,7 +43,7 @@ struct Saturation {
 
 class Mixer {
  public:
-  static constexpr std::size_t kRotorsMax = 8;
+  static constexpr std::size_t rotors_max = 8;
 
   // From one line of a mixer file, "R: <geometry> <roll> <pitch> <yaw> <deadband>", such as
   // "R: 4x 10000 10000 10000 0". Geometries: 4x 4+ 6x 8x. The numbers are integers in 1/10000:
@@ -80,7 +80,7 @@ class Mixer {
 
   std::span<const Rotor> rotors_;  // of the static geometry table
   Scales scales_;
-  std::array<float, kRotorsMax> commands_{};
+  std::array<float, rotors_max> commands_{};
 };
 
 }  // namespace attest::actuation

@@ -157,7 +157,7 @@ ATTEST_INLINE Vector3<Scalar> AttitudeControl<Scalar>::update(
   Vector3<Scalar> rates_sp =
       Stages::limit(Stages::proportional(error_B, gains_), in.autonomous, gains_);
   Scalar& yaw = rates_sp[2];
-  if (in.weathervane && profile_ == Profile::kPx4V1_3_4) {
+  if (in.weathervane && profile_ == Profile::px4_v1_3_4) {
     yaw = Stages::weathervane_limit(yaw, gains_);
   }
   yaw = Stages::yaw_feed_forward(yaw, in.yaw_sp_move_rate_rad_s, weight, gains_);

@@ -39,10 +39,10 @@ struct Gains {
 };
 
 // The value of CBRK_RATE_CTRL that opens the breaker (PX4 v1.5.5 circuit_breaker).
-inline constexpr float kRateControlBreakerKey = 140253.0f;
+inline constexpr float rate_control_breaker_key = 140253.0f;
 
 // The time constant for which the gains of PX4 are stated; a faster one raises them.
-inline constexpr float kNominalTimeConstant_s = 0.2f;
+inline constexpr float nominal_time_constant_s = 0.2f;
 
 template <typename Scalar>
 Gains<Scalar> compute_gains(const Parameters& p) {
@@ -51,8 +51,8 @@ Gains<Scalar> compute_gains(const Parameters& p) {
     return Vector3<Scalar>(radians(Scalar(roll_deg)), radians(Scalar(pitch_deg)),
                            radians(Scalar(yaw_deg)));
   };
-  const Vector3<Scalar> speed_up(Scalar(kNominalTimeConstant_s) / Scalar(p.mc_roll_tc),
-                                 Scalar(kNominalTimeConstant_s) / Scalar(p.mc_pitch_tc), one);
+  const Vector3<Scalar> speed_up(Scalar(nominal_time_constant_s) / Scalar(p.mc_roll_tc),
+                                 Scalar(nominal_time_constant_s) / Scalar(p.mc_pitch_tc), one);
   const auto scaled = [&speed_up](float roll, float pitch, float yaw) {
     return Vector3<Scalar>(Scalar(roll) * speed_up[0], Scalar(pitch) * speed_up[1], Scalar(yaw));
   };
@@ -79,7 +79,7 @@ Gains<Scalar> compute_gains(const Parameters& p) {
   gains.acro_rate_max_rad_s = radians_each(p.mc_acro_r_max, p.mc_acro_p_max, p.mc_acro_y_max);
   gains.rattitude_threshold = Scalar(p.mc_ratt_th);
   gains.battery_scaling = p.mc_bat_scale_en != 0.0f;
-  gains.actuators_cut = p.cbrk_rate_ctrl == kRateControlBreakerKey;
+  gains.actuators_cut = p.cbrk_rate_ctrl == rate_control_breaker_key;
   return gains;
 }
 

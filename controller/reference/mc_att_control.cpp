@@ -8,13 +8,13 @@ namespace attest::reference {
 namespace {
 
 // A step is taken to last between 2 ms and 20 ms, whatever the timestamps say.
-constexpr float kShortestStep_s = 0.002f;
-constexpr float kLongestStep_s = 0.02f;
+constexpr float shortest_step_s = 0.002f;
+constexpr float longest_step_s = 0.02f;
 
 // Acro leaves the mixer some room above the throttle stick.
-constexpr float kAcroThrustMax = 0.9f;
+constexpr float acro_thrust_max = 0.9f;
 
-constexpr std::uint32_t kLatchedOnDemand =
+constexpr std::uint32_t latched_on_demand =
     ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT | ATTEST_UPDATED_VEHICLE_RATES_SETPOINT;
 
 float finite_or_zero(float value) { return std::isfinite(value) ? value : 0.0f; }
@@ -51,13 +51,13 @@ template <typename Scalar>
 ATTEST_INLINE Scalar McAttControl<Scalar>::advance_clock(std::uint64_t timestamp_us) {
   const Scalar dt_s = Scalar(timestamp_us - last_timestamp_us_) / Scalar(1000000);
   last_timestamp_us_ = timestamp_us;
-  return clamp(dt_s, Scalar(kShortestStep_s), Scalar(kLongestStep_s));
+  return clamp(dt_s, Scalar(shortest_step_s), Scalar(longest_step_s));
 }
 
 template <typename Scalar>
 ATTEST_INLINE void McAttControl<Scalar>::latch_topics(const attest_inputs& in) {
   const auto updated = [&in](std::uint32_t topic) { return (in.updated & topic) != 0; };
-  pending_ |= in.updated & kLatchedOnDemand;
+  pending_ |= in.updated & latched_on_demand;
   if (first_step_ || updated(ATTEST_UPDATED_PARAMETER_UPDATE)) apply_parameters();
 
   if (updated(ATTEST_UPDATED_MANUAL_CONTROL_SETPOINT)) topics_.manual = in.manual_control_setpoint;
@@ -128,7 +128,7 @@ ATTEST_INLINE RateCommand<Scalar> McAttControl<Scalar>::control_attitude(const a
   if (recovery_enabled_) return {recovery_.update(q_WB, q_WD, move_rate), thrust_sp};
 
   const bool by_vehicle = mode.flag_control_velocity_enabled != 0 ||
-                          (profile_ == Profile::kPx4V1_5_5 && mode.flag_control_auto_enabled != 0);
+                          (profile_ == Profile::px4_v1_5_5 && mode.flag_control_auto_enabled != 0);
   const bool autonomous = by_vehicle && mode.flag_control_manual_enabled == 0;
   const bool weathervane = autonomous && setpoint.disable_mc_yaw_control != 0;
   if (weathervane) rate_.reset_yaw_integral();
@@ -140,7 +140,7 @@ ATTEST_INLINE RateCommand<Scalar> McAttControl<Scalar>::control_acro() const {
   const auto& manual = topics_.manual;
   const Vector3<Scalar> sticks(Scalar(manual.y), Scalar(-manual.x), Scalar(manual.r));
   // Written so that a NaN throttle gives the maximum.
-  const float thrust_sp = manual.z < kAcroThrustMax ? manual.z : kAcroThrustMax;
+  const float thrust_sp = manual.z < acro_thrust_max ? manual.z : acro_thrust_max;
   return {sticks.cwiseProduct(gains_.acro_rate_max_rad_s), Scalar(thrust_sp)};
 }
 
@@ -191,7 +191,7 @@ template <typename Scalar>
 ATTEST_INLINE void McAttControl<Scalar>::publish_actuators(const Vector3<Scalar>& control,
                                                            Scalar thrust_sp,
                                                            attest_outputs& out) const {
-  const bool v1_5_5 = profile_ == Profile::kPx4V1_5_5;
+  const bool v1_5_5 = profile_ == Profile::px4_v1_5_5;
   auto& actuators = out.actuator_controls_0;
   for (int i = 0; i < 3; ++i) actuators.control[i] = finite_or_zero(float(control[i]));
   actuators.control[3] = finite_or_zero(float(thrust_sp));

@@ -29,7 +29,7 @@ struct Parameters {
   float cbrk_rate_ctrl;
 };
 
-enum class ParameterType { kFloat, kInteger };
+enum class ParameterType { real, integer };
 
 struct ParameterInfo {
   std::string_view name;

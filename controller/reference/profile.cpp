@@ -6,15 +6,15 @@ namespace attest::reference {
 namespace {
 
 // In the order of the enumerators.
-constexpr std::array<std::string_view, 2> kNames{"px4-v1.5.5", "px4-v1.3.4"};
+constexpr std::array<std::string_view, 2> all_names{"px4-v1.5.5", "px4-v1.3.4"};
 
 }  // namespace
 
-std::span<const std::string_view> profile_names() { return kNames; }
+std::span<const std::string_view> profile_names() { return all_names; }
 
 std::optional<Profile> profile_from_name(std::string_view name) {
-  if (name == kNames[0]) return Profile::kPx4V1_5_5;
-  if (name == kNames[1]) return Profile::kPx4V1_3_4;
+  if (name == all_names[0]) return Profile::px4_v1_5_5;
+  if (name == all_names[1]) return Profile::px4_v1_3_4;
   return std::nullopt;
 }
 

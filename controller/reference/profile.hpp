@@ -9,7 +9,7 @@ namespace attest::reference {
 
 // v1.3.4 (June 2016) has no throttle attenuation, landing gear or battery scaling, feeds forward
 // the change of the rate setpoint, and clamps yaw twice when weather-vaning.
-enum class Profile { kPx4V1_5_5, kPx4V1_3_4 };
+enum class Profile { px4_v1_5_5, px4_v1_3_4 };
 
 // "px4-v1.5.5", "px4-v1.3.4": newest first.
 std::span<const std::string_view> profile_names();

@@ -18,10 +18,10 @@
 namespace attest::reference {
 
 // The integral and the control that feeds it stay inside this bound.
-inline constexpr float kIntegralLimit = 0.3f;
+inline constexpr float integral_limit = 0.3f;
 
 // At less thrust the vehicle is taken to stand on the ground, where integrals would wind up.
-inline constexpr float kTakeoffThrust = 0.2f;
+inline constexpr float takeoff_thrust = 0.2f;
 
 // What the mixer had to give up: see multirotor_motor_limits.
 struct MotorLimits {
@@ -77,13 +77,13 @@ struct RateStages {
   }
 
   ATTEST_INLINE static bool may_integrate(Scalar thrust_sp, const MotorLimits& limits) {
-    return thrust_sp > Scalar(kTakeoffThrust) && !limits.lower && !limits.upper;
+    return thrust_sp > Scalar(takeoff_thrust) && !limits.lower && !limits.upper;
   }
 
   // One axis of the integral after this step: unchanged when any gate is shut.
   ATTEST_INLINE static Scalar integrate_axis(Scalar integral, Scalar control, Scalar thrust_sp,
                                              Scalar growth, bool frozen) {
-    const Scalar limit = Scalar(kIntegralLimit);
+    const Scalar limit = Scalar(integral_limit);
     if (!(std::abs(control) < thrust_sp)) return integral;
     const Scalar next = integral + growth;
     const bool inside = next > -limit && next < limit && control > -limit && control < limit;
@@ -130,13 +130,13 @@ class RateControl {
 
 template <typename Scalar>
 ATTEST_INLINE Vector3<Scalar> RateControl<Scalar>::feed_forward(const RateInput<Scalar>& in) const {
-  if (profile_ == Profile::kPx4V1_5_5) return Stages::feed_forward(in.rates_sp_B, gains_);
+  if (profile_ == Profile::px4_v1_5_5) return Stages::feed_forward(in.rates_sp_B, gains_);
   return Stages::feed_forward_change(in.rates_sp_B, rates_sp_prev_, in.dt_s, gains_);
 }
 
 template <typename Scalar>
 ATTEST_INLINE Vector3<Scalar> RateControl<Scalar>::update(const RateInput<Scalar>& in) {
-  const bool v1_5_5 = profile_ == Profile::kPx4V1_5_5;
+  const bool v1_5_5 = profile_ == Profile::px4_v1_5_5;
   if (!in.flying) integral_.setZero();
   const Scalar attenuation =
       v1_5_5 ? Stages::throttle_attenuation(in.published_thrust_sp, gains_) : Scalar(1);

@@ -7,10 +7,10 @@ namespace attest::reference {
 namespace {
 
 template <typename Scalar>
-constexpr Scalar kPi = Scalar(3.14159265358979323846);
+constexpr Scalar pi = Scalar(3.14159265358979323846);
 
 template <typename Scalar>
-constexpr Scalar kHalfPi = Scalar(1.57079632679489661923);
+constexpr Scalar half_pi = Scalar(1.57079632679489661923);
 
 // A value times the logistic function of v, as one division: the recorded bits tell.
 template <typename Scalar>
@@ -21,17 +21,17 @@ Scalar times_sigmoid(Scalar value, Scalar v) {
 template <typename Scalar>
 Scalar arc_cosine(Scalar cosine) {
   if (cosine >= Scalar(1)) return Scalar(0);
-  if (cosine <= Scalar(-1)) return kPi<Scalar>;
+  if (cosine <= Scalar(-1)) return pi<Scalar>;
   return std::acos(cosine);
 }
 
 // Folds the direction of the tilt axis into the first quadrant, where the functions were fitted.
 template <typename Scalar>
 RecoveryTilt<Scalar> fold(Scalar angle, Scalar direction) {
-  if (direction < -kHalfPi<Scalar>) return {angle, direction + kPi<Scalar>, {-1, -1, 1}};
+  if (direction < -half_pi<Scalar>) return {angle, direction + pi<Scalar>, {-1, -1, 1}};
   if (direction < Scalar(0)) return {angle, -direction, {-1, 1, -1}};
-  if (direction < kHalfPi<Scalar>) return {angle, direction, {1, 1, 1}};
-  return {angle, kPi<Scalar> - direction, {1, -1, -1}};
+  if (direction < half_pi<Scalar>) return {angle, direction, {1, 1, 1}};
+  return {angle, pi<Scalar> - direction, {1, -1, -1}};
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ RecoveryTilt<Scalar> RecoveryStages<Scalar>::tilt(const Quaternion<Scalar>& q_WB
   const Vector turned = ordered::times(rotation_matrix(product(q_WB, conjugate(q_WD))), up);
   const Scalar angle = arc_cosine(ordered::dot(turned, up));
   // At 0 and pi the cross product vanishes and any axis will do.
-  const Scalar from_singular = std::min(std::abs(angle), std::abs(angle - kPi<Scalar>));
+  const Scalar from_singular = std::min(std::abs(angle), std::abs(angle - pi<Scalar>));
   const Vector axis_W = from_singular > Scalar(0.00001) ? ordered::cross(turned, up) : up;
   const Vector axis_B = ordered::transpose_times(rotation_matrix(q_WB), axis_W);
   return fold(angle, Scalar(std::atan2(axis_B[0], axis_B[1])));
@@ -60,10 +60,9 @@ bool RecoveryStages<Scalar>::latch(bool recovering, Scalar tilt_rad) {
 // the numbers are those of PX4 v1.5.5 TailsitterRecovery.
 template <typename Scalar>
 Vector3<Scalar> RecoveryStages<Scalar>::optimal_rates(const RecoveryTilt<Scalar>& tilt) {
-  const Scalar pi = kPi<Scalar>;
   const Scalar x = tilt.angle_rad;
-  const Scalar y = kHalfPi<Scalar> - tilt.direction_rad;
-  const Scalar y_share = y / kHalfPi<Scalar>;
+  const Scalar y = half_pi<Scalar> - tilt.direction_rad;
+  const Scalar y_share = y / half_pi<Scalar>;
 
   const Scalar roll_gain = Scalar(3.997) * x;
   const Scalar roll =
@@ -72,13 +71,13 @@ Vector3<Scalar> RecoveryStages<Scalar>::optimal_rates(const RecoveryTilt<Scalar>
 
   const Scalar pitch_gain = Scalar(1.676) * x;
   const Scalar pitch_slope = Scalar(2.642), pitch_centre = Scalar(0.3586);
-  const Scalar at_half_turn = std::exp(pitch_slope * (pitch_centre - pi));
+  const Scalar at_half_turn = std::exp(pitch_slope * (pitch_centre - pi<Scalar>));
   const Scalar pitch =
       (Scalar(1.38) * y + Scalar(0.8725) * (y * y)) *
       (times_sigmoid(-pitch_gain, pitch_slope * (pitch_centre - x)) +
-       times_sigmoid(pitch_gain * at_half_turn, pitch_slope * (pi - pitch_centre)));
+       times_sigmoid(pitch_gain * at_half_turn, pitch_slope * (pi<Scalar> - pitch_centre)));
 
-  const Scalar yaw_gain = Scalar(2.726) * (x - pi);
+  const Scalar yaw_gain = Scalar(2.726) * (x - pi<Scalar>);
   const Scalar yaw_slope = Scalar(2.298), yaw_centre = Scalar(1.75);
   const Scalar yaw = (Scalar(3.168) * y - Scalar(0.3913) * (y * y)) *
                      (times_sigmoid(yaw_gain, yaw_slope * (x - yaw_centre)) -

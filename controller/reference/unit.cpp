@@ -39,7 +39,7 @@ int step(void* self, const attest_inputs* in, attest_outputs* out) noexcept {
   return ATTEST_OK;
 }
 
-constexpr attest_unit kUnit{
+constexpr attest_unit reference_table{
     ATTEST_UNIT_ABI_VERSION,
     "attest-reference",
     ATTEST_REFERENCE_VERSION,
@@ -52,6 +52,6 @@ constexpr attest_unit kUnit{
 
 }  // namespace
 
-const attest_unit* reference_unit() { return &kUnit; }
+const attest_unit* reference_unit() { return &reference_table; }
 
 }  // namespace attest::reference

@@ -21,6 +21,9 @@ namespace fs = std::filesystem;
 // Of the format of case files; a file with another one was written for another attest.
 constexpr std::int64_t schema_version = 1;
 
+// A minute of an 8 kHz loop is half of it; a trace of a million samples fits in memory.
+constexpr std::int64_t max_ticks = 1'000'000;
+
 std::vector<Rate> parse_rates(const TomlTable& root) {
   constexpr const char* key = "rates_hz";
   if (!root.has(key)) {
@@ -50,9 +53,9 @@ UnitTiming parse_unit(const TomlTable& root) {
   if (!root.has("unit")) return unit;
   const TomlTable table = root.table("unit");
   unit.start.amount = table.number("start_s", unit.start.amount);
-  // Up to 285 years of microseconds, the last that a double holds.
-  if (!(unit.start.amount >= 0 && unit.start.amount < 9e9)) {
-    table.error("start_s", "must be from 0 up to 9e9");
+  // With the longest case (1e9 s) still inside the 285 years of microseconds that a double holds.
+  if (!(unit.start.amount >= 0 && unit.start.amount <= 8e9)) {
+    table.error("start_s", "must be from 0 up to 8e9");
   }
   unit.jitter = table.number("jitter", 0);
   if (!(unit.jitter >= 0 && unit.jitter < 1)) {
@@ -61,6 +64,31 @@ UnitTiming parse_unit(const TomlTable& root) {
   unit.seed = static_cast<std::uint64_t>(table.integer("seed", 1));
   if (table.has("drop_ticks")) unit.drop_ticks = table.integers("drop_ticks");
   return unit;
+}
+
+// What jitter and dropped ticks may be depends on the rates and the duration.
+void check_unit(const TomlTable& root, const Case& parsed) {
+  if (!root.has("unit") || !(parsed.duration.amount >= 1e-6)) return;
+  const TomlTable table = root.table("unit");
+  std::vector<std::int64_t> drops = parsed.unit.drop_ticks;
+  std::sort(drops.begin(), drops.end());
+  drops.erase(std::unique(drops.begin(), drops.end()), drops.end());
+  std::int64_t most = 0;
+  for (const Rate& rate : parsed.rates) {
+    const std::int64_t ticks = tick_count(parsed.duration, rate);
+    most = std::max(most, ticks);
+    if (std::lower_bound(drops.begin(), drops.end(), ticks) - drops.begin() >= ticks) {
+      table.error("drop_ticks", fmt::format("leaves no tick at {} Hz", rate.to_string()));
+    }
+    // Jitter brings ticks nearer together, and timestamps (us) have to increase.
+    if (parsed.unit.jitter > 0 && (1 - parsed.unit.jitter) * rate.period_s() < 1e-6) {
+      table.error("jitter",
+                  fmt::format("leaves less than 1 us between ticks at {} Hz", rate.to_string()));
+    }
+  }
+  if (!drops.empty() && (drops.front() < 0 || drops.back() >= most)) {
+    table.error("drop_ticks", fmt::format("must be ticks of the case: from 0 to {}", most - 1));
+  }
 }
 
 std::vector<std::string> parameter_names() {
@@ -92,9 +120,9 @@ void parse_tolerances(const TomlTable& root, Case& parsed) {
     if (name == "why") continue;
     const TomlTable values = table.table(name);
     const Tolerance tolerance{values.number("absolute"), values.number("relative", 0)};
-    if (!(tolerance.absolute >= 0 && tolerance.relative >= 0)) {
-      values.error("absolute", "tolerances must not be negative");
-    }
+    const bool is_sane = tolerance.absolute >= 0 && tolerance.relative >= 0 &&
+                         std::isfinite(tolerance.absolute) && std::isfinite(tolerance.relative);
+    if (!is_sane) values.error("absolute", "tolerances must be finite and not negative");
     if (!Tolerances().set(name, tolerance)) {
       table.error(name, fmt::format("`{}` is no output topic or channel; `attest list --channels` "
                                     "shows them all",
@@ -106,7 +134,8 @@ void parse_tolerances(const TomlTable& root, Case& parsed) {
 
 // The place of a case is its name: cases/<profile>/<group>/<name>.toml.
 void parse_identity(const TomlTable& root, const fs::path& file, Case& parsed) {
-  const fs::path folder = fs::absolute(file).parent_path();
+  // Normal, because the folder of "./roll.toml" is not called ".".
+  const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
   parsed.name = file.stem().string();
   parsed.profile = root.text("profile");
   parsed.group = root.text("group");
@@ -119,7 +148,22 @@ void parse_identity(const TomlTable& root, const fs::path& file, Case& parsed) {
     root.error("profile", fmt::format("is `{}`, but the folder is `{}`", parsed.profile,
                                       folder.parent_path().filename().string()));
   }
-  if (parsed.why.empty()) root.error("why", "must say why the case exists");
+  if (root.has("why") && parsed.why.empty()) root.error("why", "must say why the case exists");
+}
+
+void parse_duration(const TomlTable& root, Case& parsed) {
+  parsed.duration = parse_span(root, "duration");
+  const Span& duration = parsed.duration;
+  const std::string key = span_key(root, "duration");
+  if (key.empty()) return;
+  if (!(duration.amount >= 1e-6)) root.error(key, "must be positive");
+  if (duration.in == Span::In::ticks && duration.amount != std::floor(duration.amount)) {
+    root.error(key, "must be a whole number");
+  }
+  if (!parsed.rates.empty() && tick_count(duration, parsed.rates.back()) > max_ticks) {
+    root.error(key, fmt::format("is more than {} ticks at {} Hz", max_ticks,
+                                parsed.rates.back().to_string()));
+  }
 }
 
 void parse_body(const TomlTable& root, Case& parsed) {
@@ -127,16 +171,12 @@ void parse_body(const TomlTable& root, Case& parsed) {
     root.error("schema", fmt::format("must be {}", schema_version));
   }
   parsed.rates = parse_rates(root);
-  parsed.duration = parse_span(root, "duration");
-  if (!(parsed.duration.amount >= 1e-6)) root.error("duration_ticks", "must be positive");
-  const bool whole_ticks = parsed.duration.amount == std::floor(parsed.duration.amount);
-  if (parsed.duration.in == Span::In::ticks && !whole_ticks) {
-    root.error("duration_ticks", "must be a whole number");
-  }
+  parse_duration(root, parsed);
   const std::string level = root.text("level", "numeric");
   parsed.exact_only = level == "exact";
   if (level != "numeric" && level != "exact") root.error("level", "must be numeric or exact");
   parsed.unit = parse_unit(root);
+  check_unit(root, parsed);
   parsed.parameters = parse_parameters(root);
   parsed.topics = parse_topics(root);
   parse_tolerances(root, parsed);

@@ -1,6 +1,7 @@
 #include "harness/casefile/parse_signal.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -24,6 +25,20 @@ std::optional<Spelled> spelled(const TomlTable& table, const std::string& first,
   }
   if (!has_first && !has_second) return std::nullopt;
   return Spelled{has_first ? first : second, has_first};
+}
+
+// As many ticks as the longest case has, and as many seconds as they last at the slowest rate: all
+// times stay inside 64 bits of nanoseconds.
+constexpr double max_ticks = 1e6;
+constexpr double max_seconds = 1e9;
+
+Span checked_span(const TomlTable& table, const Spelled& key, double amount) {
+  const double limit = key.first ? max_ticks : max_seconds;
+  if (!(amount >= 0 && amount <= limit)) {
+    table.error(key.key, fmt::format("must be a time from 0 up to {:.0f}", limit));
+    amount = amount > limit ? limit : 0;
+  }
+  return {amount, key.first ? Span::In::ticks : Span::In::seconds};
 }
 
 Frequency parse_frequency(const TomlTable& table, const std::string& hertz,
@@ -71,7 +86,9 @@ RandomWalk parse_random_walk(const TomlTable& table) {
   if (!(walk.start >= walk.min && walk.start <= walk.max)) {
     table.error("start", "must lie between `min` and `max`");
   }
-  if (!(walk.every.amount > 0)) table.error("every_ticks", "must be positive");
+  if (const std::string key = span_key(table, "every"); !(walk.every.amount >= 1e-6)) {
+    table.error(key, "must be at least 1e-6");
+  }
   return walk;
 }
 
@@ -107,12 +124,17 @@ Signal parse_signal_table(const TomlTable& table) {
 
 }  // namespace
 
+std::string span_key(const TomlTable& table, const std::string& stem) {
+  for (const char* const unit : {"_ticks", "_s"}) {
+    if (table.has(stem + unit)) return stem + unit;
+  }
+  return "";
+}
+
 std::optional<Span> parse_optional_span(const TomlTable& table, const std::string& stem) {
   const auto found = spelled(table, stem + "_ticks", stem + "_s");
   if (!found) return std::nullopt;
-  const double amount = table.number(found->key);
-  if (!(amount >= 0 && amount < 1e9)) table.error(found->key, "must be a time from 0 up to 1e9");
-  return Span{amount, found->first ? Span::In::ticks : Span::In::seconds};
+  return checked_span(table, *found, table.number(found->key));
 }
 
 Span parse_span(const TomlTable& table, const std::string& stem) {
@@ -130,13 +152,13 @@ std::vector<Span> parse_spans(const TomlTable& table, const std::string& stem) {
     return {};
   }
   std::vector<Span> spans;
-  double last = -1;
+  double last = -std::numeric_limits<double>::infinity();
   for (const double amount : table.numbers(found->key)) {
-    if (!(amount > last && amount < 1e9)) {
-      table.error(found->key, "must increase, from 0 up to 1e9");
+    if (!(amount > last)) {
+      table.error(found->key, "must increase");
       break;
     }
-    spans.push_back({amount, found->first ? Span::In::ticks : Span::In::seconds});
+    spans.push_back(checked_span(table, *found, amount));
     last = amount;
   }
   return spans;

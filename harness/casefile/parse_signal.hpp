@@ -11,6 +11,8 @@ namespace attest {
 
 // `<stem>_ticks = 20` or `<stem>_s = 0.5`.
 Span parse_span(const TomlTable& table, const std::string& stem);  // required
+// The one that is there, for a message about it; empty when neither is.
+std::string span_key(const TomlTable& table, const std::string& stem);
 std::optional<Span> parse_optional_span(const TomlTable& table, const std::string& stem);
 
 // `<stem>_ticks = [0, 10]` or `<stem>_s = [0.0, 0.5]`, increasing.

@@ -139,7 +139,12 @@ Publication parse_publication(const TomlTable& table) {
   if (by_period) {
     publication.when = When::periodic;
     publication.period = parse_span(table, "period");
-    if (!(publication.period.amount > 0)) table.error("period_ticks", "must be positive");
+    const Span& period = publication.period;
+    if (!(period.amount >= 1e-6)) table.error(span_key(table, "period"), "must be positive");
+    if (period.in == Span::In::ticks && period.amount != std::floor(period.amount)) {
+      table.error("period_ticks",
+                  "must be a whole number; other periods are `period_s` or `rate_hz`");
+    }
   }
   if (by_rate) {
     publication.when = When::periodic;

@@ -94,6 +94,11 @@ Nanoseconds Span::on(const Rate& unit_rate) const {
   return tick + Nanoseconds(std::llround(rest * ns_per_s));
 }
 
+std::int64_t tick_count(const Span& duration, const Rate& unit_rate) {
+  return duration.in == Span::In::ticks ? static_cast<std::int64_t>(duration.amount)
+                                        : unit_rate.ticks_in(duration.on(unit_rate));
+}
+
 double Frequency::hertz_on(const Timeline& timeline) const {
   return in == In::hertz ? amount : amount / seconds(timeline.duration);
 }

@@ -28,6 +28,9 @@ struct Span {
   Nanoseconds on(const Rate& unit_rate) const;
 };
 
+// How many ticks of the unit begin in `duration`, which is whole if it is in ticks.
+std::int64_t tick_count(const Span& duration, const Rate& unit_rate);
+
 struct Frequency {
   enum class In { hertz, cycles };  // cycles: over the whole case
   double amount = 0;

@@ -13,9 +13,8 @@
 namespace attest {
 namespace {
 
-std::int64_t period_count(const Span& duration, const Rate& rate) {
-  return duration.in == Span::In::ticks ? static_cast<std::int64_t>(duration.amount)
-                                        : rate.ticks_in(duration.on(rate));
+bool is_whole_ticks(const Span& span) {
+  return span.in == Span::In::ticks && span.amount == std::floor(span.amount);
 }
 
 bool same(float a, float b) {
@@ -81,8 +80,7 @@ class Publisher {
         every_tick_ = true;
         break;
       case When::periodic:
-        releases_.rate = publication.rate ? *publication.rate : rate_of(publication.period);
-        releases_.phase = publication.phase.on(rate_);
+        plan_periodic(publication);
         break;
       case When::at_times:
         for (const Span& time : publication.times) releases_.times.push_back(time.on(rate_));
@@ -92,11 +90,26 @@ class Publisher {
     }
   }
 
-  // A period of n ticks is exactly the unit's rate divided by n where n is whole.
-  Rate rate_of(const Span& period) const {
-    const bool whole = period.in == Span::In::ticks && period.amount == std::floor(period.amount);
-    if (whole) return rate_.divided_by(static_cast<std::int64_t>(period.amount));
-    return Rate::hz(1'000'000'000, std::max<std::int64_t>(period.on(rate_).count(), 1));
+  // A period of whole ticks is every n-th tick of the unit: at 333 Hz, too, a release and the tick
+  // that it belongs to are at the same nanosecond.
+  void plan_periodic(const Publication& publication) {
+    const auto& [when, rate, period, phase, times] = publication;
+    if (rate || !is_whole_ticks(period)) {
+      releases_.rate = rate ? *rate : every(period.on(rate_));
+      releases_.phase = phase.on(rate_);
+      return;
+    }
+    releases_.rate = rate_;
+    releases_.every = static_cast<std::int64_t>(period.amount);
+    if (is_whole_ticks(phase)) {
+      releases_.first = static_cast<std::int64_t>(phase.amount);
+    } else {
+      releases_.phase = phase.on(rate_);
+    }
+  }
+
+  static Rate every(Nanoseconds period) {
+    return Rate::hz(1'000'000'000, std::max<std::int64_t>(period.count(), 1));
   }
 
   const TopicStimulus& topic_;
@@ -143,7 +156,7 @@ class ParameterPublisher {
 }  // namespace
 
 Trace stimulate(const Case& the_case, const Rate& rate) {
-  const std::int64_t periods = period_count(the_case.duration, rate);
+  const std::int64_t periods = tick_count(the_case.duration, rate);
   const Timeline timeline{rate, rate.tick(periods)};
   const Nanoseconds start = the_case.unit.start.on(rate);
 

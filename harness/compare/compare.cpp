@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <vector>
 
 #include <fmt/format.h>
@@ -73,7 +74,12 @@ class Comparer {
     if (got_.samples.size() != want_.samples.size()) {
       return fmt::format("{} ticks, expected {}", got_.samples.size(), want_.samples.size());
     }
-    return compared_channels(want_).empty() ? "nothing to compare: no out/ channels" : "";
+    const std::vector<std::size_t> chosen = compared_channels(want_);
+    for (const std::size_t channel : chosen) {
+      if (!got_.present[channel])
+        return fmt::format("{} was not recorded", channels()[channel].name);
+    }
+    return chosen.empty() ? "nothing to compare: no out/ channels" : "";
   }
 
   void compare_tick(std::size_t tick, const std::vector<std::size_t>& chosen) {
@@ -125,7 +131,9 @@ class Comparer {
                         in.vehicle_control_mode.flag_control_attitude_enabled != 0;
     if (!widens || difference <= tolerance) return tolerance;
     const double tilt = tilt_error(in, want_.samples[setpoint_].in);
-    return std::isfinite(tilt) ? tolerance + Tolerances::widening(tilt, gain_.at(tick)) : tolerance;
+    const double wider = Tolerances::widening(tilt, gain_.at(tick));
+    // No attitude, or a time constant of zero: nothing that floats could be near to.
+    return std::isfinite(wider) ? tolerance + wider : tolerance;
   }
 
   void note(std::size_t tick, std::size_t channel, std::int64_t ulp, double tolerance) {
@@ -162,19 +170,49 @@ Comparison compare(const Trace& got, const Trace& want, const Tolerances& tolera
   return Comparer(got, want, tolerances).run();
 }
 
+namespace {
+
+// The parameters in force at each tick, walking forward.
+class ParametersInForce {
+ public:
+  explicit ParametersInForce(const Trace& trace) : changes_(trace.parameters) {}
+
+  const std::map<std::string, float>& at(std::size_t tick) {
+    for (; next_ < changes_.size() && changes_[next_].tick <= tick; ++next_) {
+      values_[changes_[next_].name] = changes_[next_].value;
+    }
+    return values_;
+  }
+
+ private:
+  const std::vector<ParameterChange>& changes_;
+  std::size_t next_ = 0;
+  std::map<std::string, float> values_;
+};
+
+bool same_parameters(const std::map<std::string, float>& a, const std::map<std::string, float>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
+    return x.first == y.first && same_bits(x.second, y.second);
+  });
+}
+
+bool same_inputs(const Sample& a, const Sample& b) {
+  const auto table = channels();
+  return std::all_of(table.begin(), table.end(), [&](const Channel& channel) {
+    if (channel.is_output()) return true;
+    return channel.type == ChannelType::f32 ? same_bits(float_of(channel, a), float_of(channel, b))
+                                            : value_of(channel, a) == value_of(channel, b);
+  });
+}
+
+}  // namespace
+
 std::optional<std::size_t> first_input_difference(const Trace& a, const Trace& b) {
   const std::size_t common = std::min(a.samples.size(), b.samples.size());
-  const auto table = channels();
+  ParametersInForce of_a(a), of_b(b);
   for (std::size_t tick = 0; tick < common; ++tick) {
-    const Sample& x = a.samples[tick];
-    const Sample& y = b.samples[tick];
-    for (const Channel& channel : table) {
-      if (channel.is_output()) continue;
-      const bool same = channel.type == ChannelType::f32
-                            ? same_bits(float_of(channel, x), float_of(channel, y))
-                            : value_of(channel, x) == value_of(channel, y);
-      if (!same) return tick;
-    }
+    if (!same_inputs(a.samples[tick], b.samples[tick])) return tick;
+    if (!same_parameters(of_a.at(tick), of_b.at(tick))) return tick;
   }
   if (a.samples.size() != b.samples.size()) return common;
   return std::nullopt;

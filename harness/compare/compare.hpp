@@ -27,7 +27,7 @@ struct Deviation {
 };
 
 // How near a passing channel came to failing: tolerance / |got - want|, 1 is the edge. Infinite
-// when every value agreed to the bit.
+// when nothing but the sign of a zero differed; there is none when every value agreed to the bit.
 struct Headroom {
   double ratio = 0;
   std::size_t tick = 0;
@@ -47,8 +47,8 @@ struct Comparison {
 
 Comparison compare(const Trace& got, const Trace& want, const Tolerances& tolerances);
 
-// Index of the first tick whose inputs (in/... and timestamp, by bits) differ; empty when all
-// agree.
+// Index of the first tick whose inputs (in/..., parameters in force and timestamp, by bits) differ;
+// empty when all agree.
 std::optional<std::size_t> first_input_difference(const Trace& a, const Trace& b);
 
 }  // namespace attest

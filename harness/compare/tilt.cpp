@@ -36,7 +36,7 @@ double AttitudeGain::at(std::size_t tick) {
     if (name == "MC_PITCH_P") pitch_p_ = value;
     if (name == "MC_PITCH_TC") pitch_tc_ = value;
   }
-  return std::max(roll_p_ * 0.2 / roll_tc_, pitch_p_ * 0.2 / pitch_tc_);
+  return std::max(std::abs(roll_p_ * 0.2 / roll_tc_), std::abs(pitch_p_ * 0.2 / pitch_tc_));
 }
 
 }  // namespace attest

@@ -11,7 +11,8 @@ namespace attest {
 // quaternion is not finite or zero.
 double tilt_error(const attest_inputs& state, const attest_inputs& setpoint);
 
-// The larger of the roll and pitch attitude gains [1/s] in force at each tick, walking forward.
+// The larger of the roll and pitch attitude gains [1/s], without their signs, in force at each
+// tick, walking forward.
 class AttitudeGain {
  public:
   explicit AttitudeGain(const Trace& trace) : trace_(trace) {}

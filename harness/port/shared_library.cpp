@@ -1,6 +1,7 @@
 #include "harness/port/shared_library.hpp"
 
 #include <filesystem>
+#include <system_error>
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -45,7 +46,8 @@ Result<void> check_table(const attest_unit* unit, const std::string& path) {
 }  // namespace
 
 Result<std::unique_ptr<Port>> open_shared_library(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) {
+  std::error_code unreadable;
+  if (!std::filesystem::is_regular_file(path, unreadable)) {
     return fail_at(path, "no such library; `--port lib:PATH` takes the path of a shared library");
   }
   // An absolute path keeps dlopen from searching the system's library folders.

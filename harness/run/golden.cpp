@@ -131,9 +131,12 @@ Result<void> NewGolden::put_in_place() {
   const fs::path old = fs::path(folder_).concat(".old");
   std::error_code error;
   fs::remove_all(old, error);
+  error.clear();
   if (fs::exists(folder_)) fs::rename(folder_, old, error);
   if (!error) fs::rename(written_, folder_, error);
   if (error) {
+    std::error_code ignored;
+    if (!fs::exists(folder_, ignored)) fs::rename(old, folder_, ignored);
     return fail_at(folder_.string(), fmt::format("cannot be replaced: {}", error.message()));
   }
   written_.clear();

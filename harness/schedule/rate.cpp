@@ -59,7 +59,7 @@ Result<Rate> Rate::parse(std::string_view text) {
   if (!fraction || fraction->numerator == 0 || fraction->denominator == 0) {
     return fail(
         fmt::format("`{}` is not a rate; write a positive number of hertz such as 250, "
-                    "62.5 or 1000/3",
+                    "62.5 or 1000/3, with at most 9 digits",
                     text));
   }
   const Rate rate = hz(fraction->numerator, fraction->denominator);
@@ -86,12 +86,11 @@ Nanoseconds Rate::tick(std::int64_t k) const {
 }
 
 std::int64_t Rate::ticks_in(Nanoseconds duration) const {
+  if (duration <= Nanoseconds(0)) return 0;
   const Int128 product = Int128{duration.count()} * numerator_;
   const Int128 divisor = Int128{ns_per_s} * denominator_;
-  auto k = static_cast<std::int64_t>(product / divisor);
-  while (k > 0 && tick(k - 1) >= duration) --k;
-  while (tick(k) < duration) ++k;
-  return k;
+  // floor(x) >= duration where x >= duration, so no tick needs to be looked at.
+  return static_cast<std::int64_t>((product + divisor - 1) / divisor);
 }
 
 std::string Rate::to_string() const {

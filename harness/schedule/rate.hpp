@@ -24,11 +24,8 @@ class Rate {
   // Begin of period k: floor(k * 1e9 / rate) ns. Computed from k, never accumulated.
   Nanoseconds tick(std::int64_t k) const;
 
-  // The number of ticks in [0, duration): the smallest k with tick(k) >= duration.
+  // The number of ticks in [0, duration): the smallest k >= 0 with tick(k) >= duration.
   std::int64_t ticks_in(Nanoseconds duration) const;
-
-  // The rate of every n-th tick. REQUIRES: n positive.
-  Rate divided_by(std::int64_t n) const { return hz(numerator_, denominator_ * n); }
 
   double hertz() const {
     return static_cast<double>(numerator_) / static_cast<double>(denominator_);

@@ -26,7 +26,9 @@ std::optional<Nanoseconds> ReleaseSchedule::latest(Nanoseconds time) const {
   if (rate) {
     if (time < phase) return std::nullopt;
     // ticks_in counts the releases before an end, so one nanosecond more includes `time` itself.
-    return phase + rate->tick(rate->ticks_in(time - phase + Nanoseconds(1)) - 1);
+    const std::int64_t last = rate->ticks_in(time - phase + Nanoseconds(1)) - 1;
+    if (last < first) return std::nullopt;
+    return phase + rate->tick(last - (last - first) % every);
   }
   const auto after = std::upper_bound(times.begin(), times.end(), time);
   if (after == times.begin()) return std::nullopt;

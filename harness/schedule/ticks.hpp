@@ -27,9 +27,13 @@ struct TickSchedule {
 std::vector<Nanoseconds> ticks(const TickSchedule& schedule, std::int64_t periods);
 
 // When the samples of a topic are published: periodically, at given times, or both empty: never.
+// Release i is at phase + rate.tick(first + i * every), so that releases counted in the unit's
+// ticks are those very ticks, to the nanosecond.
 struct ReleaseSchedule {
   std::optional<Rate> rate;
   Nanoseconds phase{0};
+  std::int64_t first = 0;
+  std::int64_t every = 1;          // positive
   std::vector<Nanoseconds> times;  // increasing; used when there is no rate
 
   // The latest release at or before `time`; empty when there was none.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <string_view>
@@ -61,6 +62,8 @@ Result<Child> Child::spawn(const std::function<void(const SendLine&)>& work) {
   }
   const int output = ::memfd_create("attest-port-output", MFD_CLOEXEC);
   const pid_t parent = ::getpid();
+  // A port that calls exit() would print what the parent has not printed yet.
+  std::fflush(nullptr);
   const pid_t pid = output < 0 ? -1 : ::fork();
   if (pid < 0) {
     const int reason = errno;

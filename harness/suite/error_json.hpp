@@ -1,5 +1,5 @@
-// An Error as JSON and back: {"message": ..., "file": ..., "line": 12, "column": 3}, empty and 0 where
-// unknown.
+// An Error as JSON and back: {"message": ..., "file": ..., "line": 12, "column": 3}, empty and 0
+// where unknown.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -49,7 +49,8 @@ Pool::Clock::time_point Pool::deadline() const {
 }
 
 void Pool::start_workers() {
-  while (workers_.size() < static_cast<std::size_t>(options_.jobs) && next_ < end_) {
+  const auto jobs = static_cast<std::size_t>(std::max(options_.jobs, 1));
+  while (workers_.size() < jobs && next_ < end_) {
     start(next_++, 0);
   }
 }
@@ -128,7 +129,9 @@ void Pool::conclude(Worker& worker, bool timed_out) {
 }
 
 CaseResult Pool::verdict_on_the_dead(Worker& worker, bool timed_out) {
-  if (timed_out) worker.child.kill();
+  // Its pipe is closed or its time is up. A process that is ending already keeps its own end; one
+  // that closed the pipe and lives on would never be waited for to the end.
+  worker.child.kill();
   const std::string how = worker.child.end();
   CaseResult result = batches_[worker.batch]->identity(worker.task);
   result.verdict = timed_out ? Verdict::timeout : Verdict::crash;

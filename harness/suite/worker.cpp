@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "harness/core/float_environment.hpp"
 #include "harness/suite/child.hpp"
 #include "harness/suite/error_json.hpp"
 #include "harness/suite/pool.hpp"
@@ -22,10 +23,12 @@ bool any_failed(const WorkerOutcome& outcome) {
 }
 
 WorkerOutcome run_here(const Batches& batches, const WorkerOptions& options) {
+  // A port that changes the environment when it is loaded changes that of the caller here.
+  const DefaultFloatEnvironment callers;
   WorkerOutcome outcome;
   auto port = open_port(options.port);
   if (!port) return {{}, {port.error()}, false};
-  for (std::size_t index = 0; index < batches.size(); ++index) {
+  for (std::size_t index = 0; index < batches.size() && !options.stop(); ++index) {
     for (std::size_t i = 0; i < batches[index]->size(); ++i) {
       auto result = batches[index]->evaluate(i, **port);
       if (result) {

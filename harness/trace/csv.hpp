@@ -23,7 +23,8 @@ enum class CsvNeed {
 };
 
 // Reads the whole trace, with the constants of the provenance.toml beside it if there is one.
-// Parameter columns become changes: at tick 0, and at each tick with in/updated.parameter_update.
+// Parameter columns become changes: all at tick 0, after those of the constants; then, at each tick
+// with in/updated.parameter_update, those whose value is not the one last set (by bits, NaN = NaN).
 // Errors, each as file:line:column with what to do: unreadable file, no header, unknown or repeated
 // column, missing channel, short or long row, a cell that is not a number of its channel's type,
 // timestamps that do not increase, no rows.
@@ -35,9 +36,11 @@ struct CsvColumns {
   std::vector<std::string> parameters;  // names, written after the inputs
 };
 
-// Everything the trace has.
+// Everything the trace has, parameters in the order they are first set.
 CsvColumns all_columns(const Trace& trace);
 
+// Does not commit. Errors: the file cannot be written, and what a column cannot say of a parameter:
+// a first value later than tick 0, a change at a tick without in/updated.parameter_update.
 Result<void> write_csv(const Trace& trace, const CsvColumns& columns, AtomicFile& file);
 
 }  // namespace attest

@@ -85,8 +85,9 @@ inline const char* parse_integer(const char* first, const char* last, void* to) 
   return parsed.ec == std::errc() ? parsed.ptr : nullptr;
 }
 
-inline const char* parse_cell(const char* first, const char* last, const CsvColumn& column,
-                              char* row) {
+// Forced: left to itself clang calls it, which costs 5 % of the reading time.
+[[gnu::always_inline]] inline const char* parse_cell(const char* first, const char* last,
+                                                     const CsvColumn& column, char* row) {
   char* const to = row + column.offset;
   switch (column.type) {
     case ChannelType::f32:

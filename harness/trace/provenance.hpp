@@ -30,12 +30,15 @@ struct Provenance {
 
 inline constexpr const char* provenance_name = "provenance.toml";
 
+// The keys are the members' names; none is required. Errors: unreadable file, not TOML, an unknown
+// key, a constant that is no channel or parameter, `timestamp`, or not a value of its channel.
 Result<Provenance> read_provenance(const std::filesystem::path& file);
 std::string to_toml(const Provenance& provenance);
 
 // Divides the columns of traces that will stand in one folder: what has the same value in every
-// sample of all of them goes to `constants`, the rest stays a column in each.
-// REQUIRES: all traces have the same channels and parameter names; none is empty.
+// sample of all of them (by bits, NaN = NaN) goes to `constants`, the rest stays a column in each.
+// So does a parameter that has the same value from tick 0 on in all of them. timestamp stays a
+// column. REQUIRES: all traces have the same channels and parameter names; none is empty.
 struct Division {
   CsvColumns columns;
   std::map<std::string, double> constants;

@@ -27,7 +27,7 @@ AttitudeGains<double> unlimited_gains() {
 }
 
 Vector rates(const Quaterniond& q, const Quaterniond& q_d) {
-  AttitudeControl<double> control(Profile::kPx4V1_5_5);
+  AttitudeControl<double> control(Profile::px4_v1_5_5);
   control.set_gains(unlimited_gains());
   return control.update({q, q_d, 0.0, false, false});
 }
@@ -78,7 +78,7 @@ RC_GTEST_PROP(AttitudeControl, HeadingOfTheWorldDoesNotMatter, ()) {
 
 // q and -q are one attitude: R(q) is made of products of two components, so not a bit may change.
 RC_GTEST_PROP(AttitudeControl, SignOfAQuaternionDoesNotMatter, ()) {
-  AttitudeControl<float> control(Profile::kPx4V1_5_5);
+  AttitudeControl<float> control(Profile::px4_v1_5_5);
   control.set_gains(compute_gains<float>(default_parameters()).attitude);
   const Quaternion<float> q = draw_quaternion();
   const Quaternion<float> q_d = draw_quaternion();
@@ -95,7 +95,7 @@ RC_GTEST_PROP(AttitudeControl, SignOfAQuaternionDoesNotMatter, ()) {
 // The clamp lets NaN through and nothing else.
 RC_GTEST_PROP(AttitudeControl, RateLimitsHold, (bool autonomous)) {
   const AttitudeGains<float> gains = compute_gains<float>(default_parameters()).attitude;
-  AttitudeControl<float> control(Profile::kPx4V1_5_5);
+  AttitudeControl<float> control(Profile::px4_v1_5_5);
   control.set_gains(gains);
   const Vector3<float>& bound = autonomous ? gains.auto_rate_max_rad_s : gains.rate_max_rad_s;
   const Vector3<float> actual =
@@ -107,7 +107,7 @@ RC_GTEST_PROP(AttitudeControl, RateLimitsHold, (bool autonomous)) {
 
 RC_GTEST_PROP(AttitudeControl, WeathervaneBoundsYawWithItsFeedForward, ()) {
   const AttitudeGains<float> gains = compute_gains<float>(default_parameters()).attitude;
-  AttitudeControl<float> control(Profile::kPx4V1_5_5);
+  AttitudeControl<float> control(Profile::px4_v1_5_5);
   control.set_gains(gains);
   const float bound = gains.auto_rate_max_rad_s[2] * gains.weathervane_scale;
   const float yaw = control.update(
@@ -117,7 +117,7 @@ RC_GTEST_PROP(AttitudeControl, WeathervaneBoundsYawWithItsFeedForward, ()) {
 
 TEST(AttitudeControl, FeedForwardIsAddedAfterTheLimit) {
   const AttitudeGains<double> gains = compute_gains<double>(default_parameters()).attitude;
-  AttitudeControl<double> control(Profile::kPx4V1_5_5);
+  AttitudeControl<double> control(Profile::px4_v1_5_5);
   control.set_gains(gains);
   const Vector actual =
       control.update({yaw_quaternion(0.0), yaw_quaternion(2.0), 3.0, true, false});
@@ -128,10 +128,10 @@ TEST(AttitudeControl, OlderLawWeathervanesBeforeTheFeedForwardToo) {
   const AttitudeGains<double> gains = compute_gains<double>(default_parameters()).attitude;
   const double bound = gains.auto_rate_max_rad_s[2] * gains.weathervane_scale;
   const AttitudeInput<double> in{yaw_quaternion(2.0), yaw_quaternion(0.0), bound, true, true};
-  AttitudeControl<double> newer(Profile::kPx4V1_5_5);
+  AttitudeControl<double> newer(Profile::px4_v1_5_5);
   newer.set_gains(gains);
   EXPECT_NEAR(newer.update(in)[2], -bound, 1e-12);
-  AttitudeControl<double> older(Profile::kPx4V1_3_4);
+  AttitudeControl<double> older(Profile::px4_v1_3_4);
   older.set_gains(gains);
   EXPECT_NEAR(older.update(in)[2], -bound + bound * 0.5, 1e-12);
 }

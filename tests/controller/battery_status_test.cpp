@@ -12,45 +12,45 @@ namespace {
 
 using test::mostly_ordinary_float;
 
-constexpr int kCells = 3;
+constexpr int cells = 3;
 
-BatterySample at_rest(float cell_V) { return {cell_V * kCells, 0.0f, 0.0f, false}; }
+BatterySample at_rest(float cell_V) { return {cell_V * cells, 0.0f, 0.0f, false}; }
 
 TEST(BatteryStatus, FullCellsNeedNoScaling) {
-  BatteryStatus battery({.cell_count = kCells});
+  BatteryStatus battery({.cell_count = cells});
   EXPECT_NEAR(battery.update(at_rest(4.05f)), 1.0f, 1e-6f);
   EXPECT_NEAR(battery.remaining(), 1.0f, 1e-6f);
 }
 
 TEST(BatteryStatus, EmptyCellsScaleByTheRatioOfVoltages) {
-  BatteryStatus battery({.cell_count = kCells});
+  BatteryStatus battery({.cell_count = cells});
   EXPECT_NEAR(battery.update(at_rest(3.4f)), 4.05f / 3.4f, 1e-6f);
 }
 
 TEST(BatteryStatus, FilterTakesAHundredthOfEachSample) {
-  BatteryStatus battery({.cell_count = kCells});
+  BatteryStatus battery({.cell_count = cells});
   battery.update(at_rest(4.05f));
   battery.update(at_rest(3.4f));
   EXPECT_NEAR(battery.remaining(), 0.99f, 1e-5f);
 }
 
 TEST(BatteryStatus, LoadIsAddedBackWhenArmed) {
-  BatteryStatus armed({.cell_count = kCells});
-  armed.update({3.7f * kCells, 0.0f, 1.0f, true});
+  BatteryStatus armed({.cell_count = cells});
+  armed.update({3.7f * cells, 0.0f, 1.0f, true});
   EXPECT_NEAR(armed.remaining(), (3.7f + 0.3f - 3.4f) / 0.65f, 1e-5f);
-  BatteryStatus disarmed({.cell_count = kCells});
-  disarmed.update({3.7f * kCells, 0.0f, 1.0f, false});
+  BatteryStatus disarmed({.cell_count = cells});
+  disarmed.update({3.7f * cells, 0.0f, 1.0f, false});
   EXPECT_NEAR(disarmed.remaining(), (3.7f - 3.4f) / 0.65f, 1e-5f);
 }
 
 TEST(BatteryStatus, KnownResistanceReplacesTheThrottleModel) {
-  BatteryStatus battery({.cell_count = kCells, .internal_resistance_ohm = 0.01f});
-  battery.update({3.6f * kCells, 20.0f, 1.0f, true});
+  BatteryStatus battery({.cell_count = cells, .internal_resistance_ohm = 0.01f});
+  battery.update({3.6f * cells, 20.0f, 1.0f, true});
   EXPECT_NEAR(battery.remaining(), (3.6f + 0.2f - 3.4f) / 0.65f, 1e-5f);
 }
 
 RC_GTEST_PROP(BatteryStatus, ScaleIsAlwaysUsable, ()) {
-  BatteryStatus battery({.cell_count = kCells});
+  BatteryStatus battery({.cell_count = cells});
   for (int sample = 0; sample < 20; ++sample) {
     const float scale = battery.update({*mostly_ordinary_float() * 15.0f, *mostly_ordinary_float(),
                                         *mostly_ordinary_float(), *rc::gen::arbitrary<bool>()});

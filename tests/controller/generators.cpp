@@ -9,14 +9,14 @@ namespace {
 
 // Runs are the same every time, unless whoever runs them sets RC_PARAMS. rapidcheck reads it when
 // the first property runs.
-[[maybe_unused]] const int kSeeded = setenv("RC_PARAMS", "seed=20160601", 0);
+[[maybe_unused]] const int seeded = setenv("RC_PARAMS", "seed=20160601", 0);
 
-constexpr std::uint32_t kAllTopics = 0x1ff;
+constexpr std::uint32_t all_topics = 0x1ff;
 
 std::uint8_t draw_flag() { return *rc::gen::element<std::uint8_t>(0, 1, 2, 4); }
 
-template <std::size_t kCount>
-void draw_floats(float (&values)[kCount]) {
+template <std::size_t count>
+void draw_floats(float (&values)[count]) {
   for (float& value : values) value = *mostly_ordinary_float();
 }
 
@@ -45,9 +45,9 @@ void draw_flags(attest_inputs& in) {
 }  // namespace
 
 rc::Gen<double> uniform(double low, double high) {
-  constexpr int kSteps = 1'000'000;
-  const auto whole = rc::gen::resize(rc::kNominalSize, rc::gen::inRange(0, kSteps + 1));
-  return rc::gen::map(whole, [low, high](int i) { return low + (high - low) * i / kSteps; });
+  constexpr int steps = 1'000'000;
+  const auto whole = rc::gen::resize(rc::kNominalSize, rc::gen::inRange(0, steps + 1));
+  return rc::gen::map(whole, [low, high](int i) { return low + (high - low) * i / steps; });
 }
 
 Quaterniond tilt_quaternion(double direction, double angle) {
@@ -83,7 +83,7 @@ rc::Gen<attest_inputs> any_step(std::uint64_t previous_us) {
   return rc::gen::exec([previous_us] {
     attest_inputs in{};
     in.timestamp = previous_us + static_cast<std::uint64_t>(*uniform(1.0, 30000.0));
-    in.updated = static_cast<std::uint32_t>(*uniform(0.0, kAllTopics));
+    in.updated = static_cast<std::uint32_t>(*uniform(0.0, all_topics));
     draw_floats(in.control_state.q);
     in.control_state.roll_rate = *mostly_ordinary_float();
     in.control_state.pitch_rate = *mostly_ordinary_float();

@@ -10,7 +10,7 @@
 namespace attest::reference {
 namespace {
 
-constexpr std::uint32_t kEverything = 0xff;  // but parameters
+constexpr std::uint32_t everything = 0xff;  // but parameters
 
 // One controller and the topics it is given, 4 ms a step, level and armed in attitude mode.
 class McAttControlTest : public ::testing::Test {
@@ -39,13 +39,13 @@ class McAttControlTest : public ::testing::Test {
 
   float thrust() const { return out_.actuator_controls_0.control[3]; }
 
-  McAttControl<float> control_{Profile::kPx4V1_5_5};
+  McAttControl<float> control_{Profile::px4_v1_5_5};
   attest_inputs in_{};
   attest_outputs out_{};
 };
 
 TEST_F(McAttControlTest, LevelGivesThrustAndNothingElse) {
-  step(kEverything);
+  step(everything);
   EXPECT_EQ(out_.vehicle_rates_setpoint.published, 1);
   EXPECT_EQ(out_.actuator_controls_0.published, 1);
   EXPECT_EQ(out_.mc_att_ctrl_status.published, 1);
@@ -54,7 +54,7 @@ TEST_F(McAttControlTest, LevelGivesThrustAndNothingElse) {
 }
 
 TEST_F(McAttControlTest, TopicsAreLatchedOnlyWhenUpdated) {
-  step(kEverything);
+  step(everything);
   in_.vehicle_attitude_setpoint.thrust = 0.7f;
   step(0);
   EXPECT_EQ(thrust(), 0.5f);
@@ -63,7 +63,7 @@ TEST_F(McAttControlTest, TopicsAreLatchedOnlyWhenUpdated) {
 }
 
 TEST_F(McAttControlTest, AttitudeSetpointWaitsForAttitudeMode) {
-  step(kEverything);
+  step(everything);
   set_mode(false, true);
   in_.vehicle_attitude_setpoint.thrust = 0.7f;
   in_.vehicle_attitude_setpoint.landing_gear = 1.0f;
@@ -77,7 +77,7 @@ TEST_F(McAttControlTest, AttitudeSetpointWaitsForAttitudeMode) {
 
 TEST_F(McAttControlTest, OwnRatesSetpointSupersedesAPendingOne) {
   in_.vehicle_rates_setpoint = {1.0f, 0.0f, 0.0f, 0.9f};
-  step(kEverything);
+  step(everything);
   set_mode(false, false);
   step(ATTEST_UPDATED_VEHICLE_CONTROL_MODE);
   EXPECT_EQ(out_.vehicle_rates_setpoint.published, 0);
@@ -89,7 +89,7 @@ TEST_F(McAttControlTest, OwnRatesSetpointSupersedesAPendingOne) {
 TEST_F(McAttControlTest, RattitudeStaysInRatesUntilTheModeIsUpdated) {
   in_.vehicle_control_mode.flag_control_rattitude_enabled = 1;
   in_.manual_control_setpoint = {0.0f, 1.5f, 0.3f, 0.0f};
-  step(kEverything);
+  step(everything);
   EXPECT_EQ(thrust(), 0.3f);
   in_.manual_control_setpoint.y = 0.0f;
   step(ATTEST_UPDATED_MANUAL_CONTROL_SETPOINT);
@@ -101,7 +101,7 @@ TEST_F(McAttControlTest, RattitudeStaysInRatesUntilTheModeIsUpdated) {
 TEST_F(McAttControlTest, AcroFollowsTheSticks) {
   set_mode(false, true);
   in_.manual_control_setpoint = {0.5f, -1.0f, NAN, 0.25f};
-  step(kEverything);
+  step(everything);
   EXPECT_FLOAT_EQ(out_.vehicle_rates_setpoint.roll, -6.2831853f);
   EXPECT_FLOAT_EQ(out_.vehicle_rates_setpoint.pitch, -3.1415927f);
   EXPECT_FLOAT_EQ(out_.vehicle_rates_setpoint.yaw, 1.5707963f);
@@ -109,14 +109,14 @@ TEST_F(McAttControlTest, AcroFollowsTheSticks) {
 }
 
 TEST_F(McAttControlTest, BeforeVehicleStatusOnlyTheIntegralsAreKnown) {
-  step(kEverything & ~std::uint32_t{ATTEST_UPDATED_VEHICLE_STATUS});
+  step(everything & ~std::uint32_t{ATTEST_UPDATED_VEHICLE_STATUS});
   EXPECT_EQ(out_.vehicle_rates_setpoint.published, 0);
   EXPECT_EQ(out_.actuator_controls_0.published, 0);
   EXPECT_EQ(out_.mc_att_ctrl_status.published, 1);
 }
 
 TEST_F(McAttControlTest, OutputsKeepTheirValuesWhileNotPublished) {
-  step(kEverything);
+  step(everything);
   in_.vehicle_control_mode.flag_control_rates_enabled = 0;
   step(ATTEST_UPDATED_VEHICLE_CONTROL_MODE);
   EXPECT_EQ(out_.actuator_controls_0.published, 0);
@@ -125,8 +125,8 @@ TEST_F(McAttControlTest, OutputsKeepTheirValuesWhileNotPublished) {
 }
 
 TEST_F(McAttControlTest, BreakerCutsTheActuators) {
-  EXPECT_TRUE(control_.set_parameter("CBRK_RATE_CTRL", kRateControlBreakerKey));
-  step(kEverything);
+  EXPECT_TRUE(control_.set_parameter("CBRK_RATE_CTRL", rate_control_breaker_key));
+  step(everything);
   EXPECT_EQ(out_.actuator_controls_0.published, 0);
   EXPECT_EQ(out_.mc_att_ctrl_status.published, 1);
 }
@@ -134,7 +134,7 @@ TEST_F(McAttControlTest, BreakerCutsTheActuators) {
 TEST_F(McAttControlTest, ParametersTakeEffectWithTheirUpdate) {
   in_.control_state.q[0] = std::cos(0.05f);
   in_.control_state.q[1] = std::sin(0.05f);
-  step(kEverything);
+  step(everything);
   const float before = out_.vehicle_rates_setpoint.roll;
   EXPECT_NEAR(before, -0.65f, 1e-5f);
   control_.set_parameter("MC_ROLL_P", 13.0f);
@@ -147,7 +147,7 @@ TEST_F(McAttControlTest, ParametersTakeEffectWithTheirUpdate) {
 TEST_F(McAttControlTest, BatteryScalesAllFourControls) {
   control_.set_parameter("MC_BAT_SCALE_EN", 1.0f);
   in_.battery_status.scale = 1.2f;
-  step(kEverything);
+  step(everything);
   EXPECT_FLOAT_EQ(thrust(), 0.6f);
   in_.battery_status.scale = -1.0f;
   step(ATTEST_UPDATED_BATTERY_STATUS);
@@ -157,7 +157,7 @@ TEST_F(McAttControlTest, BatteryScalesAllFourControls) {
 TEST_F(McAttControlTest, StepsLastBetweenTwoAndTwentyMilliseconds) {
   in_.vehicle_rates_setpoint = {0.1f, 0.0f, 0.0f, 0.5f};
   set_mode(false, false);
-  step(kEverything);
+  step(everything);
   const float first = out_.mc_att_ctrl_status.roll_rate_integ;
   EXPECT_NEAR(first, 0.05f * 0.1f * 0.004f, 1e-9f);
   in_.timestamp += 1000000;
@@ -171,7 +171,7 @@ TEST_F(McAttControlTest, StepsLastBetweenTwoAndTwentyMilliseconds) {
 
 // Garbage of any kind may come in; what drives the motors is finite and the integrals are bounded.
 RC_GTEST_PROP(McAttControl, GarbageNeverReachesTheMotors, (bool newer)) {
-  McAttControl<float> control(newer ? Profile::kPx4V1_5_5 : Profile::kPx4V1_3_4);
+  McAttControl<float> control(newer ? Profile::px4_v1_5_5 : Profile::px4_v1_3_4);
   attest_outputs out{};
   std::uint64_t now_us = 0;
   for (int step = 0; step < 20; ++step) {
@@ -179,16 +179,16 @@ RC_GTEST_PROP(McAttControl, GarbageNeverReachesTheMotors, (bool newer)) {
     now_us = in.timestamp;
     control.step(in, out);
     for (int i = 0; i < 4; ++i) RC_ASSERT(std::isfinite(out.actuator_controls_0.control[i]));
-    RC_ASSERT(std::abs(out.mc_att_ctrl_status.roll_rate_integ) < kIntegralLimit);
-    RC_ASSERT(std::abs(out.mc_att_ctrl_status.pitch_rate_integ) < kIntegralLimit);
-    RC_ASSERT(std::abs(out.mc_att_ctrl_status.yaw_rate_integ) < kIntegralLimit);
+    RC_ASSERT(std::abs(out.mc_att_ctrl_status.roll_rate_integ) < integral_limit);
+    RC_ASSERT(std::abs(out.mc_att_ctrl_status.pitch_rate_integ) < integral_limit);
+    RC_ASSERT(std::abs(out.mc_att_ctrl_status.yaw_rate_integ) < integral_limit);
   }
 }
 
 // The law has no hidden state: the same inputs give the same bits.
 RC_GTEST_PROP(McAttControl, TwoInstancesAgree, ()) {
-  McAttControl<float> one(Profile::kPx4V1_5_5);
-  McAttControl<float> other(Profile::kPx4V1_5_5);
+  McAttControl<float> one(Profile::px4_v1_5_5);
+  McAttControl<float> other(Profile::px4_v1_5_5);
   attest_outputs out_one{};
   attest_outputs out_other{};
   for (int step = 0; step < 10; ++step) {

@@ -121,13 +121,13 @@ RC_GTEST_PROP(Mixer, FlagsSayWhetherRollAndPitchFit, ()) {
 
 RC_GTEST_PROP(Mixer, SlewLimitHoldsFromCallToCall, ()) {
   Mixer mixer = any_mixer();
-  constexpr float kDelta = 0.05f;
+  constexpr float delta = 0.05f;
   std::vector<float> previous(mixer.rotor_count(), 0.0f);
   for (int call = 0; call < 20; ++call) {
     Saturation saturation{};
-    const auto out = mixer.mix(any_controls(), kDelta, saturation);
+    const auto out = mixer.mix(any_controls(), delta, saturation);
     for (std::size_t i = 0; i < out.size(); ++i) {
-      RC_ASSERT(std::abs(out[i] - previous[i]) <= kDelta + 1e-6f);
+      RC_ASSERT(std::abs(out[i] - previous[i]) <= delta + 1e-6f);
     }
     previous.assign(out.begin(), out.end());
   }

@@ -61,11 +61,11 @@ TEST(Gains, TimeConstantsScaleProportionalAndDerivativeOfRollAndPitch) {
   parameters.mc_roll_tc = 0.1f;
   parameters.mc_pitch_tc = 0.4f;
   const Gains<double> scaled = compute_gains<double>(parameters);
-  constexpr double kTolerance = 1e-6;
-  EXPECT_NEAR(scaled.attitude.proportional_1_s[0], 13.0, kTolerance);
-  EXPECT_NEAR(scaled.attitude.proportional_1_s[1], 3.25, kTolerance);
-  EXPECT_NEAR(scaled.rate.proportional[0], 0.3, kTolerance);
-  EXPECT_NEAR(scaled.rate.derivative[1], 0.0015, kTolerance);
+  constexpr double tolerance = 1e-6;
+  EXPECT_NEAR(scaled.attitude.proportional_1_s[0], 13.0, tolerance);
+  EXPECT_NEAR(scaled.attitude.proportional_1_s[1], 3.25, tolerance);
+  EXPECT_NEAR(scaled.rate.proportional[0], 0.3, tolerance);
+  EXPECT_NEAR(scaled.rate.derivative[1], 0.0015, tolerance);
   EXPECT_EQ(scaled.attitude.proportional_1_s[2], nominal.attitude.proportional_1_s[2]);
   EXPECT_EQ(scaled.rate.integral, nominal.rate.integral);
   EXPECT_EQ(scaled.rate.feed_forward, nominal.rate.feed_forward);

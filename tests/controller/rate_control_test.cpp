@@ -28,13 +28,13 @@ RateInput<float> gentle_input() {
   return in;
 }
 
-RateControl<float> make_control(Profile profile = Profile::kPx4V1_5_5) {
+RateControl<float> make_control(Profile profile = Profile::px4_v1_5_5) {
   RateControl<float> control(profile);
   control.set_gains(compute_gains<float>(default_parameters()).rate);
   return control;
 }
 
-Vector integral_after_one_step(const RateInput<float>& in, Profile profile = Profile::kPx4V1_5_5) {
+Vector integral_after_one_step(const RateInput<float>& in, Profile profile = Profile::px4_v1_5_5) {
   RateControl<float> control = make_control(profile);
   control.update(in);
   return control.integral();
@@ -66,7 +66,7 @@ TEST(RateControl, DerivativeActsOnTheMeasurementOnly) {
 TEST(RateControl, EachGateStopsTheIntegral) {
   EXPECT_NE(integral_after_one_step(gentle_input()), Vector::Zero());
   RateInput<float> in = gentle_input();
-  in.thrust_sp = kTakeoffThrust;
+  in.thrust_sp = takeoff_thrust;
   EXPECT_EQ(integral_after_one_step(in), Vector::Zero());
   in = gentle_input();
   in.limits.lower = true;
@@ -84,7 +84,7 @@ TEST(RateControl, YawLimitFreezesYawInTheNewerLawOnly) {
   in.limits.yaw = true;
   EXPECT_EQ(integral_after_one_step(in)[2], 0.0f);
   EXPECT_NE(integral_after_one_step(in)[0], 0.0f);
-  EXPECT_NE(integral_after_one_step(in, Profile::kPx4V1_3_4)[2], 0.0f);
+  EXPECT_NE(integral_after_one_step(in, Profile::px4_v1_3_4)[2], 0.0f);
 }
 
 TEST(RateControl, ThrottleAttenuationInTheNewerLawOnly) {
@@ -92,10 +92,10 @@ TEST(RateControl, ThrottleAttenuationInTheNewerLawOnly) {
   gains.tpa_break = 0.25f;
   gains.tpa_slope = 2.0f;
   RateInput<float> in = gentle_input();
-  RateControl<float> newer = make_control(Profile::kPx4V1_5_5);
+  RateControl<float> newer = make_control(Profile::px4_v1_5_5);
   newer.set_gains(gains);
   EXPECT_NEAR(newer.update(in)[0], 0.5f * 0.15f * 0.1f, 1e-7f);
-  RateControl<float> older = make_control(Profile::kPx4V1_3_4);
+  RateControl<float> older = make_control(Profile::px4_v1_3_4);
   older.set_gains(gains);
   EXPECT_NEAR(older.update(in)[0], 0.15f * 0.1f, 1e-7f);
 }
@@ -106,11 +106,11 @@ TEST(RateControl, FeedForwardOfTheOlderLawIsTheChangeOfTheSetpoint) {
   RateInput<float> in = gentle_input();
   in.rates_B = in.rates_sp_B = Vector(0.4f, 0.0f, 0.0f);
   gains.derivative.setZero();
-  RateControl<float> newer = make_control(Profile::kPx4V1_5_5);
+  RateControl<float> newer = make_control(Profile::px4_v1_5_5);
   newer.set_gains(gains);
   EXPECT_NEAR(newer.update(in)[0], 0.01f * 0.4f, 1e-7f);
   EXPECT_NEAR(newer.update(in)[0], 0.01f * 0.4f, 1e-7f);
-  RateControl<float> older = make_control(Profile::kPx4V1_3_4);
+  RateControl<float> older = make_control(Profile::px4_v1_3_4);
   older.set_gains(gains);
   EXPECT_NEAR(older.update(in)[0], 0.01f * 0.4f / 0.004f, 1e-5f);
   EXPECT_NEAR(older.update(in)[0], 0.0f, 1e-7f);
@@ -127,7 +127,7 @@ RC_GTEST_PROP(RateControl, AttenuationIsAFactorForAnyThrust, ()) {
 
 // Whatever comes in, the integral stays finite and inside its bound.
 RC_GTEST_PROP(RateControl, IntegralNeverLeavesItsBound, (bool newer)) {
-  RateControl<float> control = make_control(newer ? Profile::kPx4V1_5_5 : Profile::kPx4V1_3_4);
+  RateControl<float> control = make_control(newer ? Profile::px4_v1_5_5 : Profile::px4_v1_3_4);
   RateGains<float> gains = compute_gains<float>(default_parameters()).rate;
   gains.integral *= 500.0f;
   control.set_gains(gains);
@@ -138,7 +138,7 @@ RC_GTEST_PROP(RateControl, IntegralNeverLeavesItsBound, (bool newer)) {
     in.thrust_sp = *mostly_ordinary_float();
     in.published_thrust_sp = *mostly_ordinary_float();
     control.update(in);
-    for (int i = 0; i < 3; ++i) RC_ASSERT(std::abs(control.integral()[i]) < kIntegralLimit);
+    for (int i = 0; i < 3; ++i) RC_ASSERT(std::abs(control.integral()[i]) < integral_limit);
   }
 }
 

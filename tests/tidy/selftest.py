@@ -84,7 +84,7 @@ EXAMPLES = {
         ),
     ],
     "cmake_lists_by_hand": [
-        ({"CMakeLists.txt": "file(GLOB sources *.cpp)"}, {"CMakeLists.txt": "file(READ a b)"})
+        ({"CMakeLists.txt": "file(GLOB sources *.cpp)"}, {"CMakeLists.txt": "file(GLOB a *.csv)"})
     ],
     "finished": [
         ({"README.md": "TO" "DO: write"}, {"ci/check": "mktemp -d XXXXXX\n"}),

@@ -14,6 +14,11 @@ TEST(Suggestion, NamesTheNearestCandidate) {
   EXPECT_EQ(suggestion("picth_rate", names), "; did you mean `pitch_rate`?");
 }
 
+TEST(Suggestion, CountsASwapOfNeighboursAsOneEdit) {
+  EXPECT_EQ(suggestion("raet", {"rate"}), "; did you mean `rate`?");
+  EXPECT_EQ(suggestion("raxx", {"rate"}), "");
+}
+
 TEST(Suggestion, TakesLettersOfOtherCaseForTheSame) {
   EXPECT_EQ(suggestion("mc_roll_p", names), "; did you mean `MC_ROLL_P`?");
 }

@@ -29,6 +29,8 @@ class TemporaryDirectory {
   // Writes a file, byte for byte, and gives its path.
   std::filesystem::path write(std::string_view name, std::string_view bytes) const {
     const std::filesystem::path file = path_ / name;
+    // Some file systems flush to disk when a file is truncated and written again.
+    std::filesystem::remove(file);
     std::ofstream stream(file, std::ios::binary);
     stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     if (!stream) std::abort();

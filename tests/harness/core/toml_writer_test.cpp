@@ -48,8 +48,9 @@ TEST(TomlWriter, ReplacesAKeyThatIsSetAgain) {
 
 TEST(TomlWriter, KeepsWhatIsNoOrdinaryNumber) {
   EXPECT_TRUE(std::isnan(read_back(std::nan(""))));
-  EXPECT_EQ(read_back(INFINITY), INFINITY);
-  EXPECT_EQ(read_back(-INFINITY), -INFINITY);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(read_back(infinity), infinity);
+  EXPECT_EQ(read_back(-infinity), -infinity);
   EXPECT_TRUE(std::signbit(read_back(-0.0)));
   EXPECT_EQ(read_back(std::numeric_limits<double>::denorm_min()),
             std::numeric_limits<double>::denorm_min());

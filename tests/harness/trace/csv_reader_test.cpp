@@ -127,6 +127,7 @@ TEST_F(CsvReader, ReadsSmallNumbersAsTheyAreAndTinyOnesAsZero) {
   EXPECT_EQ(bits("-1e-400"), 0x80000000u);
   EXPECT_EQ(bits("1e-99999999999999999999"), 0u);
   EXPECT_EQ(bits("0." + std::string(500, '0') + "1"), 0u);
+  EXPECT_EQ(bits("0.001e-100"), 0u);
   EXPECT_EQ(bits("12345" + std::string(100, '0') + "e-200"), 0u);
   EXPECT_EQ(bits("0e99999999999999999999"), 0u);
 }

@@ -92,6 +92,22 @@ TEST_F(CsvWriter, KeepsEveryTimestamp) {
   EXPECT_NE(written(all_columns(trace_)).find("\n18446744073709551615,"), std::string::npos);
 }
 
+TEST_F(CsvWriter, WritesMoreThanFitsABlock) {
+  trace_.samples.resize(1);
+  CsvColumns columns;
+  columns.channels.set(*find_channel("timestamp"));
+  std::string names = "timestamp";
+  std::string values = "4000";
+  for (int i = 0; i < 10; ++i) {
+    const std::string name(10007, static_cast<char>('a' + i));
+    trace_.parameters.push_back({0, name, 0.5f});
+    columns.parameters.push_back(name);
+    names += ",in/parameter." + name;
+    values += ",0.5";
+  }
+  EXPECT_EQ(written(columns), names + "\n" + values + "\n");
+}
+
 TEST_F(CsvWriter, RefusesAParameterWithoutAValueAtTheFirstTick) {
   trace_.samples[1].in.updated = ATTEST_UPDATED_PARAMETER_UPDATE;
   trace_.parameters = {{1, "MC_ROLL_P", 7.0f}};

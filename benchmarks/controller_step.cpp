@@ -1,0 +1,44 @@
+// One step of the reference against the same law written by hand in C (the C starter), both through
+// the ABI, both from the same compiler, over inputs recorded from the firmware: every mode, every
+// tilt, parameter changes.
+#include <benchmark/benchmark.h>
+
+#include "controller/attest_unit.h"
+#include "controller/reference/unit.hpp"
+#include "harness/trace/csv.hpp"
+
+extern "C" const attest_unit* attest_floor_unit(void);
+
+namespace attest::bench {
+namespace {
+
+const Trace& recorded() {
+  static const Trace trace =
+      *read_csv(ATTEST_SOURCE_DIR "/golden/recorded/px4-v1.5.5/fuzz_250hz.csv", CsvNeed::inputs);
+  return trace;
+}
+
+void step(benchmark::State& state, const attest_unit* unit) {
+  const Trace& trace = recorded();
+  void* self = unit->create("px4-v1.5.5");
+  for (const ParameterChange& change : trace.parameters) {
+    if (change.tick == 0) unit->set_parameter(self, change.name.c_str(), change.value);
+  }
+  attest_outputs out{};
+  std::size_t tick = 0;
+  for (auto _ : state) {
+    unit->step(self, &trace.samples[tick].in, &out);
+    benchmark::DoNotOptimize(out);
+    tick = tick + 1 < trace.samples.size() ? tick + 1 : 0;
+  }
+  unit->destroy(self);
+}
+
+void reference_step(benchmark::State& state) { step(state, reference::reference_unit()); }
+void by_hand_step(benchmark::State& state) { step(state, attest_floor_unit()); }
+
+BENCHMARK(reference_step)->Name("step/reference");
+BENCHMARK(by_hand_step)->Name("step/by_hand");
+
+}  // namespace
+}  // namespace attest::bench

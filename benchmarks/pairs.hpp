@@ -1,0 +1,42 @@
+// A figure and its floor: two benchmarks that are run in turn, in one process, and told as a ratio.
+// Machines differ and drift; the ratio is what is claimed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+namespace attest::bench {
+
+struct Pair {
+  std::string what;      // "controller step"
+  std::string measured;  // names of the two benchmarks
+  std::string floor;
+  double bound;       // of median time measured / median time floor
+  std::string claim;  // how the bound is said: "at most 1.15x the hand-written law"
+};
+
+// The claims, in the order of the table.
+const std::vector<Pair>& pairs();
+
+// Collects the repetitions of every benchmark; the table is made of their medians.
+class PairReporter : public benchmark::BenchmarkReporter {
+ public:
+  bool ReportContext(const Context& context) override;
+  void ReportRuns(const std::vector<Run>& runs) override;
+
+  // Markdown. Says which bounds were missed. `met` is false when any was, or was not measured.
+  std::string table(bool& met) const;
+
+ private:
+  struct Times {
+    std::string name;
+    std::vector<double> seconds;  // one a repetition, of one iteration
+  };
+  const Times* find(const std::string& name) const;
+
+  std::vector<Times> times_;
+};
+
+}  // namespace attest::bench

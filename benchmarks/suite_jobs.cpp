@@ -1,0 +1,37 @@
+// The whole suite on the reference, numeric level, from reading the case files to the verdicts,
+// with one and two worker processes.
+#include <utility>
+
+#include <benchmark/benchmark.h>
+
+#include "harness/suite/select.hpp"
+#include "harness/suite/worker.hpp"
+
+namespace attest::bench {
+namespace {
+
+void suite(benchmark::State& state, int jobs) {
+  for (auto _ : state) {
+    auto cases = select_cases(ATTEST_SOURCE_DIR "/cases", {});
+    Batches batches;
+    for (SelectedCase& selected : *cases) {
+      batches.push_back(std::make_unique<CaseBatch>(std::move(selected.the_case),
+                                                    std::move(selected.rates),
+                                                    ATTEST_SOURCE_DIR "/golden", Level::numeric));
+    }
+    WorkerOptions options;
+    options.port = "builtin";
+    options.jobs = jobs;
+    const WorkerOutcome outcome = run_batches(batches, options);
+    if (!outcome.errors.empty()) state.SkipWithError(outcome.errors[0].message.c_str());
+  }
+}
+
+void one_job(benchmark::State& state) { suite(state, 1); }
+void two_jobs(benchmark::State& state) { suite(state, 2); }
+
+BENCHMARK(one_job)->Name("suite/1_job")->UseRealTime();
+BENCHMARK(two_jobs)->Name("suite/2_jobs")->UseRealTime();
+
+}  // namespace
+}  // namespace attest::bench

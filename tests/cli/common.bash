@@ -1,0 +1,48 @@
+# Set by CTest: ATTEST (the binary), SOURCE (the tree), PORTS (test ports), STARTER (the C starter).
+
+setup() {
+  cd "$BATS_TEST_TMPDIR"
+  unset NO_COLOR ATTEST_SUITE
+}
+
+# A suite of one quick case, without golden, in ./suite.
+make_suite() {
+  mkdir -p suite/cases/px4-v1.5.5/attitude suite/golden
+  cp -r "$SOURCE/golden/recorded" suite/golden/
+  cat >suite/cases/px4-v1.5.5/attitude/roll.toml <<'CASE'
+schema = 1
+profile = "px4-v1.5.5"
+group = "attitude"
+why = "A level vehicle is asked to roll."
+duration_ticks = 30
+
+[control_state]
+roll_rate = { signal = "sine", amplitude = 0.3, cycles = 2 }
+pitch_rate = { signal = "sine", amplitude = 0.2, cycles = 3 }
+
+[vehicle_attitude_setpoint]
+q_d = { tilt_deg = { signal = "ramp", from = 0, to = 20, end_ticks = 25 } }
+CASE
+}
+
+blessed_suite() {
+  make_suite
+  "$ATTEST" --suite suite bless --yes --reason "a test" >/dev/null
+}
+
+# has TEXT: the output of the last `run` contains it.
+has() {
+  [[ $output == *"$1"* ]] || {
+    echo "expected: $1"
+    echo "output:   $output"
+    return 1
+  }
+}
+
+lacks() {
+  [[ $output != *"$1"* ]] || {
+    echo "not expected: $1"
+    echo "output:       $output"
+    return 1
+  }
+}

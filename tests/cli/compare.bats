@@ -1,0 +1,31 @@
+load common
+
+@test "a trace agrees with itself" {
+  trace="$SOURCE"/golden/recorded/px4-v1.5.5/tracking_100hz.csv
+  run "$ATTEST" compare "$trace" "$trace" --level exact
+  [ "$status" -eq 0 ]
+  has "agree: 300 ticks"
+}
+
+@test "a changed value is found: tick, channel, bits" {
+  trace="$SOURCE"/golden/recorded/px4-v1.5.5/tracking_100hz.csv
+  awk -F, -v OFS=, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "out/vehicle_rates_setpoint.yaw") c = i }
+                    NR == 12 { $c = $c + 0.5 } 1' "$trace" >changed.csv
+  run "$ATTEST" compare changed.csv "$trace"
+  [ "$status" -eq 1 ]
+  has "first at tick 10"
+  has "out/vehicle_rates_setpoint.yaw"
+  has "0x"
+  has "1 of 300 ticks deviate"
+}
+
+@test "traces of other length or rate are not compared" {
+  trace="$SOURCE"/golden/recorded/px4-v1.5.5/tracking_100hz.csv
+  head -n 100 "$trace" >short.csv
+  run "$ATTEST" compare short.csv "$trace"
+  [ "$status" -eq 1 ]
+  has "99 ticks, expected 300"
+  run "$ATTEST" compare "$trace" "$SOURCE"/golden/recorded/px4-v1.5.5/tracking_1000hz.csv
+  [ "$status" -eq 1 ]
+  has "tick 0 is at"
+}

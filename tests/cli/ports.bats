@@ -1,0 +1,120 @@
+load common
+
+# judged PORT: runs it on a few quick cases.
+judged() {
+  run "$ATTEST" run --port "lib:$PORTS/port_$1.so" --filter 'rates/*@250hz' \
+    --timeout 2 --junit junit.xml --json report.json "${@:2}"
+}
+
+@test "one sign flipped: exit 1, and the report names channel and tick" {
+  judged sign_flip
+  [ "$status" -eq 1 ]
+  has "first at tick"
+  has "out/actuator_controls_0.control[1]"
+  has "reproduce: attest run --port"
+  xmllint --noout --schema "$SOURCE/tests/harness/report/junit.xsd" junit.xml
+}
+
+@test "the command that a failure names reproduces it" {
+  judged sign_flip
+  command=$(grep -o 'reproduce: .*' <<<"$output" | head -1)
+  command=${command#reproduce: attest }
+  run bash -c "\"$ATTEST\" $command"
+  [ "$status" -eq 1 ]
+  has "FAIL 1 failed"
+}
+
+@test "a port that crashes costs its verdicts, not the run" {
+  judged crash
+  [ "$status" -eq 1 ]
+  has "crash"
+  has "FAIL"
+  xmllint --noout junit.xml
+}
+
+@test "a port that exits is told apart from one that answers" {
+  judged exits
+  [ "$status" -eq 1 ]
+  has "exited with status 0"
+}
+
+@test "a port that hangs is given up" {
+  run "$ATTEST" run --port "lib:$PORTS/port_hang.so" --filter 'rates/*' --timeout 0.3 --fail-fast
+  [ "$status" -eq 1 ]
+  has "no answer within 0.3 s"
+}
+
+@test "NaN where a number belongs" {
+  judged non_finite
+  [ "$status" -eq 1 ]
+  has "non-finite"
+  has "out/actuator_controls_0.control[1]"
+  has "tick 20"
+}
+
+@test "outputs never published" {
+  judged silent
+  [ "$status" -eq 1 ]
+  has ".published"
+}
+
+@test "a step that fails, and one that is unsupported" {
+  judged step_fails
+  [ "$status" -eq 1 ]
+  has "ATTEST_FAILED"
+  judged unsupported_step
+  [ "$status" -eq 2 ]
+  has "nothing was compared"
+}
+
+@test "a profile that the port refuses is skipped, and nothing compared is not success" {
+  judged refuses_profile
+  [ "$status" -eq 2 ]
+  has "does not support profile px4-v1.5.5"
+  has "nothing was compared"
+}
+
+@test "writing past the outputs breaks the ABI" {
+  judged writes_wild
+  [ "$status" -eq 1 ]
+  has "protocol"
+  has "attest_unit.h"
+}
+
+@test "right ports with awkward manners pass" {
+  for port in global_state prints; do
+    judged $port --level exact
+    [ "$status" -eq 0 ]
+    has "PASS"
+    lacks "chatter"
+  done
+  judged sets_ftz
+  [ "$status" -eq 0 ]
+}
+
+@test "a library that is none" {
+  run "$ATTEST" run --port lib:./missing.so
+  [ "$status" -eq 2 ]
+  has "missing.so: no such library"
+  echo "not a library" >text.so
+  run "$ATTEST" run --port lib:./text.so
+  [ "$status" -eq 2 ]
+  has "cannot be loaded"
+  judged no_symbol
+  [ "$status" -eq 2 ]
+  has "attest_unit_v1"
+  judged wrong_abi
+  [ "$status" -eq 2 ]
+  has "ABI version is 99"
+  judged null_unit
+  [ "$status" -eq 2 ]
+  has "returned NULL"
+  run "$ATTEST" run --port rust
+  [ "$status" -eq 2 ]
+  has 'unknown port `rust`'
+}
+
+@test "the C starter conforms to the bit" {
+  run "$ATTEST" run --port "lib:$STARTER" --level exact
+  [ "$status" -eq 0 ]
+}

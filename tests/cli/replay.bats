@@ -1,0 +1,70 @@
+load common
+
+recorded() { ls "$SOURCE"/golden/recorded/*/*.csv | grep -v tailsitter; }
+
+@test "the reference agrees to the bit with what the firmware recorded" {
+  run "$ATTEST" replay --level exact $(recorded)
+  [ "$status" -eq 0 ]
+  has "16 of 16 traces conform"
+}
+
+@test "tailsitter recovery agrees within a tolerance" {
+  run "$ATTEST" replay "$SOURCE"/golden/recorded/px4-v1.5.5/tailsitter_250hz.csv
+  [ "$status" -eq 0 ]
+}
+
+@test "the profile comes from the provenance beside the trace, or from the option" {
+  trace="$SOURCE"/golden/recorded/px4-v1.3.4/fuzz_250hz.csv
+  run "$ATTEST" replay "$trace"
+  has "px4-v1.3.4"
+  run "$ATTEST" replay "$trace" --profile px4-v1.5.5
+  [ "$status" -eq 1 ]
+  has "first at tick"
+}
+
+@test "a wrong port differs from the firmware, and the first difference is named" {
+  run "$ATTEST" replay --port "lib:$PORTS/port_sign_flip.so" \
+    "$SOURCE"/golden/recorded/px4-v1.5.5/tracking_100hz.csv
+  [ "$status" -eq 1 ]
+  has "out/actuator_controls_0.control[1]"
+  has "FAIL 0 of 1"
+}
+
+@test "a parameter can be overridden" {
+  trace="$SOURCE"/golden/recorded/px4-v1.5.5/tracking_100hz.csv
+  run "$ATTEST" replay "$trace" --param MC_ROLL_P=6.5
+  [ "$status" -eq 0 ]
+  run "$ATTEST" replay "$trace" --param MC_ROLL_P=6.6
+  [ "$status" -eq 1 ]
+  run "$ATTEST" replay "$trace" --param MC_ROL_P=6.5
+  [ "$status" -eq 2 ]
+  has 'did you mean `MC_ROLL_P`'
+  run "$ATTEST" replay "$trace" --param MC_ROLL_P
+  [ "$status" -eq 2 ]
+  has "NAME=VALUE"
+}
+
+@test "a mixer trace is replayed on the mixer that its provenance names" {
+  run "$ATTEST" replay "$SOURCE"/golden/recorded/mixer-v1.5.5/4x_scaled_idle.csv
+  [ "$status" -eq 0 ]
+  has "R: 4x 8000 9000 5000 1500"
+  run "$ATTEST" replay "$SOURCE"/golden/recorded/mixer-v1.5.5/4x.csv \
+    --mixer "R: 4+ 10000 10000 10000 0"
+  [ "$status" -eq 1 ]
+  has "out[1] at sample 0"
+}
+
+@test "a malformed trace is shown with file, line and column" {
+  cp "$SOURCE"/golden/recorded/px4-v1.5.5/tracking_100hz.csv broken.csv
+  sed -i '7s/,1,/,one,/' broken.csv
+  run "$ATTEST" replay broken.csv
+  [ "$status" -eq 2 ]
+  has "broken.csv:7:"
+  has '`one`'
+}
+
+@test "a missing trace is an error" {
+  run "$ATTEST" replay nowhere.csv
+  [ "$status" -eq 2 ]
+  has "nowhere.csv"
+}

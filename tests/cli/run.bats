@@ -1,0 +1,160 @@
+load common
+
+@test "the reference conforms to the bit, at every rate" {
+  run "$ATTEST" run --level exact
+  [ "$status" -eq 0 ]
+  has "PASS"
+  has "11 rates"
+}
+
+@test "without a command: help that teaches, exit 2" {
+  run "$ATTEST"
+  [ "$status" -eq 2 ]
+  has "subcommand is required"
+}
+
+@test "help names the first steps, every command has its own" {
+  run "$ATTEST" --help
+  [ "$status" -eq 0 ]
+  has "attest run --port lib:./libmine.so"
+  for command in list run replay compare vectors bless doctor; do
+    run "$ATTEST" "$command" --help
+    [ "$status" -eq 0 ]
+  done
+}
+
+@test "an unknown option is a usage error" {
+  run "$ATTEST" run --prot builtin
+  [ "$status" -eq 2 ]
+}
+
+@test "filters, groups and rates select" {
+  run "$ATTEST" run --filter 'attitude/*@250hz'
+  [ "$status" -eq 0 ]
+  has "1 rate)"
+  run "$ATTEST" run --group attitude --group rates --rate 50,333
+  [ "$status" -eq 0 ]
+  has "2 rates)"
+}
+
+@test "a filter that matches nothing is said" {
+  run "$ATTEST" run --filter 'nothing_like_it'
+  [ "$status" -eq 2 ]
+  has 'no case matches `nothing_like_it`'
+}
+
+@test "a misspelt group names the nearest one" {
+  run "$ATTEST" run --group attitud
+  [ "$status" -eq 2 ]
+  has 'did you mean `attitude`'
+}
+
+@test "an impossible rate, level or shard is refused" {
+  for wrong in "--rate 0" "--rate fast" "--rate 251" "--level lax" "--shard 3/2" "--shard x"; do
+    run "$ATTEST" run $wrong
+    [ "$status" -eq 2 ]
+    has "attest: error:"
+  done
+}
+
+@test "shards divide the suite: each case in exactly one" {
+  "$ATTEST" run --json all.json >/dev/null
+  for i in 1 2 3; do "$ATTEST" run --shard "$i/3" --json "part$i.json" >/dev/null; done
+  ids() { grep -ho '"id": *"[^"]*"' "$@" | sort; }
+  [ "$(ids all.json)" = "$(ids part1.json part2.json part3.json)" ]
+}
+
+@test "the same bytes in the JSON report for any number of jobs" {
+  "$ATTEST" run --jobs 1 --json one.json >/dev/null
+  "$ATTEST" run --jobs 4 --json four.json >/dev/null
+  cmp one.json four.json
+  run "$ATTEST" run --jobs 1 --port "lib:$PORTS/port_sign_flip.so" --json one.json
+  run "$ATTEST" run --jobs 4 --port "lib:$PORTS/port_sign_flip.so" --json four.json
+  cmp one.json four.json
+}
+
+@test "fail-fast stops at the same case for any number of jobs" {
+  run "$ATTEST" run --fail-fast --jobs 1 --port "lib:$PORTS/port_sign_flip.so" --json one.json
+  [ "$status" -eq 1 ]
+  run "$ATTEST" run --fail-fast --jobs 4 --port "lib:$PORTS/port_sign_flip.so" --json four.json
+  [ "$status" -eq 1 ]
+  cmp one.json four.json
+  grep -q '"stopped_early": *true' one.json
+}
+
+@test "a report that cannot be written is said before the run" {
+  run "$ATTEST" run --junit no/such/folder/junit.xml
+  [ "$status" -eq 2 ]
+  has "no/such/folder/junit.xml"
+  lacks "PASS"
+}
+
+@test "an empty case folder is an error" {
+  mkdir -p empty/cases
+  run "$ATTEST" --suite empty run
+  [ "$status" -eq 2 ]
+  has "no case files"
+}
+
+@test "a folder that is no suite is an error" {
+  run "$ATTEST" --suite . run
+  [ "$status" -eq 2 ]
+  has "has no cases/ folder"
+}
+
+@test "a missing golden names bless" {
+  make_suite
+  run "$ATTEST" --suite suite run
+  [ "$status" -eq 2 ]
+  has "no golden for px4-v1.5.5/attitude/roll"
+  has "attest bless"
+}
+
+@test "a golden of another version of the case is stale" {
+  blessed_suite
+  echo "# changed" >>suite/cases/px4-v1.5.5/attitude/roll.toml
+  run "$ATTEST" --suite suite run
+  [ "$status" -eq 2 ]
+  has "stale"
+  has "attest bless"
+}
+
+@test "a golden that somebody edited is refused" {
+  blessed_suite
+  sed -i '5s/,/,1/' suite/golden/px4-v1.5.5/attitude/roll/250hz.csv
+  run "$ATTEST" --suite suite run
+  [ "$status" -eq 2 ]
+  has "250hz.csv"
+  has "is not the file that was blessed"
+}
+
+@test "a broken case file is shown with its line, all mistakes at once" {
+  make_suite
+  sed -i 's/^duration_ticks.*/duration_tick = 30/; s/amplitude = 0.3/amplitud = 0.3/' \
+    suite/cases/px4-v1.5.5/attitude/roll.toml
+  run "$ATTEST" --suite suite run
+  [ "$status" -eq 2 ]
+  has "roll.toml:5"
+  has 'did you mean `duration_ticks`'
+  has 'did you mean `amplitude`'
+}
+
+@test "no colour in a pipe, quiet says nothing when all is well" {
+  run "$ATTEST" run
+  lacks $'\e['
+  run "$ATTEST" --quiet run
+  [ "$status" -eq 0 ]
+  [ -z "$output" ]
+}
+
+@test "Ctrl-C ends a run at once and leaves no report behind" {
+  "$ATTEST" run --port "lib:$PORTS/port_hang.so" --timeout 60 --junit r.xml >out 2>err &
+  pid=$!
+  for _ in $(seq 100); do [ -z "$(pgrep -P $pid)" ] || break; sleep 0.05; done
+  kill -INT $pid
+  status=0
+  wait $pid || status=$?
+  [ "$status" -eq 130 ]
+  grep -q interrupted err
+  [ -z "$(find . -name '*r.xml*')" ]
+}

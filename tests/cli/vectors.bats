@@ -1,0 +1,30 @@
+load common
+
+@test "vectors writes the inputs, complete in each file, and no outputs" {
+  blessed_suite
+  run "$ATTEST" --suite suite vectors out --rate 250,333
+  [ "$status" -eq 0 ]
+  has "2 input traces"
+  file=out/px4-v1.5.5/attitude/roll/333hz.csv
+  head -1 $file | grep -q '^timestamp,in/control_state.q\[0\]'
+  head -1 $file | grep -vq 'out/'
+  [ "$(wc -l <$file)" -eq 31 ]
+}
+
+@test "the inputs are those of the golden" {
+  blessed_suite
+  "$ATTEST" --suite suite vectors out --rate 250 >/dev/null
+  column() { awk -F, -v name="$2" 'NR==1 {for (i=1;i<=NF;++i) if ($i==name) c=i} {print $c}' "$1"; }
+  for name in timestamp in/control_state.roll_rate 'in/vehicle_attitude_setpoint.q_d[1]'; do
+    [ "$(column out/px4-v1.5.5/attitude/roll/250hz.csv "$name")" = \
+      "$(column suite/golden/px4-v1.5.5/attitude/roll/250hz.csv "$name")" ]
+  done
+}
+
+@test "a folder that cannot be made is an error" {
+  echo >file
+  make_suite
+  run "$ATTEST" --suite suite vectors file/below --rate 250
+  [ "$status" -eq 2 ]
+  has "file/below"
+}

@@ -1,0 +1,60 @@
+#include "harness/casefile/flight_mode.hpp"
+
+#include <set>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/casefile/stimulus.hpp"
+#include "tests/harness/casefile/case_files.hpp"
+
+namespace attest {
+namespace {
+
+using testing::ElementsAre;
+
+std::array<int, 6> flags_at(const Trace& trace, std::size_t tick) {
+  const auto& mode = trace.samples[tick].in.vehicle_control_mode;
+  return {mode.flag_control_manual_enabled,    mode.flag_control_auto_enabled,
+          mode.flag_control_rates_enabled,     mode.flag_control_attitude_enabled,
+          mode.flag_control_rattitude_enabled, mode.flag_control_velocity_enabled};
+}
+
+Trace with_mode(const std::string& lines) {
+  return stimulate(case_of("[vehicle_control_mode]\n" + lines), Rate::hz(250));
+}
+
+TEST(FlightMode, IsFoundByItsName) {
+  std::set<std::string_view> names;
+  for (const FlightMode& mode : flight_modes()) {
+    EXPECT_EQ(find_flight_mode(mode.name), &mode);
+    names.insert(mode.name);
+  }
+  EXPECT_EQ(names.size(), flight_modes().size());
+  EXPECT_EQ(find_flight_mode("acro"), nullptr);
+}
+
+TEST(FlightMode, SetsTheFlags) {
+  for (const FlightMode& mode : flight_modes()) {
+    const Trace trace = with_mode("flight_mode = \"" + std::string(mode.name) + "\"\n");
+    const auto flags = flags_at(trace, 0);
+    EXPECT_TRUE(std::equal(flags.begin(), flags.end(), mode.flags.begin())) << mode.name;
+  }
+}
+
+TEST(FlightMode, AFlagBesideItReplacesThatOfTheMode) {
+  const Trace trace =
+      with_mode("flight_mode = \"AUTO_MISSION\"\nflag_control_velocity_enabled = false\n");
+  EXPECT_THAT(flags_at(trace, 0), ElementsAre(0, 1, 1, 1, 0, 0));
+}
+
+TEST(FlightMode, ChangesAtItsTimes) {
+  const Trace trace = with_mode(
+      "flight_mode = { times_ticks = [0, 4], modes = [\"STABILIZED\", \"OFFBOARD_RATES\"] }\n");
+  EXPECT_THAT(flags_at(trace, 3), ElementsAre(1, 0, 1, 1, 1, 0));
+  EXPECT_THAT(flags_at(trace, 4), ElementsAre(0, 0, 1, 0, 0, 0));
+}
+
+}  // namespace
+}  // namespace attest

@@ -1,0 +1,146 @@
+// What a case file may not say, outside its topics and signals.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/harness/casefile/case_files.hpp"
+
+namespace attest {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+// Five valid lines with one of them replaced.
+std::string with_line(int line, const std::string& replacement) {
+  std::string text;
+  const std::string lines[] = {"schema = 1", "profile = \"px4-v1.5.5\"", "group = \"tests\"",
+                               "why = \"a test\"", "duration_ticks = 10"};
+  for (int i = 1; i <= 5; ++i) text += (i == line ? replacement : lines[i - 1]) + "\n";
+  return text;
+}
+
+TEST(CaseErrors, SyntaxHasALine) {
+  EXPECT_THAT(errors_of("[parameters\n"), HasSubstr("6:12: not valid TOML"));
+  EXPECT_THAT(errors_of("why = \"twice\"\n"), HasSubstr("6:"));
+}
+
+TEST(CaseErrors, IdentityIsThePlaceOfTheFile) {
+  EXPECT_EQ(errors_of_text(with_line(3, "group = \"test\"")),
+            "3:1: is `test`, but the folder is `tests`");
+  EXPECT_EQ(errors_of_text(with_line(2, "profile = \"px4-v1.3.4\"")),
+            "2:1: is `px4-v1.3.4`, but the folder is `px4-v1.5.5`");
+}
+
+TEST(CaseErrors, EachRequiredKeyIsMissedOnce) {
+  for (const char* key : {"schema", "profile", "group", "why", "duration_ticks"}) {
+    SCOPED_TRACE(key);
+    std::string text = CaseFiles::with("");
+    const auto begin = text.find(key);
+    text.erase(begin, text.find('\n', begin) - begin);
+    const std::string errors = errors_of_text(text);
+    EXPECT_THAT(errors, HasSubstr(key));
+    EXPECT_THAT(errors, Not(HasSubstr("\n")));
+  }
+}
+
+TEST(CaseErrors, WrongValuesOfTheHead) {
+  EXPECT_EQ(errors_of_text(with_line(1, "schema = 2")), "1:1: must be 1");
+  EXPECT_EQ(errors_of_text(with_line(4, "why = \"\"")), "4:1: must say why the case exists");
+  EXPECT_THAT(errors_of_text(with_line(4, "why = 1")),
+              HasSubstr("4:1: `why` must be text, found an integer"));
+  EXPECT_EQ(errors_of("level = \"strict\"\n"), "6:1: must be numeric or exact");
+}
+
+TEST(CaseErrors, UnknownKeysHaveASuggestion) {
+  EXPECT_EQ(errors_of("rates_hs = [250]\n"), "6:1: unknown key `rates_hs`; did you mean `rates_hz`?");
+  EXPECT_THAT(errors_of("[batery_status]\nscale = 1\n"), HasSubstr("did you mean `battery_status`?"));
+  EXPECT_EQ(errors_of("[unit]\njiter = 0.1\n"), "7:1: unknown key `jiter`; did you mean `jitter`?");
+}
+
+TEST(CaseErrors, AllAreSaidAtOnce) {
+  const std::string errors = errors_of("level = \"strict\"\n[unit]\njitter = 2\n");
+  EXPECT_THAT(errors, AllOf(HasSubstr("6:1: must be numeric"), HasSubstr("8:1: is a fraction")));
+}
+
+TEST(CaseErrors, Durations) {
+  const auto error_of = [](const std::string& line) { return errors_of_text(with_line(5, line)); };
+  EXPECT_EQ(error_of("duration_ticks = 0"), "5:1: must be positive");
+  EXPECT_EQ(error_of("duration_s = 0"), "5:1: must be positive");
+  EXPECT_EQ(error_of("duration_ticks = 2.5"), "5:1: must be a whole number");
+  EXPECT_THAT(error_of("duration_ticks = -1"), HasSubstr("must be a time from 0 up to 1000000"));
+  EXPECT_THAT(error_of("duration_ticks = nan"), HasSubstr("must be a time from 0 up to 1000000"));
+  EXPECT_THAT(error_of("duration_ticks = 1000001"), HasSubstr("must be a time from 0 up to"));
+  EXPECT_EQ(error_of("duration_s = 126"), "5:1: is more than 1000000 ticks at 8000 Hz");
+  EXPECT_EQ(error_of("duration_s = 125"), "");
+  EXPECT_EQ(error_of("duration_ticks = 10\nduration_s = 1"),
+            "6:1: `duration_ticks` is given too; keep one of them");
+}
+
+TEST(CaseErrors, Rates) {
+  const std::string why = "rates_why = \"some\"\n";
+  EXPECT_THAT(errors_of("rates_hz = [250]\n"), HasSubstr("missing key `rates_why`"));
+  EXPECT_EQ(errors_of(why), "6:1: explains `rates_hz`, which is not there");
+  EXPECT_EQ(errors_of(why + "rates_hz = []\n"), "7:1: names no rate");
+  EXPECT_EQ(errors_of(why + "rates_hz = [250, 100, 250.0]\n"), "7:1: names a rate twice");
+  EXPECT_THAT(errors_of(why + "rates_hz = [0]\n"), HasSubstr("7:1: `0` is not a rate"));
+  EXPECT_THAT(errors_of(why + "rates_hz = [-250]\n"), HasSubstr("is not a rate"));
+  EXPECT_THAT(errors_of(why + "rates_hz = [2e6]\n"), HasSubstr("too fast"));
+  EXPECT_THAT(errors_of(why + "rates_hz = [333.33333333]\n"), HasSubstr("at most 9 digits"));
+  EXPECT_THAT(errors_of(why + "rates_hz = \"250\"\n"), HasSubstr("must be an array of numbers"));
+}
+
+TEST(CaseErrors, UnitTiming) {
+  for (const char* jitter : {"-0.1", "1", "nan"}) {
+    EXPECT_THAT(errors_of(std::string("[unit]\njitter = ") + jitter + "\n"),
+                HasSubstr("7:1: is a fraction of a period"));
+  }
+  EXPECT_EQ(errors_of("[unit]\nstart_s = -1\n"), "7:1: must be from 0 up to 8e9");
+  EXPECT_EQ(errors_of("[unit]\nstart_s = 8.1e9\n"), "7:1: must be from 0 up to 8e9");
+  EXPECT_THAT(errors_of("[unit]\nseed = 1.5\n"), HasSubstr("`seed` must be an integer"));
+}
+
+// A dropped tick that does not exist tests nothing.
+TEST(CaseErrors, DroppedTicksAreTicksOfTheCase) {
+  EXPECT_EQ(errors_of("[unit]\ndrop_ticks = [0, 9]\n"), "");
+  EXPECT_EQ(errors_of("[unit]\ndrop_ticks = [10]\n"),
+            "7:1: must be ticks of the case: from 0 to 9");
+  EXPECT_EQ(errors_of("[unit]\ndrop_ticks = [-1]\n"),
+            "7:1: must be ticks of the case: from 0 to 9");
+  EXPECT_THAT(errors_of("[unit]\ndrop_ticks = [0,1,2,3,4,5,6,7,8,9]\n"),
+              HasSubstr("leaves no tick at 50 Hz"));
+}
+
+// Timestamps are microseconds, and have to increase.
+TEST(CaseErrors, JitterKeepsTicksApart) {
+  EXPECT_EQ(errors_of("[unit]\njitter = 0.99\n"), "");
+  EXPECT_EQ(errors_of("[unit]\njitter = 0.9999\n"),
+            "7:1: leaves less than 1 us between ticks at 8000 Hz");
+}
+
+TEST(CaseErrors, Parameters) {
+  EXPECT_THAT(errors_of("[parameters]\nMC_ROL_P = 1\n"),
+              HasSubstr("7:1: unknown parameter `MC_ROL_P`; did you mean `MC_ROLL_P`?"));
+  EXPECT_THAT(errors_of("[parameters]\nMC_ROLL_P = \"1\"\n"), HasSubstr("must be a number"));
+  EXPECT_THAT(errors_of("parameters = 3\n"), HasSubstr("`parameters` must be a table"));
+}
+
+TEST(CaseErrors, Tolerances) {
+  const std::string head = "[tolerance]\nwhy = \"x\"\n";
+  EXPECT_THAT(errors_of("[tolerance]\nvehicle_rates_setpoint = { absolute = 1 }\n"),
+              HasSubstr("6:1: missing key `why`"));
+  EXPECT_THAT(errors_of(head + "vehicle_rate_setpoint = { absolute = 1 }\n"),
+              HasSubstr("8:1: `vehicle_rate_setpoint` is no output topic or channel"));
+  EXPECT_THAT(errors_of(head + "vehicle_rates_setpoint = { relative = 1 }\n"),
+              HasSubstr("missing key `absolute`"));
+  for (const char* value : {"-1", "nan", "inf"}) {
+    EXPECT_THAT(errors_of(head + "mc_att_ctrl_status = { absolute = " + value + " }\n"),
+                HasSubstr("tolerances must be finite and not negative"));
+  }
+  // Without quotes the dot makes a table of its own.
+  EXPECT_THAT(errors_of(head + "vehicle_rates_setpoint.roll = { absolute = 1 }\n"),
+              HasSubstr("unknown key `roll`"));
+}
+
+}  // namespace
+}  // namespace attest

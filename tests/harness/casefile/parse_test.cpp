@@ -1,0 +1,111 @@
+#include "harness/casefile/parse.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/core/file.hpp"
+#include "tests/harness/casefile/case_files.hpp"
+
+namespace attest {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+namespace fs = std::filesystem;
+
+TEST(ParseCase, NamesItByItsPlace) {
+  const Case parsed = case_of("");
+  EXPECT_EQ(parsed.id(), "px4-v1.5.5/tests/the_case");
+  EXPECT_EQ(parsed.why, "a test");
+  EXPECT_EQ(parsed.sha256, sha256(CaseFiles::with("")));
+}
+
+TEST(ParseCase, HasDefaults) {
+  const Case parsed = case_of("");
+  EXPECT_EQ(parsed.rates, standard_rates());
+  EXPECT_FALSE(parsed.exact_only);
+  EXPECT_EQ(parsed.unit.start.on(Rate::hz(250)), std::chrono::seconds(5));
+  EXPECT_EQ(parsed.unit.jitter, 0);
+  EXPECT_THAT(parsed.unit.drop_ticks, IsEmpty());
+  EXPECT_THAT(parsed.parameters, IsEmpty());
+  EXPECT_THAT(parsed.tolerances, IsEmpty());
+}
+
+TEST(ParseCase, RatesAreSorted) {
+  const Case parsed = case_of("rates_hz = [333, 62.5, 250]\nrates_why = \"three\"\n");
+  EXPECT_THAT(parsed.rates, ElementsAre(Rate::hz(125, 2), Rate::hz(250), Rate::hz(333)));
+}
+
+TEST(ParseCase, ReadsTheUnitsTiming) {
+  const Case parsed = case_of("[unit]\nstart_s = 0.5\njitter = 0.25\nseed = 7\ndrop_ticks = [3]\n");
+  EXPECT_EQ(parsed.unit.start.amount, 0.5);
+  EXPECT_EQ(parsed.unit.jitter, 0.25);
+  EXPECT_EQ(parsed.unit.seed, 7u);
+  EXPECT_THAT(parsed.unit.drop_ticks, ElementsAre(3));
+}
+
+TEST(ParseCase, ReadsToleranceOverrides) {
+  const Case parsed = case_of(
+      "level = \"exact\"\n[tolerance]\nwhy = \"reason\"\n"
+      "\"vehicle_rates_setpoint.roll\" = { absolute = 0.5, relative = 0.25 }\n");
+  EXPECT_TRUE(parsed.exact_only);
+  EXPECT_EQ(parsed.tolerance_why, "reason");
+  ASSERT_EQ(parsed.tolerances.size(), 1u);
+  EXPECT_EQ(parsed.tolerances[0].channels, "vehicle_rates_setpoint.roll");
+  EXPECT_EQ(parsed.tolerances[0].tolerance.absolute, 0.5);
+  EXPECT_EQ(parsed.tolerances[0].tolerance.relative, 0.25);
+}
+
+TEST(ParseCase, EveryTopicIsThereOnceInTheOrderOfItsBits) {
+  const Case parsed = case_of("[battery_status]\nscale = 0.9\n");
+  ASSERT_EQ(parsed.topics.size(), updated_topics().size());
+  EXPECT_EQ(parsed.topics[0].topic, "control_state");
+  EXPECT_EQ(parsed.topics[0].updated_bit, 0u);
+  for (std::size_t i = 1; i < parsed.topics.size(); ++i) {
+    EXPECT_EQ(parsed.topics[i].topic, updated_topics()[i - 1]);
+    EXPECT_EQ(parsed.topics[i].updated_bit, 1u << (i - 1));
+  }
+}
+
+TEST(ParseCase, ARelativePathHasTheSameFolders) {
+  const CaseFiles files;
+  const fs::path file = files.write("tests", "the_case", CaseFiles::with(""));
+  const fs::path folder = fs::relative(file.parent_path());
+  EXPECT_TRUE(parse_case(folder / "." / "the_case.toml"));
+  EXPECT_TRUE(parse_case(folder / ".." / "tests" / "the_case.toml"));
+}
+
+TEST(ParseCase, AFileThatIsNotThereIsAnError) {
+  const auto parsed = parse_case("nowhere/px4-v1.5.5/tests/the_case.toml");
+  ASSERT_FALSE(parsed);
+  EXPECT_THAT(parsed.error().file, HasSubstr("nowhere"));
+}
+
+TEST(FindCaseFiles, AreAllBelowInTheOrderOfTheirPaths) {
+  const CaseFiles files;
+  const fs::path b = files.write("b", "x", "");
+  const fs::path a2 = files.write("a", "2", "");
+  const fs::path a1 = files.write("a", "1", "");
+  std::ofstream(files.folder() / "README.md") << "not a case\n";
+  const auto found = find_case_files(files.folder());
+  ASSERT_TRUE(found);
+  EXPECT_THAT(*found, ElementsAre(a1, a2, b));
+}
+
+TEST(FindCaseFiles, AnEmptyOrMissingFolderIsAnError) {
+  const TemporaryDirectory empty;
+  const auto none = find_case_files(empty.path());
+  ASSERT_FALSE(none);
+  EXPECT_THAT(none.error().message, HasSubstr("no case files"));
+  const auto missing = find_case_files(empty.path() / "missing");
+  ASSERT_FALSE(missing);
+  EXPECT_THAT(missing.error().message, HasSubstr("cannot be read"));
+}
+
+}  // namespace
+}  // namespace attest

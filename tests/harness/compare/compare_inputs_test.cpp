@@ -1,0 +1,66 @@
+#include <limits>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/compare/compare.hpp"
+#include "tests/harness/compare/sample_trace.hpp"
+
+namespace attest {
+namespace {
+
+using testing::Optional;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+TEST(FirstInputDifference, ThereIsNoneBetweenTheSame) {
+  const Trace trace = sample_trace(3);
+  EXPECT_EQ(first_input_difference(trace, trace), std::nullopt);
+}
+
+TEST(FirstInputDifference, SeesEveryInput) {
+  const Trace a = sample_trace(3);
+  for (const Channel& what : channels()) {
+    Trace b = a;
+    const double value = value_of(what, a.samples[1]);
+    set_value(what, b.samples[1], what.type == ChannelType::bit ? 1 - value : value + 1);
+    const auto found = first_input_difference(a, b);
+    if (what.is_output()) {
+      EXPECT_EQ(found, std::nullopt) << what.name;
+    } else {
+      EXPECT_THAT(found, Optional(1u)) << what.name;
+    }
+  }
+}
+
+TEST(FirstInputDifference, IsOfBits) {
+  Trace a = sample_trace(2), b = a;
+  set(a, 1, "in/manual_control_setpoint.x", -0.0);
+  EXPECT_THAT(first_input_difference(a, b), Optional(1u));
+  set(a, 1, "in/manual_control_setpoint.x", nan);
+  set(b, 1, "in/manual_control_setpoint.x", -nan);
+  EXPECT_EQ(first_input_difference(a, b), std::nullopt);
+}
+
+TEST(FirstInputDifference, ALongerTraceDiffersWhereTheOtherEnds) {
+  EXPECT_THAT(first_input_difference(sample_trace(2), sample_trace(3)), Optional(2u));
+  EXPECT_THAT(first_input_difference(sample_trace(3), sample_trace(0)), Optional(0u));
+}
+
+TEST(FirstInputDifference, SeesParametersInForce) {
+  Trace a = sample_trace(4), b = a;
+  a.parameters = {{0, "MC_ROLL_P", 5}, {2, "MC_ROLL_P", 6}};
+  EXPECT_THAT(first_input_difference(a, b), Optional(0u));
+  b.parameters = {{0, "MC_ROLL_P", 5}};
+  EXPECT_THAT(first_input_difference(a, b), Optional(2u));
+  b.parameters = {{0, "MC_ROLL_P", 5}, {2, "MC_PITCH_P", 6}};
+  EXPECT_THAT(first_input_difference(a, b), Optional(2u));
+  // Said again, or in another order, it is the same parameter.
+  a.parameters = {{0, "MC_ROLL_P", 5}, {0, "MC_PITCH_P", 6}};
+  b.parameters = {{0, "MC_PITCH_P", 6}, {0, "MC_ROLL_P", 5}, {2, "MC_ROLL_P", 5}};
+  EXPECT_EQ(first_input_difference(a, b), std::nullopt);
+}
+
+}  // namespace
+}  // namespace attest

@@ -1,0 +1,73 @@
+#include "harness/compare/tilt.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include "tests/harness/compare/sample_trace.hpp"
+
+namespace attest {
+namespace {
+
+// `angle` [rad] about the axis {x, y, z}, of length `norm`.
+attest_inputs at(double angle, double x, double y, double z, double norm = 1) {
+  attest_inputs in{};
+  const double s = norm * std::sin(angle / 2);
+  const double q[4] = {norm * std::cos(angle / 2), s * x, s * y, s * z};
+  for (int i = 0; i < 4; ++i) {
+    in.control_state.q[i] = static_cast<float>(q[i]);
+    in.vehicle_attitude_setpoint.q_d[i] = static_cast<float>(q[i]);
+  }
+  return in;
+}
+
+TEST(TiltError, IsTheAngleBetweenTheThrustAxes) {
+  const attest_inputs level = at(0, 1, 0, 0);
+  for (const double degrees : {0.0, 1e-3, 30.0, 90.0, 179.9, 180.0}) {
+    const double angle = degrees * std::numbers::pi / 180;
+    EXPECT_NEAR(tilt_error(at(angle, 1, 0, 0), level), angle, 1e-6);
+    EXPECT_NEAR(tilt_error(level, at(angle, 0.6, 0.8, 0)), angle, 1e-6);
+  }
+}
+
+TEST(TiltError, HeadingSignAndLengthDoNotMatter) {
+  const attest_inputs level = at(0, 1, 0, 0);
+  EXPECT_NEAR(tilt_error(at(2, 0, 0, 1), level), 0, 1e-6);
+  EXPECT_NEAR(tilt_error(at(1, 1, 0, 0, -1), level), 1, 1e-6);
+  EXPECT_NEAR(tilt_error(at(1, 1, 0, 0, 1e-3), level), 1, 1e-6);
+}
+
+TEST(TiltError, IsNoNumberWithoutAnAttitude) {
+  attest_inputs broken = at(0, 1, 0, 0);
+  broken.control_state.q[2] = std::numeric_limits<float>::infinity();
+  EXPECT_TRUE(std::isnan(tilt_error(broken, at(0, 1, 0, 0))));
+  EXPECT_TRUE(std::isnan(tilt_error(attest_inputs{}, at(0, 1, 0, 0))));
+}
+
+RC_GTEST_PROP(TiltError, IsSymmetric, (double a, double b)) {
+  const attest_inputs one = at(a, 1, 0, 0), other = at(b, 0, 1, 0);
+  RC_ASSERT(std::abs(tilt_error(one, other) - tilt_error(other, one)) < 1e-9);
+}
+
+TEST(AttitudeGain, IsTheLargerInForce) {
+  Trace trace = sample_trace(5);
+  trace.parameters = {{1, "MC_ROLL_P", 8}, {2, "MC_PITCH_TC", 0.1f}, {4, "MC_YAW_P", 99}};
+  AttitudeGain gain(trace);
+  EXPECT_DOUBLE_EQ(gain.at(0), 6.5);
+  EXPECT_DOUBLE_EQ(gain.at(1), 8);
+  EXPECT_NEAR(gain.at(3), 13, 1e-6);
+  EXPECT_NEAR(gain.at(4), 13, 1e-6);
+}
+
+TEST(AttitudeGain, HasNoSign) {
+  Trace trace = sample_trace(1);
+  trace.parameters = {{0, "MC_ROLL_P", -8}, {0, "MC_PITCH_P", -7}};
+  EXPECT_DOUBLE_EQ(AttitudeGain(trace).at(0), 8);
+}
+
+}  // namespace
+}  // namespace attest

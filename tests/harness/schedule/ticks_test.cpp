@@ -1,0 +1,96 @@
+#include "harness/schedule/ticks.hpp"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+namespace attest {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr Nanoseconds ms(std::int64_t count) { return std::chrono::milliseconds(count); }
+
+TickSchedule any_schedule() {
+  TickSchedule schedule;
+  schedule.rate = *rc::gen::elementOf(standard_rates());
+  schedule.phase = Nanoseconds(*rc::gen::inRange<std::int64_t>(0, 1'000'000'000));
+  schedule.jitter = *rc::gen::inRange(0, 1000) / 1000.0;
+  schedule.seed = *rc::gen::arbitrary<std::uint64_t>();
+  schedule.drops = *rc::gen::container<std::vector<std::int64_t>>(rc::gen::inRange(-5, 205));
+  return schedule;
+}
+
+TEST(Ticks, AreAtThePeriodsFromThePhaseOn) {
+  TickSchedule schedule;
+  schedule.phase = ms(1);
+  EXPECT_THAT(ticks(schedule, 3), ElementsAre(ms(1), ms(5), ms(9)));
+  EXPECT_THAT(ticks(schedule, 0), IsEmpty());
+}
+
+TEST(Ticks, LeaveOutTheDropped) {
+  TickSchedule schedule;
+  schedule.drops = {0, 2, 2, 99};
+  EXPECT_THAT(ticks(schedule, 4), ElementsAre(ms(4), ms(12)));
+}
+
+RC_GTEST_PROP(Ticks, StrictlyIncrease, ()) {
+  const auto times = ticks(any_schedule(), 200);
+  RC_ASSERT(std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) == times.end());
+}
+
+RC_GTEST_PROP(Ticks, AreLateByLessThanTheJitter, ()) {
+  TickSchedule schedule = any_schedule();
+  schedule.drops.clear();
+  const auto times = ticks(schedule, 200);
+  const double most = schedule.jitter * schedule.rate.period_s() * 1e9;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const Nanoseconds late =
+        times[k] - schedule.phase - schedule.rate.tick(static_cast<std::int64_t>(k));
+    RC_ASSERT(late >= Nanoseconds(0));
+    RC_ASSERT(static_cast<double>(late.count()) <= most + 1);
+  }
+}
+
+TEST(Ticks, JitterSpreadsOverItsRange) {
+  TickSchedule schedule;
+  schedule.jitter = 0.5;
+  const auto times = ticks(schedule, 1000);
+  std::vector<Nanoseconds> late;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    late.push_back(times[k] - schedule.rate.tick(static_cast<std::int64_t>(k)));
+  }
+  EXPECT_LT(*std::min_element(late.begin(), late.end()), Nanoseconds(50'000));
+  EXPECT_GT(*std::max_element(late.begin(), late.end()), Nanoseconds(1'950'000));
+}
+
+RC_GTEST_PROP(Ticks, DroppingSomeMovesNoOther, ()) {
+  TickSchedule schedule = any_schedule();
+  const auto some = ticks(schedule, 200);
+  schedule.drops.clear();
+  const auto all = ticks(schedule, 200);
+  RC_ASSERT(std::includes(all.begin(), all.end(), some.begin(), some.end()));
+}
+
+RC_GTEST_PROP(Ticks, TheSameScheduleGivesTheSameTicks, ()) {
+  const TickSchedule schedule = any_schedule();
+  RC_ASSERT(ticks(schedule, 100) == ticks(schedule, 100));
+}
+
+TEST(Ticks, TheSeedIsThatOfTheJitter) {
+  TickSchedule schedule;
+  schedule.jitter = 0.5;
+  const auto one = ticks(schedule, 10);
+  schedule.seed = 2;
+  EXPECT_NE(ticks(schedule, 10), one);
+  schedule.jitter = 0;
+  const auto two = ticks(schedule, 10);
+  schedule.seed = 1;
+  EXPECT_EQ(ticks(schedule, 10), two);
+}
+
+}  // namespace
+}  // namespace attest
