@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <set>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -68,26 +70,26 @@ UnitTiming parse_unit(const TomlTable& root) {
 
 // What jitter and dropped ticks may be depends on the rates and the duration.
 void check_unit(const TomlTable& root, const Case& parsed) {
-  if (!root.has("unit") || !(parsed.duration.amount >= 1e-6)) return;
+  const bool is_known = parsed.duration.amount > 0 && !parsed.rates.empty();
+  if (!root.has("unit") || !is_known) return;
   const TomlTable table = root.table("unit");
-  std::vector<std::int64_t> drops = parsed.unit.drop_ticks;
-  std::sort(drops.begin(), drops.end());
-  drops.erase(std::unique(drops.begin(), drops.end()), drops.end());
-  std::int64_t most = 0;
-  for (const Rate& rate : parsed.rates) {
-    const std::int64_t ticks = tick_count(parsed.duration, rate);
-    most = std::max(most, ticks);
-    if (std::lower_bound(drops.begin(), drops.end(), ticks) - drops.begin() >= ticks) {
-      table.error("drop_ticks", fmt::format("leaves no tick at {} Hz", rate.to_string()));
-    }
-    // Jitter brings ticks nearer together, and timestamps (us) have to increase.
-    if (parsed.unit.jitter > 0 && (1 - parsed.unit.jitter) * rate.period_s() < 1e-6) {
-      table.error("jitter",
-                  fmt::format("leaves less than 1 us between ticks at {} Hz", rate.to_string()));
-    }
+  const Rate& slowest = parsed.rates.front();
+  const Rate& fastest = parsed.rates.back();
+  // Jitter brings ticks nearer together, and timestamps (us) have to increase.
+  if (parsed.unit.jitter > 0 && (1 - parsed.unit.jitter) * fastest.period_s() < 1e-6) {
+    table.error("jitter",
+                fmt::format("leaves less than 1 us between ticks at {} Hz", fastest.to_string()));
   }
-  if (!drops.empty() && (drops.front() < 0 || drops.back() >= most)) {
-    table.error("drop_ticks", fmt::format("must be ticks of the case: from 0 to {}", most - 1));
+  const std::set<std::int64_t> drops(parsed.unit.drop_ticks.begin(), parsed.unit.drop_ticks.end());
+  if (drops.empty()) return;
+  const std::int64_t last = tick_count(parsed.duration, fastest) - 1;
+  if (*drops.begin() < 0 || *drops.rbegin() > last) {
+    table.error("drop_ticks", fmt::format("must be ticks of the case: from 0 to {}", last));
+    return;
+  }
+  const std::int64_t fewest = tick_count(parsed.duration, slowest);
+  if (std::distance(drops.begin(), drops.lower_bound(fewest)) == fewest) {
+    table.error("drop_ticks", fmt::format("leaves no tick at {} Hz", slowest.to_string()));
   }
 }
 
@@ -140,11 +142,11 @@ void parse_identity(const TomlTable& root, const fs::path& file, Case& parsed) {
   parsed.profile = root.text("profile");
   parsed.group = root.text("group");
   parsed.why = root.text("why");
-  if (parsed.group != folder.filename()) {
+  if (root.has("group") && parsed.group != folder.filename()) {
     root.error("group", fmt::format("is `{}`, but the folder is `{}`", parsed.group,
                                     folder.filename().string()));
   }
-  if (parsed.profile != folder.parent_path().filename()) {
+  if (root.has("profile") && parsed.profile != folder.parent_path().filename()) {
     root.error("profile", fmt::format("is `{}`, but the folder is `{}`", parsed.profile,
                                       folder.parent_path().filename().string()));
   }
@@ -167,7 +169,7 @@ void parse_duration(const TomlTable& root, Case& parsed) {
 }
 
 void parse_body(const TomlTable& root, Case& parsed) {
-  if (root.integer("schema") != schema_version) {
+  if (root.integer("schema") != schema_version && root.has("schema")) {
     root.error("schema", fmt::format("must be {}", schema_version));
   }
   parsed.rates = parse_rates(root);

@@ -60,8 +60,14 @@ struct Change {
   std::size_t max_channel = 0;
 };
 
+// By bits, as the exact level sees it: -0 is not 0, but every NaN is the same.
+bool differ(double a, double b) {
+  if (std::isnan(a) || std::isnan(b)) return std::isnan(a) != std::isnan(b);
+  return a != b || std::signbit(a) != std::signbit(b);
+}
+
+// Infinite where one of them is no number.
 double deviation(double a, double b) {
-  if (std::isnan(a) && std::isnan(b)) return 0;
   const double difference = std::abs(a - b);
   return std::isnan(difference) ? HUGE_VAL : difference;
 }
@@ -73,11 +79,12 @@ Change change_between(const Trace& old_trace, const Trace& new_trace) {
   for (std::size_t tick = 0; tick < common; ++tick) {
     bool differs = false;
     for (std::size_t i = 0; i < channels().size(); ++i) {
-      const double off = deviation(value_of(channels()[i], old_trace.samples[tick]),
-                                   value_of(channels()[i], new_trace.samples[tick]));
-      if (off == 0) continue;
+      const double before = value_of(channels()[i], old_trace.samples[tick]);
+      const double after = value_of(channels()[i], new_trace.samples[tick]);
+      if (!differ(before, after)) continue;
       differs = true;
       change.channels.set(i);
+      const double off = deviation(before, after);
       if (off <= change.max_deviation) continue;
       change.max_deviation = off;
       change.max_channel = i;

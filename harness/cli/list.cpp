@@ -66,9 +66,12 @@ std::string first_sentence(std::string text) {
 }
 
 void list_cases(const std::vector<SelectedCase>& cases) {
+  std::size_t width = 0;
+  for (const auto& selected : cases) width = std::max(width, selected.the_case.id().size());
   for (const auto& [the_case, rates] : cases) {
-    fmt::print("{:<50} {:>2} rates{}  {}\n", the_case.id(), rates.size(),
-               the_case.exact_only ? ", exact only" : "", first_sentence(the_case.why));
+    fmt::print("{:<{}}  {:>2} rate{}{}  {}\n", the_case.id(), width, rates.size(),
+               rates.size() == 1 ? " " : "s", the_case.exact_only ? ", exact only" : "",
+               first_sentence(the_case.why));
   }
 }
 

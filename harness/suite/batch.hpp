@@ -23,6 +23,10 @@ class Batch {
   // What task i is called, for the verdict on a port that did not live to give one.
   virtual CaseResult identity(std::size_t i) const = 0;
 
+  // Before the first task of a process. An error is one for all tasks, which are then left out.
+  virtual Result<void> open() { return {}; }
+
+  // REQUIRES: open() went well.
   virtual Result<CaseResult> evaluate(std::size_t i, Port& port) = 0;
 };
 
@@ -37,6 +41,7 @@ class CaseBatch final : public Batch {
 
   std::size_t size() const override { return rates_.size(); }
   CaseResult identity(std::size_t i) const override;
+  Result<void> open() override;
   Result<CaseResult> evaluate(std::size_t i, Port& port) override;
 
  private:
@@ -44,7 +49,7 @@ class CaseBatch final : public Batch {
   std::vector<Rate> rates_;
   std::filesystem::path golden_root_;
   Level level_;
-  std::optional<Result<Golden>> golden_;  // opened by the first task
+  std::optional<Golden> golden_;
 };
 
 // A recorded trace.

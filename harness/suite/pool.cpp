@@ -13,9 +13,10 @@ namespace {
 // In the child.
 void work_through(Batch& batch, std::size_t first, const std::string& specification,
                   const SendLine& send) {
+  const auto opened = batch.open();
   auto port = open_port(specification);
-  if (!port) {
-    send(encode(port.error()));
+  if (!opened || !port) {
+    send(encode(opened ? port.error() : opened.error()));
     return send(encode(BatchDone{}));
   }
   for (std::size_t i = first; i < batch.size(); ++i) {

@@ -22,6 +22,23 @@ bool any_failed(const WorkerOutcome& outcome) {
                      [](const CaseResult& result) { return fails_a_run(result.verdict); });
 }
 
+void run_batch_here(Batch& batch, Port& port, const WorkerOptions& options,
+                    WorkerOutcome& outcome) {
+  if (const auto opened = batch.open(); !opened) {
+    outcome.errors.push_back(opened.error());
+    return;
+  }
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    auto result = batch.evaluate(i, port);
+    if (result) {
+      options.on_result(*result);
+      outcome.results.push_back(std::move(*result));
+    } else {
+      outcome.errors.push_back(result.error());
+    }
+  }
+}
+
 WorkerOutcome run_here(const Batches& batches, const WorkerOptions& options) {
   // A port that changes the environment when it is loaded changes that of the caller here.
   const DefaultFloatEnvironment callers;
@@ -29,15 +46,7 @@ WorkerOutcome run_here(const Batches& batches, const WorkerOptions& options) {
   auto port = open_port(options.port);
   if (!port) return {{}, {port.error()}, false};
   for (std::size_t index = 0; index < batches.size() && !options.stop(); ++index) {
-    for (std::size_t i = 0; i < batches[index]->size(); ++i) {
-      auto result = batches[index]->evaluate(i, **port);
-      if (result) {
-        options.on_result(*result);
-        outcome.results.push_back(std::move(*result));
-      } else {
-        outcome.errors.push_back(result.error());
-      }
-    }
+    run_batch_here(*batches[index], **port, options, outcome);
     if (options.fail_fast && any_failed(outcome)) {
       outcome.stopped_early = index + 1 < batches.size();
       break;

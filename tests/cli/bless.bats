@@ -11,7 +11,8 @@ golden=suite/golden/px4-v1.5.5/attitude/roll
   grep -q "first golden" $golden/provenance.toml
   run "$ATTEST" --suite suite run --level exact
   [ "$status" -eq 0 ]
-  (cd $golden && grep "hz.csv" provenance.toml | tr -d "'" | awk '{print $3 "  " $1}' | sha256sum -c)
+  cd $golden
+  grep "hz.csv" provenance.toml | tr -d "'" | awk '{print $3 "  " $1}' | sha256sum -c
 }
 
 @test "nothing is blessed without a reason, nor unasked" {
@@ -82,4 +83,14 @@ golden=suite/golden/px4-v1.5.5/attitude/roll
   run "$ATTEST" --suite suite bless --yes --reason "should not be"
   [ "$status" -eq 2 ]
   has "is not what was recorded"
+}
+
+@test "a golden with infinities is unchanged when nothing changed" {
+  make_suite
+  cp "$SOURCE/cases/px4-v1.5.5/battery/non_finite_scale.toml" .
+  mkdir -p suite/cases/px4-v1.5.5/battery
+  mv non_finite_scale.toml suite/cases/px4-v1.5.5/battery/
+  "$ATTEST" --suite suite bless --yes --reason "first" >/dev/null
+  run "$ATTEST" --suite suite bless --yes --reason "again"
+  has "2 unchanged"
 }

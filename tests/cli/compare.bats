@@ -9,8 +9,10 @@ load common
 
 @test "a changed value is found: tick, channel, bits" {
   trace="$SOURCE"/golden/recorded/px4-v1.5.5/tracking_100hz.csv
-  awk -F, -v OFS=, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "out/vehicle_rates_setpoint.yaw") c = i }
-                    NR == 12 { $c = $c + 0.5 } 1' "$trace" >changed.csv
+  awk -F, -v OFS=, -v name=out/vehicle_rates_setpoint.yaw '
+    NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i }
+    NR == 12 { $c = $c + 0.5 }
+    1' "$trace" >changed.csv
   run "$ATTEST" compare changed.csv "$trace"
   [ "$status" -eq 1 ]
   has "first at tick 10"

@@ -107,6 +107,7 @@ load common
   run "$ATTEST" --suite suite run
   [ "$status" -eq 2 ]
   has "no golden for px4-v1.5.5/attitude/roll"
+  [ "$(grep -c "no golden" <<<"$output")" -eq 1 ]
   has "attest bless"
 }
 

@@ -53,8 +53,10 @@ TEST(CaseErrors, WrongValuesOfTheHead) {
 }
 
 TEST(CaseErrors, UnknownKeysHaveASuggestion) {
-  EXPECT_EQ(errors_of("rates_hs = [250]\n"), "6:1: unknown key `rates_hs`; did you mean `rates_hz`?");
-  EXPECT_THAT(errors_of("[batery_status]\nscale = 1\n"), HasSubstr("did you mean `battery_status`?"));
+  EXPECT_EQ(errors_of("rates_hs = [250]\n"),
+            "6:1: unknown key `rates_hs`; did you mean `rates_hz`?");
+  EXPECT_THAT(errors_of("[batery_status]\nscale = 1\n"),
+              HasSubstr("did you mean `battery_status`?"));
   EXPECT_EQ(errors_of("[unit]\njiter = 0.1\n"), "7:1: unknown key `jiter`; did you mean `jitter`?");
 }
 
@@ -128,7 +130,7 @@ TEST(CaseErrors, Parameters) {
 TEST(CaseErrors, Tolerances) {
   const std::string head = "[tolerance]\nwhy = \"x\"\n";
   EXPECT_THAT(errors_of("[tolerance]\nvehicle_rates_setpoint = { absolute = 1 }\n"),
-              HasSubstr("6:1: missing key `why`"));
+              HasSubstr("6:2: missing key `why`"));
   EXPECT_THAT(errors_of(head + "vehicle_rate_setpoint = { absolute = 1 }\n"),
               HasSubstr("8:1: `vehicle_rate_setpoint` is no output topic or channel"));
   EXPECT_THAT(errors_of(head + "vehicle_rates_setpoint = { relative = 1 }\n"),

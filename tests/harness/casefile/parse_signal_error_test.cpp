@@ -81,8 +81,7 @@ TEST(SignalErrors, Samples) {
   const auto samples = [](const std::string& rest) {
     return error_of("{ signal = \"samples\", " + rest + " }");
   };
-  EXPECT_THAT(samples("times_ticks = [0, 5], values = [1]"),
-              HasSubstr("has 1 values for 2 times"));
+  EXPECT_THAT(samples("times_ticks = [0, 5], values = [1]"), HasSubstr("has 1 values for 2 times"));
   EXPECT_THAT(samples("times_ticks = [], values = []"), HasSubstr("has 0 values for 0 times"));
   EXPECT_THAT(samples("times_ticks = [5, 5], values = [1, 2]"), HasSubstr("must increase"));
   EXPECT_THAT(samples("times_s = [-0.5, 1], values = [1, 2]"), HasSubstr("must be a time from 0"));

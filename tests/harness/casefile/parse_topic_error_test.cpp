@@ -25,7 +25,8 @@ TEST(TopicErrors, Flags) {
         "{ signal = \"step\", from = 0, to = 0.5, at_ticks = 1 }",
         "{ signal = \"samples\", times_ticks = [0, 1], values = [0, 1], linear = true }"}) {
     EXPECT_THAT(error_of("actuator_armed", std::string("armed = ") + value),
-                HasSubstr("7:1: is a flag")) << value;
+                HasSubstr("7:1: is a flag"))
+        << value;
   }
   for (const char* value : {"true", "false", "255",
                             "{ signal = \"samples\", times_ticks = [0, 1], values = [0, 4] }"}) {
@@ -36,8 +37,7 @@ TEST(TopicErrors, Flags) {
 TEST(TopicErrors, Quaternions) {
   EXPECT_EQ(error_of("control_state", "q = [1, 0, 0]"), "7:1: needs four numbers: [w, x, y, z]");
   EXPECT_THAT(error_of("control_state", "q = 1"), HasSubstr("`q` must be a table"));
-  EXPECT_THAT(error_of("control_state", "q = { tilt = 1 }"),
-              HasSubstr("unknown key `tilt`"));
+  EXPECT_THAT(error_of("control_state", "q = { tilt = 1 }"), HasSubstr("unknown key `tilt`"));
   EXPECT_THAT(error_of("vehicle_attitude_setpoint", "q_d = { sign = 0.5 }"),
               HasSubstr("must be 1 or -1"));
   EXPECT_THAT(error_of("control_state", "\"q[0]\" = 1"), HasSubstr("unknown key `q[0]`"));
@@ -61,7 +61,7 @@ TEST(TopicErrors, FlightModes) {
 TEST(TopicErrors, Publication) {
   const auto error = [](const std::string& line) { return error_of("battery_status", line); };
   EXPECT_EQ(error("publish = \"always\""), "7:1: must be \"never\" or \"every_tick\"");
-  EXPECT_THAT(error("publish = \"never\"\nrate_hz = 50"), HasSubstr("6:1: give one of `publish`"));
+  EXPECT_THAT(error("publish = \"never\"\nrate_hz = 50"), HasSubstr("6:2: give one of `publish`"));
   EXPECT_THAT(error("period_s = 1\nrate_hz = 50"), HasSubstr("give one of `publish`"));
   EXPECT_THAT(error("period_ticks = 1\nperiod_s = 1"), HasSubstr("`period_ticks` is given too"));
   EXPECT_THAT(error("phase_ticks = 1"), HasSubstr("a phase needs a period or a rate"));

@@ -1,0 +1,18 @@
+// Goldens of the tests' own cases, made by the reference of this build.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "harness/casefile/case.hpp"
+#include "harness/trace/trace.hpp"
+
+namespace attest {
+
+// What the reference answers, at each of the case's rates.
+std::vector<Trace> answers_of_reference(const Case& the_case);
+
+// Puts the golden in its place. Fails the test if it cannot.
+void bless(const std::filesystem::path& golden_root, const Case& the_case);
+
+}  // namespace attest

@@ -1,0 +1,174 @@
+#include "harness/run/golden.hpp"
+
+#include <fstream>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/casefile/stimulus.hpp"
+#include "harness/compare/compare.hpp"
+#include "tests/harness/casefile/case_files.hpp"
+#include "tests/harness/run/blessed.hpp"
+
+namespace attest {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::UnorderedElementsAre;
+
+namespace fs = std::filesystem;
+
+constexpr const char* two_rates = "rates_hz = [100, 333]\nrates_why = \"two\"\n";
+
+class GoldenTest : public testing::Test {
+ protected:
+  fs::path root() const { return directory_.path() / "golden"; }
+  Case a_case(const std::string& body = "") const { return case_of(two_rates + body); }
+  fs::path folder() const { return golden_folder(root(), a_case()); }
+
+  std::string error_of_open(const Case& the_case) const {
+    const auto golden = Golden::open(root(), the_case);
+    EXPECT_FALSE(golden);
+    return golden ? "" : golden.error().to_string();
+  }
+
+  // Every file below the root, relative to it.
+  std::set<std::string> files() const {
+    std::set<std::string> found;
+    for (const auto& entry : fs::recursive_directory_iterator(root())) {
+      if (!entry.is_directory()) found.insert(entry.path().lexically_relative(root()).string());
+    }
+    return found;
+  }
+
+ private:
+  TemporaryDirectory directory_;
+};
+
+TEST_F(GoldenTest, StandsInAFolderLikeItsCase) {
+  EXPECT_EQ(folder(), root() / "px4-v1.5.5" / "tests" / "the_case");
+}
+
+TEST_F(GoldenTest, ReadsBackWhatWasBlessed) {
+  const Case the_case = a_case(
+      "[unit]\njitter = 0.3\ndrop_ticks = [4]\n"
+      "[parameters]\nMC_ROLL_P = { signal = \"step\", from = 5, to = 6, at_ticks = 5 }\n"
+      "[control_state]\nroll_rate = { signal = \"step\", from = -0.0, to = nan, at_ticks = 8 }\n"
+      "q = { tilt_deg = { signal = \"ramp\", from = 0, to = 90, end_ticks = 9 } }\n"
+      "[battery_status]\nscale = inf\nperiod_ticks = 3\n");
+  bless(root(), the_case);
+  const auto golden = Golden::open(root(), the_case);
+  ASSERT_TRUE(golden) << golden.error().to_string();
+  const auto answers = answers_of_reference(the_case);
+  for (std::size_t i = 0; i < the_case.rates.size(); ++i) {
+    const auto read = golden->read(the_case.rates[i]);
+    ASSERT_TRUE(read) << read.error().to_string();
+    EXPECT_EQ(first_input_difference(*read, answers[i]), std::nullopt);
+    EXPECT_TRUE(compare(answers[i], *read, Tolerances(Level::exact)).agrees());
+  }
+}
+
+TEST_F(GoldenTest, ProvenanceSaysWhatItWasMadeFrom) {
+  bless(root(), a_case());
+  const auto golden = Golden::open(root(), a_case());
+  ASSERT_TRUE(golden);
+  EXPECT_EQ(golden->provenance().profile, "px4-v1.5.5");
+  EXPECT_EQ(golden->provenance().case_id, "px4-v1.5.5/tests/the_case");
+  EXPECT_EQ(golden->provenance().case_sha256, a_case().sha256);
+  EXPECT_EQ(golden->provenance().reason, "a test");
+  EXPECT_EQ(golden->provenance().sha256.size(), 2u);
+}
+
+TEST_F(GoldenTest, ACaseWithoutOneSaysHowToMakeIt) {
+  EXPECT_THAT(error_of_open(a_case()),
+              AllOf(HasSubstr("no golden for px4-v1.5.5/tests/the_case"),
+                    HasSubstr("attest bless --filter 'px4-v1.5.5/tests/the_case'")));
+}
+
+TEST_F(GoldenTest, OfAnotherVersionOfTheCaseItIsStale) {
+  bless(root(), a_case());
+  EXPECT_THAT(error_of_open(a_case("level = \"exact\"\n")),
+              AllOf(HasSubstr("provenance.toml: the golden is stale"), HasSubstr("attest bless")));
+}
+
+TEST_F(GoldenTest, ARateThatWasNotBlessedIsAnError) {
+  bless(root(), a_case());
+  const auto trace = Golden::open(root(), a_case())->read(Rate::hz(250));
+  ASSERT_FALSE(trace);
+  EXPECT_THAT(trace.error().message, HasSubstr("no golden at 250 Hz"));
+}
+
+TEST_F(GoldenTest, BytesThatWereNotBlessedAreAnError) {
+  bless(root(), a_case());
+  const fs::path file = folder() / "100hz.csv";
+  std::ofstream(file, std::ios::app) << "\n";
+  const auto golden = Golden::open(root(), a_case());
+  const auto tampered = golden->read(Rate::hz(100));
+  ASSERT_FALSE(tampered);
+  EXPECT_EQ(tampered.error().file, file.string());
+  EXPECT_THAT(tampered.error().message, HasSubstr("is not the file that was blessed"));
+  EXPECT_TRUE(golden->read(Rate::hz(333)));
+  fs::remove(file);
+  EXPECT_FALSE(golden->read(Rate::hz(100)));
+}
+
+TEST_F(GoldenTest, IsNotInPlaceBeforeItIsPutThere) {
+  {
+    const auto written =
+        NewGolden::write(root(), a_case(), answers_of_reference(a_case()), "a test");
+    ASSERT_TRUE(written);
+    EXPECT_FALSE(fs::exists(folder()));
+  }
+  EXPECT_THAT(files(), UnorderedElementsAre());
+  EXPECT_TRUE(fs::is_empty(folder().parent_path()));
+}
+
+TEST_F(GoldenTest, LeavesItsFilesAndNothingElse) {
+  bless(root(), a_case());
+  bless(root(), a_case());
+  const std::string in = "px4-v1.5.5/tests/the_case/";
+  EXPECT_THAT(files(),
+              UnorderedElementsAre(in + "100hz.csv", in + "333hz.csv", in + "provenance.toml"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder().parent_path()), {}), 1);
+}
+
+TEST_F(GoldenTest, ReplacesTheOldOneAndItsRates) {
+  bless(root(), a_case());
+  const Case changed = case_of("rates_hz = [250]\nrates_why = \"one\"\n");
+  bless(root(), changed);
+  const std::string in = "px4-v1.5.5/tests/the_case/";
+  EXPECT_THAT(files(), UnorderedElementsAre(in + "250hz.csv", in + "provenance.toml"));
+  EXPECT_TRUE(Golden::open(root(), changed));
+}
+
+TEST_F(GoldenTest, WhatAKilledRunLeftIsCleanedUp) {
+  fs::create_directories(folder().string() + ".new");
+  fs::create_directories(folder().string() + ".old");
+  std::ofstream(folder().string() + ".new/50hz.csv") << "half\n";
+  bless(root(), a_case());
+  EXPECT_EQ(files().size(), 3u);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder().parent_path()), {}), 1);
+}
+
+TEST_F(GoldenTest, TheOldOneStaysWhenTheNewCannotBePutInPlace) {
+  bless(root(), a_case());
+  auto written = NewGolden::write(root(), a_case(), answers_of_reference(a_case()), "again");
+  ASSERT_TRUE(written);
+  fs::remove_all(folder().string() + ".new");
+  EXPECT_FALSE(written->put_in_place());
+  const auto golden = Golden::open(root(), a_case());
+  ASSERT_TRUE(golden);
+  EXPECT_EQ(golden->provenance().reason, "a test");
+}
+
+TEST_F(GoldenTest, AFolderThatCannotBeMadeIsAnError) {
+  std::ofstream(root()) << "a file where the folder should be\n";
+  const auto written = NewGolden::write(root(), a_case(), answers_of_reference(a_case()), "a test");
+  ASSERT_FALSE(written);
+  EXPECT_THAT(written.error().message, HasSubstr("cannot be made"));
+}
+
+}  // namespace
+}  // namespace attest

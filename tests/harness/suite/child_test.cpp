@@ -1,0 +1,129 @@
+#include "harness/suite/child.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace attest {
+namespace {
+
+using testing::HasSubstr;
+using testing::Optional;
+
+constexpr double patience_s = 60;  // no test waits for it
+
+Child spawned(const std::function<void(const SendLine&)>& work) {
+  auto child = Child::spawn(work);
+  if (!child) {
+    ADD_FAILURE() << child.error().to_string();
+    std::abort();
+  }
+  return *std::move(child);
+}
+
+TEST(Child, SendsLines) {
+  Child child = spawned([](const SendLine& send) { send("hello"); });
+  EXPECT_THAT(child.wait_for_line(patience_s), Optional(std::string("hello")));
+  EXPECT_EQ(child.end(), "exited with status 0");
+}
+
+TEST(Child, ALongLineArrivesWhole) {
+  const std::string line(300'000, 'x');
+  Child child = spawned([&](const SendLine& send) { send(line); });
+  EXPECT_THAT(child.wait_for_line(patience_s), Optional(line));
+}
+
+TEST(Child, SeveralLinesArriveInOrder) {
+  Child child = spawned([](const SendLine& send) {
+    send("one");
+    send("");
+    send("three");
+  });
+  std::vector<std::string> lines;
+  for (bool ended = false; !ended;) {
+    for (std::string& line : child.read_lines(ended)) lines.push_back(std::move(line));
+  }
+  EXPECT_THAT(lines, testing::ElementsAre("one", "", "three"));
+}
+
+TEST(Child, OneThatEndsWithoutAWordSaysNothing) {
+  Child child = spawned([](const SendLine&) { ::_exit(3); });
+  EXPECT_EQ(child.wait_for_line(patience_s), std::nullopt);
+  EXPECT_EQ(child.end(), "exited with status 3");
+}
+
+TEST(Child, OneThatSaysNothingInTimeIsKilled) {
+  Child child = spawned([](const SendLine&) {
+    while (true) ::pause();
+  });
+  EXPECT_EQ(child.wait_for_line(0.05), std::nullopt);
+  EXPECT_EQ(child.end(), "was killed by signal 9 (Killed)");
+}
+
+TEST(Child, KeepsItsOutputApart) {
+  testing::internal::CaptureStdout();
+  Child child = spawned([](const SendLine& send) {
+    std::puts("on stdout");
+    std::fflush(stdout);
+    std::fputs("on stderr\n", stderr);
+    send("done");
+  });
+  EXPECT_TRUE(child.wait_for_line(patience_s));
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(child.last_words(), "on stderr");
+}
+
+TEST(Child, WithoutOutputThereAreNoLastWords) {
+  // What the parent has not printed yet is not the child's to print.
+  std::fputs("words of the parent\n", stdout);
+  Child child = spawned([](const SendLine&) { std::fflush(stdout); });
+  EXPECT_EQ(child.end(), "exited with status 0");
+  EXPECT_EQ(child.last_words(), "");
+}
+
+TEST(Child, LastWordsAreOneLineAtMostAndNotEndless) {
+  Child child = spawned([](const SendLine&) {
+    const std::string line(5000, 'y');
+    std::fputs(line.c_str(), stderr);
+  });
+  child.end();
+  EXPECT_EQ(child.last_words(), std::string(400, 'y'));
+}
+
+TEST(Child, EndlessOutputDoesNotStopIt) {
+  Child child = spawned([](const SendLine& send) {
+    const std::string megabyte(1 << 20, 'z');
+    bool was_cut = false;
+    for (int i = 0; i < 20; ++i) was_cut |= ::write(1, megabyte.data(), megabyte.size()) < 0;
+    send(was_cut ? "cut" : "kept");
+  });
+  EXPECT_THAT(child.wait_for_line(patience_s), Optional(std::string("cut")));
+}
+
+TEST(Child, HasNoInputAndLeavesNoCore) {
+  Child child = spawned([](const SendLine& send) {
+    char byte = 0;
+    rlimit core{1, 1};
+    ::getrlimit(RLIMIT_CORE, &core);
+    send(::read(0, &byte, 1) == 0 && core.rlim_cur == 0 ? "so it is" : "no");
+  });
+  EXPECT_THAT(child.wait_for_line(patience_s), Optional(std::string("so it is")));
+}
+
+TEST(Child, IsMovedWithItsProcess) {
+  Child one = spawned([](const SendLine& send) { send("one"); });
+  Child two = spawned([](const SendLine&) {
+    while (true) ::pause();
+  });
+  two = std::move(one);  // the second is killed and reaped
+  EXPECT_THAT(two.wait_for_line(patience_s), Optional(std::string("one")));
+}
+
+}  // namespace
+}  // namespace attest
