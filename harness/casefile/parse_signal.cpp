@@ -96,8 +96,7 @@ Samples parse_samples(const TomlTable& table) {
   Samples samples{parse_spans(table, "times"), table.numbers("values"),
                   table.boolean("linear", false)};
   if (samples.times.empty() || samples.times.size() != samples.values.size()) {
-    table.error("values", fmt::format("has {} values for {} times; give one value a time, at least "
-                                      "one",
+    table.error("values", fmt::format("has {} values for {} times; give one a time, at least one",
                                       samples.values.size(), samples.times.size()));
     return {{Span{}}, {0}, false};
   }

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -20,12 +19,6 @@
 
 namespace attest::cli {
 namespace {
-
-struct BlessOptions {
-  SelectionOptions select;
-  std::string reason;
-  bool yes = false;
-};
 
 // A golden that only our own code has seen proves nothing: the reference must first agree with what
 // the firmware computed.
@@ -196,7 +189,9 @@ Result<int> bless_selected(const BlessOptions& options, const Globals& globals) 
   return exit_ok;
 }
 
-int bless(const BlessOptions& options, const Globals& globals) {
+}  // namespace
+
+int bless_command(const BlessOptions& options, const Globals& globals) {
   if (options.reason.empty()) {
     return report_error({"say why with --reason \"...\"; it is kept in provenance.toml"});
   }
@@ -205,22 +200,6 @@ int bless(const BlessOptions& options, const Globals& globals) {
   }
   const auto code = bless_selected(options, globals);
   return code ? *code : report_error(code.error());
-}
-
-}  // namespace
-
-void add_bless(CLI::App& app, const Globals& globals, Action& action) {
-  auto options = std::make_shared<BlessOptions>();
-  CLI::App* command = app.add_subcommand(
-      "bless",
-      "Make the golden traces of cases anew from the reference, after showing what changes");
-  options->select.add_to(*command);
-  command->add_option("--reason", options->reason, "Why, for provenance.toml (required)")
-      ->type_name("TEXT");
-  command->add_flag("--yes", options->yes, "Do not ask");
-  command->callback([options, &globals, &action] {
-    action = [=, &globals] { return bless(*options, globals); };
-  });
 }
 
 }  // namespace attest::cli

@@ -1,14 +1,13 @@
-// What the commands have in common: exit codes, messages, and the options that several take.
+// The commands: the options of each, with their defaults, and the function that does its work and
+// returns the exit code. One file a command.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "harness/core/result.hpp"
 #include "harness/suite/select.hpp"
+#include "harness/suite/worker.hpp"
 
 namespace attest::cli {
 
@@ -25,19 +24,6 @@ struct Globals {
   bool quiet = false;  // no progress, no summary: failures, errors and the exit code only
 };
 
-// The work of the command that was chosen; its result is the exit code.
-using Action = std::function<int()>;
-
-// Each adds one command, which sets `action` when it is chosen. `globals` is read when the action
-// runs.
-void add_list(CLI::App& app, const Globals& globals, Action& action);
-void add_run(CLI::App& app, const Globals& globals, Action& action);
-void add_replay(CLI::App& app, const Globals& globals, Action& action);
-void add_compare(CLI::App& app, const Globals& globals, Action& action);
-void add_vectors(CLI::App& app, const Globals& globals, Action& action);
-void add_bless(CLI::App& app, const Globals& globals, Action& action);
-void add_doctor(CLI::App& app, const Globals& globals, Action& action);
-
 // "attest: error: <file:line: message>" on stderr; the exit code for it.
 int report_error(const Error& error);
 
@@ -45,8 +31,60 @@ int report_error(const Error& error);
 struct SelectionOptions {
   std::vector<std::string> filters, groups, profiles, rates;
 
-  void add_to(CLI::App& command);
   Result<Selection> selection() const;
 };
+
+// Each prints its results on stdout and its errors on stderr.
+
+struct RunOptions {
+  SelectionOptions select;
+  WorkerOptions worker;
+  std::string level = "numeric";
+  std::string shard = "1/1";
+  std::string junit;
+  std::string json;
+};
+int run_command(const RunOptions& options, const Globals& globals);
+
+struct ReplayOptions {
+  std::vector<std::string> files;
+  std::string port = "builtin";
+  std::string profile;
+  std::string level = "numeric";
+  std::string mixer;
+  std::vector<std::string> parameters;
+  double timeout_s = 60;
+};
+int replay_command(const ReplayOptions& options, const Globals& globals);
+
+struct CompareOptions {
+  std::string got, want;
+  std::string level = "numeric";
+};
+int compare_command(const CompareOptions& options, const Globals& globals);
+
+struct ListOptions {
+  SelectionOptions select;
+  bool groups = false, parameters = false, channels = false, modes = false;
+};
+int list_command(const ListOptions& options, const Globals& globals);
+
+struct VectorOptions {
+  SelectionOptions select;
+  std::string folder;
+};
+int vectors_command(const VectorOptions& options, const Globals& globals);
+
+struct BlessOptions {
+  SelectionOptions select;
+  std::string reason;
+  bool yes = false;
+};
+int bless_command(const BlessOptions& options, const Globals& globals);
+
+struct DoctorOptions {
+  std::string port = "builtin";
+};
+int doctor_command(const DoctorOptions& options, const Globals& globals);
 
 }  // namespace attest::cli

@@ -1,4 +1,3 @@
-#include <memory>
 #include <string>
 
 #include <fmt/format.h>
@@ -10,11 +9,6 @@
 namespace attest::cli {
 namespace {
 
-struct CompareOptions {
-  std::string got, want;
-  std::string level = "numeric";
-};
-
 // What the report tells of a result; files have neither port nor case.
 CaseResult as_result(const Comparison& comparison) {
   CaseResult result;
@@ -24,7 +18,9 @@ CaseResult as_result(const Comparison& comparison) {
   return result;
 }
 
-int compare_files(const CompareOptions& options, const Globals& globals) {
+}  // namespace
+
+int compare_command(const CompareOptions& options, const Globals& globals) {
   const auto level = parse_level(options.level);
   if (!level) return report_error(level.error());
   const auto got = read_csv(options.got, CsvNeed::outputs);
@@ -48,22 +44,6 @@ int compare_files(const CompareOptions& options, const Globals& globals) {
     fmt::print("\n");
   }
   return exit_ok;
-}
-
-}  // namespace
-
-void add_compare(CLI::App& app, const Globals& globals, Action& action) {
-  auto options = std::make_shared<CompareOptions>();
-  CLI::App* command =
-      app.add_subcommand("compare", "Compare the outputs of two traces, tick by tick");
-  command->add_option("got", options->got, "The trace to judge (CSV)")->type_name("A")->required();
-  command->add_option("want", options->want, "The trace to judge it by (CSV)")
-      ->type_name("B")
-      ->required();
-  command->add_option("--level", options->level, "`exact` or `numeric`")->capture_default_str();
-  command->callback([options, &globals, &action] {
-    action = [=, &globals] { return compare_files(*options, globals); };
-  });
 }
 
 }  // namespace attest::cli

@@ -1,7 +1,5 @@
 #include <cfenv>
 #include <limits>
-#include <memory>
-#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -19,10 +17,6 @@
 
 namespace attest::cli {
 namespace {
-
-struct DoctorOptions {
-  std::string port = "builtin";
-};
 
 // Prints one line a check and remembers whether any was bad.
 class Examination {
@@ -91,7 +85,9 @@ void examine_port(const std::string& specification, Examination& examination) {
   examination.good("port", fmt::format("{}, profiles {}", who, fmt::join(port->profiles, ", ")));
 }
 
-int doctor(const DoctorOptions& options, const Globals& globals) {
+}  // namespace
+
+int doctor_command(const DoctorOptions& options, const Globals& globals) {
   Examination examination;
   examination.good("attest", fmt::format("{}, built by {}", version, compiler()));
   examination.good("machine", fmt::format("{} processors", std::thread::hardware_concurrency()));
@@ -104,20 +100,6 @@ int doctor(const DoctorOptions& options, const Globals& globals) {
   }
   examine_port(options.port, examination);
   return examination.all_good() ? exit_ok : exit_usage;
-}
-
-}  // namespace
-
-void add_doctor(CLI::App& app, const Globals& globals, Action& action) {
-  auto options = std::make_shared<DoctorOptions>();
-  CLI::App* command = app.add_subcommand(
-      "doctor", "Check the machine, the suite, the reference and a port, and say what is wrong");
-  command->add_option("--port", options->port, "`builtin` or `lib:PATH`")
-      ->type_name("PORT")
-      ->capture_default_str();
-  command->callback([options, &globals, &action] {
-    action = [=, &globals] { return doctor(*options, globals); };
-  });
 }
 
 }  // namespace attest::cli

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <map>
-#include <memory>
 #include <string>
 
 #include <fmt/format.h>
@@ -13,11 +12,6 @@
 
 namespace attest::cli {
 namespace {
-
-struct ListOptions {
-  SelectionOptions select;
-  bool groups = false, parameters = false, channels = false, modes = false;
-};
 
 void list_parameters() {
   fmt::print("{:<17}{:>9}{:>8}{:>8}  {:<8} {}\n", "parameter", "default", "min", "max", "unit",
@@ -87,7 +81,9 @@ void list_groups(const std::vector<SelectedCase>& cases) {
   }
 }
 
-int list(const ListOptions& options, const Globals& globals) {
+}  // namespace
+
+int list_command(const ListOptions& options, const Globals& globals) {
   if (options.parameters) list_parameters();
   if (options.channels) list_channels();
   if (options.modes) list_modes();
@@ -101,21 +97,6 @@ int list(const ListOptions& options, const Globals& globals) {
   if (!cases) return report_error(cases.error());
   options.groups ? list_groups(*cases) : list_cases(*cases);
   return exit_ok;
-}
-
-}  // namespace
-
-void add_list(CLI::App& app, const Globals& globals, Action& action) {
-  auto options = std::make_shared<ListOptions>();
-  CLI::App* command =
-      app.add_subcommand("list", "List the cases, with why each exists; or one of the tables");
-  options->select.add_to(*command);
-  command->add_flag("--groups", options->groups, "Only the groups, with how many cases");
-  command->add_flag("--parameters", options->parameters, "The parameters of the law");
-  command->add_flag("--channels", options->channels, "The signals: trace columns and ABI members");
-  command->add_flag("--flight-modes", options->modes, "Flight modes and the flags they set");
-  command->callback(
-      [options, &globals, &action] { action = [=, &globals] { return list(*options, globals); }; });
 }
 
 }  // namespace attest::cli

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -24,22 +25,14 @@ namespace {
 
 constexpr const char* default_profile = "px4-v1.5.5";
 
-struct ReplayOptions {
-  std::vector<std::string> files;
-  std::string port = "builtin";
-  std::string profile;
-  std::string level = "numeric";
-  std::string mixer;
-  std::vector<std::string> parameters;
-  double timeout_s = 60;
-};
-
 // "NAME=VALUE" becomes a change at tick 0 that replaces whatever the trace says of NAME.
 Result<void> override_parameter(Trace& trace, const std::string& text) {
-  const auto equals = text.find('=');
+  const auto equals = std::min(text.find('='), text.size());
   const std::string name = text.substr(0, equals);
+  const char* const end = text.data() + text.size();
   float value = 0;
-  if (equals == std::string::npos || !CLI::detail::lexical_cast(text.substr(equals + 1), value)) {
+  const auto [rest, error] = std::from_chars(std::min(text.data() + equals + 1, end), end, value);
+  if (equals == text.size() || error != std::errc{} || rest != end) {
     return fail(fmt::format("--param {}: write NAME=VALUE, such as MC_ROLL_P=6.5", text));
   }
   if (!reference::find_parameter(name)) {
@@ -154,45 +147,14 @@ class Replay {
   std::size_t passed_ = 0;
 };
 
-int replay(const ReplayOptions& options, const Globals& globals) {
+}  // namespace
+
+int replay_command(const ReplayOptions& options, const Globals& globals) {
   const auto level = parse_level(options.level);
   if (!level) return report_error(level.error());
   const auto port = describe_port(options.port, {}, options.timeout_s);
   if (!port) return report_error(port.error());
   return Replay(options, globals, *level).run();
-}
-
-}  // namespace
-
-void add_replay(CLI::App& app, const Globals& globals, Action& action) {
-  auto options = std::make_shared<ReplayOptions>();
-  CLI::App* command = app.add_subcommand(
-      "replay", "Feed the inputs of recorded traces to a port and compare with what was recorded");
-  command->add_option("files", options->files, "Traces (CSV) of a controller, or of a mixer")
-      ->type_name("TRACE")
-      ->required();
-  command->add_option("--port", options->port, "`builtin` or `lib:PATH`")
-      ->type_name("PORT")
-      ->capture_default_str();
-  command
-      ->add_option("--profile", options->profile,
-                   "Version of the law; default: what the trace's provenance.toml says, else " +
-                       std::string(default_profile))
-      ->type_name("PROFILE");
-  command->add_option("--param", options->parameters, "Set a parameter from the first step on")
-      ->type_name("NAME=VALUE")
-      ->allow_extra_args(false);
-  command->add_option("--level", options->level, "`exact` or `numeric`")->capture_default_str();
-  command
-      ->add_option("--mixer", options->mixer,
-                   "Definition of the mixer of a mixer trace; default: from its name")
-      ->type_name("TEXT");
-  command->add_option("--timeout", options->timeout_s, "Limit for one trace [s]")
-      ->check(CLI::Range(0.1, 86400.0))
-      ->capture_default_str();
-  command->callback([options, &globals, &action] {
-    action = [=, &globals] { return replay(*options, globals); };
-  });
 }
 
 }  // namespace attest::cli

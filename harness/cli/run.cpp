@@ -1,7 +1,6 @@
 #include <chrono>
 #include <optional>
 #include <set>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -19,17 +18,6 @@
 
 namespace attest::cli {
 namespace {
-
-struct RunOptions {
-  SelectionOptions select;
-  WorkerOptions worker;
-  std::string level = "numeric";
-  std::string shard = "1/1";
-  std::string junit;
-  std::string json;
-};
-
-int default_jobs() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
 // A report file, opened before the run so that a path that cannot be written is said at once.
 struct ReportFile {
@@ -107,7 +95,9 @@ int exit_code(const RunResult& run) {
   return exit_ok;
 }
 
-int run_suite(const RunOptions& options, const Globals& globals) {
+}  // namespace
+
+int run_command(const RunOptions& options, const Globals& globals) {
   const auto begin = std::chrono::steady_clock::now();
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
@@ -139,41 +129,6 @@ int run_suite(const RunOptions& options, const Globals& globals) {
   }
   if (auto written = write_reports(*reports, run); !written) return report_error(written.error());
   return code;
-}
-
-}  // namespace
-
-void add_run(CLI::App& app, const Globals& globals, Action& action) {
-  auto options = std::make_shared<RunOptions>();
-  options->worker.port = "builtin";
-  options->worker.jobs = default_jobs();
-  CLI::App* command = app.add_subcommand(
-      "run", "Run a port through the cases and compare it with the golden traces");
-  command->add_option("--port", options->worker.port, "`builtin` (the reference) or `lib:PATH`")
-      ->type_name("PORT")
-      ->capture_default_str();
-  options->select.add_to(*command);
-  command
-      ->add_option("--level", options->level,
-                   "How strictly: `exact` (float32 bits) or `numeric` (a tolerance a channel)")
-      ->capture_default_str();
-  command->add_option("--jobs,-j", options->worker.jobs, "Cases at a time")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  command->add_option("--shard", options->shard, "Only part I of N of the cases")
-      ->type_name("I/N")
-      ->capture_default_str();
-  command->add_flag("--fail-fast", options->worker.fail_fast, "Stop after the first failing case");
-  command->add_option("--timeout", options->worker.timeout_s, "Limit for one case at one rate [s]")
-      ->check(CLI::Range(0.1, 3600.0))
-      ->capture_default_str();
-  command->add_flag("--in-process", options->worker.in_process,
-                    "No worker processes: for a debugger, or a sanitizer in the port");
-  command->add_option("--junit", options->junit, "Write a JUnit XML report")->type_name("FILE");
-  command->add_option("--json", options->json, "Write a JSON report")->type_name("FILE");
-  command->callback([options, &globals, &action] {
-    action = [=, &globals] { return run_suite(*options, globals); };
-  });
 }
 
 }  // namespace attest::cli

@@ -1,5 +1,4 @@
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <system_error>
 
@@ -12,11 +11,6 @@
 
 namespace attest::cli {
 namespace {
-
-struct VectorOptions {
-  SelectionOptions select;
-  std::string folder;
-};
 
 // All inputs and no outputs, constants too, so that one file is all a port on a board needs.
 Result<void> write_vector(const Case& the_case, const Rate& rate,
@@ -51,26 +45,13 @@ Result<std::size_t> write_vectors(const VectorOptions& options, const Globals& g
   return count;
 }
 
-int vectors(const VectorOptions& options, const Globals& globals) {
+}  // namespace
+
+int vectors_command(const VectorOptions& options, const Globals& globals) {
   const auto count = write_vectors(options, globals);
   if (!count) return report_error(count.error());
   if (!globals.quiet) fmt::print("{} input traces in {}\n", *count, options.folder);
   return exit_ok;
-}
-
-}  // namespace
-
-void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
-  auto options = std::make_shared<VectorOptions>();
-  CLI::App* command = app.add_subcommand(
-      "vectors", "Write the inputs of the cases as CSV, for a port that runs elsewhere");
-  command->add_option("folder", options->folder, "Where: DIR/PROFILE/GROUP/NAME/RATEhz.csv")
-      ->type_name("DIR")
-      ->required();
-  options->select.add_to(*command);
-  command->callback([options, &globals, &action] {
-    action = [=, &globals] { return vectors(*options, globals); };
-  });
 }
 
 }  // namespace attest::cli

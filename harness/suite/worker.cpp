@@ -55,17 +55,21 @@ WorkerOutcome run_here(const Batches& batches, const WorkerOptions& options) {
   return outcome;
 }
 
+// Words of a port and paths may not be UTF-8.
+std::string repaired(const json& message) {
+  return message.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
 void send_description(const std::string& specification, const std::vector<std::string>& profiles,
                       const SendLine& send) {
   auto port = open_port(specification);
-  if (!port) return send(json{{"error", to_json(port.error())}}.dump());
+  if (!port) return send(repaired({{"error", to_json(port.error())}}));
   json supported = json::array();
   for (const std::string& profile : profiles) {
     if ((*port)->create(profile)) supported.push_back(profile);
   }
-  const json description = {
-      {"name", (*port)->name()}, {"version", (*port)->version()}, {"profiles", supported}};
-  send(description.dump(-1, ' ', false, json::error_handler_t::replace));
+  send(repaired(
+      {{"name", (*port)->name()}, {"version", (*port)->version()}, {"profiles", supported}}));
 }
 
 }  // namespace

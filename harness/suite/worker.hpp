@@ -13,11 +13,11 @@
 namespace attest {
 
 struct WorkerOptions {
-  std::string port;         // as for open_port
-  int jobs = 1;             // worker processes at a time
-  double timeout_s = 10;    // of one task; they take milliseconds
-  bool fail_fast = false;   // nothing after the first batch, in their order, that fails a run
-  bool in_process = false;  // for a debugger: no children, no protection, one after the other
+  std::string port = "builtin";  // as for open_port
+  int jobs = 1;                  // worker processes at a time
+  double timeout_s = 10;         // of one task; they take milliseconds
+  bool fail_fast = false;        // nothing after the first batch, in their order, that fails a run
+  bool in_process = false;       // for a debugger: no children, no protection, one after the other
   std::function<void(const CaseResult&)> on_result = [](const CaseResult&) {};
   std::function<bool()> stop = [] { return false; };  // true: end soon, results do not matter
 };

@@ -1,0 +1,215 @@
+#include "harness/cli/arguments.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "harness/cli/command.hpp"
+#include "harness/core/version.hpp"
+
+namespace attest::cli {
+namespace {
+
+constexpr const char* description =
+    "Says whether a port of the PX4 multicopter attitude controller is the same controller as the\n"
+    "reference, at every loop rate, and if not: at which tick, on which signal, in which stage.\n";
+
+constexpr const char* footer =
+    "\nFirst steps:\n"
+    "  attest run                                     the built-in reference, all cases and rates\n"
+    "  attest run --port lib:./libmine.so             your port\n"
+    "  attest run --port lib:./libmine.so --level exact --filter 'attitude/*@250hz'\n"
+    "  attest replay TRACE.csv --port lib:./libmine.so\n"
+    "\n"
+    "Exit codes: 0 nothing failed, 1 something did not conform, 2 usage or environment.\n";
+
+// The work of the command that was chosen; its result is the exit code.
+using Action = std::function<int()>;
+
+void add_selection(CLI::App& command, SelectionOptions& options) {
+  command
+      .add_option("--filter", options.filters,
+                  "Only cases whose id matches this shell pattern; quote it. Ids are "
+                  "PROFILE/GROUP/NAME@RATEhz; profile and rate may be left out")
+      ->type_name("GLOB")
+      ->allow_extra_args(false);
+  command.add_option("--group", options.groups, "Only this group of cases")
+      ->type_name("GROUP")
+      ->allow_extra_args(false);
+  command.add_option("--profile", options.profiles, "Only this version of the law")
+      ->type_name("PROFILE")
+      ->allow_extra_args(false);
+  command.add_option("--rate", options.rates, "Only these loop rates [Hz], separated by commas")
+      ->type_name("HZ,...")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+}
+
+void add_run(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<RunOptions>();
+  options->worker.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  CLI::App* command = app.add_subcommand(
+      "run", "Run a port through the cases and compare it with the golden traces");
+  command->add_option("--port", options->worker.port, "`builtin` (the reference) or `lib:PATH`")
+      ->type_name("PORT")
+      ->capture_default_str();
+  add_selection(*command, options->select);
+  command
+      ->add_option("--level", options->level,
+                   "How strictly: `exact` (float32 bits) or `numeric` (a tolerance a channel)")
+      ->capture_default_str();
+  command->add_option("--jobs,-j", options->worker.jobs, "Cases at a time")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->add_option("--shard", options->shard, "Only part I of N of the cases")
+      ->type_name("I/N")
+      ->capture_default_str();
+  command->add_flag("--fail-fast", options->worker.fail_fast, "Stop after the first failing case");
+  command->add_option("--timeout", options->worker.timeout_s, "Limit for one case at one rate [s]")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
+  command->add_flag("--in-process", options->worker.in_process,
+                    "No worker processes: for a debugger, or a sanitizer in the port");
+  command->add_option("--junit", options->junit, "Write a JUnit XML report")->type_name("FILE");
+  command->add_option("--json", options->json, "Write a JSON report")->type_name("FILE");
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return run_command(*options, globals); };
+  });
+}
+
+void add_replay(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<ReplayOptions>();
+  CLI::App* command = app.add_subcommand(
+      "replay", "Feed the inputs of recorded traces to a port and compare with what was recorded");
+  command->add_option("files", options->files, "Traces (CSV) of a controller, or of a mixer")
+      ->type_name("TRACE")
+      ->required();
+  command->add_option("--port", options->port, "`builtin` or `lib:PATH`")
+      ->type_name("PORT")
+      ->capture_default_str();
+  command
+      ->add_option("--profile", options->profile,
+                   "Version of the law; default: what the provenance.toml beside the trace says, "
+                   "else px4-v1.5.5")
+      ->type_name("PROFILE");
+  command->add_option("--param", options->parameters, "Set a parameter from the first step on")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--level", options->level, "`exact` or `numeric`")->capture_default_str();
+  command
+      ->add_option("--mixer", options->mixer,
+                   "Definition of the mixer of a mixer trace; default: from its name")
+      ->type_name("TEXT");
+  command->add_option("--timeout", options->timeout_s, "Limit for one trace [s]")
+      ->check(CLI::Range(0.1, 86400.0))
+      ->capture_default_str();
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return replay_command(*options, globals); };
+  });
+}
+
+void add_compare(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<CompareOptions>();
+  CLI::App* command =
+      app.add_subcommand("compare", "Compare the outputs of two traces, tick by tick");
+  command->add_option("got", options->got, "The trace to judge (CSV)")->type_name("A")->required();
+  command->add_option("want", options->want, "The trace to judge it by (CSV)")
+      ->type_name("B")
+      ->required();
+  command->add_option("--level", options->level, "`exact` or `numeric`")->capture_default_str();
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return compare_command(*options, globals); };
+  });
+}
+
+void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<VectorOptions>();
+  CLI::App* command = app.add_subcommand(
+      "vectors", "Write the inputs of the cases as CSV, for a port that runs elsewhere");
+  command->add_option("folder", options->folder, "Where: DIR/PROFILE/GROUP/NAME/RATEhz.csv")
+      ->type_name("DIR")
+      ->required();
+  add_selection(*command, options->select);
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return vectors_command(*options, globals); };
+  });
+}
+
+void add_list(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<ListOptions>();
+  CLI::App* command =
+      app.add_subcommand("list", "List the cases, with why each exists; or one of the tables");
+  add_selection(*command, options->select);
+  command->add_flag("--groups", options->groups, "Only the groups, with how many cases");
+  command->add_flag("--parameters", options->parameters, "The parameters of the law");
+  command->add_flag("--channels", options->channels, "The signals: trace columns and ABI members");
+  command->add_flag("--flight-modes", options->modes, "Flight modes and the flags they set");
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return list_command(*options, globals); };
+  });
+}
+
+void add_bless(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<BlessOptions>();
+  CLI::App* command = app.add_subcommand(
+      "bless",
+      "Make the golden traces of cases anew from the reference, after showing what changes");
+  add_selection(*command, options->select);
+  command->add_option("--reason", options->reason, "Why, for provenance.toml (required)")
+      ->type_name("TEXT");
+  command->add_flag("--yes", options->yes, "Do not ask");
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return bless_command(*options, globals); };
+  });
+}
+
+void add_doctor(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<DoctorOptions>();
+  CLI::App* command = app.add_subcommand(
+      "doctor", "Check the machine, the suite, the reference and a port, and say what is wrong");
+  command->add_option("--port", options->port, "`builtin` or `lib:PATH`")
+      ->type_name("PORT")
+      ->capture_default_str();
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return doctor_command(*options, globals); };
+  });
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+  CLI::App app(description, "attest");
+  app.set_version_flag("--version", fmt::format("attest {}", version));
+  app.footer(footer);
+  app.require_subcommand(1);
+  app.fallthrough();
+
+  Globals globals;
+  app.add_option("--suite", globals.suite, "Folder with cases/ and golden/")->type_name("DIR");
+  app.add_flag("-q,--quiet", globals.quiet, "No progress and no summary, only what went wrong");
+
+  Action action;
+  add_run(app, globals, action);
+  add_replay(app, globals, action);
+  add_compare(app, globals, action);
+  add_list(app, globals, action);
+  add_vectors(app, globals, action);
+  add_bless(app, globals, action);
+  add_doctor(app, globals, action);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {
+    return app.exit(success);
+  } catch (const CLI::ParseError& error) {
+    app.exit(error);
+    return exit_usage;
+  }
+  return action();
+}
+
+}  // namespace attest::cli
