@@ -122,12 +122,14 @@ int run_command(const RunOptions& options, const Globals& globals) {
   run.results = std::move(outcome.results);
   run.errors = std::move(outcome.errors);
   run.stopped_early = outcome.stopped_early;
+  // Before the summary: whoever reads that may stop reading, and end the program.
+  const auto written = write_reports(*reports, run);
   const int code = exit_code(run);
   if (!globals.quiet || code != exit_ok) {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
     fmt::print("{}", render_summary(run, wall.count(), terminal_style(stdout)));
   }
-  if (auto written = write_reports(*reports, run); !written) return report_error(written.error());
+  if (!written) return report_error(written.error());
   return code;
 }
 

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <string_view>
 #include <utility>
 
@@ -53,6 +54,20 @@ void isolate(pid_t parent, int output) {
   ::dup2(output, STDERR_FILENO);
 }
 
+// Neither returns nor throws: what the parent has on its stack (files to be renamed, other
+// children) is not the child's to unwind, nor are its exit handlers to run.
+[[noreturn]] void work_and_end(const std::function<void(const SendLine&)>& work, int pipe) {
+  try {
+    work([pipe](const std::string& line) { write_all(pipe, line + "\n"); });
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "uncaught exception: {}\n", error.what());
+    std::abort();
+  } catch (...) {
+    std::abort();
+  }
+  ::_exit(EXIT_SUCCESS);
+}
+
 }  // namespace
 
 Result<Child> Child::spawn(const std::function<void(const SendLine&)>& work) {
@@ -73,9 +88,7 @@ Result<Child> Child::spawn(const std::function<void(const SendLine&)>& work) {
   if (pid == 0) {
     ::close(ends[0]);
     isolate(parent, output);
-    work([&](const std::string& line) { write_all(ends[1], line + "\n"); });
-    // Not exit(): the parent's buffers and handlers are not the child's to run.
-    ::_exit(EXIT_SUCCESS);
+    work_and_end(work, ends[1]);
   }
   ::close(ends[1]);
   return Child(pid, ends[0], output);

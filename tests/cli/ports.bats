@@ -38,6 +38,15 @@ judged() {
   has "exited with status 0"
 }
 
+@test "a port that throws through the C ABI has crashed, and the reports are written" {
+  judged throws
+  [ "$status" -eq 1 ]
+  has "gimbal lock in aisle 3"
+  has "FAIL"
+  xmllint --noout junit.xml
+  [ -z "$(find . -name '.junit*')" ]
+}
+
 @test "a port that hangs is given up" {
   run "$ATTEST" run --port "lib:$PORTS/port_hang.so" --filter 'rates/*' --timeout 0.3 --fail-fast
   [ "$status" -eq 1 ]

@@ -159,3 +159,8 @@ load common
   grep -q interrupted err
   [ -z "$(find . -name '*r.xml*')" ]
 }
+
+@test "reports are complete although nobody reads the summary to its end" {
+  "$ATTEST" run --port "lib:$PORTS/port_sign_flip.so" --json r.json | head -n 1 || true
+  python3 -c 'import json; json.load(open("r.json"))'
+}

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Judged: crash, with the exception's words: nothing catches what a port throws through the C ABI.
+#include <attest_unit.h>
+#include <stdexcept>
+
+extern "C" const attest_unit* attest_starter_unit_v1(void);
+
+namespace {
+
+int step(void*, const attest_inputs*, attest_outputs*) {
+  throw std::runtime_error("gimbal lock in aisle 3");
+}
+
+}  // namespace
+
+extern "C" const attest_unit* attest_unit_v1(void) {
+  static const attest_unit unit = [] {
+    attest_unit table = *attest_starter_unit_v1();
+    table.name = "throws";
+    table.step = step;
+    return table;
+  }();
+  return &unit;
+}
