@@ -65,7 +65,7 @@ void add_run(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("--jobs,-j", options->worker.jobs, "Cases at a time")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
-  command->add_option("--shard", options->shard, "Only part I of N of the cases")
+  command->add_option("--shard", options->select.shard, "Only part I of N of the cases")
       ->type_name("I/N")
       ->capture_default_str();
   command->add_flag("--fail-fast", options->worker.fail_fast, "Stop after the first failing case");

@@ -168,9 +168,7 @@ bool confirmed(const BlessOptions& options, std::size_t count) {
 Result<int> bless_selected(const BlessOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return tl::unexpected(suite.error());
-  const auto selection = options.select.selection();
-  if (!selection) return tl::unexpected(selection.error());
-  const auto cases = select_cases(suite->cases(), *selection);
+  const auto cases = options.select.cases_in(suite->cases());
   if (!cases) return tl::unexpected(cases.error());
   if (auto checked = check_reference(*suite); !checked) return tl::unexpected(checked.error());
   auto pending = write_beside(*cases, *suite, options.reason);

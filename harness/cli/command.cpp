@@ -9,7 +9,8 @@ int report_error(const Error& error) {
   return exit_usage;
 }
 
-Result<Selection> SelectionOptions::selection() const {
+Result<std::vector<SelectedCase>> SelectionOptions::cases_in(
+    const std::filesystem::path& folder) const {
   Selection selection;
   selection.filters = filters;
   selection.groups = groups;
@@ -19,7 +20,10 @@ Result<Selection> SelectionOptions::selection() const {
     if (!rate) return tl::unexpected(rate.error());
     selection.rates.push_back(*rate);
   }
-  return selection;
+  const auto part = Shard::parse(shard);
+  if (!part) return tl::unexpected(part.error());
+  selection.shard = *part;
+  return select_cases(folder, selection);
 }
 
 }  // namespace attest::cli

@@ -2,6 +2,7 @@
 // returns the exit code. One file a command.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -27,11 +28,14 @@ struct Globals {
 // "attest: error: <file:line: message>" on stderr; the exit code for it.
 int report_error(const Error& error);
 
-// --filter, --group, --profile, --rate, as text until they are used.
+// --filter, --group, --profile, --rate and --shard, as text until they are used.
 struct SelectionOptions {
   std::vector<std::string> filters, groups, profiles, rates;
+  std::string shard = "1/1";
 
-  Result<Selection> selection() const;
+  // The cases below `folder` that are selected. Errors: as of select_cases, and text that is no
+  // rate or shard.
+  Result<std::vector<SelectedCase>> cases_in(const std::filesystem::path& folder) const;
 };
 
 // Each prints its results on stdout and its errors on stderr.
@@ -40,7 +44,6 @@ struct RunOptions {
   SelectionOptions select;
   WorkerOptions worker;
   std::string level = "numeric";
-  std::string shard = "1/1";
   std::string junit;
   std::string json;
 };

@@ -91,9 +91,7 @@ int list_command(const ListOptions& options, const Globals& globals) {
 
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
-  const auto selection = options.select.selection();
-  if (!selection) return report_error(selection.error());
-  const auto cases = select_cases(suite->cases(), *selection);
+  const auto cases = options.select.cases_in(suite->cases());
   if (!cases) return report_error(cases.error());
   options.groups ? list_groups(*cases) : list_cases(*cases);
   return exit_ok;

@@ -55,14 +55,9 @@ struct Plan {
 };
 
 Result<Plan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
-  auto selection = options.select.selection();
-  if (!selection) return tl::unexpected(selection.error());
-  auto shard = Shard::parse(options.shard);
-  if (!shard) return tl::unexpected(shard.error());
-  selection->shard = *shard;
   auto level = parse_level(options.level);
   if (!level) return tl::unexpected(level.error());
-  auto cases = select_cases(suite.cases(), *selection);
+  auto cases = options.select.cases_in(suite.cases());
   if (!cases) return tl::unexpected(cases.error());
   auto port = describe_port(options.worker.port, {}, options.worker.timeout_s);
   if (!port) return tl::unexpected(port.error());

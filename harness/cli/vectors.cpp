@@ -26,9 +26,7 @@ Result<void> write_vector(const Case& the_case, const Rate& rate,
 Result<std::size_t> write_vectors(const VectorOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return tl::unexpected(suite.error());
-  const auto selection = options.select.selection();
-  if (!selection) return tl::unexpected(selection.error());
-  const auto cases = select_cases(suite->cases(), *selection);
+  const auto cases = options.select.cases_in(suite->cases());
   if (!cases) return tl::unexpected(cases.error());
   std::size_t count = 0;
   for (const auto& [the_case, rates] : *cases) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Judged: crash, with the exception's words: nothing catches what a port throws through the C ABI.
-#include <attest_unit.h>
 #include <stdexcept>
+
+#include <attest_unit.h>
 
 extern "C" const attest_unit* attest_starter_unit_v1(void);
 

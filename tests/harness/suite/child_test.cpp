@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include <gmock/gmock.h>
@@ -56,6 +57,14 @@ TEST(Child, OneThatEndsWithoutAWordSaysNothing) {
   Child child = spawned([](const SendLine&) { ::_exit(3); });
   EXPECT_EQ(child.wait_for_line(patience_s), std::nullopt);
   EXPECT_EQ(child.end(), "exited with status 3");
+}
+
+// It would go on with the work of the parent: here, with the tests after this one.
+TEST(Child, AnExceptionIsItsDeath) {
+  Child child = spawned([](const SendLine&) { throw std::runtime_error("of a port"); });
+  EXPECT_EQ(child.wait_for_line(patience_s), std::nullopt);
+  EXPECT_EQ(child.end(), "was killed by signal 6 (Aborted)");
+  EXPECT_THAT(child.last_words(), HasSubstr("of a port"));
 }
 
 TEST(Child, OneThatSaysNothingInTimeIsKilled) {
