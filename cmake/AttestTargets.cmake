@@ -11,7 +11,7 @@ target_include_directories(attest_flags INTERFACE ${PROJECT_SOURCE_DIR})
 
 add_library(attest_warnings INTERFACE)
 target_compile_options(
-  attest_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion
+  attest_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
                             $<$<BOOL:${ATTEST_WERROR}>:-Werror>
                             # False alarms of gcc 12 about std::string (gcc bug 105651).
                             $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
