@@ -214,6 +214,11 @@ TomlKind TomlTable::kind(std::string_view key) const {
   return node ? kind_of(*node) : TomlKind::absent;
 }
 
+int TomlTable::line(std::string_view key) const {
+  const toml::node* node = impl_->find(key);
+  return node ? place_of(node->source()).line : 0;
+}
+
 std::vector<std::string> TomlTable::keys() const {
   std::vector<std::pair<Place, std::string>> placed;
   if (impl_->node) {

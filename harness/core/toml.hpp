@@ -35,6 +35,9 @@ class TomlTable {
   TomlKind kind(std::string_view key) const;
   bool has(std::string_view key) const { return kind(key) != TomlKind::absent; }
 
+  // Where the key stands, from 1; 0 when it is absent. Does not count as asking.
+  int line(std::string_view key) const;
+
   // Keys in the order of the file. Does not count as asking for them.
   std::vector<std::string> keys() const;
 

@@ -1,0 +1,22 @@
+#include "harness/core/frames.hpp"
+
+#include <numbers>
+
+namespace attest {
+namespace {
+
+constexpr double half_root = std::numbers::sqrt2 / 2;
+
+// (0, r, r, 0) q (0, 1, 0, 0) with r = sqrt(1/2), written out. Both factors square to -1, so it is
+// its own inverse.
+Quaternion turned(const Quaternion& q) {
+  return {half_root * (-q.w - q.z), half_root * (-q.x - q.y), half_root * (q.y - q.x),
+          half_root * (q.z - q.w)};
+}
+
+}  // namespace
+
+Quaternion flu_to_enu(const Quaternion& frd_to_ned) { return turned(frd_to_ned); }
+Quaternion frd_to_ned(const Quaternion& flu_to_enu) { return turned(flu_to_enu); }
+
+}  // namespace attest

@@ -1,0 +1,30 @@
+// Frames, in one place. Everything in the harness is FRD (body: forward, right, down) in NED
+// (world: north, east, down); FLU (forward, left, up) in ENU (east, north, up) exists inside
+// mujoco_plant only. Double precision; no allocation.
+#pragma once
+
+#include <array>
+
+namespace attest {
+
+using Vector3 = std::array<double, 3>;
+
+// Hamilton, scalar first; as an attitude it rotates body into world: v_NED = R(q) v_FRD.
+struct Quaternion {
+  double w = 1, x = 0, y = 0, z = 0;
+
+  friend bool operator==(const Quaternion&, const Quaternion&) = default;
+};
+
+// Each is its own inverse.
+constexpr Vector3 frd_from_flu(const Vector3& v) { return {v[0], -v[1], -v[2]}; }
+constexpr Vector3 flu_from_frd(const Vector3& v) { return {v[0], -v[1], -v[2]}; }
+constexpr Vector3 ned_from_enu(const Vector3& v) { return {v[1], v[0], -v[2]}; }
+constexpr Vector3 enu_from_ned(const Vector3& v) { return {v[1], v[0], -v[2]}; }
+
+// An attitude, body FRD to world NED, as body FLU to world ENU, and back. Both turn by 180 deg: the
+// body about x, the world about the line between north and east.
+Quaternion flu_to_enu(const Quaternion& frd_to_ned);
+Quaternion frd_to_ned(const Quaternion& flu_to_enu);
+
+}  // namespace attest

@@ -1,0 +1,35 @@
+// A battery that empties: what voltage it gives, and what that leaves of the rotors' speed.
+#pragma once
+
+#include "harness/core/time.hpp"
+#include "harness/plant/vehicle.hpp"
+
+namespace attest {
+
+// No allocation; no clock: the caller says when it is measured.
+class Battery {
+ public:
+  // `charge` [0..1] of the capacity at the start. The current is that of hover until the first
+  // update. REQUIRES: a positive capacity.
+  Battery(const BatteryPack& pack, double charge);
+
+  // Measures at `now`: `hover_seconds_used` as of PlantState, `power_ratio` the rotors' power
+  // beside that in hover. REQUIRES: times do not decrease.
+  void update(Nanoseconds now, double hover_seconds_used, double power_ratio);
+
+  double charge() const { return charge_; }        // 0..1
+  double current_A() const { return current_A_; }  // low-passed
+  double voltage_V() const;                        // under load, not below 0
+
+  // What the rotors' speed is multiplied with: the voltage beside that of a full battery in hover.
+  double supply_ratio() const;
+
+ private:
+  BatteryPack pack_;
+  double initial_charge_;
+  double charge_;
+  double current_A_;
+  Nanoseconds updated_{0};
+};
+
+}  // namespace attest

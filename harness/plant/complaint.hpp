@@ -1,0 +1,14 @@
+// What a simulator says of a model, as one of our error messages.
+#pragma once
+
+#include <string>
+
+namespace attest {
+
+// The line that it names ("... Element 'geom', line 12, column 5"); 0 when it names none.
+int line_in(const std::string& complaint);
+
+// Without line breaks.
+std::string one_line(std::string complaint);
+
+}  // namespace attest

@@ -1,0 +1,32 @@
+// A MuJoCo model must be the vehicle of its TOML, or the two plants fly different vehicles.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/core/frames.hpp"
+#include "harness/plant/vehicle.hpp"
+
+namespace attest {
+
+// What a model was compiled to. FRD, SI units.
+struct ModelNumbers {
+  struct Rotor {
+    Vector3 position_m;
+    Vector3 force_gear;     // force by thrust
+    Vector3 torque_gear_m;  // torque by thrust
+    double thrust_coefficient;
+    double time_constant_up_s;
+    double time_constant_down_s;
+  };
+  double mass_kg = 0;
+  Vector3 inertia_kg_m2{};
+  Vector3 centre_of_mass_m{};
+  double gravity_m_s2 = 0;
+  std::vector<Rotor> rotors;
+};
+
+// The first quantity that is not the vehicle's, with both values; empty when all agree.
+std::string first_difference(const ModelNumbers& model, const Vehicle& vehicle);
+
+}  // namespace attest

@@ -1,0 +1,349 @@
+#include "harness/plant/mujoco_plant.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+#include <fmt/format.h>
+#include <mujoco/mujoco.h>
+
+#include "harness/plant/complaint.hpp"
+#include "harness/plant/model_numbers.hpp"
+
+namespace attest {
+namespace {
+
+constexpr int body = 1;  // 0 is the world
+constexpr double ns_to_s = 1e-9;
+
+Vector3 vector_at(const mjtNum* numbers) { return {numbers[0], numbers[1], numbers[2]}; }
+
+// ---- MuJoCo's complaints ------------------------------------------------------------------------
+
+// MuJoCo's error handler must not return, and its warnings come from deep inside a step.
+struct MujocoError {
+  std::string what;
+};
+
+thread_local std::string warning;  // the first since it was cleared
+
+[[noreturn]] void on_error(const char* text) { throw MujocoError{text}; }
+
+void on_warning(const char* text) {
+  if (warning.empty()) warning = text;
+}
+
+// ---- what the model asks of us ------------------------------------------------------------------
+
+// userdata of mjData: linear drag [kg/s] by body axis FLU, velocity of the air [m/s] ENU.
+enum UserData : int { drag_at = 0, wind_at = 3, userdata_size = 6 };
+
+// Rotor speed is the activation: first-order lag, dynprm = {tau up, tau down}.
+mjtNum rotor_lag(const mjModel* model, const mjData* data, int id) {
+  const double difference = data->ctrl[id] - data->act[id];
+  const mjtNum* tau = model->actuator_dynprm + id * mjNDYN;
+  return difference / (difference > 0 ? tau[0] : tau[1]);
+}
+
+// Thrust = gain * speed, gainprm = {kf}, so that it goes with the square of the speed.
+mjtNum rotor_gain(const mjModel* model, const mjData* data, int id) {
+  return model->actuator_gainprm[id * mjNGAIN] * data->act[id];
+}
+
+// Linear drag at the centre of mass, at each stage of the Runge-Kutta step.
+void drag(const mjModel* model, mjData* data) {
+  const mjtNum* k = data->userdata + drag_at;
+  if (model->nuserdata < userdata_size || (k[0] == 0 && k[1] == 0 && k[2] == 0)) return;
+  const mjtNum* R = data->xmat + 9 * body;
+  const mjtNum* offset = model->body_ipos + 3 * body;
+  mjtNum turning[3], velocity[3], force[3], force_world[3], torque[3];
+  mju_cross(turning, data->qvel + 3, offset);  // body frame
+  mju_rotVecMat(velocity, turning, R);
+  for (int i = 0; i < 3; ++i) velocity[i] += data->qvel[i] - data->userdata[wind_at + i];
+  mju_rotVecMatT(force, velocity, R);
+  for (int i = 0; i < 3; ++i) force[i] *= -k[i];
+  mju_rotVecMat(force_world, force, R);
+  mju_cross(torque, offset, force);
+  for (int i = 0; i < 3; ++i) {
+    data->qfrc_passive[i] += force_world[i];
+    data->qfrc_passive[3 + i] += torque[i];
+  }
+}
+
+void install_callbacks() {
+  mju_user_error = on_error;
+  mju_user_warning = on_warning;
+  mjcb_act_dyn = rotor_lag;
+  mjcb_act_gain = rotor_gain;
+  mjcb_passive = drag;
+}
+
+struct DeleteModel {
+  void operator()(mjModel* model) const { mj_deleteModel(model); }
+};
+struct DeleteData {
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+using Model = std::unique_ptr<mjModel, DeleteModel>;
+using Data = std::unique_ptr<mjData, DeleteData>;
+
+// ---- loading ------------------------------------------------------------------------------------
+
+Result<Model> compile(const std::filesystem::path& xml) {
+  constexpr int error_size = 1000;
+  char text[error_size] = "";
+  warning.clear();
+  Model model;
+  try {
+    model.reset(mj_loadXML(xml.c_str(), nullptr, text, error_size));
+  } catch (const MujocoError& error) {
+    return fail_at(xml.string(), "MuJoCo: " + one_line(error.what), line_in(error.what));
+  }
+  const std::string complaint = one_line(text[0] ? std::string(text) : warning);
+  if (!model || !complaint.empty()) {
+    return fail_at(xml.string(), "MuJoCo: " + complaint, line_in(complaint));
+  }
+  return model;
+}
+
+// What MuJoCo compiled, for model_numbers.hpp to compare with the TOML. Of another structure: an
+// error that says what it needs.
+Result<ModelNumbers> numbers_of(const mjModel& model, const std::filesystem::path& xml) {
+  const bool free_body = model.nbody == 2 && model.njnt == 1 && model.jnt_type[0] == mjJNT_FREE;
+  if (!free_body) return fail_at(xml.string(), "needs one body with one free joint");
+  if (model.opt.integrator != mjINT_RK4) {
+    return fail_at(xml.string(), "needs <option integrator=\"RK4\"/>");
+  }
+  if (model.nuserdata < userdata_size) {
+    return fail_at(xml.string(), fmt::format("needs <size nuserdata=\"{}\"/>", int{userdata_size}));
+  }
+  ModelNumbers numbers;
+  numbers.mass_kg = model.body_mass[body];
+  numbers.inertia_kg_m2 = vector_at(model.body_inertia + 3 * body);
+  numbers.centre_of_mass_m = frd_from_flu(vector_at(model.body_ipos + 3 * body));
+  numbers.gravity_m_s2 = -model.opt.gravity[2];
+  for (int i = 0; i < model.nu; ++i) {
+    const bool is_rotor = model.actuator_trntype[i] == mjTRN_SITE &&
+                          model.actuator_dyntype[i] == mjDYN_USER &&
+                          model.actuator_gaintype[i] == mjGAIN_USER;
+    if (!is_rotor) {
+      return fail_at(xml.string(), fmt::format("actuator {} needs a `site`, and `dyntype` and "
+                                               "`gaintype` \"user\"",
+                                               i));
+    }
+    const mjtNum* gear = model.actuator_gear + 6 * i;
+    const mjtNum* lag = model.actuator_dynprm + i * mjNDYN;
+    const mjtNum* place = model.site_pos + 3 * model.actuator_trnid[2 * i];
+    numbers.rotors.push_back({frd_from_flu(vector_at(place)), frd_from_flu(vector_at(gear)),
+                              frd_from_flu(vector_at(gear + 3)),
+                              model.actuator_gainprm[i * mjNGAIN], lag[0], lag[1]});
+  }
+  return numbers;
+}
+
+// ---- the plant ----------------------------------------------------------------------------------
+
+void copy(const Vector3& vector, mjtNum* numbers) {
+  std::copy(vector.begin(), vector.end(), numbers);
+}
+
+// Room for the contacts of a few feet: four points on each of some geoms, up to four rows each.
+void enable_floor(mjModel& model) {
+  constexpr int contacts = 64, rows_of_one = 4;
+  constexpr int stack_numbers = 200'000;
+  model.nconmax = std::max(model.nconmax, contacts);
+  model.njmax = std::max(model.njmax, rows_of_one * contacts);
+  model.nstack = std::max(model.nstack, stack_numbers);
+  model.opt.disableflags &= ~(mjDSBL_CONSTRAINT | mjDSBL_CONTACT);
+}
+
+class MujocoPlant final : public Plant {
+ public:
+  MujocoPlant(Model model, Data data, const Vehicle& vehicle, const Rate& physics)
+      : model_(std::move(model)),
+        data_(std::move(data)),
+        vehicle_(vehicle),
+        physics_(physics),
+        rotors_(vehicle.rotors.size()),
+        hover_rad_s_(vehicle.hover_rotor_rad_s()) {}
+
+  void reset(const PlantState& start) override {
+    mj_resetData(model_.get(), data_.get());
+    copy(vehicle_.drag_kg_s, data_->userdata + drag_at);  // by axis, without direction
+    place_centre_of_mass({0, 0, 0});
+    now_ = Nanoseconds(0);
+    steps_ = 0;
+    lost_.reset();
+    state_ = start;
+    std::copy_n(start.rotor_rad_s.begin(), rotors_, data_->act);
+    std::copy_n(start.rotor_rad_s.begin(), rotors_, data_->ctrl);
+    write_body();
+  }
+
+  void command(std::span<const double> rotor_rad_s) override {
+    std::copy(rotor_rad_s.begin(), rotor_rad_s.end(), data_->ctrl);
+  }
+
+  void set_wind(const Vector3& velocity_m_s) override {
+    copy(enu_from_ned(velocity_m_s), data_->userdata + wind_at);
+  }
+
+  void set_centre_of_mass(const Vector3& offset_m) override {
+    place_centre_of_mass(flu_from_frd(offset_m));
+    write_body();
+  }
+
+  std::optional<Divergence> advance(Nanoseconds to) override {
+    if (lost_ || to <= now_) return lost_;
+    warning.clear();
+    while (now_ < to && !lost_) step(to);
+    read_body();
+    return lost_;
+  }
+
+  const PlantState& state() const override { return state_; }
+
+ private:
+  // To the next multiple of the physics period, or to `to` if that comes first.
+  void step(Nanoseconds to) {
+    Nanoseconds next = physics_.tick(steps_ + 1);
+    if (next <= to) ++steps_;
+    next = std::min(next, to);
+    const double h = static_cast<double>((next - now_).count()) * ns_to_s;
+    model_->opt.timestep = h;
+    const double power_before = power_ratio();
+    try {
+      mj_step(model_.get(), data_.get());
+    } catch (const MujocoError& error) {
+      lost_ = Divergence{next, "MuJoCo: " + error.what};
+    }
+    // The cube of a speed that follows an exponential: the trapezium rule's error is of the order
+    // of (h / tau)^2, which is nothing beside what a battery is known to.
+    state_.hover_seconds_used += h * (power_before + power_ratio()) / 2;
+    now_ = next;
+    check();
+  }
+
+  void check() {
+    if (lost_) return;
+    const mjtNum* v = data_->qvel;
+    const double rate = std::sqrt(v[3] * v[3] + v[4] * v[4] + v[5] * v[5]);
+    if (!std::isfinite(rate + v[0] + v[1] + v[2])) {
+      lost_ = Divergence{now_, "the state is not finite"};
+    } else if (rate > vehicle_.rate_bound_rad_s) {
+      lost_ = Divergence{now_, fmt::format("the body rate is {:.0f} rad/s, beyond {:g}", rate,
+                                           vehicle_.rate_bound_rad_s)};
+    } else if (!warning.empty()) {
+      lost_ = Divergence{now_, "MuJoCo: " + one_line(warning)};
+    }
+  }
+
+  double power_ratio() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < rotors_; ++i) {
+      const double ratio = data_->act[i] / hover_rad_s_;
+      sum += ratio * ratio * ratio;
+    }
+    return sum / static_cast<double>(rotors_);
+  }
+
+  // MuJoCo takes short cuts where the centre of mass is the body's origin.
+  void place_centre_of_mass(const Vector3& offset_flu) {
+    copy(offset_flu, model_->body_ipos + 3 * body);
+    const bool at_origin = offset_flu == Vector3{0, 0, 0};
+    model_->body_sameframe[body] = at_origin;
+    model_->body_simple[body] = at_origin;
+    for (int i = 0; i < model_->nv; ++i) model_->dof_simplenum[i] = at_origin ? model_->nv - i : 0;
+  }
+
+  // The free joint is the body's origin; ours is the centre of mass.
+  void write_body() {
+    const Quaternion q = flu_to_enu(state_.attitude);
+    mjtNum* qpos = data_->qpos;
+    mjtNum* qvel = data_->qvel;
+    qpos[3] = q.w, qpos[4] = q.x, qpos[5] = q.y, qpos[6] = q.z;
+    copy(flu_from_frd(state_.rate_rad_s), qvel + 3);
+    mjtNum arm[3], turning[3], velocity[3];
+    offset_in_world(arm, turning, velocity);
+    const Vector3 position = enu_from_ned(state_.position_m);
+    const Vector3 speed = enu_from_ned(state_.velocity_m_s);
+    for (int i = 0; i < 3; ++i) {
+      qpos[i] = position[static_cast<std::size_t>(i)] - arm[i];
+      qvel[i] = speed[static_cast<std::size_t>(i)] - velocity[i];
+    }
+  }
+
+  void read_body() {
+    const mjtNum* qpos = data_->qpos;
+    const mjtNum* qvel = data_->qvel;
+    state_.attitude = frd_to_ned({qpos[3], qpos[4], qpos[5], qpos[6]});
+    state_.rate_rad_s = frd_from_flu(vector_at(qvel + 3));
+    mjtNum arm[3], turning[3], velocity[3];
+    offset_in_world(arm, turning, velocity);
+    state_.position_m = ned_from_enu({qpos[0] + arm[0], qpos[1] + arm[1], qpos[2] + arm[2]});
+    state_.velocity_m_s =
+        ned_from_enu({qvel[0] + velocity[0], qvel[1] + velocity[1], qvel[2] + velocity[2]});
+    std::copy_n(data_->act, rotors_, state_.rotor_rad_s.begin());
+  }
+
+  // From the body's origin to the centre of mass, and its velocity, in the world.
+  void offset_in_world(mjtNum* arm, mjtNum* turning, mjtNum* velocity) const {
+    const mjtNum* offset = model_->body_ipos + 3 * body;
+    mju_cross(turning, data_->qvel + 3, offset);
+    mju_rotVecQuat(arm, offset, data_->qpos + 3);
+    mju_rotVecQuat(velocity, turning, data_->qpos + 3);
+  }
+
+  Model model_;
+  Data data_;
+  const Vehicle& vehicle_;
+  Rate physics_;
+  std::size_t rotors_;
+  double hover_rad_s_;
+
+  Nanoseconds now_{0};
+  std::int64_t steps_ = 0;  // whole physics periods
+  PlantState state_;
+  std::optional<Divergence> lost_;
+};
+
+class CompiledModel final : public MujocoModel {
+ public:
+  CompiledModel(std::filesystem::path file, Model model)
+      : file_(std::move(file)), model_(std::move(model)) {}
+
+  Result<std::unique_ptr<Plant>> make_plant(const Vehicle& vehicle,
+                                            const PlantOptions& options) const override {
+    try {
+      Model model(mj_copyModel(nullptr, model_.get()));
+      if (options.floor) enable_floor(*model);
+      Data data(mj_makeData(model.get()));
+      return std::make_unique<MujocoPlant>(std::move(model), std::move(data), vehicle,
+                                           options.physics);
+    } catch (const MujocoError& error) {
+      return fail_at(file_.string(), "MuJoCo: " + one_line(error.what));
+    }
+  }
+
+ private:
+  std::filesystem::path file_;
+  Model model_;
+};
+
+}  // namespace
+
+Result<std::shared_ptr<const MujocoModel>> MujocoModel::load(const std::filesystem::path& xml,
+                                                             const Vehicle& vehicle) {
+  install_callbacks();
+  auto model = compile(xml);
+  if (!model) return tl::unexpected(model.error());
+  const auto numbers = numbers_of(**model, xml);
+  if (!numbers) return tl::unexpected(numbers.error());
+  if (const auto differs = first_difference(*numbers, vehicle); !differs.empty()) {
+    return fail_at(xml.string(), differs);
+  }
+  return std::make_shared<const CompiledModel>(xml, std::move(*model));
+}
+
+}  // namespace attest

@@ -1,0 +1,27 @@
+// The plant in MuJoCo: a free body with one actuator a rotor, integrated by the Runge-Kutta method
+// of order 4 at the physics rate. FLU and ENU inside, nowhere else.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "harness/core/result.hpp"
+#include "harness/plant/plant.hpp"
+
+namespace attest {
+
+// A model as MuJoCo compiled it. Immutable, for any number of plants.
+class MujocoModel {
+ public:
+  // Errors: XML that MuJoCo refuses, with its line; a model that disagrees with the vehicle's TOML,
+  // naming the quantity and both values.
+  static Result<std::shared_ptr<const MujocoModel>> load(const std::filesystem::path& xml,
+                                                         const Vehicle& vehicle);
+  virtual ~MujocoModel() = default;
+
+  // Errors: MuJoCo's words. The vehicle must outlive the plant.
+  virtual Result<std::unique_ptr<Plant>> make_plant(const Vehicle& vehicle,
+                                                    const PlantOptions& options) const = 0;
+};
+
+}  // namespace attest

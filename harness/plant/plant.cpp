@@ -1,0 +1,61 @@
+#include "harness/plant/plant.hpp"
+
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "harness/core/nearest.hpp"
+#include "harness/plant/mujoco_plant.hpp"
+#include "harness/plant/ode_plant.hpp"
+
+namespace attest {
+namespace {
+
+class LoadedAirframe final : public Airframe {
+ public:
+  LoadedAirframe(Vehicle vehicle, std::shared_ptr<const MujocoModel> model)
+      : vehicle_(std::move(vehicle)), model_(std::move(model)) {}
+
+  const Vehicle& vehicle() const override { return vehicle_; }
+
+  Result<std::unique_ptr<Plant>> make_plant(PlantKind kind,
+                                            const PlantOptions& options) const override {
+    if (kind == PlantKind::mujoco) return model_->make_plant(vehicle_, options);
+    if (options.floor) return fail("the ode plant has no floor; fly this on mujoco");
+    return make_ode_plant(vehicle_, {});
+  }
+
+ private:
+  Vehicle vehicle_;
+  std::shared_ptr<const MujocoModel> model_;
+};
+
+}  // namespace
+
+std::string_view name_of(PlantKind kind) { return kind == PlantKind::mujoco ? "mujoco" : "ode"; }
+
+Result<PlantKind> parse_plant_kind(std::string_view name) {
+  for (const PlantKind kind : plant_kinds) {
+    if (name == name_of(kind)) return kind;
+  }
+  return fail(fmt::format("unknown plant `{}`{}; there are mujoco and ode", name,
+                          suggestion(name, {"mujoco", "ode"})));
+}
+
+Result<std::shared_ptr<const Airframe>> Airframe::load(const std::filesystem::path& models,
+                                                       const std::string& name) {
+  const auto toml = models / (name + ".toml");
+  std::error_code ignored;
+  if (!std::filesystem::exists(toml, ignored)) {
+    const auto known = vehicle_names(models);
+    return fail_at(models.string(), fmt::format("unknown vehicle `{}`{}; there are {}", name,
+                                                suggestion(name, known), fmt::join(known, ", ")));
+  }
+  auto vehicle = read_vehicle(toml);
+  if (!vehicle) return tl::unexpected(vehicle.error());
+  auto model = MujocoModel::load(models / (name + ".xml"), *vehicle);
+  if (!model) return tl::unexpected(model.error());
+  return std::make_shared<const LoadedAirframe>(std::move(*vehicle), std::move(*model));
+}
+
+}  // namespace attest

@@ -1,0 +1,102 @@
+// What the unit under test flies: a rigid body with rotors, in one of two implementations that are
+// checked against each other and against exact solutions (models/README.md).
+//
+// Rotor speed w of each rotor follows its command u with a first-order lag, dw/dt = (u - w) / tau,
+// tau one for u > w and another for u < w. Thrust kf w^2 along -z body at the hub, drag torque
+// km w^2 about z against the rotation. Linear drag against the air. Gravity along +z world. The
+// spin of the rotors is not part of the body's angular momentum.
+//
+// Frames NED and FRD, SI units, time since reset() in integer nanoseconds. No clock, no allocation
+// after reset(), one thread at a time. The same calls give the same bits.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "harness/core/frames.hpp"
+#include "harness/core/result.hpp"
+#include "harness/core/time.hpp"
+#include "harness/plant/vehicle.hpp"
+#include "harness/schedule/rate.hpp"
+
+namespace attest {
+
+struct PlantState {
+  Vector3 position_m{};    // of the centre of mass, NED
+  Vector3 velocity_m_s{};  // of the centre of mass, NED
+  Quaternion attitude;     // body FRD to world NED, norm 1
+  Vector3 rate_rad_s{};    // of the body, FRD
+  std::array<double, rotors_max> rotor_rad_s{};
+  // Time integral of mean((w / w_hover)^3) over the rotors: the charge used, in seconds of hover.
+  double hover_seconds_used = 0;
+};
+
+// The end of a flight: the state is not finite, the body rate is beyond the vehicle's bound, or the
+// simulator complained.
+struct Divergence {
+  Nanoseconds at{0};
+  std::string what;  // "the body rate is 103 rad/s, beyond 100"
+};
+
+class Plant {
+ public:
+  virtual ~Plant() = default;
+
+  // Begins anew at time 0, in `start`, commands equal to the rotor speeds, no wind, the centre of
+  // mass where it nominally is. REQUIRES: a unit quaternion.
+  virtual void reset(const PlantState& start) = 0;
+
+  // Rotor speeds wanted [rad/s], one a rotor, not negative; held until the next call.
+  virtual void command(std::span<const double> rotor_rad_s) = 0;
+
+  // Velocity of the air, NED; held until the next call.
+  virtual void set_wind(const Vector3& velocity_m_s) = 0;
+
+  // Of the centre of mass from its nominal place, FRD; held until the next call. Its position and
+  // velocity do not jump, the hubs' places relative to it do: as when a load is dropped.
+  virtual void set_centre_of_mass(const Vector3& offset_m) = 0;
+
+  // To exactly time `to`, not before the time reached. After a divergence the plant stays where it
+  // is until reset().
+  virtual std::optional<Divergence> advance(Nanoseconds to) = 0;
+
+  // At the time reached.
+  virtual const PlantState& state() const = 0;
+};
+
+enum class PlantKind { mujoco, ode };
+inline constexpr std::array<PlantKind, 2> plant_kinds{PlantKind::mujoco, PlantKind::ode};
+std::string_view name_of(PlantKind kind);  // "mujoco"
+Result<PlantKind> parse_plant_kind(std::string_view name);
+
+struct PlantOptions {
+  // MuJoCo's steps begin at multiples of this period, and at the times it is advanced to; the ode
+  // plant chooses its own steps.
+  Rate physics = Rate::hz(1000);
+  bool floor = false;  // MuJoCo only: ground contact at z = 0
+};
+
+// A vehicle ready to fly: its numbers, and its model as MuJoCo compiled it, which takes
+// milliseconds and is done once. Immutable; may be shared, also across fork().
+class Airframe {
+ public:
+  // Reads models/<name>.toml and models/<name>.xml. Errors, with file and line where there is one:
+  // no such vehicle (says which there are), what read_vehicle refuses, XML that MuJoCo refuses, a
+  // model that disagrees with its TOML (says in what).
+  static Result<std::shared_ptr<const Airframe>> load(const std::filesystem::path& models,
+                                                      const std::string& name);
+  virtual ~Airframe() = default;
+
+  virtual const Vehicle& vehicle() const = 0;
+
+  // Errors: the ode plant has no floor. The airframe must outlive the plant.
+  virtual Result<std::unique_ptr<Plant>> make_plant(PlantKind kind,
+                                                    const PlantOptions& options) const = 0;
+};
+
+}  // namespace attest

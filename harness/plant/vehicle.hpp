@@ -1,0 +1,73 @@
+// A vehicle as numbers: what both plants are made of. Read from models/<name>.toml, where each
+// number has its source.
+//
+// Body frame FRD, its origin at the nominal centre of mass. SI units.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "harness/core/frames.hpp"
+#include "harness/core/result.hpp"
+
+namespace attest {
+
+inline constexpr std::size_t rotors_max = 8;
+
+// In the order of the mixer's outputs.
+struct VehicleRotor {
+  Vector3 position_m;  // of the hub
+  int turns = 1;       // +1 counter-clockwise seen from above, -1 clockwise
+};
+
+// Voltage = full_V - fall_V * used fraction of the charge - resistance_ohm * current, the current
+// low-passed. The current is hover_current_A in hover and goes with the rotors' power, as the cube
+// of their speed.
+struct BatteryPack {
+  int cells = 3;
+  double full_V = 0;  // open circuit
+  double fall_V = 0;  // from full to empty
+  double resistance_ohm = 0;
+  double capacity_Ah = 0;
+  double current_filter_s = 0;
+  double hover_current_A = 0;
+};
+
+struct Vehicle {
+  std::string name;            // stem of the file: "iris"
+  std::filesystem::path file;  // models/iris.toml
+  std::string description;     // one line, for lists
+  double mass_kg = 0;
+  Vector3 inertia_kg_m2{};  // about the centre of mass, principal axes along the body axes
+  std::vector<VehicleRotor> rotors;
+  double thrust_coefficient = 0;    // kf [N/(rad/s)^2]: thrust = kf w^2, along -z
+  double torque_over_thrust_m = 0;  // km/kf: drag torque = km/kf * thrust, against the rotation
+  double time_constant_up_s = 0;    // of the rotor speed, towards a higher command
+  double time_constant_down_s = 0;  // towards a lower one
+  double rotor_max_rad_s = 0;       // at the motor command 1
+  Vector3 drag_kg_s{};  // linear rotor drag, optional: force = -drag * air velocity, by body axis
+  double rate_bound_rad_s = 0;  // a body rate beyond is a diverged flight
+  BatteryPack battery;
+  std::string mixer;                                       // "R: 4x 10000 10000 10000 0"
+  std::vector<std::pair<std::string, double>> parameters;  // of the law: the gains that fly it
+
+  double hover_rotor_rad_s() const;  // all rotors alike
+  double arm_m() const;              // from the centre of mass to the farthest hub
+  // The thrust control, 0..1, at which it hovers: motor commands are linear in the speed.
+  double hover_thrust() const { return hover_rotor_rad_s() / rotor_max_rad_s; }
+};
+
+inline constexpr double gravity_m_s2 = 9.80665;  // standard gravity, ISO 80000-3
+
+// Errors name file, line and fix: a number missing or impossible (a mass that is not positive, an
+// inertia that breaks the triangle inequality), an unknown key or parameter, a mixer whose rotors
+// are not where the vehicle's are.
+Result<Vehicle> read_vehicle(const std::filesystem::path& file);
+
+// The names of the vehicles (*.toml) in a folder, sorted; empty when there is no such folder.
+std::vector<std::string> vehicle_names(const std::filesystem::path& models);
+
+}  // namespace attest
