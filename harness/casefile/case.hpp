@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "harness/casefile/flight.hpp"
+#include "harness/casefile/setup.hpp"
 #include "harness/casefile/signal.hpp"
 #include "harness/compare/tolerance.hpp"
 #include "harness/schedule/rate.hpp"
@@ -31,11 +33,19 @@ struct Publication {
   Span period;
   Span phase;
   std::vector<Span> times;
+  // Of every kind: a sample is seen `delay` after its release.
+  Span delay{0, Span::In::seconds};
+  // periodic: late by up to this fraction of a period, and samples that are never released.
+  double jitter = 0;
+  std::uint64_t seed = 1;
+  std::vector<std::int64_t> drops;
 };
 
 struct FieldStimulus {
   std::size_t channel;  // index into channels(), an input
   Signal signal;
+  bool of_hover = false;  // a flight's: in units of the vehicle's hover thrust
+  double scale = 1;       // what the signal is multiplied with
 };
 
 struct AttitudeStimulus {
@@ -85,7 +95,11 @@ struct Case {
   std::vector<TopicStimulus> topics;
   std::vector<ToleranceOverride> tolerances;
   std::string tolerance_why;
-  bool exact_only = false;  // on a threshold of the law, where correct arithmetic may differ
+  bool exact_only = false;       // on a threshold of the law, where correct arithmetic may differ
+  std::optional<Flight> flight;  // empty: open loop, every input is scripted
+
+  // Every way to run it: open loop one a rate, ascending; a flight by flyer, then rate.
+  std::vector<Setup> setups() const;
 
   std::string id() const { return profile + "/" + group + "/" + name; }
 };

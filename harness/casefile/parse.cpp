@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "controller/reference/parameters.hpp"
+#include "harness/casefile/parse_flight.hpp"
 #include "harness/casefile/parse_signal.hpp"
 #include "harness/casefile/parse_topic.hpp"
 #include "harness/core/file.hpp"
@@ -168,6 +169,12 @@ void parse_duration(const TomlTable& root, Case& parsed) {
   }
 }
 
+// The models of the suite: <suite>/cases/<profile>/<group>/<name>.toml flies <suite>/models.
+fs::path models_beside(const fs::path& file) {
+  const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
+  return folder.parent_path().parent_path().parent_path() / "models";
+}
+
 void parse_body(const TomlTable& root, Case& parsed) {
   if (root.integer("schema") != schema_version && root.has("schema")) {
     root.error("schema", fmt::format("must be {}", schema_version));
@@ -180,7 +187,8 @@ void parse_body(const TomlTable& root, Case& parsed) {
   parsed.unit = parse_unit(root);
   check_unit(root, parsed);
   parsed.parameters = parse_parameters(root);
-  parsed.topics = parse_topics(root);
+  parsed.topics = parse_topics(root, root.has("flight"));
+  if (root.has("flight")) parse_flight(root, models_beside(parsed.file), parsed);
   parse_tolerances(root, parsed);
 }
 

@@ -1,6 +1,7 @@
 #include "harness/casefile/parse_topic.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -17,6 +18,12 @@ namespace {
 constexpr std::string_view input_prefix = "in/";
 constexpr std::string_view control_state = "control_state";
 constexpr std::string_view control_mode = "vehicle_control_mode";
+constexpr std::string_view motor_limits = "multirotor_motor_limits";
+
+// 0..1 of the thrust that the motors have.
+constexpr std::array<std::string_view, 3> thrusts = {"in/vehicle_attitude_setpoint.thrust",
+                                                     "in/vehicle_rates_setpoint.thrust",
+                                                     "in/manual_control_setpoint.z"};
 
 // What a vehicle shows that hovers level and armed; all that is not named is zero.
 double baseline(std::string_view name) {
@@ -50,7 +57,13 @@ bool is_byte_signal(const Signal& signal) {
 }
 
 void parse_field(const TomlTable& table, const std::string& key, FieldStimulus& field) {
+  if (const std::string of_hover = key + "_of_hover"; field.of_hover && table.has(of_hover)) {
+    field.signal = parse_signal(table, of_hover);
+    if (table.has(key)) table.error(key, fmt::format("`{}` is given too; keep one", of_hover));
+    return;
+  }
   if (!table.has(key)) return;
+  field.of_hover = false;
   field.signal = parse_signal(table, key);
   if (channels()[field.channel].type == ChannelType::u8 && !is_byte_signal(field.signal)) {
     table.error(key, "is a flag: a constant, a step or samples of whole numbers from 0 to 255");
@@ -117,6 +130,21 @@ void parse_flight_mode(const TomlTable& table, TopicStimulus& topic) {
   }
 }
 
+// Releases that are late, missing, or seen late.
+void parse_irregularity(const TomlTable& table, Publication& publication) {
+  if (const auto delay = parse_optional_span(table, "delay")) publication.delay = *delay;
+  publication.jitter = table.number("jitter", 0);
+  if (!(publication.jitter >= 0 && publication.jitter < 1)) {
+    table.error("jitter", "is a fraction of a period: from 0 up to, but not, 1");
+  }
+  publication.seed = static_cast<std::uint64_t>(table.integer("seed", 1));
+  if (table.has("drop_samples")) publication.drops = table.integers("drop_samples");
+  const bool irregular = publication.jitter > 0 || !publication.drops.empty();
+  if (irregular && publication.when != Publication::When::periodic) {
+    table.error("", "`jitter` and `drop_samples` need a period or a rate");
+  }
+}
+
 Publication parse_publication(const TomlTable& table) {
   using When = Publication::When;
   Publication publication;
@@ -156,6 +184,7 @@ Publication parse_publication(const TomlTable& table) {
     publication.phase = *phase;
     if (publication.when != When::periodic) table.error("", "a phase needs a period or a rate");
   }
+  parse_irregularity(table, publication);
   return publication;
 }
 
@@ -169,13 +198,16 @@ std::string_view field_of(std::string_view channel) {
 }
 
 // The topic with its baseline values.
-TopicStimulus baseline_topic(std::string_view name, std::uint32_t updated_bit) {
+TopicStimulus baseline_topic(std::string_view name, std::uint32_t updated_bit, bool is_flight) {
   TopicStimulus topic{std::string(name), updated_bit, {}, {}, {}};
   const auto table = channels();
   for (std::size_t i = 0; i < table.size(); ++i) {
     const bool is_field = table[i].name.starts_with(input_prefix) &&
                           table[i].type != ChannelType::bit && topic_of(table[i].name) == name;
-    if (is_field) topic.fields.push_back({i, Constant{baseline(table[i].name)}});
+    if (!is_field) continue;
+    const bool of_hover =
+        is_flight && std::find(thrusts.begin(), thrusts.end(), table[i].name) != thrusts.end();
+    topic.fields.push_back({i, Constant{of_hover ? 1 : baseline(table[i].name)}, of_hover});
   }
   return topic;
 }
@@ -198,12 +230,24 @@ void parse_topic(const TomlTable& table, TopicStimulus& topic) {
 
 }  // namespace
 
-std::vector<TopicStimulus> parse_topics(const TomlTable& root) {
-  std::vector<TopicStimulus> topics{baseline_topic(control_state, 0)};
+std::vector<TopicStimulus> parse_topics(const TomlTable& root, bool is_flight) {
+  std::vector<TopicStimulus> topics{baseline_topic(control_state, 0, is_flight)};
   std::uint32_t bit = 1;
   for (const std::string_view name : updated_topics()) {
-    if (bit != ATTEST_UPDATED_PARAMETER_UPDATE) topics.push_back(baseline_topic(name, bit));
+    if (bit != ATTEST_UPDATED_PARAMETER_UPDATE) {
+      topics.push_back(baseline_topic(name, bit, is_flight));
+    }
     bit <<= 1;
+  }
+  if (is_flight) {
+    std::erase_if(topics, [&](const TopicStimulus& topic) {
+      if (topic.topic != control_state && topic.topic != motor_limits) return false;
+      if (root.has(topic.topic)) {
+        root.table(topic.topic);
+        root.error(topic.topic, "comes from the plant in a flight; see [flight]");
+      }
+      return true;
+    });
   }
   for (TopicStimulus& topic : topics) {
     if (root.has(topic.topic)) parse_topic(root.table(topic.topic), topic);

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "harness/core/frames.hpp"
 #include "harness/core/time.hpp"
 #include "harness/schedule/rate.hpp"
 
@@ -94,10 +95,7 @@ class Sampler {
   std::vector<double> walk_;  // of a RandomWalk, one value a step
 };
 
-// {w, x, y, z} of the attitude with these angles [deg].
-struct Quaternion {
-  double w, x, y, z;
-};
+// The attitude with these angles [deg].
 Quaternion attitude_from(double tilt_deg, double azimuth_deg, double yaw_deg);
 
 // A signal that may have another value at another time.

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -25,9 +26,9 @@ bool same(float a, float b) {
 class Publisher {
  public:
   Publisher(const TopicStimulus& topic, const Timeline& timeline)
-      : topic_(topic), rate_(timeline.rate) {
+      : topic_(topic), timeline_(timeline), delay_(topic.publication.delay.on(timeline.rate)) {
     for (const FieldStimulus& field : topic.fields) {
-      fields_.emplace_back(field.channel, Sampler(field.signal, timeline));
+      fields_.push_back({field.channel, field.scale, Sampler(field.signal, timeline)});
       varies_ = varies_ || varies(field.signal);
     }
     for (const auto& [channel, attitude] : topic.attitudes) {
@@ -42,17 +43,24 @@ class Publisher {
 
   // Publishes what was released since the last tick, if anything.
   void tick(Nanoseconds now, Sample& sample) {
-    const auto release = every_tick_ ? std::optional(now) : releases_.latest(now);
+    const Nanoseconds visible = now - delay_;
+    if (visible < Nanoseconds(0)) return;
+    const auto release = every_tick_ ? std::optional(visible) : releases_.latest(visible);
     if (!release || (published_ && *release <= *published_)) return;
     published_ = release;
     sample.in.updated |= topic_.updated_bit;
-    for (const auto& [channel, sampler] : fields_) {
-      set_value(channels()[channel], sample, sampler.at(*release));
+    for (const auto& [channel, scale, sampler] : fields_) {
+      set_value(channels()[channel], sample, scale * sampler.at(*release));
     }
     for (const Attitude& attitude : attitudes_) attitude.write(*release, sample);
   }
 
  private:
+  struct Field {
+    std::size_t channel;
+    double scale;
+    Sampler sampler;
+  };
   struct Attitude {
     std::size_t channel;
     AttitudeSignal signal;
@@ -83,7 +91,9 @@ class Publisher {
         plan_periodic(publication);
         break;
       case When::at_times:
-        for (const Span& time : publication.times) releases_.times.push_back(time.on(rate_));
+        for (const Span& time : publication.times) {
+          releases_.times.push_back(time.on(timeline_.rate));
+        }
         break;
       case When::never:
         break;
@@ -93,19 +103,33 @@ class Publisher {
   // A period of whole ticks is every n-th tick of the unit: at 333 Hz, too, a release and the tick
   // that it belongs to are at the same nanosecond.
   void plan_periodic(const Publication& publication) {
-    const auto& [when, rate, period, phase, times] = publication;
-    if (rate || !is_whole_ticks(period)) {
-      releases_.rate = rate ? *rate : every(period.on(rate_));
-      releases_.phase = phase.on(rate_);
-      return;
-    }
-    releases_.rate = rate_;
-    releases_.every = static_cast<std::int64_t>(period.amount);
-    if (is_whole_ticks(phase)) {
-      releases_.first = static_cast<std::int64_t>(phase.amount);
+    const Rate& unit_rate = timeline_.rate;
+    const auto& [rate, period, phase] =
+        std::tie(publication.rate, publication.period, publication.phase);
+    if (publication.jitter > 0 || !publication.drops.empty()) {
+      plan_irregular(publication);
+    } else if (rate || !is_whole_ticks(period)) {
+      releases_.rate = rate ? *rate : every(period.on(unit_rate));
+      releases_.phase = phase.on(unit_rate);
     } else {
-      releases_.phase = phase.on(rate_);
+      releases_.rate = unit_rate;
+      releases_.every = static_cast<std::int64_t>(period.amount);
+      if (is_whole_ticks(phase)) {
+        releases_.first = static_cast<std::int64_t>(phase.amount);
+      } else {
+        releases_.phase = phase.on(unit_rate);
+      }
     }
+  }
+
+  // Late by jitter, or missing: each release is written down.
+  void plan_irregular(const Publication& publication) {
+    const Rate& unit_rate = timeline_.rate;
+    const Rate rate =
+        publication.rate ? *publication.rate : every(publication.period.on(unit_rate));
+    const TickSchedule schedule{rate, publication.phase.on(unit_rate), publication.jitter,
+                                publication.seed, publication.drops};
+    releases_.times = ticks(schedule, rate.ticks_in(timeline_.duration));
   }
 
   static Rate every(Nanoseconds period) {
@@ -113,8 +137,9 @@ class Publisher {
   }
 
   const TopicStimulus& topic_;
-  Rate rate_;
-  std::vector<std::pair<std::size_t, Sampler>> fields_;
+  Timeline timeline_;
+  Nanoseconds delay_;
+  std::vector<Field> fields_;
   std::vector<Attitude> attitudes_;
   bool varies_ = false;
   bool every_tick_ = false;
@@ -131,15 +156,15 @@ class ParameterPublisher {
     }
   }
 
-  void tick(Nanoseconds now, Trace& trace, Sample& sample) {
-    const std::size_t tick = trace.samples.size();
+  void tick(std::size_t tick, Nanoseconds now, Sample& sample,
+            std::vector<ParameterChange>& changes) {
     // parameter_update is published once when the firmware starts.
     if (tick == 0) sample.in.updated |= ATTEST_UPDATED_PARAMETER_UPDATE;
     for (Entry& entry : entries_) {
       const auto value = static_cast<float>(entry.sampler.at(now));
       if (entry.last && same(*entry.last, value)) continue;
       entry.last = value;
-      trace.parameters.push_back({tick, entry.name, value});
+      changes.push_back({tick, entry.name, value});
       sample.in.updated |= ATTEST_UPDATED_PARAMETER_UPDATE;
     }
   }
@@ -153,28 +178,52 @@ class ParameterPublisher {
   std::vector<Entry> entries_;
 };
 
+Timeline timeline_of(const Case& the_case, const Rate& rate) {
+  return {rate, rate.tick(tick_count(the_case.duration, rate))};
+}
+
 }  // namespace
 
-Trace stimulate(const Case& the_case, const Rate& rate) {
-  const std::int64_t periods = tick_count(the_case.duration, rate);
-  const Timeline timeline{rate, rate.tick(periods)};
-  const Nanoseconds start = the_case.unit.start.on(rate);
+std::vector<Nanoseconds> unit_ticks(const Case& the_case, const Rate& rate) {
+  const TickSchedule schedule{rate, Nanoseconds(0), the_case.unit.jitter, the_case.unit.seed,
+                              the_case.unit.drop_ticks};
+  return ticks(schedule, tick_count(the_case.duration, rate));
+}
 
+struct Stimulus::Impl {
+  Impl(const Case& the_case, const Rate& rate)
+      : start(the_case.unit.start.on(rate)),
+        parameters(the_case.parameters, timeline_of(the_case, rate)) {
+    const Timeline timeline = timeline_of(the_case, rate);
+    for (const TopicStimulus& topic : the_case.topics) publishers.emplace_back(topic, timeline);
+  }
+
+  Nanoseconds start;
   std::vector<Publisher> publishers;
-  for (const TopicStimulus& topic : the_case.topics) publishers.emplace_back(topic, timeline);
-  ParameterPublisher parameters(the_case.parameters, timeline);
+  ParameterPublisher parameters;
+};
 
+Stimulus::Stimulus(const Case& the_case, const Rate& rate)
+    : impl_(std::make_unique<Impl>(the_case, rate)) {}
+Stimulus::Stimulus(Stimulus&&) noexcept = default;
+Stimulus::~Stimulus() = default;
+
+void Stimulus::tick(std::size_t tick, Nanoseconds now, Sample& sample,
+                    std::vector<ParameterChange>& changes) {
+  sample.in.timestamp = timestamp_us(impl_->start + now);
+  sample.in.updated = 0;
+  for (Publisher& publisher : impl_->publishers) publisher.tick(now, sample);
+  impl_->parameters.tick(tick, now, sample, changes);
+}
+
+Trace stimulate(const Case& the_case, const Rate& rate) {
   Trace trace;
   trace.source = fmt::format("{}@{}", the_case.id(), rate.label());
   trace.present = channels_with_prefix("");
-  TickSchedule schedule{rate, Nanoseconds(0), the_case.unit.jitter, the_case.unit.seed,
-                        the_case.unit.drop_ticks};
+  Stimulus stimulus(the_case, rate);
   Sample sample{};
-  for (const Nanoseconds now : ticks(schedule, periods)) {
-    sample.in.timestamp = timestamp_us(start + now);
-    sample.in.updated = 0;
-    for (Publisher& publisher : publishers) publisher.tick(now, sample);
-    parameters.tick(now, trace, sample);
+  for (const Nanoseconds now : unit_ticks(the_case, rate)) {
+    stimulus.tick(trace.samples.size(), now, sample, trace.parameters);
     trace.samples.push_back(sample);
   }
   return trace;

@@ -1,6 +1,9 @@
 // Traces as CSV: one header line with channel names, one row a tick, floats in the shortest decimal
 // form that reads back to the same bits. `nan`, `inf` and `-inf` are numbers; CRLF is accepted.
 //
+// A flown trace may have columns `plant/...`, the truth of the vehicle at each tick, for people and
+// their plots: they are written and never read (plant_columns.hpp).
+//
 // A file that stands beside a provenance.toml leaves out what never changes: the constants there
 // are columns too (provenance.hpp).
 #pragma once
@@ -34,9 +37,10 @@ Result<Trace> read_csv(const std::filesystem::path& path, CsvNeed need);
 struct CsvColumns {
   ChannelSet channels;                  // in the order of channels()
   std::vector<std::string> parameters;  // names, written after the inputs
+  bool plant = false;                   // plant/ columns, last. REQUIRES: a flown trace
 };
 
-// Everything the trace has, parameters in the order they are first set.
+// Everything the trace has, parameters in the order they are first set; without plant/ columns.
 CsvColumns all_columns(const Trace& trace);
 
 // Does not commit. Errors: the file cannot be written, and what a column cannot say of a parameter:

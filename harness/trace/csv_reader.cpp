@@ -10,6 +10,7 @@
 #include "harness/core/nearest.hpp"
 #include "harness/trace/csv.hpp"
 #include "harness/trace/csv_rows.hpp"
+#include "harness/trace/plant_columns.hpp"
 #include "harness/trace/provenance.hpp"
 
 namespace attest {
@@ -17,7 +18,11 @@ namespace {
 
 constexpr std::size_t timestamp_channel = 0;  // of channels()
 
-// A row is a Sample followed by the values of the parameter columns.
+// A row is a Sample, a float for columns that are not kept, and the values of the parameter
+// columns.
+constexpr std::size_t ignored_offset = sizeof(Sample);
+constexpr std::size_t parameters_offset = ignored_offset + sizeof(float);
+
 struct Layout {
   std::vector<CsvColumn> columns;
   std::vector<std::string> parameters;
@@ -33,9 +38,11 @@ Result<Layout> layout_of(const CsvRows& rows) {
       layout.columns.push_back({channel.type, channel.offset, channel.bit});
       layout.present.set(*index);
     } else if (const auto parameter = parameter_of(name)) {
-      const std::size_t offset = sizeof(Sample) + sizeof(float) * layout.parameters.size();
+      const std::size_t offset = parameters_offset + sizeof(float) * layout.parameters.size();
       layout.columns.push_back({ChannelType::f32, offset, 0});
       layout.parameters.emplace_back(*parameter);
+    } else if (name.starts_with(plant_prefix)) {
+      layout.columns.push_back({ChannelType::f32, ignored_offset, 0});
     } else {
       std::vector<std::string> names;
       for (const Channel& channel : channels()) names.emplace_back(channel.name);
@@ -126,7 +133,7 @@ class ParameterColumns {
 
 Result<void> read_samples(CsvRows& rows, const Sample& common, ParameterColumns parameters,
                           Trace& trace) {
-  std::vector<char> row(sizeof(Sample) + parameters.size());
+  std::vector<char> row(parameters_offset + parameters.size());
   std::memcpy(row.data(), &common, sizeof common);
   while (true) {
     const auto more = rows.next(row.data());
@@ -143,7 +150,7 @@ Result<void> read_samples(CsvRows& rows, const Sample& common, ParameterColumns 
                                            sample.in.timestamp, trace.samples.back().in.timestamp));
     }
     if (tick == 0 || (sample.in.updated & ATTEST_UPDATED_PARAMETER_UPDATE) != 0) {
-      parameters.record(tick, row.data() + sizeof sample, trace.parameters);
+      parameters.record(tick, row.data() + parameters_offset, trace.parameters);
     }
     trace.samples.push_back(sample);
   }

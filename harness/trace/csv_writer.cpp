@@ -4,6 +4,7 @@
 
 #include "harness/trace/csv.hpp"
 #include "harness/trace/csv_text.hpp"
+#include "harness/trace/plant_columns.hpp"
 
 namespace attest {
 namespace {
@@ -84,7 +85,7 @@ std::vector<const Channel*> chosen(const ChannelSet& set, bool outputs) {
 }  // namespace
 
 CsvColumns all_columns(const Trace& trace) {
-  CsvColumns columns{trace.present, {}};
+  CsvColumns columns{trace.present, {}, false};
   for (const ParameterChange& change : trace.parameters) {
     const auto found = std::find(columns.parameters.begin(), columns.parameters.end(), change.name);
     if (found == columns.parameters.end()) columns.parameters.push_back(change.name);
@@ -104,6 +105,9 @@ Result<void> write_csv(const Trace& trace, const CsvColumns& columns, AtomicFile
     text.name(fmt::format("{}{}", parameter_prefix, parameter));
   }
   for (const Channel* channel : outputs) text.name(channel->name);
+  if (columns.plant) {
+    for (const PlantColumn& column : plant_columns()) text.name(column.name);
+  }
   text.end_row();
 
   ParameterValues parameters(trace, columns.parameters);
@@ -112,6 +116,11 @@ Result<void> write_csv(const Trace& trace, const CsvColumns& columns, AtomicFile
     for (const Channel* channel : inputs) write_cell(*channel, sample, text);
     for (const float value : parameters.at(tick)) text.number(value);
     for (const Channel* channel : outputs) write_cell(*channel, sample, text);
+    if (columns.plant) {
+      for (const PlantColumn& column : plant_columns()) {
+        text.number(column.value(trace.plant[tick]));
+      }
+    }
     text.end_row();
   }
   return text.finish();

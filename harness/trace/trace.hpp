@@ -1,7 +1,9 @@
 // A recorded run: what the unit was given at each tick and what it answered.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -19,11 +21,25 @@ struct ParameterChange {
   friend bool operator==(const ParameterChange&, const ParameterChange&) = default;
 };
 
+// What is true of the vehicle at a tick, beside what the unit was told: for metrics and for people
+// (plant_columns.hpp names its columns). Never compared. NED and FRD, SI units.
+struct PlantSample {
+  std::array<float, 3> position_m;    // of the centre of mass
+  std::array<float, 3> velocity_m_s;  // of the centre of mass
+  std::array<float, 4> q;             // body to world
+  std::array<float, 3> rate_rad_s;    // of the body
+  std::array<float, 8> motor;         // commands of the mixer, -1 stopped .. 1 full
+  std::array<float, 8> rotor_rad_s;   // speeds
+  float voltage_V;                    // of the battery; 0 without one
+  std::uint8_t saturated;             // the mixer gave something up at this tick
+};
+
 struct Trace {
   std::string source;                       // file or case, for messages
   std::vector<Sample> samples;              // one a tick, timestamps strictly increasing
   std::vector<ParameterChange> parameters;  // by tick, then in the order they are set
   ChannelSet present;                       // the channels that were recorded; the others are 0
+  std::vector<PlantSample> plant;           // of a flown trace: one a sample; else empty
 };
 
 }  // namespace attest

@@ -11,6 +11,7 @@
 namespace attest {
 namespace {
 
+using testing::AnyOf;
 using testing::Each;
 using testing::ElementsAre;
 using testing::IsEmpty;
@@ -99,6 +100,24 @@ TEST(Publication, ASampleWaitsForTheNextTickThatHappens) {
   EXPECT_THAT(published_at(trace), ElementsAre(3));
   EXPECT_EQ(trace.samples[3].in.timestamp, 5'024'000u);
   EXPECT_NE(trace.samples[0].in.updated & ATTEST_UPDATED_VEHICLE_STATUS, 0u);
+}
+
+TEST(Publication, ADelayedSampleIsSeenLaterWithTheValueOfItsRelease) {
+  const Trace trace = battery(std::string(counting) + "period_ticks = 3\ndelay_ticks = 2\n");
+  EXPECT_THAT(published_at(trace), ElementsAre(2, 5, 8));
+  EXPECT_THAT(scales(trace), ElementsAre(0, 0, 0, 0, 0, 3, 3, 3, 6, 6));
+}
+
+TEST(Publication, ReleasesMayBeDroppedOrLate) {
+  EXPECT_THAT(
+      published_at(battery(std::string(counting) + "period_ticks = 2\ndrop_samples = [1, 3]\n")),
+      ElementsAre(0, 4, 8));
+  // Late by less than a period, each by its own part.
+  const Trace late = battery(std::string(counting) + "rate_hz = 125\njitter = 0.9\nseed = 3\n");
+  EXPECT_THAT(published_at(battery(std::string(counting) + "rate_hz = 125\n")),
+              ElementsAre(0, 2, 4, 6, 8));
+  EXPECT_THAT(published_at(late), ElementsAre(AnyOf(1, 2), AnyOf(3, 4), AnyOf(5, 6), AnyOf(7, 8)))
+      << "the last comes after the end";
 }
 
 TEST(Publication, AFieldThatVariesPublishesTheWholeTopic) {

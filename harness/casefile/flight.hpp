@@ -1,0 +1,83 @@
+// What makes a case a flight: the vehicles and plants it is flown with, where it begins, what
+// happens to the vehicle on the way, and how the tasks around the unit run.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/casefile/setup.hpp"
+#include "harness/casefile/signal.hpp"
+#include "harness/compare/metric.hpp"
+#include "harness/plant/plant.hpp"
+
+namespace attest {
+
+// A periodic task beside the unit's. Its result reaches the unit `delay` after the task ran.
+struct TaskTiming {
+  Rate rate = Rate::hz(50);
+  Span phase{0, Span::In::seconds};
+  double jitter = 0;  // late by up to this fraction of a period
+  std::uint64_t seed = 1;
+  Span delay{0, Span::In::seconds};
+  std::vector<std::int64_t> drop_ticks;
+};
+
+inline TaskTiming task_at(const Rate& rate) {
+  TaskTiming timing;
+  timing.rate = rate;
+  return timing;
+}
+
+struct FlightStart {
+  double tilt_deg = 0, azimuth_deg = 0, yaw_deg = 0;  // as of AttitudeSignal
+  Vector3 rate_rad_s{};                               // of the body
+  double height_m = 0;                                // above z = 0, where a floor would be
+  bool rotors_stopped = false;                        // else they turn as in hover
+};
+
+// What the unit is told of the attitude and the rates: late and noisy.
+struct Estimator {
+  Span delay{0, Span::In::seconds};
+  double attitude_noise_deg = 0;  // standard deviation of a rotation about each body axis
+  double rate_noise_rad_s = 0;    // standard deviation, each axis
+  std::uint64_t seed = 1;
+};
+
+// A battery that empties: its voltage limits the rotors' speed, and battery_status is computed from
+// it as the firmware does. Without one the supply is ideal.
+struct BatteryFlight {
+  double charge = 1;  // at the start, of the capacity
+  std::optional<double>
+      capacity_hover_s;  // of hover, instead of the vehicle's: to empty it in a flight
+  TaskTiming timing = task_at(Rate::hz(100));  // the firmware's filter counts samples of 100 Hz
+};
+
+struct MotorFailure {
+  std::size_t rotor = 0;  // index in the vehicle's order
+  Span at;
+};
+
+struct Flight {
+  std::vector<Flyer> flyers;      // ascending
+  std::string lead_vehicle;       // flies at all rates of the case, the others at:
+  std::vector<Rate> other_rates;  // ascending
+  std::optional<Rate> physics;    // of MuJoCo; empty: 1 kHz, or the loop rate if that is higher
+  int physics_line = 0;           // of the case file, for messages
+  bool floor = false;
+  FlightStart start;
+  Estimator estimator;
+  TaskTiming motor_limits;                    // the firmware publishes at 50 Hz
+  Span actuator_delay{0, Span::In::seconds};  // from the unit's tick to the motors
+  std::optional<BatteryFlight> battery;
+  std::array<Signal, 3> wind_m_s{};  // of the air, NED
+  // From its nominal place, FRD, in units of the vehicle's arm.
+  std::array<Signal, 3> centre_of_mass_of_arm{};
+  std::optional<MotorFailure> motor_failure;
+  std::vector<Metric> metrics;
+};
+
+}  // namespace attest

@@ -1,0 +1,81 @@
+// A unit flies a plant. What happens at one instant happens in this order:
+//
+//     the plant is advanced to t
+//     disturbances    wind, centre of mass and motor failure change
+//     estimator       takes its sample of the plant
+//     battery         takes its sample of the plant
+//     motor limits    takes the flags of the mixer's last run, before t
+//     unit            stimulus; what has arrived from estimator, battery, motor limits; step; mixer
+//     actuators       the commands that have arrived are held until the next
+//
+// Each task has its own times. What a task makes arrives after the task's delay: without one, at
+// the unit's tick of the same instant. The estimator runs for each tick of the unit, its delay
+// earlier. At t = 0 the rotors turn as the case says and the unit has been told nothing.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "harness/casefile/case.hpp"
+#include "harness/casefile/stimulus.hpp"
+#include "harness/plant/battery.hpp"
+#include "harness/plant/plant.hpp"
+#include "harness/port/port.hpp"
+#include "harness/run/actuators.hpp"
+#include "harness/run/disturbances.hpp"
+#include "harness/run/estimator.hpp"
+#include "harness/run/supply.hpp"
+#include "harness/run/unit_driver.hpp"
+#include "harness/schedule/agenda.hpp"
+#include "harness/schedule/delay_line.hpp"
+#include "harness/trace/trace.hpp"
+
+namespace attest {
+
+struct FlightEnd {
+  std::size_t ticks = 0;  // that the unit finished
+  std::optional<PortFault> fault;
+  std::optional<Divergence> divergence;
+};
+
+class ClosedLoop {
+ public:
+  // REQUIRES: a flight, adapted to the vehicle (flight.hpp); a fresh plant and unit. All outlive
+  // this.
+  ClosedLoop(const Case& the_case, const Rate& rate, const Vehicle& vehicle, Plant& plant,
+             Unit& unit);
+
+  // Flies to the end; records every tick into `trace` unless it is null. No allocation but for the
+  // trace and parameters that change. Call once.
+  FlightEnd run(Trace* trace);
+
+ private:
+  void happens(const Agenda::Event& event, Trace* trace);
+  void unit_tick(const Agenda::Event& event);
+  void hold_commands(Nanoseconds now);
+  void record(Trace& trace) const;
+  bool is_armed() const { return sample_.in.actuator_armed.armed != 0; }
+  bool is_over() const;
+
+  const Flight& flight_;
+  Plant& plant_;
+  Disturbances disturbances_;
+  Agenda agenda_;
+  Stimulus stimulus_;
+  NoisyEstimator estimator_;
+  Supply supply_;
+  Actuators actuators_;
+  UnitDriver driver_;
+
+  DelayLine<ControlState> estimates_;
+  DelayLine<float> battery_scales_;
+  DelayLine<MotorLimits> limits_;
+  DelayLine<MotorCommands> commands_;
+  std::optional<MotorCommands> held_;  // empty: the rotors turn as at the start
+
+  Sample sample_{};
+  std::vector<ParameterChange> changes_;  // at the current tick
+  FlightEnd end_;
+};
+
+}  // namespace attest

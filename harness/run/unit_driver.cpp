@@ -1,0 +1,75 @@
+#include "harness/run/unit_driver.hpp"
+
+#include <cstring>
+
+#include <fmt/format.h>
+
+namespace attest {
+namespace {
+
+using Kind = PortFault::Kind;
+using Margin = std::array<unsigned char, 64>;
+
+constexpr Margin untouched = [] {
+  Margin margin{};
+  margin.fill(0xa5);
+  return margin;
+}();
+
+std::optional<PortFault> fault_of(int code, std::size_t tick, const std::string& call) {
+  switch (code) {
+    case ATTEST_OK:
+      return std::nullopt;
+    case ATTEST_UNSUPPORTED:
+      return PortFault{Kind::unsupported, tick,
+                       fmt::format("{} returned ATTEST_UNSUPPORTED", call)};
+    case ATTEST_INVALID:
+      return PortFault{Kind::failed, tick, fmt::format("{} returned ATTEST_INVALID", call)};
+    case ATTEST_FAILED:
+      return PortFault{Kind::failed, tick, fmt::format("{} returned ATTEST_FAILED", call)};
+    default:
+      return PortFault{Kind::protocol, tick,
+                       fmt::format("{} returned {}, which is no ATTEST_ result", call, code)};
+  }
+}
+
+}  // namespace
+
+UnitDriver::UnitDriver(Unit& unit) : unit_(unit) {
+  exchange_.behind_in = untouched;
+  exchange_.behind_out = untouched;
+}
+
+std::optional<PortFault> UnitDriver::step(std::size_t tick,
+                                          std::span<const ParameterChange> changes,
+                                          Sample& sample) {
+  for (const ParameterChange& change : changes) {
+    const int code = unit_.set_parameter(change.name, change.value);
+    if (code == ATTEST_OK) continue;
+    return fault_of(code, tick, fmt::format("set_parameter({}) at tick {}", change.name, tick));
+  }
+  exchange_.in = sample.in;
+  if (const int code = unit_.step(exchange_.in, exchange_.out); code != ATTEST_OK) {
+    return fault_of(code, tick, fmt::format("step at tick {}", tick));
+  }
+  if (auto fault = broken_rule(sample.in, tick)) return fault;
+  sample.out = exchange_.out;
+  return std::nullopt;
+}
+
+std::optional<PortFault> UnitDriver::broken_rule(const attest_inputs& given,
+                                                 std::size_t tick) const {
+  if (exchange_.behind_in != untouched || exchange_.behind_out != untouched) {
+    return PortFault{Kind::protocol, tick,
+                     fmt::format("step wrote outside attest_outputs at tick {}; was the port "
+                                 "compiled with another attest_unit.h?",
+                                 tick)};
+  }
+  if (std::memcmp(&exchange_.in, &given, sizeof given) != 0) {
+    return PortFault{Kind::protocol, tick,
+                     fmt::format("step changed its inputs at tick {}; they are const", tick)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace attest

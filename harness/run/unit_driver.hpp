@@ -1,0 +1,59 @@
+// Gives a unit one sample after the other by the rules of the ABI, and sees when it breaks them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "harness/port/port.hpp"
+#include "harness/trace/trace.hpp"
+
+namespace attest {
+
+// The port itself went wrong, or said that it cannot do this. Its other faults (a wrong value) show
+// in the comparison.
+struct PortFault {
+  enum class Kind {
+    unsupported,  // ATTEST_UNSUPPORTED
+    failed,       // ATTEST_FAILED, ATTEST_INVALID
+    protocol,     // broke the rules of the ABI
+  };
+  Kind kind = Kind::failed;
+  std::size_t tick = 0;
+  std::string what;  // one line
+};
+
+class UnitDriver {
+ public:
+  // REQUIRES: the unit is in its power-on state, and outlives this.
+  explicit UnitDriver(Unit& unit);
+
+  // One tick:
+  //
+  //     parameters that change at this tick -> set_parameter
+  //     inputs of the sample                -> step
+  //     outputs                             -> the sample; kept as the next step's starting point
+  //
+  // On a fault the sample's outputs are not written.
+  std::optional<PortFault> step(std::size_t tick, std::span<const ParameterChange> changes,
+                                Sample& sample);
+
+ private:
+  // What the unit gets, with a margin behind it that must stay as it was: a port compiled with
+  // another layout writes there first.
+  struct Exchange {
+    attest_inputs in{};
+    std::array<unsigned char, 64> behind_in;
+    attest_outputs out{};
+    std::array<unsigned char, 64> behind_out;
+  };
+
+  std::optional<PortFault> broken_rule(const attest_inputs& given, std::size_t tick) const;
+
+  Unit& unit_;
+  Exchange exchange_;
+};
+
+}  // namespace attest

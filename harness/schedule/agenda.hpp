@@ -1,0 +1,41 @@
+// Several tasks on one line of time.
+//
+// Events come by time; at one instant, by the number of their task. That order is the whole
+// meaning of simultaneity in the harness.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "harness/core/time.hpp"
+
+namespace attest {
+
+class Agenda {
+ public:
+  struct Event {
+    std::size_t task;
+    std::size_t index;  // of the task's times, from 0
+    Nanoseconds time;
+  };
+
+  // When each task runs, by its number. REQUIRES: no task's times decrease.
+  explicit Agenda(std::vector<std::vector<Nanoseconds>> times);
+
+  // How often a task runs in all.
+  std::size_t size(std::size_t task) const { return tasks_[task].times.size(); }
+
+  // The next event; empty when there are no more. No allocation.
+  std::optional<Event> next();
+
+ private:
+  struct Task {
+    std::vector<Nanoseconds> times;
+    std::size_t done = 0;
+  };
+  std::vector<Task> tasks_;
+};
+
+}  // namespace attest

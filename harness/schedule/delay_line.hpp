@@ -1,0 +1,43 @@
+// A message that arrives some time after it was sent: of a task whose result is late.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "harness/core/time.hpp"
+
+namespace attest {
+
+template <typename T>
+class DelayLine {
+ public:
+  // `messages` is the number that can be on the way at once; no allocation after this.
+  DelayLine(Nanoseconds delay, std::size_t messages) : delay_(delay), ring_(messages + 1) {}
+
+  // REQUIRES: times do not decrease.
+  void send(Nanoseconds now, const T& message) {
+    ring_[end_ % ring_.size()] = {now + delay_, message};
+    ++end_;
+    if (end_ - begin_ > ring_.size()) begin_ = end_ - ring_.size();
+  }
+
+  // The latest message that has arrived by `now`, if any arrived since the last call: what a reader
+  // of a topic sees, who misses what was overtaken.
+  std::optional<T> receive(Nanoseconds now) {
+    std::optional<T> latest;
+    for (; begin_ != end_ && ring_[begin_ % ring_.size()].first <= now; ++begin_) {
+      latest = ring_[begin_ % ring_.size()].second;
+    }
+    return latest;
+  }
+
+ private:
+  Nanoseconds delay_;
+  std::vector<std::pair<Nanoseconds, T>> ring_;
+  std::size_t begin_ = 0;  // of the messages on the way
+  std::size_t end_ = 0;
+};
+
+}  // namespace attest

@@ -1,0 +1,173 @@
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/harness/casefile/case_files.hpp"
+
+namespace attest {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr const char* metrics =
+    "[flight.metrics.settles]\nmeasure = \"settling_time_s\"\nmax = 1\n";
+
+// A suite with two vehicles; what is in their files does not matter here.
+class ParseFlight : public testing::Test {
+ protected:
+  ParseFlight() {
+    const auto models = files_.folder().parent_path() / "models";
+    std::filesystem::create_directories(models);
+    for (const char* name : {"bee", "iris"}) std::ofstream(models / (std::string(name) + ".toml"));
+  }
+
+  Case case_of(const std::string& body) {
+    auto parsed = files_.parse(CaseFiles::with(body));
+    if (!parsed) throw std::invalid_argument(parsed.error().to_string());
+    return *parsed;
+  }
+  Flight flight_of(const std::string& lines) {
+    return *case_of("[flight]\n" + lines + metrics).flight;
+  }
+  std::string error_of(const std::string& body) {
+    const auto parsed = files_.parse(CaseFiles::with(body));
+    return parsed ? "" : parsed.error().to_string();
+  }
+  std::string flight_error(const std::string& lines) {
+    return error_of("[flight]\n" + lines + metrics);
+  }
+
+  CaseFiles files_;
+};
+
+TEST_F(ParseFlight, EveryVehicleFliesOnEveryPlantTheLeadAtAllRates) {
+  const Case parsed = case_of(std::string("[flight]\n") + metrics);
+  std::vector<std::string> labels;
+  for (const auto& setup : parsed.setups()) labels.push_back(setup.label());
+  ASSERT_EQ(labels.size(), 2 * (11 + 3));
+  EXPECT_EQ(labels.front(), "100hz-bee-mujoco");
+  EXPECT_EQ(labels[3], "100hz-bee-ode");
+  EXPECT_EQ(labels[6], "50hz-iris-mujoco");
+  EXPECT_EQ(labels.back(), "8000hz-iris-ode");
+}
+
+TEST_F(ParseFlight, AChoiceOfVehiclesOrPlantsSaysWhy) {
+  const Flight flight = flight_of(
+      "vehicles = [\"bee\"]\nvehicles_why = \"small\"\nplants = [\"ode\"]\nplants_why = \"exact\"\n"
+      "other_rates_hz = [250, 100]\n");
+  EXPECT_THAT(flight.flyers, ElementsAre(Flyer{"bee", PlantKind::ode}));
+  EXPECT_EQ(flight.lead_vehicle, "bee");
+  EXPECT_THAT(flight.other_rates, ElementsAre(Rate::hz(100), Rate::hz(250)));
+  EXPECT_THAT(flight_error("vehicles = [\"bee\"]\n"), HasSubstr("vehicles_why"));
+  EXPECT_THAT(flight_error("plants = [\"ode\"]\n"), HasSubstr("plants_why"));
+}
+
+TEST_F(ParseFlight, AnUnknownVehicleIsNamedWithItsLine) {
+  EXPECT_THAT(flight_error("vehicles = [\"irsi\"]\nvehicles_why = \"x\"\n"),
+              HasSubstr("the_case.toml:7:1: unknown vehicle `irsi`; did you mean `iris`?; there "
+                        "are bee, iris"));
+  EXPECT_THAT(flight_error("plants = [\"gazebo\"]\nplants_why = \"x\"\n"),
+              HasSubstr("the_case.toml:7:1: "));
+}
+
+TEST_F(ParseFlight, PhysicsSlowerThanTheLoopIsRefusedWithItsLine) {
+  EXPECT_THAT(
+      flight_error("physics_hz = 1000\n"),
+      HasSubstr("the_case.toml:7:1: physics at 1000 Hz is slower than the loop at 8000 Hz"));
+  const Case parsed =
+      case_of("rates_hz = [333]\nrates_why = \"odd\"\n[flight]\nphysics_hz = 1000\n" +
+              std::string(metrics));
+  EXPECT_EQ(parsed.flight->physics, Rate::hz(1000));
+  EXPECT_EQ(parsed.flight->physics_line, 9);
+}
+
+TEST_F(ParseFlight, AnImpossibleRateIsNamedWithItsLine) {
+  EXPECT_THAT(error_of("rates_hz = [0]\nrates_why = \"x\"\n[flight]\n" + std::string(metrics)),
+              HasSubstr("the_case.toml:6:1: "));
+  EXPECT_THAT(flight_error("other_rates_hz = [-5]\n"), HasSubstr("the_case.toml:7:1: "));
+  EXPECT_THAT(flight_error("[flight.motor_limits]\nrate_hz = 1e9\n"),
+              HasSubstr("the_case.toml:8:1: "));
+}
+
+TEST_F(ParseFlight, TasksHaveTheirTiming) {
+  const Flight flight = flight_of(
+      "actuator_delay_ticks = 2\n[flight.motor_limits]\nrate_hz = 25\nphase_s = 0.01\njitter = "
+      "0.5\n"
+      "seed = 7\ndelay_s = 0.02\ndrop_ticks = [3]\n[flight.estimator]\ndelay_s = 0.004\n"
+      "rate_noise_rad_s = 0.1\nattitude_noise_deg = 0.2\nseed = 9\n");
+  EXPECT_EQ(flight.motor_limits.rate, Rate::hz(25));
+  EXPECT_EQ(flight.motor_limits.phase.amount, 0.01);
+  EXPECT_EQ(flight.motor_limits.jitter, 0.5);
+  EXPECT_EQ(flight.motor_limits.seed, 7u);
+  EXPECT_EQ(flight.motor_limits.delay.amount, 0.02);
+  EXPECT_THAT(flight.motor_limits.drop_ticks, ElementsAre(3));
+  EXPECT_EQ(flight.actuator_delay.amount, 2);
+  EXPECT_EQ(flight.estimator.delay.amount, 0.004);
+  EXPECT_EQ(flight.estimator.rate_noise_rad_s, 0.1);
+  EXPECT_EQ(flight.estimator.attitude_noise_deg, 0.2);
+  EXPECT_EQ(flight.estimator.seed, 9u);
+}
+
+TEST_F(ParseFlight, MetricsAreBounded) {
+  const Case parsed = case_of(
+      "[flight.metrics.slower]\nmeasure = \"rms_attitude_error_deg\"\nfrom_s = 1\nto_s = 2\n"
+      "versus = { from_s = 0, to_s = 1 }\nmin = 1.2\nband_deg = 3\n");
+  const Metric& metric = parsed.flight->metrics.at(0);
+  EXPECT_EQ(metric.name, "slower");
+  EXPECT_EQ(metric.measure, Measure::rms_attitude_error_deg);
+  EXPECT_EQ(metric.window.from_s, 1);
+  EXPECT_EQ(metric.versus->to_s, 1);
+  EXPECT_EQ(metric.min, 1.2);
+  EXPECT_EQ(metric.band_deg, 3);
+  EXPECT_THAT(error_of("[flight]\n"), HasSubstr("metrics"));
+  EXPECT_THAT(error_of("[flight.metrics.a]\nmeasure = \"sink_m\"\n"),
+              HasSubstr("needs `min` or `max`"));
+  EXPECT_THAT(error_of("[flight.metrics.a]\nmeasure = \"speed\"\nmax = 1\n"),
+              HasSubstr("the_case.toml:7:1: "));
+}
+
+TEST_F(ParseFlight, WhatThePlantMakesIsNotScripted) {
+  EXPECT_THAT(flight_error("[control_state]\nroll_rate = 1\n"),
+              HasSubstr("the_case.toml:7:2: comes from the plant in a flight"));
+  EXPECT_THAT(flight_error("[multirotor_motor_limits]\nyaw = 1\n"),
+              HasSubstr("comes from the plant in a flight"));
+  EXPECT_THAT(flight_error("[battery_status]\nscale = 1\n[flight.battery]\n"),
+              HasSubstr("comes from [flight.battery]"));
+  EXPECT_EQ(flight_error("[battery_status]\nscale = 1\n"), "");
+}
+
+TEST_F(ParseFlight, ThrustIsInHoversOrAsItIs) {
+  const auto thrust_of = [&](const std::string& line) {
+    const Case parsed = case_of("[vehicle_attitude_setpoint]\n" + line + "[flight]\n" + metrics);
+    for (const TopicStimulus& topic : parsed.topics) {
+      if (topic.topic != "vehicle_attitude_setpoint") continue;
+      for (const FieldStimulus& field : topic.fields) {
+        if (channels()[field.channel].name.ends_with(".thrust")) return field;
+      }
+    }
+    throw std::logic_error("no thrust");
+  };
+  EXPECT_TRUE(thrust_of("").of_hover);
+  EXPECT_EQ(std::get<Constant>(thrust_of("").signal).value, 1);
+  EXPECT_TRUE(thrust_of("thrust_of_hover = 1.2\n").of_hover);
+  EXPECT_EQ(std::get<Constant>(thrust_of("thrust_of_hover = 1.2\n").signal).value, 1.2);
+  EXPECT_FALSE(thrust_of("thrust = 0.3\n").of_hover);
+  EXPECT_THAT(error_of("[vehicle_attitude_setpoint]\nthrust_of_hover = 1\n"),
+              HasSubstr("unknown key `thrust_of_hover`"));
+}
+
+TEST_F(ParseFlight, GroundContactNeedsMujoco) {
+  EXPECT_THAT(flight_error("floor = true\n"), HasSubstr("needs `plants = [\"mujoco\"]`"));
+  EXPECT_EQ(flight_error("floor = true\nplants = [\"mujoco\"]\nplants_why = \"contact\"\n"), "");
+}
+
+TEST_F(ParseFlight, AFlightNeedsVehicles) {
+  std::filesystem::remove_all(files_.folder().parent_path() / "models");
+  EXPECT_THAT(flight_error(""), HasSubstr("needs vehicles, and there are none in "));
+}
+
+}  // namespace
+}  // namespace attest
