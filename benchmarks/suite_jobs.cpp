@@ -12,17 +12,13 @@ namespace {
 
 void suite(benchmark::State& state, int jobs) {
   for (auto _ : state) {
-    auto cases = select_cases(ATTEST_SOURCE_DIR "/cases", {});
-    Batches batches;
-    for (SelectedCase& selected : *cases) {
-      batches.push_back(std::make_unique<CaseBatch>(std::move(selected.the_case),
-                                                    std::move(selected.rates),
-                                                    ATTEST_SOURCE_DIR "/golden", Level::numeric));
-    }
+    const auto cases = select_cases(ATTEST_SOURCE_DIR "/cases", {});
+    Fleet fleet(ATTEST_SOURCE_DIR "/models");
+    const auto batches = make_batches(*cases, ATTEST_SOURCE_DIR "/golden", fleet, Level::numeric);
     WorkerOptions options;
     options.port = "builtin";
     options.jobs = jobs;
-    const WorkerOutcome outcome = run_batches(batches, options);
+    const WorkerOutcome outcome = run_batches(*batches, options);
     if (!outcome.errors.empty()) state.SkipWithError(outcome.errors[0].message.c_str());
   }
 }

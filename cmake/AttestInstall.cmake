@@ -11,7 +11,7 @@ set(ATTEST_INSTALL_DATADIR ${CMAKE_INSTALL_DATADIR}/attest)
 install(TARGETS attest_unit EXPORT attestTargets)
 install(TARGETS attest EXPORT attestTargets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(FILES controller/attest_unit.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(DIRECTORY cases golden DESTINATION ${ATTEST_INSTALL_DATADIR})
+install(DIRECTORY cases golden models DESTINATION ${ATTEST_INSTALL_DATADIR})
 # Without what a build in the source tree leaves there.
 install(
   DIRECTORY controller/starters

@@ -24,6 +24,7 @@ constexpr const char* footer =
     "  attest run --port lib:./libmine.so             your port\n"
     "  attest run --port lib:./libmine.so --level exact --filter 'attitude/*@250hz'\n"
     "  attest replay TRACE.csv --port lib:./libmine.so\n"
+    "  attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv\n"
     "\n"
     "Exit codes: 0 nothing failed, 1 something did not conform, 2 usage or environment.\n";
 
@@ -34,7 +35,7 @@ void add_selection(CLI::App& command, SelectionOptions& options) {
   command
       .add_option("--filter", options.filters,
                   "Only cases whose id matches this shell pattern; quote it. Ids are "
-                  "PROFILE/GROUP/NAME@RATEhz; profile and rate may be left out")
+                  "PROFILE/GROUP/NAME@SETUP; profile and setup may be left out")
       ->type_name("GLOB")
       ->allow_extra_args(false);
   command.add_option("--group", options.groups, "Only this group of cases")
@@ -46,6 +47,12 @@ void add_selection(CLI::App& command, SelectionOptions& options) {
   command.add_option("--rate", options.rates, "Only these loop rates [Hz], separated by commas")
       ->type_name("HZ,...")
       ->delimiter(',')
+      ->allow_extra_args(false);
+  command.add_option("--vehicle", options.vehicles, "Only flights of this vehicle")
+      ->type_name("VEHICLE")
+      ->allow_extra_args(false);
+  command.add_option("--plant", options.plants, "Only flights on this plant: `mujoco` or `ode`")
+      ->type_name("PLANT")
       ->allow_extra_args(false);
 }
 
@@ -60,7 +67,8 @@ void add_run(CLI::App& app, const Globals& globals, Action& action) {
   add_selection(*command, options->select);
   command
       ->add_option("--level", options->level,
-                   "How strictly: `exact` (float32 bits) or `numeric` (a tolerance a channel)")
+                   "How strictly: `exact` (float32 bits) or `numeric` (a tolerance a channel); "
+                   "flights are judged alike at both")
       ->capture_default_str();
   command->add_option("--jobs,-j", options->worker.jobs, "Cases at a time")
       ->check(CLI::Range(1, 1024))
@@ -112,6 +120,33 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
   });
 }
 
+void add_sim(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<SimOptions>();
+  CLI::App* command = app.add_subcommand(
+      "sim", "Let a port fly one case, and write the flown trace, which `replay` can feed again");
+  command->add_option("case", options->case_name, "A flight: its name or id, or a case file")
+      ->type_name("CASE")
+      ->required();
+  command->add_option("--rate", options->rate, "Loop rate [Hz]; any, not only the case's own")
+      ->type_name("HZ")
+      ->required();
+  command->add_option("--vehicle", options->vehicle, "One of `attest list --vehicles`")
+      ->type_name("VEHICLE");
+  command->add_option("--plant", options->plant, "`mujoco` or `ode`")->type_name("PLANT");
+  command->add_option("--port", options->port, "`builtin` or `lib:PATH`")
+      ->type_name("PORT")
+      ->capture_default_str();
+  command->add_option("--out", options->out, "The flown trace (CSV)")
+      ->type_name("F.csv")
+      ->required();
+  command->add_option("--timeout", options->timeout_s, "Limit for the flight [s]")
+      ->check(CLI::Range(0.1, 86400.0))
+      ->capture_default_str();
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return sim_command(*options, globals); };
+  });
+}
+
 void add_compare(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<CompareOptions>();
   CLI::App* command =
@@ -148,6 +183,7 @@ void add_list(CLI::App& app, const Globals& globals, Action& action) {
   command->add_flag("--parameters", options->parameters, "The parameters of the law");
   command->add_flag("--channels", options->channels, "The signals: trace columns and ABI members");
   command->add_flag("--flight-modes", options->modes, "Flight modes and the flags they set");
+  command->add_flag("--vehicles", options->vehicles, "The vehicles that fly, with their numbers");
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return list_command(*options, globals); };
   });
@@ -189,12 +225,14 @@ int run_command_line(int argc, char** argv) {
   app.fallthrough();
 
   Globals globals;
-  app.add_option("--suite", globals.suite, "Folder with cases/ and golden/")->type_name("DIR");
+  app.add_option("--suite", globals.suite, "Folder with cases/, golden/ and models/")
+      ->type_name("DIR");
   app.add_flag("-q,--quiet", globals.quiet, "No progress and no summary, only what went wrong");
 
   Action action;
   add_run(app, globals, action);
   add_replay(app, globals, action);
+  add_sim(app, globals, action);
   add_compare(app, globals, action);
   add_list(app, globals, action);
   add_vectors(app, globals, action);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <iostream>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,9 +13,11 @@
 #include "harness/casefile/stimulus.hpp"
 #include "harness/cli/command.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/plant/fleet.hpp"
 #include "harness/port/port.hpp"
 #include "harness/run/golden.hpp"
 #include "harness/run/open_loop.hpp"
+#include "harness/run/reference_flight.hpp"
 #include "harness/suite/recorded_check.hpp"
 
 namespace attest::cli {
@@ -32,8 +35,8 @@ Result<void> check_reference(const SuiteFolder& suite) {
                   check->traces - check->conforming, check->traces, check->first_difference));
 }
 
-Result<Trace> reference_trace(const Case& the_case, const Rate& rate, Port& port) {
-  Trace trace = stimulate(the_case, rate);
+Result<GoldenTrace> open_loop_trace(const Case& the_case, const Setup& setup, Port& port) {
+  Trace trace = stimulate(the_case, setup.rate);
   const auto unit = port.create(the_case.profile);
   if (!unit) {
     return fail_at(the_case.file.string(),
@@ -42,7 +45,35 @@ Result<Trace> reference_trace(const Case& the_case, const Rate& rate, Port& port
   if (const auto fault = drive(*unit, trace)) {
     return fail_at(the_case.file.string(), fmt::format("the reference: {}", fault->what));
   }
-  return trace;
+  return GoldenTrace{setup, std::move(trace)};
+}
+
+// What the reference makes of a case, and the vehicles' files that it depends on.
+struct Reference {
+  std::vector<GoldenTrace> traces;
+  std::vector<std::filesystem::path> vehicle_files;
+};
+
+Result<Reference> reference_of(const Case& the_case, Port& port, Fleet& fleet) {
+  Reference reference;
+  std::set<std::filesystem::path> files;
+  for (const Setup& setup : the_case.setups()) {  // a provenance speaks of all of them
+    if (!setup.flyer) {
+      auto trace = open_loop_trace(the_case, setup, port);
+      if (!trace) return tl::unexpected(trace.error());
+      reference.traces.push_back(std::move(*trace));
+      continue;
+    }
+    const auto airframe = fleet.get(setup.flyer->vehicle);
+    if (!airframe) return tl::unexpected(airframe.error());
+    auto flight = reference_flight(the_case, setup, **airframe);
+    if (!flight) return tl::unexpected(flight.error());
+    reference.traces.push_back(
+        {setup, std::move(flight->rows), flight->horizon_s, std::move(flight->metrics)});
+    for (auto& file : (*airframe)->vehicle().files()) files.insert(std::move(file));
+  }
+  reference.vehicle_files.assign(files.begin(), files.end());
+  return reference;
 }
 
 // What blessing would change in one trace, beside the traces that do not change.
@@ -89,7 +120,7 @@ Change change_between(const Trace& old_trace, const Trace& new_trace) {
 }
 
 // One line about a case; empty when its golden is what would be written now.
-std::string summary(const Case& the_case, const std::vector<Trace>& traces,
+std::string summary(const Case& the_case, const std::vector<GoldenTrace>& traces,
                     const std::filesystem::path& golden_root) {
   Case as_blessed = the_case;
   const auto path = golden_folder(golden_root, the_case) / provenance_name;
@@ -101,13 +132,13 @@ std::string summary(const Case& the_case, const std::vector<Trace>& traces,
 
   std::size_t changed = 0;
   Change total;
-  for (std::size_t i = 0; i < traces.size(); ++i) {
-    const auto old_trace = golden->read(the_case.rates[i]);
+  for (const auto& [setup, trace, horizon_s, metrics] : traces) {
+    const auto old_trace = golden->read(setup);
     if (!old_trace) {
       ++changed;
       continue;
     }
-    const Change change = change_between(*old_trace, traces[i]);
+    const Change change = change_between(*old_trace, trace);
     if (change.ticks == 0) continue;
     ++changed;
     total.channels |= change.channels;
@@ -134,22 +165,20 @@ Result<Pending> write_beside(const std::vector<SelectedCase>& cases, const Suite
                              const std::string& reason) {
   auto port = open_port("builtin");
   if (!port) return tl::unexpected(port.error());
+  Fleet fleet(suite.models());
   Pending pending;
   for (const SelectedCase& selected : cases) {
     const Case& the_case = selected.the_case;
-    std::vector<Trace> traces;
-    for (const Rate& rate : the_case.rates) {  // a provenance speaks of all rates of a case
-      auto trace = reference_trace(the_case, rate, **port);
-      if (!trace) return tl::unexpected(trace.error());
-      traces.push_back(std::move(*trace));
-    }
-    const std::string line = summary(the_case, traces, suite.golden());
+    const auto reference = reference_of(the_case, **port, fleet);
+    if (!reference) return tl::unexpected(reference.error());
+    const std::string line = summary(the_case, reference->traces, suite.golden());
     if (line.empty()) {
       ++pending.unchanged;
       continue;
     }
     fmt::print("{}\n", line);
-    auto golden = NewGolden::write(suite.golden(), the_case, traces, reason);
+    auto golden = NewGolden::write(suite.golden(), the_case, reference->traces,
+                                   reference->vehicle_files, reason);
     if (!golden) return tl::unexpected(golden.error());
     pending.goldens.push_back(std::move(*golden));
   }

@@ -15,6 +15,8 @@ Result<std::vector<SelectedCase>> SelectionOptions::cases_in(
   selection.filters = filters;
   selection.groups = groups;
   selection.profiles = profiles;
+  selection.vehicles = vehicles;
+  selection.plants = plants;
   for (const std::string& text : rates) {
     const auto rate = Rate::parse(text);
     if (!rate) return tl::unexpected(rate.error());

@@ -28,9 +28,10 @@ struct Globals {
 // "attest: error: <file:line: message>" on stderr; the exit code for it.
 int report_error(const Error& error);
 
-// --filter, --group, --profile, --rate and --shard, as text until they are used.
+// --filter, --group, --profile, --rate, --vehicle, --plant and --shard, as text until they are
+// used.
 struct SelectionOptions {
-  std::vector<std::string> filters, groups, profiles, rates;
+  std::vector<std::string> filters, groups, profiles, rates, vehicles, plants;
   std::string shard = "1/1";
 
   // The cases below `folder` that are selected. Errors: as of select_cases, and text that is no
@@ -66,9 +67,19 @@ struct CompareOptions {
 };
 int compare_command(const CompareOptions& options, const Globals& globals);
 
+struct SimOptions {
+  std::string case_name;
+  std::string rate;
+  std::string vehicle, plant;  // empty: what the case flies first
+  std::string port = "builtin";
+  std::string out;
+  double timeout_s = 60;
+};
+int sim_command(const SimOptions& options, const Globals& globals);
+
 struct ListOptions {
   SelectionOptions select;
-  bool groups = false, parameters = false, channels = false, modes = false;
+  bool groups = false, parameters = false, channels = false, modes = false, vehicles = false;
 };
 int list_command(const ListOptions& options, const Globals& globals);
 

@@ -53,12 +53,12 @@ void examine_cases(const SuiteFolder& suite, Examination& examination) {
   for (const auto& file : *files) {
     const auto parsed = parse_case(file);
     if (!parsed) return examination.bad("cases", parsed.error().to_string());
-    vectors += parsed->rates.size();
+    vectors += parsed->setups().size();
     if (const auto golden = Golden::open(suite.golden(), *parsed); !golden) {
       stale.push_back(golden.error().to_string());
     }
   }
-  examination.good("cases", fmt::format("{} cases, {} with all their rates, in {}", files->size(),
+  examination.good("cases", fmt::format("{} cases, {} with all their setups, in {}", files->size(),
                                         vectors, suite.cases().string()));
   if (stale.empty()) return examination.good("golden", "one for each case, none stale");
   examination.bad("golden", fmt::format("{} missing or stale; first: {}", stale.size(), stale[0]));

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <string>
 
@@ -8,6 +9,7 @@
 #include "harness/casefile/flight_mode.hpp"
 #include "harness/cli/command.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/plant/vehicle.hpp"
 #include "harness/trace/channels.hpp"
 
 namespace attest::cli {
@@ -62,23 +64,39 @@ std::string first_sentence(std::string text) {
 void list_cases(const std::vector<SelectedCase>& cases) {
   std::size_t width = 0;
   for (const auto& selected : cases) width = std::max(width, selected.the_case.id().size());
-  for (const auto& [the_case, rates] : cases) {
-    fmt::print("{:<{}}  {:>2} rate{}{}  {}\n", the_case.id(), width, rates.size(),
-               rates.size() == 1 ? " " : "s", the_case.exact_only ? ", exact only" : "",
-               first_sentence(the_case.why));
+  for (const auto& [the_case, setups] : cases) {
+    fmt::print("{:<{}}  {:>2} {}{}{}  {}\n", the_case.id(), width, setups.size(),
+               the_case.flight ? "setup" : "rate", setups.size() == 1 ? " " : "s",
+               the_case.exact_only ? ", exact only" : "", first_sentence(the_case.why));
   }
 }
 
 void list_groups(const std::vector<SelectedCase>& cases) {
   std::map<std::string, std::pair<std::size_t, std::size_t>> groups;
-  for (const auto& [the_case, rates] : cases) {
-    auto& [count, vectors] = groups[the_case.profile + "/" + the_case.group];
+  for (const auto& [the_case, setups] : cases) {
+    auto& [count, results] = groups[the_case.profile + "/" + the_case.group];
     ++count;
-    vectors += rates.size();
+    results += setups.size();
   }
   for (const auto& [name, counts] : groups) {
-    fmt::print("{:<40} {:>4} cases {:>6} with all rates\n", name, counts.first, counts.second);
+    fmt::print("{:<40} {:>4} cases {:>6} with all setups\n", name, counts.first, counts.second);
   }
+}
+
+// Numbers that tell vehicles apart; all of them are in models/<vehicle>.toml.
+Result<void> list_vehicles(const std::filesystem::path& models) {
+  fmt::print("{:<14}{:>8}{:>8}{:>7}{:>7}{:>10}  {}\n", "vehicle", "mass kg", "rotors", "arm m",
+             "hover", "tau ms", "what it is");
+  for (const std::string& name : vehicle_names(models)) {
+    const auto vehicle = read_vehicle(models / (name + ".toml"));
+    if (!vehicle) return tl::unexpected(vehicle.error());
+    fmt::print("{:<14}{:>8.3g}{:>8}{:>7.2g}{:>7.2f}{:>10}  {}\n", name, vehicle->mass_kg,
+               vehicle->rotors.size(), vehicle->arm_m(), vehicle->hover_thrust(),
+               fmt::format("{:g}/{:g}", vehicle->time_constant_up_s * 1e3,
+                           vehicle->time_constant_down_s * 1e3),
+               vehicle->description);
+  }
+  return {};
 }
 
 }  // namespace
@@ -91,6 +109,10 @@ int list_command(const ListOptions& options, const Globals& globals) {
 
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
+  if (options.vehicles) {
+    const auto listed = list_vehicles(suite->models());
+    return listed ? exit_ok : report_error(listed.error());
+  }
   const auto cases = options.select.cases_in(suite->cases());
   if (!cases) return report_error(cases.error());
   options.groups ? list_groups(*cases) : list_cases(*cases);

@@ -69,12 +69,14 @@ Result<Plan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
   plan.run.port_version = port->version;
   plan.run.level = *level;
   std::set<Rate> rates;
-  for (SelectedCase& selected : *cases) {
-    rates.insert(selected.rates.begin(), selected.rates.end());
-    plan.results += selected.rates.size();
-    plan.batches.push_back(std::make_unique<CaseBatch>(
-        std::move(selected.the_case), std::move(selected.rates), suite.golden(), *level));
+  for (const SelectedCase& selected : *cases) {
+    for (const Setup& setup : selected.setups) rates.insert(setup.rate);
+    plan.results += selected.setups.size();
   }
+  Fleet fleet(suite.models());
+  auto batches = make_batches(*cases, suite.golden(), fleet, *level);
+  if (!batches) return tl::unexpected(batches.error());
+  plan.batches = std::move(*batches);
   plan.run.rates.assign(rates.begin(), rates.end());
   return plan;
 }

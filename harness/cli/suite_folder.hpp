@@ -12,6 +12,7 @@ struct SuiteFolder {
   std::filesystem::path root;
 
   std::filesystem::path cases() const { return root / "cases"; }
+  std::filesystem::path models() const { return root / "models"; }
   std::filesystem::path golden() const { return root / "golden"; }
   std::filesystem::path recorded() const { return golden() / "recorded"; }
 };

@@ -29,16 +29,22 @@ Result<std::size_t> write_vectors(const VectorOptions& options, const Globals& g
   const auto cases = options.select.cases_in(suite->cases());
   if (!cases) return tl::unexpected(cases.error());
   std::size_t count = 0;
-  for (const auto& [the_case, rates] : *cases) {
+  for (const auto& [the_case, setups] : *cases) {
+    if (the_case.flight) continue;  // what a port is given in a flight depends on its answers
     const std::filesystem::path folder = std::filesystem::path(options.folder) / the_case.id();
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) return fail_at(folder.string(), fmt::format("cannot be made: {}", error.message()));
-    for (const Rate& rate : rates) {
-      auto written = write_vector(the_case, rate, folder / (rate.label() + ".csv"));
+    for (const Setup& setup : setups) {
+      auto written = write_vector(the_case, setup.rate, folder / (setup.label() + ".csv"));
       if (!written) return tl::unexpected(written.error());
       ++count;
     }
+  }
+  if (count == 0) {
+    return fail(
+        "only flights are selected, and a flight has no vectors: its inputs depend on what "
+        "the port answers; `attest sim` writes a flown trace");
   }
   return count;
 }

@@ -131,7 +131,7 @@ class Comparer {
                         in.vehicle_control_mode.flag_control_attitude_enabled != 0;
     if (!widens || difference <= tolerance) return tolerance;
     const double tilt = tilt_error(in, want_.samples[setpoint_].in);
-    const double wider = Tolerances::widening(tilt, gain_.at(tick));
+    const double wider = tolerances_.widening(tilt, gain_.at(tick));
     // No attitude, or a time constant of zero: nothing that floats could be near to.
     return std::isfinite(wider) ? tolerance + wider : tolerance;
   }

@@ -54,7 +54,17 @@ bool Tolerances::set(std::string_view prefix, Tolerance tolerance) {
   return any;
 }
 
-double Tolerances::widening(double tilt_rad, double gain) {
+Tolerances Tolerances::scaled(double factor) const {
+  Tolerances result = *this;
+  result.scale_ *= factor;
+  for (Tolerance& tolerance : result.of_channel_) {
+    tolerance.absolute *= factor;
+    tolerance.relative *= factor;
+  }
+  return result;
+}
+
+double Tolerances::widening(double tilt_rad, double gain) const {
   // Measured over correct builds: 3e-6 rad/s at one radian from 180 deg with the default gain.
   constexpr double noise_rad_s = 3e-6;
   constexpr double default_gain = 6.5;
@@ -62,7 +72,7 @@ double Tolerances::widening(double tilt_rad, double gain) {
   // to the exact level.
   constexpr double nearest_rad = 1.7e-3;
   const double distance = std::max(std::numbers::pi - tilt_rad, nearest_rad);
-  return noise_rad_s * (gain / default_gain) / distance;
+  return scale_ * noise_rad_s * (gain / default_gain) / distance;
 }
 
 }  // namespace attest

@@ -43,13 +43,17 @@ class Tolerances {
   // "out/"): "vehicle_rates_setpoint" or "actuator_controls_0.control[2]". False: no such channel.
   bool set(std::string_view prefix, Tolerance tolerance);
 
+  // All of them times `factor`, widening included.
+  Tolerances scaled(double factor) const;
+
   // Addition to the rates setpoint's absolute tolerance at this tilt error [rad]. The direction of
   // the tilt axis becomes undefined at 180 deg and float noise in it grows as 1/(pi - tilt);
   // `gain` is the attitude gain [1/s], 6.5 by default.
-  static double widening(double tilt_rad, double gain);
+  double widening(double tilt_rad, double gain) const;
 
  private:
   Level level_;
+  double scale_ = 1;
   std::array<Tolerance, max_channels> of_channel_{};
 };
 

@@ -21,4 +21,25 @@ class DefaultFloatEnvironment {
   std::fenv_t saved_;
 };
 
+// The environment that a port has made itself, kept between calls of it that are made one by one
+// amid our own computation.
+class PortFloatEnvironment {
+ public:
+  PortFloatEnvironment() { std::fegetenv(&ports_); }
+
+  template <typename Call>
+  auto run(Call&& call) {
+    std::fenv_t ours;
+    std::fegetenv(&ours);
+    std::fesetenv(&ports_);
+    auto result = call();
+    std::fegetenv(&ports_);
+    std::fesetenv(&ours);
+    return result;
+  }
+
+ private:
+  std::fenv_t ports_;
+};
+
 }  // namespace attest

@@ -2,20 +2,14 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
-#include <string_view>
+#include <regex>
 
 namespace attest {
 
 int line_in(const std::string& complaint) {
-  constexpr std::string_view word = "line ";
-  const auto at = complaint.find(word);
-  int line = 0;
-  if (at != std::string::npos) {
-    const char* end = complaint.data() + complaint.size();
-    std::from_chars(complaint.data() + at + word.size(), end, line);
-  }
-  return line;
+  static const std::regex pattern(R"([Ll]ine(?: number)? ?=? ?(\d{1,7}))");
+  std::smatch found;
+  return std::regex_search(complaint, found, pattern) ? std::stoi(found[1]) : 0;
 }
 
 std::string one_line(std::string complaint) {

@@ -155,6 +155,10 @@ void read_root(const TomlTable& root, Vehicle& vehicle) {
 
 }  // namespace
 
+std::vector<fs::path> Vehicle::files() const {
+  return {file, fs::path(file).replace_extension(".xml")};
+}
+
 double Vehicle::hover_rotor_rad_s() const {
   const double of_one = mass_kg * gravity_m_s2 / static_cast<double>(rotors.size());
   return std::sqrt(of_one / thrust_coefficient);

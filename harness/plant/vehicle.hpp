@@ -54,6 +54,9 @@ struct Vehicle {
   std::string mixer;                                       // "R: 4x 10000 10000 10000 0"
   std::vector<std::pair<std::string, double>> parameters;  // of the law: the gains that fly it
 
+  // What the vehicle is read from: models/<name>.toml and .xml.
+  std::vector<std::filesystem::path> files() const;
+
   double hover_rotor_rad_s() const;  // all rotors alike
   double arm_m() const;              // from the centre of mass to the farthest hub
   // The thrust control, 0..1, at which it hovers: motor commands are linear in the speed.

@@ -9,4 +9,8 @@ std::unique_ptr<Port> open_builtin() {
   return std::make_unique<AbiPort>(*reference::reference_unit());
 }
 
+std::unique_ptr<Port> open_builtin_in_double() {
+  return std::make_unique<AbiPort>(*reference::reference_unit_in_double());
+}
+
 }  // namespace attest

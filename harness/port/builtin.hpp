@@ -9,4 +9,7 @@ namespace attest {
 
 std::unique_ptr<Port> open_builtin();
 
+// The reference in double precision: what goldens of flights measure their horizon with.
+std::unique_ptr<Port> open_builtin_in_double();
+
 }  // namespace attest

@@ -130,7 +130,8 @@ std::string failure_text(const CaseResult& result, const RunResult& run) {
   out += finding_text(result, run.level);
   const std::string id = one_line(result.case_id());
   out += fmt::format("  case:      cases/{}.toml\n", id);
-  if (result.first) out += fmt::format("  golden:    golden/{}/{}.csv\n", id, result.rate.label());
+  if (result.first)
+    out += fmt::format("  golden:    golden/{}/{}.csv\n", id, result.setup().label());
   out += "  reproduce: " + reproduce_command(result, run);
   const bool hides = result.verdict == Verdict::crash || result.verdict == Verdict::timeout;
   return hides ? out + "\n  debug:     the same with --in-process, under a debugger" : out;

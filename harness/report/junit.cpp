@@ -123,7 +123,7 @@ std::string suite_name(const CaseResult& result) {
 }
 
 void add_result(pugi::xml_node suite, const CaseResult& result, const RunResult& run) {
-  const std::string name = one_line(result.name + "@" + result.rate.label());
+  const std::string name = one_line(result.name + "@" + result.setup().label());
   const pugi::xml_node test = add_test(suite, suite_name(result), name, result.elapsed_s);
   const Outcome outcome = outcome_of(result.verdict);
   if (outcome == Outcome::passed) return;

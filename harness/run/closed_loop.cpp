@@ -95,6 +95,7 @@ ClosedLoop::ClosedLoop(const Case& the_case, const Rate& rate, const Vehicle& ve
 }
 
 FlightEnd ClosedLoop::run(Trace* trace) {
+  const DefaultFloatEnvironment environment;
   while (!is_over()) {
     const auto event = agenda_.next();
     end_.divergence = plant_.advance(event->time);
@@ -144,7 +145,7 @@ void ClosedLoop::unit_tick(const Agenda::Event& event) {
     in.multirotor_motor_limits = *limits;
     in.updated |= ATTEST_UPDATED_MULTIROTOR_MOTOR_LIMITS;
   }
-  end_.fault = driver_.step(event.index, changes_, sample_);
+  end_.fault = ports_.run([&] { return driver_.step(event.index, changes_, sample_); });
   if (end_.fault) return;
   ++end_.ticks;
   actuators_.mix(sample_.out, is_armed());

@@ -18,6 +18,7 @@
 
 #include "harness/casefile/case.hpp"
 #include "harness/casefile/stimulus.hpp"
+#include "harness/core/float_environment.hpp"
 #include "harness/plant/battery.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/port/port.hpp"
@@ -66,6 +67,7 @@ class ClosedLoop {
   Supply supply_;
   Actuators actuators_;
   UnitDriver driver_;
+  PortFloatEnvironment ports_;
 
   DelayLine<ControlState> estimates_;
   DelayLine<float> battery_scales_;

@@ -13,7 +13,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string file_name(const Rate& rate) { return rate.label() + ".csv"; }
+std::string file_name(const Setup& setup) { return setup.label() + ".csv"; }
+
+std::string metric_key(const Setup& setup, const std::string& metric) {
+  return fmt::format("{}.{}", setup.label(), metric);
+}
 
 std::string how_to_bless(const Case& the_case) {
   return fmt::format("`attest bless --filter '{}' --reason \"...\"` makes it", the_case.id());
@@ -37,9 +41,17 @@ Result<std::string> write_trace(const fs::path& path, const Trace& trace,
   return sha256_of_file(path);
 }
 
+std::vector<Trace> samples_of(const std::vector<GoldenTrace>& traces) {
+  std::vector<Trace> samples;
+  for (const GoldenTrace& trace : traces) samples.push_back(trace.trace);
+  return samples;
+}
+
+// What stays the same is said once in the provenance.
 Result<void> write_folder(const fs::path& folder, const Case& the_case,
-                          const std::vector<Trace>& traces, const std::string& reason) {
-  const Division division = divide(traces);
+                          const std::vector<GoldenTrace>& traces,
+                          const std::vector<fs::path>& vehicle_files, const std::string& reason) {
+  const Division division = divide(samples_of(traces));
   Provenance provenance;
   provenance.profile = the_case.profile;
   provenance.case_id = the_case.id();
@@ -48,11 +60,20 @@ Result<void> write_folder(const fs::path& folder, const Case& the_case,
   provenance.compiler = compiler();
   provenance.reason = reason;
   provenance.constants = division.constants;
-  for (std::size_t i = 0; i < traces.size(); ++i) {
-    const std::string name = file_name(the_case.rates[i]);
-    auto hash = write_trace(folder / name, traces[i], division.columns);
+  for (const auto& [setup, trace, horizon_s, metrics] : traces) {
+    const std::string name = file_name(setup);
+    auto hash = write_trace(folder / name, trace, division.columns);
     if (!hash) return tl::unexpected(hash.error());
     provenance.sha256[name] = *hash;
+    if (horizon_s) provenance.horizon_s[setup.label()] = *horizon_s;
+    for (const auto& [metric, value] : metrics) {
+      provenance.metrics[metric_key(setup, metric)] = value;
+    }
+  }
+  for (const fs::path& file : vehicle_files) {
+    auto hash = sha256_of_file(file);
+    if (!hash) return tl::unexpected(hash.error());
+    provenance.models[file.filename().string()] = *hash;
   }
   return write_text(folder / provenance_name, to_toml(provenance));
 }
@@ -82,13 +103,13 @@ Result<Golden> Golden::open(const fs::path& golden_root, const Case& the_case) {
   return Golden(folder, std::move(*provenance));
 }
 
-Result<Trace> Golden::read(const Rate& rate) const {
-  const std::string name = file_name(rate);
+Result<Trace> Golden::read(const Setup& setup) const {
+  const std::string name = file_name(setup);
   const fs::path path = folder_ / name;
   const auto blessed = provenance_.sha256.find(name);
   if (blessed == provenance_.sha256.end()) {
     return fail_at((folder_ / provenance_name).string(),
-                   fmt::format("no golden at {} Hz; `attest bless` makes it", rate.to_string()));
+                   fmt::format("no golden {}; `attest bless` makes it", name));
   }
   auto hash = sha256_of_file(path);
   if (!hash) return tl::unexpected(hash.error());
@@ -97,7 +118,33 @@ Result<Trace> Golden::read(const Rate& rate) const {
                    "is not the file that was blessed (its SHA-256 is another than in "
                    "provenance.toml); restore it from version control, or bless it anew");
   }
-  return read_csv(path, CsvNeed::inputs_and_outputs);
+  return read_csv(path, setup.flyer ? CsvNeed::outputs : CsvNeed::inputs_and_outputs);
+}
+
+Result<ReferenceFlight> Golden::read_flight(const Setup& setup, const Vehicle& vehicle) const {
+  for (const fs::path& file : vehicle.files()) {
+    const auto blessed = provenance_.models.find(file.filename().string());
+    auto hash = sha256_of_file(file);
+    if (!hash) return tl::unexpected(hash.error());
+    if (blessed != provenance_.models.end() && blessed->second == *hash) continue;
+    return fail_at((folder_ / provenance_name).string(),
+                   fmt::format("the golden is stale: {} has changed since it was blessed; `attest "
+                               "bless --filter '{}' --reason \"...\"` makes it anew",
+                               file.string(), provenance_.case_id));
+  }
+  auto rows = read(setup);
+  if (!rows) return tl::unexpected(rows.error());
+  const auto horizon = provenance_.horizon_s.find(setup.label());
+  if (horizon == provenance_.horizon_s.end()) {
+    return fail_at((folder_ / provenance_name).string(),
+                   fmt::format("no horizon_s for {}; bless it anew", setup.label()));
+  }
+  ReferenceFlight flight{std::move(*rows), horizon->second, {}};
+  const std::string prefix = metric_key(setup, "");
+  for (const auto& [key, value] : provenance_.metrics) {
+    if (key.starts_with(prefix)) flight.metrics[key.substr(prefix.size())] = value;
+  }
+  return flight;
 }
 
 NewGolden::NewGolden(fs::path folder, fs::path written)
@@ -112,7 +159,9 @@ NewGolden::~NewGolden() {
 }
 
 Result<NewGolden> NewGolden::write(const fs::path& golden_root, const Case& the_case,
-                                   const std::vector<Trace>& traces, const std::string& reason) {
+                                   const std::vector<GoldenTrace>& traces,
+                                   const std::vector<fs::path>& vehicle_files,
+                                   const std::string& reason) {
   const fs::path folder = golden_folder(golden_root, the_case);
   NewGolden golden(folder, fs::path(folder).concat(".new"));
   std::error_code error;
@@ -121,7 +170,7 @@ Result<NewGolden> NewGolden::write(const fs::path& golden_root, const Case& the_
   if (error) {
     return fail_at(golden.written_.string(), fmt::format("cannot be made: {}", error.message()));
   }
-  auto done = write_folder(golden.written_, the_case, traces, reason);
+  auto done = write_folder(golden.written_, the_case, traces, vehicle_files, reason);
   if (!done) return tl::unexpected(done.error());
   return golden;
 }

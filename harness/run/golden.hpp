@@ -1,13 +1,17 @@
-// The golden traces of a case: golden/<profile>/<group>/<name>/<rate>hz.csv and one
-// provenance.toml, which says what they were made from.
+// The golden traces of a case: golden/<profile>/<group>/<name>/<setup>.csv and one provenance.toml,
+// which says what they were made from. Of a flight some ticks are kept, and in the provenance its
+// horizon and metrics.
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "harness/casefile/case.hpp"
 #include "harness/core/result.hpp"
+#include "harness/run/reference_flight.hpp"
 #include "harness/trace/provenance.hpp"
 
 namespace attest {
@@ -19,8 +23,12 @@ class Golden {
   // the `attest bless` that mends it.
   static Result<Golden> open(const std::filesystem::path& golden_root, const Case& the_case);
 
-  // Errors: no trace for that rate, bytes that are not those that were blessed, a broken CSV.
-  Result<Trace> read(const Rate& rate) const;
+  // Errors: no trace for that setup, bytes that are not those that were blessed, a broken CSV.
+  Result<Trace> read(const Setup& setup) const;
+
+  // The rows, horizon and metrics of a flight. Errors: as of read(), and a vehicle whose files have
+  // changed since.
+  Result<ReferenceFlight> read_flight(const Setup& setup, const Vehicle& vehicle) const;
 
   const Provenance& provenance() const { return provenance_; }
 
@@ -33,12 +41,23 @@ class Golden {
 
 std::filesystem::path golden_folder(const std::filesystem::path& golden_root, const Case& the_case);
 
+// One trace of a golden to be.
+struct GoldenTrace {
+  Setup setup;
+  Trace trace;  // of a flight: its rows
+  std::optional<double> horizon_s = std::nullopt;
+  std::map<std::string, double> metrics = {};
+};
+
 // A golden that has been written beside its place, complete, and not yet put there.
 class NewGolden {
  public:
-  // Writes `traces` (one for each of the case's rates, in that order).
+  // Writes `traces` (one for each of the case's setups, in that order). `vehicle_files` are those
+  // that the flights depend on.
   static Result<NewGolden> write(const std::filesystem::path& golden_root, const Case& the_case,
-                                 const std::vector<Trace>& traces, const std::string& reason);
+                                 const std::vector<GoldenTrace>& traces,
+                                 const std::vector<std::filesystem::path>& vehicle_files,
+                                 const std::string& reason);
   NewGolden(NewGolden&& other) noexcept;
   NewGolden& operator=(NewGolden&&) = delete;
   ~NewGolden();  // removes what was not put in place

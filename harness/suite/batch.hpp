@@ -3,13 +3,16 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "harness/casefile/case.hpp"
+#include "harness/plant/fleet.hpp"
 #include "harness/port/port.hpp"
 #include "harness/run/golden.hpp"
+#include "harness/suite/select.hpp"
 #include "harness/suite/verdict.hpp"
 
 namespace attest {
@@ -30,27 +33,38 @@ class Batch {
   virtual Result<CaseResult> evaluate(std::size_t i, Port& port) = 0;
 };
 
-// A case at some of its rates, ascending.
+// A case in some of its setups: any of an open-loop case, or those of one flyer.
 class CaseBatch final : public Batch {
  public:
-  CaseBatch(Case the_case, std::vector<Rate> rates, std::filesystem::path golden_root, Level level)
+  // `airframe` is the flyer's; null for open loop.
+  CaseBatch(Case the_case, std::vector<Setup> setups, std::shared_ptr<const Airframe> airframe,
+            std::filesystem::path golden_root, Level level)
       : case_(std::move(the_case)),
-        rates_(std::move(rates)),
+        setups_(std::move(setups)),
+        airframe_(std::move(airframe)),
         golden_root_(std::move(golden_root)),
         level_(level) {}
 
-  std::size_t size() const override { return rates_.size(); }
+  std::size_t size() const override { return setups_.size(); }
   CaseResult identity(std::size_t i) const override;
   Result<void> open() override;
   Result<CaseResult> evaluate(std::size_t i, Port& port) override;
 
  private:
   Case case_;
-  std::vector<Rate> rates_;
+  std::vector<Setup> setups_;
+  std::shared_ptr<const Airframe> airframe_;
   std::filesystem::path golden_root_;
   Level level_;
   std::optional<Golden> golden_;
 };
+
+// The batches of the cases that were selected, in order: one for an open-loop case, one a flyer for
+// a flight, so that long flights are shared among the workers. Errors: a vehicle that cannot be
+// loaded.
+Result<std::vector<std::unique_ptr<Batch>>> make_batches(const std::vector<SelectedCase>& cases,
+                                                         const std::filesystem::path& golden_root,
+                                                         Fleet& fleet, Level level);
 
 // A recorded trace.
 class TraceBatch final : public Batch {

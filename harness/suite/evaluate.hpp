@@ -7,20 +7,32 @@
 
 #include "harness/casefile/case.hpp"
 #include "harness/compare/tolerance.hpp"
+#include "harness/plant/plant.hpp"
 #include "harness/port/port.hpp"
+#include "harness/run/flight.hpp"
 #include "harness/run/golden.hpp"
 #include "harness/suite/verdict.hpp"
 
 namespace attest {
 
 // The identity of a result, before there is a verdict.
-CaseResult unjudged(const Case& the_case, const Rate& rate);
+CaseResult unjudged(const Case& the_case, const Setup& setup);
 CaseResult unjudged(const Trace& recorded, const std::string& profile);
 
 // The case's inputs at that rate are made anew, given to a fresh unit, and what it answers is
 // compared with the golden. Errors are the environment's: a golden that is missing or stale.
 Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const Golden& golden,
                                  Port& port, Level level);
+
+// A fresh unit flies, and what it did is compared with the golden up to the golden's horizon, then
+// by the metrics. The level is the same for every run: what a plant computes differs in the last
+// bits between processors, so no flight is compared to the bit. Errors: as above.
+Result<CaseResult> evaluate_flight(const Case& the_case, const Setup& setup,
+                                   const Airframe& airframe, const Golden& golden, Port& port);
+
+// "the flight ended at 0.412 s (tick 103): the body rate is 81 rad/s, beyond 80". REQUIRES: a
+// divergence.
+std::string how_it_ended(const Flown& flown);
 
 // The recorded inputs are given to a fresh unit, and what it answers is compared with the recorded
 // outputs.

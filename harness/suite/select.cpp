@@ -20,14 +20,19 @@ bool matches(const std::string& pattern, const std::string& text) {
   return ::fnmatch(pattern.c_str(), text.c_str(), 0) == 0;
 }
 
-bool matches_any(const std::vector<std::string>& filters, const Case& the_case, const Rate& rate) {
+bool matches_any(const std::vector<std::string>& filters, const Case& the_case,
+                 const Setup& setup) {
   if (filters.empty()) return true;
-  const std::string at_rate = "@" + rate.label();
   const std::string in_group = the_case.group + "/" + the_case.name;
+  std::vector<std::string> names = {the_case.name};
+  for (const std::string& name : {the_case.id(), in_group}) {
+    for (const std::string& end : {std::string(), "@" + setup.label(), "@" + setup.rate.label()}) {
+      names.push_back(name + end);
+    }
+  }
   return std::any_of(filters.begin(), filters.end(), [&](const std::string& pattern) {
-    return matches(pattern, the_case.id()) || matches(pattern, the_case.id() + at_rate) ||
-           matches(pattern, in_group) || matches(pattern, in_group + at_rate) ||
-           matches(pattern, the_case.name);
+    return std::any_of(names.begin(), names.end(),
+                       [&](const std::string& name) { return matches(pattern, name); });
   });
 }
 
@@ -64,15 +69,35 @@ Result<void> check_selection(const std::vector<fs::path>& files, const Selection
   return check_names(selection.profiles, profiles, "profile");
 }
 
-std::vector<Rate> selected_rates(const Case& the_case, const Selection& selection) {
-  std::vector<Rate> rates;
-  for (const Rate& rate : the_case.rates) {
-    if (contains(selection.rates, rate) && matches_any(selection.filters, the_case, rate)) {
-      rates.push_back(rate);
+bool is_selected(const Setup& setup, const Selection& selection) {
+  if (!contains(selection.rates, setup.rate)) return false;
+  if (!setup.flyer) return selection.vehicles.empty() && selection.plants.empty();
+  return contains(selection.vehicles, setup.flyer->vehicle) &&
+         contains(selection.plants, std::string(name_of(setup.flyer->plant)));
+}
+
+std::vector<Setup> selected_setups(const Case& the_case, const Selection& selection) {
+  std::vector<Setup> setups = the_case.setups();
+  std::erase_if(setups, [&](const Setup& setup) {
+    return !is_selected(setup, selection) || !matches_any(selection.filters, the_case, setup);
+  });
+  return setups;
+}
+
+// What there is to choose from in the files that were read.
+struct Known {
+  std::set<Rate> rates;
+  std::set<std::string> vehicles, plants;
+
+  void add(const Case& the_case) {
+    for (const Setup& setup : the_case.setups()) {
+      rates.insert(setup.rate);
+      if (!setup.flyer) continue;
+      vehicles.insert(setup.flyer->vehicle);
+      plants.insert(std::string(name_of(setup.flyer->plant)));
     }
   }
-  return rates;
-}
+};
 
 // Only some of these: what the case files name, and no rate that none of them has.
 Result<void> check_rates(const std::vector<Rate>& asked, const std::set<Rate>& known) {
@@ -84,6 +109,12 @@ Result<void> check_rates(const std::vector<Rate>& asked, const std::set<Rate>& k
                             fmt::join(names, ", ")));
   }
   return {};
+}
+
+Result<void> check_setups(const Selection& selection, const Known& known) {
+  if (auto checked = check_rates(selection.rates, known.rates); !checked) return checked;
+  auto vehicles = check_names(selection.vehicles, known.vehicles, "vehicle");
+  return vehicles ? check_names(selection.plants, known.plants, "plant") : vehicles;
 }
 
 std::vector<SelectedCase> part_of(std::vector<SelectedCase> all, const Shard& shard) {
@@ -115,17 +146,17 @@ Result<std::vector<SelectedCase>> select_cases(const fs::path& folder, const Sel
     return tl::unexpected(known.error());
   }
   std::vector<SelectedCase> selected;
-  std::set<Rate> rates;
+  Known known_setups;
   for (const fs::path& file : *files) {
     if (!contains(selection.groups, group_of(file))) continue;
     if (!contains(selection.profiles, profile_of(file))) continue;
     auto parsed = parse_case(file);
     if (!parsed) return tl::unexpected(parsed.error());
-    rates.insert(parsed->rates.begin(), parsed->rates.end());
-    auto chosen = selected_rates(*parsed, selection);
+    known_setups.add(*parsed);
+    auto chosen = selected_setups(*parsed, selection);
     if (!chosen.empty()) selected.push_back({std::move(*parsed), std::move(chosen)});
   }
-  if (auto known = check_rates(selection.rates, rates); !known) {
+  if (auto known = check_setups(selection, known_setups); !known) {
     return tl::unexpected(known.error());
   }
   if (selected.empty()) {

@@ -22,23 +22,25 @@ struct Shard {
 
 // Empty lists select everything.
 struct Selection {
-  // Shell patterns (* ? [..]); one must match the id `<profile>/<group>/<name>@<rate>hz`, or that
-  // id without rate, or without profile, or without both, or the name alone.
+  // Shell patterns (* ? [..]); one must match the id `<profile>/<group>/<name>@<setup>`, or that id
+  // without the setup, or with its rate only, or one of these without profile, or the name alone.
   std::vector<std::string> filters;
   std::vector<std::string> groups;
   std::vector<std::string> profiles;
   std::vector<Rate> rates;
+  std::vector<std::string> vehicles;  // these two select flights only
+  std::vector<std::string> plants;
   Shard shard;
 };
 
 struct SelectedCase {
   Case the_case;
-  std::vector<Rate> rates;  // ascending, not empty
+  std::vector<Setup> setups;  // in the order of Case::setups(), not empty
 };
 
 // Reads the case files below `folder` that can match and keeps what is selected, in the order of
-// their ids. Errors: a malformed case file, an unknown group, profile or rate, nothing selected;
-// each says what there is.
+// their ids. Errors: a malformed case file, an unknown group, profile, rate, vehicle or plant,
+// nothing selected; each says what there is.
 Result<std::vector<SelectedCase>> select_cases(const std::filesystem::path& folder,
                                                const Selection& selection);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace attest {
 namespace {
@@ -53,6 +54,11 @@ bool RunResult::failed() const {
 bool RunResult::conformant() const {
   return !failed() && errors.empty() && !stopped_early && count(Verdict::pass) > 0 &&
          count(Verdict::xfail) == 0;
+}
+
+bool MetricResult::within() const {
+  const bool near = value == reference || std::abs(value - reference) <= tolerance;
+  return near && value >= min && value <= max;
 }
 
 }  // namespace attest

@@ -6,7 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include "harness/casefile/setup.hpp"
 #include "harness/compare/compare.hpp"
+#include "harness/compare/metric.hpp"
 #include "harness/schedule/rate.hpp"
 
 namespace attest {
@@ -31,22 +33,39 @@ std::string_view name_of(Verdict verdict);  // "non-finite"
 std::optional<Verdict> parse_verdict(std::string_view name);
 bool fails_a_run(Verdict verdict);
 
+// A metric of a flight, beside what it may be.
+struct MetricResult {
+  std::string name;  // as the case calls it
+  Measure measure = Measure::settling_time_s;
+  double value = 0;
+  double reference = 0;  // of the golden
+  double tolerance = 0;  // allowed |value - reference|
+  double min = 0, max = 0;
+
+  // Infinite values agree with each other; NaN agrees with nothing.
+  bool within() const;
+};
+
 struct CaseResult {
   std::string profile;  // "px4-v1.5.5"
   std::string group;    // "attitude"
   std::string name;     // "roll_30": with profile and group, the stem in cases/ and golden/
   Rate rate = Rate::hz(1);
+  std::optional<Flyer> flyer;  // of a flight
   Verdict verdict = Verdict::pass;
   std::string reason;     // one line; empty for a plain pass
   std::size_t ticks = 0;  // compared
   std::size_t deviating_ticks = 0;
   std::optional<Deviation> first;
   std::optional<Headroom> tightest;
+  std::vector<MetricResult> metrics;  // of a flight that ended well
   double elapsed_s = 0;  // of wall time, for JUnit only: everything else is deterministic
 
   std::string case_id() const { return profile + "/" + group + "/" + name; }
-  // "px4-v1.5.5/attitude/roll_30@250hz": what --filter matches and what a report names.
-  std::string id() const { return case_id() + "@" + rate.label(); }
+  Setup setup() const { return {rate, flyer}; }
+  // "px4-v1.5.5/attitude/roll_30@250hz", "px4-v1.5.5/flight/hover@250hz-iris-ode": what --filter
+  // matches and what a report names.
+  std::string id() const { return case_id() + "@" + setup().label(); }
 };
 
 // Everything the reports say, in the order of the cases, for any number of jobs.

@@ -138,6 +138,39 @@ Deviation deviation_from(Reader reader) {
   return out;
 }
 
+json metric_to_json(const MetricResult& metric) {
+  return {{"name", valid_utf8(metric.name)},
+          {"measure", name_of(metric.measure)},
+          {"value", number(metric.value)},
+          {"reference", number(metric.reference)},
+          {"tolerance", number(metric.tolerance)},
+          {"min", number(metric.min)},
+          {"max", number(metric.max)},
+          {"within", metric.within()}};
+}
+
+MetricResult metric_from(Reader reader) {
+  MetricResult out;
+  out.name = reader.text("name");
+  const auto measure = parse_measure(reader.text("measure"));
+  if (!measure) reader.wrong(measure.error().message);
+  if (measure) out.measure = *measure;
+  out.value = reader.real("value");
+  out.reference = reader.real("reference");
+  out.tolerance = reader.real("tolerance");
+  out.min = reader.real("min");
+  out.max = reader.real("max");
+  return out;
+}
+
+Flyer flyer_from(Reader reader) {
+  Flyer flyer{reader.text("vehicle"), PlantKind::mujoco};
+  const auto plant = parse_plant_kind(reader.text("plant"));
+  if (!plant) reader.wrong(plant.error().message);
+  if (plant) flyer.plant = *plant;
+  return flyer;
+}
+
 Headroom headroom_from(Reader reader) {
   return {reader.real("ratio"), reader.count("tick"), reader.channel("channel")};
 }
@@ -159,6 +192,13 @@ nlohmann::json to_json(const CaseResult& result) {
   };
   if (result.first) out["first"] = deviation_to_json(*result.first);
   if (result.tightest) out["tightest"] = headroom_to_json(*result.tightest);
+  if (result.flyer) {
+    out["vehicle"] = valid_utf8(result.flyer->vehicle);
+    out["plant"] = name_of(result.flyer->plant);
+  }
+  for (const MetricResult& metric : result.metrics) {
+    out["metrics"].push_back(metric_to_json(metric));
+  }
   return out;
 }
 
@@ -184,6 +224,12 @@ Result<CaseResult> case_result_from_json(const nlohmann::json& json) {
     reader.wrong(rate.error().message);
   if (reader.has("first")) out.first = deviation_from({reader.member("first"), error});
   if (reader.has("tightest")) out.tightest = headroom_from({reader.member("tightest"), error});
+  if (reader.has("vehicle")) out.flyer = flyer_from({json, error});
+  if (reader.has("metrics")) {
+    for (const auto& metric : reader.member("metrics")) {
+      out.metrics.push_back(metric_from({metric, error}));
+    }
+  }
   if (!error.empty()) return fail("result of a worker: " + error);
   return out;
 }

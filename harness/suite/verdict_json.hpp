@@ -6,6 +6,10 @@
 //      "first": {"channel": "out/vehicle_rates_setpoint.roll", "stage": "attitude law", ...},
 //      "tightest": {"ratio": 12.3, "tick": 17, "channel": "out/..."}, "elapsed_s": 0.012}
 //
+// A flight has "vehicle", "plant" and "metrics" besides, a list of {"name": "settles", "measure":
+// "settling_time_s", "value": 0.62, "reference": 0.61, "tolerance": 0.08, "min": "-inf", "max": 1,
+// "within": true}.
+//
 // `first` and `tightest` are absent when there is none. JSON has no NaN and no infinity: where a
 // number is not finite it is the string "nan", "inf" or "-inf". Channels go by name. Values of
 // float32 channels carry their bits beside the number.

@@ -63,14 +63,19 @@ std::map<std::string, std::string> read_texts(const TomlTable& root, std::string
   return texts;
 }
 
+std::map<std::string, double> read_numbers(const TomlTable& root, std::string_view key) {
+  std::map<std::string, double> numbers;
+  if (!root.has(key)) return numbers;
+  const TomlTable table = root.table(key);
+  for (const std::string& name : table.keys()) numbers[name] = table.number(name);
+  return numbers;
+}
+
 std::map<std::string, double> read_tolerances(const TomlTable& root) {
   constexpr const char* key = "tolerances";
-  std::map<std::string, double> tolerances;
-  if (!root.has(key)) return tolerances;
-  const TomlTable table = root.table(key);
-  for (const std::string& stem : table.keys()) {
-    tolerances[stem] = table.number(stem);
-    if (!(tolerances[stem] >= 0)) table.error(stem, "a tolerance must not be negative");
+  const auto tolerances = read_numbers(root, key);
+  for (const auto& [stem, value] : tolerances) {
+    if (!(value >= 0)) root.table(key).error(stem, "a tolerance must not be negative");
   }
   return tolerances;
 }
@@ -144,6 +149,9 @@ Result<Provenance> read_provenance(const std::filesystem::path& file) {
   provenance.mixers = read_texts(root, "mixers");
   provenance.tolerances = read_tolerances(root);
   provenance.sha256 = read_texts(root, "sha256");
+  provenance.horizon_s = read_numbers(root, "horizon_s");
+  provenance.metrics = read_numbers(root, "metrics");
+  provenance.models = read_texts(root, "models");
   if (const auto done = toml->finish(); !done) return tl::unexpected(done.error());
   return provenance;
 }
@@ -163,6 +171,9 @@ std::string to_toml(const Provenance& provenance) {
   for (const auto& [stem, geometry] : provenance.mixers) toml.set("mixers", stem, geometry);
   for (const auto& [stem, value] : provenance.tolerances) toml.set("tolerances", stem, value);
   for (const auto& [name, hash] : provenance.sha256) toml.set("sha256", name, hash);
+  for (const auto& [stem, value] : provenance.horizon_s) toml.set("horizon_s", stem, value);
+  for (const auto& [name, value] : provenance.metrics) toml.set("metrics", name, value);
+  for (const auto& [name, hash] : provenance.models) toml.set("models", name, hash);
   return toml.to_string();
 }
 

@@ -26,6 +26,11 @@ struct Provenance {
   // transcendental functions) and not the law's.
   std::map<std::string, double> tolerances;
   std::map<std::string, std::string> sha256;  // file name -> hash
+  // Of flights. Stem of a trace -> seconds of it that two right controllers stay together.
+  std::map<std::string, double> horizon_s;
+  // "<stem>.<metric>" -> what the reference's flight measured.
+  std::map<std::string, double> metrics;
+  std::map<std::string, std::string> models;  // file name -> SHA-256 of the vehicle's files
 };
 
 inline constexpr const char* provenance_name = "provenance.toml";

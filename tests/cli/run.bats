@@ -1,7 +1,10 @@
 load common
 
+# What needs many cases and nothing of flights; those take seconds (flight.bats).
+quick=(--group attitude --group battery --group rates)
+
 @test "the reference conforms to the bit, at every rate" {
-  run "$ATTEST" run --level exact
+  run "$ATTEST" run --level exact "${quick[@]}"
   [ "$status" -eq 0 ]
   has "PASS"
   has "11 rates"
@@ -17,7 +20,7 @@ load common
   run "$ATTEST" --help
   [ "$status" -eq 0 ]
   has "attest run --port lib:./libmine.so"
-  for command in list run replay compare vectors bless doctor; do
+  for command in list run replay sim compare vectors bless doctor; do
     run "$ATTEST" "$command" --help
     [ "$status" -eq 0 ]
   done
@@ -58,18 +61,20 @@ load common
 }
 
 @test "shards divide the suite: each case in exactly one" {
-  "$ATTEST" run --json all.json >/dev/null
-  for i in 1 2 3; do "$ATTEST" run --shard "$i/3" --json "part$i.json" >/dev/null; done
+  "$ATTEST" run "${quick[@]}" --json all.json >/dev/null
+  for i in 1 2 3; do
+    "$ATTEST" run "${quick[@]}" --shard "$i/3" --json "part$i.json" >/dev/null
+  done
   ids() { grep -ho '"id": *"[^"]*"' "$@" | sort; }
   [ "$(ids all.json)" = "$(ids part1.json part2.json part3.json)" ]
 }
 
 @test "the same bytes in the JSON report for any number of jobs" {
-  "$ATTEST" run --jobs 1 --json one.json >/dev/null
-  "$ATTEST" run --jobs 4 --json four.json >/dev/null
+  "$ATTEST" run "${quick[@]}" --jobs 1 --json one.json >/dev/null
+  "$ATTEST" run "${quick[@]}" --jobs 4 --json four.json >/dev/null
   cmp one.json four.json
-  run "$ATTEST" run --jobs 1 --port "lib:$PORTS/port_sign_flip.so" --json one.json
-  run "$ATTEST" run --jobs 4 --port "lib:$PORTS/port_sign_flip.so" --json four.json
+  run "$ATTEST" run "${quick[@]}" --jobs 1 --port "lib:$PORTS/port_sign_flip.so" --json one.json
+  run "$ATTEST" run "${quick[@]}" --jobs 4 --port "lib:$PORTS/port_sign_flip.so" --json four.json
   cmp one.json four.json
 }
 
@@ -141,9 +146,9 @@ load common
 }
 
 @test "no colour in a pipe, quiet says nothing when all is well" {
-  run "$ATTEST" run
+  run "$ATTEST" run "${quick[@]}"
   lacks $'\e['
-  run "$ATTEST" --quiet run
+  run "$ATTEST" --quiet run "${quick[@]}"
   [ "$status" -eq 0 ]
   [ -z "$output" ]
 }
@@ -161,6 +166,7 @@ load common
 }
 
 @test "reports are complete although nobody reads the summary to its end" {
-  "$ATTEST" run --port "lib:$PORTS/port_sign_flip.so" --json r.json | head -n 1 || true
+  "$ATTEST" run "${quick[@]}" --port "lib:$PORTS/port_sign_flip.so" --json r.json |
+    head -n 1 || true
   python3 -c 'import json; json.load(open("r.json"))'
 }

@@ -71,11 +71,11 @@ TEST(Tolerances, TheExactLevelHasNone) {
 
 TEST(Tolerances, WideningGrowsTowards180DegreesAndEndsNearIt) {
   constexpr double pi = 3.14159265358979;
-  EXPECT_NEAR(Tolerances::widening(pi - 1, 6.5), 3e-6, 1e-12);
-  EXPECT_NEAR(Tolerances::widening(pi - 1, 13), 6e-6, 1e-12);
-  EXPECT_NEAR(Tolerances::widening(pi - 0.01, 6.5), 3e-4, 1e-9);
-  EXPECT_EQ(Tolerances::widening(pi, 6.5), Tolerances::widening(pi - 1e-3, 6.5));
-  EXPECT_LT(Tolerances::widening(pi, 6.5), 2e-3);
+  EXPECT_NEAR(Tolerances().widening(pi - 1, 6.5), 3e-6, 1e-12);
+  EXPECT_NEAR(Tolerances().widening(pi - 1, 13), 6e-6, 1e-12);
+  EXPECT_NEAR(Tolerances().widening(pi - 0.01, 6.5), 3e-4, 1e-9);
+  EXPECT_EQ(Tolerances().widening(pi, 6.5), Tolerances().widening(pi - 1e-3, 6.5));
+  EXPECT_LT(Tolerances().widening(pi, 6.5), 2e-3);
 }
 
 }  // namespace

@@ -4,26 +4,26 @@
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/port/port.hpp"
-#include "harness/run/golden.hpp"
 #include "harness/run/open_loop.hpp"
 
 namespace attest {
 
-std::vector<Trace> answers_of_reference(const Case& the_case) {
+std::vector<GoldenTrace> answers_of_reference(const Case& the_case) {
   const auto port = open_port("builtin");
-  std::vector<Trace> traces;
-  for (const Rate& rate : the_case.rates) {
-    Trace trace = stimulate(the_case, rate);
+  std::vector<GoldenTrace> traces;
+  for (const Setup& setup : the_case.setups()) {
+    Trace trace = stimulate(the_case, setup.rate);
     const auto unit = (*port)->create(the_case.profile);
     const auto fault = drive(*unit, trace);
     EXPECT_FALSE(fault) << fault->what;
-    traces.push_back(std::move(trace));
+    traces.push_back({setup, std::move(trace)});
   }
   return traces;
 }
 
 void bless(const std::filesystem::path& golden_root, const Case& the_case) {
-  auto golden = NewGolden::write(golden_root, the_case, answers_of_reference(the_case), "a test");
+  auto golden =
+      NewGolden::write(golden_root, the_case, answers_of_reference(the_case), {}, "a test");
   ASSERT_TRUE(golden) << golden.error().to_string();
   const auto placed = golden->put_in_place();
   ASSERT_TRUE(placed) << placed.error().to_string();

@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "harness/casefile/case.hpp"
-#include "harness/trace/trace.hpp"
+#include "harness/run/golden.hpp"
 
 namespace attest {
 
-// What the reference answers, at each of the case's rates.
-std::vector<Trace> answers_of_reference(const Case& the_case);
+// What the reference answers in each of the case's setups. REQUIRES: open loop.
+std::vector<GoldenTrace> answers_of_reference(const Case& the_case);
 
 // Puts the golden in its place. Fails the test if it cannot.
 void bless(const std::filesystem::path& golden_root, const Case& the_case);

@@ -20,6 +20,8 @@ using testing::UnorderedElementsAre;
 
 namespace fs = std::filesystem;
 
+Setup at(std::int64_t hertz) { return {Rate::hz(hertz), std::nullopt}; }
+
 constexpr const char* two_rates = "rates_hz = [100, 333]\nrates_why = \"two\"\n";
 
 class GoldenTest : public testing::Test {
@@ -63,10 +65,10 @@ TEST_F(GoldenTest, ReadsBackWhatWasBlessed) {
   ASSERT_TRUE(golden) << golden.error().to_string();
   const auto answers = answers_of_reference(the_case);
   for (std::size_t i = 0; i < the_case.rates.size(); ++i) {
-    const auto read = golden->read(the_case.rates[i]);
+    const auto read = golden->read(the_case.setups()[i]);
     ASSERT_TRUE(read) << read.error().to_string();
-    EXPECT_EQ(first_input_difference(*read, answers[i]), std::nullopt);
-    EXPECT_TRUE(compare(answers[i], *read, Tolerances(Level::exact)).agrees());
+    EXPECT_EQ(first_input_difference(*read, answers[i].trace), std::nullopt);
+    EXPECT_TRUE(compare(answers[i].trace, *read, Tolerances(Level::exact)).agrees());
   }
 }
 
@@ -95,9 +97,9 @@ TEST_F(GoldenTest, OfAnotherVersionOfTheCaseItIsStale) {
 
 TEST_F(GoldenTest, ARateThatWasNotBlessedIsAnError) {
   bless(root(), a_case());
-  const auto trace = Golden::open(root(), a_case())->read(Rate::hz(250));
+  const auto trace = Golden::open(root(), a_case())->read(at(250));
   ASSERT_FALSE(trace);
-  EXPECT_THAT(trace.error().message, HasSubstr("no golden at 250 Hz"));
+  EXPECT_THAT(trace.error().message, HasSubstr("no golden 250hz.csv"));
 }
 
 TEST_F(GoldenTest, BytesThatWereNotBlessedAreAnError) {
@@ -105,19 +107,19 @@ TEST_F(GoldenTest, BytesThatWereNotBlessedAreAnError) {
   const fs::path file = folder() / "100hz.csv";
   std::ofstream(file, std::ios::app) << "\n";
   const auto golden = Golden::open(root(), a_case());
-  const auto tampered = golden->read(Rate::hz(100));
+  const auto tampered = golden->read(at(100));
   ASSERT_FALSE(tampered);
   EXPECT_EQ(tampered.error().file, file.string());
   EXPECT_THAT(tampered.error().message, HasSubstr("is not the file that was blessed"));
-  EXPECT_TRUE(golden->read(Rate::hz(333)));
+  EXPECT_TRUE(golden->read(at(333)));
   fs::remove(file);
-  EXPECT_FALSE(golden->read(Rate::hz(100)));
+  EXPECT_FALSE(golden->read(at(100)));
 }
 
 TEST_F(GoldenTest, IsNotInPlaceBeforeItIsPutThere) {
   {
     const auto written =
-        NewGolden::write(root(), a_case(), answers_of_reference(a_case()), "a test");
+        NewGolden::write(root(), a_case(), answers_of_reference(a_case()), {}, "a test");
     ASSERT_TRUE(written);
     EXPECT_FALSE(fs::exists(folder()));
   }
@@ -154,7 +156,7 @@ TEST_F(GoldenTest, WhatAKilledRunLeftIsCleanedUp) {
 
 TEST_F(GoldenTest, TheOldOneStaysWhenTheNewCannotBePutInPlace) {
   bless(root(), a_case());
-  auto written = NewGolden::write(root(), a_case(), answers_of_reference(a_case()), "again");
+  auto written = NewGolden::write(root(), a_case(), answers_of_reference(a_case()), {}, "again");
   ASSERT_TRUE(written);
   fs::remove_all(folder().string() + ".new");
   EXPECT_FALSE(written->put_in_place());
@@ -165,7 +167,8 @@ TEST_F(GoldenTest, TheOldOneStaysWhenTheNewCannotBePutInPlace) {
 
 TEST_F(GoldenTest, AFolderThatCannotBeMadeIsAnError) {
   std::ofstream(root()) << "a file where the folder should be\n";
-  const auto written = NewGolden::write(root(), a_case(), answers_of_reference(a_case()), "a test");
+  const auto written =
+      NewGolden::write(root(), a_case(), answers_of_reference(a_case()), {}, "a test");
   ASSERT_FALSE(written);
   EXPECT_THAT(written.error().message, HasSubstr("cannot be made"));
 }

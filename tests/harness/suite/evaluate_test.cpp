@@ -95,7 +95,7 @@ TEST_F(EvaluateTest, AGoldenWithOtherInputsIsAnError) {
 
 TEST_F(EvaluateTest, ARecordedTraceIsGivenToThePort) {
   suite_.add("pitch", pitching);
-  Trace recorded = answers_of_reference(suite_[0])[0];
+  Trace recorded = answers_of_reference(suite_[0])[0].trace;
   recorded.source = "flight.csv";
   const auto judge = [&](const std::string& port) {
     return evaluate_trace(recorded, "px4-v1.5.5", *opened(port), Tolerances());

@@ -37,7 +37,8 @@ void SmallSuite::add_three() {
 Batches SmallSuite::batches(Level level) const {
   Batches all;
   for (const Case& the_case : cases_) {
-    all.push_back(std::make_unique<CaseBatch>(the_case, the_case.rates, golden(), level));
+    all.push_back(
+        std::make_unique<CaseBatch>(the_case, the_case.setups(), nullptr, golden(), level));
   }
   return all;
 }

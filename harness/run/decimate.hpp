@@ -1,0 +1,13 @@
+// The ticks of a flight that its golden keeps, so that a thousand flights fit into a repository.
+#pragma once
+
+#include "harness/trace/trace.hpp"
+
+namespace attest {
+
+// The first ticks, ticks at regular distances, those where an output is smallest and largest, and
+// the last, in order; some fifty in all. Without parameters, freshness and plant: what is left out
+// between two rows cannot be replayed. REQUIRES: not empty.
+Trace decimated(const Trace& flown);
+
+}  // namespace attest

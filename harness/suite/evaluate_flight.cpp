@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "harness/compare/compare_rows.hpp"
+#include "harness/core/float_environment.hpp"
+#include "harness/run/flight.hpp"
+#include "harness/suite/evaluate.hpp"
+#include "harness/suite/judge.hpp"
+#include "harness/suite/stopwatch.hpp"
+
+namespace attest {
+namespace {
+
+// How far a right controller's metric may be from the reference's: beyond the horizon two right
+// flights differ, and these are a few times what they were seen to differ by, and far less than
+// what a port with a wrong gain does.
+double tolerance_of(Measure measure, double reference, const Rate& rate) {
+  constexpr double relative = 0.05;
+  const auto at_least = [&] {
+    switch (measure) {
+      case Measure::settling_time_s:
+        return 0.05 + 2 * rate.period_s();  // the band is crossed between two ticks
+      case Measure::overshoot_deg:
+        return 0.5;
+      case Measure::rms_attitude_error_deg:
+        return 0.1;
+      case Measure::rms_rate_error_rad_s:
+        return 0.02;
+      case Measure::peak_rate_rad_s:
+        return 0.1;
+      case Measure::saturation_duty:
+        return 0.02;
+      case Measure::peak_integral:
+        return 0.005;
+      case Measure::sink_m:
+        return 0.05;
+    }
+    return 0.0;
+  };
+  const double size = std::isfinite(reference) ? std::abs(reference) : 0;
+  return std::max(at_least(), relative * size);
+}
+
+std::string off(const MetricResult& metric) {
+  if (metric.value < metric.min || metric.value > metric.max) {
+    const bool low = metric.value < metric.min;
+    return fmt::format("metric {}: {} is {:.4g}, {} {:g}", metric.name, name_of(metric.measure),
+                       metric.value, low ? "below" : "above", low ? metric.min : metric.max);
+  }
+  return fmt::format("metric {}: {} is {:.4g}, the reference's {:.4g} +- {:.2g}", metric.name,
+                     name_of(metric.measure), metric.value, metric.reference, metric.tolerance);
+}
+
+void judge_metrics(const Case& the_case, const Trace& flown, const ReferenceFlight& reference,
+                   CaseResult& result, std::vector<std::string>& reasons) {
+  for (const Metric& metric : the_case.flight->metrics) {
+    const auto known = reference.metrics.find(metric.name);
+    const double expected =
+        known == reference.metrics.end() ? std::numeric_limits<double>::quiet_NaN() : known->second;
+    MetricResult measurement{metric.name,
+                             metric.measure,
+                             measured(metric, flown),
+                             expected,
+                             tolerance_of(metric.measure, expected, result.rate),
+                             metric.min,
+                             metric.max};
+    // A ratio has no unit, so the absolute part does not apply to it.
+    if (metric.versus) measurement.tolerance = 0.05 * std::abs(expected);
+    if (!measurement.within()) reasons.push_back(off(measurement));
+    result.metrics.push_back(std::move(measurement));
+  }
+}
+
+void judge_flight(const Case& the_case, const Flown& flown, const ReferenceFlight& reference,
+                  CaseResult& result) {
+  const Comparison comparison = compare_rows(flown.trace, reference.rows, reference.horizon_s,
+                                             tolerances_of(the_case, Level::numeric));
+  judge(comparison, result);
+  std::vector<std::string> reasons;
+  if (!result.reason.empty()) reasons.push_back(result.reason);
+  if (flown.divergence) {
+    reasons.push_back(how_it_ended(flown));
+  } else {
+    judge_metrics(the_case, flown.trace, reference, result, reasons);
+  }
+  if (result.verdict == Verdict::pass && !reasons.empty()) result.verdict = Verdict::fail;
+  result.reason = fmt::format("{}", fmt::join(reasons, "; "));
+}
+
+}  // namespace
+
+std::string how_it_ended(const Flown& flown) {
+  return fmt::format("the flight ended at {:.3f} s (tick {}): {}",
+                     static_cast<double>(flown.divergence->at.count()) * 1e-9,
+                     flown.trace.samples.size(), flown.divergence->what);
+}
+
+Result<CaseResult> evaluate_flight(const Case& the_case, const Setup& setup,
+                                   const Airframe& airframe, const Golden& golden, Port& port) {
+  const Stopwatch stopwatch;
+  CaseResult result = unjudged(the_case, setup);
+  const auto reference = golden.read_flight(setup, airframe.vehicle());
+  if (!reference) return tl::unexpected(reference.error());
+  const std::unique_ptr<Unit> unit = create_unit(port, the_case.profile, result);
+  if (!unit) return result;
+  const auto flown = fly(the_case, setup, airframe, *unit);
+  if (!flown) return tl::unexpected(flown.error());
+  if (flown->fault) {
+    judge(*flown->fault, result);
+  } else {
+    const DefaultFloatEnvironment environment;
+    judge_flight(the_case, *flown, *reference, result);
+  }
+  result.elapsed_s = stopwatch.elapsed_s();
+  return result;
+}
+
+}  // namespace attest

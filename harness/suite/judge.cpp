@@ -1,0 +1,46 @@
+#include "harness/suite/judge.hpp"
+
+#include <fmt/format.h>
+
+namespace attest {
+
+Tolerances tolerances_of(const Case& the_case, Level level) {
+  Tolerances tolerances(level);
+  for (const auto& [prefix, tolerance] : the_case.tolerances) tolerances.set(prefix, tolerance);
+  return tolerances;
+}
+
+std::unique_ptr<Unit> create_unit(Port& port, const std::string& profile, CaseResult& result) {
+  std::unique_ptr<Unit> unit = port.create(profile);
+  if (!unit) {
+    result.verdict = Verdict::skip;
+    result.reason = fmt::format("the port does not support profile {}", profile);
+  }
+  return unit;
+}
+
+void judge(const PortFault& fault, CaseResult& result) {
+  result.reason = fault.what;
+  switch (fault.kind) {
+    case PortFault::Kind::unsupported:
+      result.verdict = Verdict::unsupported;
+      return;
+    case PortFault::Kind::protocol:
+      result.verdict = Verdict::protocol;
+      return;
+    default:
+      result.verdict = Verdict::fail;
+  }
+}
+
+void judge(const Comparison& comparison, CaseResult& result) {
+  result.ticks = comparison.ticks;
+  result.deviating_ticks = comparison.deviating_ticks;
+  result.first = comparison.first;
+  result.tightest = comparison.tightest;
+  result.reason = comparison.mismatch;
+  if (comparison.agrees()) return;
+  result.verdict = comparison.got_non_finite ? Verdict::non_finite : Verdict::fail;
+}
+
+}  // namespace attest

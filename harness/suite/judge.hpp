@@ -1,0 +1,24 @@
+// From what a port did to a verdict: shared by open loop and flight.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "harness/casefile/case.hpp"
+#include "harness/compare/compare.hpp"
+#include "harness/port/port.hpp"
+#include "harness/run/unit_driver.hpp"
+#include "harness/suite/verdict.hpp"
+
+namespace attest {
+
+// The case's own tolerances where it has some.
+Tolerances tolerances_of(const Case& the_case, Level level);
+
+// Null, and a verdict of skip, when the port does not support the profile.
+std::unique_ptr<Unit> create_unit(Port& port, const std::string& profile, CaseResult& result);
+
+void judge(const PortFault& fault, CaseResult& result);
+void judge(const Comparison& comparison, CaseResult& result);
+
+}  // namespace attest

@@ -1,0 +1,18 @@
+// Wall time of a result, for JUnit only: nothing that is judged depends on it.
+#pragma once
+
+#include <chrono>
+
+namespace attest {
+
+class Stopwatch {
+ public:
+  double elapsed_s() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace attest

@@ -1,0 +1,216 @@
+load common
+
+flip="lib:$PORTS/port_sign_flip.so"
+
+# A suite whose one case is a short flight of two vehicles, without golden, in ./suite.
+flight_suite() {
+  mkdir -p suite/cases/px4-v1.5.5/flight suite/golden suite/models
+  cp -r "$SOURCE/golden/recorded" suite/golden/
+  cp "$SOURCE"/models/iris.* "$SOURCE"/models/hexa.* suite/models/
+  cat >suite/cases/px4-v1.5.5/flight/tilt.toml <<'CASE'
+schema = 1
+profile = "px4-v1.5.5"
+group = "flight"
+why = "A hovering vehicle is asked to roll."
+duration_s = 0.5
+rates_hz = [100, 333]
+rates_why = "two are enough"
+
+[vehicle_attitude_setpoint]
+q_d = { tilt_deg = 10 }
+
+[flight.metrics.tilts]
+measure = "settling_time_s"
+max = 0.45
+CASE
+}
+
+# The line of the suite's case that is broken by the sed script $1, and what is said of it.
+broken() {
+  flight_suite
+  sed -i "$1" suite/cases/px4-v1.5.5/flight/tilt.toml
+  run "$ATTEST" --suite suite run
+  [ "$status" -eq 2 ]
+}
+
+@test "every case is flown by every vehicle on both plants" {
+  run "$ATTEST" run --group flight --rate 100 --filter '*tilt_step_30' --filter '*motor_failure'
+  [ "$status" -eq 0 ]
+  has "PASS 20 of 20"
+}
+
+@test "vehicle and plant select flights" {
+  run "$ATTEST" run --vehicle hexa --plant ode --filter 'flight/hover' --rate 100,1000
+  [ "$status" -eq 0 ]
+  has "PASS 2 of 2"
+  run "$ATTEST" run --filter 'flight/hover@250hz-iris-mujoco'
+  has "PASS 1 of 1"
+  run "$ATTEST" run --vehicle hxea --filter 'flight/*'
+  [ "$status" -eq 2 ]
+  has 'no cases of vehicle `hxea`; did you mean `hexa`?'
+}
+
+@test "a port with a wrong sign loses its vehicle, and the verdict says when" {
+  run "$ATTEST" run --port "$flip" --filter 'flight/hover@250hz-iris-*' --json r.json
+  [ "$status" -eq 1 ]
+  has "fail: the flight ended at"
+  has "the body rate is"
+  has "first at tick"
+  has "look first at the rate law"
+  python3 - <<'CHECK'
+import json
+results = json.load(open("r.json"))["results"]
+assert [r["plant"] for r in results] == ["mujoco", "ode"], results
+assert all(r["vehicle"] == "iris" and r["verdict"] == "fail" for r in results)
+CHECK
+}
+
+@test "the same flight is the same bytes, whatever flew beside it" {
+  for plant in mujoco ode; do
+    "$ATTEST" sim hover --rate 333 --plant $plant --out one.csv
+    "$ATTEST" sim hover --rate 333 --plant $plant --out two.csv
+    cmp one.csv two.csv
+  done
+  flight_suite
+  cp -r suite other
+  "$ATTEST" --suite suite bless --yes --reason "a test"
+  "$ATTEST" --suite other bless --yes --reason "a test"
+  diff -r suite/golden other/golden
+  "$ATTEST" --suite suite run --jobs 1 --json one.json >/dev/null
+  "$ATTEST" --suite suite run --jobs 4 --json four.json >/dev/null
+  cmp one.json four.json
+}
+
+@test "a flown trace is fed again by replay, to the bit" {
+  run "$ATTEST" sim acro_roll --rate 250 --vehicle crazyflie2 --out flown.csv
+  [ "$status" -eq 0 ]
+  has "acro_roll@250hz-crazyflie2-mujoco"
+  has "settling" || has "rms_rate_error_rad_s"
+  head -n 1 flown.csv | grep -q 'plant/vehicle_local_position.x,'
+  run "$ATTEST" replay flown.csv --level exact
+  [ "$status" -eq 0 ]
+}
+
+@test "sim: a lost vehicle, a case that is no flight, a vehicle or plant there is not" {
+  run "$ATTEST" sim hover --rate 250 --port "$flip" --out lost.csv
+  [ "$status" -eq 1 ]
+  has "the flight ended at"
+  [ -s lost.csv ]
+  run "$ATTEST" sim attitude/both_tilted --rate 250 --out x.csv
+  [ "$status" -eq 2 ]
+  has "has no [flight]"
+  run "$ATTEST" sim hover --rate 250 --vehicle irsi --out x.csv
+  [ "$status" -eq 2 ]
+  has 'unknown vehicle `irsi`; did you mean `iris`?'
+  run "$ATTEST" sim hover --rate 250 --plant gazebo --out x.csv
+  [ "$status" -eq 2 ]
+  run "$ATTEST" sim takeoff --rate 250 --plant ode --out x.csv
+  [ "$status" -eq 2 ]
+  has "no floor"
+  run "$ATTEST" sim hover --rate 0 --out x.csv
+  [ "$status" -eq 2 ]
+  run "$ATTEST" sim 'tilt*' --rate 100 --out x.csv
+  has "name one"
+  [ ! -e x.csv ]
+}
+
+@test "sim: a port that crashes leaves no trace behind" {
+  run "$ATTEST" sim hover --rate 250 --port "lib:$PORTS/port_crash.so" --out x.csv
+  [ "$status" -eq 1 ]
+  has "signal"
+  [ -z "$(ls)" ]
+}
+
+@test "a port that throws, hangs or answers NaN in flight gets its verdict" {
+  run "$ATTEST" run --port "lib:$PORTS/port_non_finite.so" --filter 'flight/hover@100hz-iris-ode'
+  [ "$status" -eq 1 ]
+  has "non-finite"
+  run "$ATTEST" run --port "lib:$PORTS/port_throws.so" --filter 'flight/hover@100hz-iris-ode'
+  [ "$status" -eq 1 ]
+  has "crash"
+  run "$ATTEST" run --port "lib:$PORTS/port_hang.so" --timeout 0.3 \
+    --filter 'flight/hover@100hz-iris-ode'
+  [ "$status" -eq 1 ]
+  has "timeout"
+}
+
+@test "a port that flushes denormals does not change the plant" {
+  run "$ATTEST" run --port "lib:$PORTS/port_sets_ftz.so" --filter 'flight/hover@100hz*'
+  [ "$status" -eq 0 ]
+}
+
+@test "an unknown vehicle, an impossible rate, slow physics are refused with file and line" {
+  broken 's/^\[flight.metrics/[flight]\nvehicles = ["irsi"]\nvehicles_why = "x"\n&/'
+  has 'tilt.toml:13:1: unknown vehicle `irsi`; did you mean `iris`?'
+  broken 's/^rates_hz.*/rates_hz = [0]/'
+  has 'tilt.toml:6:1: '
+  broken 's/^\[flight.metrics/[flight]\nphysics_hz = 200\n&/'
+  has 'tilt.toml:13:1: physics at 200 Hz is slower than the loop at 333 Hz'
+}
+
+@test "a negative mass and a broken model are refused with file and line" {
+  flight_suite
+  "$ATTEST" --suite suite bless --yes --reason "a test"
+  sed -i 's/^mass_kg = .*/mass_kg = -1/' suite/models/iris.toml
+  run "$ATTEST" --suite suite run
+  [ "$status" -eq 2 ]
+  has 'iris.toml:5:1: must be positive'
+  cp "$SOURCE/models/iris.toml" suite/models/
+  sed -i '11s/<default/<defualt/' suite/models/iris.xml
+  run "$ATTEST" --suite suite run
+  [ "$status" -eq 2 ]
+  [[ $output =~ iris.xml:[0-9]+:\ MuJoCo: ]]
+  [ ! -e MUJOCO_LOG.TXT ]
+  sed 's/mass="1.5"/mass="1.6"/' "$SOURCE/models/iris.xml" >suite/models/iris.xml
+  run "$ATTEST" --suite suite run
+  [ "$status" -eq 2 ]
+  has 'iris.xml: the mass [kg] is 1.6, in iris.toml it is 1.5'
+}
+
+@test "a golden of another vehicle is stale" {
+  flight_suite
+  "$ATTEST" --suite suite bless --yes --reason "a test"
+  "$ATTEST" --suite suite run
+  echo '# changed' >>suite/models/hexa.toml
+  run "$ATTEST" --suite suite run
+  [ "$status" -eq 2 ]
+  has "hexa.toml has changed since it was blessed"
+  has "attest bless"
+}
+
+@test "bless refuses a flight that misses its own bounds, or is lost" {
+  flight_suite
+  sed -i 's/max = 0.45/max = 0.01/' suite/cases/px4-v1.5.5/flight/tilt.toml
+  run "$ATTEST" --suite suite bless --yes --reason "a test"
+  [ "$status" -eq 2 ]
+  has 'the reference misses the metric `tilts`: settling_time_s is'
+  flight_suite
+  echo '[parameters]
+MC_ROLLRATE_P = -0.3' >>suite/cases/px4-v1.5.5/flight/tilt.toml
+  run "$ATTEST" --suite suite bless --yes --reason "a test"
+  [ "$status" -eq 2 ]
+  [ ! -e suite/golden/px4-v1.5.5 ]
+}
+
+@test "the horizon is where float and double part" {
+  flight_suite
+  printf '[tolerance]\nwhy = "so tight that rounding shows"\n"vehicle_rates_setpoint" = { absolute = 1e-7 }\n' \
+    >>suite/cases/px4-v1.5.5/flight/tilt.toml
+  "$ATTEST" --suite suite bless --yes --reason "a test"
+  python3 - <<'CHECK'
+import tomllib
+golden = tomllib.load(open("suite/golden/px4-v1.5.5/flight/tilt/provenance.toml", "rb"))
+assert all(0 <= t < 0.2 for t in golden["horizon_s"].values()), golden["horizon_s"]
+CHECK
+  run "$ATTEST" --suite suite run
+  [ "$status" -eq 0 ]
+}
+
+@test "flights have no vectors" {
+  run "$ATTEST" vectors out --group flight
+  [ "$status" -eq 2 ]
+  has "attest sim"
+  run "$ATTEST" list --vehicles
+  [ "$status" -eq 0 ]
+  has "heavy_quad"
+}
