@@ -5,8 +5,8 @@
 
 namespace attest {
 
-// The line that it names ("Element 'geom', line 12", "line = 12", "Line number=12"); 0 when it names
-// none.
+// The line that it names ("Element 'geom', line 12", "line = 12", "Line number=12"); 0 when it
+// names none.
 int line_in(const std::string& complaint);
 
 // Without line breaks.

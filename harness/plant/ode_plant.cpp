@@ -124,9 +124,9 @@ T* made(T* pointer) {
   return pointer;
 }
 
-class OdePlant final : public Plant {
+class ErkPlant final : public OdePlant {
  public:
-  OdePlant(const Vehicle& vehicle, const OdeOptions& options)
+  ErkPlant(const Vehicle& vehicle, const OdeOptions& options)
       : vehicle_(vehicle), dynamics_(vehicle), count_(vehicle.rotors.size()) {
     SUNContext_Create(nullptr, &context_);
     y_ = made(N_VNew_Serial(rotors + static_cast<sunindextype>(count_), context_));
@@ -142,13 +142,13 @@ class OdePlant final : public Plant {
     ERKStepSetMaxNumSteps(integrator_, 100'000);
     if (options.fixed_step_s > 0) ERKStepSetFixedStep(integrator_, options.fixed_step_s);
   }
-  ~OdePlant() override {
+  ~ErkPlant() override {
     ERKStepFree(&integrator_);
     N_VDestroy(y_);
     SUNContext_Free(&context_);
   }
-  OdePlant(const OdePlant&) = delete;
-  OdePlant& operator=(const OdePlant&) = delete;
+  ErkPlant(const ErkPlant&) = delete;
+  ErkPlant& operator=(const ErkPlant&) = delete;
 
   void reset(const PlantState& start) override {
     now_ = Nanoseconds(0);
@@ -199,14 +199,19 @@ class OdePlant final : public Plant {
 
   const PlantState& state() const override { return state_; }
 
+  double quaternion_norm() const override {
+    const double* q = N_VGetArrayPointer(y_) + attitude;
+    return std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  }
+
  private:
   void read() {
     const double* y = N_VGetArrayPointer(y_);
     std::copy_n(y + position, 3, state_.position_m.begin());
     std::copy_n(y + velocity, 3, state_.velocity_m_s.begin());
-    // Told with norm 1; the integrator keeps its own, whose drift is a measure of its error.
+    // The integrator keeps its own norm: to scale its state would change what it computes.
     const double* q = y + attitude;
-    const double scale = 1 / std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    const double scale = 1 / quaternion_norm();
     state_.attitude = {scale * q[0], scale * q[1], scale * q[2], scale * q[3]};
     std::copy_n(y + rate, 3, state_.rate_rad_s.begin());
     state_.hover_seconds_used = y[used];
@@ -242,8 +247,8 @@ class OdePlant final : public Plant {
 
 }  // namespace
 
-std::unique_ptr<Plant> make_ode_plant(const Vehicle& vehicle, const OdeOptions& options) {
-  return std::make_unique<OdePlant>(vehicle, options);
+std::unique_ptr<OdePlant> make_ode_plant(const Vehicle& vehicle, const OdeOptions& options) {
+  return std::make_unique<ErkPlant>(vehicle, options);
 }
 
 }  // namespace attest

@@ -15,11 +15,18 @@ struct OdeOptions {
   // references of the tests are made with.
   int order = 5;
   double relative_tolerance = 1e-9;
-  double absolute_tolerance = 1e-9;
+  double absolute_tolerance = 1e-10;
   double fixed_step_s = 0;  // 0: adaptive
 };
 
+class OdePlant : public Plant {
+ public:
+  // Of the integrated attitude, which state() tells with norm 1. Its distance from 1 is a measure
+  // of the integrator's error.
+  virtual double quaternion_norm() const = 0;
+};
+
 // The vehicle must outlive the plant.
-std::unique_ptr<Plant> make_ode_plant(const Vehicle& vehicle, const OdeOptions& options);
+std::unique_ptr<OdePlant> make_ode_plant(const Vehicle& vehicle, const OdeOptions& options);
 
 }  // namespace attest

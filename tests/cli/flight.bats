@@ -194,8 +194,11 @@ MC_ROLLRATE_P = -0.3' >>suite/cases/px4-v1.5.5/flight/tilt.toml
 
 @test "the horizon is where float and double part" {
   flight_suite
-  printf '[tolerance]\nwhy = "so tight that rounding shows"\n"vehicle_rates_setpoint" = { absolute = 1e-7 }\n' \
-    >>suite/cases/px4-v1.5.5/flight/tilt.toml
+  cat >>suite/cases/px4-v1.5.5/flight/tilt.toml <<'TIGHT'
+[tolerance]
+why = "so tight that rounding shows"
+"vehicle_rates_setpoint" = { absolute = 1e-7 }
+TIGHT
   "$ATTEST" --suite suite bless --yes --reason "a test"
   python3 - <<'CHECK'
 import tomllib
