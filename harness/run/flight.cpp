@@ -40,10 +40,11 @@ Result<void> check(const Case& the_case, const Setup& setup, const Vehicle& vehi
 Case adapted(const Case& the_case, const Vehicle& vehicle) {
   Case result = the_case;
   result.parameters.clear();
-  for (const auto& [name, value] : vehicle.parameters) {
+  for (const auto& entry : vehicle.parameters) {
+    const std::string& name = entry.first;
     const auto is_this = [&](const ParameterStimulus& own) { return own.name == name; };
     if (std::any_of(the_case.parameters.begin(), the_case.parameters.end(), is_this)) continue;
-    result.parameters.push_back({name, Constant{value}});
+    result.parameters.push_back({name, Constant{entry.second}});
   }
   result.parameters.insert(result.parameters.end(), the_case.parameters.begin(),
                            the_case.parameters.end());
