@@ -11,8 +11,8 @@
 namespace attest {
 
 struct OdeOptions {
-  // Cash-Karp. Order 6 is broken in SUNDIALS 6.4.1; order 8 at a fixed step is what golden
-  // references of the tests are made with.
+  // Cash-Karp. Order 6 is broken in SUNDIALS 6.4.1; order 8 at a fixed step, which falls as order 7
+  // there, is what the truth tests take for exact.
   int order = 5;
   double relative_tolerance = 1e-9;
   double absolute_tolerance = 1e-10;

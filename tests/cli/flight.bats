@@ -117,7 +117,7 @@ CHECK
 @test "sim: a port that crashes leaves no trace behind" {
   run "$ATTEST" sim hover --rate 250 --port "lib:$PORTS/port_crash.so" --out x.csv
   [ "$status" -eq 1 ]
-  has "signal"
+  has "crash"
   [ -z "$(ls)" ]
 }
 
