@@ -93,6 +93,15 @@ std::string first_deviation(const Deviation& deviation, Level level) {
       values(channel, deviation), distance(channel, deviation, level), name_of(channel.stage));
 }
 
+// To watch the flight that failed.
+std::string sim_command(const CaseResult& result, const RunResult& run) {
+  return one_line(fmt::format(
+      "attest sim {} --rate {} --vehicle {} --plant {} --port {} "
+      "--out flown.csv",
+      shell_word(result.case_id()), result.rate.to_string(), shell_word(result.flyer->vehicle),
+      name_of(result.flyer->plant), shell_word(run.port)));
+}
+
 }  // namespace
 
 std::string failure_headline(const CaseResult& result) {
@@ -117,8 +126,8 @@ std::string finding_text(const CaseResult& result, Level level) {
   std::string out;
   if (result.first) out += first_deviation(*result.first, level);
   if (result.deviating_ticks > 0) {
-    out +=
-        fmt::format("  {} of {} deviate\n", result.deviating_ticks, counted(result.ticks, "tick"));
+    out += fmt::format("  {} of {} deviate\n", result.deviating_ticks,
+                       counted(result.ticks, result.flyer ? "row" : "tick"));
   }
   return out;
 }
@@ -133,6 +142,7 @@ std::string failure_text(const CaseResult& result, const RunResult& run) {
   if (result.first)
     out += fmt::format("  golden:    golden/{}/{}.csv\n", id, result.setup().label());
   out += "  reproduce: " + reproduce_command(result, run);
+  if (result.flyer) out += "\n  fly it:    " + sim_command(result, run);
   const bool hides = result.verdict == Verdict::crash || result.verdict == Verdict::timeout;
   return hides ? out + "\n  debug:     the same with --in-process, under a debugger" : out;
 }

@@ -44,16 +44,22 @@ std::string header(const RunResult& run) {
                      run.attest_version);
 }
 
+// Where else a case fails alike: rates, or how many more flights.
+std::string others(const Together& group) {
+  if (group.front()->flyer) return "in " + counted(group.size() - 1, "more flight");
+  std::vector<std::string> rates;
+  for (const CaseResult* result : group) rates.push_back(result->rate.to_string());
+  rates.erase(rates.begin());
+  return fmt::format("at {} Hz", fmt::join(rates, ", "));
+}
+
 std::string failure(const Together& group, const RunResult& run, TerminalStyle style) {
   const CaseResult& told = *group.front();
   const std::string text = failure_text(told, run);
   const std::size_t line = text.find('\n');
   std::string out = painted(text.substr(0, line), Colour::red, style) + text.substr(line) + "\n";
   if (group.size() > 1) {
-    std::vector<std::string> others;
-    for (const CaseResult* result : group) others.push_back(result->rate.to_string());
-    others.erase(others.begin());
-    out += fmt::format("  also at {} Hz: --filter {}\n", fmt::join(others, ", "),
+    out += fmt::format("  also {}: --filter {}\n", others(group),
                        shell_quoted(one_line(told.case_id()) + "@*"));
   }
   return out + "\n";

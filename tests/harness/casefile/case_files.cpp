@@ -16,6 +16,12 @@ fs::path CaseFiles::write(std::string_view group, std::string_view name,
   return file;
 }
 
+void CaseFiles::name_vehicle(std::string_view name) const {
+  const fs::path models = folder().parent_path() / "models";
+  fs::create_directories(models);
+  std::ofstream(models / (std::string(name) + ".toml"));
+}
+
 std::string CaseFiles::with(std::string_view body) {
   return "schema = 1\nprofile = \"px4-v1.5.5\"\ngroup = \"tests\"\nwhy = \"a test\"\n"
          "duration_ticks = 10\n" +

@@ -18,6 +18,9 @@ class CaseFiles {
   std::filesystem::path write(std::string_view group, std::string_view name,
                               std::string_view text) const;
 
+  // Makes models/<name>.toml, so that cases find a vehicle of this name; it cannot be loaded.
+  void name_vehicle(std::string_view name) const;
+
   // A case of the group `tests`, 10 ticks long: five lines, so `body` begins in line 6.
   static std::string with(std::string_view body);
 

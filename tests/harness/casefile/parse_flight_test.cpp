@@ -19,9 +19,7 @@ constexpr const char* metrics =
 class ParseFlight : public testing::Test {
  protected:
   ParseFlight() {
-    const auto models = files_.folder().parent_path() / "models";
-    std::filesystem::create_directories(models);
-    for (const char* name : {"bee", "iris"}) std::ofstream(models / (std::string(name) + ".toml"));
+    for (const char* name : {"bee", "iris"}) files_.name_vehicle(name);
   }
 
   Case case_of(const std::string& body) {

@@ -69,6 +69,14 @@ TEST(Tolerances, TheExactLevelHasNone) {
   }
 }
 
+TEST(Tolerances, AreScaledAltogether) {
+  const Tolerances tenth = Tolerances().scaled(0.1);
+  const Tolerance rate = tenth.of(channel("out/vehicle_rates_setpoint.yaw"));
+  EXPECT_DOUBLE_EQ(rate.absolute, 0.1 * Tolerances::rate.absolute);
+  EXPECT_DOUBLE_EQ(rate.relative, 0.1 * Tolerances::rate.relative);
+  EXPECT_DOUBLE_EQ(tenth.widening(3, 6.5), 0.1 * Tolerances().widening(3, 6.5));
+}
+
 TEST(Tolerances, WideningGrowsTowards180DegreesAndEndsNearIt) {
   constexpr double pi = 3.14159265358979;
   EXPECT_NEAR(Tolerances().widening(pi - 1, 6.5), 3e-6, 1e-12);

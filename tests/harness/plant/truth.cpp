@@ -10,6 +10,7 @@
 
 #include "harness/plant/ode_plant.hpp"
 #include "harness/schedule/random.hpp"
+#include "tests/harness/plant/judged.hpp"
 #include "tests/harness/plant/test_vehicle.hpp"
 
 namespace attest::test {
@@ -41,35 +42,6 @@ Vector3 momentum(const PlantState& state, const Vector3& I) {
 double energy(const PlantState& state, const Vector3& I) {
   const Vector3& w = state.rate_rad_s;
   return (I[0] * w[0] * w[0] + I[1] * w[1] * w[1] + I[2] * w[2] * w[2]) / 2;
-}
-
-// A plant of one kind, named as the table names it.
-struct Judged {
-  std::string name;
-  std::unique_ptr<Plant> plant;
-};
-
-Judged mujoco(const Airframe& airframe, const Rate& physics = Rate::hz(1000)) {
-  auto plant = airframe.make_plant(PlantKind::mujoco, {physics, false});
-  return {fmt::format("mujoco, {} Hz", physics.to_string()), std::move(*plant)};
-}
-
-Judged ode(const Airframe& airframe) {
-  return {"ode", make_ode_plant(airframe.vehicle(), OdeOptions{})};
-}
-
-Judged fixed_ode(const Airframe& airframe, int order, double step_s) {
-  OdeOptions options;
-  options.order = order;
-  options.fixed_step_s = step_s;
-  return {fmt::format("ode, order {}", order), make_ode_plant(airframe.vehicle(), options)};
-}
-
-std::vector<Judged> both(const Airframe& airframe) {
-  std::vector<Judged> plants;
-  plants.push_back(mujoco(airframe));
-  plants.push_back(ode(airframe));
-  return plants;
 }
 
 PlantState turning(const Vector3& rate_rad_s) {

@@ -89,13 +89,13 @@ TEST(JunitReport, TheContentIsTheFailureText) {
   std::size_t compared = 0;
   for (const CaseResult& result : run.results) {
     if (!fails_a_run(result.verdict)) continue;
-    const std::string name = result.name + "@" + result.rate.label();
+    const std::string name = result.name + "@" + result.setup().label();
     const pugi::xml_node node = testcase(document, name.c_str()).first_child();
     EXPECT_EQ(node.text().get(), failure_text(result, run));
     EXPECT_EQ(node.attribute("message").value(), failure_headline(result));
     ++compared;
   }
-  EXPECT_EQ(compared, 10U);
+  EXPECT_EQ(compared, 12U);
 }
 
 TEST(JunitReport, HostileWordsComeThroughAsText) {

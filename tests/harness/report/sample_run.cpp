@@ -90,6 +90,22 @@ void add_robustness(std::vector<CaseResult>& results) {
   results.push_back(died(Verdict::protocol, "denormals", rate, "step() returned 7"));
 }
 
+void add_flights(std::vector<CaseResult>& results) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  CaseResult lost = failing("flight", "hover", Rate::hz(250),
+                            deviation("out/vehicle_rates_setpoint.roll", 20, -1.5F, 0.3F, 2e-4), 3);
+  lost.flyer = Flyer{"iris", PlantKind::mujoco};
+  lost.ticks = 40;
+  lost.reason = "the flight ended at 1.918 s (tick 480): the body rate is 80 rad/s, beyond 80";
+  results.push_back(lost);
+  CaseResult slow = result(Verdict::fail, "flight", "hover", Rate::hz(250),
+                           "metric levels: settling_time_s is inf, above 2");
+  slow.flyer = Flyer{"hexa", PlantKind::ode};
+  slow.metrics = {{"levels", Measure::settling_time_s, infinity, 0.5, 0.05, -infinity, 2},
+                  {"rolls", Measure::peak_rate_rad_s, 6.1, 6, 0.3, 5, 9}};
+  results.push_back(slow);
+}
+
 }  // namespace
 
 CaseResult passed(const std::string& group, const std::string& name, Rate rate) {
@@ -130,6 +146,7 @@ RunResult sample_run() {
   add_attitude(run.results);
   add_mixed(run.results);
   add_robustness(run.results);
+  add_flights(run.results);
   run.errors = {Error{"row 4 has 21 columns, expected 22",
                       "golden/px4-v1.5.5/mixed/take_off/250hz.csv", 4, 0},
                 Error{"cannot fork: <out of memory>", "", 0, 0}};

@@ -38,6 +38,10 @@ WRONG_JSON = {
     "another word for NaN": lambda r: r["results"][3]["first"].update(got="NaN"),
     "bits of one value only": lambda r: r["results"][3]["first"].pop("want_bits"),
     "bits in capitals": lambda r: r["results"][3]["first"].update(got_bits="0xBF800000"),
+    "a vehicle without a plant": lambda r: r["results"][-1].pop("plant"),
+    "an unknown plant": lambda r: r["results"][-1].update(plant="gazebo"),
+    "metrics of no flight": lambda r: r["results"][3].update(metrics=r["results"][-1]["metrics"]),
+    "an unknown measure": lambda r: r["results"][-1]["metrics"][0].update(measure="grace"),
     "an error without a place": lambda r: r["errors"][0].pop("line"),
 }
 

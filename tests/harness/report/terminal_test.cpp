@@ -108,7 +108,7 @@ TEST(Summary, TellsTwentyFailuresAndCountsTheOthers) {
 
 TEST(Summary, CountsTheStagesThatDifferFirst) {
   EXPECT_THAT(summary(sample_run()),
-              HasSubstr("\nfirst stage to differ: attitude law in 4, rate law in 1, "));
+              HasSubstr("\nfirst stage to differ: attitude law in 5, rate law in 1, "));
 }
 
 TEST(Summary, ReasonsOfWhatIsCountedApartAreAggregated) {

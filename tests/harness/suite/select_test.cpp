@@ -78,6 +78,29 @@ TEST_F(SelectTest, ByGroupAndRate) {
   EXPECT_THAT(select(selection), ElementsAre("rates/roll:1", "rates/slow:1"));
 }
 
+TEST_F(SelectTest, FlightsByVehiclePlantAndSetup) {
+  for (const char* vehicle : {"iris", "hexa"}) files_.name_vehicle(vehicle);
+  add("flight", "hover",
+      "[flight]\nvehicles = [\"iris\", \"hexa\"]\nvehicles_why = \"two\"\n"
+      "[flight.metrics.settles]\nmeasure = \"settling_time_s\"\nmax = 1\n");
+  Selection selection;
+  selection.vehicles = {"hexa"};
+  EXPECT_THAT(select(selection), ElementsAre("flight/hover:6"));
+  selection.plants = {"ode"};
+  EXPECT_THAT(select(selection), ElementsAre("flight/hover:3"));
+  selection.vehicles.clear();
+  EXPECT_THAT(select(selection), ElementsAre("flight/hover:14"));
+  EXPECT_THAT(filter("hover"), ElementsAre("flight/hover:28"));
+  EXPECT_THAT(filter("flight/hover@250hz"), ElementsAre("flight/hover:2"));
+  EXPECT_THAT(filter("*@100hz-hexa-*"), ElementsAre("flight/hover:2"));
+  selection = {};
+  selection.vehicles = {"irish"};
+  EXPECT_THAT(select(selection)[0], HasSubstr("`irish`; did you mean `iris`?"));
+  selection = {};
+  selection.plants = {"gazebo"};
+  EXPECT_THAT(select(selection)[0], HasSubstr("`gazebo`"));
+}
+
 TEST_F(SelectTest, NamesThatAreNotThereAreErrorsThatSayWhatIs) {
   Selection selection;
   selection.groups = {"atitude"};

@@ -153,6 +153,41 @@ TEST(VerdictJson, RoundTripsEveryKindOfNumber) {
   }
 }
 
+TEST(VerdictJson, RoundTripsAFlight) {
+  const double inf = std::numeric_limits<double>::infinity();
+  CaseResult result = with(Verdict::fail);
+  result.flyer = Flyer{"hexa", PlantKind::ode};
+  for (int i = 0; i <= static_cast<int>(Measure::sink_m); ++i) {
+    result.metrics.push_back({"m", static_cast<Measure>(i), inf, 0.1, 0.05, -inf, 2});
+  }
+  const CaseResult back = through_a_pipe(result);
+  expect_same(result, back);
+  ASSERT_EQ(back.metrics.size(), result.metrics.size());
+  for (std::size_t i = 0; i < back.metrics.size(); ++i) {
+    EXPECT_EQ(back.metrics[i].name, "m");
+    EXPECT_EQ(back.metrics[i].measure, result.metrics[i].measure);
+    EXPECT_EQ(back.metrics[i].value, inf);
+    EXPECT_EQ(back.metrics[i].reference, 0.1);
+    EXPECT_EQ(back.metrics[i].tolerance, 0.05);
+    EXPECT_EQ(back.metrics[i].min, -inf);
+    EXPECT_EQ(back.metrics[i].max, 2);
+  }
+  EXPECT_EQ(to_json(result)["metrics"][0]["within"], false);
+}
+
+TEST(MetricResult, IsWithinItsBoundsAndNearTheReference) {
+  const double inf = std::numeric_limits<double>::infinity();
+  const auto within = [&](double value, double reference) {
+    return MetricResult{"m", Measure::sink_m, value, reference, 0.1, 0, 2}.within();
+  };
+  EXPECT_TRUE(within(1.05, 1));
+  EXPECT_FALSE(within(1.2, 1));
+  EXPECT_FALSE(within(2.05, 2));  // beyond the case's own bound
+  EXPECT_FALSE(within(std::nan(""), 1));
+  EXPECT_FALSE(within(1, std::nan("")));
+  EXPECT_TRUE((MetricResult{"m", Measure::sink_m, inf, inf, 0.1, 0, inf}.within()));
+}
+
 TEST(VerdictJson, RoundTripsEveryChannel) {
   for (std::size_t channel = 0; channel < channels().size(); ++channel) {
     CaseResult result = with(Verdict::fail);
@@ -218,6 +253,8 @@ TEST(VerdictJson, NothingIsTakenOnTrust) {
   EXPECT_THAT(complaint(with_member("/elapsed_s", nullptr)), HasSubstr("`elapsed_s` is not a n"));
   EXPECT_THAT(complaint(with_member("/verdict", "passed")), HasSubstr("no verdict `passed`"));
   EXPECT_NE(complaint(with_member("/rate", "0")), "accepted");
+  EXPECT_THAT(complaint(with_member("/vehicle", "iris")), HasSubstr("`plant` is missing"));
+  EXPECT_THAT(complaint(with_member("/metrics", json::array({3}))), HasSubstr("not an object"));
   EXPECT_THAT(complaint(with_member("/first", "x")), HasSubstr("not an object"));
   EXPECT_THAT(complaint(with_member("/first/channel", "out/x")), HasSubstr("channel `out/x`"));
   EXPECT_THAT(complaint(with_member("/first/ulp", 0.5)), HasSubstr("`ulp` is not an integer"));

@@ -40,6 +40,9 @@ TEST_F(ProvenanceFile, ReadsBackWhatWasWritten) {
   written.constants = {{"in/battery_status.scale", 0.1}, {"in/parameter.MC_ROLL_P", 6.5}};
   written.mixers = {{"4x", "R: 4x 10000 10000 10000 0"}};
   written.sha256 = {{"250hz.csv", "4567"}};
+  written.horizon_s = {{"250hz-iris-ode", 3.996}};
+  written.metrics = {{"250hz-iris-ode.settles", 0.5}, {"250hz-iris-ode.tilts", INFINITY}};
+  written.models = {{"iris.toml", "89ab"}};
   const auto read = read_provenance(directory_.write("provenance.toml", to_toml(written)));
   ASSERT_TRUE(read) << read.error().to_string();
   EXPECT_EQ(read->profile, written.profile);
@@ -51,6 +54,9 @@ TEST_F(ProvenanceFile, ReadsBackWhatWasWritten) {
   EXPECT_EQ(read->constants, written.constants);
   EXPECT_EQ(read->mixers, written.mixers);
   EXPECT_EQ(read->sha256, written.sha256);
+  EXPECT_EQ(read->horizon_s, written.horizon_s);
+  EXPECT_EQ(read->metrics, written.metrics);
+  EXPECT_EQ(read->models, written.models);
 }
 
 TEST_F(ProvenanceFile, IsWrittenAsAPersonWould) {

@@ -1,0 +1,88 @@
+#include "harness/compare/compare_rows.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/harness/compare/sample_trace.hpp"
+
+namespace attest {
+namespace {
+
+constexpr double whole = 1e9;
+const char* const yaw = "out/vehicle_rates_setpoint.yaw";
+
+// What a golden keeps of a flight: every third tick, and not what was new.
+Trace rows_of(const Trace& flown) {
+  Trace rows;
+  rows.present = flown.present & ~channels_with_prefix("in/updated.");
+  for (std::size_t tick = 0; tick < flown.samples.size(); tick += 3) {
+    rows.samples.push_back(flown.samples[tick]);
+    rows.samples.back().in.updated = 0;
+  }
+  return rows;
+}
+
+TEST(CompareRows, AgreesWithItself) {
+  const Trace flown = sample_trace(10);
+  const Comparison comparison = compare_rows(flown, rows_of(flown), whole, Tolerances());
+  EXPECT_FALSE(comparison.first);
+  EXPECT_TRUE(comparison.mismatch.empty());
+  EXPECT_EQ(comparison.ticks, 4u);
+}
+
+TEST(CompareRows, NamesTheTickOfTheFlight) {
+  Trace flown = sample_trace(10);
+  const Trace golden = rows_of(flown);
+  set(flown, 6, yaw, 5);
+  const Comparison comparison = compare_rows(flown, golden, whole, Tolerances());
+  ASSERT_TRUE(comparison.first);
+  EXPECT_EQ(comparison.first->tick, 6u);
+  EXPECT_EQ(comparison.first->channel, channel(yaw));
+  EXPECT_EQ(comparison.deviating_ticks, 1u);
+}
+
+TEST(CompareRows, EndsAtTheHorizon) {
+  Trace flown = sample_trace(10);
+  const Trace golden = rows_of(flown);
+  set(flown, 6, yaw, 5);  // 24 ms after the first
+  EXPECT_FALSE(compare_rows(flown, golden, 0.023, Tolerances()).first);
+  EXPECT_TRUE(compare_rows(flown, golden, 0.024, Tolerances()).first);
+}
+
+TEST(CompareRows, AFlightThatEndedEarlyIsComparedAsFarAsItWent) {
+  Trace flown = sample_trace(10);
+  const Trace golden = rows_of(flown);
+  flown.samples.resize(5);
+  const Comparison comparison = compare_rows(flown, golden, whole, Tolerances());
+  EXPECT_FALSE(comparison.first);
+  EXPECT_EQ(comparison.ticks, 2u);
+  flown.samples.clear();
+  EXPECT_EQ(compare_rows(flown, golden, whole, Tolerances()).ticks, 0u);
+}
+
+TEST(CompareRows, ARowBetweenTicksIsAMismatch) {
+  const Trace flown = sample_trace(10);
+  Trace golden = rows_of(flown);
+  ++golden.samples[2].in.timestamp;
+  const Comparison comparison = compare_rows(flown, golden, whole, Tolerances());
+  EXPECT_THAT(comparison.mismatch, testing::HasSubstr("a row at 28001 us"));
+}
+
+// The tolerance widens with the tilt error to the setpoint in force, which was new long before.
+TEST(CompareRows, KnowsTheSetpointInForce) {
+  Trace flown = sample_trace(10);
+  for (std::size_t tick = 0; tick < 10; ++tick) {
+    set(flown, tick, "in/control_state.q[0]", 0.002);
+    set(flown, tick, "in/control_state.q[1]", 1);
+  }
+  const Trace golden = rows_of(flown);
+  const double was = flown.samples[6].out.vehicle_rates_setpoint.roll;
+  set(flown, 6, "out/vehicle_rates_setpoint.roll", was + 4e-4);
+  const Comparison comparison = compare_rows(flown, golden, whole, Tolerances());
+  EXPECT_FALSE(comparison.first);
+  ASSERT_TRUE(comparison.tightest);
+  EXPECT_EQ(comparison.tightest->tick, 6u);
+}
+
+}  // namespace
+}  // namespace attest

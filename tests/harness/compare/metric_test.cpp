@@ -1,0 +1,123 @@
+#include "harness/compare/metric.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/harness/compare/sample_trace.hpp"
+
+namespace attest {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// 4 ms apart; the setpoint is level, and the attitude rolls by these errors.
+Trace rolled_by(const std::vector<double>& errors_deg) {
+  Trace trace = sample_trace(errors_deg.size());
+  for (const double error : errors_deg) {
+    const double half = error * std::numbers::pi / 360;
+    PlantSample plant{};
+    plant.q = {static_cast<float>(std::cos(half)), static_cast<float>(std::sin(half)), 0, 0};
+    trace.plant.push_back(plant);
+  }
+  return trace;
+}
+
+Metric metric(Measure measure) {
+  Metric result;
+  result.measure = measure;
+  return result;
+}
+
+TEST(Measure, IsReadBackFromItsName) {
+  for (int i = 0; i <= static_cast<int>(Measure::sink_m); ++i) {
+    const auto measure = static_cast<Measure>(i);
+    const auto parsed = parse_measure(name_of(measure));
+    ASSERT_TRUE(parsed);
+    EXPECT_EQ(*parsed, measure);
+  }
+  const auto unknown = parse_measure("settling_time");
+  ASSERT_FALSE(unknown);
+  EXPECT_THAT(unknown.error().message, HasSubstr("did you mean `settling_time_s`?"));
+  EXPECT_THAT(unknown.error().message, HasSubstr("sink_m"));
+}
+
+TEST(SettlingTime, IsOfTheLastArrivalInTheBand) {
+  Metric settles = metric(Measure::settling_time_s);
+  EXPECT_NEAR(measured(settles, rolled_by({30, 1, 3, 1.9, 1, 0})), 0.012, 1e-12);
+  EXPECT_EQ(measured(settles, rolled_by({1, 1, 1})), 0);
+  EXPECT_EQ(measured(settles, rolled_by({1, 1, 3})), infinity);
+  settles.band_deg = 5;
+  EXPECT_NEAR(measured(settles, rolled_by({30, 1, 3, 1.9, 1, 0})), 0.004, 1e-12);
+}
+
+TEST(SettlingTime, CountsFromTheBeginOfTheWindow) {
+  Metric settles = metric(Measure::settling_time_s);
+  const Trace trace = rolled_by({0, 0, 30, 20, 10, 1, 1, 30});
+  settles.window = {0.008, 0.028};
+  EXPECT_NEAR(measured(settles, trace), 0.012, 1e-12);
+  settles.window = {0.008, 0.032};
+  EXPECT_EQ(measured(settles, trace), infinity);
+  settles.window = {1, 2};
+  EXPECT_TRUE(std::isnan(measured(settles, trace)));
+}
+
+TEST(Overshoot, IsWhatComesAfterTheFirstArrival) {
+  const Metric overshoots = metric(Measure::overshoot_deg);
+  EXPECT_NEAR(measured(overshoots, rolled_by({40, 10, 1, -7, 3, 0})), 7, 1e-4);
+  EXPECT_EQ(measured(overshoots, rolled_by({40, 10, 3})), infinity);
+}
+
+// By the quaternions' directions alone.
+TEST(AttitudeError, DoesNotMindSignsAndIsFineNearZero) {
+  Trace trace = rolled_by({0.001, 0.001});
+  trace.samples[1].in.vehicle_attitude_setpoint.q_d[0] = -1;
+  EXPECT_NEAR(measured(metric(Measure::rms_attitude_error_deg), trace), 0.001, 1e-6);
+}
+
+TEST(AttitudeError, OfNaNIsNeverWithinTheBand) {
+  Trace trace = rolled_by({0, 0, 0});
+  trace.plant[2].q[1] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(measured(metric(Measure::settling_time_s), trace), infinity);
+}
+
+TEST(RateError, IsAgainstTheSetpointInForce) {
+  Trace trace = rolled_by({0});
+  Sample& sample = trace.samples[0];
+  trace.plant[0].rate_rad_s = {1, 2, 3};
+  sample.out.vehicle_rates_setpoint = {1, 2, 1, 0, 1};
+  EXPECT_NEAR(measured(metric(Measure::rms_rate_error_rad_s), trace), 2, 1e-6);
+  // Rates from outside: the unit's own are not asked.
+  sample.in.vehicle_control_mode.flag_control_attitude_enabled = 0;
+  sample.in.vehicle_control_mode.flag_control_manual_enabled = 0;
+  sample.in.vehicle_rates_setpoint = {1, 2, 0, 0};
+  EXPECT_NEAR(measured(metric(Measure::rms_rate_error_rad_s), trace), 3, 1e-6);
+}
+
+TEST(Metric, PeaksDutyAndSink) {
+  Trace trace = rolled_by({0, 0, 0, 0});
+  trace.plant[1].rate_rad_s = {3, 0, -4};
+  trace.plant[2].saturated = 1;
+  trace.plant[3].position_m = {0, 0, 1.5f};
+  for (Sample& sample : trace.samples) sample.out.mc_att_ctrl_status = {};
+  trace.samples[2].out.mc_att_ctrl_status.pitch_rate_integ = -0.25f;
+  EXPECT_NEAR(measured(metric(Measure::peak_rate_rad_s), trace), 5, 1e-6);
+  EXPECT_EQ(measured(metric(Measure::saturation_duty), trace), 0.25);
+  EXPECT_EQ(measured(metric(Measure::peak_integral), trace), 0.25);
+  EXPECT_EQ(measured(metric(Measure::sink_m), trace), 1.5);
+}
+
+TEST(Metric, VersusAnotherWindowIsARatio) {
+  Metric ratio = metric(Measure::rms_attitude_error_deg);
+  ratio.window = {0.008, infinity};
+  ratio.versus = Window{0, 0.008};
+  EXPECT_NEAR(measured(ratio, rolled_by({10, 10, 5, 5})), 0.5, 1e-6);
+}
+
+}  // namespace
+}  // namespace attest
