@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cmath>
+#include <utility>
 
 #include "controller/reference/gains.hpp"
 #include "controller/reference/inline.hpp"
@@ -89,23 +90,14 @@ struct AttitudeStages {
     return q_BD.w() >= Scalar(0) ? Vector(imaginary * Scalar(2)) : Vector(-imaginary * Scalar(2));
   }
 
+  // A tilt error beyond 90 deg.
+  ATTEST_INLINE static bool is_upset(Scalar tilt_cosine) { return tilt_cosine < Scalar(0); }
+
   // The direct share grows from 0 at 90 deg of tilt error.
   ATTEST_INLINE static Vector blend(const Vector& error_B, const Vector& direct_B,
                                     Scalar tilt_cosine, Scalar weight) {
     const Scalar share = tilt_cosine * tilt_cosine * weight;
     return error_B * (Scalar(1) - share) + direct_B * share;
-  }
-
-  // Rotation [rad, body axes] that takes the body to the desired attitude.
-  ATTEST_INLINE static Vector attitude_error(const Matrix& R_WB, const Matrix& R_WD,
-                                             Scalar weight) {
-    const TiltError<Scalar> tilt = tilt_error(R_WB, R_WD);
-    Vector error_B = tilt.rotation_B;
-    error_B[2] = yaw_error(nose_after_tilt(R_WB, tilt), R_WD, weight);
-    if (tilt.cosine < Scalar(0)) {
-      error_B = blend(error_B, direct_error(R_WB, R_WD), tilt.cosine, weight);
-    }
-    return error_B;
   }
 
   ATTEST_INLINE static Vector proportional(const Vector& error_B,
@@ -130,12 +122,12 @@ struct AttitudeStages {
   }
 };
 
-template <typename Scalar>
+// Stages is a policy: the law itself, or the law with a stage replaced (controller/faults).
+template <typename Scalar, typename Stages = AttitudeStages<Scalar>>
 class AttitudeControl {
  public:
-  using Stages = AttitudeStages<Scalar>;
-
-  explicit AttitudeControl(Profile profile) : profile_(profile) {}
+  explicit AttitudeControl(Profile profile, Stages stages = {})
+      : profile_(profile), stages_(std::move(stages)) {}
 
   void set_gains(const AttitudeGains<Scalar>& gains) { gains_ = gains; }
 
@@ -143,25 +135,43 @@ class AttitudeControl {
   Vector3<Scalar> update(const AttitudeInput<Scalar>& in) const;
 
  private:
+  Vector3<Scalar> error(const Matrix3<Scalar>& R_WB, const Matrix3<Scalar>& R_WD,
+                        Scalar weight) const;
+
   Profile profile_;
   AttitudeGains<Scalar> gains_{};
+  [[no_unique_address]] Stages stages_;
 };
 
-template <typename Scalar>
-ATTEST_INLINE Vector3<Scalar> AttitudeControl<Scalar>::update(
+// Rotation [rad, body axes] that takes the body to the desired attitude.
+template <typename Scalar, typename Stages>
+ATTEST_INLINE Vector3<Scalar> AttitudeControl<Scalar, Stages>::error(const Matrix3<Scalar>& R_WB,
+                                                                     const Matrix3<Scalar>& R_WD,
+                                                                     Scalar weight) const {
+  const TiltError<Scalar> tilt = stages_.tilt_error(R_WB, R_WD);
+  Vector3<Scalar> error_B = tilt.rotation_B;
+  error_B[2] = stages_.yaw_error(stages_.nose_after_tilt(R_WB, tilt), R_WD, weight);
+  if (stages_.is_upset(tilt.cosine)) {
+    error_B = stages_.blend(error_B, stages_.direct_error(R_WB, R_WD), tilt.cosine, weight);
+  }
+  return error_B;
+}
+
+template <typename Scalar, typename Stages>
+ATTEST_INLINE Vector3<Scalar> AttitudeControl<Scalar, Stages>::update(
     const AttitudeInput<Scalar>& in) const {
   const Matrix3<Scalar> R_WB = rotation_matrix(in.q_WB);
   const Matrix3<Scalar> R_WD = rotation_matrix(in.q_WD);
-  const Scalar weight = Stages::yaw_weight(R_WD);
-  const Vector3<Scalar> error_B = Stages::attitude_error(R_WB, R_WD, weight);
+  const Scalar weight = stages_.yaw_weight(R_WD);
+  const Vector3<Scalar> error_B = error(R_WB, R_WD, weight);
   Vector3<Scalar> rates_sp =
-      Stages::limit(Stages::proportional(error_B, gains_), in.autonomous, gains_);
+      stages_.limit(stages_.proportional(error_B, gains_), in.autonomous, gains_);
   Scalar& yaw = rates_sp[2];
   if (in.weathervane && profile_ == Profile::px4_v1_3_4) {
-    yaw = Stages::weathervane_limit(yaw, gains_);
+    yaw = stages_.weathervane_limit(yaw, gains_);
   }
-  yaw = Stages::yaw_feed_forward(yaw, in.yaw_sp_move_rate_rad_s, weight, gains_);
-  if (in.weathervane) yaw = Stages::weathervane_limit(yaw, gains_);
+  yaw = stages_.yaw_feed_forward(yaw, in.yaw_sp_move_rate_rad_s, weight, gains_);
+  if (in.weathervane) yaw = stages_.weathervane_limit(yaw, gains_);
   return rates_sp;
 }
 

@@ -21,34 +21,24 @@
 #include "controller/reference/parameters.hpp"
 #include "controller/reference/profile.hpp"
 #include "controller/reference/rate_control.hpp"
+#include "controller/reference/step_stages.hpp"
 #include "controller/reference/tailsitter_recovery.hpp"
 
 namespace attest::reference {
 
-// The latched copies of the topics. All zero at first, except that the vehicle starts as a rotary
-// wing. `rates_setpoint` is one variable: what the controller publishes overwrites it too.
-struct Topics {
-  decltype(attest_inputs::vehicle_attitude_setpoint) attitude_setpoint{};
-  decltype(attest_inputs::vehicle_rates_setpoint) rates_setpoint{};
-  decltype(attest_inputs::manual_control_setpoint) manual{};
-  decltype(attest_inputs::vehicle_control_mode) mode{};
-  MotorLimits limits{};
-  float battery_scale = 0.0f;
-  bool armed = false;
-  bool is_rotary_wing = true;
+// A law: the stages of every part. This one is the law itself; controller/faults has others.
+template <typename Scalar>
+struct ReferenceLaw {
+  [[no_unique_address]] StepStages<Scalar> step;
+  [[no_unique_address]] AttitudeStages<Scalar> attitude;
+  [[no_unique_address]] RateStages<Scalar> rate;
+  [[no_unique_address]] RecoveryStages<Scalar> recovery;
 };
 
-// What the outer loop asks of the rate loop in one step.
-template <typename Scalar>
-struct RateCommand {
-  Vector3<Scalar> rates_sp_B;  // [rad/s]
-  Scalar thrust_sp;            // [0..1]
-};
-
-template <typename Scalar>
+template <typename Scalar, typename Law = ReferenceLaw<Scalar>>
 class McAttControl {
  public:
-  explicit McAttControl(Profile profile);
+  explicit McAttControl(Profile profile, const Law& law = {});
 
   // Sets one parameter by its PX4 name; it takes effect in the first step, then in the next one
   // that has ATTEST_UPDATED_PARAMETER_UPDATE set. False: see set_parameter() in parameters.hpp.
@@ -58,14 +48,12 @@ class McAttControl {
   void step(const attest_inputs& in, attest_outputs& out);
 
  private:
-  Scalar advance_clock(std::uint64_t timestamp_us);
   void latch_topics(const attest_inputs& in);
   bool take_pending(std::uint32_t topic);
   void apply_parameters();
   void apply_rattitude();
   RateCommand<Scalar> outer_loop(const attest_inputs& in, attest_outputs& out);
   RateCommand<Scalar> control_attitude(const attest_inputs& in);
-  RateCommand<Scalar> control_acro() const;
   RateCommand<Scalar> follow_rates_setpoint(const attest_inputs& in);
   void publish_rates_setpoint(const RateCommand<Scalar>& command, attest_outputs& out);
   void inner_loop(const attest_inputs& in, const RateCommand<Scalar>& command, Scalar dt_s,
@@ -76,10 +64,11 @@ class McAttControl {
 
   Profile profile_;
   Parameters parameters_;
-  Gains<Scalar> gains_;
-  AttitudeControl<Scalar> attitude_;
-  RateControl<Scalar> rate_;
-  TailsitterRecovery<Scalar> recovery_;
+  Gains<Scalar> gains_{};
+  [[no_unique_address]] decltype(Law::step) stages_;
+  AttitudeControl<Scalar, decltype(Law::attitude)> attitude_;
+  RateControl<Scalar, decltype(Law::rate)> rate_;
+  TailsitterRecovery<Scalar, decltype(Law::recovery)> recovery_;
   Topics topics_;
   std::uint64_t last_timestamp_us_ = 0;
   std::uint32_t pending_ = 0;  // ATTEST_UPDATED_... bits of topics not yet latched

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cmath>
+#include <utility>
 
 #include "controller/reference/gains.hpp"
 #include "controller/reference/inline.hpp"
@@ -76,6 +77,11 @@ struct RateStages {
     return gains.feed_forward.cwiseProduct(rates_sp - rates_sp_prev) / dt_s;
   }
 
+  ATTEST_INLINE static Vector control(const Vector& p, const Vector& d, const Vector& integral,
+                                      const Vector& ff) {
+    return ((p + d) + integral) + ff;
+  }
+
   ATTEST_INLINE static bool may_integrate(Scalar thrust_sp, const MotorLimits& limits) {
     return thrust_sp > Scalar(takeoff_thrust) && !limits.lower && !limits.upper;
   }
@@ -90,23 +96,18 @@ struct RateStages {
     return inside && !frozen ? next : integral;
   }
 
-  ATTEST_INLINE static Vector integrate(const Vector& integral, const Vector& control,
-                                        const Vector& error, const RateInput<Scalar>& in,
-                                        const RateGains<Scalar>& gains, bool yaw_frozen) {
-    if (!may_integrate(in.thrust_sp, in.limits)) return integral;
-    const Vector growth = gains.integral.cwiseProduct(error) * in.dt_s;
-    return {integrate_axis(integral[0], control[0], in.thrust_sp, growth[0], false),
-            integrate_axis(integral[1], control[1], in.thrust_sp, growth[1], false),
-            integrate_axis(integral[2], control[2], in.thrust_sp, growth[2], yaw_frozen)};
+  ATTEST_INLINE static Vector growth(const Vector& error, Scalar dt_s,
+                                     const RateGains<Scalar>& gains) {
+    return gains.integral.cwiseProduct(error) * dt_s;
   }
 };
 
-template <typename Scalar>
+// Stages is a policy: the law itself, or the law with a stage replaced (controller/faults).
+template <typename Scalar, typename Stages = RateStages<Scalar>>
 class RateControl {
  public:
-  using Stages = RateStages<Scalar>;
-
-  explicit RateControl(Profile profile) : profile_(profile) {}
+  explicit RateControl(Profile profile, Stages stages = {})
+      : profile_(profile), stages_(std::move(stages)) {}
 
   void set_gains(const RateGains<Scalar>& gains) { gains_ = gains; }
 
@@ -120,34 +121,50 @@ class RateControl {
 
  private:
   Vector3<Scalar> feed_forward(const RateInput<Scalar>& in) const;
+  Vector3<Scalar> integrate(const Vector3<Scalar>& control, const Vector3<Scalar>& error,
+                            const RateInput<Scalar>& in) const;
 
   Profile profile_;
   RateGains<Scalar> gains_{};
   Vector3<Scalar> integral_ = Vector3<Scalar>::Zero();
   Vector3<Scalar> rates_prev_ = Vector3<Scalar>::Zero();
   Vector3<Scalar> rates_sp_prev_ = Vector3<Scalar>::Zero();
+  [[no_unique_address]] Stages stages_;
 };
 
-template <typename Scalar>
-ATTEST_INLINE Vector3<Scalar> RateControl<Scalar>::feed_forward(const RateInput<Scalar>& in) const {
-  if (profile_ == Profile::px4_v1_5_5) return Stages::feed_forward(in.rates_sp_B, gains_);
-  return Stages::feed_forward_change(in.rates_sp_B, rates_sp_prev_, in.dt_s, gains_);
+template <typename Scalar, typename Stages>
+ATTEST_INLINE Vector3<Scalar> RateControl<Scalar, Stages>::feed_forward(
+    const RateInput<Scalar>& in) const {
+  if (profile_ == Profile::px4_v1_5_5) return stages_.feed_forward(in.rates_sp_B, gains_);
+  return stages_.feed_forward_change(in.rates_sp_B, rates_sp_prev_, in.dt_s, gains_);
 }
 
-template <typename Scalar>
-ATTEST_INLINE Vector3<Scalar> RateControl<Scalar>::update(const RateInput<Scalar>& in) {
-  const bool v1_5_5 = profile_ == Profile::px4_v1_5_5;
+template <typename Scalar, typename Stages>
+ATTEST_INLINE Vector3<Scalar> RateControl<Scalar, Stages>::integrate(
+    const Vector3<Scalar>& control, const Vector3<Scalar>& error,
+    const RateInput<Scalar>& in) const {
+  if (!stages_.may_integrate(in.thrust_sp, in.limits)) return integral_;
+  const Vector3<Scalar> growth = stages_.growth(error, in.dt_s, gains_);
+  const auto axis = [&](int i, bool frozen) {
+    return stages_.integrate_axis(integral_[i], control[i], in.thrust_sp, growth[i], frozen);
+  };
+  const bool yaw_frozen = profile_ == Profile::px4_v1_5_5 && in.limits.yaw;
+  return {axis(0, false), axis(1, false), axis(2, yaw_frozen)};
+}
+
+template <typename Scalar, typename Stages>
+ATTEST_INLINE Vector3<Scalar> RateControl<Scalar, Stages>::update(const RateInput<Scalar>& in) {
   if (!in.flying) integral_.setZero();
-  const Scalar attenuation =
-      v1_5_5 ? Stages::throttle_attenuation(in.published_thrust_sp, gains_) : Scalar(1);
+  const Scalar attenuation = profile_ == Profile::px4_v1_5_5
+                                 ? stages_.throttle_attenuation(in.published_thrust_sp, gains_)
+                                 : Scalar(1);
   const Vector3<Scalar> error = in.rates_sp_B - in.rates_B;
-  const Vector3<Scalar> control = ((Stages::proportional(error, attenuation, gains_) +
-                                    Stages::derivative(rates_prev_, in.rates_B, in.dt_s, gains_)) +
-                                   integral_) +
-                                  feed_forward(in);
+  const Vector3<Scalar> control = stages_.control(
+      stages_.proportional(error, attenuation, gains_),
+      stages_.derivative(rates_prev_, in.rates_B, in.dt_s, gains_), integral_, feed_forward(in));
   rates_prev_ = in.rates_B;
   rates_sp_prev_ = in.rates_sp_B;
-  integral_ = Stages::integrate(integral_, control, error, in, gains_, v1_5_5 && in.limits.yaw);
+  integral_ = integrate(control, error, in);
   return control;
 }
 

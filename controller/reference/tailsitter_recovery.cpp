@@ -109,20 +109,12 @@ Scalar RecoveryStages<Scalar>::yaw_feed_forward(Scalar yaw_rate_sp, Scalar move_
 }
 
 template <typename Scalar>
-Vector3<Scalar> TailsitterRecovery<Scalar>::update(const Quaternion<Scalar>& q_WB,
-                                                   const Quaternion<Scalar>& q_WD,
-                                                   Scalar yaw_sp_move_rate_rad_s) {
-  const RecoveryTilt<Scalar> tilt = Stages::tilt(q_WB, q_WD);
-  recovering_ = Stages::latch(recovering_, tilt.angle_rad);
-  Vector3<Scalar> rates_sp =
-      recovering_ ? Stages::optimal_rates(tilt) : Stages::quaternion_rates(q_WB, q_WD, gains_);
-  rates_sp[2] = Stages::yaw_feed_forward(rates_sp[2], yaw_sp_move_rate_rad_s, q_WB, gains_);
-  return clamp_each(rates_sp, gains_.rate_max_rad_s);
+Vector3<Scalar> RecoveryStages<Scalar>::limit(const Vector& rates_sp_B,
+                                              const AttitudeGains<Scalar>& gains) {
+  return clamp_each(rates_sp_B, gains.rate_max_rad_s);
 }
 
 template struct RecoveryStages<float>;
 template struct RecoveryStages<double>;
-template class TailsitterRecovery<float>;
-template class TailsitterRecovery<double>;
 
 }  // namespace attest::reference

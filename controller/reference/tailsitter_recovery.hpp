@@ -8,6 +8,8 @@
 // whether a recovery is under way. No clock, no allocation; one thread at a time.
 #pragma once
 
+#include <utility>
+
 #include "controller/reference/gains.hpp"
 #include "controller/reference/ordered.hpp"
 #include "controller/reference/rotation.hpp"
@@ -35,12 +37,14 @@ struct RecoveryStages {
   static Scalar yaw_feed_forward(Scalar yaw_rate_sp, Scalar move_rate,
                                  const Quaternion<Scalar>& q_WB,
                                  const AttitudeGains<Scalar>& gains);
+  static Vector limit(const Vector& rates_sp_B, const AttitudeGains<Scalar>& gains);
 };
 
-template <typename Scalar>
+// Stages is a policy: the law itself, or the law with a stage replaced (controller/faults).
+template <typename Scalar, typename Stages = RecoveryStages<Scalar>>
 class TailsitterRecovery {
  public:
-  using Stages = RecoveryStages<Scalar>;
+  explicit TailsitterRecovery(Stages stages = {}) : stages_(std::move(stages)) {}
 
   void set_gains(const AttitudeGains<Scalar>& gains) { gains_ = gains; }
 
@@ -51,11 +55,22 @@ class TailsitterRecovery {
  private:
   AttitudeGains<Scalar> gains_{};
   bool recovering_ = false;
+  [[no_unique_address]] Stages stages_;
 };
+
+template <typename Scalar, typename Stages>
+Vector3<Scalar> TailsitterRecovery<Scalar, Stages>::update(const Quaternion<Scalar>& q_WB,
+                                                           const Quaternion<Scalar>& q_WD,
+                                                           Scalar yaw_sp_move_rate_rad_s) {
+  const RecoveryTilt<Scalar> tilt = stages_.tilt(q_WB, q_WD);
+  recovering_ = stages_.latch(recovering_, tilt.angle_rad);
+  Vector3<Scalar> rates_sp =
+      recovering_ ? stages_.optimal_rates(tilt) : stages_.quaternion_rates(q_WB, q_WD, gains_);
+  rates_sp[2] = stages_.yaw_feed_forward(rates_sp[2], yaw_sp_move_rate_rad_s, q_WB, gains_);
+  return stages_.limit(rates_sp, gains_);
+}
 
 extern template struct RecoveryStages<float>;
 extern template struct RecoveryStages<double>;
-extern template class TailsitterRecovery<float>;
-extern template class TailsitterRecovery<double>;
 
 }  // namespace attest::reference

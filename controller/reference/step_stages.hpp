@@ -1,0 +1,89 @@
+// What surrounds the two loops in a step: time, modes, sticks and actuators.
+//
+// Angular rates [rad/s], time [s], sticks and thrust as in attest_unit.h. Pure; any thread.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "controller/attest_unit.h"
+#include "controller/reference/gains.hpp"
+#include "controller/reference/inline.hpp"
+#include "controller/reference/profile.hpp"
+#include "controller/reference/rate_control.hpp"
+
+namespace attest::reference {
+
+// The latched copies of the topics. All zero at first, except that the vehicle starts as a rotary
+// wing. `rates_setpoint` is one variable: what the controller publishes overwrites it too.
+struct Topics {
+  decltype(attest_inputs::vehicle_attitude_setpoint) attitude_setpoint{};
+  decltype(attest_inputs::vehicle_rates_setpoint) rates_setpoint{};
+  decltype(attest_inputs::manual_control_setpoint) manual{};
+  decltype(attest_inputs::vehicle_control_mode) mode{};
+  MotorLimits limits{};
+  float battery_scale = 0.0f;
+  bool armed = false;
+  bool is_rotary_wing = true;
+};
+
+// What the outer loop asks of the rate loop in one step.
+template <typename Scalar>
+struct RateCommand {
+  Vector3<Scalar> rates_sp_B;  // [rad/s]
+  Scalar thrust_sp;            // [0..1]
+};
+
+template <typename Scalar>
+struct StepStages {
+  using Vector = Vector3<Scalar>;
+
+  // A step is taken to last between 2 ms and 20 ms, whatever the timestamps say.
+  ATTEST_INLINE static Scalar step_time(std::uint64_t now_us, std::uint64_t last_us) {
+    constexpr float shortest_s = 0.002f, longest_s = 0.02f;
+    const Scalar dt_s = Scalar(now_us - last_us) / Scalar(1000000);
+    return clamp(dt_s, Scalar(shortest_s), Scalar(longest_s));
+  }
+
+  static Gains<Scalar> gains(const Parameters& parameters) {
+    return compute_gains<Scalar>(parameters);
+  }
+
+  // Rattitude: a large deflection flies rates.
+  ATTEST_INLINE static bool sticks_beyond(const decltype(Topics::manual)& manual,
+                                          Scalar threshold) {
+    return std::abs(Scalar(manual.y)) > threshold || std::abs(Scalar(manual.x)) > threshold;
+  }
+
+  ATTEST_INLINE static bool is_autonomous(const decltype(Topics::mode)& mode, Profile profile) {
+    const bool by_vehicle = mode.flag_control_velocity_enabled != 0 ||
+                            (profile == Profile::px4_v1_5_5 && mode.flag_control_auto_enabled != 0);
+    return by_vehicle && mode.flag_control_manual_enabled == 0;
+  }
+
+  // Acro leaves the mixer some room above the throttle stick.
+  ATTEST_INLINE static RateCommand<Scalar> acro(const decltype(Topics::manual)& manual,
+                                                const Gains<Scalar>& gains) {
+    constexpr float thrust_max = 0.9f;
+    const Vector sticks(Scalar(manual.y), Scalar(-manual.x), Scalar(manual.r));
+    // Written so that a NaN throttle gives the maximum.
+    const float thrust_sp = manual.z < thrust_max ? manual.z : thrust_max;
+    return {sticks.cwiseProduct(gains.acro_rate_max_rad_s), Scalar(thrust_sp)};
+  }
+
+  ATTEST_INLINE static bool is_flying(const Topics& topics) {
+    return topics.armed && topics.is_rotary_wing;
+  }
+
+  ATTEST_INLINE static float guarded(float value) { return std::isfinite(value) ? value : 0.0f; }
+
+  // What the first four controls are multiplied with.
+  ATTEST_INLINE static float battery_factor(const Topics& topics, const Gains<Scalar>& gains,
+                                            Profile profile) {
+    const bool scales =
+        profile == Profile::px4_v1_5_5 && gains.battery_scaling && topics.battery_scale > 0.0f;
+    return scales ? topics.battery_scale : 1.0f;
+  }
+};
+
+}  // namespace attest::reference
