@@ -115,7 +115,7 @@ ATTEST_INLINE RateCommand<Scalar> McAttControl<Scalar, Law>::control_attitude(
   if (recovery_enabled_) return {recovery_.update(q_WB, q_WD, move_rate), thrust_sp};
 
   const bool autonomous = stages_.is_autonomous(topics_.mode, profile_);
-  const bool weathervane = autonomous && setpoint.disable_mc_yaw_control != 0;
+  const bool weathervane = stages_.is_weathervaning(autonomous, setpoint);
   if (weathervane) rate_.reset_yaw_integral();
   return {attitude_.update({q_WB, q_WD, move_rate, autonomous, weathervane}), thrust_sp};
 }

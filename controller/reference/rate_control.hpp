@@ -159,9 +159,9 @@ ATTEST_INLINE Vector3<Scalar> RateControl<Scalar, Stages>::update(const RateInpu
                                  ? stages_.throttle_attenuation(in.published_thrust_sp, gains_)
                                  : Scalar(1);
   const Vector3<Scalar> error = in.rates_sp_B - in.rates_B;
-  const Vector3<Scalar> control = stages_.control(
-      stages_.proportional(error, attenuation, gains_),
-      stages_.derivative(rates_prev_, in.rates_B, in.dt_s, gains_), integral_, feed_forward(in));
+  const Vector3<Scalar> p = stages_.proportional(error, attenuation, gains_);
+  const Vector3<Scalar> d = stages_.derivative(rates_prev_, in.rates_B, in.dt_s, gains_);
+  const Vector3<Scalar> control = stages_.control(p, d, integral_, feed_forward(in));
   rates_prev_ = in.rates_B;
   rates_sp_prev_ = in.rates_sp_B;
   integral_ = integrate(control, error, in);

@@ -61,6 +61,12 @@ struct StepStages {
     return by_vehicle && mode.flag_control_manual_enabled == 0;
   }
 
+  // Lets the wind turn the nose.
+  ATTEST_INLINE static bool is_weathervaning(bool autonomous,
+                                             const decltype(Topics::attitude_setpoint)& setpoint) {
+    return autonomous && setpoint.disable_mc_yaw_control != 0;
+  }
+
   // Acro leaves the mixer some room above the throttle stick.
   ATTEST_INLINE static RateCommand<Scalar> acro(const decltype(Topics::manual)& manual,
                                                 const Gains<Scalar>& gains) {

@@ -61,7 +61,9 @@ void add_run(CLI::App& app, const Globals& globals, Action& action) {
   options->worker.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   CLI::App* command = app.add_subcommand(
       "run", "Run a port through the cases and compare it with the golden traces");
-  command->add_option("--port", options->worker.port, "`builtin` (the reference) or `lib:PATH`")
+  command
+      ->add_option("--port", options->worker.port,
+                   "`builtin` (the reference), `lib:PATH` or `fault:ID`")
       ->type_name("PORT")
       ->capture_default_str();
   add_selection(*command, options->select);
@@ -96,7 +98,7 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("files", options->files, "Traces (CSV) of a controller, or of a mixer")
       ->type_name("TRACE")
       ->required();
-  command->add_option("--port", options->port, "`builtin` or `lib:PATH`")
+  command->add_option("--port", options->port, "`builtin`, `lib:PATH` or `fault:ID`")
       ->type_name("PORT")
       ->capture_default_str();
   command
@@ -133,7 +135,7 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("--vehicle", options->vehicle, "One of `attest list --vehicles`")
       ->type_name("VEHICLE");
   command->add_option("--plant", options->plant, "`mujoco` or `ode`")->type_name("PLANT");
-  command->add_option("--port", options->port, "`builtin` or `lib:PATH`")
+  command->add_option("--port", options->port, "`builtin`, `lib:PATH` or `fault:ID`")
       ->type_name("PORT")
       ->capture_default_str();
   command->add_option("--out", options->out, "The flown trace (CSV)")
@@ -144,6 +146,21 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
       ->capture_default_str();
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return sim_command(*options, globals); };
+  });
+}
+
+void add_faults(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<FaultOptions>();
+  options->jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  CLI::App* command = app.add_subcommand(
+      "faults", "How good the suite is: which wrong controllers of the catalogue it catches");
+  command->add_option("fault", options->ids, "Only these faults")->type_name("ID");
+  command->add_flag("--list", options->list, "What is in the catalogue; runs nothing");
+  command->add_option("--jobs,-j", options->jobs, "Faults at a time")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return faults_command(*options, globals); };
   });
 }
 
@@ -207,7 +224,7 @@ void add_doctor(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<DoctorOptions>();
   CLI::App* command = app.add_subcommand(
       "doctor", "Check the machine, the suite, the reference and a port, and say what is wrong");
-  command->add_option("--port", options->port, "`builtin` or `lib:PATH`")
+  command->add_option("--port", options->port, "`builtin`, `lib:PATH` or `fault:ID`")
       ->type_name("PORT")
       ->capture_default_str();
   command->callback([options, &globals, &action] {
@@ -234,6 +251,7 @@ int run_command_line(int argc, char** argv) {
   add_replay(app, globals, action);
   add_sim(app, globals, action);
   add_compare(app, globals, action);
+  add_faults(app, globals, action);
   add_list(app, globals, action);
   add_vectors(app, globals, action);
   add_bless(app, globals, action);

@@ -77,6 +77,13 @@ struct SimOptions {
 };
 int sim_command(const SimOptions& options, const Globals& globals);
 
+struct FaultOptions {
+  std::vector<std::string> ids;  // empty: all
+  bool list = false;
+  int jobs = 1;
+};
+int faults_command(const FaultOptions& options, const Globals& globals);
+
 struct ListOptions {
   SelectionOptions select;
   bool groups = false, parameters = false, channels = false, modes = false, vehicles = false;

@@ -1,7 +1,7 @@
 // What the harness tests: a port is a kind of controller, a unit one running instance of it.
 //
 // Ways in share this meaning: `builtin` (the reference), `lib:PATH` (a shared library with the ABI
-// of attest_unit.h).
+// of attest_unit.h), `fault:ID` (the reference with a mistake of the catalogue).
 #pragma once
 
 #include <memory>
@@ -36,9 +36,9 @@ class Port {
   virtual std::unique_ptr<Unit> create(const std::string& profile) = 0;
 };
 
-// Opens "builtin" or "lib:PATH". Loading a library runs its code: a program that must survive a bad
-// port does this in a child process. Errors: unknown kind, missing library, missing symbol, wrong
-// ABI version, incomplete function table.
+// Opens "builtin", "lib:PATH" or "fault:ID". Loading a library runs its code: a program that must
+// survive a bad port does this in a child process. Errors: unknown kind, missing library, missing
+// symbol, wrong ABI version, incomplete function table.
 Result<std::unique_ptr<Port>> open_port(const std::string& specification);
 
 }  // namespace attest

@@ -1,0 +1,218 @@
+// Wrong outputs: battery scaling and the actuator topic.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "controller/faults/groups.hpp"
+
+namespace attest::faults {
+namespace {
+
+using Controls = float[8];
+
+template <typename Change>
+void change_controls(FaultyLaw& law, Change change) {
+  also_after(law, [change](const attest_inputs& in, attest_outputs& out) mutable {
+    if (out.actuator_controls_0.published != 0) change(out.actuator_controls_0.control, in);
+  });
+}
+
+// The battery's factor is not applied by the law, but here.
+template <typename Apply>
+void scale_otherwise(FaultyLaw& law, Apply apply) {
+  auto factor = std::make_shared<float>(1.0f);
+  law.step.battery_factor = [factor](const Topics& topics, const Gains& gains, Profile profile) {
+    *factor = StepStages::Law::battery_factor(topics, gains, profile);
+    return 1.0f;
+  };
+  change_controls(
+      law, [factor, apply](Controls& control, const attest_inputs&) { apply(control, *factor); });
+}
+
+template <typename Factor>
+void change_factor(FaultyLaw& law, Factor factor) {
+  law.step.battery_factor = [factor](const Topics& topics, const Gains& gains, Profile) {
+    return factor(topics.battery_scale, gains.battery_scaling);
+  };
+}
+
+const Fault battery[] = {
+    {"battery-never", "battery", Stage::scaling, "never scales", "scaling switched on",
+     "a missing step",
+     [](FaultyLaw& law) { change_factor(law, [](float, bool) { return 1.0f; }); }},
+    {"battery-always", "battery", Stage::scaling, "scales without being asked to",
+     "a scale with scaling off", "a condition dropped",
+     [](FaultyLaw& law) {
+       change_factor(law, [](float scale, bool) { return scale > 0 ? scale : 1.0f; });
+     }},
+    {"battery-unguarded", "battery", Stage::scaling, "scales by zero and less", "a scale of 0",
+     "a condition dropped",
+     [](FaultyLaw& law) {
+       change_factor(law, [](float scale, bool on) { return on ? scale : 1.0f; });
+     }},
+    {"battery-divides", "battery", Stage::scaling, "divides by the scale", "a scale but 1",
+     "a wrong factor",
+     [](FaultyLaw& law) {
+       change_factor(law, [](float scale, bool on) { return on && scale > 0 ? 1 / scale : 1.0f; });
+     }},
+    {"battery-not-below-1", "battery", Stage::scaling, "ignores scales below 1", "a scale of 0.9",
+     "wrong branch threshold",
+     [](FaultyLaw& law) {
+       change_factor(law, [](float scale, bool on) { return on && scale > 1 ? scale : 1.0f; });
+     }},
+    {"battery-finite-only", "battery", Stage::scaling, "ignores an infinite scale",
+     "an infinite scale", "a helpful extra",
+     [](FaultyLaw& law) {
+       change_factor(law, [](float scale, bool on) {
+         return on && scale > 0 && std::isfinite(scale) ? scale : 1.0f;
+       });
+     }},
+    {"battery-not-thrust", "battery", Stage::scaling, "does not scale thrust", "a scale but 1",
+     "wrong axis",
+     [](FaultyLaw& law) {
+       scale_otherwise(law, [](Controls& control, float factor) {
+         for (int i = 0; i < 3; ++i) control[i] *= factor;
+       });
+     }},
+    {"battery-thrust-only", "battery", Stage::scaling, "scales thrust only", "a scale but 1",
+     "wrong axis",
+     [](FaultyLaw& law) {
+       scale_otherwise(law, [](Controls& control, float factor) { control[3] *= factor; });
+     }},
+    {"battery-all-8", "battery", Stage::scaling, "scales the landing gear too",
+     "a landing gear and a scale", "wrong axis",
+     [](FaultyLaw& law) {
+       scale_otherwise(law, [](Controls& control, float factor) {
+         for (float& c : control) c *= factor;
+       });
+     }},
+    {"battery-clamped", "battery", Stage::scaling, "clamps to 1 after scaling",
+     "controls beyond 1 by the scale", "misplaced clamp",
+     [](FaultyLaw& law) {
+       scale_otherwise(law, [](Controls& control, float factor) {
+         for (int i = 0; i < 4; ++i)
+           control[i] = reference::clamp(control[i] * factor, -1.0f, 1.0f);
+       });
+     }},
+    {"battery-before-guard", "battery", Stage::scaling, "scales before it asks for finite",
+     "an infinite scale", "order of stages",
+     [](FaultyLaw& law) {
+       scale_otherwise(law, [](Controls& control, float factor) {
+         for (int i = 0; i < 4; ++i) {
+           const float scaled = control[i] * factor;
+           control[i] = std::isfinite(scaled) ? scaled : 0;
+         }
+       });
+     }},
+    {"battery-seen-by-gates", "battery", Stage::scaling, "lets the integrator see scaled controls",
+     "a scaled control near a gate", "scaling order",
+     [](FaultyLaw& law) {
+       auto factor = std::make_shared<float>(1.0f);
+       law.step.battery_factor = [factor](const Topics& topics, const Gains& gains,
+                                          Profile profile) {
+         return *factor = StepStages::Law::battery_factor(topics, gains, profile);
+       };
+       law.rate.integrate_axis = [factor](float integral, float control, float thrust, float growth,
+                                          bool frozen) {
+         return RateStages::Law::integrate_axis(integral, control * *factor, thrust, growth,
+                                                frozen);
+       };
+     }},
+    {"battery-first-scale", "battery", Stage::scaling, "keeps the first scale it is told",
+     "a scale that changes", "a latch",
+     [](FaultyLaw& law) {
+       law.step.battery_factor = [kept = 0.0f](const Topics& topics, const Gains& gains,
+                                               Profile profile) mutable {
+         if (kept == 0 && topics.battery_scale > 0) kept = topics.battery_scale;
+         Topics then = topics;
+         then.battery_scale = kept;
+         return StepStages::Law::battery_factor(then, gains, profile);
+       };
+     }},
+};
+
+const Fault actuators[] = {
+    {"gear-missing", "actuators", Stage::output, "does not pass the landing gear on",
+     "a landing gear", "a missing step",
+     [](FaultyLaw& law) {
+       change_controls(law, [](Controls& control, const attest_inputs&) { control[7] = 0; });
+     }},
+    {"gear-on-4", "actuators", Stage::output, "puts the landing gear on control 4",
+     "a landing gear", "wrong index",
+     [](FaultyLaw& law) {
+       change_controls(
+           law, [](Controls& control, const attest_inputs&) { std::swap(control[4], control[7]); });
+     }},
+    {"gear-at-once", "actuators", Stage::output, "takes the landing gear in every mode",
+     "a setpoint in acro", "a latch",
+     [](FaultyLaw& law) {
+       change_controls(law, [](Controls& control, const attest_inputs& in) {
+         control[7] = in.vehicle_attitude_setpoint.landing_gear;
+       });
+     }},
+    {"gear-clamped", "actuators", Stage::output, "clamps the landing gear to 0 .. 1",
+     "a landing gear of -1", "misplaced clamp",
+     [](FaultyLaw& law) {
+       change_controls(law, [](Controls& control, const attest_inputs&) {
+         control[7] = reference::clamp(control[7], 0.0f, 1.0f);
+       });
+     }},
+    {"breaker-ignored", "actuators", Stage::output, "has no circuit breaker", "CBRK_RATE_CTRL",
+     "a missing step",
+     [](FaultyLaw& law) {
+       law.step.gains = [](const Parameters& parameters) {
+         Gains gains = StepStages::Law::gains(parameters);
+         gains.actuators_cut = false;
+         return gains;
+       };
+     }},
+    {"breaker-by-any-value", "actuators", Stage::output, "opens the breaker at any value",
+     "CBRK_RATE_CTRL of another value", "flag comparison",
+     [](FaultyLaw& law) {
+       law.step.gains = [](const Parameters& parameters) {
+         Gains gains = StepStages::Law::gains(parameters);
+         gains.actuators_cut = parameters.cbrk_rate_ctrl != 0;
+         return gains;
+       };
+     }},
+    {"breaker-stops-status", "actuators", Stage::output,
+     "publishes no integrals when the actuators are not", "CBRK_RATE_CTRL", "a misplaced condition",
+     [](FaultyLaw& law) {
+       also_after(law,
+                  [last = attest_outputs{}](const attest_inputs&, attest_outputs& out) mutable {
+                    if (out.actuator_controls_0.published == 0) {
+                      out.mc_att_ctrl_status = last.mc_att_ctrl_status;
+                      out.mc_att_ctrl_status.published = 0;
+                    }
+                    last = out;
+                  });
+     }},
+    {"thrust-negated", "actuators", Stage::output, "publishes thrust along z of FRD", "any thrust",
+     "handedness",
+     [](FaultyLaw& law) {
+       change_controls(law,
+                       [](Controls& control, const attest_inputs&) { control[3] = -control[3]; });
+     }},
+    {"thrust-limited", "actuators", Stage::output, "limits thrust to 0 .. 1", "a thrust beyond 1",
+     "misplaced clamp",
+     [](FaultyLaw& law) {
+       change_controls(law, [](Controls& control, const attest_inputs&) {
+         control[3] = reference::clamp(control[3], 0.0f, 1.0f);
+       });
+     }},
+    {"controls-not-cleared", "actuators", Stage::output, "leaves rubbish in controls 4 to 6",
+     "any step", "uninitialised memory",
+     [](FaultyLaw& law) {
+       change_controls(law, [](Controls& control, const attest_inputs&) {
+         control[4] = control[0];
+         control[6] = control[2];
+       });
+     }},
+};
+
+}  // namespace
+
+std::span<const Fault> battery_faults() { return battery; }
+std::span<const Fault> actuator_faults() { return actuators; }
+
+}  // namespace attest::faults

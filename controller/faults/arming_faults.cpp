@@ -1,0 +1,172 @@
+// Wrong beginnings and ends: arming, the kind of vehicle, what is not known yet.
+#include <cmath>
+#include <utility>
+
+#include "controller/faults/groups.hpp"
+
+namespace attest::faults {
+namespace {
+
+const Fault faults[] = {
+    {"disarm-keeps-integral", "arming", Stage::arming, "does not reset the integrals on disarm",
+     "disarmed after something was integrated", "a missing reset",
+     [](FaultyLaw& law) {
+       law.step.is_flying = [](const Topics& topics) { return topics.is_rotary_wing; };
+     }},
+    {"fixed-wing-keeps-integral", "arming", Stage::arming,
+     "does not reset the integrals as a fixed wing", "a transition", "a missing reset",
+     [](FaultyLaw& law) {
+       law.step.is_flying = [](const Topics& topics) { return topics.armed; };
+     }},
+    {"reset-needs-both", "arming", Stage::arming, "resets only when disarmed as a fixed wing",
+     "disarmed as a rotary wing", "a condition changed",
+     [](FaultyLaw& law) {
+       law.step.is_flying = [](const Topics& topics) {
+         return topics.armed || topics.is_rotary_wing;
+       };
+     }},
+    {"reset-on-arming", "arming", Stage::arming, "resets when it is armed, not while disarmed",
+     "disarmed", "a missing reset",
+     [](FaultyLaw& law) {
+       law.step.is_flying = [was = false](const Topics& topics) mutable {
+         const bool is = StepStages::Law::is_flying(topics);
+         return std::exchange(was, is) || !is;
+       };
+     }},
+    {"reset-after-update", "arming", Stage::arming, "does not update the integrals while disarmed",
+     "disarmed with thrust", "order of stages",
+     [](FaultyLaw& law) {
+       auto flying = std::make_shared<bool>(true);
+       law.step.is_flying = [flying](const Topics& topics) {
+         return *flying = StepStages::Law::is_flying(topics);
+       };
+       law.rate.integrate_axis = [flying](float integral, float control, float thrust, float growth,
+                                          bool frozen) {
+         return *flying ? RateStages::Law::integrate_axis(integral, control, thrust, growth, frozen)
+                        : 0.0f;
+       };
+     }},
+    {"disarmed-zero", "arming", Stage::output, "publishes zeros while disarmed",
+     "disarmed with an error", "a helpful extra",
+     [](FaultyLaw& law) {
+       auto flying = std::make_shared<bool>(true);
+       law.step.is_flying = [flying](const Topics& topics) {
+         *flying = topics.armed;
+         return StepStages::Law::is_flying(topics);
+       };
+       also_after(law, [flying](const attest_inputs&, attest_outputs& out) {
+         if (*flying || out.actuator_controls_0.published == 0) return;
+         for (float& c : out.actuator_controls_0.control) c = 0;
+       });
+     }},
+    {"disarmed-silent", "arming", Stage::output, "publishes no actuators while disarmed",
+     "disarmed", "a helpful extra",
+     [](FaultyLaw& law) {
+       auto armed = std::make_shared<bool>(true);
+       law.step.is_flying = [armed](const Topics& topics) {
+         *armed = topics.armed;
+         return StepStages::Law::is_flying(topics);
+       };
+       also_after(law, [armed](const attest_inputs&, attest_outputs& out) {
+         if (!*armed) out.actuator_controls_0.published = 0;
+       });
+     }},
+    {"armed-is-1", "arming", Stage::arming, "takes only 1 for armed",
+     "the flag with another value than 1", "flag comparison",
+     [](FaultyLaw& law) {
+       also_before(
+           law, [](attest_inputs& in) { in.actuator_armed.armed = in.actuator_armed.armed == 1; });
+     }},
+    {"armed-late", "arming", Stage::arming, "is armed one tick late", "disarming", "one-tick delay",
+     [](FaultyLaw& law) {
+       also_before(law, [last = std::uint8_t{0}](attest_inputs& in) mutable {
+         std::swap(last, in.actuator_armed.armed);
+         in.updated |= ATTEST_UPDATED_ACTUATOR_ARMED;
+       });
+     }},
+    {"armed-at-start", "arming", Stage::arming, "takes itself for armed until told",
+     "no actuator_armed yet", "initial state",
+     [](FaultyLaw& law) {
+       auto told = std::make_shared<bool>(false);
+       also_before(law, [told](attest_inputs& in) {
+         *told = *told || (in.updated & ATTEST_UPDATED_ACTUATOR_ARMED) != 0;
+       });
+       law.step.is_flying = [told](const Topics& topics) {
+         return (topics.armed || !*told) && topics.is_rotary_wing;
+       };
+     }},
+    {"fixed-wing-at-start", "arming", Stage::arming, "takes itself for a fixed wing until told",
+     "no vehicle_status yet", "initial state",
+     [](FaultyLaw& law) {
+       auto told = std::make_shared<bool>(false);
+       also_before(law, [told](attest_inputs& in) {
+         *told = *told || (in.updated & ATTEST_UPDATED_VEHICLE_STATUS) != 0;
+       });
+       law.step.is_flying = [told](const Topics& topics) {
+         return StepStages::Law::is_flying(topics) && *told;
+       };
+     }},
+    {"status-not-needed", "arming", Stage::output, "publishes before there is a vehicle_status",
+     "no vehicle_status yet", "initial state",
+     [](FaultyLaw& law) {
+       also_before(law, [first = true](attest_inputs& in) mutable {
+         if (first && (in.updated & ATTEST_UPDATED_VEHICLE_STATUS) == 0) {
+           in.updated |= ATTEST_UPDATED_VEHICLE_STATUS;
+           in.vehicle_status.is_rotary_wing = 1;
+         }
+         first = false;
+       });
+     }},
+    {"status-every-step", "arming", Stage::output, "publishes with a fresh vehicle_status only",
+     "a vehicle_status that came once", "a latch",
+     [](FaultyLaw& law) {
+       also_after(law, [](const attest_inputs& in, attest_outputs& out) {
+         if ((in.updated & ATTEST_UPDATED_VEHICLE_STATUS) == 0) {
+           out.actuator_controls_0.published = 0;
+         }
+       });
+     }},
+    {"integrals-with-actuators", "arming", Stage::output,
+     "publishes integrals only with the actuators", "no vehicle_status yet",
+     "a misplaced condition",
+     [](FaultyLaw& law) {
+       also_after(law, [](const attest_inputs&, attest_outputs& out) {
+         if (out.actuator_controls_0.published == 0) out.mc_att_ctrl_status.published = 0;
+       });
+     }},
+    {"vtol-silent", "arming", Stage::output, "publishes no actuators for a VTOL", "is_vtol",
+     "a helpful extra",
+     [](FaultyLaw& law) {
+       also_after(law, [](const attest_inputs& in, attest_outputs& out) {
+         if (in.vehicle_status.is_vtol != 0) out.actuator_controls_0.published = 0;
+       });
+     }},
+    {"setpoint-not-kept", "arming", Stage::input, "uses a setpoint only in the step it comes with",
+     "a setpoint at 50 Hz", "a latch",
+     [](FaultyLaw& law) {
+       also_before(law, [](attest_inputs& in) {
+         if ((in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) == 0) {
+           in.vehicle_attitude_setpoint = {};
+           in.vehicle_attitude_setpoint.q_d[0] = 1;
+         }
+         in.updated |= ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT;
+       });
+     }},
+    {"setpoint-level-at-start", "arming", Stage::input, "flies level until there is a setpoint",
+     "no setpoint yet", "initial state",
+     [](FaultyLaw& law) {
+       also_before(law, [told = false](attest_inputs& in) mutable {
+         told = told || (in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;
+         if (told) return;
+         in.vehicle_attitude_setpoint = {};
+         in.vehicle_attitude_setpoint.q_d[0] = 1;
+         in.updated |= ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT;
+       });
+     }},
+};
+
+}  // namespace
+
+std::span<const Fault> arming_faults() { return faults; }
+
+}  // namespace attest::faults

@@ -1,0 +1,39 @@
+#include "controller/faults/fault.hpp"
+#include "controller/reference/mc_att_control_definition.hpp"
+
+namespace attest::faults {
+namespace {
+
+FaultyLaw law_with(std::span<const Fault* const> faults) {
+  FaultyLaw law;
+  for (const Fault* fault : faults) fault->put_in(law);
+  return law;
+}
+
+}  // namespace
+
+struct FaultyController::Controller {
+  reference::McAttControl<Scalar, FaultyLaw> control;
+};
+
+// The law is copied into the controller: what its functions remember together with `before` and
+// `after` is shared by pointer.
+FaultyController::FaultyController(Profile profile, std::span<const Fault* const> faults)
+    : law_(law_with(faults)),
+      controller_(std::make_unique<Controller>(
+          Controller{reference::McAttControl<Scalar, FaultyLaw>(profile, law_)})) {}
+
+FaultyController::~FaultyController() = default;
+
+bool FaultyController::set_parameter(std::string_view name, float value) {
+  return controller_->control.set_parameter(name, value);
+}
+
+void FaultyController::step(const attest_inputs& in, attest_outputs& out) {
+  attest_inputs given = in;
+  law_.before(given);
+  controller_->control.step(given, out);
+  law_.after(given, out);
+}
+
+}  // namespace attest::faults

@@ -1,0 +1,121 @@
+// The law with every stage replaceable: functions that are the reference's until a fault puts its
+// own in place. McAttControl<float, FaultyLaw> is then the reference with that one mistake.
+//
+// Copied into each controller, with what the functions remember: instances share nothing.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "controller/reference/mc_att_control.hpp"
+
+namespace attest::faults {
+
+using Scalar = float;
+using Vector = reference::Vector3<Scalar>;
+using Matrix = reference::Matrix3<Scalar>;
+using Quaternion = reference::Quaternion<Scalar>;
+using Tilt = reference::TiltError<Scalar>;
+using AttitudeGains = reference::AttitudeGains<Scalar>;
+using RateGains = reference::RateGains<Scalar>;
+using Gains = reference::Gains<Scalar>;
+using RateCommand = reference::RateCommand<Scalar>;
+using RecoveryTilt = reference::RecoveryTilt<Scalar>;
+using reference::MotorLimits;
+using reference::Parameters;
+using reference::Profile;
+using reference::Topics;
+
+// Members are named and called as those of reference::AttitudeStages.
+struct AttitudeStages {
+  using Law = reference::AttitudeStages<Scalar>;
+  std::function<Tilt(const Matrix&, const Matrix&)> tilt_error = Law::tilt_error;
+  std::function<Vector(const Matrix&, const Tilt&)> nose_after_tilt = Law::nose_after_tilt;
+  std::function<Scalar(const Matrix&)> yaw_weight = Law::yaw_weight;
+  std::function<Scalar(const Vector&, const Matrix&, Scalar)> yaw_error = Law::yaw_error;
+  std::function<Vector(const Matrix&, const Matrix&)> direct_error = Law::direct_error;
+  std::function<bool(Scalar)> is_upset = Law::is_upset;
+  std::function<Vector(const Vector&, const Vector&, Scalar, Scalar)> blend = Law::blend;
+  std::function<Vector(const Vector&, const AttitudeGains&)> proportional = Law::proportional;
+  std::function<Vector(const Vector&, bool, const AttitudeGains&)> limit = Law::limit;
+  std::function<Scalar(Scalar, Scalar, Scalar, const AttitudeGains&)> yaw_feed_forward =
+      Law::yaw_feed_forward;
+  std::function<Scalar(Scalar, const AttitudeGains&)> weathervane_limit = Law::weathervane_limit;
+};
+
+// As reference::RateStages.
+struct RateStages {
+  using Law = reference::RateStages<Scalar>;
+  std::function<Scalar(Scalar, const RateGains&)> throttle_attenuation = Law::throttle_attenuation;
+  std::function<Vector(const Vector&, Scalar, const RateGains&)> proportional = Law::proportional;
+  std::function<Vector(const Vector&, const Vector&, Scalar, const RateGains&)> derivative =
+      Law::derivative;
+  std::function<Vector(const Vector&, const RateGains&)> feed_forward = Law::feed_forward;
+  std::function<Vector(const Vector&, const Vector&, Scalar, const RateGains&)>
+      feed_forward_change = Law::feed_forward_change;
+  std::function<Vector(const Vector&, const Vector&, const Vector&, const Vector&)> control =
+      Law::control;
+  std::function<bool(Scalar, const MotorLimits&)> may_integrate = Law::may_integrate;
+  std::function<Vector(const Vector&, Scalar, const RateGains&)> growth = Law::growth;
+  std::function<Scalar(Scalar, Scalar, Scalar, Scalar, bool)> integrate_axis = Law::integrate_axis;
+};
+
+// As reference::RecoveryStages.
+struct RecoveryStages {
+  using Law = reference::RecoveryStages<Scalar>;
+  std::function<RecoveryTilt(const Quaternion&, const Quaternion&)> tilt = Law::tilt;
+  std::function<bool(bool, Scalar)> latch = Law::latch;
+  std::function<Vector(const RecoveryTilt&)> optimal_rates = Law::optimal_rates;
+  std::function<Vector(const Quaternion&, const Quaternion&, const AttitudeGains&)>
+      quaternion_rates = Law::quaternion_rates;
+  std::function<Scalar(Scalar, Scalar, const Quaternion&, const AttitudeGains&)> yaw_feed_forward =
+      Law::yaw_feed_forward;
+  std::function<Vector(const Vector&, const AttitudeGains&)> limit = Law::limit;
+};
+
+// As reference::StepStages.
+struct StepStages {
+  using Law = reference::StepStages<Scalar>;
+  std::function<Scalar(std::uint64_t, std::uint64_t)> step_time = Law::step_time;
+  std::function<Gains(const Parameters&)> gains = Law::gains;
+  std::function<bool(const decltype(Topics::manual)&, Scalar)> sticks_beyond = Law::sticks_beyond;
+  std::function<bool(const decltype(Topics::mode)&, Profile)> is_autonomous = Law::is_autonomous;
+  std::function<bool(bool, const decltype(Topics::attitude_setpoint)&)> is_weathervaning =
+      Law::is_weathervaning;
+  std::function<RateCommand(const decltype(Topics::manual)&, const Gains&)> acro = Law::acro;
+  std::function<bool(const Topics&)> is_flying = Law::is_flying;
+  std::function<float(float)> guarded = Law::guarded;
+  std::function<float(const Topics&, const Gains&, Profile)> battery_factor = Law::battery_factor;
+};
+
+struct FaultyLaw {
+  StepStages step;
+  AttitudeStages attitude;
+  RateStages rate;
+  RecoveryStages recovery;
+
+  // What a port does to its inputs before the law and to its outputs after it.
+  std::function<void(attest_inputs&)> before = [](attest_inputs&) {};
+  std::function<void(const attest_inputs&, attest_outputs&)> after = [](const attest_inputs&,
+                                                                        attest_outputs&) {};
+};
+
+// Put another function behind the one that is there, so that two faults can act at once.
+template <typename Added>
+void also_before(FaultyLaw& law, Added added) {
+  law.before = [then = law.before, added](attest_inputs& in) mutable {
+    then(in);
+    added(in);
+  };
+}
+template <typename Added>
+void also_after(FaultyLaw& law, Added added) {
+  law.after = [then = law.after, added](const attest_inputs& in, attest_outputs& out) mutable {
+    then(in, out);
+    added(in, out);
+  };
+}
+
+}  // namespace attest::faults

@@ -1,0 +1,28 @@
+// The parts of the catalogue, one file each.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "controller/faults/fault.hpp"
+
+namespace attest::faults {
+
+std::span<const Fault> attitude_faults();
+std::span<const Fault> large_angle_faults();
+std::span<const Fault> rate_limit_faults();
+std::span<const Fault> yaw_feed_forward_faults();
+std::span<const Fault> weathervane_faults();
+std::span<const Fault> rate_faults();
+std::span<const Fault> tpa_faults();
+std::span<const Fault> anti_windup_faults();
+std::span<const Fault> battery_faults();
+std::span<const Fault> mode_faults();
+std::span<const Fault> arming_faults();
+std::span<const Fault> parameter_faults();
+std::span<const Fault> timing_faults();
+std::span<const Fault> robustness_faults();
+std::span<const Fault> tailsitter_faults();
+std::span<const Fault> actuator_faults();
+
+}  // namespace attest::faults

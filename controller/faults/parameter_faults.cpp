@@ -1,0 +1,213 @@
+// Parameters that are read wrongly: from another name, in another unit, at another time.
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "controller/faults/groups.hpp"
+
+namespace attest::faults {
+namespace {
+
+using P = Parameters;
+
+// The gains of other parameters than those that are set.
+template <typename Change>
+void change_parameters(FaultyLaw& law, Change change) {
+  law.step.gains = [change](const Parameters& parameters) {
+    Parameters changed = parameters;
+    change(changed);
+    return StepStages::Law::gains(changed);
+  };
+}
+
+// One parameter is read from another's place.
+template <float P::*to, float P::*from>
+void read_from(FaultyLaw& law) {
+  change_parameters(law, [](Parameters& p) { p.*to = p.*from; });
+}
+
+// One parameter always has its default.
+template <float P::*member>
+void never_read(FaultyLaw& law) {
+  change_parameters(law,
+                    [](Parameters& p) { p.*member = reference::default_parameters().*member; });
+}
+
+template <typename Change>
+void change_gains(FaultyLaw& law, Change change) {
+  law.step.gains = [change](const Parameters& parameters) {
+    Gains gains = StepStages::Law::gains(parameters);
+    change(gains, parameters);
+    return gains;
+  };
+}
+
+constexpr const char* wrong_name = "a wrong parameter";
+constexpr const char* not_read = "a missing parameter";
+
+const Fault faults[] = {
+    {"param-at-start-only", "parameters", Stage::parameters, "reads parameters once",
+     "a parameter that changes in flight", "a latch",
+     [](FaultyLaw& law) {
+       law.step.gains = [first = std::optional<Parameters>{}](const Parameters& p) mutable {
+         if (!first) first = p;
+         return StepStages::Law::gains(*first);
+       };
+     }},
+    {"param-one-update-late", "parameters", Stage::parameters,
+     "uses the parameters of the update before", "a parameter that changes in flight",
+     "one-tick delay",
+     [](FaultyLaw& law) {
+       law.step.gains = [last = std::optional<Parameters>{}](const Parameters& p) mutable {
+         return StepStages::Law::gains(std::exchange(last, p).value_or(p));
+       };
+     }},
+    {"tc-ignored", "parameters", Stage::parameters, "does not read the time constants",
+     "a time constant but 0.2", not_read,
+     [](FaultyLaw& law) {
+       change_parameters(law, [](Parameters& p) { p.mc_roll_tc = p.mc_pitch_tc = 0.2f; });
+     }},
+    {"tc-inverted", "parameters", Stage::parameters, "multiplies by TC / 0.2",
+     "a time constant but 0.2", "a wrong factor",
+     [](FaultyLaw& law) {
+       change_parameters(law, [](Parameters& p) {
+         p.mc_roll_tc = 0.04f / p.mc_roll_tc;
+         p.mc_pitch_tc = 0.04f / p.mc_pitch_tc;
+       });
+     }},
+    {"tc-exchanged", "parameters", Stage::parameters, "exchanges the time constants",
+     "time constants that differ", "wrong axis",
+     [](FaultyLaw& law) {
+       change_parameters(law, [](Parameters& p) { std::swap(p.mc_roll_tc, p.mc_pitch_tc); });
+     }},
+    {"tc-on-i", "parameters", Stage::parameters, "scales the integral gain too",
+     "a time constant but 0.2", "a misplaced factor",
+     [](FaultyLaw& law) {
+       change_gains(law, [](Gains& gains, const Parameters& p) {
+         gains.rate.integral[0] *= 0.2f / p.mc_roll_tc;
+         gains.rate.integral[1] *= 0.2f / p.mc_pitch_tc;
+       });
+     }},
+    {"tc-on-ff", "parameters", Stage::parameters, "scales the feed-forward too",
+     "a time constant but 0.2 and a feed-forward", "a misplaced factor",
+     [](FaultyLaw& law) {
+       change_gains(law, [](Gains& gains, const Parameters& p) {
+         gains.rate.feed_forward[0] *= 0.2f / p.mc_roll_tc;
+         gains.rate.feed_forward[1] *= 0.2f / p.mc_pitch_tc;
+       });
+     }},
+    {"tc-on-yaw", "parameters", Stage::parameters, "scales yaw by the roll time constant",
+     "a time constant but 0.2", "wrong axis",
+     [](FaultyLaw& law) {
+       change_gains(law, [](Gains& gains, const Parameters& p) {
+         gains.attitude.proportional_1_s[2] *= 0.2f / p.mc_roll_tc;
+         gains.rate.proportional[2] *= 0.2f / p.mc_roll_tc;
+       });
+     }},
+    {"tc-not-on-d", "parameters", Stage::parameters, "does not scale the D gain",
+     "a time constant but 0.2", "a missing factor",
+     [](FaultyLaw& law) {
+       change_gains(law, [](Gains& gains, const Parameters& p) {
+         gains.rate.derivative[0] = p.mc_rollrate_d;
+         gains.rate.derivative[1] = p.mc_pitchrate_d;
+       });
+     }},
+    {"tc-not-on-attitude", "parameters", Stage::parameters, "does not scale the attitude gain",
+     "a time constant but 0.2", "a missing factor",
+     [](FaultyLaw& law) {
+       change_gains(law, [](Gains& gains, const Parameters& p) {
+         gains.attitude.proportional_1_s[0] = p.mc_roll_p;
+         gains.attitude.proportional_1_s[1] = p.mc_pitch_p;
+       });
+     }},
+    {"tc-not-on-rate-p", "parameters", Stage::parameters, "does not scale the rate gain",
+     "a time constant but 0.2", "a missing factor",
+     [](FaultyLaw& law) {
+       change_gains(law, [](Gains& gains, const Parameters& p) {
+         gains.rate.proportional[0] = p.mc_rollrate_p;
+         gains.rate.proportional[1] = p.mc_pitchrate_p;
+       });
+     }},
+    {"pitch-p-of-roll", "parameters", Stage::parameters, "reads MC_ROLL_P for MC_PITCH_P",
+     "gains that differ", wrong_name, read_from<&P::mc_pitch_p, &P::mc_roll_p>},
+    {"yaw-p-of-roll", "parameters", Stage::parameters, "reads MC_ROLL_P for MC_YAW_P",
+     "gains that differ", wrong_name, read_from<&P::mc_yaw_p, &P::mc_roll_p>},
+    {"pitchrate-p-of-roll", "parameters", Stage::parameters, "reads the roll rate gain for pitch",
+     "gains that differ", wrong_name, read_from<&P::mc_pitchrate_p, &P::mc_rollrate_p>},
+    {"pitchrate-i-of-roll", "parameters", Stage::parameters,
+     "reads the roll integral gain for pitch", "gains that differ", wrong_name,
+     read_from<&P::mc_pitchrate_i, &P::mc_rollrate_i>},
+    {"pitchrate-d-of-roll", "parameters", Stage::parameters, "reads the roll D gain for pitch",
+     "gains that differ", wrong_name, read_from<&P::mc_pitchrate_d, &P::mc_rollrate_d>},
+    {"pitchrate-ff-of-roll", "parameters", Stage::parameters,
+     "reads the roll feed-forward for pitch", "gains that differ", wrong_name,
+     read_from<&P::mc_pitchrate_ff, &P::mc_rollrate_ff>},
+    {"yawrate-d-of-roll", "parameters", Stage::parameters, "reads the roll D gain for yaw",
+     "yaw rates that change", wrong_name, read_from<&P::mc_yawrate_d, &P::mc_rollrate_d>},
+    {"yawrate-i-of-p", "parameters", Stage::parameters, "reads MC_YAWRATE_P for MC_YAWRATE_I",
+     "an error in yaw that lasts", wrong_name, read_from<&P::mc_yawrate_i, &P::mc_yawrate_p>},
+    {"pitchrate-max-of-roll", "parameters", Stage::parameters, "reads the roll limit for pitch",
+     "limits that differ", wrong_name, read_from<&P::mc_pitchrate_max, &P::mc_rollrate_max>},
+    {"yawrauto-of-yawrate", "parameters", Stage::parameters,
+     "reads MC_YAWRATE_MAX for MC_YAWRAUTO_MAX", "a large yaw error on a mission", wrong_name,
+     read_from<&P::mc_yawrauto_max, &P::mc_yawrate_max>},
+    {"acro-p-of-r", "parameters", Stage::parameters, "reads MC_ACRO_R_MAX for MC_ACRO_P_MAX",
+     "acro limits that differ", wrong_name, read_from<&P::mc_acro_p_max, &P::mc_acro_r_max>},
+    {"acro-y-of-r", "parameters", Stage::parameters, "reads MC_ACRO_R_MAX for MC_ACRO_Y_MAX",
+     "acro limits that differ", wrong_name, read_from<&P::mc_acro_y_max, &P::mc_acro_r_max>},
+    {"roll-p-not-read", "parameters", Stage::parameters, "does not read MC_ROLL_P", "another value",
+     not_read, never_read<&P::mc_roll_p>},
+    {"yaw-p-not-read", "parameters", Stage::parameters, "does not read MC_YAW_P", "another value",
+     not_read, never_read<&P::mc_yaw_p>},
+    {"yaw-ff-not-read", "parameters", Stage::parameters, "does not read MC_YAW_FF", "another value",
+     not_read, never_read<&P::mc_yaw_ff>},
+    {"rollrate-p-not-read", "parameters", Stage::parameters, "does not read MC_ROLLRATE_P",
+     "another value", not_read, never_read<&P::mc_rollrate_p>},
+    {"rollrate-i-not-read", "parameters", Stage::parameters, "does not read MC_ROLLRATE_I",
+     "another value", not_read, never_read<&P::mc_rollrate_i>},
+    {"rollrate-d-not-read", "parameters", Stage::parameters, "does not read MC_ROLLRATE_D",
+     "another value", not_read, never_read<&P::mc_rollrate_d>},
+    {"rollrate-ff-not-read", "parameters", Stage::parameters, "does not read MC_ROLLRATE_FF",
+     "another value", not_read, never_read<&P::mc_rollrate_ff>},
+    {"yawrate-p-not-read", "parameters", Stage::parameters, "does not read MC_YAWRATE_P",
+     "another value", not_read, never_read<&P::mc_yawrate_p>},
+    {"yawrate-ff-not-read", "parameters", Stage::parameters, "does not read MC_YAWRATE_FF",
+     "another value", not_read, never_read<&P::mc_yawrate_ff>},
+    {"rollrate-max-not-read", "parameters", Stage::parameters, "does not read MC_ROLLRATE_MAX",
+     "another value", not_read, never_read<&P::mc_rollrate_max>},
+    {"yawrate-max-not-read", "parameters", Stage::parameters, "does not read MC_YAWRATE_MAX",
+     "another value", not_read, never_read<&P::mc_yawrate_max>},
+    {"acro-r-not-read", "parameters", Stage::parameters, "does not read MC_ACRO_R_MAX",
+     "another value", not_read, never_read<&P::mc_acro_r_max>},
+    {"ratt-th-not-read", "parameters", Stage::parameters, "does not read MC_RATT_TH",
+     "another value", not_read, never_read<&P::mc_ratt_th>},
+    {"tpa-break-not-read", "parameters", Stage::parameters, "does not read MC_TPA_BREAK",
+     "another value", not_read, never_read<&P::mc_tpa_break>},
+    {"tpa-slope-not-read", "parameters", Stage::parameters, "does not read MC_TPA_SLOPE",
+     "another value", not_read, never_read<&P::mc_tpa_slope>},
+    {"vane-scale-not-read", "parameters", Stage::parameters, "does not read VT_WV_YAWR_SCL",
+     "another value", not_read, never_read<&P::vt_wv_yawr_scl>},
+    {"battery-enable-is-1", "parameters", Stage::parameters, "scales for MC_BAT_SCALE_EN of 1 only",
+     "MC_BAT_SCALE_EN of 2", "flag comparison",
+     [](FaultyLaw& law) {
+       change_gains(law, [](Gains& gains, const Parameters& p) {
+         gains.battery_scaling = p.mc_bat_scale_en == 1;
+       });
+     }},
+    {"gains-in-8-bits", "parameters", Stage::parameters, "holds gains in 8 bits", "any gain",
+     "fixed point",
+     [](FaultyLaw& law) {
+       change_gains(law, [](Gains& gains, const Parameters&) {
+         for (Vector* v :
+              {&gains.rate.proportional, &gains.rate.integral, &gains.rate.derivative}) {
+           for (int i = 0; i < 3; ++i) (*v)[i] = std::round((*v)[i] * 256) / 256;
+         }
+       });
+     }},
+};
+
+}  // namespace
+
+std::span<const Fault> parameter_faults() { return faults; }
+
+}  // namespace attest::faults

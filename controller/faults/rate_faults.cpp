@@ -1,0 +1,365 @@
+// Wrong terms of the rate loop, and wrong throttle attenuation of its P term.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "controller/faults/groups.hpp"
+
+namespace attest::faults {
+namespace {
+
+// What one stage saw, for another of the same step.
+struct Seen {
+  Vector error = Vector::Zero();
+  float attenuation = 1;
+  float dt_s = 0;
+  Vector last = Vector::Zero();
+};
+
+// Remembers the error, the attenuation and dt, which the stages after them are not given.
+std::shared_ptr<Seen> watch(FaultyLaw& law) {
+  auto seen = std::make_shared<Seen>();
+  law.rate.proportional = [seen, then = law.rate.proportional](
+                              const Vector& error, float attenuation, const RateGains& gains) {
+    seen->error = error;
+    seen->attenuation = attenuation;
+    return then(error, attenuation, gains);
+  };
+  law.rate.derivative = [seen, then = law.rate.derivative](const Vector& prev, const Vector& rates,
+                                                           float dt, const RateGains& gains) {
+    seen->dt_s = dt;
+    return then(prev, rates, dt, gains);
+  };
+  return seen;
+}
+
+template <typename Sum>
+void change_control(FaultyLaw& law, Sum sum) {
+  law.rate.control = [sum](const Vector& p, const Vector& d, const Vector& i, const Vector& ff) {
+    return Vector(sum(p, d, i, ff));
+  };
+}
+
+// Outputs with components exchanged or changed.
+template <typename Change>
+void change_controls(FaultyLaw& law, Change change) {
+  also_after(law, [change](const attest_inputs&, attest_outputs& out) {
+    if (out.actuator_controls_0.published != 0) change(out.actuator_controls_0.control);
+  });
+}
+
+using V = const Vector&;
+
+const Fault faults[] = {
+    {"p-missing", "rates", Stage::p, "has no P term", "a rate error", "a missing term",
+     [](FaultyLaw& law) { change_control(law, [](V, V d, V i, V ff) { return d + i + ff; }); }},
+    {"d-missing", "rates", Stage::d, "has no D term", "rates that change", "a missing term",
+     [](FaultyLaw& law) { change_control(law, [](V p, V, V i, V ff) { return p + i + ff; }); }},
+    {"i-missing", "rates", Stage::i, "does not add the integral", "an error that lasts",
+     "a missing term",
+     [](FaultyLaw& law) { change_control(law, [](V p, V d, V, V ff) { return p + d + ff; }); }},
+    {"ff-missing", "rates", Stage::ff, "has no rate feed-forward", "a feed-forward gain",
+     "missing feed-forward",
+     [](FaultyLaw& law) { change_control(law, [](V p, V d, V i, V) { return p + d + i; }); }},
+    {"d-subtracted", "rates", Stage::d, "subtracts the D term", "rates that change", "a sign",
+     [](FaultyLaw& law) {
+       change_control(law, [](V p, V d, V i, V ff) { return p - d + i + ff; });
+     }},
+    {"i-subtracted", "rates", Stage::i, "subtracts the integral", "an error that lasts", "a sign",
+     [](FaultyLaw& law) {
+       change_control(law, [](V p, V d, V i, V ff) { return p + d - i + ff; });
+     }},
+    {"d-and-i-subtracted", "rates", Stage::d, "subtracts the D term and the integral",
+     "rates that change", "a sign",
+     [](FaultyLaw& law) {
+       change_control(law, [](V p, V d, V i, V ff) { return p - d - i + ff; });
+     }},
+    {"error-reversed", "rates", Stage::p, "takes rates minus setpoint", "a rate error", "a sign",
+     [](FaultyLaw& law) {
+       law.rate.proportional = [](V error, float attenuation, const RateGains& gains) {
+         return Vector(-RateStages::Law::proportional(error, attenuation, gains));
+       };
+     }},
+    {"d-on-error", "rates", Stage::d, "takes the derivative of the error",
+     "a setpoint that changes", "D on error",
+     [](FaultyLaw& law) {
+       auto seen = watch(law);
+       law.rate.derivative = [seen](V, V, float dt, const RateGains& gains) {
+         const Vector change = seen->error - seen->last;
+         seen->last = seen->error;
+         return Vector(gains.derivative.cwiseProduct(change) / dt);
+       };
+     }},
+    {"d-without-dt", "rates", Stage::d, "does not divide by dt", "rates that change",
+     "a missing factor",
+     [](FaultyLaw& law) {
+       law.rate.derivative = [](V prev, V rates, float, const RateGains& gains) {
+         return Vector(gains.derivative.cwiseProduct(prev - rates));
+       };
+     }},
+    {"d-times-dt", "rates", Stage::d, "multiplies by dt", "rates that change", "a wrong factor",
+     [](FaultyLaw& law) {
+       law.rate.derivative = [](V prev, V rates, float dt, const RateGains& gains) {
+         return Vector(gains.derivative.cwiseProduct(prev - rates) * dt);
+       };
+     }},
+    {"d-over-two-ticks", "rates", Stage::d, "takes the rates of two ticks ago", "rates that change",
+     "one-tick delay",
+     [](FaultyLaw& law) {
+       law.rate.derivative = [older = Vector(Vector::Zero())](V prev, V rates, float dt,
+                                                              const RateGains& gains) mutable {
+         const Vector before = older;
+         older = prev;
+         return RateStages::Law::derivative(before, rates, dt, gains);
+       };
+     }},
+    {"d-no-first-kick", "rates", Stage::d, "has no D term in the first step",
+     "a first step that turns", "initial state",
+     [](FaultyLaw& law) {
+       law.rate.derivative = [first = true](V prev, V rates, float dt,
+                                            const RateGains& gains) mutable {
+         const Vector before = first ? rates : prev;
+         first = false;
+         return RateStages::Law::derivative(before, rates, dt, gains);
+       };
+     }},
+    {"d-filtered", "rates", Stage::d, "low-passes the D term", "rates that change",
+     "a helpful extra",
+     [](FaultyLaw& law) {
+       law.rate.derivative = [filtered = Vector(Vector::Zero())](V prev, V rates, float dt,
+                                                                 const RateGains& gains) mutable {
+         filtered += 0.5f * (RateStages::Law::derivative(prev, rates, dt, gains) - filtered);
+         return filtered;
+       };
+     }},
+    {"ff-of-change", "rates", Stage::ff, "feeds the setpoint's change forward, as v1.3.4",
+     "a feed-forward gain", "another version of the law",
+     [](FaultyLaw& law) {
+       auto seen = watch(law);
+       law.rate.feed_forward = [seen](V rates_sp, const RateGains& gains) {
+         const Vector ff =
+             RateStages::Law::feed_forward_change(rates_sp, seen->last, seen->dt_s, gains);
+         seen->last = rates_sp;
+         return ff;
+       };
+     }},
+    {"ff-on-error", "rates", Stage::ff, "feeds the error forward", "a feed-forward gain",
+     "a wrong input",
+     [](FaultyLaw& law) {
+       auto seen = watch(law);
+       law.rate.feed_forward = [seen](V, const RateGains& gains) {
+         return RateStages::Law::feed_forward(seen->error, gains);
+       };
+     }},
+    {"i-before-control", "rates", Stage::i, "adds this step's error before it controls",
+     "a rate error", "order of stages",
+     [](FaultyLaw& law) {
+       auto growth = std::make_shared<Vector>(Vector::Zero());
+       auto dt_s = std::make_shared<float>(0.0f);
+       law.rate.derivative = [dt_s](V prev, V rates, float dt, const RateGains& gains) {
+         *dt_s = dt;
+         return RateStages::Law::derivative(prev, rates, dt, gains);
+       };
+       law.rate.proportional = [growth](V error, float attenuation, const RateGains& gains) {
+         *growth = gains.integral.cwiseProduct(error);
+         return RateStages::Law::proportional(error, attenuation, gains);
+       };
+       law.rate.control = [growth, dt_s](V p, V d, V i, V ff) {
+         return Vector(p + d + i + *growth * *dt_s + ff);
+       };
+     }},
+    {"i-fixed-dt", "rates", Stage::i, "integrates as if every step took 4 ms",
+     "any rate but 250 Hz", "a fixed rate",
+     [](FaultyLaw& law) {
+       law.rate.growth = [](V error, float, const RateGains& gains) {
+         return RateStages::Law::growth(error, 0.004f, gains);
+       };
+     }},
+    {"i-without-dt", "rates", Stage::i, "does not multiply by dt", "an error that lasts",
+     "a missing factor",
+     [](FaultyLaw& law) {
+       law.rate.growth = [](V error, float, const RateGains& gains) {
+         return RateStages::Law::growth(error, 1, gains);
+       };
+     }},
+    {"controls-limited", "rates", Stage::output, "limits the controls to 1", "a control beyond 1",
+     "misplaced clamp",
+     [](FaultyLaw& law) {
+       change_control(law, [](V p, V d, V i, V ff) {
+         return Vector(RateStages::Law::control(p, d, i, ff).cwiseMin(1).cwiseMax(-1));
+       });
+     }},
+    {"roll-pitch-exchanged", "rates", Stage::output, "exchanges roll and pitch",
+     "roll and pitch that differ", "wrong axis",
+     [](FaultyLaw& law) {
+       change_controls(law, [](float(&control)[8]) { std::swap(control[0], control[1]); });
+     }},
+    {"yaw-control-reversed", "rates", Stage::output, "has yaw's sign wrong", "a yaw control",
+     "handedness",
+     [](FaultyLaw& law) {
+       change_controls(law, [](float(&control)[8]) { control[2] = -control[2]; });
+     }},
+    {"pitch-control-reversed", "rates", Stage::output, "has pitch's sign wrong", "a pitch control",
+     "handedness",
+     [](FaultyLaw& law) {
+       change_controls(law, [](float(&control)[8]) { control[1] = -control[1]; });
+     }},
+    {"gyro-in-degrees", "rates", Stage::input, "takes body rates in deg/s", "rates", "degrees",
+     [](FaultyLaw& law) {
+       also_before(law, [](attest_inputs& in) {
+         constexpr float degrees = 57.29578f;
+         in.control_state.roll_rate *= degrees;
+         in.control_state.pitch_rate *= degrees;
+         in.control_state.yaw_rate *= degrees;
+       });
+     }},
+    {"gyro-yaw-reversed", "rates", Stage::input, "takes the yaw rate as of FLU", "a yaw rate",
+     "handedness",
+     [](FaultyLaw& law) {
+       also_before(
+           law, [](attest_inputs& in) { in.control_state.yaw_rate = -in.control_state.yaw_rate; });
+     }},
+    {"gyro-in-10-bits", "rates", Stage::input, "holds body rates in 10 bits", "rates",
+     "fixed point",
+     [](FaultyLaw& law) {
+       also_before(law, [](attest_inputs& in) {
+         in.control_state.roll_rate = std::round(in.control_state.roll_rate * 64) / 64;
+         in.control_state.pitch_rate = std::round(in.control_state.pitch_rate * 64) / 64;
+         in.control_state.yaw_rate = std::round(in.control_state.yaw_rate * 64) / 64;
+       });
+     }},
+    {"controls-in-8-bits", "rates", Stage::output, "holds controls in 8 bits", "any control",
+     "fixed point",
+     [](FaultyLaw& law) {
+       change_controls(law, [](float(&control)[8]) {
+         for (int i = 0; i < 4; ++i) control[i] = std::round(control[i] * 128) / 128;
+       });
+     }},
+    {"integral-in-12-bits", "rates", Stage::i, "holds the integrals in 12 bits",
+     "an error that lasts", "fixed point",
+     [](FaultyLaw& law) {
+       law.rate.integrate_axis = [](float integral, float control, float thrust, float growth,
+                                    bool frozen) {
+         const float next =
+             RateStages::Law::integrate_axis(integral, control, thrust, growth, frozen);
+         return std::round(next * 4096) / 4096;
+       };
+     }},
+};
+
+// The attenuation, as another function of thrust, break and slope.
+template <typename Factor>
+void change_attenuation(FaultyLaw& law, Factor factor) {
+  law.rate.throttle_attenuation = [factor](float thrust, const RateGains& gains) {
+    return factor(thrust, gains.tpa_break, gains.tpa_slope);
+  };
+}
+
+float unit(float value) { return std::clamp(value, 0.0f, 1.0f); }
+
+const Fault tpa[] = {
+    {"tpa-missing", "tpa", Stage::tpa, "does not attenuate P", "thrust above the break",
+     "a missing factor",
+     [](FaultyLaw& law) { change_attenuation(law, [](float, float, float) { return 1.0f; }); }},
+    {"tpa-on-d", "tpa", Stage::tpa, "attenuates D too", "thrust above the break",
+     "a misplaced factor",
+     [](FaultyLaw& law) {
+       auto seen = watch(law);
+       change_control(law,
+                      [seen](V p, V d, V i, V ff) { return p + d * seen->attenuation + i + ff; });
+     }},
+    {"tpa-on-ff", "tpa", Stage::tpa, "attenuates the feed-forward too", "thrust above the break",
+     "a misplaced factor",
+     [](FaultyLaw& law) {
+       auto seen = watch(law);
+       change_control(law,
+                      [seen](V p, V d, V i, V ff) { return p + d + i + ff * seen->attenuation; });
+     }},
+    {"tpa-on-all", "tpa", Stage::tpa, "attenuates the whole control", "thrust above the break",
+     "a misplaced factor",
+     [](FaultyLaw& law) {
+       auto seen = watch(law);
+       change_control(law,
+                      [seen](V p, V d, V i, V ff) { return p + (d + i + ff) * seen->attenuation; });
+     }},
+    {"tpa-on-growth", "tpa", Stage::tpa, "integrates the attenuated error",
+     "thrust above the break", "a misplaced factor",
+     [](FaultyLaw& law) {
+       auto seen = watch(law);
+       law.rate.growth = [seen](V error, float dt, const RateGains& gains) {
+         return RateStages::Law::growth(error * seen->attenuation, dt, gains);
+       };
+     }},
+    {"tpa-negative", "tpa", Stage::tpa, "lets the factor become negative", "a steep slope",
+     "missing clamp",
+     [](FaultyLaw& law) {
+       change_attenuation(law, [](float thrust, float from, float slope) {
+         return std::min(1.0f, 1 - slope * (std::abs(thrust) - from));
+       });
+     }},
+    {"tpa-above-1", "tpa", Stage::tpa, "lets the factor exceed 1", "thrust below the break",
+     "missing clamp",
+     [](FaultyLaw& law) {
+       change_attenuation(law, [](float thrust, float from, float slope) {
+         return std::max(0.0f, 1 - slope * (std::abs(thrust) - from));
+       });
+     }},
+    {"tpa-signed", "tpa", Stage::tpa, "does not take the thrust's magnitude", "negative thrust",
+     "a sign",
+     [](FaultyLaw& law) {
+       change_attenuation(law, [](float thrust, float from, float slope) {
+         return unit(1 - slope * (thrust - from));
+       });
+     }},
+    {"tpa-exchanged", "tpa", Stage::tpa, "exchanges break and slope", "thrust above the break",
+     "a wrong parameter",
+     [](FaultyLaw& law) {
+       change_attenuation(law, [](float thrust, float from, float slope) {
+         return unit(1 - from * (std::abs(thrust) - slope));
+       });
+     }},
+    {"tpa-without-break", "tpa", Stage::tpa, "attenuates from zero thrust", "thrust, with a slope",
+     "a missing term",
+     [](FaultyLaw& law) {
+       change_attenuation(law, [](float thrust, float, float slope) {
+         return unit(1 - slope * std::abs(thrust));
+       });
+     }},
+    {"tpa-relative", "tpa", Stage::tpa,
+     "takes the part of thrust above the break, as other firmware", "thrust above the break",
+     "another law",
+     [](FaultyLaw& law) {
+       change_attenuation(law, [](float thrust, float from, float slope) {
+         const float above = std::max(0.0f, std::abs(thrust) - from);
+         return unit(1 - slope * above / std::max(1e-6f, 1 - from));
+       });
+     }},
+    {"tpa-late", "tpa", Stage::tpa, "attenuates by the thrust of the step before",
+     "thrust that changes above the break", "one-tick delay",
+     [](FaultyLaw& law) {
+       law.rate.throttle_attenuation = [last = 0.0f](float thrust, const RateGains& gains) mutable {
+         std::swap(last, thrust);
+         return RateStages::Law::throttle_attenuation(thrust, gains);
+       };
+     }},
+    {"tpa-yaw-spared", "tpa", Stage::tpa, "does not attenuate yaw", "thrust above the break",
+     "wrong axis",
+     [](FaultyLaw& law) {
+       law.rate.proportional = [](V error, float attenuation, const RateGains& gains) {
+         Vector p = RateStages::Law::proportional(error, attenuation, gains);
+         p[2] = gains.proportional[2] * error[2];
+         return p;
+       };
+     }},
+    {"tpa-by-current-thrust", "tpa", Stage::tpa, "attenuates by this step's thrust",
+     "thrust that changes", "a wrong input", [](FaultyLaw& law) { (void)law; },
+     "the copy of vehicle_rates_setpoint has just been written or latched: its thrust is this "
+     "step's"},
+};
+
+}  // namespace
+
+std::span<const Fault> rate_faults() { return faults; }
+std::span<const Fault> tpa_faults() { return tpa; }
+
+}  // namespace attest::faults

@@ -1,0 +1,137 @@
+// Wrong weather-vanes.
+#include "controller/faults/groups.hpp"
+
+namespace attest::faults {
+namespace {
+
+using Setpoint = decltype(Topics::attitude_setpoint);
+
+template <typename Flag>
+void change_weathervane(FaultyLaw& law, Flag flag) {
+  law.step.is_weathervaning = flag;
+}
+
+// The weather-vane's limit, but not its reset of the integral; or the other way round.
+void limit_without_reset(FaultyLaw& law) {
+  auto vaning = std::make_shared<bool>(false);
+  law.step.is_weathervaning = [vaning](bool autonomous, const Setpoint& setpoint) {
+    *vaning = StepStages::Law::is_weathervaning(autonomous, setpoint);
+    return false;
+  };
+  law.attitude.yaw_feed_forward = [vaning](float yaw, float rate, float w,
+                                           const AttitudeGains& gains) {
+    const float fed = AttitudeStages::Law::yaw_feed_forward(yaw, rate, w, gains);
+    return *vaning ? AttitudeStages::Law::weathervane_limit(fed, gains) : fed;
+  };
+}
+
+void limit_to(FaultyLaw& law, float (*bound)(const AttitudeGains&)) {
+  law.attitude.weathervane_limit = [bound](float yaw, const AttitudeGains& gains) {
+    return reference::clamp(yaw, -bound(gains), bound(gains));
+  };
+}
+
+const Fault faults[] = {
+    {"vane-missing", "weathervane", Stage::weathervane, "has no weather-vane",
+     "weather-vaning with a yaw error", "missing weather-vane",
+     [](FaultyLaw& law) { change_weathervane(law, [](bool, const Setpoint&) { return false; }); }},
+    {"vane-no-limit", "weathervane", Stage::weathervane, "does not limit yaw",
+     "weather-vaning with a yaw error", "missing clamp",
+     [](FaultyLaw& law) {
+       law.attitude.weathervane_limit = [](float yaw, const AttitudeGains&) { return yaw; };
+     }},
+    {"vane-no-reset", "weathervane", Stage::weathervane, "keeps the yaw integral",
+     "weather-vaning after yaw was integrated", "a missing reset", limit_without_reset},
+    {"vane-despite-pilot", "weathervane", Stage::weathervane, "weather-vanes under a pilot",
+     "the flag under a pilot", "a condition dropped",
+     [](FaultyLaw& law) {
+       change_weathervane(law, [](bool, const Setpoint& setpoint) {
+         return setpoint.disable_mc_yaw_control != 0;
+       });
+     }},
+    {"vane-without-flag", "weathervane", Stage::weathervane, "weather-vanes on every mission",
+     "a mission without the flag", "a condition dropped",
+     [](FaultyLaw& law) {
+       change_weathervane(law, [](bool autonomous, const Setpoint&) { return autonomous; });
+     }},
+    {"vane-flag-is-1", "weathervane", Stage::weathervane, "takes only 1 for true",
+     "the flag with another value than 1", "flag comparison",
+     [](FaultyLaw& law) {
+       change_weathervane(law, [](bool autonomous, const Setpoint& setpoint) {
+         return autonomous && setpoint.disable_mc_yaw_control == 1;
+       });
+     }},
+    {"vane-latched", "weathervane", Stage::weathervane, "stays once it was asked for",
+     "the flag set and cleared", "a latch",
+     [](FaultyLaw& law) {
+       law.step.is_weathervaning = [latched = false](bool autonomous,
+                                                     const Setpoint& setpoint) mutable {
+         latched = latched || setpoint.disable_mc_yaw_control != 0;
+         return autonomous && latched;
+       };
+     }},
+    {"vane-unscaled", "weathervane", Stage::weathervane, "does not scale the limit",
+     "weather-vaning with a yaw error", "a missing factor",
+     [](FaultyLaw& law) {
+       limit_to(law, [](const AttitudeGains& gains) { return gains.auto_rate_max_rad_s[2]; });
+     }},
+    {"vane-scales-pilot-limit", "weathervane", Stage::weathervane, "scales the pilot's limit",
+     "weather-vaning with a yaw error", "wrong branch",
+     [](FaultyLaw& law) {
+       limit_to(law, [](const AttitudeGains& gains) {
+         return gains.rate_max_rad_s[2] * gains.weathervane_scale;
+       });
+     }},
+    {"vane-stops-yaw", "weathervane", Stage::weathervane, "sets the yaw rate to 0",
+     "weather-vaning with a yaw error", "wrong clamp",
+     [](FaultyLaw& law) {
+       law.attitude.weathervane_limit = [](float, const AttitudeGains&) { return 0.0f; };
+     }},
+    {"vane-before-ff", "weathervane", Stage::weathervane, "limits before the feed-forward only",
+     "weather-vaning with a commanded yaw rate", "misplaced clamp",
+     [](FaultyLaw& law) {
+       auto vaning = std::make_shared<bool>(false);
+       law.step.is_weathervaning = [vaning](bool autonomous, const Setpoint& setpoint) {
+         return *vaning = StepStages::Law::is_weathervaning(autonomous, setpoint);
+       };
+       law.attitude.weathervane_limit = [](float yaw, const AttitudeGains&) { return yaw; };
+       law.attitude.yaw_feed_forward = [vaning](float yaw, float rate, float w,
+                                                const AttitudeGains& gains) {
+         const float limited = *vaning ? AttitudeStages::Law::weathervane_limit(yaw, gains) : yaw;
+         return AttitudeStages::Law::yaw_feed_forward(limited, rate, w, gains);
+       };
+     }},
+    {"vane-resets-all", "weathervane", Stage::weathervane, "resets all integrals",
+     "weather-vaning after roll was integrated", "wrong axis",
+     [](FaultyLaw& law) {
+       auto vaning = std::make_shared<bool>(false);
+       law.step.is_weathervaning = [vaning](bool autonomous, const Setpoint& setpoint) {
+         return *vaning = StepStages::Law::is_weathervaning(autonomous, setpoint);
+       };
+       law.rate.integrate_axis = [vaning](float integral, float control, float thrust, float growth,
+                                          bool frozen) {
+         const float kept = *vaning ? 0.0f : integral;
+         return RateStages::Law::integrate_axis(kept, control, thrust, growth, frozen);
+       };
+     }},
+    {"vane-freezes-yaw", "weathervane", Stage::weathervane,
+     "holds the yaw integral at 0 within the step", "weather-vaning with a yaw rate error",
+     "order of stages",
+     [](FaultyLaw& law) {
+       auto vaning = std::make_shared<bool>(false);
+       law.step.is_weathervaning = [vaning](bool autonomous, const Setpoint& setpoint) {
+         return *vaning = StepStages::Law::is_weathervaning(autonomous, setpoint);
+       };
+       law.rate.growth = [vaning](const Vector& error, float dt, const RateGains& gains) {
+         Vector growth = RateStages::Law::growth(error, dt, gains);
+         if (*vaning) growth[2] = 0;
+         return growth;
+       };
+     }},
+};
+
+}  // namespace
+
+std::span<const Fault> weathervane_faults() { return faults; }
+
+}  // namespace attest::faults

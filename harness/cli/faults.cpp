@@ -1,0 +1,101 @@
+#include <fmt/format.h>
+
+#include "harness/cli/command.hpp"
+#include "harness/cli/interrupt.hpp"
+#include "harness/cli/suite_folder.hpp"
+#include "harness/core/nearest.hpp"
+#include "harness/port/fault_port.hpp"
+#include "harness/report/fault_table.hpp"
+#include "harness/suite/fault_batch.hpp"
+#include "harness/suite/naive_suite.hpp"
+
+namespace attest::cli {
+namespace {
+
+using faults::Fault;
+
+Result<std::vector<const Fault*>> chosen(const FaultOptions& options) {
+  if (options.ids.empty()) {
+    const auto all = faults::catalogue();
+    return std::vector<const Fault*>(all.begin(), all.end());
+  }
+  std::vector<const Fault*> list;
+  for (const std::string& id : options.ids) {
+    if (auto port = open_fault(id); !port) return tl::unexpected(port.error());
+    list.push_back(faults::find_fault(id));
+  }
+  return list;
+}
+
+// Flights catch what open loop catches, but take a thousand times as long.
+Result<std::vector<SelectedCase>> open_loop_cases(const SuiteFolder& suite) {
+  auto cases = select_cases(suite.cases(), {});
+  if (!cases) return cases;
+  std::erase_if(*cases, [](const SelectedCase& one) { return one.the_case.flight.has_value(); });
+  return cases;
+}
+
+std::vector<FaultFinding> find_naively(const std::vector<const Fault*>& faults) {
+  std::vector<FaultFinding> findings;
+  for (const Fault* fault : faults) {
+    const auto port = open_fault(fault->id);
+    FaultFinding finding;
+    finding.fault = fault;
+    finding.by_hover = caught_by_hover(**port);
+    finding.by_random_attitudes = caught_by_random_attitudes(**port);
+    findings.push_back(std::move(finding));
+  }
+  return findings;
+}
+
+int verdict(const std::vector<FaultFinding>& findings) {
+  const FaultSummary summary = summary_of(findings);
+  for (const FaultFinding* finding : summary.survivors) {
+    fmt::print(stderr, "attest: survives: {}: {}\n", finding->fault->id, finding->fault->what);
+  }
+  for (const FaultFinding* finding : summary.not_by_own) {
+    fmt::print(stderr, "attest: not caught by its group {}: {}: {}\n", finding->fault->group,
+               finding->fault->id, finding->fault->what);
+  }
+  for (const FaultFinding* finding : summary.false_alarms) {
+    fmt::print(stderr, "attest: said to be equivalent, and caught: {} by {}\n", finding->fault->id,
+               finding->result.reason);
+  }
+  const bool good =
+      summary.survivors.empty() && summary.not_by_own.empty() && summary.false_alarms.empty();
+  return good ? exit_ok : exit_failed;
+}
+
+}  // namespace
+
+int faults_command(const FaultOptions& options, const Globals& globals) {
+  if (options.list) {
+    fmt::print("{}", render_fault_list());
+    return exit_ok;
+  }
+  const auto suite = find_suite(globals.suite);
+  if (!suite) return report_error(suite.error());
+  const auto faults = chosen(options);
+  if (!faults) return report_error(faults.error());
+  const auto cases = open_loop_cases(*suite);
+  if (!cases) return report_error(cases.error());
+
+  Batches batches;
+  for (const Fault* fault : *faults) {
+    batches.push_back(std::make_unique<FaultBatch>(*fault, *cases, suite->golden()));
+  }
+  note_interrupts();
+  WorkerOptions worker;
+  worker.jobs = options.jobs;
+  worker.timeout_s = 600;  // of one fault that nothing catches
+  worker.stop = interrupted;
+  const WorkerOutcome outcome = run_batches(batches, worker);
+  if (interrupted()) return exit_interrupted;
+  if (!outcome.errors.empty()) return report_error(outcome.errors.front());
+  std::vector<FaultFinding> findings = find_naively(*faults);
+  for (std::size_t i = 0; i < findings.size(); ++i) findings[i].result = outcome.results[i];
+  fmt::print("{}", render_fault_table(findings));
+  return verdict(findings);
+}
+
+}  // namespace attest::cli

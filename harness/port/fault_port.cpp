@@ -1,0 +1,71 @@
+#include "harness/port/fault_port.hpp"
+
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "controller/faults/fault.hpp"
+#include "controller/reference/profile.hpp"
+#include "harness/core/nearest.hpp"
+
+namespace attest {
+namespace {
+
+using faults::Fault;
+
+class FaultyUnit final : public Unit {
+ public:
+  FaultyUnit(reference::Profile profile, const std::vector<const Fault*>& faults)
+      : controller_(profile, faults) {}
+
+  int set_parameter(const std::string& name, float value) override {
+    return controller_.set_parameter(name, value) ? ATTEST_OK : ATTEST_INVALID;
+  }
+  int step(const attest_inputs& in, attest_outputs& out) override {
+    controller_.step(in, out);
+    return ATTEST_OK;
+  }
+
+ private:
+  faults::FaultyController controller_;
+};
+
+class FaultPort final : public Port {
+ public:
+  FaultPort(std::string ids, std::vector<const Fault*> faults)
+      : ids_(std::move(ids)), faults_(std::move(faults)) {}
+
+  std::string name() const override { return "fault " + ids_; }
+  std::string version() const override { return "of the catalogue"; }
+  std::unique_ptr<Unit> create(const std::string& profile) override {
+    const auto known = reference::profile_from_name(profile);
+    return known ? std::make_unique<FaultyUnit>(*known, faults_) : nullptr;
+  }
+
+ private:
+  std::string ids_;
+  std::vector<const Fault*> faults_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Port>> open_fault(std::string_view ids) {
+  std::vector<const Fault*> faults;
+  for (std::size_t at = 0; at <= ids.size();) {
+    const std::size_t end = std::min(ids.find('+', at), ids.size());
+    const std::string_view id = ids.substr(at, end - at);
+    const Fault* fault = faults::find_fault(id);
+    if (fault == nullptr) {
+      std::vector<std::string> known;
+      for (const Fault* one : faults::catalogue()) known.emplace_back(one->id);
+      return fail(fmt::format("no fault `{}`{}; `attest faults --list` shows all", id,
+                              suggestion(id, known)));
+    }
+    faults.push_back(fault);
+    at = end + 1;
+  }
+  return std::make_unique<FaultPort>(std::string(ids), std::move(faults));
+}
+
+}  // namespace attest

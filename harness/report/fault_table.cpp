@@ -1,0 +1,124 @@
+#include "harness/report/fault_table.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "harness/report/text.hpp"
+
+namespace attest {
+namespace {
+
+struct GroupCount {
+  std::size_t killable = 0, by_own = 0, by_any = 0, by_naive = 0;
+};
+
+std::vector<std::pair<std::string, GroupCount>> by_group(
+    const std::vector<FaultFinding>& findings) {
+  std::vector<std::pair<std::string, GroupCount>> groups;
+  for (const FaultFinding& finding : findings) {
+    const std::string group(finding.fault->group);
+    auto found = std::find_if(groups.begin(), groups.end(),
+                              [&](const auto& known) { return known.first == group; });
+    if (found == groups.end()) found = groups.insert(groups.end(), {group, {}});
+    if (!finding.fault->is_killable()) continue;
+    GroupCount& count = found->second;
+    ++count.killable;
+    count.by_own += finding.is_caught_by_own_group() ? 1 : 0;
+    count.by_any += finding.is_caught() ? 1 : 0;
+    count.by_naive += finding.by_hover || finding.by_random_attitudes ? 1 : 0;
+  }
+  return groups;
+}
+
+std::string caught_by(const FaultFinding& finding) {
+  if (!finding.fault->is_killable()) {
+    return fmt::format("equivalent: {}", finding.fault->equivalent);
+  }
+  if (!finding.is_caught()) return "**survives**";
+  std::string id = finding.result.reason;
+  const std::string profile = finding.result.profile + "/";
+  if (id.starts_with(profile)) id.erase(0, profile.size());
+  return id;
+}
+
+std::string tick_of(const FaultFinding& finding) {
+  return finding.result.first ? fmt::format("{}", finding.result.first->tick) : "";
+}
+
+std::string naive(const FaultFinding& finding) {
+  if (finding.by_hover && finding.by_random_attitudes) return "both";
+  if (finding.by_hover) return "hover";
+  return finding.by_random_attitudes ? "attitudes" : "";
+}
+
+double percent(std::size_t part, std::size_t whole) {
+  return whole == 0 ? 100 : 100 * static_cast<double>(part) / static_cast<double>(whole);
+}
+
+}  // namespace
+
+bool FaultFinding::is_caught_by_own_group() const {
+  const std::string own = result.profile + "/" + std::string(fault->group) + "/";
+  return is_caught() && result.reason.starts_with(own);
+}
+
+FaultSummary summary_of(const std::vector<FaultFinding>& findings) {
+  FaultSummary summary;
+  for (const FaultFinding& finding : findings) {
+    if (!finding.fault->is_killable()) {
+      if (finding.is_caught()) summary.false_alarms.push_back(&finding);
+      continue;
+    }
+    ++summary.killable;
+    summary.caught += finding.is_caught() ? 1 : 0;
+    summary.by_hover += finding.by_hover ? 1 : 0;
+    summary.by_random_attitudes += finding.by_random_attitudes ? 1 : 0;
+    summary.by_naive += finding.by_hover || finding.by_random_attitudes ? 1 : 0;
+    if (!finding.is_caught()) summary.survivors.push_back(&finding);
+    if (finding.is_caught() && !finding.is_caught_by_own_group()) {
+      summary.not_by_own.push_back(&finding);
+    }
+  }
+  return summary;
+}
+
+std::string render_fault_table(const std::vector<FaultFinding>& findings) {
+  std::string out =
+      "| group | faults | caught by it | by any | by a naive suite |\n|---|---|---|---|---|\n";
+  for (const auto& [group, count] : by_group(findings)) {
+    out += fmt::format("| {} | {} | {} | {} | {} |\n", group, count.killable, count.by_own,
+                       count.by_any, count.by_naive);
+  }
+  out +=
+      "\n| fault | stage | what it does | first caught by | at tick | naive suite |\n"
+      "|---|---|---|---|---|---|\n";
+  for (const FaultFinding& finding : findings) {
+    out += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", finding.fault->id,
+                       name_of(finding.fault->stage), finding.fault->what, caught_by(finding),
+                       tick_of(finding), naive(finding));
+  }
+  const FaultSummary summary = summary_of(findings);
+  out += fmt::format(
+      "\n{} faults: {} of {} that can be told from the law are caught ({:.1f}%), {} by their own "
+      "group; {} are equivalent to it. A hover trace catches {} ({:.0f}%), random attitude pairs "
+      "{} ({:.0f}%), both together {} ({:.0f}%).\n",
+      findings.size(), summary.caught, summary.killable, percent(summary.caught, summary.killable),
+      summary.caught - summary.not_by_own.size(), findings.size() - summary.killable,
+      summary.by_hover, percent(summary.by_hover, summary.killable), summary.by_random_attitudes,
+      percent(summary.by_random_attitudes, summary.killable), summary.by_naive,
+      percent(summary.by_naive, summary.killable));
+  return out;
+}
+
+std::string render_fault_list() {
+  std::string out;
+  for (const faults::Fault* fault : faults::catalogue()) {
+    out += fmt::format("{:<26} {:<17} {:<16} {}\n", fault->id, fault->group, name_of(fault->stage),
+                       fault->what);
+  }
+  return out;
+}
+
+}  // namespace attest

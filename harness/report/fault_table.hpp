@@ -1,0 +1,35 @@
+// What a suite is worth: which wrong controllers it catches.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "controller/faults/fault.hpp"
+#include "harness/suite/verdict.hpp"
+
+namespace attest {
+
+struct FaultFinding {
+  const faults::Fault* fault = nullptr;
+  CaseResult result;  // of a FaultBatch
+  bool by_hover = false, by_random_attitudes = false;
+
+  bool is_caught() const { return fails_a_run(result.verdict); }
+  bool is_caught_by_own_group() const;
+};
+
+struct FaultSummary {
+  std::size_t killable = 0, caught = 0, by_hover = 0, by_random_attitudes = 0, by_naive = 0;
+  std::vector<const FaultFinding*> survivors;     // killable, caught by nothing
+  std::vector<const FaultFinding*> not_by_own;    // caught, but not by a case of their group
+  std::vector<const FaultFinding*> false_alarms;  // equivalent to the law, and yet caught
+};
+FaultSummary summary_of(const std::vector<FaultFinding>& findings);
+
+// Markdown: a row a group with what of it is caught, a row a fault, and the figures.
+std::string render_fault_table(const std::vector<FaultFinding>& findings);
+
+// One line a fault: id, group, stage, what it does.
+std::string render_fault_list();
+
+}  // namespace attest

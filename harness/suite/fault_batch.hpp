@@ -1,0 +1,38 @@
+// One wrong controller of the catalogue against the corpus, until something catches it: how good
+// the suite is, not how good a port is.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "controller/faults/fault.hpp"
+#include "harness/suite/batch.hpp"
+
+namespace attest {
+
+class FaultBatch final : public Batch {
+ public:
+  // `cases` are open loop, and outlive this.
+  FaultBatch(const faults::Fault& fault, const std::vector<SelectedCase>& cases,
+             std::filesystem::path golden_root)
+      : fault_(fault), cases_(cases), golden_root_(std::move(golden_root)) {}
+
+  std::size_t size() const override { return 1; }
+
+  // Group and name are the fault's.
+  CaseResult identity(std::size_t i) const override;
+
+  // Cases of the fault's own group come first, and of each group 250 Hz. The verdict is what the
+  // first case gave that caught it, `reason` the id of that case; pass when it survived all. Cases
+  // on a threshold are judged at the exact level, the others at the numeric one. The port is not
+  // used: the fault is one.
+  Result<CaseResult> evaluate(std::size_t i, Port& port) override;
+
+ private:
+  const faults::Fault& fault_;
+  const std::vector<SelectedCase>& cases_;
+  std::filesystem::path golden_root_;
+};
+
+}  // namespace attest

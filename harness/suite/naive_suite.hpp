@@ -1,0 +1,15 @@
+// The two tests that a port is usually given: a recorded hover, and random pairs of attitude and
+// setpoint. Measured beside the corpus, to say what it is worth.
+#pragma once
+
+#include "harness/port/port.hpp"
+
+namespace attest {
+
+// 10 s of hover at 250 Hz with a quiet pilot, default parameters, outputs compared numerically.
+bool caught_by_hover(Port& port);
+
+// 1000 pairs of any two attitudes, one step each: the rates setpoints compared numerically.
+bool caught_by_random_attitudes(Port& port);
+
+}  // namespace attest
