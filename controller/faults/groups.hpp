@@ -9,6 +9,7 @@
 namespace attest::faults {
 
 std::span<const Fault> attitude_faults();
+std::span<const Fault> yaw_faults();
 std::span<const Fault> large_angle_faults();
 std::span<const Fault> rate_limit_faults();
 std::span<const Fault> yaw_feed_forward_faults();

@@ -181,9 +181,12 @@ void parse_body(const TomlTable& root, Case& parsed) {
   }
   parsed.rates = parse_rates(root);
   parse_duration(root, parsed);
-  const std::string level = root.text("level", "numeric");
-  parsed.exact_only = level == "exact";
-  if (level != "numeric" && level != "exact") root.error("level", "must be numeric or exact");
+  if (root.has("level")) {
+    const std::string level = root.text("level");
+    parsed.exact_only = level == "exact";
+    parsed.numeric_only = level == "numeric";
+    if (level != "numeric" && level != "exact") root.error("level", "must be numeric or exact");
+  }
   parsed.unit = parse_unit(root);
   check_unit(root, parsed);
   parsed.parameters = parse_parameters(root);

@@ -70,9 +70,16 @@ void parse_field(const TomlTable& table, const std::string& key, FieldStimulus& 
   }
 }
 
-// `q = [w, x, y, z]` or `q = { tilt_deg = ..., ... }`; `first` is the field of the w component.
+// `q = [w, x, y, z]` or `q = { tilt_deg = ..., ... }`; its components by themselves (`"q[1]"`) are
+// fields like any other. `first` is the field of the w component.
 void parse_quaternion(const TomlTable& table, const std::string& key, TopicStimulus& topic,
                       std::size_t first) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::string component = fmt::format("{}[{}]", key, i);
+    if (table.has(key) && table.has(component)) {
+      return table.error(component, fmt::format("`{}` is given too; keep one", key));
+    }
+  }
   switch (table.kind(key)) {
     case TomlKind::absent:
       return;
@@ -216,7 +223,7 @@ void parse_topic(const TomlTable& table, TopicStimulus& topic) {
   if (topic.topic == control_mode) parse_flight_mode(table, topic);
   for (FieldStimulus& field : topic.fields) {
     const std::string name(field_of(channels()[field.channel].name));
-    if (!name.starts_with('q')) parse_field(table, name, field);
+    parse_field(table, name, field);
   }
   for (std::size_t i = 0; i < topic.fields.size(); ++i) {
     const std::string_view name = field_of(channels()[topic.fields[i].channel].name);

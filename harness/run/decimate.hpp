@@ -6,7 +6,7 @@
 namespace attest {
 
 // The first ticks, ticks at regular distances, those where an output is smallest and largest, and
-// the last, in order; some fifty in all. Without parameters, freshness and plant: what is left out
+// the last, in order; some forty in all. Without parameters, freshness and plant: what is left out
 // between two rows cannot be replayed. REQUIRES: not empty.
 Trace decimated(const Trace& flown);
 

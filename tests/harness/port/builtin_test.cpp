@@ -51,7 +51,7 @@ TEST(OpenPort, NamesTheKindsThereAre) {
   for (const char* specification : {"", "bultin", "libmine.so", "LIB:x", "proc:x"}) {
     const auto port = open_port(specification);
     ASSERT_FALSE(port) << specification;
-    EXPECT_THAT(port.error().message, HasSubstr("use `builtin` or `lib:PATH`"));
+    EXPECT_THAT(port.error().message, HasSubstr("use `builtin`, `lib:PATH` or `fault:ID`"));
   }
 }
 

@@ -1,0 +1,43 @@
+// What faults of the rate loop need of each other's stages.
+#pragma once
+
+#include <memory>
+
+#include "controller/faults/faulty_law.hpp"
+
+namespace attest::faults {
+
+// What one stage saw, for another of the same step.
+struct Seen {
+  Vector error = Vector::Zero();
+  float attenuation = 1;
+  float dt_s = 0;
+  Vector last = Vector::Zero();
+};
+
+// Remembers the error, the attenuation and dt, which the stages after them are not given.
+inline std::shared_ptr<Seen> watch(FaultyLaw& law) {
+  auto seen = std::make_shared<Seen>();
+  law.rate.proportional = [seen, then = law.rate.proportional](
+                              const Vector& error, float attenuation, const RateGains& gains) {
+    seen->error = error;
+    seen->attenuation = attenuation;
+    return then(error, attenuation, gains);
+  };
+  law.rate.derivative = [seen, then = law.rate.derivative](const Vector& prev, const Vector& rates,
+                                                           float dt, const RateGains& gains) {
+    seen->dt_s = dt;
+    return then(prev, rates, dt, gains);
+  };
+  return seen;
+}
+
+// The control as another sum of its terms.
+template <typename Sum>
+void change_control(FaultyLaw& law, Sum sum) {
+  law.rate.control = [sum](const Vector& p, const Vector& d, const Vector& i, const Vector& ff) {
+    return Vector(sum(p, d, i, ff));
+  };
+}
+
+}  // namespace attest::faults

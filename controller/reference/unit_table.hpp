@@ -1,0 +1,39 @@
+// A controller behind the C ABI of attest_unit.h: the functions of its table.
+#pragma once
+
+#include <new>
+
+#include "controller/attest_unit.h"
+#include "controller/reference/profile.hpp"
+
+namespace attest::reference {
+
+// Controller is constructed from a Profile and has set_parameter() and step(), as McAttControl.
+// Every function is noexcept: an exception must not cross into a host written in C.
+template <typename Controller>
+struct UnitTable {
+  static void* create(const char* profile_name) noexcept {
+    if (profile_name == nullptr) return nullptr;
+    const auto profile = profile_from_name(profile_name);
+    return profile ? new (std::nothrow) Controller(*profile) : nullptr;
+  }
+
+  static void destroy(void* self) noexcept { delete static_cast<Controller*>(self); }
+
+  static int set_parameter(void* self, const char* name, float value) noexcept {
+    if (self == nullptr || name == nullptr) return ATTEST_INVALID;
+    return static_cast<Controller*>(self)->set_parameter(name, value) ? ATTEST_OK : ATTEST_INVALID;
+  }
+
+  static int step(void* self, const attest_inputs* in, attest_outputs* out) noexcept {
+    if (self == nullptr || in == nullptr || out == nullptr) return ATTEST_INVALID;
+    static_cast<Controller*>(self)->step(*in, *out);
+    return ATTEST_OK;
+  }
+
+  static constexpr attest_unit named(const char* name, const char* version) {
+    return {ATTEST_UNIT_ABI_VERSION, name, version, create, destroy, set_parameter, step, nullptr};
+  }
+};
+
+}  // namespace attest::reference

@@ -1,0 +1,88 @@
+#!/usr/bin/env python3
+"""How far right ports that compute otherwise are from being accused.
+
+    headroom.py ATTEST FOLDER [--group GROUP]...
+
+Runs each right port in FOLDER through the suite at the numeric level and prints a Markdown table:
+what did not pass, and the tightest headroom (tolerance / difference) of each kind of output.
+Exits 1 if a right port was accused, or came within a factor of 3 of it.
+"""
+
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+LEAST = 3.0
+
+# name of the library, what is different in it
+RIGHT = [
+    ("reference_gcc_O0", "gcc -O0"),
+    ("reference_clang_O3", "clang -O3"),
+    ("reference_fma_gcc", "gcc -O3 -march=native, contracted"),
+    ("reference_fma_clang", "clang -O3 -march=native, contracted"),
+    ("reference_unsafe_math", "gcc -funsafe-math-optimizations"),
+    ("reference_double", "double precision"),
+    ("right_quaternion", "tilt and torsion from the error quaternion"),
+    ("right_polynomial_atan2", "a polynomial atan2, right to 2e-7"),
+    ("right_eigen_products", "Eigen's own products"),
+]
+
+
+def kind_of(channel):
+    if "vehicle_rates_setpoint" in channel:
+        return "rates"
+    return "integrals" if "mc_att_ctrl_status" in channel else "controls"
+
+
+def tightest(results):
+    """The smallest ratio of each kind, with the id of its result."""
+    least = {}
+    for result in results:
+        headroom = result.get("tightest")
+        if not headroom or headroom["ratio"] == "inf":
+            continue
+        kind = kind_of(headroom["channel"])
+        if kind not in least or headroom["ratio"] < least[kind][0]:
+            least[kind] = (headroom["ratio"], result["id"].split("/", 1)[1])
+    return least
+
+
+def run(attest, library, groups):
+    with tempfile.TemporaryDirectory() as folder:
+        report = pathlib.Path(folder) / "report.json"
+        command = [attest, "-q", "run", "--port", f"lib:{library}", "--json", report]
+        for group in groups:
+            command += ["--group", group]
+        subprocess.run(command, stdout=subprocess.DEVNULL, check=False)
+        return json.loads(report.read_text())["results"]
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("attest")
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--group", action="append", default=[])
+    args = parser.parse_args()
+    good = True
+    print("| right port | passed | accused | rates | controls | integrals |")
+    print("|---|---|---|---|---|---|")
+    for name, what in RIGHT:
+        results = run(args.attest, args.folder / f"{name}.so", args.group)
+        counted = [r for r in results if r["verdict"] not in ("skip", "unsupported")]
+        accused = [r for r in counted if r["verdict"] != "pass"]
+        least = tightest(counted)
+        cells = [
+            f"{least[kind][0]:.0f}x in {least[kind][1]}" if kind in least else "same bits"
+            for kind in ("rates", "controls", "integrals")
+        ]
+        print(f"| {what} | {len(counted) - len(accused)} | {len(accused)} | {' | '.join(cells)} |")
+        for result in accused[:5]:
+            print(f"accused: {what}: {result['id']}: {result['verdict']}", file=sys.stderr)
+        good = good and not accused and all(ratio > LEAST for ratio, _ in least.values())
+    sys.exit(0 if good else 1)
+
+
+main()
