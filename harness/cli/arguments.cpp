@@ -72,6 +72,8 @@ void add_run(CLI::App& app, const Globals& globals, Action& action) {
                    "How strictly: `exact` (float32 bits) or `numeric` (a tolerance a channel); "
                    "flights are judged alike at both")
       ->capture_default_str();
+  command->add_flag("--diagnose,!--no-diagnose", options->diagnose,
+                    "When something fails, name the mistakes it looks like (on by default)");
   command->add_option("--jobs,-j", options->worker.jobs, "Cases at a time")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
@@ -156,6 +158,8 @@ void add_faults(CLI::App& app, const Globals& globals, Action& action) {
       "faults", "How good the suite is: which wrong controllers of the catalogue it catches");
   command->add_option("fault", options->ids, "Only these faults")->type_name("ID");
   command->add_flag("--list", options->list, "What is in the catalogue; runs nothing");
+  command->add_flag("--diagnose", options->diagnose,
+                    "How good diagnosis is, instead: is each fault recognised?");
   command->add_option("--jobs,-j", options->jobs, "Faults at a time")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();

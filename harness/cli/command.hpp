@@ -47,6 +47,7 @@ struct RunOptions {
   std::string level = "numeric";
   std::string junit;
   std::string json;
+  bool diagnose = true;  // when something fails
 };
 int run_command(const RunOptions& options, const Globals& globals);
 
@@ -80,6 +81,7 @@ int sim_command(const SimOptions& options, const Globals& globals);
 struct FaultOptions {
   std::vector<std::string> ids;  // empty: all
   bool list = false;
+  bool diagnose = false;
   int jobs = 1;
 };
 int faults_command(const FaultOptions& options, const Globals& globals);

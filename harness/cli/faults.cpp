@@ -5,7 +5,9 @@
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/nearest.hpp"
 #include "harness/port/fault_port.hpp"
+#include "harness/report/diagnosis_text.hpp"
 #include "harness/report/fault_table.hpp"
+#include "harness/suite/diagnose_catalogue.hpp"
 #include "harness/suite/fault_batch.hpp"
 #include "harness/suite/naive_suite.hpp"
 
@@ -66,6 +68,25 @@ int verdict(const std::vector<FaultFinding>& findings) {
   return good ? exit_ok : exit_failed;
 }
 
+int diagnose_all(const std::vector<SelectedCase>& cases) {
+  const std::vector<SelfDiagnosis> results = diagnose_catalogue(cases);
+  std::size_t named = 0, stages = 0;
+  for (const SelfDiagnosis& result : results) {
+    named += result.is_named() ? 1 : 0;
+    stages += result.is_stage_named() ? 1 : 0;
+    if (result.is_named()) continue;
+    fmt::print("{} is taken for something else:\n{}", result.fault->id,
+               result.diagnosis ? diagnosis_text(*result.diagnosis) : "the law itself\n");
+  }
+  const double part = 100 * static_cast<double>(named) / static_cast<double>(results.size());
+  fmt::print(
+      "{} of {} faults are named first, or with those that they cannot be told from "
+      "({:.1f}%); the stage of {} is\n",
+      named, results.size(), part, stages);
+  constexpr double enough = 95;
+  return part >= enough ? exit_ok : exit_failed;
+}
+
 }  // namespace
 
 int faults_command(const FaultOptions& options, const Globals& globals) {
@@ -80,6 +101,7 @@ int faults_command(const FaultOptions& options, const Globals& globals) {
   const auto cases = open_loop_cases(*suite);
   if (!cases) return report_error(cases.error());
 
+  if (options.diagnose) return diagnose_all(*cases);
   Batches batches;
   for (const Fault* fault : *faults) {
     batches.push_back(std::make_unique<FaultBatch>(*fault, *cases, suite->golden()));

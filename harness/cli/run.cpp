@@ -14,6 +14,7 @@
 #include "harness/report/junit.hpp"
 #include "harness/report/progress.hpp"
 #include "harness/report/terminal.hpp"
+#include "harness/suite/diagnosis_batch.hpp"
 #include "harness/suite/worker.hpp"
 
 namespace attest::cli {
@@ -50,6 +51,7 @@ Result<void> write_reports(std::vector<ReportFile>& reports, const RunResult& ru
 // What is to be run, complete and checked, before the first case runs.
 struct Plan {
   RunResult run;
+  std::vector<SelectedCase> cases;
   Batches batches;
   std::size_t results = 0;
 };
@@ -78,7 +80,28 @@ Result<Plan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
   if (!batches) return tl::unexpected(batches.error());
   plan.batches = std::move(*batches);
   plan.run.rates.assign(rates.begin(), rates.end());
+  plan.cases = std::move(*cases);
   return plan;
+}
+
+// What the failures look like; nothing that goes wrong here spoils the verdicts that are there.
+std::optional<Diagnosis> diagnosed(const Plan& plan, const WorkerOptions& options) {
+  WorkerOptions worker = options;
+  worker.on_result = [](const CaseResult&) {};
+  worker.fail_fast = false;
+  const auto vectors = [&](const faults::Fault* partner) {
+    std::vector<VectorLikeness> likenesses;
+    const Batches batches = diagnosis_batches(plan.cases, plan.run.results, partner);
+    for (CaseResult& result : run_batches(batches, worker).results) {
+      if (result.likeness) likenesses.push_back(std::move(*result.likeness));
+    }
+    return likenesses;
+  };
+  auto diagnosis = diagnose(vectors(nullptr));
+  if (diagnosis && wants_partner(*diagnosis)) {
+    add_partner(vectors(diagnosis->suspects.front().fault), *diagnosis);
+  }
+  return diagnosis;
 }
 
 // 0 only when something was compared: a port that supports nothing has not conformed.
@@ -119,6 +142,7 @@ int run_command(const RunOptions& options, const Globals& globals) {
   run.results = std::move(outcome.results);
   run.errors = std::move(outcome.errors);
   run.stopped_early = outcome.stopped_early;
+  if (options.diagnose && run.failed()) run.diagnosis = diagnosed(*plan, worker);
   // Before the summary: whoever reads that may stop reading, and end the program.
   const auto written = write_reports(*reports, run);
   const int code = exit_code(run);

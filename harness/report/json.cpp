@@ -50,12 +50,34 @@ ordered_json results(const RunResult& run) {
   return out;
 }
 
+ordered_json diagnosis(const Diagnosis& found) {
+  ordered_json suspects = ordered_json::array();
+  for (const Suspect& suspect : found.suspects) {
+    ordered_json others = ordered_json::array();
+    for (const faults::Fault* other : suspect.or_else) others.push_back(other->id);
+    suspects.push_back({{"fault", suspect.fault->id},
+                        {"stage", name_of(suspect.fault->stage)},
+                        {"what", suspect.fault->what},
+                        {"kind", suspect.fault->kind},
+                        {"matched_ticks", suspect.matched},
+                        {"ticks", suspect.ticks},
+                        {"explained_vectors", suspect.explained},
+                        {"or_else", others}});
+    if (suspect.with) suspects.back()["with"] = suspect.with->id;
+  }
+  return {{"stage", name_of(found.stage)},
+          {"vectors", found.vectors},
+          {"failing_vectors", found.failing},
+          {"suspects", suspects},
+          {"nearest", {{"fault", found.nearest->id}, {"alikeness", found.alikeness}}}};
+}
+
 }  // namespace
 
 std::string json_report(const RunResult& run) {
   const ordered_json port = {
       {"specification", run.port}, {"name", run.port_name}, {"version", run.port_version}};
-  const ordered_json report = {
+  ordered_json report = {
       {"schema", "attest-report-1"},
       {"attest_version", run.attest_version},
       {"port", port},
@@ -67,6 +89,7 @@ std::string json_report(const RunResult& run) {
       {"errors", errors(run)},
       {"results", results(run)},
   };
+  if (run.diagnosis) report["diagnosis"] = diagnosis(*run.diagnosis);
   return report.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

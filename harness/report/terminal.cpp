@@ -11,6 +11,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "harness/report/diagnosis_text.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/summary_table.hpp"
 #include "harness/report/text.hpp"
@@ -97,7 +98,8 @@ std::string failures(const RunResult& run, TerminalStyle style) {
       untold += groups[i].size();
   }
   if (untold > 0) out += fmt::format("and {} more; see --json or --junit\n\n", untold);
-  return out + stages(run);
+  out += stages(run);
+  return run.diagnosis ? out + diagnosis_text(*run.diagnosis) + "\n" : out;
 }
 
 std::string cases_of(const Together& group) {

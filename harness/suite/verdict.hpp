@@ -10,6 +10,8 @@
 #include "harness/compare/compare.hpp"
 #include "harness/compare/metric.hpp"
 #include "harness/schedule/rate.hpp"
+#include "harness/suite/diagnose.hpp"
+#include "harness/suite/likeness.hpp"
 
 namespace attest {
 
@@ -58,7 +60,8 @@ struct CaseResult {
   std::size_t deviating_ticks = 0;
   std::optional<Deviation> first;
   std::optional<Headroom> tightest;
-  std::vector<MetricResult> metrics;  // of a flight that ended well
+  std::vector<MetricResult> metrics;       // of a flight that ended well
+  std::optional<VectorLikeness> likeness;  // of a diagnosis
   double elapsed_s = 0;  // of wall time, for JUnit only: everything else is deterministic
 
   std::string case_id() const { return profile + "/" + group + "/" + name; }
@@ -77,8 +80,9 @@ struct RunResult {
   Level level = Level::numeric;
   std::vector<Rate> rates;  // selected, ascending
   std::vector<CaseResult> results;
-  std::vector<Error> errors;   // of the environment: a golden that cannot be read, ...
-  bool stopped_early = false;  // --fail-fast
+  std::vector<Error> errors;           // of the environment: a golden that cannot be read, ...
+  bool stopped_early = false;          // --fail-fast
+  std::optional<Diagnosis> diagnosis;  // of what failed
 
   std::size_t count(Verdict verdict) const;
   bool failed() const;  // any verdict that fails a run

@@ -20,7 +20,7 @@ quick=(--group attitude --group battery --group rates)
   run "$ATTEST" --help
   [ "$status" -eq 0 ]
   has "attest run --port lib:./libmine.so"
-  for command in list run replay sim compare vectors bless doctor; do
+  for command in list run replay sim compare faults vectors bless doctor; do
     run "$ATTEST" "$command" --help
     [ "$status" -eq 0 ]
   done

@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include "tests/ports/right/law_port.hpp"
+#include "tests/ports/law_port.hpp"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "tests/ports/right/law_port.hpp"
+#include "tests/ports/law_port.hpp"
 
 namespace {
 

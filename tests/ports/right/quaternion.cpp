@@ -2,7 +2,7 @@
 // Must pass at the numeric level.
 #include <cmath>
 
-#include "tests/ports/right/law_port.hpp"
+#include "tests/ports/law_port.hpp"
 
 namespace {
 

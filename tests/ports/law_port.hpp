@@ -1,4 +1,4 @@
-// A right port that computes otherwise: the reference with stages of its own, as a shared library.
+// The reference with stages of its own, as a shared library: a port that computes otherwise.
 #pragma once
 
 #include "controller/reference/mc_att_control_definition.hpp"

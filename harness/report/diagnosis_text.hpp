@@ -1,0 +1,13 @@
+// A diagnosis for people.
+#pragma once
+
+#include <string>
+
+#include "harness/suite/diagnose.hpp"
+
+namespace attest {
+
+// "it looks like:\n  `quat-order-xyzw`: ...", with a newline at its end.
+std::string diagnosis_text(const Diagnosis& diagnosis);
+
+}  // namespace attest

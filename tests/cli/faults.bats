@@ -1,0 +1,60 @@
+load common
+
+@test "every fault that can be told from the law is caught, by a case of its own group" {
+  run "$ATTEST" faults
+  [ "$status" -eq 0 ]
+  has "are caught (100.0%)"
+  lacks "survives"
+}
+
+@test "the catalogue is listed, and a fault can be named" {
+  run "$ATTEST" faults --list
+  [ "$status" -eq 0 ]
+  [ "${#lines[@]}" -ge 150 ]
+  has "quat-order-xyzw"
+  run "$ATTEST" faults yaw-dropped tpa-missing
+  [ "$status" -eq 0 ]
+  has "2 faults: 2 of 2"
+  run "$ATTEST" faults quat-order-xyz
+  [ "$status" -eq 2 ]
+  has "did you mean \`quat-order-xyzw\`?"
+  run "$ATTEST" run --port fault:nothing
+  [ "$status" -eq 2 ]
+}
+
+@test "a failure says what mistake it looks like" {
+  run "$ATTEST" run --port fault:yaw-weight-dropped --rate 250 --group attitude --group rates \
+    --json report.json
+  [ "$status" -eq 1 ]
+  has "it looks like:"
+  has "\`yaw-weight-dropped\`: does not weigh the yaw error (wrong weight; in the stage yaw)"
+  grep -q '"fault": "yaw-weight-dropped"' report.json
+  run "$ATTEST" run --port fault:yaw-weight-dropped --rate 250 --group attitude --no-diagnose
+  lacks "it looks like"
+}
+
+@test "two mistakes at once are both named" {
+  for pair in "yaw-reversed dt-no-minimum" "tpa-missing gate-yaw-dropped" \
+    "acro-pitch-reversed limit-missing" "battery-divides d-on-error"; do
+    run "$ATTEST" run --port "fault:${pair/ /+}" --no-diagnose -q --rate 250,1000
+    [ "$status" -eq 1 ]
+    run "$ATTEST" run --port "fault:${pair/ /+}" --rate 250,1000 --group attitude \
+      --group rate_limit --group rates --group tpa --group anti_windup --group battery \
+      --group modes --group timing
+    for one in $pair; do has "\`$one\`"; done
+  done
+}
+
+@test "a mistake that is in no catalogue is caught and its stage named" {
+  run "$ATTEST" run --port "lib:$PORTS/port_blend_from_100.so" --rate 250 --group large_angle \
+    --group attitude
+  [ "$status" -eq 1 ]
+  has "blend"
+  [[ $output == *"in the stage blend"* ]]
+}
+
+@test "a port that crashes is not diagnosed, and does not end the run" {
+  run "$ATTEST" run --port "lib:$PORTS/port_crash.so" --rate 250 --group attitude
+  [ "$status" -eq 1 ]
+  lacks "it looks like"
+}

@@ -1,0 +1,83 @@
+// The catalogue as such; that it is wrong, and how soon, is tested with the corpus (attest faults).
+#include <cstring>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "controller/faults/fault.hpp"
+#include "controller/reference/unit.hpp"
+
+namespace attest::faults {
+namespace {
+
+TEST(Catalogue, EveryFaultIsNamedAndExplained) {
+  std::set<std::string_view> ids;
+  for (const Fault* fault : catalogue()) {
+    EXPECT_TRUE(ids.insert(fault->id).second) << fault->id << " is there twice";
+    EXPECT_EQ(find_fault(fault->id), fault);
+    for (const auto text : {fault->group, fault->what, fault->shows, fault->kind}) {
+      EXPECT_FALSE(text.empty()) << fault->id;
+    }
+    EXPECT_FALSE(name_of(fault->stage).empty());
+  }
+  EXPECT_GE(ids.size(), 150u);
+  EXPECT_EQ(find_fault("no such fault"), nullptr);
+}
+
+attest_inputs tick(std::uint64_t i) {
+  attest_inputs in{};
+  in.timestamp = 5'000'000 + 4000 * i;
+  in.updated = i == 0 ? 0x1ffu : 0u;
+  const float x = 0.01f * static_cast<float>(i);
+  const float w = std::sqrt(1 - x * x);
+  in.control_state = {{w, x, 0, 0}, 0.1f, -x, 0.2f};
+  in.vehicle_attitude_setpoint = {{1, 0, 0, 0}, 0.6f, 0, 0.5f, 0};
+  in.vehicle_control_mode = {1, 0, 1, 1, 0, 0};
+  in.actuator_armed.armed = 1;
+  in.vehicle_status.is_rotary_wing = 1;
+  return in;
+}
+
+attest_outputs flown(FaultyController& controller) {
+  attest_outputs out{};
+  for (std::uint64_t i = 0; i < 50; ++i) controller.step(tick(i), out);
+  return out;
+}
+
+TEST(FaultyController, WithoutAFaultIsTheReferenceToTheBit) {
+  FaultyController controller(Profile::px4_v1_5_5, {});
+  const attest_unit& unit = *reference::reference_unit();
+  void* const self = unit.create("px4-v1.5.5");
+  attest_outputs got{}, want{};
+  for (std::uint64_t i = 0; i < 50; ++i) {
+    const attest_inputs in = tick(i);
+    controller.step(in, got);
+    unit.step(self, &in, &want);
+    ASSERT_EQ(std::memcmp(&got, &want, sizeof got), 0) << i;
+  }
+  unit.destroy(self);
+}
+
+// Faults that remember something do so by instance: a second one begins anew.
+TEST(FaultyController, InstancesShareNothing) {
+  for (const Fault* fault : catalogue()) {
+    const Fault* const one[] = {fault};
+    FaultyController first(Profile::px4_v1_5_5, one);
+    const attest_outputs once = flown(first);
+    flown(first);
+    FaultyController second(Profile::px4_v1_5_5, one);
+    const attest_outputs again = flown(second);
+    EXPECT_EQ(std::memcmp(&once, &again, sizeof once), 0) << fault->id;
+  }
+}
+
+TEST(FaultyController, TwoFaultsActTogether) {
+  const Fault* const both[] = {find_fault("thrust-negated"), find_fault("gear-missing")};
+  FaultyController controller(Profile::px4_v1_5_5, both);
+  const attest_outputs out = flown(controller);
+  EXPECT_EQ(out.actuator_controls_0.control[3], -0.6f);
+  EXPECT_EQ(out.actuator_controls_0.control[7], 0);
+}
+
+}  // namespace
+}  // namespace attest::faults

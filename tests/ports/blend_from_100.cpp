@@ -1,0 +1,22 @@
+// Wrong, and in no catalogue: blends with the shortest rotation from 100 deg of tilt error instead
+// of 90. Must fail, and the stage `blend` must be named.
+#include "tests/ports/law_port.hpp"
+
+namespace {
+
+using namespace attest::reference;
+
+struct Stages : AttitudeStages<float> {
+  static bool is_upset(float cosine) { return cosine < -0.1736f; }
+};
+
+struct Law {
+  StepStages<float> step;
+  Stages attitude;
+  RateStages<float> rate;
+  RecoveryStages<float> recovery;
+};
+
+}  // namespace
+
+ATTEST_LAW_PORT("blend from 100 deg", Law)
