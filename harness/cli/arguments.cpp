@@ -72,6 +72,14 @@ void add_run(CLI::App& app, const Globals& globals, Action& action) {
                    "How strictly: `exact` (float32 bits) or `numeric` (a tolerance a channel); "
                    "flights are judged alike at both")
       ->capture_default_str();
+  command
+      ->add_option("--expected-failures", options->expected_failures,
+                   "Failures that are accepted, with reasons (TOML); one that passes fails the run")
+      ->type_name("F");
+  command
+      ->add_option("--write-expected", options->write_expected,
+                   "Write what fails as such a file, to fill in the reasons")
+      ->type_name("F");
   command->add_flag("--diagnose,!--no-diagnose", options->diagnose,
                     "When something fails, name the mistakes it looks like (on by default)");
   command->add_option("--jobs,-j", options->worker.jobs, "Cases at a time")
@@ -88,6 +96,7 @@ void add_run(CLI::App& app, const Globals& globals, Action& action) {
                     "No worker processes: for a debugger, or a sanitizer in the port");
   command->add_option("--junit", options->junit, "Write a JUnit XML report")->type_name("FILE");
   command->add_option("--json", options->json, "Write a JSON report")->type_name("FILE");
+  command->add_option("--badge", options->badge, "Write a badge (SVG)")->type_name("FILE");
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return run_command(*options, globals); };
   });

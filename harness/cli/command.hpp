@@ -34,6 +34,11 @@ struct SelectionOptions {
   std::vector<std::string> filters, groups, profiles, rates, vehicles, plants;
   std::string shard = "1/1";
 
+  bool selects_all() const {
+    return filters.empty() && groups.empty() && profiles.empty() && rates.empty() &&
+           vehicles.empty() && plants.empty() && shard == "1/1";
+  }
+
   // The cases below `folder` that are selected. Errors: as of select_cases, and text that is no
   // rate or shard.
   Result<std::vector<SelectedCase>> cases_in(const std::filesystem::path& folder) const;
@@ -47,6 +52,9 @@ struct RunOptions {
   std::string level = "numeric";
   std::string junit;
   std::string json;
+  std::string badge;
+  std::string expected_failures;
+  std::string write_expected;
   bool diagnose = true;  // when something fails
 };
 int run_command(const RunOptions& options, const Globals& globals);

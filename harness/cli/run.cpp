@@ -13,8 +13,10 @@
 #include "harness/report/json.hpp"
 #include "harness/report/junit.hpp"
 #include "harness/report/progress.hpp"
+#include "harness/report/statement.hpp"
 #include "harness/report/terminal.hpp"
 #include "harness/suite/diagnosis_batch.hpp"
+#include "harness/suite/expected.hpp"
 #include "harness/suite/worker.hpp"
 
 namespace attest::cli {
@@ -29,8 +31,11 @@ struct ReportFile {
 Result<std::vector<ReportFile>> open_reports(const RunOptions& options) {
   std::vector<ReportFile> reports;
   using Render = std::string (*)(const RunResult&);
-  const std::pair<const std::string&, Render> wanted[] = {{options.junit, junit_report},
-                                                          {options.json, json_report}};
+  const std::pair<const std::string&, Render> wanted[] = {
+      {options.junit, junit_report},
+      {options.json, json_report},
+      {options.badge, badge},
+      {options.write_expected, expected_failures_of}};
   for (const auto& [path, render] : wanted) {
     if (path.empty()) continue;
     auto file = AtomicFile::open(path);
@@ -51,6 +56,7 @@ Result<void> write_reports(std::vector<ReportFile>& reports, const RunResult& ru
 // What is to be run, complete and checked, before the first case runs.
 struct Plan {
   RunResult run;
+  std::optional<ExpectedFailures> expected;
   std::vector<SelectedCase> cases;
   Batches batches;
   std::size_t results = 0;
@@ -65,6 +71,14 @@ Result<Plan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
   if (!port) return tl::unexpected(port.error());
 
   Plan plan;
+  if (!options.expected_failures.empty()) {
+    auto expected = ExpectedFailures::read(options.expected_failures);
+    if (!expected) return tl::unexpected(expected.error());
+    plan.expected = std::move(*expected);
+  }
+  plan.run.all_groups = suite.groups();
+  plan.run.cases_version = suite.version_of(suite.cases());
+  plan.run.golden_version = suite.version_of(suite.golden());
   plan.run.attest_version = version;
   plan.run.port = options.worker.port;
   plan.run.port_name = port->name;
@@ -142,6 +156,7 @@ int run_command(const RunOptions& options, const Globals& globals) {
   run.results = std::move(outcome.results);
   run.errors = std::move(outcome.errors);
   run.stopped_early = outcome.stopped_early;
+  if (plan->expected) plan->expected->apply(options.select.selects_all(), run);
   if (options.diagnose && run.failed()) run.diagnosis = diagnosed(*plan, worker);
   // Before the summary: whoever reads that may stop reading, and end the program.
   const auto written = write_reports(*reports, run);

@@ -1,6 +1,8 @@
 #include "harness/cli/suite_folder.hpp"
 
 #include <cstdlib>
+#include <fstream>
+#include <set>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -23,6 +25,24 @@ Result<SuiteFolder> named(const fs::path& folder, const char* by) {
 }
 
 }  // namespace
+
+std::string SuiteFolder::version_of(const fs::path& folder) const {
+  std::ifstream file(folder / "VERSION");
+  std::string version;
+  return file >> version ? version : "unversioned";
+}
+
+std::vector<std::string> SuiteFolder::groups() const {
+  std::set<std::string> names;
+  std::error_code error;
+  for (const auto& profile : fs::directory_iterator(cases(), error)) {
+    if (!profile.is_directory(error)) continue;
+    for (const auto& group : fs::directory_iterator(profile.path(), error)) {
+      if (group.is_directory(error)) names.insert(group.path().filename().string());
+    }
+  }
+  return {names.begin(), names.end()};
+}
 
 Result<SuiteFolder> find_suite(const std::string& given) {
   if (!given.empty()) return named(given, "--suite");

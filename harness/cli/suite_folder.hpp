@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "harness/core/result.hpp"
 
@@ -15,6 +16,12 @@ struct SuiteFolder {
   std::filesystem::path models() const { return root / "models"; }
   std::filesystem::path golden() const { return root / "golden"; }
   std::filesystem::path recorded() const { return golden() / "recorded"; }
+
+  // Of cases() or golden(): what the file VERSION there says, or "unversioned".
+  std::string version_of(const std::filesystem::path& folder) const;
+
+  // The groups of all profiles, sorted.
+  std::vector<std::string> groups() const;
 };
 
 // `given` if it is not empty; else $ATTEST_SUITE; else share/attest of the installation this

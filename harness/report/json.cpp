@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/report/statement.hpp"
 #include "harness/suite/verdict_json.hpp"
 
 namespace attest {
@@ -85,6 +86,8 @@ std::string json_report(const RunResult& run) {
       {"rates", rates(run)},
       {"totals", totals(run)},
       {"conformant", run.conformant()},
+      {"conformance", conformance_statement(run)},
+      {"suite", {{"cases", run.cases_version}, {"golden", run.golden_version}}},
       {"stopped_early", run.stopped_early},
       {"errors", errors(run)},
       {"results", results(run)},

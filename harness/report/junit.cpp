@@ -91,6 +91,8 @@ void add_properties(pugi::xml_node suite, const RunResult& run) {
       {"port.name", run.port_name},
       {"port.version", run.port_version},
       {"level", std::string(name_of(run.level))},
+      {"cases.version", run.cases_version},
+      {"golden.version", run.golden_version},
       {"stopped_early", run.stopped_early ? "true" : "false"},
   };
   for (const auto& [name, value] : all) {

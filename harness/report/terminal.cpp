@@ -13,6 +13,7 @@
 
 #include "harness/report/diagnosis_text.hpp"
 #include "harness/report/failure_text.hpp"
+#include "harness/report/statement.hpp"
 #include "harness/report/summary_table.hpp"
 #include "harness/report/text.hpp"
 
@@ -284,6 +285,7 @@ std::string render_summary(const RunResult& run, double wall_s, TerminalStyle st
   out += counted_apart(run);
   out += headroom(run);
   out += errors(run, style);
+  out += fmt::format("conformance: {}\n", conformance_statement(run));
   return out + last_line(run, wall_s, style);
 }
 

@@ -31,7 +31,7 @@ inline constexpr std::size_t errors_told = 20;
 
 // Pure. In order: who was tested; the table of groups and rates; the failures, a case that fails
 // alike at several rates told once; what is counted apart (unsupported, skip, xfail) with its
-// reasons; the tightest headroom (numeric level); errors; and one last line:
+// reasons; the tightest headroom (numeric level); errors; what is conformant; and one last line:
 //
 //     PASS 715 of 715 cases conform (px4-v1.5.5, exact, 11 rates) in 1.2 s
 //

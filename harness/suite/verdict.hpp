@@ -78,7 +78,9 @@ struct RunResult {
   std::string port_name;  // as the port says
   std::string port_version;
   Level level = Level::numeric;
-  std::vector<Rate> rates;  // selected, ascending
+  std::vector<Rate> rates;              // selected, ascending
+  std::vector<std::string> all_groups;  // that the suite has, selected or not
+  std::string cases_version = "unversioned", golden_version = "unversioned";  // of the suite
   std::vector<CaseResult> results;
   std::vector<Error> errors;           // of the environment: a golden that cannot be read, ...
   bool stopped_early = false;          // --fail-fast

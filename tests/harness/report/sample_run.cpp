@@ -143,6 +143,9 @@ RunResult sample_run() {
   run.port_version = "1.2-\"rc\"";
   run.level = Level::numeric;
   run.rates = {Rate::hz(100), Rate::hz(250), Rate::hz(1000, 3), Rate::hz(3000)};
+  run.all_groups = {"attitude", "flight", "mixed", "robustness", "tpa"};
+  run.cases_version = "1.0";
+  run.golden_version = "1.1";
   add_attitude(run.results);
   add_mixed(run.results);
   add_robustness(run.results);

@@ -1,0 +1,32 @@
+load common
+
+@test "what fails is written down, filled in, and then accepted" {
+  run "$ATTEST" run --port fault:tpa-missing --group tpa --rate 250 --write-expected known.toml
+  [ "$status" -eq 1 ]
+  grep -q "px4-v1.5.5/tpa/each_axis@\*" known.toml
+  run "$ATTEST" run --port fault:tpa-missing --group tpa --rate 250 --expected-failures known.toml
+  [ "$status" -eq 0 ]
+  has "xfail: fail: say why this is accepted"
+  has "conformance: none: nothing was compared"
+}
+
+@test "an expected failure that passes fails the run" {
+  cat >known.toml <<'T'
+[expected]
+"px4-v1.5.5/tpa/each_axis" = "not ported"
+T
+  run "$ATTEST" run --group tpa --rate 250 --expected-failures known.toml
+  [ "$status" -eq 1 ]
+  has "xpass: expected to fail: not ported"
+  echo '"px4-v1.5.5/tpa/each" = 3' >>known.toml
+  run "$ATTEST" run --group tpa --expected-failures known.toml
+  [ "$status" -eq 2 ]
+  has "known.toml:3:"
+}
+
+@test "a run ends with what conforms, and a badge says it" {
+  run "$ATTEST" run --group tpa --group rates --level exact --badge badge.svg
+  [ "$status" -eq 0 ]
+  has "conformance: px4-v1.5.5, exact, 11 rates, groups rates, tpa; cases 1.0, golden 1.0"
+  grep -q "px4-v1.5.5 exact" badge.svg
+}

@@ -1,0 +1,66 @@
+#include "harness/report/statement.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <pugixml.hpp>
+
+#include "tests/harness/report/sample_run.hpp"
+
+namespace attest {
+namespace {
+
+using testing::HasSubstr;
+
+// Passing, of a suite with these groups.
+RunResult run_of(const std::vector<std::string>& passing, const std::vector<std::string>& all) {
+  RunResult run;
+  run.rates = {Rate::hz(100), Rate::hz(250)};
+  run.all_groups = all;
+  run.cases_version = "1.0";
+  run.golden_version = "1.1";
+  for (const std::string& group : passing) {
+    run.results.push_back(passed(group, "a", Rate::hz(250)));
+  }
+  return run;
+}
+
+TEST(Statement, NamesWhatConforms) {
+  EXPECT_EQ(conformance_statement(run_of({"attitude", "tpa"}, {"attitude", "tpa"})),
+            "px4-v1.5.5, numeric, 2 rates, all groups; cases 1.0, golden 1.1");
+  EXPECT_THAT(conformance_statement(run_of({"attitude", "tpa"}, {"attitude", "modes", "tpa"})),
+              HasSubstr("2 rates, all groups but modes;"));
+  EXPECT_THAT(conformance_statement(run_of({"tpa"}, {"attitude", "modes", "tpa"})),
+              HasSubstr("2 rates, groups tpa;"));
+}
+
+// Neither what is unsupported nor what is expected to fail is conformant.
+TEST(Statement, WhatIsCountedApartIsLeftOut) {
+  for (const Verdict verdict : {Verdict::unsupported, Verdict::xfail}) {
+    RunResult run = run_of({"attitude", "modes", "tpa"}, {"attitude", "modes", "tpa"});
+    run.results.push_back(passed("modes", "b", Rate::hz(250)));
+    run.results.back().verdict = verdict;
+    EXPECT_THAT(conformance_statement(run), HasSubstr("all groups but modes;"));
+  }
+}
+
+TEST(Statement, SaysWhyThereIsNone) {
+  EXPECT_EQ(conformance_statement(sample_run()),
+            "none: 4 groups fail (attitude, flight, mixed, robustness)");
+  RunResult run = run_of({"tpa"}, {"tpa"});
+  run.stopped_early = true;
+  EXPECT_EQ(conformance_statement(run), "none: the run is not complete");
+  EXPECT_EQ(conformance_statement(run_of({}, {"tpa"})), "none: nothing was compared");
+}
+
+TEST(Badge, IsAnSvgThatSaysIt) {
+  pugi::xml_document document;
+  ASSERT_TRUE(document.load_string(badge(passing_run()).c_str()));
+  const pugi::xml_node svg = document.child("svg");
+  EXPECT_STREQ(svg.attribute("aria-label").value(), "attest: px4-v1.5.5 exact");
+  EXPECT_THAT(svg.child("title").text().get(), HasSubstr("px4-v1.5.5, exact, 2 rates"));
+  ASSERT_TRUE(document.load_string(badge(sample_run()).c_str()));
+  EXPECT_STREQ(document.child("svg").attribute("aria-label").value(), "attest: does not conform");
+}
+
+}  // namespace
+}  // namespace attest
