@@ -196,11 +196,16 @@ void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
   CLI::App* command = app.add_subcommand(
       "vectors", "Write the inputs of the cases as CSV, for a port that runs elsewhere");
   command->add_option("folder", options->folder, "Where: DIR/PROFILE/GROUP/NAME/RATEhz.csv")
-      ->type_name("DIR")
-      ->required();
+      ->type_name("DIR");
+  command->add_flag("--lint", options->lint,
+                    "Write nothing; refuse numeric cases that come too near to a decision of the "
+                    "law, where right controllers differ");
   add_selection(*command, options->select);
   command->callback([options, &globals, &action] {
-    action = [=, &globals] { return vectors_command(*options, globals); };
+    if (!options->lint && options->folder.empty()) throw CLI::RequiredError("folder");
+    action = [=, &globals] {
+      return options->lint ? lint_command(*options, globals) : vectors_command(*options, globals);
+    };
   });
 }
 

@@ -103,8 +103,10 @@ int list_command(const ListOptions& options, const Globals& globals);
 struct VectorOptions {
   SelectionOptions select;
   std::string folder;
+  bool lint = false;
 };
 int vectors_command(const VectorOptions& options, const Globals& globals);
+int lint_command(const VectorOptions& options, const Globals& globals);
 
 struct BlessOptions {
   SelectionOptions select;

@@ -28,3 +28,21 @@ load common
   [ "$status" -eq 2 ]
   has "file/below"
 }
+
+@test "no numeric vector of the corpus comes near to a decision of the law" {
+  run "$ATTEST" vectors --lint
+  [ "$status" -eq 0 ]
+  has "numeric vectors, 0 too near to a decision"
+}
+
+@test "a vector that comes too near is refused, with the tick and the way out" {
+  make_suite
+  cat >>suite/cases/px4-v1.5.5/attitude/roll.toml <<'T'
+thrust = 0.2
+T
+  run "$ATTEST" --suite suite vectors --lint
+  [ "$status" -eq 1 ]
+  has "roll.toml: at 50hz, tick 0, thrust gate is at 0; a numeric vector needs at least 1e-06, or"
+  run "$ATTEST" vectors
+  [ "$status" -eq 2 ]
+}

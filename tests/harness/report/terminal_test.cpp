@@ -35,7 +35,7 @@ TEST(Summary, WithoutColourHasNoEscapeCodes) {
 TEST(Summary, TheLastLineIsTheConformanceStatement) {
   RunResult run = passing_run();
   EXPECT_THAT(summary(run),
-              EndsWith("\n\nPASS 6 of 6 cases conform (px4-v1.5.5, exact, 2 rates) in 1.2 s\n"));
+              EndsWith("\nPASS 6 of 6 cases conform (px4-v1.5.5, exact, 2 rates) in 1.2 s\n"));
   run.results[0].verdict = Verdict::skip;
   run.results[1].verdict = Verdict::xfail;
   EXPECT_THAT(summary(run), EndsWith("\nPASS 4 of 6 cases conform, 1 skip, 1 xfail (px4-v1.5.5, "
