@@ -38,7 +38,8 @@ std::vector<std::string> SuiteFolder::groups() const {
   for (const auto& profile : fs::directory_iterator(cases(), error)) {
     if (!profile.is_directory(error)) continue;
     for (const auto& group : fs::directory_iterator(profile.path(), error)) {
-      if (group.is_directory(error)) names.insert(group.path().filename().string());
+      if (!group.is_directory(error)) continue;
+      names.insert(fs::relative(group.path(), cases(), error).string());
     }
   }
   return {names.begin(), names.end()};

@@ -20,7 +20,7 @@ struct SuiteFolder {
   // Of cases() or golden(): what the file VERSION there says, or "unversioned".
   std::string version_of(const std::filesystem::path& folder) const;
 
-  // The groups of all profiles, sorted.
+  // The groups that there are: "px4-v1.5.5/tpa", sorted.
   std::vector<std::string> groups() const;
 };
 

@@ -79,7 +79,7 @@ struct RunResult {
   std::string port_version;
   Level level = Level::numeric;
   std::vector<Rate> rates;              // selected, ascending
-  std::vector<std::string> all_groups;  // that the suite has, selected or not
+  std::vector<std::string> all_groups;  // "profile/group" that the suite has, selected or not
   std::string cases_version = "unversioned", golden_version = "unversioned";  // of the suite
   std::vector<CaseResult> results;
   std::vector<Error> errors;           // of the environment: a golden that cannot be read, ...

@@ -143,7 +143,8 @@ RunResult sample_run() {
   run.port_version = "1.2-\"rc\"";
   run.level = Level::numeric;
   run.rates = {Rate::hz(100), Rate::hz(250), Rate::hz(1000, 3), Rate::hz(3000)};
-  run.all_groups = {"attitude", "flight", "mixed", "robustness", "tpa"};
+  run.all_groups = {"px4-v1.5.5/attitude", "px4-v1.5.5/flight", "px4-v1.5.5/mixed",
+                    "px4-v1.5.5/robustness", "px4-v1.5.5/tpa"};
   run.cases_version = "1.0";
   run.golden_version = "1.1";
   add_attitude(run.results);

@@ -15,7 +15,7 @@ using testing::HasSubstr;
 RunResult run_of(const std::vector<std::string>& passing, const std::vector<std::string>& all) {
   RunResult run;
   run.rates = {Rate::hz(100), Rate::hz(250)};
-  run.all_groups = all;
+  for (const std::string& group : all) run.all_groups.push_back("px4-v1.5.5/" + group);
   run.cases_version = "1.0";
   run.golden_version = "1.1";
   for (const std::string& group : passing) {
@@ -30,7 +30,7 @@ TEST(Statement, NamesWhatConforms) {
   EXPECT_THAT(conformance_statement(run_of({"attitude", "tpa"}, {"attitude", "modes", "tpa"})),
               HasSubstr("2 rates, all groups but modes;"));
   EXPECT_THAT(conformance_statement(run_of({"tpa"}, {"attitude", "modes", "tpa"})),
-              HasSubstr("2 rates, groups tpa;"));
+              HasSubstr("2 rates, group tpa;"));
 }
 
 // Neither what is unsupported nor what is expected to fail is conformant.
@@ -43,13 +43,26 @@ TEST(Statement, WhatIsCountedApartIsLeftOut) {
   }
 }
 
+TEST(Statement, EachProfileHasItsOwn) {
+  RunResult run = run_of({"attitude", "tpa"}, {"attitude", "tpa"});
+  run.all_groups.push_back("px4-v1.3.4/tpa");
+  run.results.push_back(passed("tpa", "b", Rate::hz(250)));
+  run.results.back().profile = "px4-v1.3.4";
+  EXPECT_EQ(conformance_statement(run),
+            "px4-v1.3.4, numeric, 2 rates, all groups; px4-v1.5.5, numeric, 2 rates, all groups; "
+            "cases 1.0, golden 1.1");
+  run.results.back().verdict = Verdict::skip;  // a port need not do the older law
+  EXPECT_EQ(conformance_statement(run),
+            "px4-v1.5.5, numeric, 2 rates, all groups; cases 1.0, golden 1.1");
+}
+
 TEST(Statement, SaysWhyThereIsNone) {
   EXPECT_EQ(conformance_statement(sample_run()),
             "none: 4 groups fail (attitude, flight, mixed, robustness)");
   RunResult run = run_of({"tpa"}, {"tpa"});
   run.stopped_early = true;
   EXPECT_EQ(conformance_statement(run), "none: the run is not complete");
-  EXPECT_EQ(conformance_statement(run_of({}, {"tpa"})), "none: nothing was compared");
+  EXPECT_EQ(conformance_statement(run_of({}, {"tpa"})), "none: no group passes as a whole");
 }
 
 TEST(Badge, IsAnSvgThatSaysIt) {
