@@ -193,6 +193,10 @@ typedef struct attest_unit {
   const void* (*extension)(const char* id);
 } attest_unit;
 
+/* Extension: const char*, the groups of cases that the port does not do, separated by commas:
+ * "tailsitter,robustness". They are counted apart, never as conformant. */
+#define ATTEST_EXTENSION_UNSUPPORTED_GROUPS "attest.unsupported_groups"
+
 /* The one exported symbol. The table is static: it outlives every instance. */
 ATTEST_EXPORT const attest_unit* attest_unit_v1(void);
 

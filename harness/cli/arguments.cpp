@@ -69,8 +69,8 @@ void add_run(CLI::App& app, const Globals& globals, Action& action) {
   add_selection(*command, options->select);
   command
       ->add_option("--level", options->level,
-                   "How strictly: `exact` (float32 bits) or `numeric` (a tolerance a channel); "
-                   "flights are judged alike at both")
+                   "How strictly: `exact` (float32 bits), `numeric` (a tolerance a channel) or "
+                   "`events` (what happens, within a tick); flights are judged alike at all")
       ->capture_default_str();
   command
       ->add_option("--expected-failures", options->expected_failures,
@@ -120,7 +120,8 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("--param", options->parameters, "Set a parameter from the first step on")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
-  command->add_option("--level", options->level, "`exact` or `numeric`")->capture_default_str();
+  command->add_option("--level", options->level, "`exact`, `numeric` or `events`")
+      ->capture_default_str();
   command
       ->add_option("--mixer", options->mixer,
                    "Definition of the mixer of a mixer trace; default: from its name")
@@ -185,7 +186,8 @@ void add_compare(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("want", options->want, "The trace to judge it by (CSV)")
       ->type_name("B")
       ->required();
-  command->add_option("--level", options->level, "`exact` or `numeric`")->capture_default_str();
+  command->add_option("--level", options->level, "`exact`, `numeric` or `events`")
+      ->capture_default_str();
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return compare_command(*options, globals); };
   });

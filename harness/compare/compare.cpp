@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/compare/events.hpp"
 #include "harness/compare/tilt.hpp"
 
 namespace attest {
@@ -52,9 +53,13 @@ class Comparer {
   Comparison run() {
     result_.mismatch = structural_mismatch();
     if (!result_.mismatch.empty()) return result_;
+    result_.ticks = want_.samples.size();
+    if (tolerances_.level() == Level::events) {
+      compare_events();
+      return result_;
+    }
     const std::vector<std::size_t> chosen = compared_channels(want_);
     for (std::size_t tick = 0; tick < want_.samples.size(); ++tick) compare_tick(tick, chosen);
-    result_.ticks = want_.samples.size();
     return result_;
   }
 
@@ -80,6 +85,14 @@ class Comparer {
         return fmt::format("{} was not recorded", channels()[channel].name);
     }
     return chosen.empty() ? "nothing to compare: no out/ channels" : "";
+  }
+
+  void compare_events() {
+    const auto difference = first_event_difference(got_, want_);
+    if (!difference) return;
+    note(difference->tick, difference->channel, 0, 0);
+    result_.event = difference->what;
+    result_.deviating_ticks = 1;
   }
 
   void compare_tick(std::size_t tick, const std::vector<std::size_t>& chosen) {

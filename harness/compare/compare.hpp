@@ -40,7 +40,8 @@ struct Comparison {
   std::optional<Deviation> first;    // lowest tick, then the order of channels()
   std::optional<Headroom> tightest;  // numeric level, among the values within tolerance
   std::string mismatch;              // what makes the traces incomparable; empty if nothing
-  bool got_non_finite = false;       // the first deviation is a NaN or Inf where none belongs
+  std::string event;  // at the events level: what happens otherwise, at the first deviation
+  bool got_non_finite = false;  // the first deviation is a NaN or Inf where none belongs
 
   bool agrees() const { return !first && mismatch.empty(); }
 };

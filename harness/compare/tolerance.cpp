@@ -25,17 +25,27 @@ Tolerance default_of(Quantity quantity) {
 
 }  // namespace
 
-std::string_view name_of(Level level) { return level == Level::exact ? "exact" : "numeric"; }
+std::string_view name_of(Level level) {
+  switch (level) {
+    case Level::exact:
+      return "exact";
+    case Level::numeric:
+      return "numeric";
+    case Level::events:
+      return "events";
+  }
+  return "";
+}
 
 Result<Level> parse_level(std::string_view text) {
-  for (const Level level : {Level::exact, Level::numeric}) {
+  for (const Level level : {Level::exact, Level::numeric, Level::events}) {
     if (text == name_of(level)) return level;
   }
-  return fail(fmt::format("unknown level `{}`; use exact or numeric", text));
+  return fail(fmt::format("unknown level `{}`; use exact, numeric or events", text));
 }
 
 Tolerances::Tolerances(Level level) : level_(level) {
-  if (level == Level::exact) return;
+  if (level != Level::numeric) return;
   const auto table = channels();
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (table[i].is_output()) of_channel_[i] = default_of(table[i].quantity);

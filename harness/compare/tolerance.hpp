@@ -13,6 +13,7 @@ namespace attest {
 enum class Level {
   exact,    // the bits of float32, any NaN equals any NaN
   numeric,  // |got - want| <= max(absolute, relative * |want|)
+  events,   // what happens, within a tick: see events.hpp
 };
 
 std::string_view name_of(Level level);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <memory>
+#include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "harness/port/port.hpp"
 
@@ -36,6 +38,14 @@ class AbiPort final : public Port {
 
   std::string name() const override { return table_.name; }
   std::string version() const override { return table_.version; }
+  std::vector<std::string> unsupported_groups() const override {
+    const void* list =
+        table_.extension ? table_.extension(ATTEST_EXTENSION_UNSUPPORTED_GROUPS) : nullptr;
+    std::vector<std::string> groups;
+    std::istringstream names(list ? static_cast<const char*>(list) : "");
+    for (std::string name; std::getline(names, name, ',');) groups.push_back(name);
+    return groups;
+  }
   std::unique_ptr<Unit> create(const std::string& profile) override {
     void* self = table_.create(profile.c_str());
     return self ? std::make_unique<AbiUnit>(table_, self) : nullptr;

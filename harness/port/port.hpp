@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "controller/attest_unit.h"
 #include "harness/core/result.hpp"
@@ -30,6 +31,9 @@ class Port {
 
   virtual std::string name() const = 0;
   virtual std::string version() const = 0;
+
+  // The groups of cases that the port declares not to do.
+  virtual std::vector<std::string> unsupported_groups() const { return {}; }
 
   // A unit in its power-on state; null when the port does not support the profile.
   // The port must outlive the unit.

@@ -70,7 +70,7 @@ std::string times(double ratio) {
 
 // How far off, and how far it may be. Empty where a difference means nothing (flags).
 std::string distance(const Channel& channel, const Deviation& deviation, Level level) {
-  if (channel.type != ChannelType::f32) return {};
+  if (channel.type != ChannelType::f32 || level == Level::events) return {};
   if (!std::isfinite(deviation.want)) return "    the golden is not finite here, on purpose\n";
   if (!std::isfinite(deviation.got)) return "    not a finite number where the golden has one\n";
   const double difference = std::abs(deviation.got - deviation.want);

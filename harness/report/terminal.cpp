@@ -154,7 +154,7 @@ Quantity quantity_of(const CaseResult& result) {
 // A result knows its one tightest channel, so a quantity is listed only where it is the tightest of
 // some case, and the first line is the tightest of all.
 std::string headroom(const RunResult& run) {
-  if (run.level == Level::exact || run.count(Verdict::pass) == 0) return {};
+  if (run.level != Level::numeric || run.count(Verdict::pass) == 0) return {};
   const auto groups = grouped(
       run,
       [](const CaseResult& result) {

@@ -73,8 +73,11 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
   }
   auto prepared = prepare(the_case, rate, golden);
   if (!prepared) return tl::unexpected(prepared.error());
-  run_and_judge(prepared->answered, prepared->want, the_case.profile, port,
-                tolerances_of(the_case, the_case.numeric_only ? Level::numeric : level), result);
+  run_and_judge(
+      prepared->answered, prepared->want, the_case.profile, port,
+      tolerances_of(the_case,
+                    level == Level::exact && the_case.numeric_only ? Level::numeric : level),
+      result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }

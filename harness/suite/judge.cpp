@@ -1,5 +1,7 @@
 #include "harness/suite/judge.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace attest {
@@ -11,6 +13,12 @@ Tolerances tolerances_of(const Case& the_case, Level level) {
 }
 
 std::unique_ptr<Unit> create_unit(Port& port, const std::string& profile, CaseResult& result) {
+  const std::vector<std::string> declined = port.unsupported_groups();
+  if (std::find(declined.begin(), declined.end(), result.group) != declined.end()) {
+    result.verdict = Verdict::unsupported;
+    result.reason = fmt::format("the port declares that it does not do {}", result.group);
+    return nullptr;
+  }
   std::unique_ptr<Unit> unit = port.create(profile);
   if (!unit) {
     result.verdict = Verdict::skip;
@@ -38,7 +46,7 @@ void judge(const Comparison& comparison, CaseResult& result) {
   result.deviating_ticks = comparison.deviating_ticks;
   result.first = comparison.first;
   result.tightest = comparison.tightest;
-  result.reason = comparison.mismatch;
+  result.reason = comparison.mismatch.empty() ? comparison.event : comparison.mismatch;
   if (comparison.agrees()) return;
   result.verdict = comparison.got_non_finite ? Verdict::non_finite : Verdict::fail;
 }

@@ -15,7 +15,8 @@ namespace attest {
 // The case's own tolerances where it has some.
 Tolerances tolerances_of(const Case& the_case, Level level);
 
-// Null, and a verdict of skip, when the port does not support the profile.
+// Null when the port does not support the profile (verdict skip), or declares that it does not do
+// the result's group (unsupported).
 std::unique_ptr<Unit> create_unit(Port& port, const std::string& profile, CaseResult& result);
 
 void judge(const PortFault& fault, CaseResult& result);

@@ -11,14 +11,14 @@ namespace {
 using testing::HasSubstr;
 
 TEST(Level, IsReadBackFromItsName) {
-  for (const Level level : {Level::exact, Level::numeric}) {
+  for (const Level level : {Level::exact, Level::numeric, Level::events}) {
     const auto parsed = parse_level(name_of(level));
     ASSERT_TRUE(parsed);
     EXPECT_EQ(*parsed, level);
   }
   const auto unknown = parse_level("strict");
   ASSERT_FALSE(unknown);
-  EXPECT_THAT(unknown.error().message, HasSubstr("`strict`; use exact or numeric"));
+  EXPECT_THAT(unknown.error().message, HasSubstr("`strict`; use exact, numeric or events"));
 }
 
 TEST(Tolerances, DefaultsAreThoseOfTheQuantity) {

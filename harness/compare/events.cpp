@@ -1,0 +1,112 @@
+#include "harness/compare/events.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace attest {
+namespace {
+
+enum class State { no, yes, unclear };
+
+// A state a tick, of one output.
+struct Kind {
+  const char* channel;
+  State (*at)(const Trace& trace, std::size_t tick, const Channel& channel);
+  const char* yes;  // how it is said
+  const char* no;
+};
+
+State published(const Trace& trace, std::size_t tick, const Channel& channel) {
+  return value_of(channel, trace.samples[tick]) != 0 ? State::yes : State::no;
+}
+
+State finite(const Trace& trace, std::size_t tick, const Channel& channel) {
+  return std::isfinite(float_of(channel, trace.samples[tick])) ? State::yes : State::no;
+}
+
+// By a step of more than a part of the integrals' tolerance, which is what right ports may differ
+// by altogether.
+State moving(const Trace& trace, std::size_t tick, const Channel& channel) {
+  constexpr double still = 1e-6, surely = 4e-6;
+  if (tick == 0) return State::unclear;
+  const double step = std::abs(static_cast<double>(float_of(channel, trace.samples[tick])) -
+                               static_cast<double>(float_of(channel, trace.samples[tick - 1])));
+  if (step > surely) return State::yes;
+  return step < still ? State::no : State::unclear;
+}
+
+State beyond_thrust(const Trace& trace, std::size_t tick, const Channel& channel) {
+  constexpr double near = 1e-3;
+  const Sample& sample = trace.samples[tick];
+  const double over = std::abs(static_cast<double>(float_of(channel, sample))) -
+                      static_cast<double>(sample.out.actuator_controls_0.control[3]);
+  if (std::abs(over) < near) return State::unclear;
+  return over > 0 ? State::yes : State::no;
+}
+
+constexpr Kind kinds[] = {
+    {"out/vehicle_rates_setpoint.published", published, "published", "not published"},
+    {"out/actuator_controls_0.published", published, "published", "not published"},
+    {"out/mc_att_ctrl_status.published", published, "published", "not published"},
+    {"out/vehicle_rates_setpoint.roll", finite, "finite", "not finite"},
+    {"out/vehicle_rates_setpoint.pitch", finite, "finite", "not finite"},
+    {"out/vehicle_rates_setpoint.yaw", finite, "finite", "not finite"},
+    {"out/actuator_controls_0.control[0]", beyond_thrust, "beyond the thrust", "within it"},
+    {"out/actuator_controls_0.control[1]", beyond_thrust, "beyond the thrust", "within it"},
+    {"out/actuator_controls_0.control[2]", beyond_thrust, "beyond the thrust", "within it"},
+    {"out/mc_att_ctrl_status.roll_rate_integ", moving, "moving", "still"},
+    {"out/mc_att_ctrl_status.pitch_rate_integ", moving, "moving", "still"},
+    {"out/mc_att_ctrl_status.yaw_rate_integ", moving, "moving", "still"},
+};
+
+std::vector<State> states(const Kind& kind, const Trace& trace, const Channel& channel) {
+  std::vector<State> all;
+  for (std::size_t tick = 0; tick < trace.samples.size(); ++tick) {
+    all.push_back(kind.at(trace, tick, channel));
+  }
+  return all;
+}
+
+// `state` within a tick of `tick`, or something unclear there: what was before the first tick and
+// will be after the last is not known.
+bool has_near(const std::vector<State>& states, std::size_t tick, State state) {
+  if (tick == 0 || tick + 1 == states.size()) return true;
+  for (std::size_t i = tick - 1; i <= tick + 1; ++i) {
+    if (states[i] == state || states[i] == State::unclear) return true;
+  }
+  return false;
+}
+
+std::optional<std::size_t> first_difference(const std::vector<State>& got,
+                                            const std::vector<State>& want) {
+  for (std::size_t tick = 0; tick < want.size(); ++tick) {
+    const bool extra = got[tick] != State::unclear && !has_near(want, tick, got[tick]);
+    const bool missing = want[tick] != State::unclear && !has_near(got, tick, want[tick]);
+    if (extra || missing) return tick;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<EventDifference> first_event_difference(const Trace& got, const Trace& want) {
+  std::optional<EventDifference> first;
+  for (const Kind& kind : kinds) {
+    const std::size_t index = *find_channel(kind.channel);
+    if (!want.present[index]) continue;
+    const Channel& channel = channels()[index];
+    const auto of_got = states(kind, got, channel), of_want = states(kind, want, channel);
+    const auto tick = first_difference(of_got, of_want);
+    if (!tick || (first && first->tick <= *tick)) continue;
+    const bool yes = of_got[*tick] == State::yes;
+    first =
+        EventDifference{*tick, index,
+                        fmt::format("{} is {}, expected {} within a tick", channel.name.substr(4),
+                                    yes ? kind.yes : kind.no, yes ? kind.no : kind.yes)};
+  }
+  return first;
+}
+
+}  // namespace attest
