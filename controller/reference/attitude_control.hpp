@@ -51,8 +51,9 @@ struct AttitudeStages {
     tilt.rotation_B = ordered::transpose_times(R_WB, ordered::cross(z_B_W, z_D_W));
     tilt.sine = ordered::length(tilt.rotation_B);
     tilt.cosine = ordered::dot(z_B_W, z_D_W);
+    using std::atan2;
     if (tilt.sine > Scalar(0)) {
-      const Scalar angle = std::atan2(tilt.sine, tilt.cosine);
+      const Scalar angle = atan2(tilt.sine, tilt.cosine);
       tilt.axis_B = tilt.rotation_B / tilt.sine;
       tilt.rotation_B = tilt.axis_B * angle;
     }
@@ -78,8 +79,8 @@ struct AttitudeStages {
   ATTEST_INLINE static Scalar yaw_error(const Vector& nose_W, const Matrix& R_WD, Scalar weight) {
     const Vector x_D_W = R_WD.col(0);
     const Vector z_D_W = R_WD.col(2);
-    return std::atan2(ordered::dot(ordered::cross(nose_W, x_D_W), z_D_W),
-                      ordered::dot(nose_W, x_D_W)) *
+    using std::atan2;  // a scalar that is no float brings its own
+    return atan2(ordered::dot(ordered::cross(nose_W, x_D_W), z_D_W), ordered::dot(nose_W, x_D_W)) *
            weight;
   }
 

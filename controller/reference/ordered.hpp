@@ -32,7 +32,8 @@ ATTEST_INLINE Scalar dot(const Vector3<Scalar>& a, const Vector3<Scalar>& b) {
 
 template <typename Scalar>
 ATTEST_INLINE Scalar length(const Vector3<Scalar>& v) {
-  return std::sqrt(dot(v, v));
+  using std::sqrt;
+  return sqrt(dot(v, v));
 }
 
 // a x b. Each component is one difference, so there is no sum to order.

@@ -50,7 +50,8 @@ struct RateStages {
   // Factor on the P term. A NaN thrust gives 1: neither comparison holds.
   ATTEST_INLINE static Scalar throttle_attenuation(Scalar thrust, const RateGains<Scalar>& gains) {
     const Scalar one = 1;
-    const Scalar factor = one - gains.tpa_slope * (std::abs(thrust) - gains.tpa_break);
+    using std::abs;
+    const Scalar factor = one - gains.tpa_slope * (abs(thrust) - gains.tpa_break);
     const Scalar at_most_one = factor < one ? factor : one;
     return at_most_one > Scalar(0) ? at_most_one : Scalar(0);
   }
@@ -90,7 +91,8 @@ struct RateStages {
   ATTEST_INLINE static Scalar integrate_axis(Scalar integral, Scalar control, Scalar thrust_sp,
                                              Scalar growth, bool frozen) {
     const Scalar limit = Scalar(integral_limit);
-    if (!(std::abs(control) < thrust_sp)) return integral;
+    using std::abs;
+    if (!(abs(control) < thrust_sp)) return integral;
     const Scalar next = integral + growth;
     const bool inside = next > -limit && next < limit && control > -limit && control < limit;
     return inside && !frozen ? next : integral;

@@ -57,7 +57,8 @@ Quaternion<Scalar> quaternion_of_half_turn(const Matrix3<Scalar>& D) {
   if (D(2, 2) > D(i, i)) i = 2;
   const int j = (i + 1) % 3;
   const int k = (i + 2) % 3;
-  Scalar s = std::sqrt((D(i, i) - D(j, j) - D(k, k)) + Scalar(1));
+  using std::sqrt;
+  Scalar s = sqrt((D(i, i) - D(j, j) - D(k, k)) + Scalar(1));
   Scalar imaginary[3];
   imaginary[i] = s * Scalar(0.5f);
   s = Scalar(0.5f) / s;
@@ -71,7 +72,8 @@ template <typename Scalar>
 Quaternion<Scalar> quaternion_of(const Matrix3<Scalar>& D) {
   const Scalar trace = D(0, 0) + D(1, 1) + D(2, 2);
   if (!(trace > Scalar(0))) return quaternion_of_half_turn(D);
-  Scalar s = std::sqrt(trace + Scalar(1));
+  using std::sqrt;
+  Scalar s = sqrt(trace + Scalar(1));
   const Scalar w = s * Scalar(0.5f);
   s = Scalar(0.5f) / s;
   return {w, (D(2, 1) - D(1, 2)) * s, (D(0, 2) - D(2, 0)) * s, (D(1, 0) - D(0, 1)) * s};

@@ -52,7 +52,8 @@ struct StepStages {
   // Rattitude: a large deflection flies rates.
   ATTEST_INLINE static bool sticks_beyond(const decltype(Topics::manual)& manual,
                                           Scalar threshold) {
-    return std::abs(Scalar(manual.y)) > threshold || std::abs(Scalar(manual.x)) > threshold;
+    using std::abs;
+    return abs(Scalar(manual.y)) > threshold || abs(Scalar(manual.x)) > threshold;
   }
 
   ATTEST_INLINE static bool is_autonomous(const decltype(Topics::mode)& mode, Profile profile) {

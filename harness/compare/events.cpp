@@ -23,6 +23,7 @@ State published(const Trace& trace, std::size_t tick, const Channel& channel) {
 }
 
 State finite(const Trace& trace, std::size_t tick, const Channel& channel) {
+  if (trace.samples[tick].out.vehicle_rates_setpoint.published == 0) return State::unclear;
   return std::isfinite(float_of(channel, trace.samples[tick])) ? State::yes : State::no;
 }
 
@@ -30,7 +31,10 @@ State finite(const Trace& trace, std::size_t tick, const Channel& channel) {
 // by altogether.
 State moving(const Trace& trace, std::size_t tick, const Channel& channel) {
   constexpr double still = 1e-6, surely = 4e-6;
-  if (tick == 0) return State::unclear;
+  const auto is_told = [&](std::size_t at) {
+    return trace.samples[at].out.mc_att_ctrl_status.published != 0;
+  };
+  if (tick == 0 || !is_told(tick) || !is_told(tick - 1)) return State::unclear;
   const double step = std::abs(static_cast<double>(float_of(channel, trace.samples[tick])) -
                                static_cast<double>(float_of(channel, trace.samples[tick - 1])));
   if (step > surely) return State::yes;
@@ -40,6 +44,7 @@ State moving(const Trace& trace, std::size_t tick, const Channel& channel) {
 State beyond_thrust(const Trace& trace, std::size_t tick, const Channel& channel) {
   constexpr double near = 1e-3;
   const Sample& sample = trace.samples[tick];
+  if (sample.out.actuator_controls_0.published == 0) return State::unclear;
   const double over = std::abs(static_cast<double>(float_of(channel, sample))) -
                       static_cast<double>(sample.out.actuator_controls_0.control[3]);
   if (std::abs(over) < near) return State::unclear;

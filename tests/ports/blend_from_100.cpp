@@ -10,13 +10,6 @@ struct Stages : AttitudeStages<float> {
   static bool is_upset(float cosine) { return cosine < -0.1736f; }
 };
 
-struct Law {
-  StepStages<float> step;
-  Stages attitude;
-  RateStages<float> rate;
-  RecoveryStages<float> recovery;
-};
-
 }  // namespace
 
-ATTEST_LAW_PORT("blend from 100 deg", Law)
+ATTEST_LAW_PORT("blend from 100 deg", LawWith<Stages>)

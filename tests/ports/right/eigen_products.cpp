@@ -51,12 +51,7 @@ struct Rate : RateStages<float> {
   }
 };
 
-struct Law {
-  StepStages<float> step;
-  Attitude attitude;
-  Rate rate;
-  RecoveryStages<float> recovery;
-};
+using Law = LawWith<Attitude, Rate>;
 
 }  // namespace
 

@@ -47,13 +47,6 @@ struct Stages : AttitudeStages<float> {
   }
 };
 
-struct Law {
-  StepStages<float> step;
-  Stages attitude;
-  RateStages<float> rate;
-  RecoveryStages<float> recovery;
-};
-
 }  // namespace
 
-ATTEST_LAW_PORT("polynomial atan2", Law)
+ATTEST_LAW_PORT("polynomial atan2", LawWith<Stages>)

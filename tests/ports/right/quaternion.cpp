@@ -35,13 +35,6 @@ struct Stages : AttitudeStages<float> {
   }
 };
 
-struct Law {
-  StepStages<float> step;
-  Stages attitude;
-  RateStages<float> rate;
-  RecoveryStages<float> recovery;
-};
-
 }  // namespace
 
-ATTEST_LAW_PORT("quaternion tilt", Law)
+ATTEST_LAW_PORT("quaternion tilt", LawWith<Stages>)

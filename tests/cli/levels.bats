@@ -1,0 +1,25 @@
+load common
+
+# What needs many cases and nothing of flights; those take seconds (flight.bats).
+open_loop=(--group anti_windup --group modes --group arming --group attitude --group robustness)
+
+@test "a port that is a tick late is the same at the events level only" {
+  run "$ATTEST" run --level events "${open_loop[@]}" --port fault:outputs-late
+  [ "$status" -eq 0 ]
+  run "$ATTEST" run "${open_loop[@]}" --port fault:outputs-late --no-diagnose -q
+  [ "$status" -eq 1 ]
+}
+
+@test "an event that does not happen is named with its tick" {
+  run "$ATTEST" run --level events --group anti_windup --rate 250 --port fault:gate-yaw-dropped \
+    --no-diagnose
+  [ "$status" -eq 1 ]
+  has "yaw_rate_integ is moving, expected still within a tick"
+}
+
+@test "groups that a port declares not to do are counted apart, never as conformant" {
+  run "$ATTEST" run --group tailsitter --group tpa --port "lib:$PORTS/port_no_tailsitter.so"
+  [ "$status" -eq 0 ]
+  has "unsupported: the port declares that it does not do tailsitter"
+  has "px4-v1.5.5, numeric, 11 rates, group tpa;"
+}

@@ -1,0 +1,23 @@
+// Right, and declares that it recovers no tailsitter: that group must be counted apart.
+#include <cstring>
+
+#include "controller/reference/mc_att_control.hpp"
+#include "controller/reference/unit_table.hpp"
+
+namespace {
+
+const void* extension(const char* id) {
+  return std::strcmp(id, ATTEST_EXTENSION_UNSUPPORTED_GROUPS) == 0 ? "tailsitter" : nullptr;
+}
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) const attest_unit* attest_unit_v1(void) {
+  using Table = attest::reference::UnitTable<attest::reference::McAttControl<float>>;
+  static const attest_unit table = [] {
+    attest_unit unit = Table::named("no tailsitter", "1");
+    unit.extension = extension;
+    return unit;
+  }();
+  return &table;
+}
