@@ -215,14 +215,16 @@ const Fault modes[] = {
      "a setpoint before the mode", "a latch",
      [](FaultyLaw& law) {
        also_before(law, [](attest_inputs& in) {
-         if (!flies_attitude(in)) in.updated &= ~ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT;
+         if (!flies_attitude(in))
+           in.updated &= ~std::uint32_t{ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT};
        });
      }},
     {"pending-rates-lost", "modes", Stage::mode, "loses rates that came in another mode",
      "rates before OFFBOARD", "a latch",
      [](FaultyLaw& law) {
        also_before(law, [](attest_inputs& in) {
-         if (!flies_outside_rates(in)) in.updated &= ~ATTEST_UPDATED_VEHICLE_RATES_SETPOINT;
+         if (!flies_outside_rates(in))
+           in.updated &= ~std::uint32_t{ATTEST_UPDATED_VEHICLE_RATES_SETPOINT};
        });
      }},
     {"mode-late", "modes", Stage::mode, "changes its mode one tick late", "a change of mode",

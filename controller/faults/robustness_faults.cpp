@@ -13,7 +13,9 @@ const Fault faults[] = {
      "NaN handling", [](FaultyLaw& law) { law.step.guarded = [](float value) { return value; }; }},
     {"guard-zero-only", "robustness", Stage::guard, "tests `x ? x : 0` for isfinite(x)",
      "a NaN rate", "NaN handling",
-     [](FaultyLaw& law) { law.step.guarded = [](float value) { return value ? value : 0.0f; }; }},
+     [](FaultyLaw& law) {
+       law.step.guarded = [](float value) { return value != 0 ? value : 0.0f; };
+     }},
     {"guard-nan-only", "robustness", Stage::guard, "publishes infinity", "an infinite rate",
      "NaN handling",
      [](FaultyLaw& law) {

@@ -1,0 +1,103 @@
+// Numbers as a processor without floating point has them: Q31.32 in 64 bits, rounded, saturated,
+// with products in 128 bits.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <compare>
+#include <cstdint>
+#include <limits>
+
+#include <Eigen/Core>
+
+class Fixed {
+ public:
+  __extension__ using Wide = __int128;
+  static constexpr int fraction_bits = 32;
+
+  constexpr Fixed() = default;
+  constexpr Fixed(int value) : Fixed(of_raw(Wide{value} << fraction_bits)) {}  // NOLINT
+  // The one place where floats come in and go out: sensors, parameters and outputs.
+  explicit Fixed(float value) : Fixed(double{value}) {}
+  explicit Fixed(double value) : Fixed(of_raw(std::llround(std::ldexp(value, fraction_bits)))) {}
+  explicit operator float() const {
+    return static_cast<float>(std::ldexp(static_cast<double>(raw_), -fraction_bits));
+  }
+
+  static constexpr Fixed of_raw(Wide raw) {
+    constexpr Wide most = std::numeric_limits<std::int64_t>::max();
+    Fixed result;
+    result.raw_ = static_cast<std::int64_t>(std::clamp<Wide>(raw, -most, most));
+    return result;
+  }
+  constexpr Wide raw() const { return raw_; }
+
+  constexpr Fixed operator-() const { return of_raw(-raw()); }
+  friend constexpr Fixed operator+(Fixed a, Fixed b) { return of_raw(a.raw() + b.raw()); }
+  friend constexpr Fixed operator-(Fixed a, Fixed b) { return of_raw(a.raw() - b.raw()); }
+  friend constexpr Fixed operator*(Fixed a, Fixed b) {
+    constexpr Wide half = Wide{1} << (fraction_bits - 1);
+    return of_raw((a.raw() * b.raw() + half) >> fraction_bits);
+  }
+  friend constexpr Fixed operator/(Fixed a, Fixed b) {
+    constexpr Wide infinite = Wide{1} << 64;
+    if (b.raw() == 0) return of_raw(a.raw() < 0 ? -infinite : infinite);
+    return of_raw(a.raw() * (Wide{1} << fraction_bits) / b.raw());
+  }
+  Fixed& operator+=(Fixed b) { return *this = *this + b; }
+  Fixed& operator-=(Fixed b) { return *this = *this - b; }
+  Fixed& operator*=(Fixed b) { return *this = *this * b; }
+  Fixed& operator/=(Fixed b) { return *this = *this / b; }
+  friend constexpr auto operator<=>(Fixed a, Fixed b) = default;
+
+ private:
+  std::int64_t raw_ = 0;
+};
+
+inline Fixed abs(Fixed value) { return value.raw() < 0 ? -value : value; }
+
+// Bit by bit.
+inline Fixed sqrt(Fixed value) {
+  Fixed::Wide rest = std::max<Fixed::Wide>(value.raw(), 0) << Fixed::fraction_bits;
+  Fixed::Wide root = 0;
+  for (Fixed::Wide bit = Fixed::Wide{1} << 94; bit != 0; bit >>= 2) {
+    const bool fits = rest >= root + bit;
+    if (fits) rest -= root + bit;
+    root = (root >> 1) + (fits ? bit : 0);
+  }
+  return Fixed::of_raw(root);
+}
+
+// CORDIC: the vector is turned onto the x axis by angles whose tangents are powers of two.
+inline Fixed atan2(Fixed sine, Fixed cosine) {
+  constexpr int guard_bits = 12, steps = 42;
+  constexpr double pi = 3.14159265358979323846;
+  const auto angle_of = [](double radians) {
+    return std::llround(std::ldexp(radians, Fixed::fraction_bits + guard_bits));
+  };
+  Fixed::Wide x = cosine.raw() * (1 << guard_bits), y = sine.raw() * (1 << guard_bits), angle = 0;
+  if (x == 0 && y == 0) return {};
+  if (x < 0) {
+    angle = y >= 0 ? angle_of(pi) : -angle_of(pi);
+    x = -x;
+    y = -y;
+  }
+  for (int i = 0; i < steps; ++i) {
+    const int turned = y > 0 ? 1 : -1;
+    const Fixed::Wide dx = turned * (y >> i), dy = turned * (x >> i);
+    x += dx;
+    y -= dy;
+    angle += turned * angle_of(std::atan(std::ldexp(1.0, -i)));
+  }
+  return Fixed::of_raw((angle + (1 << (guard_bits - 1))) >> guard_bits);
+}
+
+template <>
+struct Eigen::NumTraits<Fixed> : Eigen::GenericNumTraits<Fixed> {
+  using Real = Fixed;
+  using NonInteger = Fixed;
+  using Nested = Fixed;
+  using Literal = Fixed;
+  enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 1 };
+  enum { ReadCost = 1, AddCost = 1, MulCost = 2 };
+};
