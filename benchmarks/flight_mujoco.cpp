@@ -10,6 +10,7 @@
 #include "harness/casefile/parse.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/port/port.hpp"
+#include "harness/run/case_timing.hpp"
 #include "harness/run/closed_loop.hpp"
 #include "harness/run/flight.hpp"
 
@@ -39,7 +40,8 @@ void flight(benchmark::State& state, int hertz, bool keep_trace) {
   for (auto _ : state) {
     const auto plant = *plant_for(f.the_case, f.setup(hertz), *f.iris);
     const auto unit = f.port->create("px4-v1.5.5");
-    ClosedLoop loop(scripted, Rate::hz(hertz), f.iris->vehicle(), *plant, *unit);
+    ClosedLoop loop(scripted, Rate::hz(hertz), case_timing(scripted, Rate::hz(hertz)),
+                    f.iris->vehicle(), *plant, *unit);
     Trace trace;
     trace.samples.reserve(static_cast<std::size_t>(3 * hertz));
     trace.plant.reserve(static_cast<std::size_t>(3 * hertz));

@@ -68,12 +68,21 @@ struct ParameterStimulus {
   Signal signal;
 };
 
-// The unit's own ticks: late by jitter, or missing.
+// Something else holds the processor, as of Stall.
+struct UnitStall {
+  Span every, length;
+  bool catches_up = false;
+};
+
+// The unit's own ticks: late by jitter or stalls, or missing, as of TickSchedule.
 struct UnitTiming {
   Span start{5.0, Span::In::seconds};  // timestamp of the first tick
-  double jitter = 0;                   // late by up to this fraction of a period
+  double jitter = 0;
+  bool heavy_tail = false;
   std::uint64_t seed = 1;
   std::vector<std::int64_t> drop_ticks;
+  std::int64_t drop_every = 0;
+  std::optional<UnitStall> stall;
 };
 
 struct ToleranceOverride {

@@ -42,6 +42,9 @@ struct FlightStart {
 // What the unit is told of the attitude and the rates: late and noisy.
 struct Estimator {
   Span delay{0, Span::In::seconds};
+  // Empty: it runs for each tick of the unit. Else on a clock of its own, faster than the loop's
+  // rate by this part (slower if negative), and a tick is told its last sample.
+  std::optional<double> drift;
   double attitude_noise_deg = 0;  // standard deviation of a rotation about each body axis
   double rate_noise_rad_s = 0;    // standard deviation, each axis
   std::uint64_t seed = 1;

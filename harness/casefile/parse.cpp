@@ -51,6 +51,14 @@ std::vector<Rate> parse_rates(const TomlTable& root) {
   return rates;
 }
 
+UnitStall parse_stall(const TomlTable& table) {
+  UnitStall stall{parse_span(table, "every"), parse_span(table, "for"),
+                  table.boolean("catches_up", false)};
+  if (!(stall.every.amount > 0)) table.error(span_key(table, "every"), "must be positive");
+  if (!(stall.length.amount > 0)) table.error(span_key(table, "for"), "must be positive");
+  return stall;
+}
+
 UnitTiming parse_unit(const TomlTable& root) {
   UnitTiming unit;
   if (!root.has("unit")) return unit;
@@ -64,8 +72,18 @@ UnitTiming parse_unit(const TomlTable& root) {
   if (!(unit.jitter >= 0 && unit.jitter < 1)) {
     table.error("jitter", "is a fraction of a period: from 0 up to, but not, 1");
   }
+  const std::string shape = table.text("jitter_shape", "uniform");
+  unit.heavy_tail = shape == "heavy";
+  if (shape != "uniform" && shape != "heavy") {
+    table.error("jitter_shape", "must be uniform or heavy");
+  }
   unit.seed = static_cast<std::uint64_t>(table.integer("seed", 1));
   if (table.has("drop_ticks")) unit.drop_ticks = table.integers("drop_ticks");
+  unit.drop_every = table.integer("drop_every", 0);
+  if (table.has("drop_every") && unit.drop_every < 2) {
+    table.error("drop_every", "must be 2 or more: one in so many ticks does not happen");
+  }
+  if (table.has("stall")) unit.stall = parse_stall(table.table("stall"));
   return unit;
 }
 
@@ -77,9 +95,15 @@ void check_unit(const TomlTable& root, const Case& parsed) {
   const Rate& slowest = parsed.rates.front();
   const Rate& fastest = parsed.rates.back();
   // Jitter brings ticks nearer together, and timestamps (us) have to increase.
-  if (parsed.unit.jitter > 0 && (1 - parsed.unit.jitter) * fastest.period_s() < 1e-6) {
+  if (!parsed.unit.heavy_tail && parsed.unit.jitter > 0 &&
+      (1 - parsed.unit.jitter) * fastest.period_s() < 1e-6) {
     table.error("jitter",
                 fmt::format("leaves less than 1 us between ticks at {} Hz", fastest.to_string()));
+  }
+  if (const auto& stall = parsed.unit.stall;
+      stall && !(stall->length.on(slowest) < stall->every.on(slowest) &&
+                 stall->length.on(fastest) < stall->every.on(fastest))) {
+    table.error("stall", "is over before the next one: `for` must be less than `every`");
   }
   const std::set<std::int64_t> drops(parsed.unit.drop_ticks.begin(), parsed.unit.drop_ticks.end());
   if (drops.empty()) return;

@@ -137,6 +137,12 @@ Estimator parse_estimator(const TomlTable& flight) {
   if (!flight.has("estimator")) return estimator;
   const TomlTable table = flight.table("estimator");
   estimator.delay = parse_optional_span(table, "delay").value_or(estimator.delay);
+  if (table.has("drift")) {
+    estimator.drift = table.number("drift");
+    if (!(std::abs(*estimator.drift) < 1)) {
+      table.error("drift", "is a part of the loop rate: between -1 and 1");
+    }
+  }
   estimator.attitude_noise_deg = table.number("attitude_noise_deg", 0);
   estimator.rate_noise_rad_s = table.number("rate_noise_rad_s", 0);
   estimator.seed = static_cast<std::uint64_t>(table.integer("seed", 1));

@@ -127,8 +127,12 @@ class Publisher {
     const Rate& unit_rate = timeline_.rate;
     const Rate rate =
         publication.rate ? *publication.rate : every(publication.period.on(unit_rate));
-    const TickSchedule schedule{rate, publication.phase.on(unit_rate), publication.jitter,
-                                publication.seed, publication.drops};
+    TickSchedule schedule;
+    schedule.rate = rate;
+    schedule.phase = publication.phase.on(unit_rate);
+    schedule.jitter = publication.jitter;
+    schedule.seed = publication.seed;
+    schedule.drops = publication.drops;
     releases_.times = ticks(schedule, rate.ticks_in(timeline_.duration));
   }
 
@@ -185,8 +189,18 @@ Timeline timeline_of(const Case& the_case, const Rate& rate) {
 }  // namespace
 
 std::vector<Nanoseconds> unit_ticks(const Case& the_case, const Rate& rate) {
-  const TickSchedule schedule{rate, Nanoseconds(0), the_case.unit.jitter, the_case.unit.seed,
-                              the_case.unit.drop_ticks};
+  const UnitTiming& unit = the_case.unit;
+  TickSchedule schedule;
+  schedule.rate = rate;
+  schedule.jitter = unit.jitter;
+  schedule.heavy_tail = unit.heavy_tail;
+  schedule.seed = unit.seed;
+  schedule.drops = unit.drop_ticks;
+  schedule.drop_every = unit.drop_every;
+  if (unit.stall) {
+    const auto& [every, length, catches_up] = *unit.stall;
+    schedule.stall = {every.on(rate), length.on(rate), catches_up};
+  }
   return ticks(schedule, tick_count(the_case.duration, rate));
 }
 

@@ -16,30 +16,48 @@ Timeline timeline_of(const Case& the_case, const Rate& rate) {
 }
 
 std::vector<Nanoseconds> times_of(const TaskTiming& timing, const Timeline& timeline) {
-  const TickSchedule schedule{timing.rate, timing.phase.on(timeline.rate), timing.jitter,
-                              timing.seed, timing.drop_ticks};
+  TickSchedule schedule;
+  schedule.rate = timing.rate;
+  schedule.phase = timing.phase.on(timeline.rate);
+  schedule.jitter = timing.jitter;
+  schedule.seed = timing.seed;
+  schedule.drops = timing.drop_ticks;
   return ticks(schedule, timing.rate.ticks_in(timeline.duration));
 }
 
-// `times` moved by `offset`, those before 0 left out.
-std::vector<Nanoseconds> moved(std::vector<Nanoseconds> times, Nanoseconds offset) {
-  for (Nanoseconds& time : times) time += offset;
-  std::erase_if(times, [](Nanoseconds time) { return time < Nanoseconds(0); });
-  return times;
-}
-
-Agenda agenda_of(const Case& the_case, const Timeline& timeline,
+Agenda agenda_of(const Flight& flight, const Timeline& timeline, const LoopTiming& timing,
                  const std::vector<Nanoseconds>& disturbed) {
-  const Flight& flight = *the_case.flight;
-  const auto unit_times = unit_ticks(the_case, timeline.rate);
   std::vector<std::vector<Nanoseconds>> times(actuators + 1);
   times[disturbances] = disturbed;
-  times[estimator] = moved(unit_times, -flight.estimator.delay.on(timeline.rate));
   if (flight.battery) times[battery] = times_of(flight.battery->timing, timeline);
   times[motor_limits] = times_of(flight.motor_limits, timeline);
-  times[unit] = unit_times;
-  times[actuators] = moved(unit_times, flight.actuator_delay.on(timeline.rate));
+  for (const LoopTick& tick : timing) {
+    if (tick.sampled >= Nanoseconds(0)) times[estimator].push_back(tick.sampled);
+    times[unit].push_back(tick.begins);
+    if (tick.commanded) times[actuators].push_back(*tick.commanded);
+  }
   return Agenda(std::move(times));
+}
+
+std::size_t first_sampled(const LoopTiming& timing) {
+  const auto is_sampled = [](const LoopTick& tick) { return tick.sampled >= Nanoseconds(0); };
+  return static_cast<std::size_t>(std::find_if(timing.begin(), timing.end(), is_sampled) -
+                                  timing.begin());
+}
+
+Nanoseconds sampled(const LoopTick& tick) { return tick.sampled; }
+Nanoseconds begins(const LoopTick& tick) { return tick.begins; }
+Nanoseconds commanded(const LoopTick& tick) { return tick.commanded.value_or(tick.begins); }
+
+// The most ticks for which `from` has passed and `to` has not.
+template <typename From, typename To>
+std::size_t most_between(const LoopTiming& timing, const From& from, const To& to) {
+  std::size_t most = 0, passed = 0;
+  for (std::size_t i = 0; i < timing.size(); ++i) {
+    while (to(timing[passed]) < from(timing[i])) ++passed;
+    most = std::max(most, i - passed + 1);
+  }
+  return most;
 }
 
 // How many messages of a task can be on their way, jitter included.
@@ -74,22 +92,24 @@ PlantState start_of(const FlightStart& start, const Vehicle& vehicle) {
 
 }  // namespace
 
-ClosedLoop::ClosedLoop(const Case& the_case, const Rate& rate, const Vehicle& vehicle, Plant& plant,
-                       Unit& the_unit)
+ClosedLoop::ClosedLoop(const Case& the_case, const Rate& rate, LoopTiming timing,
+                       const Vehicle& vehicle, Plant& plant, Unit& the_unit)
     : flight_(*the_case.flight),
+      timing_(std::move(timing)),
+      first_sampled_(first_sampled(timing_)),
       plant_(plant),
       disturbances_(flight_, vehicle, timeline_of(the_case, rate)),
-      agenda_(agenda_of(the_case, timeline_of(the_case, rate), disturbances_.times())),
+      agenda_(agenda_of(flight_, timeline_of(the_case, rate), timing_, disturbances_.times())),
       stimulus_(the_case, rate),
       estimator_(flight_.estimator),
       supply_(flight_.battery, vehicle),
       actuators_(vehicle),
       driver_(the_unit),
-      estimates_(line<ControlState>(flight_.estimator.delay, rate, rate)),
+      estimates_(Nanoseconds(0), most_between(timing_, &sampled, &begins) + 1),
       battery_scales_(line<float>(flight_.battery.value_or(BatteryFlight{}).timing.delay,
                                   flight_.battery.value_or(BatteryFlight{}).timing.rate, rate)),
       limits_(line<MotorLimits>(flight_.motor_limits.delay, flight_.motor_limits.rate, rate)),
-      commands_(line<MotorCommands>(flight_.actuator_delay, rate, rate)) {
+      commands_(Nanoseconds(0), most_between(timing_, &begins, &commanded) + 1) {
   plant_.reset(start_of(flight_.start, vehicle));
   sample_.in.control_state = control_state_of(plant_.state());
 }
@@ -115,7 +135,8 @@ void ClosedLoop::happens(const Agenda::Event& event, Trace* trace) {
       disturbances_.apply(now, plant_);
       return hold_commands(now);  // of a motor that fails
     case estimator:
-      return estimates_.send(now, estimator_.sample(plant_.state()));
+      return estimates_.send_for(timing_[first_sampled_ + event.index].begins,
+                                 estimator_.sample(plant_.state()));
     case battery: {
       const float throttle = sample_.out.actuator_controls_0.control[3];
       return battery_scales_.send(now, supply_.sample(now, plant_.state(), throttle, is_armed()));
@@ -149,7 +170,9 @@ void ClosedLoop::unit_tick(const Agenda::Event& event) {
   if (end_.fault) return;
   ++end_.ticks;
   actuators_.mix(sample_.out, is_armed());
-  commands_.send(event.time, actuators_.commands());
+  if (const auto commanded = timing_[event.index].commanded) {
+    commands_.send_for(*commanded, actuators_.commands());
+  }
 }
 
 void ClosedLoop::hold_commands(Nanoseconds now) {

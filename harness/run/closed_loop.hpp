@@ -9,8 +9,9 @@
 //     actuators       the commands that have arrived are held until the next
 //
 // Each task has its own times. What a task makes arrives after the task's delay: without one, at
-// the unit's tick of the same instant. The estimator runs for each tick of the unit, its delay
-// earlier. At t = 0 the rotors turn as the case says and the unit has been told nothing.
+// the unit's tick of the same instant. Those of the unit, of the sample that each tick is told and
+// of its command are the LoopTiming, from the case or from a run on a real clock. Samples of before
+// t = 0 do not exist: then the rotors turn as the case says and the unit has been told nothing.
 #pragma once
 
 #include <cstddef>
@@ -29,6 +30,7 @@
 #include "harness/run/unit_driver.hpp"
 #include "harness/schedule/agenda.hpp"
 #include "harness/schedule/delay_line.hpp"
+#include "harness/schedule/loop_timing.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace attest {
@@ -43,8 +45,8 @@ class ClosedLoop {
  public:
   // REQUIRES: a flight, adapted to the vehicle (flight.hpp); a fresh plant and unit. All outlive
   // this.
-  ClosedLoop(const Case& the_case, const Rate& rate, const Vehicle& vehicle, Plant& plant,
-             Unit& unit);
+  ClosedLoop(const Case& the_case, const Rate& rate, LoopTiming timing, const Vehicle& vehicle,
+             Plant& plant, Unit& unit);
 
   // Flies to the end; records every tick into `trace` unless it is null. No allocation but for the
   // trace and parameters that change. Call once.
@@ -59,6 +61,8 @@ class ClosedLoop {
   bool is_over() const;
 
   const Flight& flight_;
+  LoopTiming timing_;
+  std::size_t first_sampled_;  // tick of which there is a sample
   Plant& plant_;
   Disturbances disturbances_;
   Agenda agenda_;

@@ -8,7 +8,7 @@ namespace attest {
 namespace {
 
 constexpr std::size_t first_ticks = 4;
-constexpr std::size_t regular_ticks = 16;
+constexpr std::size_t regular_ticks = 12;
 
 // NaN is neither smallest nor largest.
 void add_extremes(const Channel& channel, const Trace& flown, std::set<std::size_t>& kept) {

@@ -31,7 +31,8 @@ Disturbances::Disturbances(const Flight& flight, const Vehicle& vehicle, const T
       arm_m_(vehicle.arm_m()),
       failure_(flight.motor_failure) {
   if (any_varies(flight.wind_m_s) || any_varies(flight.centre_of_mass_of_arm)) {
-    const TickSchedule schedule{Rate::hz(changes_hz), Nanoseconds(0), 0, 1, {}};
+    TickSchedule schedule;
+    schedule.rate = Rate::hz(changes_hz);
     times_ = ticks(schedule, schedule.rate.ticks_in(timeline.duration));
   } else {
     times_ = {Nanoseconds(0)};

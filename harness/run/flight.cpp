@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/run/case_timing.hpp"
 #include "harness/run/closed_loop.hpp"
 
 namespace attest {
@@ -66,15 +67,20 @@ Result<std::unique_ptr<Plant>> plant_for(const Case& the_case, const Setup& setu
 }
 
 Result<Flown> fly(const Case& the_case, const Setup& setup, const Airframe& airframe, Unit& unit) {
+  return fly(the_case, setup, airframe, unit, case_timing(the_case, setup.rate));
+}
+
+Result<Flown> fly(const Case& the_case, const Setup& setup, const Airframe& airframe, Unit& unit,
+                  LoopTiming timing) {
   auto plant = plant_for(the_case, setup, airframe);
   if (!plant) return tl::unexpected(plant.error());
   const Case scripted = adapted(the_case, airframe.vehicle());
-  ClosedLoop loop(scripted, setup.rate, airframe.vehicle(), **plant, unit);
+  const std::size_t ticks = timing.size();
+  ClosedLoop loop(scripted, setup.rate, std::move(timing), airframe.vehicle(), **plant, unit);
 
   Flown flown;
   flown.trace.source = fmt::format("{}@{}", the_case.id(), setup.label());
   flown.trace.present = channels_with_prefix("");
-  const auto ticks = static_cast<std::size_t>(tick_count(the_case.duration, setup.rate));
   flown.trace.samples.reserve(ticks);
   flown.trace.plant.reserve(ticks);
   FlightEnd end = loop.run(&flown.trace);

@@ -9,6 +9,7 @@
 #include "harness/plant/plant.hpp"
 #include "harness/port/port.hpp"
 #include "harness/run/open_loop.hpp"
+#include "harness/schedule/loop_timing.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace attest {
@@ -27,9 +28,11 @@ Case adapted(const Case& the_case, const Vehicle& vehicle);
 Result<std::unique_ptr<Plant>> plant_for(const Case& the_case, const Setup& setup,
                                          const Airframe& airframe);
 
-// Flies `the_case` with a fresh `unit`. REQUIRES: the case is a flight. Errors: the case cannot be
-// flown that way (physics slower than the loop, a rotor that the vehicle does not have), with file
-// and line.
+// Flies `the_case` with a fresh `unit`, at the times that the case schedules, or those of `timing`.
+// REQUIRES: the case is a flight. Errors: the case cannot be flown that way (physics slower than
+// the loop, a rotor that the vehicle does not have), with file and line.
 Result<Flown> fly(const Case& the_case, const Setup& setup, const Airframe& airframe, Unit& unit);
+Result<Flown> fly(const Case& the_case, const Setup& setup, const Airframe& airframe, Unit& unit,
+                  LoopTiming timing);
 
 }  // namespace attest

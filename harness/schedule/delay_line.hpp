@@ -17,8 +17,11 @@ class DelayLine {
   DelayLine(Nanoseconds delay, std::size_t messages) : delay_(delay), ring_(messages + 1) {}
 
   // REQUIRES: times do not decrease.
-  void send(Nanoseconds now, const T& message) {
-    ring_[end_ % ring_.size()] = {now + delay_, message};
+  void send(Nanoseconds now, const T& message) { send_for(now + delay_, message); }
+
+  // The same, for a message whose time of arrival is known. REQUIRES: these do not decrease.
+  void send_for(Nanoseconds arrival, const T& message) {
+    ring_[end_ % ring_.size()] = {arrival, message};
     ++end_;
     if (end_ - begin_ > ring_.size()) begin_ = end_ - ring_.size();
   }

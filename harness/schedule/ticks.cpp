@@ -1,10 +1,37 @@
 #include "harness/schedule/ticks.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "harness/schedule/random.hpp"
 
 namespace attest {
+
+namespace {
+
+// Of two timestamps.
+constexpr Nanoseconds closest{1000};
+
+// In periods. Square root and division are exact to the last bit everywhere, as pow is not.
+double lateness(const TickSchedule& schedule, Random& random) {
+  const double uniform = random.uniform();
+  if (!schedule.heavy_tail) return schedule.jitter * uniform;
+  return schedule.jitter * (1 / std::sqrt(1 - uniform) - 1);
+}
+
+bool is_dropped(const TickSchedule& schedule, std::int64_t k) {
+  const auto& drops = schedule.drops;
+  if (schedule.drop_every > 0 && k % schedule.drop_every == schedule.drop_every - 1) return true;
+  return std::find(drops.begin(), drops.end(), k) != drops.end();
+}
+
+// When what is due at `time` runs.
+Nanoseconds after_stall(const Stall& stall, Nanoseconds time) {
+  if (stall.every == Nanoseconds(0) || time < stall.every) return time;
+  return std::max(time, time - time % stall.every + stall.length);
+}
+
+}  // namespace
 
 std::vector<Nanoseconds> ticks(const TickSchedule& schedule, std::int64_t periods) {
   std::vector<Nanoseconds> times;
@@ -12,13 +39,20 @@ std::vector<Nanoseconds> ticks(const TickSchedule& schedule, std::int64_t period
   Random random(schedule.seed);
   for (std::int64_t k = 0; k < periods; ++k) {
     // Drawn for dropped ticks too, so that dropping one leaves the others where they were.
-    const double late = schedule.jitter * random.uniform();
-    const auto& drops = schedule.drops;
-    if (std::find(drops.begin(), drops.end(), k) != drops.end()) continue;
+    const double late = lateness(schedule, random);
+    if (is_dropped(schedule, k)) continue;
     const Nanoseconds begin = schedule.rate.tick(k);
-    const auto period = static_cast<double>((schedule.rate.tick(k + 1) - begin).count());
-    times.push_back(schedule.phase + begin + Nanoseconds(static_cast<std::int64_t>(late * period)));
+    const Nanoseconds period = schedule.rate.tick(k + 1) - begin;
+    const double late_ns = late * static_cast<double>(period.count());
+    Nanoseconds time =
+        after_stall(schedule.stall, begin + Nanoseconds(static_cast<std::int64_t>(late_ns)));
+    if (!times.empty() && time < times.back() + closest) {
+      if (!schedule.stall.catches_up) continue;
+      time = times.back() + std::max(closest, period / 10);
+    }
+    times.push_back(time);
   }
+  for (Nanoseconds& time : times) time += schedule.phase;
   return times;
 }
 

@@ -13,17 +13,31 @@
 
 namespace attest {
 
+// Something else holds the processor: from each positive multiple of `every`, for `length`, no tick
+// runs. The first tick that was held up runs at the end of it; the others with it, a tenth of a
+// period apart, if the task catches up, and else not at all.
+struct Stall {
+  Nanoseconds every{0};  // 0: never
+  Nanoseconds length{0};
+  bool catches_up = false;
+};
+
 // A periodic task: release k at phase + k / rate, made late by seeded jitter, some left out.
 struct TickSchedule {
   Rate rate = Rate::hz(250);
   Nanoseconds phase{0};
-  double jitter = 0;                // late by up to this fraction of a period, uniform; in [0, 1)
+  // Late by up to this fraction of a period, uniform; in [0, 1). With a heavy tail: by
+  // jitter (1 / sqrt(u) - 1) periods, u uniform in (0, 1], which has no finite variance.
+  double jitter = 0;
   std::uint64_t seed = 1;           // of the jitter
   std::vector<std::int64_t> drops;  // values of k that do not happen
+  bool heavy_tail = false;
+  std::int64_t drop_every = 0;  // the last of each so many does not happen; 0: all do
+  Stall stall;                  // of times without the phase
 };
 
-// The ticks with k in [0, periods), strictly increasing. The same arguments give the same ticks on
-// every machine.
+// The ticks with k in [0, periods), increasing by a microsecond at least. One that another so late
+// has passed over does not happen. The same arguments give the same ticks on every machine.
 std::vector<Nanoseconds> ticks(const TickSchedule& schedule, std::int64_t periods);
 
 // When the samples of a topic are published: periodically, at given times, or both empty: never.

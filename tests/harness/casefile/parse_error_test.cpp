@@ -113,6 +113,19 @@ TEST(CaseErrors, DroppedTicksAreTicksOfTheCase) {
               HasSubstr("leaves no tick at 50 Hz"));
 }
 
+TEST(CaseErrors, OfTheUnitsTicks) {
+  EXPECT_EQ(errors_of("[unit]\njitter_shape = 'wide'\n"), "7:1: must be uniform or heavy");
+  EXPECT_EQ(errors_of("[unit]\ndrop_every = 1\n"),
+            "7:1: must be 2 or more: one in so many ticks does not happen");
+  EXPECT_EQ(errors_of("[unit]\nstall = { every_ticks = 4, for_ticks = 3, catches_up = true }\n"),
+            "");
+  EXPECT_THAT(errors_of("[unit]\nstall = { every_s = 0.01, for_ticks = 2 }\n"),
+              HasSubstr("is over before the next one"));
+  EXPECT_THAT(errors_of("[unit]\nstall = { every_s = 0.01, for_s = 0 }\n"),
+              HasSubstr("must be positive"));
+  EXPECT_THAT(errors_of("[unit]\nstall = { every_s = 0.01 }\n"), HasSubstr("for_s"));
+}
+
 // Timestamps are microseconds, and have to increase.
 TEST(CaseErrors, JitterKeepsTicksApart) {
   EXPECT_EQ(errors_of("[unit]\njitter = 0.99\n"), "");

@@ -94,7 +94,8 @@ TEST_F(ParseFlight, TasksHaveTheirTiming) {
   const Flight flight = flight_of(
       "actuator_delay_ticks = 2\n[flight.motor_limits]\nrate_hz = 25\nphase_s = 0.01\njitter = "
       "0.5\n"
-      "seed = 7\ndelay_s = 0.02\ndrop_ticks = [3]\n[flight.estimator]\ndelay_s = 0.004\n"
+      "seed = 7\ndelay_s = 0.02\ndrop_ticks = [3]\n[flight.estimator]\ndelay_s = 0.004\ndrift = "
+      "0.01\n"
       "rate_noise_rad_s = 0.1\nattitude_noise_deg = 0.2\nseed = 9\n");
   EXPECT_EQ(flight.motor_limits.rate, Rate::hz(25));
   EXPECT_EQ(flight.motor_limits.phase.amount, 0.01);
@@ -107,6 +108,7 @@ TEST_F(ParseFlight, TasksHaveTheirTiming) {
   EXPECT_EQ(flight.estimator.rate_noise_rad_s, 0.1);
   EXPECT_EQ(flight.estimator.attitude_noise_deg, 0.2);
   EXPECT_EQ(flight.estimator.seed, 9u);
+  EXPECT_EQ(flight.estimator.drift, 0.01);
 }
 
 TEST_F(ParseFlight, MetricsAreBounded) {

@@ -3,12 +3,15 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "harness/run/case_timing.hpp"
 
 namespace attest {
 namespace {
@@ -110,11 +113,13 @@ class ClosedLoopTest : public testing::Test {
 
   FlightEnd fly(Trace* trace = nullptr, const Rate& rate = Rate::hz(250)) {
     notes_.clear();
-    ClosedLoop loop(case_, rate, vehicle_, plant_, unit_);
+    ClosedLoop loop(case_, rate, timing_.value_or(case_timing(case_, rate)), vehicle_, plant_,
+                    unit_);
     return loop.run(trace);
   }
 
   Case case_;
+  std::optional<LoopTiming> timing_;
   Vehicle vehicle_ = quad();
   Notes notes_;
   NotingPlant plant_{notes_};
@@ -194,6 +199,26 @@ TEST_F(ClosedLoopTest, JitteredAndDroppedTicksAreFlownAsTheyCome) {
   fly();
   EXPECT_THAT(notes_,
               ElementsAre("0 unit sees 0 limits 0", "0 hold 400", "8 unit sees 8 limits 0"));
+}
+
+TEST_F(ClosedLoopTest, ATimingIsFlownAsItWas) {
+  const auto ms = [](std::int64_t count) { return Nanoseconds(count * 1'000'000); };
+  // The second tick is told of the state of the first again, is itself late, and its command is
+  // overtaken; the third sample is taken before the second tick begins.
+  timing_ = LoopTiming{{ms(0), ms(1), ms(2)}, {ms(0), ms(6), {}}, {ms(5), ms(7), ms(9)}};
+  case_.duration = seconds(0.020);
+  case_.flight->motor_limits.phase = seconds(1);
+  fly();
+  EXPECT_THAT(notes_, ElementsAre("1 unit sees 0", "2 hold 400", "6 unit sees 0", "7 unit sees 5"));
+}
+
+TEST_F(ClosedLoopTest, AnEstimatorOnItsOwnClockGivesItsLastSample) {
+  case_.flight->estimator.drift = 1.0 / 3;  // every 3 ms, beside 4 ms
+  case_.flight->motor_limits.phase = seconds(1);
+  case_.duration = seconds(0.016);
+  fly();
+  EXPECT_THAT(notes_, ElementsAre("0 unit sees 0", "0 hold 400", "4 unit sees 3", "4 hold 400",
+                                  "8 unit sees 6", "8 hold 400", "12 unit sees 12"));
 }
 
 TEST_F(ClosedLoopTest, AFaultOfThePortEndsTheFlight) {

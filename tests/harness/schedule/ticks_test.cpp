@@ -37,9 +37,49 @@ TEST(Ticks, LeaveOutTheDropped) {
   EXPECT_THAT(ticks(schedule, 4), ElementsAre(ms(4), ms(12)));
 }
 
-RC_GTEST_PROP(Ticks, StrictlyIncrease, ()) {
-  const auto times = ticks(any_schedule(), 200);
-  RC_ASSERT(std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) == times.end());
+RC_GTEST_PROP(Ticks, AreAMicrosecondApart, ()) {
+  TickSchedule schedule = any_schedule();
+  schedule.heavy_tail = *rc::gen::arbitrary<bool>();
+  schedule.drop_every = *rc::gen::elementOf(std::vector<std::int64_t>{0, 2, 7});
+  schedule.stall = {ms(*rc::gen::inRange(0, 100)), ms(*rc::gen::inRange(0, 60)),
+                    *rc::gen::arbitrary<bool>()};
+  const auto times = ticks(schedule, 200);
+  RC_ASSERT(std::adjacent_find(times.begin(), times.end(), [](Nanoseconds a, Nanoseconds b) {
+              return b < a + Nanoseconds(1000);
+            }) == times.end());
+}
+
+TEST(Ticks, LeaveOutTheLastOfEachSoMany) {
+  TickSchedule schedule;
+  schedule.drop_every = 3;
+  EXPECT_THAT(ticks(schedule, 6), ElementsAre(ms(0), ms(4), ms(12), ms(16)));
+}
+
+TEST(Ticks, ThatAStallHoldsUpAreLateOnceAndThenMissed) {
+  TickSchedule schedule;
+  schedule.phase = ms(1);
+  schedule.stall = {ms(12), ms(10), false};
+  EXPECT_THAT(ticks(schedule, 7), ElementsAre(ms(1), ms(5), ms(9), ms(23), ms(35)));
+}
+
+TEST(Ticks, ThatAStallHoldsUpMayCatchUpInABurst) {
+  TickSchedule schedule;
+  schedule.stall = {ms(12), ms(9), true};
+  constexpr Nanoseconds apart{400'000};
+  EXPECT_THAT(ticks(schedule, 6),
+              ElementsAre(ms(0), ms(4), ms(8), ms(21), ms(21) + apart, ms(21) + 2 * apart));
+}
+
+TEST(Ticks, HeavyTailsAreLateByMoreThanAPeriodNowAndThen) {
+  TickSchedule schedule;
+  schedule.jitter = 0.1;
+  schedule.heavy_tail = true;
+  const auto times = ticks(schedule, 10'000);
+  // P(late > l) = 1 / (1 + l / jitter)^2: 83 in 10,000 are late by a period, 27 by 1.83 of them.
+  EXPECT_NEAR(static_cast<double>(times.size()), 10'000 - 83 - 20, 60);
+  std::size_t gaps = 0;
+  for (std::size_t i = 1; i < times.size(); ++i) gaps += times[i] - times[i - 1] > ms(7) ? 1 : 0;
+  EXPECT_GT(gaps, 20u);
 }
 
 RC_GTEST_PROP(Ticks, AreLateByLessThanTheJitter, ()) {

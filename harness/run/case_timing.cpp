@@ -1,0 +1,32 @@
+#include "harness/run/case_timing.hpp"
+
+#include <cmath>
+
+#include "harness/casefile/stimulus.hpp"
+
+namespace attest {
+namespace {
+
+// The estimator's last sample by `time`, on a clock that drifts from the loop's.
+Nanoseconds drifted(Nanoseconds time, const Rate& rate, double drift) {
+  const double period_ns = rate.period_s() * 1e9 / (1 + drift);
+  const double samples = std::floor(static_cast<double>(time.count()) / period_ns);
+  return std::min(time, Nanoseconds(static_cast<std::int64_t>(samples * period_ns)));
+}
+
+}  // namespace
+
+LoopTiming case_timing(const Case& the_case, const Rate& rate) {
+  const Flight& flight = *the_case.flight;
+  const Nanoseconds before = flight.estimator.delay.on(rate);
+  const Nanoseconds after = flight.actuator_delay.on(rate);
+  LoopTiming timing;
+  for (const Nanoseconds begins : unit_ticks(the_case, rate)) {
+    Nanoseconds sampled = begins - before;
+    if (flight.estimator.drift) sampled = drifted(sampled, rate, *flight.estimator.drift);
+    timing.push_back({sampled, begins, begins + after});
+  }
+  return timing;
+}
+
+}  // namespace attest
