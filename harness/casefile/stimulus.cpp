@@ -182,11 +182,11 @@ class ParameterPublisher {
   std::vector<Entry> entries_;
 };
 
+}  // namespace
+
 Timeline timeline_of(const Case& the_case, const Rate& rate) {
   return {rate, rate.tick(tick_count(the_case.duration, rate))};
 }
-
-}  // namespace
 
 std::vector<Nanoseconds> unit_ticks(const Case& the_case, const Rate& rate) {
   const UnitTiming& unit = the_case.unit;

@@ -9,6 +9,8 @@
 
 namespace attest {
 
+Timeline timeline_of(const Case& the_case, const Rate& rate);
+
 // When the unit's ticks begin, jittered and dropped as the case says, since the begin of the case.
 std::vector<Nanoseconds> unit_ticks(const Case& the_case, const Rate& rate);
 

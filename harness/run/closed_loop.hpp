@@ -18,16 +18,11 @@
 #include <optional>
 
 #include "harness/casefile/case.hpp"
-#include "harness/casefile/stimulus.hpp"
-#include "harness/core/float_environment.hpp"
-#include "harness/plant/battery.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/port/port.hpp"
-#include "harness/run/actuators.hpp"
-#include "harness/run/disturbances.hpp"
 #include "harness/run/estimator.hpp"
-#include "harness/run/supply.hpp"
-#include "harness/run/unit_driver.hpp"
+#include "harness/run/plant_task.hpp"
+#include "harness/run/unit_task.hpp"
 #include "harness/schedule/agenda.hpp"
 #include "harness/schedule/delay_line.hpp"
 #include "harness/schedule/loop_timing.hpp"
@@ -55,32 +50,21 @@ class ClosedLoop {
  private:
   void happens(const Agenda::Event& event, Trace* trace);
   void unit_tick(const Agenda::Event& event);
-  void hold_commands(Nanoseconds now);
   void record(Trace& trace) const;
-  bool is_armed() const { return sample_.in.actuator_armed.armed != 0; }
   bool is_over() const;
 
-  const Flight& flight_;
   LoopTiming timing_;
   std::size_t first_sampled_;  // tick of which there is a sample
-  Plant& plant_;
-  Disturbances disturbances_;
-  Agenda agenda_;
-  Stimulus stimulus_;
+  PlantTask plant_;
+  UnitTask unit_;
   NoisyEstimator estimator_;
-  Supply supply_;
-  Actuators actuators_;
-  UnitDriver driver_;
-  PortFloatEnvironment ports_;
+  Agenda agenda_;
 
   DelayLine<ControlState> estimates_;
   DelayLine<float> battery_scales_;
   DelayLine<MotorLimits> limits_;
   DelayLine<MotorCommands> commands_;
-  std::optional<MotorCommands> held_;  // empty: the rotors turn as at the start
 
-  Sample sample_{};
-  std::vector<ParameterChange> changes_;  // at the current tick
   FlightEnd end_;
 };
 
