@@ -64,6 +64,14 @@ struct MotorFailure {
   Span at;
 };
 
+// What a run in real time is judged by: counts and percentiles, never one maximum, which is the
+// machine's.
+struct RealtimeBudget {
+  double misses_per_million = 500;     // deadlines passed over
+  double p99_lateness_us = 100;        // of the wake-ups
+  std::optional<double> execution_us;  // steps longer than this count like misses; empty: any
+};
+
 struct Flight {
   std::vector<Flyer> flyers;      // ascending
   std::string lead_vehicle;       // flies at all rates of the case, the others at:
@@ -81,6 +89,7 @@ struct Flight {
   std::array<Signal, 3> centre_of_mass_of_arm{};
   std::optional<MotorFailure> motor_failure;
   std::vector<Metric> metrics;
+  RealtimeBudget realtime;
 };
 
 }  // namespace attest

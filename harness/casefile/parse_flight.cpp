@@ -227,6 +227,21 @@ void parse_metrics(const TomlTable& flight, std::vector<Metric>& metrics) {
   if (metrics.empty() && flight.has("metrics")) flight.error("metrics", "names no metric");
 }
 
+RealtimeBudget parse_realtime(const TomlTable& flight) {
+  RealtimeBudget budget;
+  if (!flight.has("realtime")) return budget;
+  const TomlTable table = flight.table("realtime");
+  budget.misses_per_million = table.number("misses_per_million", budget.misses_per_million);
+  budget.p99_lateness_us = table.number("p99_lateness_us", budget.p99_lateness_us);
+  if (!(budget.misses_per_million >= 0)) table.error("misses_per_million", "is negative");
+  if (!(budget.p99_lateness_us > 0)) table.error("p99_lateness_us", "must be positive");
+  if (table.has("execution_us")) {
+    budget.execution_us = table.number("execution_us");
+    if (!(*budget.execution_us > 0)) table.error("execution_us", "must be positive");
+  }
+  return budget;
+}
+
 }  // namespace
 
 void parse_flight(const TomlTable& root, const std::filesystem::path& models, Case& parsed) {
@@ -253,6 +268,7 @@ void parse_flight(const TomlTable& root, const std::filesystem::path& models, Ca
       parse_signals(table, "centre_of_mass_of_arm", {"forward", "right", "down"});
   flight.motor_failure = parse_motor_failure(table);
   parse_metrics(table, flight.metrics);
+  flight.realtime = parse_realtime(table);
   const bool needs_contact =
       flight.floor && std::any_of(flight.flyers.begin(), flight.flyers.end(),
                                   [](const Flyer& flyer) { return flyer.plant == PlantKind::ode; });

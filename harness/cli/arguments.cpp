@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "harness/cli/command.hpp"
+#include "harness/cli/timing_arguments.hpp"
 #include "harness/core/version.hpp"
 
 namespace attest::cli {
@@ -27,9 +28,6 @@ constexpr const char* footer =
     "  attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv\n"
     "\n"
     "Exit codes: 0 nothing failed, 1 something did not conform, 2 usage or environment.\n";
-
-// The work of the command that was chosen; its result is the exit code.
-using Action = std::function<int()>;
 
 void add_selection(CLI::App& command, SelectionOptions& options) {
   command
@@ -79,6 +77,11 @@ void add_run(CLI::App& app, const Globals& globals, Action& action) {
   command
       ->add_option("--write-expected", options->write_expected,
                    "Write what fails as such a file, to fill in the reasons")
+      ->type_name("F");
+  command
+      ->add_option("--timing", options->timing,
+                   "Only the flight of `stress --record-timing`, at the very times it had, beside "
+                   "the reference at these times")
       ->type_name("F");
   command->add_flag("--diagnose,!--no-diagnose", options->diagnose,
                     "When something fails, name the mistakes it looks like (on by default)");
@@ -139,11 +142,13 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
   CLI::App* command = app.add_subcommand(
       "sim", "Let a port fly one case, and write the flown trace, which `replay` can feed again");
   command->add_option("case", options->case_name, "A flight: its name or id, or a case file")
-      ->type_name("CASE")
-      ->required();
+      ->type_name("CASE");
   command->add_option("--rate", options->rate, "Loop rate [Hz]; any, not only the case's own")
-      ->type_name("HZ")
-      ->required();
+      ->type_name("HZ");
+  command
+      ->add_option("--timing", options->timing,
+                   "Instead: the flight of `stress --record-timing`, at the very times it had")
+      ->type_name("F");
   command->add_option("--vehicle", options->vehicle, "One of `attest list --vehicles`")
       ->type_name("VEHICLE");
   command->add_option("--plant", options->plant, "`mujoco` or `ode`")->type_name("PLANT");
@@ -270,6 +275,7 @@ int run_command_line(int argc, char** argv) {
   add_run(app, globals, action);
   add_replay(app, globals, action);
   add_sim(app, globals, action);
+  add_timing_commands(app, globals, action);
   add_compare(app, globals, action);
   add_faults(app, globals, action);
   add_list(app, globals, action);

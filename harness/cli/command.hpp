@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,7 @@ struct RunOptions {
   std::string badge;
   std::string expected_failures;
   std::string write_expected;
+  std::string timing;    // file; empty: the cases' own
   bool diagnose = true;  // when something fails
 };
 int run_command(const RunOptions& options, const Globals& globals);
@@ -77,14 +79,33 @@ struct CompareOptions {
 int compare_command(const CompareOptions& options, const Globals& globals);
 
 struct SimOptions {
-  std::string case_name;
+  std::string case_name;  // this and `rate`, or `timing`
   std::string rate;
   std::string vehicle, plant;  // empty: what the case flies first
+  std::string timing;
   std::string port = "builtin";
   std::string out;
   double timeout_s = 60;
 };
 int sim_command(const SimOptions& options, const Globals& globals);
+
+struct StressOptions {
+  std::string port = "builtin";
+  std::vector<std::string> rates = {"250", "500", "1000", "2000", "4000", "8000"};
+  double duration_s = 10;
+  std::string case_name = "flight/hover";
+  std::string vehicle, plant;  // empty: what the case flies first
+  int load = 0;
+  std::string load_kind = "cpu";
+  std::string policy = "fifo";
+  int cpus = 2;
+  double spin_us = 0;
+  // Empty: the case's.
+  std::optional<double> misses_per_million, p99_lateness_us, execution_us;
+  std::string json, junit, record_timing;
+  bool cyclictest = true;
+};
+int stress_command(const StressOptions& options, const Globals& globals);
 
 struct FaultOptions {
   std::vector<std::string> ids;  // empty: all

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "harness/cli/command.hpp"
+#include "harness/cli/find_case.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
@@ -62,11 +63,40 @@ struct Plan {
   std::size_t results = 0;
 };
 
+// The cases that are selected, each at its own times.
+Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Plan& plan) {
+  auto cases = options.select.cases_in(suite.cases());
+  if (!cases) return tl::unexpected(cases.error());
+  std::set<Rate> rates;
+  for (const SelectedCase& selected : *cases) {
+    for (const Setup& setup : selected.setups) rates.insert(setup.rate);
+    plan.results += selected.setups.size();
+  }
+  Fleet fleet(suite.models());
+  auto batches = make_batches(*cases, suite.golden(), fleet, plan.run.level);
+  if (!batches) return tl::unexpected(batches.error());
+  plan.batches = std::move(*batches);
+  plan.run.rates.assign(rates.begin(), rates.end());
+  plan.cases = std::move(*cases);
+  return {};
+}
+
+// The one flight of a recorded timing.
+Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, Plan& plan) {
+  if (!options.select.selects_all()) return fail("--timing says what to run; select nothing else");
+  auto flight = find_timed_flight(options.timing, suite);
+  if (!flight) return tl::unexpected(flight.error());
+  plan.results = 1;
+  plan.run.timing = options.timing;
+  plan.run.rates = {flight->timing.setup.rate};
+  plan.batches.push_back(std::make_unique<TimedBatch>(
+      std::move(flight->the_case), std::move(flight->timing), std::move(flight->airframe)));
+  return {};
+}
+
 Result<Plan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
   auto level = parse_level(options.level);
   if (!level) return tl::unexpected(level.error());
-  auto cases = options.select.cases_in(suite.cases());
-  if (!cases) return tl::unexpected(cases.error());
   auto port = describe_port(options.worker.port, {}, options.worker.timeout_s);
   if (!port) return tl::unexpected(port.error());
 
@@ -84,17 +114,9 @@ Result<Plan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
   plan.run.port_name = port->name;
   plan.run.port_version = port->version;
   plan.run.level = *level;
-  std::set<Rate> rates;
-  for (const SelectedCase& selected : *cases) {
-    for (const Setup& setup : selected.setups) rates.insert(setup.rate);
-    plan.results += selected.setups.size();
-  }
-  Fleet fleet(suite.models());
-  auto batches = make_batches(*cases, suite.golden(), fleet, *level);
-  if (!batches) return tl::unexpected(batches.error());
-  plan.batches = std::move(*batches);
-  plan.run.rates.assign(rates.begin(), rates.end());
-  plan.cases = std::move(*cases);
+  const auto planned =
+      options.timing.empty() ? plan_cases(options, suite, plan) : plan_timed(options, suite, plan);
+  if (!planned) return tl::unexpected(planned.error());
   return plan;
 }
 

@@ -1,64 +1,53 @@
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <string>
 
 #include <fmt/format.h>
 
-#include "harness/casefile/parse.hpp"
 #include "harness/cli/command.hpp"
+#include "harness/cli/find_case.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/run/case_timing.hpp"
 #include "harness/suite/sim_batch.hpp"
 
 namespace attest::cli {
 namespace {
 
-// `name` is a case file, or the pattern of exactly one case.
-Result<Case> find_case(const std::string& name, const SuiteFolder& suite) {
-  std::error_code ignored;
-  if (std::filesystem::is_regular_file(name, ignored)) return parse_case(name);
-  Selection selection;
-  selection.filters = {name};
-  const auto found = select_cases(suite.cases(), selection);
-  if (!found) return tl::unexpected(found.error());
-  if (found->size() == 1) return found->front().the_case;
-  return fail(fmt::format("`{}` names {} cases, the first {} and {}; name one", name, found->size(),
-                          (*found)[0].the_case.id(), (*found)[1].the_case.id()));
-}
-
-// What the case flies first, where the command line leaves it open.
-Result<Flyer> find_flyer(const Case& the_case, const SimOptions& options) {
-  Flyer flyer{options.vehicle.empty() ? the_case.flight->lead_vehicle : options.vehicle,
-              the_case.flight->flyers.front().plant};
-  if (options.plant.empty()) return flyer;
-  const auto plant = parse_plant_kind(options.plant);
-  if (!plant) return tl::unexpected(plant.error());
-  flyer.plant = *plant;
-  return flyer;
-}
-
 struct Sim {
   Case the_case;
   Setup setup;
+  LoopTiming timing;
   std::shared_ptr<const Airframe> airframe;
 };
+
+Result<Sim> prepare_timed(const SimOptions& options, const SuiteFolder& suite) {
+  if (!options.case_name.empty() || !options.rate.empty() || !options.vehicle.empty() ||
+      !options.plant.empty()) {
+    return fail("--timing says case, rate, vehicle and plant; leave them out");
+  }
+  auto flight = find_timed_flight(options.timing, suite);
+  if (!flight) return tl::unexpected(flight.error());
+  return Sim{std::move(flight->the_case), flight->timing.setup, std::move(flight->timing.ticks),
+             std::move(flight->airframe)};
+}
 
 Result<Sim> prepare(const SimOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return tl::unexpected(suite.error());
+  if (!options.timing.empty()) return prepare_timed(options, *suite);
+  if (options.case_name.empty() || options.rate.empty()) {
+    return fail("needs a case and --rate, or --timing");
+  }
   const auto rate = Rate::parse(options.rate);
   if (!rate) return tl::unexpected(rate.error());
-  auto the_case = find_case(options.case_name, *suite);
+  auto the_case = find_flight(options.case_name, *suite);
   if (!the_case) return tl::unexpected(the_case.error());
-  if (!the_case->flight) {
-    return fail_at(the_case->file.string(),
-                   "has no [flight]: its inputs are scripted; `attest run` runs it");
-  }
-  const auto flyer = find_flyer(*the_case, options);
+  const auto flyer = find_flyer(*the_case, options.vehicle, options.plant);
   if (!flyer) return tl::unexpected(flyer.error());
   auto airframe = Airframe::load(suite->models(), flyer->vehicle);
   if (!airframe) return tl::unexpected(airframe.error());
-  return Sim{std::move(*the_case), {*rate, *flyer}, std::move(*airframe)};
+  LoopTiming timing = case_timing(*the_case, *rate);
+  return Sim{std::move(*the_case), {*rate, *flyer}, std::move(timing), std::move(*airframe)};
 }
 
 std::string bounds(const MetricResult& metric) {
@@ -83,7 +72,8 @@ int sim_command(const SimOptions& options, const Globals& globals) {
   if (!sim) return report_error(sim.error());
   Batches batches;
   batches.push_back(std::make_unique<SimBatch>(std::move(sim->the_case), std::move(sim->setup),
-                                               std::move(sim->airframe), options.out));
+                                               std::move(sim->timing), std::move(sim->airframe),
+                                               options.out));
   WorkerOptions worker;
   worker.port = options.port;
   worker.timeout_s = options.timeout_s;

@@ -116,6 +116,15 @@ std::string failure_headline(const CaseResult& result) {
 }
 
 std::string reproduce_command(const CaseResult& result, const RunResult& run) {
+  if (run.command == "stress") {
+    return one_line(fmt::format("attest stress --port {} --case {} --rates {}",
+                                shell_word(run.port), shell_word(result.case_id()),
+                                result.rate.to_string()));
+  }
+  if (!run.timing.empty()) {
+    return one_line(fmt::format("attest run --port {} --timing {}", shell_word(run.port),
+                                shell_word(run.timing)));
+  }
   std::string out = fmt::format("attest run --port {} --filter {}", shell_word(run.port),
                                 shell_quoted(result.id()));
   if (run.level != Level::numeric) out += fmt::format(" --level {}", name_of(run.level));
@@ -139,10 +148,10 @@ std::string failure_text(const CaseResult& result, const RunResult& run) {
   out += finding_text(result, run.level);
   const std::string id = one_line(result.case_id());
   out += fmt::format("  case:      cases/{}.toml\n", id);
-  if (result.first)
+  if (result.first && run.command == "run" && run.timing.empty())
     out += fmt::format("  golden:    golden/{}/{}.csv\n", id, result.setup().label());
   out += "  reproduce: " + reproduce_command(result, run);
-  if (result.flyer) out += "\n  fly it:    " + sim_command(result, run);
+  if (result.flyer && run.timing.empty()) out += "\n  fly it:    " + sim_command(result, run);
   const bool hides = result.verdict == Verdict::crash || result.verdict == Verdict::timeout;
   return hides ? out + "\n  debug:     the same with --in-process, under a debugger" : out;
 }

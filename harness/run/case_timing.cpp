@@ -1,8 +1,10 @@
 #include "harness/run/case_timing.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "harness/casefile/stimulus.hpp"
+#include "harness/schedule/ticks.hpp"
 
 namespace attest {
 namespace {
@@ -27,6 +29,16 @@ LoopTiming case_timing(const Case& the_case, const Rate& rate) {
     timing.push_back({sampled, begins, begins + after});
   }
   return timing;
+}
+
+std::vector<Nanoseconds> task_times(const TaskTiming& timing, const Timeline& timeline) {
+  TickSchedule schedule;
+  schedule.rate = timing.rate;
+  schedule.phase = timing.phase.on(timeline.rate);
+  schedule.jitter = timing.jitter;
+  schedule.seed = timing.seed;
+  schedule.drops = timing.drop_ticks;
+  return ticks(schedule, timing.rate.ticks_in(timeline.duration));
 }
 
 }  // namespace attest

@@ -1,6 +1,8 @@
 // The times of a flight's loop, as its case schedules them.
 #pragma once
 
+#include <vector>
+
 #include "harness/casefile/case.hpp"
 #include "harness/schedule/loop_timing.hpp"
 
@@ -9,5 +11,8 @@ namespace attest {
 // Of the unit's ticks, the estimator's samples for them and the motor commands that they make.
 // REQUIRES: a flight.
 LoopTiming case_timing(const Case& the_case, const Rate& rate);
+
+// When a task beside the unit's runs.
+std::vector<Nanoseconds> task_times(const TaskTiming& timing, const Timeline& timeline);
 
 }  // namespace attest

@@ -3,29 +3,19 @@
 #include <algorithm>
 
 #include "harness/casefile/stimulus.hpp"
-#include "harness/schedule/ticks.hpp"
+#include "harness/run/case_timing.hpp"
 
 namespace attest {
 namespace {
 
 enum Task : std::size_t { disturbances, estimator, battery, motor_limits, unit, actuators };
 
-std::vector<Nanoseconds> times_of(const TaskTiming& timing, const Timeline& timeline) {
-  TickSchedule schedule;
-  schedule.rate = timing.rate;
-  schedule.phase = timing.phase.on(timeline.rate);
-  schedule.jitter = timing.jitter;
-  schedule.seed = timing.seed;
-  schedule.drops = timing.drop_ticks;
-  return ticks(schedule, timing.rate.ticks_in(timeline.duration));
-}
-
 Agenda agenda_of(const Flight& flight, const Timeline& timeline, const LoopTiming& timing,
                  const std::vector<Nanoseconds>& disturbed) {
   std::vector<std::vector<Nanoseconds>> times(actuators + 1);
   times[disturbances] = disturbed;
-  if (flight.battery) times[battery] = times_of(flight.battery->timing, timeline);
-  times[motor_limits] = times_of(flight.motor_limits, timeline);
+  if (flight.battery) times[battery] = task_times(flight.battery->timing, timeline);
+  times[motor_limits] = task_times(flight.motor_limits, timeline);
   for (const LoopTick& tick : timing) {
     if (tick.sampled >= Nanoseconds(0)) times[estimator].push_back(tick.sampled);
     times[unit].push_back(tick.begins);

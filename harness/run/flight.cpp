@@ -14,13 +14,9 @@ namespace {
 // float32 of the unit's inputs (models/README.md).
 const Rate slowest_physics = Rate::hz(1000);
 
-Rate physics_of(const Flight& flight, const Rate& loop) {
-  return flight.physics.value_or(std::max(slowest_physics, loop));
-}
-
 Result<void> check(const Case& the_case, const Setup& setup, const Vehicle& vehicle) {
   const Flight& flight = *the_case.flight;
-  if (physics_of(flight, setup.rate) < setup.rate) {
+  if (physics_of(the_case, setup.rate) < setup.rate) {
     return fail_at(the_case.file.string(),
                    fmt::format("physics at {} Hz is slower than the loop at {} Hz; raise "
                                "`physics_hz`, or leave it out",
@@ -37,6 +33,10 @@ Result<void> check(const Case& the_case, const Setup& setup, const Vehicle& vehi
 }
 
 }  // namespace
+
+Rate physics_of(const Case& the_case, const Rate& loop) {
+  return the_case.flight->physics.value_or(std::max(slowest_physics, loop));
+}
 
 Case adapted(const Case& the_case, const Vehicle& vehicle) {
   Case result = the_case;
@@ -63,7 +63,7 @@ Result<std::unique_ptr<Plant>> plant_for(const Case& the_case, const Setup& setu
   if (auto sane = check(the_case, setup, airframe.vehicle()); !sane) {
     return tl::unexpected(sane.error());
   }
-  return airframe.make_plant(setup.flyer->plant, {physics_of(flight, setup.rate), flight.floor});
+  return airframe.make_plant(setup.flyer->plant, {physics_of(the_case, setup.rate), flight.floor});
 }
 
 Result<Flown> fly(const Case& the_case, const Setup& setup, const Airframe& airframe, Unit& unit) {

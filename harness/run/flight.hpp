@@ -24,6 +24,9 @@ struct Flown {
 // own, and thrusts in units of its hover thrust.
 Case adapted(const Case& the_case, const Vehicle& vehicle);
 
+// How often MuJoCo steps. REQUIRES: a flight.
+Rate physics_of(const Case& the_case, const Rate& loop);
+
 // The plant of a setup. REQUIRES: the case is a flight. Errors: as of fly().
 Result<std::unique_ptr<Plant>> plant_for(const Case& the_case, const Setup& setup,
                                          const Airframe& airframe);

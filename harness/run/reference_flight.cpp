@@ -4,6 +4,7 @@
 
 #include "harness/compare/compare.hpp"
 #include "harness/port/builtin.hpp"
+#include "harness/run/case_timing.hpp"
 #include "harness/run/decimate.hpp"
 #include "harness/run/flight.hpp"
 
@@ -14,13 +15,13 @@ namespace {
 constexpr double part_of_tolerance = 0.1;
 
 Result<Trace> flown_by(Port& port, const Case& the_case, const Setup& setup,
-                       const Airframe& airframe) {
+                       const Airframe& airframe, const LoopTiming& timing) {
   const auto wrong = [&](const std::string& what) {
     return fail_at(the_case.file.string(), fmt::format("at {}, {}", setup.label(), what));
   };
   const auto unit = port.create(the_case.profile);
   if (!unit) return wrong(fmt::format("the reference has no profile `{}`", the_case.profile));
-  auto flown = fly(the_case, setup, airframe, *unit);
+  auto flown = fly(the_case, setup, airframe, *unit, timing);
   if (!flown) return tl::unexpected(flown.error());
   if (flown->fault) return wrong("the reference: " + flown->fault->what);
   if (flown->divergence) {
@@ -46,15 +47,27 @@ double horizon_s(const Trace& flown, const Trace& in_double, const Case& the_cas
 }  // namespace
 
 Result<ReferenceFlight> reference_flight(const Case& the_case, const Setup& setup,
-                                         const Airframe& airframe) {
-  const auto flown = flown_by(*open_builtin(), the_case, setup, airframe);
+                                         const Airframe& airframe, const LoopTiming& timing) {
+  auto flown = flown_by(*open_builtin(), the_case, setup, airframe, timing);
   if (!flown) return tl::unexpected(flown.error());
-  const auto in_double = flown_by(*open_builtin_in_double(), the_case, setup, airframe);
+  const auto in_double = flown_by(*open_builtin_in_double(), the_case, setup, airframe, timing);
   if (!in_double) return tl::unexpected(in_double.error());
 
   ReferenceFlight result;
   for (const Metric& metric : the_case.flight->metrics) {
-    const double value = measured(metric, *flown);
+    result.metrics[metric.name] = measured(metric, *flown);
+  }
+  result.horizon_s = horizon_s(*flown, *in_double, the_case);
+  result.rows = std::move(*flown);
+  return result;
+}
+
+Result<ReferenceFlight> reference_flight(const Case& the_case, const Setup& setup,
+                                         const Airframe& airframe) {
+  auto flight = reference_flight(the_case, setup, airframe, case_timing(the_case, setup.rate));
+  if (!flight) return flight;
+  for (const Metric& metric : the_case.flight->metrics) {
+    const double value = flight->metrics[metric.name];
     if (!(value >= metric.min && value <= metric.max)) {
       return fail_at(the_case.file.string(),
                      fmt::format("at {}, the reference misses the metric `{}`: {} is {:.4g}, not "
@@ -62,11 +75,9 @@ Result<ReferenceFlight> reference_flight(const Case& the_case, const Setup& setu
                                  setup.label(), metric.name, name_of(metric.measure), value,
                                  metric.min, metric.max));
     }
-    result.metrics[metric.name] = value;
   }
-  result.horizon_s = horizon_s(*flown, *in_double, the_case);
-  result.rows = decimated(*flown);
-  return result;
+  flight->rows = decimated(flight->rows);
+  return flight;
 }
 
 }  // namespace attest

@@ -7,6 +7,7 @@
 #include "harness/casefile/case.hpp"
 #include "harness/core/result.hpp"
 #include "harness/plant/plant.hpp"
+#include "harness/schedule/loop_timing.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace attest {
@@ -23,5 +24,11 @@ struct ReferenceFlight {
 // misses a bound of the case's own metrics.
 Result<ReferenceFlight> reference_flight(const Case& the_case, const Setup& setup,
                                          const Airframe& airframe);
+
+// The same at times that are not the case's, for which there is no golden: every row, and metrics
+// whatever they are, as the case's bounds were not made for such times. Errors: the flight cannot
+// be set up; the reference loses the vehicle.
+Result<ReferenceFlight> reference_flight(const Case& the_case, const Setup& setup,
+                                         const Airframe& airframe, const LoopTiming& timing);
 
 }  // namespace attest

@@ -42,6 +42,12 @@ Result<std::vector<std::unique_ptr<Batch>>> make_batches(const std::vector<Selec
   return batches;
 }
 
+CaseResult TimedBatch::identity(std::size_t) const { return unjudged(case_, timing_.setup); }
+
+Result<CaseResult> TimedBatch::evaluate(std::size_t, Port& port) {
+  return evaluate_timed_flight(case_, timing_.setup, *airframe_, timing_.ticks, port);
+}
+
 CaseResult TraceBatch::identity(std::size_t) const { return unjudged(recorded_, profile_); }
 
 Result<CaseResult> TraceBatch::evaluate(std::size_t, Port& port) {

@@ -12,6 +12,7 @@
 #include "harness/plant/fleet.hpp"
 #include "harness/port/port.hpp"
 #include "harness/run/golden.hpp"
+#include "harness/run/timing_file.hpp"
 #include "harness/suite/select.hpp"
 #include "harness/suite/verdict.hpp"
 
@@ -57,6 +58,22 @@ class CaseBatch final : public Batch {
   std::filesystem::path golden_root_;
   Level level_;
   std::optional<Golden> golden_;
+};
+
+// A flight at recorded times.
+class TimedBatch final : public Batch {
+ public:
+  TimedBatch(Case the_case, TimingFile timing, std::shared_ptr<const Airframe> airframe)
+      : case_(std::move(the_case)), timing_(std::move(timing)), airframe_(std::move(airframe)) {}
+
+  std::size_t size() const override { return 1; }
+  CaseResult identity(std::size_t i) const override;
+  Result<CaseResult> evaluate(std::size_t i, Port& port) override;
+
+ private:
+  Case case_;
+  TimingFile timing_;
+  std::shared_ptr<const Airframe> airframe_;
 };
 
 // The batches of the cases that were selected, in order: one for an open-loop case, one a flyer for

@@ -147,6 +147,10 @@ void Child::kill() {
   if (pid_ > 0) ::kill(pid_, SIGKILL);
 }
 
+void Child::ask_to_stop() {
+  if (pid_ > 0) ::kill(pid_, SIGTERM);
+}
+
 std::string Child::end() {
   int status = 0;
   while (pid_ > 0 && ::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {

@@ -36,6 +36,7 @@ class Child {
   std::optional<std::string> wait_for_line(double timeout_s);
 
   void kill();
+  void ask_to_stop();  // SIGTERM, for work that has arranged for it
 
   // How it ended, as a verb: "was killed by signal 11 (Segmentation fault)", "exited with status
   // 0". Waits for the end.

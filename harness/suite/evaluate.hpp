@@ -30,6 +30,13 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
 Result<CaseResult> evaluate_flight(const Case& the_case, const Setup& setup,
                                    const Airframe& airframe, const Golden& golden, Port& port);
 
+// The same at recorded times, for which there is no golden: beside the reference, flown at the same
+// times. A bound of the case's metrics that the reference misses at these times binds no port.
+// Errors: the flight cannot be set up; the reference loses the vehicle at these times.
+Result<CaseResult> evaluate_timed_flight(const Case& the_case, const Setup& setup,
+                                         const Airframe& airframe, const LoopTiming& timing,
+                                         Port& port);
+
 // "the flight ended at 0.412 s (tick 103): the body rate is 81 rad/s, beyond 80". REQUIRES: a
 // divergence.
 std::string how_it_ended(const Flown& flown);

@@ -7,7 +7,9 @@
 
 #include "harness/compare/compare_rows.hpp"
 #include "harness/core/float_environment.hpp"
+#include "harness/run/case_timing.hpp"
 #include "harness/run/flight.hpp"
+#include "harness/run/reference_flight.hpp"
 #include "harness/suite/evaluate.hpp"
 #include "harness/suite/judge.hpp"
 #include "harness/suite/stopwatch.hpp"
@@ -99,24 +101,50 @@ std::string how_it_ended(const Flown& flown) {
                      flown.trace.samples.size(), flown.divergence->what);
 }
 
-Result<CaseResult> evaluate_flight(const Case& the_case, const Setup& setup,
-                                   const Airframe& airframe, const Golden& golden, Port& port) {
+namespace {
+
+// A fresh unit flies at those times, and is judged by the reference.
+Result<CaseResult> evaluate_beside(const Case& the_case, const Setup& setup,
+                                   const Airframe& airframe, const LoopTiming& timing,
+                                   const ReferenceFlight& reference, Port& port) {
   const Stopwatch stopwatch;
   CaseResult result = unjudged(the_case, setup);
-  const auto reference = golden.read_flight(setup, airframe.vehicle());
-  if (!reference) return tl::unexpected(reference.error());
   const std::unique_ptr<Unit> unit = create_unit(port, the_case.profile, result);
   if (!unit) return result;
-  const auto flown = fly(the_case, setup, airframe, *unit);
+  const auto flown = fly(the_case, setup, airframe, *unit, timing);
   if (!flown) return tl::unexpected(flown.error());
   if (flown->fault) {
     judge(*flown->fault, result);
   } else {
     const DefaultFloatEnvironment environment;
-    judge_flight(the_case, *flown, *reference, result);
+    judge_flight(the_case, *flown, reference, result);
   }
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
+}
+
+}  // namespace
+
+Result<CaseResult> evaluate_flight(const Case& the_case, const Setup& setup,
+                                   const Airframe& airframe, const Golden& golden, Port& port) {
+  const auto reference = golden.read_flight(setup, airframe.vehicle());
+  if (!reference) return tl::unexpected(reference.error());
+  const LoopTiming timing = case_timing(the_case, setup.rate);
+  return evaluate_beside(the_case, setup, airframe, timing, *reference, port);
+}
+
+Result<CaseResult> evaluate_timed_flight(const Case& the_case, const Setup& setup,
+                                         const Airframe& airframe, const LoopTiming& timing,
+                                         Port& port) {
+  const auto reference = reference_flight(the_case, setup, airframe, timing);
+  if (!reference) return tl::unexpected(reference.error());
+  Case relaxed = the_case;
+  for (Metric& metric : relaxed.flight->metrics) {
+    const double value = reference->metrics.at(metric.name);
+    if (value < metric.min) metric.min = -std::numeric_limits<double>::infinity();
+    if (value > metric.max) metric.max = std::numeric_limits<double>::infinity();
+  }
+  return evaluate_beside(relaxed, setup, airframe, timing, *reference, port);
 }
 
 }  // namespace attest

@@ -26,7 +26,7 @@ Result<CaseResult> SimBatch::evaluate(std::size_t, Port& port) {
   CaseResult result = unjudged(case_, setup_);
   const auto unit = create_unit(port, case_.profile, result);
   if (!unit) return result;
-  const auto flown = fly(case_, setup_, *airframe_, *unit);
+  const auto flown = fly(case_, setup_, *airframe_, *unit, timing_);
   if (!flown) return tl::unexpected(flown.error());
   if (flown->fault) {
     judge(*flown->fault, result);

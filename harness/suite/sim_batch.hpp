@@ -13,10 +13,11 @@ class SimBatch final : public Batch {
  public:
   // Writes the flown trace to `out`, also of a flight that ends early; `out` is not touched when
   // the port goes wrong.
-  SimBatch(Case the_case, Setup setup, std::shared_ptr<const Airframe> airframe,
+  SimBatch(Case the_case, Setup setup, LoopTiming timing, std::shared_ptr<const Airframe> airframe,
            std::filesystem::path out)
       : case_(std::move(the_case)),
         setup_(std::move(setup)),
+        timing_(std::move(timing)),
         airframe_(std::move(airframe)),
         out_(std::move(out)) {}
 
@@ -29,6 +30,7 @@ class SimBatch final : public Batch {
  private:
   Case case_;
   Setup setup_;
+  LoopTiming timing_;
   std::shared_ptr<const Airframe> airframe_;
   std::filesystem::path out_;
 };

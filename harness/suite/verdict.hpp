@@ -74,8 +74,10 @@ struct CaseResult {
 // Everything the reports say, in the order of the cases, for any number of jobs.
 struct RunResult {
   std::string attest_version;
-  std::string port;       // as given: "lib:./libmine.so"
-  std::string port_name;  // as the port says
+  std::string command = "run";  // of attest, that made it: run or stress
+  std::string timing;           // the file that was replayed; empty: the cases' own times
+  std::string port;             // as given: "lib:./libmine.so"
+  std::string port_name;        // as the port says
   std::string port_version;
   Level level = Level::numeric;
   std::vector<Rate> rates;              // selected, ascending

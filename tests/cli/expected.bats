@@ -27,6 +27,6 @@ T
 @test "a run ends with what conforms, and a badge says it" {
   run "$ATTEST" run --group tpa --group rates --level exact --badge badge.svg
   [ "$status" -eq 0 ]
-  has "px4-v1.5.5, exact, 11 rates, groups rates, tpa; cases 1.0, golden 1.0"
+  has "px4-v1.5.5, exact, 11 rates, groups rates, tpa; cases $(cat "$SOURCE/cases/VERSION"), golden $(cat "$SOURCE/golden/VERSION")"
   grep -q "px4-v1.5.5 exact" badge.svg
 }

@@ -1,0 +1,62 @@
+#include "harness/cli/find_case.hpp"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "harness/casefile/parse.hpp"
+#include "harness/suite/select.hpp"
+
+namespace attest::cli {
+namespace {
+
+Result<Case> find_case(const std::string& name, const SuiteFolder& suite) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(name, ignored)) return parse_case(name);
+  Selection selection;
+  selection.filters = {name};
+  const auto found = select_cases(suite.cases(), selection);
+  if (!found) return tl::unexpected(found.error());
+  if (found->size() == 1) return found->front().the_case;
+  return fail(fmt::format("`{}` names {} cases, the first {} and {}; name one", name, found->size(),
+                          (*found)[0].the_case.id(), (*found)[1].the_case.id()));
+}
+
+}  // namespace
+
+Result<Case> find_flight(const std::string& name, const SuiteFolder& suite) {
+  auto the_case = find_case(name, suite);
+  if (the_case && !the_case->flight) {
+    return fail_at(the_case->file.string(),
+                   "has no [flight]: its inputs are scripted; `attest run` runs it");
+  }
+  return the_case;
+}
+
+Result<Flyer> find_flyer(const Case& the_case, const std::string& vehicle,
+                         const std::string& plant) {
+  Flyer flyer{vehicle.empty() ? the_case.flight->lead_vehicle : vehicle,
+              the_case.flight->flyers.front().plant};
+  if (plant.empty()) return flyer;
+  const auto kind = parse_plant_kind(plant);
+  if (!kind) return tl::unexpected(kind.error());
+  flyer.plant = *kind;
+  return flyer;
+}
+
+Result<TimedFlight> find_timed_flight(const std::string& file, const SuiteFolder& suite) {
+  auto timing = read_timing(file);
+  if (!timing) return tl::unexpected(timing.error());
+  auto the_case = find_flight(timing->case_id, suite);
+  if (!the_case) return tl::unexpected(the_case.error());
+  if (the_case->sha256 != timing->case_sha256) {
+    return fail_at(file, fmt::format("was recorded with another {}: the file has changed since",
+                                     the_case->file.string()));
+  }
+  auto airframe = Airframe::load(suite.models(), timing->setup.flyer->vehicle);
+  if (!airframe) return tl::unexpected(airframe.error());
+  Case as_long = timed(std::move(*the_case), *timing);
+  return TimedFlight{std::move(as_long), std::move(*timing), std::move(*airframe)};
+}
+
+}  // namespace attest::cli

@@ -1,0 +1,181 @@
+#include "harness/suite/stress.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "harness/cli/command.hpp"
+#include "harness/cli/find_case.hpp"
+#include "harness/cli/interrupt.hpp"
+#include "harness/cli/suite_folder.hpp"
+#include "harness/core/file.hpp"
+#include "harness/realtime/load.hpp"
+#include "harness/report/junit.hpp"
+#include "harness/report/stress_text.hpp"
+
+namespace attest::cli {
+namespace {
+
+// The idle machine is measured for as long as the flight, up to this.
+constexpr double idle_s_max = 5;
+
+Nanoseconds nanoseconds(double seconds) {
+  return Nanoseconds(static_cast<std::int64_t>(seconds * 1e9));
+}
+
+// The unit on the second CPU: the first serves most interrupts.
+Result<LiveOptions> live_options(const StressOptions& options) {
+  LiveOptions live;
+  const std::vector<int> cpus = usable_cpus();
+  live.plant_cpu = cpus.front();
+  live.unit_cpu = options.cpus == 1 || cpus.size() == 1 ? cpus.front() : cpus[1];
+  live.wait.spin = nanoseconds(options.spin_us * 1e-6);
+  if (options.policy != "fifo" && options.policy != "other") {
+    return fail(fmt::format("no such policy: `{}`; there are fifo and other", options.policy));
+  }
+  live.fifo = options.policy == "fifo";
+  return live;
+}
+
+struct Plan {
+  std::vector<StressTask> tasks;
+  LoadKind load = LoadKind::cpu;
+};
+
+void set_budget(const StressOptions& options, RealtimeBudget& budget) {
+  if (options.misses_per_million) budget.misses_per_million = *options.misses_per_million;
+  if (options.p99_lateness_us) budget.p99_lateness_us = *options.p99_lateness_us;
+  if (options.execution_us) budget.execution_us = *options.execution_us;
+}
+
+Result<Plan> make_plan(const StressOptions& options, const SuiteFolder& suite) {
+  auto the_case = find_flight(options.case_name, suite);
+  if (!the_case) return tl::unexpected(the_case.error());
+  const auto flyer = find_flyer(*the_case, options.vehicle, options.plant);
+  if (!flyer) return tl::unexpected(flyer.error());
+  const auto airframe = Airframe::load(suite.models(), flyer->vehicle);
+  if (!airframe) return tl::unexpected(airframe.error());
+  const auto live = live_options(options);
+  if (!live) return tl::unexpected(live.error());
+  const auto load = parse_load_kind(options.load_kind);
+  if (!load) return tl::unexpected(load.error());
+  if (!options.record_timing.empty() && options.rates.size() != 1) {
+    return fail("--record-timing records one rate; name it with --rates");
+  }
+  auto port = describe_port(options.port, {}, 60);
+  if (!port) return tl::unexpected(port.error());
+
+  the_case->duration = {options.duration_s, Span::In::seconds};
+  set_budget(options, the_case->flight->realtime);
+  Plan plan;
+  plan.load = *load;
+  for (const std::string& text : options.rates) {
+    const auto rate = Rate::parse(text);
+    if (!rate) return tl::unexpected(rate.error());
+    plan.tasks.push_back({*the_case, Setup{*rate, *flyer}, *airframe, *live,
+                          nanoseconds(std::min(options.duration_s, idle_s_max)),
+                          options.record_timing});
+  }
+  return plan;
+}
+
+// A line a second on stderr, over the last one on a terminal.
+class StressProgressLine {
+ public:
+  StressProgressLine(bool visible, TerminalStyle style) : visible_(visible), style_(style) {}
+  ~StressProgressLine() { erase(); }
+
+  void show(const StressTask& task, const StressProgress& now) {
+    if (!visible_) return;
+    const std::string what =
+        now.idle ? "the machine alone"
+                 : fmt::format("{:.0f} of {:g} s, {} deadlines, {} missed",
+                               static_cast<double>(now.live.time.count()) * 1e-9,
+                               task.the_case.duration.amount, now.live.deadlines, now.live.missed);
+    const bool terminal = style_.width > 0;
+    fmt::print(stderr, "{}{} Hz: {}{}", terminal ? "\r\x1b[K" : "", task.setup.rate.to_string(),
+               what, terminal ? "" : "\n");
+    std::fflush(stderr);
+    drawn_ = terminal;
+  }
+
+  void erase() {
+    if (drawn_) fmt::print(stderr, "\r\x1b[K");
+    drawn_ = false;
+  }
+
+ private:
+  bool visible_, drawn_ = false;
+  TerminalStyle style_;
+};
+
+Result<std::optional<AtomicFile>> open_report(const std::string& path) {
+  if (path.empty()) return std::optional<AtomicFile>();
+  auto file = AtomicFile::open(path);
+  if (!file) return tl::unexpected(file.error());
+  return std::optional<AtomicFile>(std::move(*file));
+}
+
+Result<void> write_report(std::optional<AtomicFile>& file, const std::string& text) {
+  if (!file) return {};
+  if (auto written = file->write(text); !written) return written;
+  return file->commit();
+}
+
+// Each rate in turn: cyclictest, the idle machine, the flight.
+Result<void> run_all(const Plan& plan, const StressOptions& options, const Globals& globals,
+                     StressRun& run) {
+  const TerminalStyle style = terminal_style(stdout);
+  StressProgressLine line(!globals.quiet, terminal_style(stderr));
+  const Load load(plan.load, options.load);
+  run.load = load.description();
+  for (const StressTask& task : plan.tasks) {
+    if (interrupted()) break;
+    const auto progress = [&](const StressProgress& now) { line.show(task, now); };
+    std::optional<Cyclictest> judge;
+    if (options.cyclictest) judge = run_cyclictest(task.setup.rate, task.idle_duration, task.live);
+    auto stress = run_stress(task, options.port, interrupted, progress);
+    if (!stress) return tl::unexpected(stress.error());
+    stress->cyclictest = judge;
+    line.erase();
+    if (run.results.empty() && !globals.quiet) fmt::print("{}", render_rights(stress->rights));
+    const bool told = !globals.quiet || fails_a_run(stress->result.verdict);
+    if (told) fmt::print("{}", render_stress(*stress, style));
+    std::fflush(stdout);
+    run.results.push_back(std::move(*stress));
+  }
+  run.interrupted = interrupted();
+  return {};
+}
+
+}  // namespace
+
+int stress_command(const StressOptions& options, const Globals& globals) {
+  const auto suite = find_suite(globals.suite);
+  if (!suite) return report_error(suite.error());
+  const auto plan = make_plan(options, *suite);
+  if (!plan) return report_error(plan.error());
+  auto json = open_report(options.json);
+  if (!json) return report_error(json.error());
+  auto junit = open_report(options.junit);
+  if (!junit) return report_error(junit.error());
+
+  note_interrupts();
+  StressRun run;
+  run.port = options.port;
+  run.live = plan->tasks.front().live;
+  if (auto done = run_all(*plan, options, globals, run); !done) return report_error(done.error());
+  const RunResult all = run_of(run);
+  for (const auto& written :
+       {write_report(*json, stress_json(run)), write_report(*junit, junit_report(all))}) {
+    if (!written) return report_error(written.error());
+  }
+  if (!globals.quiet) fmt::print("{}", render_stress_end(run, terminal_style(stdout)));
+  if (run.interrupted) return exit_interrupted;
+  if (all.failed()) return exit_failed;
+  if (all.count(Verdict::pass) > 0) return exit_ok;
+  return report_error({"nothing was judged: see the reasons above"});
+}
+
+}  // namespace attest::cli

@@ -1,0 +1,74 @@
+#include "harness/cli/timing_arguments.hpp"
+
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+namespace attest::cli {
+namespace {
+
+void add_stress(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<StressOptions>();
+  CLI::App* command = app.add_subcommand(
+      "stress", "Let a port fly in real time, at each loop rate: lateness, execution time, misses");
+  command->add_option("--port", options->port, "`builtin`, `lib:PATH` or `fault:ID`")
+      ->type_name("PORT")
+      ->capture_default_str();
+  command->add_option("--rates", options->rates, "Loop rates [Hz], separated by commas")
+      ->type_name("HZ,...")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->default_str("250,500,1000,2000,4000,8000");
+  command->add_option("--duration", options->duration_s, "Of the flight at each rate [s]")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
+  command->add_option("--case", options->case_name, "A flight: its name or id, or a case file")
+      ->type_name("CASE")
+      ->capture_default_str();
+  command->add_option("--vehicle", options->vehicle, "One of `attest list --vehicles`")
+      ->type_name("VEHICLE");
+  command->add_option("--plant", options->plant, "`mujoco` or `ode`")->type_name("PLANT");
+  command->add_option("--load", options->load, "So many workers that keep the machine busy")
+      ->check(CLI::Range(0, 1024))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--load-kind", options->load_kind, "What they do: `cpu`, `cache` or `io`")
+      ->type_name("KIND")
+      ->capture_default_str();
+  command
+      ->add_option("--policy", options->policy,
+                   "Of the two threads: `fifo` (where it is permitted) or `other`")
+      ->capture_default_str();
+  command->add_option("--cpus", options->cpus, "2: unit and plant on one each; 1: both on one")
+      ->check(CLI::Range(1, 2))
+      ->capture_default_str();
+  command
+      ->add_option("--spin", options->spin_us, "Wake up so long before the deadline and spin [us]")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  command->add_option("--misses-per-million", options->misses_per_million,
+                      "Budget of missed deadlines, instead of the case's");
+  command->add_option("--p99-lateness", options->p99_lateness_us,
+                      "Budget of the wake-ups [us], instead of the case's");
+  command->add_option("--budget", options->execution_us,
+                      "Steps longer than this [us] count like misses");
+  command
+      ->add_option("--record-timing", options->record_timing,
+                   "Write when everything happened, for `run --timing`; one rate only")
+      ->type_name("F");
+  command->add_option("--json", options->json, "Write all that was measured")->type_name("F");
+  command->add_option("--junit", options->junit, "Write a report for CI servers")->type_name("F");
+  command->add_flag("--cyclictest,!--no-cyclictest", options->cyclictest,
+                    "Let cyclictest measure the idle machine too, where it is installed");
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return stress_command(*options, globals); };
+  });
+}
+
+}  // namespace
+
+void add_timing_commands(CLI::App& app, const Globals& globals, Action& action) {
+  add_stress(app, globals, action);
+}
+
+}  // namespace attest::cli

@@ -1,0 +1,20 @@
+// The arguments of the commands about time: stress, sweep-rate, schedule, time.
+#pragma once
+
+#include <functional>
+
+#include "harness/cli/command.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace attest::cli {
+
+// The work of the command that was chosen; its result is the exit code.
+using Action = std::function<int()>;
+
+// REQUIRES: `globals` and `action` live as long as `app`.
+void add_timing_commands(CLI::App& app, const Globals& globals, Action& action);
+
+}  // namespace attest::cli

@@ -1,0 +1,57 @@
+#include "harness/realtime/histogram.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <boost/histogram.hpp>
+
+namespace attest {
+namespace {
+
+namespace bh = boost::histogram;
+
+// 12 decades, from 1 ns to 1000 s, at 1% a bin: ln(1e12) / ln(1.01).
+constexpr unsigned bins = 2777;
+constexpr double lowest_ns = 1, highest_ns = 1e12;
+
+using Axis = bh::axis::regular<double, bh::axis::transform::log>;
+
+}  // namespace
+
+struct Histogram::Bins {
+  decltype(bh::make_histogram_with(std::vector<std::uint64_t>(), std::declval<Axis>())) counts =
+      bh::make_histogram_with(std::vector<std::uint64_t>(), Axis(bins, lowest_ns, highest_ns));
+};
+
+Histogram::Histogram(Nanoseconds limit) : bins_(std::make_unique<Bins>()), limit_(limit) {}
+Histogram::Histogram(Histogram&&) noexcept = default;
+Histogram& Histogram::operator=(Histogram&&) noexcept = default;
+Histogram::~Histogram() = default;
+
+void Histogram::add(Nanoseconds time) {
+  bins_->counts(std::max(static_cast<double>(time.count()), lowest_ns));
+  ++count_;
+  over_limit_ += time > limit_ ? 1 : 0;
+  min_ = std::min(min_, time);
+  max_ = std::max(max_, time);
+  sum_ += time;
+}
+
+Nanoseconds Histogram::mean() const {
+  return count_ == 0 ? Nanoseconds(0) : sum_ / static_cast<std::int64_t>(count_);
+}
+
+Nanoseconds Histogram::percentile(double part) const {
+  const auto wanted = static_cast<std::uint64_t>(std::ceil(part * static_cast<double>(count_)));
+  std::uint64_t passed = 0;
+  for (auto&& bin : bh::indexed(bins_->counts)) {
+    passed += *bin;
+    if (passed < wanted) continue;
+    const Nanoseconds edge(static_cast<std::int64_t>(bin.bin().upper()));
+    return std::clamp(edge, min(), max_);
+  }
+  return max_;
+}
+
+}  // namespace attest

@@ -1,0 +1,31 @@
+// What the plant's thread and the unit's tell each other.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+
+#include "harness/core/time.hpp"
+#include "harness/plant/plant.hpp"
+#include "harness/realtime/latest_value.hpp"
+#include "harness/run/actuators.hpp"
+
+namespace attest {
+
+struct LiveState {
+  Nanoseconds time{0};  // of the plant
+  PlantState state;
+};
+
+struct LiveCommand {
+  std::size_t tick = 0;
+  Nanoseconds made{0};
+  MotorCommands commands{};
+};
+
+struct Links {
+  LatestValue<LiveState> states;
+  LatestValue<LiveCommand> commands;
+  std::atomic<bool> stop{false};  // anyone may say so
+};
+
+}  // namespace attest

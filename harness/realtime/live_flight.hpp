@@ -1,0 +1,56 @@
+// A unit flies a plant in real time, one thread each.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "harness/casefile/case.hpp"
+#include "harness/core/result.hpp"
+#include "harness/plant/plant.hpp"
+#include "harness/port/port.hpp"
+#include "harness/realtime/live_plant.hpp"
+#include "harness/realtime/live_unit.hpp"
+#include "harness/realtime/pacer.hpp"
+#include "harness/realtime/rights.hpp"
+#include "harness/schedule/loop_timing.hpp"
+
+namespace attest {
+
+// Where and how the threads run.
+struct LiveOptions {
+  int unit_cpu = 0, plant_cpu = 0;  // the same: one-CPU mode, the unit before the plant
+  bool fifo = true;
+  Wait wait;
+};
+
+struct LiveProgress {
+  Nanoseconds time{0};
+  std::uint64_t deadlines = 0, missed = 0;  // passed so far
+};
+
+struct LiveFlight {
+  LiveUnitRecord unit;
+  LivePlantRecord plant;
+  std::vector<Right> rights;  // of process and unit; the plant's only where it was refused
+  Nanoseconds wall{0};        // how long the flight was
+
+  // When everything happened: what a simulated flight can be flown with again.
+  LoopTiming timing() const;
+};
+
+// Flies the case for its whole duration, or until `stop` is true. Its own timing of the unit is not
+// used: the clock is what makes ticks late. Keeps the samples of the first `samples` ticks.
+// `progress` is called every tenth of a second. REQUIRES: a flight; a fresh unit. Errors: the case
+// has a battery, whose samples have no place in a loop of two threads yet; as of fly().
+Result<LiveFlight> fly_live(const Case& the_case, const Setup& setup, const Airframe& airframe,
+                            Unit& unit, const LiveOptions& options, std::size_t samples,
+                            const std::function<bool()>& stop,
+                            const std::function<void(const LiveProgress&)>& progress);
+
+// Deadlines of that rate and nothing to do in them: how late the machine itself is, on the unit's
+// CPU and with its rights.
+Histogram idle_lateness(const Rate& rate, Nanoseconds duration, const LiveOptions& options,
+                        const std::function<bool()>& stop);
+
+}  // namespace attest

@@ -1,0 +1,55 @@
+// The plant on a clock: it is stepped as time passes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "harness/plant/plant.hpp"
+#include "harness/realtime/histogram.hpp"
+#include "harness/realtime/links.hpp"
+#include "harness/realtime/usage.hpp"
+#include "harness/run/plant_task.hpp"
+#include "harness/schedule/clock.hpp"
+
+namespace attest {
+
+struct LivePlantRecord {
+  Histogram lateness;
+  std::uint64_t steps = 0;
+  std::uint64_t late_steps = 0;  // whose time had passed; made up in one go with the next
+  // By the unit's ticks: when the motors began to follow what it said; empty: overtaken.
+  std::vector<std::optional<Nanoseconds>> commanded;
+  std::optional<Divergence> divergence;
+  Usage usage;
+};
+
+class LivePlant {
+ public:
+  // `ticks` of the unit at most. Publishes the state at time 0. Allocates here and never later.
+  LivePlant(PlantTask& task, const Rate& physics, Nanoseconds duration, std::size_t ticks,
+            Clock& clock, Links& links);
+
+  // Until `duration`, the links say stop, or the vehicle is lost. Once.
+  void run();
+
+  // After run().
+  LivePlantRecord take_record() { return std::move(record_); }
+
+ private:
+  std::optional<Divergence> advance(Nanoseconds to);
+  std::optional<Divergence> take_commands(Nanoseconds now);
+  std::optional<Divergence> command(Nanoseconds now, const LiveCommand& command);
+
+  PlantTask& task_;
+  Rate physics_;
+  Nanoseconds duration_;
+  Clock& clock_;
+  Links& links_;
+  std::size_t disturbed_ = 0;
+  std::optional<LiveCommand> pending_;  // made after the step that it reached
+  LivePlantRecord record_;
+};
+
+}  // namespace attest

@@ -1,0 +1,108 @@
+#include "harness/realtime/live_unit.hpp"
+
+#include <algorithm>
+
+#include "harness/casefile/stimulus.hpp"
+#include "harness/run/case_timing.hpp"
+
+namespace attest {
+namespace {
+
+DelayLine<MotorLimits> limits_line(const TaskTiming& timing, const Rate& rate) {
+  const Nanoseconds delay = timing.delay.on(rate);
+  return {delay, static_cast<std::size_t>(timing.rate.ticks_in(delay)) + 2};
+}
+
+}  // namespace
+
+LiveUnit::LiveUnit(const Case& the_case, const Rate& rate, UnitTask& task, Clock& clock,
+                   Links& links, std::size_t samples)
+    : task_(task),
+      clock_(clock),
+      links_(links),
+      rate_(rate),
+      deadlines_(tick_count(the_case.duration, rate)),
+      estimator_(the_case.flight->estimator),
+      limit_times_(task_times(the_case.flight->motor_limits, timeline_of(the_case, rate))),
+      limits_(limits_line(the_case.flight->motor_limits, rate)) {
+  const auto most = static_cast<std::size_t>(deadlines_);
+  samples_max_ = std::min(samples, most);
+  record_.ticks.resize(most);
+  record_.samples.resize(samples_max_);
+}
+
+void LiveUnit::run() {
+  Usage warm = thread_usage();
+  for (std::int64_t k = 0; k < deadlines_ && !links_.stop.load(std::memory_order_relaxed);) {
+    const Nanoseconds finished = tick(rate_.tick(k));
+    if (record_.fault) break;
+    // Of the deadlines that have passed meanwhile the last is due now.
+    const std::int64_t last_passed = rate_.ticks_in(finished + Nanoseconds(1)) - 1;
+    const std::int64_t next = std::max(k + 1, std::min(last_passed, deadlines_));
+    if (finished > rate_.tick(k + 1)) ++record_.overruns;
+    const auto missed = static_cast<std::uint32_t>(next - k - 1);
+    record_.ticks[ticks_ - 1].missed = missed;
+    record_.missed += missed;
+    k = next;
+    if (ticks_ == 1) warm = thread_usage();
+    passed_.store(static_cast<std::uint64_t>(k), std::memory_order_relaxed);
+    missed_.store(record_.missed, std::memory_order_relaxed);
+  }
+  record_.usage = thread_usage() - warm;
+  links_.stop.store(true, std::memory_order_relaxed);
+  record_.ticks.resize(ticks_);
+  record_.samples.resize(std::min(ticks_, samples_max_));
+}
+
+Nanoseconds LiveUnit::tick(Nanoseconds deadline) {
+  const Nanoseconds woke = clock_.wait_until(deadline);
+  take_sample();
+  // Not before the sample was read, which then cannot be of the future.
+  const Nanoseconds begins = clock_.now();
+  Arrivals arrivals;
+  if (sampled_) arrivals.state = estimator_.sample(latest_.state);
+  arrivals.limits = limits_at(begins);
+  task_.prepare(ticks_, begins, arrivals);
+
+  const Nanoseconds cpu_before = thread_cpu_time(), before = clock_.now();
+  record_.fault = task_.step(ticks_);
+  const Nanoseconds after = clock_.now(), cpu_after = thread_cpu_time();
+  if (record_.fault) return after;
+  links_.commands.write({ticks_, after, task_.commands()});
+
+  record_.lateness.add(woke - deadline);
+  record_.execution.add(after - before);
+  record_.age.add(after - latest_.time);
+  const Nanoseconds sampled = sampled_ ? latest_.time : Nanoseconds(-1);
+  write_down({sampled, begins, after - before, cpu_after - cpu_before, 0});
+  return clock_.now();
+}
+
+void LiveUnit::take_sample() {
+  if (const LiveState* state = links_.states.read()) {
+    latest_ = *state;
+    sampled_ = true;
+  }
+}
+
+std::optional<MotorLimits> LiveUnit::limits_at(Nanoseconds now) {
+  for (; limits_done_ < limit_times_.size() && limit_times_[limits_done_] <= now; ++limits_done_) {
+    limits_.send(limit_times_[limits_done_], task_.limits());
+  }
+  return limits_.receive(now);
+}
+
+void LiveUnit::write_down(const LiveTick& tick) {
+  if (ticks_ > 0) {
+    const Nanoseconds gap = tick.begins - record_.ticks[ticks_ - 1].begins;
+    record_.longest_gap = std::max(record_.longest_gap, gap);
+  }
+  record_.ticks[ticks_] = tick;
+  if (ticks_ < samples_max_) {
+    record_.samples[ticks_] = task_.sample();
+    record_.changes.insert(record_.changes.end(), task_.changes().begin(), task_.changes().end());
+  }
+  ++ticks_;
+}
+
+}  // namespace attest

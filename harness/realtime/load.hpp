@@ -1,0 +1,35 @@
+// Work for the machine to do while a controller is stressed.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <sys/types.h>
+
+#include "harness/core/result.hpp"
+
+namespace attest {
+
+enum class LoadKind { cpu, cache, io };
+std::string_view name_of(LoadKind kind);
+Result<LoadKind> parse_load_kind(std::string_view name);
+
+// Runs from construction to destruction: `workers` of stress-ng where it is installed, else
+// processes of our own. They run on all CPUs at ordinary priority, and die with this process.
+class Load {
+ public:
+  Load(LoadKind kind, int workers);
+  ~Load();
+  Load(const Load&) = delete;
+  Load& operator=(const Load&) = delete;
+
+  // "4 x cpu (stress-ng)", "none".
+  const std::string& description() const { return description_; }
+
+ private:
+  std::vector<pid_t> processes_;
+  std::string description_ = "none";
+};
+
+}  // namespace attest

@@ -1,0 +1,29 @@
+// The clock of a real-time loop: sleeps to absolute deadlines, so that lateness does not add up.
+#pragma once
+
+#include "harness/schedule/clock.hpp"
+
+namespace attest {
+
+struct Wait {
+  // Sleeps to so long before the deadline and spins for the rest: trades CPU time for lateness.
+  Nanoseconds spin{0};
+};
+
+// CLOCK_MONOTONIC. One a thread; no allocation, no lock.
+class Pacer final : public Clock {
+ public:
+  // `origin` is what now_monotonic() said when time 0 was.
+  Pacer(Nanoseconds origin, Wait wait) : origin_(origin), wait_(wait) {}
+
+  static Nanoseconds now_monotonic();
+
+  Nanoseconds now() override { return now_monotonic() - origin_; }
+  Nanoseconds wait_until(Nanoseconds deadline) override;
+
+ private:
+  Nanoseconds origin_;
+  Wait wait_;
+};
+
+}  // namespace attest

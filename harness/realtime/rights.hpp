@@ -1,0 +1,43 @@
+// What an operating system may give a real-time thread, asked for piece by piece: each is got or
+// refused, and a run goes on without what it was refused and says so.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace attest {
+
+struct Right {
+  std::string name;  // "SCHED_FIFO 80"
+  bool got = false;
+  std::string why;  // it was refused: "Operation not permitted"
+};
+
+// For the process while this lives: memory that stays in RAM, and CPUs that do not sleep deeply
+// (/dev/cpu_dma_latency at 0 us).
+class ProcessRights {
+ public:
+  ProcessRights();
+  ~ProcessRights();
+  ProcessRights(const ProcessRights&) = delete;
+  ProcessRights& operator=(const ProcessRights&) = delete;
+
+  const std::vector<Right>& rights() const { return rights_; }
+
+ private:
+  std::vector<Right> rights_;
+  int latency_ = -1;
+};
+
+struct ThreadWish {
+  int cpu = 0;
+  int fifo_priority = 0;  // 0: the ordinary scheduler
+};
+
+// For the calling thread: CPU, scheduler, and timers that fire when they are asked to.
+std::vector<Right> claim(const ThreadWish& wish);
+
+// The CPUs that this process may use, ascending; at least one.
+std::vector<int> usable_cpus();
+
+}  // namespace attest

@@ -1,0 +1,28 @@
+// What the operating system says a thread has used.
+#pragma once
+
+#include <cstdint>
+
+#include "harness/core/time.hpp"
+
+namespace attest {
+
+struct Usage {
+  Nanoseconds cpu{0};            // user and system
+  std::int64_t allocations = 0;  // calls of malloc and its kin
+  std::int64_t page_faults = 0;
+  std::int64_t yields = 0;       // context switches because it waited
+  std::int64_t preemptions = 0;  // context switches because something else was to run
+
+  friend Usage operator-(const Usage& end, const Usage& begin) {
+    return {end.cpu - begin.cpu, end.allocations - begin.allocations,
+            end.page_faults - begin.page_faults, end.yields - begin.yields,
+            end.preemptions - begin.preemptions};
+  }
+};
+
+// Of the calling thread so far.
+Usage thread_usage();
+Nanoseconds thread_cpu_time();  // to the nanosecond, as the former is not
+
+}  // namespace attest

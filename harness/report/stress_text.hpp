@@ -1,0 +1,36 @@
+// A stress run for people: a block a rate, the machine beside the port.
+#pragma once
+
+#include <string>
+
+#include "harness/report/terminal.hpp"
+#include "harness/suite/stress.hpp"
+
+namespace attest {
+
+struct StressRun {
+  std::string port;  // as given
+  std::string load;  // "none"
+  LiveOptions live;
+  std::vector<StressResult> results;
+  bool interrupted = false;
+};
+
+// One result as it is there, several lines.
+std::string render_stress(const StressResult& stress, TerminalStyle style);
+
+// What was got and refused of the operating system; the last line, with the totals.
+std::string render_rights(const std::vector<Right>& rights);
+std::string render_stress_end(const StressRun& run, TerminalStyle style);
+
+// The same for the common reports: what JUnit is made of.
+RunResult run_of(const StressRun& run);
+
+// {"schema": "attest-stress-1", "attest_version": ..., "port": ..., "load": ..., "unit_cpu": 1,
+//  "plant_cpu": 0, "policy": "fifo", "spin_ns": 0, "interrupted": false, "results": [...]}
+std::string stress_json(const StressRun& run);
+
+// "8.13 us", "1.02 ms", "312 ns".
+std::string human_time(Nanoseconds time);
+
+}  // namespace attest

@@ -1,0 +1,36 @@
+// The times of a loop as a file: what a stress run measured, to be flown again in simulation.
+//
+//     {"attest_timing": 1, "case": "px4-v1.5.5/flight/hover", "case_sha256": "...", "rate": "1000",
+//      "vehicle": "iris", "plant": "mujoco", "duration_s": 10,
+//      "ticks_ns": [[0, 8113, 1000000], [0, 1009001, null], ...]}
+//
+// A tick is [sampled, begins, commanded] as of LoopTick, null where its command was overtaken.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "harness/casefile/case.hpp"
+#include "harness/core/result.hpp"
+#include "harness/schedule/loop_timing.hpp"
+
+namespace attest {
+
+struct TimingFile {
+  std::string case_id;
+  std::string case_sha256;
+  Setup setup;
+  double duration_s = 0;
+  LoopTiming ticks;
+};
+
+// Errors, with the file: it cannot be read or written; it is no timing, or one whose times go
+// backwards (says at which tick).
+Result<TimingFile> read_timing(const std::filesystem::path& path);
+Result<void> write_timing(const TimingFile& timing, const std::filesystem::path& path);
+
+// The case as it was flown then: as long as that, without metrics of windows that begin later.
+// REQUIRES: it is the timing's.
+Case timed(Case the_case, const TimingFile& timing);
+
+}  // namespace attest

@@ -1,0 +1,141 @@
+load common
+
+# Real time on a machine that does other things: what is asserted is what its lateness cannot change.
+# The budgets are wide open, so that only the port can fail.
+open=(--policy other --no-cyclictest --misses-per-million 1000000 --p99-lateness 1000000)
+
+@test "a port is measured at each rate, beside the machine alone" {
+  run "$ATTEST" stress --rates 100,250 --duration 0.5 "${open[@]}" --json s.json --junit s.xml
+  [ "$status" -eq 0 ] || [[ $output == *"does not step the plant"* ]]
+  has "flight/hover@100hz-iris-mujoco"
+  has "flight/hover@250hz-iris-mujoco"
+  has "idle machine"
+  has "wake-up lateness"
+  has "execution of a step"
+  has "age of the sample"
+  has "timer slack 1 ns"
+  xmllint --noout --schema "$SOURCE/tests/harness/report/junit.xsd" s.xml
+  python3 - <<'CHECK'
+import json
+report = json.load(open("s.json"))
+assert report["schema"] == "attest-stress-1" and not report["interrupted"]
+for result, rate in zip(report["results"], (100, 250)):
+    assert result["deadlines"] == result["ticks"] + result["missed"] == rate // 2
+    assert result["execution"]["count"] == result["ticks"]
+    assert result["execution"]["min_ns"] <= result["execution"]["median_ns"]
+CHECK
+}
+
+@test "progress is told once a second" {
+  run "$ATTEST" stress --rates 100 --duration 1.5 "${open[@]}"
+  has "100 Hz: the machine alone"
+  has "of 1.5 s,"
+}
+
+@test "load is made while it is measured" {
+  run "$ATTEST" stress --rates 100 --duration 0.3 --load 1 --load-kind cache "${open[@]}"
+  has "(load: 1 x cache ("
+  run "$ATTEST" stress --load 1 --load-kind fire
+  [ "$status" -eq 2 ]
+  has 'no such kind of load: `fire`; there are cpu, cache, io'
+}
+
+@test "a wrong port fails, and the way to see it again is told" {
+  run "$ATTEST" stress --port "lib:$PORTS/port_sign_flip.so" --rates 250 --duration 0.5 "${open[@]}" \
+    --junit s.xml
+  [ "$status" -eq 1 ]
+  has "look first at the rate law"
+  grep -q "attest stress --port .*sign_flip.so --case px4-v1.5.5/flight/hover --rates 250" s.xml
+}
+
+@test "a port that crashes or hangs in real time has a verdict" {
+  run "$ATTEST" stress --port "lib:$PORTS/port_crash.so" --rates 250 --duration 0.5 "${open[@]}"
+  [ "$status" -eq 1 ]
+  has "crash: the process was killed by signal"
+  run timeout 60 "$ATTEST" stress --port "lib:$PORTS/port_hang.so" --rates 250 --duration 0.5 "${open[@]}"
+  [ "$status" -eq 1 ]
+  has "timeout: the port did not come back"
+}
+
+@test "a stall every 1000 steps is found, and its ticks named" {
+  run "$ATTEST" stress --port "lib:$PORTS/port_stalls.so" --rates 2000 --duration 2.1 "${open[@]}" \
+    --budget 200 --json s.json
+  has "tick 999 ("
+  has "tick 3999 ("
+  python3 - <<'CHECK'
+import json
+stress = json.load(open("s.json"))["results"][0]
+worst = [slow["tick"] for slow in stress["slow_steps"]["worst"]]
+assert {999, 1999, 2999, 3999} <= set(worst), worst
+assert stress["over_budget"] >= 4, stress["over_budget"]
+CHECK
+  run "$ATTEST" stress --port "lib:$PORTS/port_stalls.so" --rates 2000 --duration 2.1 \
+    --policy other --no-cyclictest --p99-lateness 1000000 --budget 200
+  [ "$status" -eq 1 ] || [[ $output == *"does not step the plant"* ]]
+}
+
+@test "a recorded timing is flown again, to the same bits" {
+  "$ATTEST" stress --rates 250 --duration 1 "${open[@]}" --record-timing t.json || true
+  run "$ATTEST" run --timing t.json
+  [ "$status" -eq 0 ]
+  has "PASS 1 of 1"
+  "$ATTEST" sim --timing t.json --out one.csv
+  "$ATTEST" sim --timing t.json --out two.csv
+  cmp one.csv two.csv
+  run "$ATTEST" run --timing t.json --port "lib:$PORTS/port_sign_flip.so"
+  [ "$status" -eq 1 ]
+  has "reproduce: attest run --port"
+  has "--timing t.json"
+}
+
+@test "a timing that fits nothing is refused" {
+  echo '{}' >t.json
+  run "$ATTEST" run --timing t.json
+  [ "$status" -eq 2 ]
+  has "t.json: is no timing file"
+  "$ATTEST" stress --rates 250 --duration 0.2 "${open[@]}" --record-timing t.json || true
+  sed -i 's/"case_sha256":"[0-9a-f]*"/"case_sha256":"0"/' t.json
+  run "$ATTEST" sim --timing t.json --out f.csv
+  [ "$status" -eq 2 ]
+  has "the file has changed since"
+  [ ! -e f.csv ]
+  run "$ATTEST" run --timing t.json --group flight
+  [ "$status" -eq 2 ]
+  has "select nothing else"
+  run "$ATTEST" sim hover --rate 250 --timing t.json --out f.csv
+  [ "$status" -eq 2 ]
+  run "$ATTEST" sim --out f.csv
+  [ "$status" -eq 2 ]
+  has "needs a case and --rate, or --timing"
+  run "$ATTEST" stress --rates 250,500 --record-timing t.json
+  [ "$status" -eq 2 ]
+  has "records one rate"
+}
+
+@test "Ctrl-C ends it with what was measured" {
+  "$ATTEST" stress --rates 100,250 --duration 600 "${open[@]}" --json s.json >out.txt 2>err.txt &
+  pid=$!
+  for _ in $(seq 100); do
+    grep -q "of 600 s" err.txt && break
+    sleep 0.2
+  done
+  kill -INT $pid
+  status=0
+  wait $pid || status=$?
+  [ "$status" -eq 130 ]
+  grep -q "interrupted" out.txt
+  python3 -c 'import json; r = json.load(open("s.json")); assert r["interrupted"]; assert r["results"][0]["ticks"] > 0'
+}
+
+@test "what cannot be stressed is refused" {
+  run "$ATTEST" stress --case attitude/roll_30
+  [ "$status" -eq 2 ]
+  run "$ATTEST" stress --case battery_scaled --rates 250 --duration 0.2 "${open[@]}"
+  [ "$status" -eq 2 ]
+  has "has a [flight.battery], which cannot be flown in real time"
+  run "$ATTEST" stress --policy best
+  [ "$status" -eq 2 ]
+  has 'no such policy: `best`; there are fifo and other'
+  run "$ATTEST" stress --rates 0
+  [ "$status" -eq 2 ]
+}

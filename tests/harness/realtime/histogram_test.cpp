@@ -1,0 +1,57 @@
+#include "harness/realtime/histogram.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+namespace attest {
+namespace {
+
+constexpr Nanoseconds ns(std::int64_t count) { return Nanoseconds(count); }
+
+TEST(Histogram, OfNothingIsZero) {
+  const Histogram histogram;
+  EXPECT_EQ(histogram.count(), 0u);
+  EXPECT_EQ(histogram.min(), ns(0));
+  EXPECT_EQ(histogram.max(), ns(0));
+  EXPECT_EQ(histogram.mean(), ns(0));
+  EXPECT_EQ(histogram.percentile(0.5), ns(0));
+}
+
+TEST(Histogram, KnowsExactlyWhatIsRare) {
+  Histogram histogram(ns(1000));
+  for (const std::int64_t time : {10, 1000, 1001, 3'000'000}) histogram.add(ns(time));
+  EXPECT_EQ(histogram.min(), ns(10));
+  EXPECT_EQ(histogram.max(), ns(3'000'000));
+  EXPECT_EQ(histogram.over_limit(), 2u);
+  EXPECT_EQ(histogram.mean(), ns(3'002'011 / 4));
+}
+
+TEST(Histogram, TakesWhatIsBeyondItsBins) {
+  Histogram histogram;
+  histogram.add(ns(-5));  // of a clock that is read on two CPUs
+  histogram.add(std::chrono::hours(1));
+  EXPECT_EQ(histogram.min(), ns(-5));
+  EXPECT_EQ(histogram.max(), Nanoseconds(std::chrono::hours(1)));
+  EXPECT_EQ(histogram.percentile(1), Nanoseconds(std::chrono::hours(1)));
+}
+
+// Against sorting them all.
+RC_GTEST_PROP(Histogram, PercentilesAreRightToABin, (std::vector<std::uint32_t> values)) {
+  RC_PRE(!values.empty());
+  const double part = *rc::gen::inRange(0, 1001) / 1000.0;
+  Histogram histogram;
+  for (const std::uint32_t value : values) histogram.add(ns(value));
+  std::sort(values.begin(), values.end());
+  const auto rank = static_cast<std::size_t>(std::ceil(part * static_cast<double>(values.size())));
+  const double exact = values[rank == 0 ? 0 : rank - 1];
+  const auto found = static_cast<double>(histogram.percentile(part).count());
+  RC_ASSERT(found >= exact - 1);
+  RC_ASSERT(found <= exact * 1.0101 + 1);
+}
+
+}  // namespace
+}  // namespace attest

@@ -1,0 +1,117 @@
+// Two threads on the real clock. How late they are is the machine's; what is asserted is what holds
+// however late that is.
+#include "harness/realtime/live_flight.hpp"
+
+#include <gtest/gtest.h>
+
+#include "harness/casefile/parse.hpp"
+#include "harness/compare/compare.hpp"
+#include "harness/port/builtin.hpp"
+#include "harness/run/flight.hpp"
+#include "harness/run/open_loop.hpp"
+
+namespace attest {
+namespace {
+
+const std::filesystem::path source = ATTEST_SOURCE_DIR;
+
+const Setup setup{Rate::hz(500), Flyer{"iris", PlantKind::mujoco}};
+
+LiveOptions options() {
+  LiveOptions live;
+  live.plant_cpu = usable_cpus().front();
+  live.unit_cpu = usable_cpus().back();
+  live.fifo = false;
+  return live;
+}
+
+Case tilt_case(double duration_s) {
+  Case tilt = *parse_case(source / "cases/px4-v1.5.5/flight/tilt_step_30.toml");
+  tilt.duration = {duration_s, Span::In::seconds};
+  return tilt;
+}
+
+LiveFlight flown(const Case& the_case, const std::function<bool()>& stop) {
+  const auto iris = *Airframe::load(source / "models", "iris");
+  const auto port = open_builtin();
+  const auto unit = port->create("px4-v1.5.5");
+  auto flight =
+      fly_live(the_case, setup, *iris, *unit, options(), 1000, stop, [](const LiveProgress&) {});
+  if (!flight) throw std::runtime_error(flight.error().to_string());
+  return std::move(*flight);
+}
+
+TEST(LiveFlight, EveryDeadlineIsKeptOrMissed) {
+  const LiveFlight flight = flown(tilt_case(0.4), [] { return false; });
+  EXPECT_FALSE(flight.unit.fault);
+  EXPECT_FALSE(flight.plant.divergence);
+  EXPECT_EQ(flight.unit.ticks.size() + flight.unit.missed, 200u);
+  EXPECT_EQ(flight.unit.lateness.count(), flight.unit.ticks.size());
+  EXPECT_GE(flight.unit.lateness.min(), Nanoseconds(0));
+  EXPECT_EQ(flight.unit.samples.size(), flight.unit.ticks.size());
+}
+
+TEST(LiveFlight, ItsTimesCanBeFlownAgain) {
+  const Case the_case = tilt_case(0.4);
+  const LiveFlight live = flown(the_case, [] { return false; });
+  const LoopTiming timing = live.timing();
+  for (std::size_t i = 0; i < timing.size(); ++i) {
+    EXPECT_LE(timing[i].sampled, timing[i].begins);
+    EXPECT_LE(timing[i].begins, timing[i].commanded.value_or(timing[i].begins));
+    if (i == 0) continue;
+    EXPECT_LE(timing[i - 1].sampled, timing[i].sampled);
+    EXPECT_LT(timing[i - 1].begins, timing[i].begins);
+  }
+  const auto iris = *Airframe::load(source / "models", "iris");
+  const auto unit = open_builtin()->create("px4-v1.5.5");
+  const Flown again = *fly(the_case, setup, *iris, *unit, timing);
+  ASSERT_EQ(again.trace.samples.size(), live.unit.samples.size());
+  // MuJoCo's steps are cut elsewhere, so not to the bit; far below what the unit could feel.
+  for (std::size_t i = 0; i < again.trace.samples.size(); ++i) {
+    const attest_inputs& then = live.unit.samples[i].in;
+    const attest_inputs& now = again.trace.samples[i].in;
+    ASSERT_EQ(then.timestamp, now.timestamp);
+    ASSERT_NEAR(then.control_state.roll_rate, now.control_state.roll_rate, 1e-4) << i;
+    ASSERT_EQ(then.multirotor_motor_limits.upper_limit, now.multirotor_motor_limits.upper_limit);
+  }
+}
+
+TEST(LiveFlight, WhatItComputesDoesNotDependOnTheThreads) {
+  LiveFlight flight = flown(tilt_case(0.2), [] { return false; });
+  Trace trace;
+  trace.present = channels_with_prefix("");
+  trace.samples = flight.unit.samples;
+  trace.parameters = flight.unit.changes;
+  Trace again = trace;
+  const auto unit = open_builtin()->create("px4-v1.5.5");
+  ASSERT_FALSE(drive(*unit, again));
+  EXPECT_TRUE(compare(trace, again, Tolerances(Level::exact)).agrees());
+}
+
+TEST(LiveFlight, EndsWhenItIsAsked) {
+  const LiveFlight flight = flown(tilt_case(60), [] { return true; });
+  EXPECT_LT(flight.unit.ticks.size(), 20'000u);
+}
+
+TEST(LiveFlight, RefusesABattery) {
+  Case the_case = tilt_case(0.1);
+  the_case.flight->battery.emplace();
+  const auto iris = *Airframe::load(source / "models", "iris");
+  const auto unit = open_builtin()->create("px4-v1.5.5");
+  const auto flight = fly_live(
+      the_case, setup, *iris, *unit, options(), 0, [] { return false; },
+      [](const LiveProgress&) {});
+  ASSERT_FALSE(flight);
+  EXPECT_EQ(flight.error().file, the_case.file);
+}
+
+TEST(IdleLateness, IsOfEveryDeadlineThatItWaitedFor) {
+  const Histogram idle =
+      idle_lateness(Rate::hz(1000), std::chrono::milliseconds(50), options(), [] { return false; });
+  EXPECT_GE(idle.count(), 1u);
+  EXPECT_LE(idle.count(), 50u);
+  EXPECT_GE(idle.min(), Nanoseconds(0));
+}
+
+}  // namespace
+}  // namespace attest

@@ -1,0 +1,170 @@
+// The unit's loop on a clock that is late as the test says: which deadlines are kept, missed and
+// passed over.
+#include "harness/realtime/live_unit.hpp"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/controller/allocation_count.hpp"
+#include "tests/harness/realtime/flights.hpp"
+
+namespace attest {
+namespace {
+
+using testing::ElementsAre;
+
+constexpr Nanoseconds us(std::int64_t count) { return std::chrono::microseconds(count); }
+
+// Wakes up late by `lateness` of its next deadline; time passes nowhere else by itself.
+class ScriptedClock final : public Clock {
+ public:
+  Nanoseconds now() override { return now_; }
+  Nanoseconds wait_until(Nanoseconds deadline) override {
+    deadlines.push_back(deadline);
+    now_ = std::max(now_, deadline + lateness(deadline));
+    return now_;
+  }
+  void pass(Nanoseconds time) { now_ += time; }
+
+  std::function<Nanoseconds(Nanoseconds)> lateness = [](Nanoseconds) { return Nanoseconds(0); };
+  std::vector<Nanoseconds> deadlines;
+
+ private:
+  Nanoseconds now_{0};
+};
+
+// Takes as long as the test says, by its own steps.
+class SlowUnit final : public Unit {
+ public:
+  explicit SlowUnit(ScriptedClock& clock) : clock_(clock) {}
+  int set_parameter(const std::string&, float) override { return ATTEST_OK; }
+  int step(const attest_inputs& in, attest_outputs&) override {
+    timestamps.push_back(in.timestamp);
+    clock_.pass(takes(timestamps.size() - 1));
+    return result;
+  }
+
+  std::function<Nanoseconds(std::size_t)> takes = [](std::size_t) { return us(10); };
+  std::vector<std::uint64_t> timestamps;
+  int result = ATTEST_OK;
+
+ private:
+  ScriptedClock& clock_;
+};
+
+class LiveUnitTest : public testing::Test {
+ protected:
+  LiveUnitTest() { timestamps_.reserve(64); }
+
+  // At 1 kHz, for 8 deadlines.
+  LiveUnitRecord run() {
+    const auto vehicle = test::quad_vehicle();
+    const Case the_case = test::hover_case(0.008);
+    UnitTask task(the_case, rate_, vehicle, unit_, {});
+    LiveUnit live(the_case, rate_, task, clock_, links_, 4);
+    live.run();
+    return live.take_record();
+  }
+
+  Rate rate_ = Rate::hz(1000);
+  ScriptedClock clock_;
+  SlowUnit unit_{clock_};
+  Links links_;
+  std::vector<std::uint64_t> timestamps_;
+};
+
+TEST_F(LiveUnitTest, KeepsEveryDeadlineWhenItIsQuick) {
+  const LiveUnitRecord record = run();
+  EXPECT_EQ(record.ticks.size(), 8u);
+  EXPECT_EQ(record.samples.size(), 4u);
+  EXPECT_EQ(record.missed, 0u);
+  EXPECT_EQ(record.overruns, 0u);
+  EXPECT_EQ(record.longest_gap, us(1000));
+  EXPECT_EQ(record.execution.max(), us(10));
+  EXPECT_EQ(record.lateness.max(), us(0));
+  EXPECT_TRUE(links_.stop);
+}
+
+TEST_F(LiveUnitTest, AStepThatPassesADeadlineIsFollowedAtOnce) {
+  unit_.takes = [](std::size_t step) { return us(step == 2 ? 1300 : 10); };
+  const LiveUnitRecord record = run();
+  EXPECT_EQ(record.ticks.size(), 8u);
+  EXPECT_EQ(record.overruns, 1u);
+  EXPECT_EQ(record.missed, 0u);
+  EXPECT_EQ(record.ticks[3].begins, us(3300));
+  EXPECT_EQ(record.ticks[4].begins, us(4000));
+  EXPECT_EQ(record.lateness.max(), us(300));
+}
+
+TEST_F(LiveUnitTest, OfSeveralDeadlinesThatPassOnlyTheLastIsKept) {
+  unit_.takes = [](std::size_t step) { return us(step == 2 ? 3300 : 10); };
+  const LiveUnitRecord record = run();
+  EXPECT_EQ(record.ticks.size(), 6u);
+  EXPECT_EQ(record.missed, 2u);
+  EXPECT_EQ(record.ticks[2].missed, 2u);
+  EXPECT_EQ(record.overruns, 1u);
+  EXPECT_EQ(record.longest_gap, us(3300));
+  EXPECT_THAT(clock_.deadlines,
+              ElementsAre(us(0), us(1000), us(2000), us(5000), us(6000), us(7000)));
+}
+
+TEST_F(LiveUnitTest, DeadlinesThatPassAtTheEndAreMissedToo) {
+  unit_.takes = [](std::size_t step) { return us(step == 5 ? 9000 : 10); };
+  const LiveUnitRecord record = run();
+  EXPECT_EQ(record.ticks.size(), 6u);
+  EXPECT_EQ(record.missed, 2u);
+}
+
+TEST_F(LiveUnitTest, AWakeUpThatIsLateIsNotTheSteps) {
+  clock_.lateness = [](Nanoseconds deadline) { return us(deadline == us(3000) ? 2500 : 0); };
+  const LiveUnitRecord record = run();
+  EXPECT_EQ(record.missed, 1u);
+  EXPECT_EQ(record.execution.max(), us(10));
+  EXPECT_EQ(record.lateness.max(), us(2500));
+}
+
+TEST_F(LiveUnitTest, TimestampsAreWhenItReallyRan) {
+  clock_.lateness = [](Nanoseconds) { return us(70); };
+  run();
+  EXPECT_THAT(unit_.timestamps, testing::Contains(5'002'070u));
+}
+
+TEST_F(LiveUnitTest, TheSampleIsTheLastThatThereIs) {
+  links_.states.write({us(0), {}});
+  unit_.takes = [&](std::size_t step) {
+    if (step == 1) links_.states.write({us(900), {}});
+    return us(10);
+  };
+  const LiveUnitRecord record = run();
+  EXPECT_EQ(record.ticks[1].sampled, us(0));
+  EXPECT_EQ(record.ticks[2].sampled, us(900));
+  EXPECT_EQ(record.age.max(), us(7010 - 900));
+}
+
+TEST_F(LiveUnitTest, EndsWhenAPortGoesWrong) {
+  unit_.result = ATTEST_FAILED;
+  const LiveUnitRecord record = run();
+  EXPECT_TRUE(record.fault);
+  EXPECT_TRUE(record.ticks.empty());
+  EXPECT_TRUE(links_.stop);
+}
+
+TEST_F(LiveUnitTest, ATickDoesNotAllocate) {
+  unit_.timestamps.reserve(64);
+  clock_.deadlines.reserve(64);
+  std::size_t at_first = 0, at_last = 0;
+  unit_.takes = [&](std::size_t step) {
+    if (step == 1) at_first = test::allocation_count();
+    if (step == 7) at_last = test::allocation_count();
+    return us(10);
+  };
+  run();
+  EXPECT_EQ(at_first, at_last);
+}
+
+}  // namespace
+}  // namespace attest

@@ -1,0 +1,97 @@
+// What is asked of the operating system, and of other programs.
+#include <algorithm>
+#include <cstdlib>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "harness/realtime/allocations.hpp"
+#include "harness/realtime/cyclictest.hpp"
+#include "harness/realtime/load.hpp"
+#include "harness/realtime/pacer.hpp"
+#include "harness/realtime/program.hpp"
+#include "harness/realtime/rights.hpp"
+#include "harness/realtime/usage.hpp"
+
+namespace attest {
+namespace {
+
+constexpr Nanoseconds us(std::int64_t count) { return std::chrono::microseconds(count); }
+
+TEST(Pacer, ReturnsAtItsDeadlineOrLater) {
+  for (const Nanoseconds spin : {us(0), us(500)}) {
+    Pacer pacer(Pacer::now_monotonic(), Wait{spin});
+    const Nanoseconds woke = pacer.wait_until(us(2000));
+    EXPECT_GE(woke, us(2000));
+    EXPECT_GE(pacer.now(), woke);
+    EXPECT_GE(pacer.wait_until(us(1000)), woke);  // which has passed
+  }
+}
+
+TEST(Rights, AreGotOrRefusedWithAReason) {
+  std::vector<Right> rights;
+  std::thread thread([&] { rights = claim({usable_cpus().front(), 50}); });
+  thread.join();
+  ASSERT_EQ(rights.size(), 3u);
+  EXPECT_TRUE(rights[0].got);
+  EXPECT_EQ(rights[1].name, "SCHED_FIFO 50");
+  for (const Right& right : rights) EXPECT_EQ(right.got, right.why.empty()) << right.name;
+}
+
+TEST(Rights, ACpuThatIsNotThereIsRefused) {
+  std::vector<Right> rights;
+  std::thread thread([&] { rights = claim({1023, 0}); });
+  thread.join();
+  EXPECT_FALSE(rights.front().got);
+  EXPECT_FALSE(rights.front().why.empty());
+}
+
+TEST(Usage, CountsWhatAThreadDoes) {
+  const Usage begin = thread_usage();
+  const std::uint64_t allocations = thread_allocations();
+  void* volatile memory = std::malloc(1000);
+  std::free(memory);
+  std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  const Usage used = thread_usage() - begin;
+  EXPECT_GE(used.yields, 1);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
+  EXPECT_EQ(thread_allocations(), allocations + 1);
+#else
+  static_cast<void>(allocations);
+#endif
+}
+
+TEST(Program, GivesItsOutput) {
+  EXPECT_TRUE(is_installed("sh"));
+  EXPECT_FALSE(is_installed("no-such-program-of-attest"));
+  EXPECT_EQ(output_of({"sh", "-c", "echo one; echo two >&2"}), "one\n");
+  EXPECT_FALSE(output_of({"sh", "-c", "exit 3"}));
+  EXPECT_FALSE(output_of({"no-such-program-of-attest"}));
+}
+
+TEST(Load, RunsAsLongAsItLives) {
+  {
+    const Load load(LoadKind::cpu, 1);
+    EXPECT_NE(load.description().find("1 x cpu"), std::string::npos);
+  }
+  EXPECT_EQ(Load(LoadKind::io, 0).description(), "none");
+  EXPECT_TRUE(parse_load_kind("cache"));
+  EXPECT_EQ(parse_load_kind("disk").error().message,
+            "no such kind of load: `disk`; there are cpu, cache, io");
+}
+
+TEST(Cyclictest, IsReadWithTheTextBehindIt) {
+  const auto read = parse_cyclictest(
+      "{\n  \"thread\": {\n    \"0\": {\"histogram\": {\"2\": 1, \"3\": 2, \"9\": 1}, \"max\": 9}\n"
+      "  }\n}\n# Histogram\n000002 000001\n");
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->cycles, 4);
+  EXPECT_EQ(read->median, Nanoseconds(3500));
+  EXPECT_EQ(read->max, us(9));
+  for (const char* text : {"", "{}", "{\"thread\": 3}", "Unable to change scheduling policy!"}) {
+    EXPECT_FALSE(parse_cyclictest(text)) << text;
+  }
+}
+
+}  // namespace
+}  // namespace attest

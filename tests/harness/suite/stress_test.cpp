@@ -1,0 +1,103 @@
+#include "harness/suite/stress.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "harness/casefile/parse.hpp"
+#include "harness/suite/stress_json.hpp"
+#include "tests/harness/suite/small_suite.hpp"
+
+namespace attest {
+namespace {
+
+using testing::HasSubstr;
+
+const std::filesystem::path source = ATTEST_SOURCE_DIR;
+
+StressTask hover_task() {
+  StressTask task;
+  task.the_case = *parse_case(source / "cases/px4-v1.5.5/flight/hover.toml");
+  task.the_case.duration = {0.3, Span::In::seconds};
+  // Whatever the machine does: what it is blamed for is tested apart.
+  task.the_case.flight->realtime = {1e6, 1e9, std::nullopt};
+  task.setup = {Rate::hz(250), Flyer{"iris", PlantKind::mujoco}};
+  task.airframe = *Airframe::load(source / "models", "iris");
+  task.live.fifo = false;
+  task.live.unit_cpu = task.live.plant_cpu = usable_cpus().front();
+  task.idle_duration = std::chrono::milliseconds(20);
+  return task;
+}
+
+Result<StressResult> stressed(const std::string& port, const StressTask& task = hover_task()) {
+  return run_stress(
+      task, port, [] { return false; }, [](const StressProgress&) {});
+}
+
+TEST(Stress, ARightPortIsJudgedByItsOutputsToo) {
+  const auto stress = stressed("builtin");
+  ASSERT_TRUE(stress) << stress.error().to_string();
+  // A machine that cannot step the plant in time judges nothing.
+  if (stress->result.verdict == Verdict::skip) GTEST_SKIP() << stress->result.reason;
+  EXPECT_EQ(stress->result.verdict, Verdict::pass) << stress->result.reason;
+  EXPECT_EQ(stress->deadlines, 75u);
+  EXPECT_EQ(stress->ticks + stress->missed, 75u);
+  EXPECT_EQ(stress->execution.count, stress->ticks);
+  EXPECT_GT(stress->idle.count, 0u);
+}
+
+TEST(Stress, AWrongPortFailsWhateverItsTiming) {
+  const auto flip = stressed(test_port("sign_flip"));
+  ASSERT_TRUE(flip) << flip.error().to_string();
+  EXPECT_EQ(flip->result.verdict, Verdict::fail);
+  ASSERT_TRUE(flip->result.first);
+}
+
+TEST(Stress, APortThatDiesHasAVerdict) {
+  const auto crash = stressed(test_port("crash"));
+  ASSERT_TRUE(crash) << crash.error().to_string();
+  EXPECT_EQ(crash->result.verdict, Verdict::crash);
+  EXPECT_THAT(crash->result.reason, HasSubstr("was killed by signal"));
+  EXPECT_EQ(stressed(test_port("step_fails"))->result.verdict, Verdict::fail);
+  EXPECT_EQ(stressed(test_port("refuses_profile"))->result.verdict, Verdict::skip);
+  EXPECT_FALSE(stressed("lib:no_such_library.so"));
+}
+
+TEST(StressJson, IsReadAsItWasWritten) {
+  StressResult stress;
+  stress.result.profile = "px4-v1.5.5";
+  stress.result.group = "flight";
+  stress.result.name = "hover";
+  stress.result.rate = Rate::hz(333);
+  stress.result.flyer = Flyer{"iris", PlantKind::ode};
+  const auto ns = [](std::int64_t count) { return Nanoseconds(count); };
+  stress.execution = {1, ns(2), ns(3), ns(4), ns(5), ns(6), ns(7)};
+  stress.deadlines = 10;
+  stress.missed_by_steps = 3;
+  stress.waits = true;
+  stress.unit_usage = {ns(1), 2, 3, 4, 5};
+  stress.rights = {{"mlockall", false, "no \xff"}};
+  stress.slow = {ns(20), 2, {{7, ns(300), ns(290)}}, 1000, 7};
+  const nlohmann::json json = to_json(stress);
+  const std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  const auto read = stress_from_json(nlohmann::json::parse(text));
+  ASSERT_TRUE(read) << read.error().to_string();
+  EXPECT_EQ(to_json(*read)["execution"], json["execution"]);
+  nlohmann::json expected = nlohmann::json::parse(text);
+  EXPECT_EQ(to_json(*read), expected);
+}
+
+TEST(StressJson, ThatIsNotWholeIsRefused) {
+  const nlohmann::json whole = to_json(StressResult{});
+  EXPECT_FALSE(stress_from_json(nlohmann::json()));
+  for (const auto& [key, value] : whole.items()) {
+    nlohmann::json broken = whole;
+    broken.erase(key);
+    EXPECT_FALSE(stress_from_json(broken)) << key;
+    broken[key] = "?";
+    EXPECT_FALSE(stress_from_json(broken)) << key;
+  }
+}
+
+}  // namespace
+}  // namespace attest
