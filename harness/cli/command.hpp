@@ -107,6 +107,15 @@ struct StressOptions {
 };
 int stress_command(const StressOptions& options, const Globals& globals);
 
+struct SweepOptions {
+  std::string case_name = "flight/tilt_step_30";
+  std::vector<std::string> rates = {"50", "100", "250", "500", "1000"};
+  std::vector<std::string> vehicles, plants;  // empty: all that the case flies
+  WorkerOptions worker;
+  std::string csv;
+};
+int sweep_rate_command(const SweepOptions& options, const Globals& globals);
+
 struct FaultOptions {
   std::vector<std::string> ids;  // empty: all
   bool list = false;

@@ -1,6 +1,8 @@
 #include "harness/cli/timing_arguments.hpp"
 
+#include <algorithm>
 #include <memory>
+#include <thread>
 
 #include <CLI/CLI.hpp>
 
@@ -65,10 +67,44 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
   });
 }
 
+void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<SweepOptions>();
+  options->worker.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  options->worker.timeout_s = 600;
+  CLI::App* command = app.add_subcommand(
+      "sweep-rate",
+      "Where each vehicle stops holding: lowest loop rate, largest delay of the motor commands");
+  command->add_option("--case", options->case_name, "A flight, whose metrics say what holding is")
+      ->type_name("CASE")
+      ->capture_default_str();
+  command->add_option("--rates", options->rates, "Rates to find the largest delay at [Hz]")
+      ->type_name("HZ,...")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->default_str("50,100,250,500,1000");
+  command->add_option("--vehicle", options->vehicles, "Only this vehicle")
+      ->type_name("VEHICLE")
+      ->allow_extra_args(false);
+  command->add_option("--plant", options->plants, "Only on this plant: `mujoco` or `ode`")
+      ->type_name("PLANT")
+      ->allow_extra_args(false);
+  command->add_option("--port", options->worker.port, "`builtin`, `lib:PATH` or `fault:ID`")
+      ->type_name("PORT")
+      ->capture_default_str();
+  command->add_option("--csv", options->csv, "Write the table")->type_name("F.csv");
+  command->add_option("--jobs,-j", options->worker.jobs, "Vehicles at a time")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return sweep_rate_command(*options, globals); };
+  });
+}
+
 }  // namespace
 
 void add_timing_commands(CLI::App& app, const Globals& globals, Action& action) {
   add_stress(app, globals, action);
+  add_sweep_rate(app, globals, action);
 }
 
 }  // namespace attest::cli

@@ -1,6 +1,7 @@
 // The verdict on one case at one rate.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -62,6 +63,7 @@ struct CaseResult {
   std::optional<Headroom> tightest;
   std::vector<MetricResult> metrics;       // of a flight that ended well
   std::optional<VectorLikeness> likeness;  // of a diagnosis
+  std::map<std::string, double> figures;   // of a task that measures, by name
   double elapsed_s = 0;  // of wall time, for JUnit only: everything else is deterministic
 
   std::string case_id() const { return profile + "/" + group + "/" + name; }

@@ -225,6 +225,7 @@ nlohmann::json to_json(const CaseResult& result) {
     out["plant"] = name_of(result.flyer->plant);
   }
   if (result.likeness) out["likeness"] = likeness_to_json(*result.likeness);
+  for (const auto& [name, value] : result.figures) out["figures"][name] = number(value);
   for (const MetricResult& metric : result.metrics) {
     out["metrics"].push_back(metric_to_json(metric));
   }
@@ -255,6 +256,12 @@ Result<CaseResult> case_result_from_json(const nlohmann::json& json) {
   if (reader.has("tightest")) out.tightest = headroom_from({reader.member("tightest"), error});
   if (reader.has("vehicle")) out.flyer = flyer_from({json, error});
   if (reader.has("likeness")) out.likeness = likeness_from({reader.member("likeness"), error});
+  if (reader.has("figures")) {
+    Reader figures(reader.member("figures"), error);
+    for (const auto& [name, value] : reader.member("figures").items()) {
+      out.figures[name] = figures.real(name.c_str());
+    }
+  }
   if (reader.has("metrics")) {
     for (const auto& metric : reader.member("metrics")) {
       out.metrics.push_back(metric_from({metric, error}));

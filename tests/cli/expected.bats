@@ -27,6 +27,7 @@ T
 @test "a run ends with what conforms, and a badge says it" {
   run "$ATTEST" run --group tpa --group rates --level exact --badge badge.svg
   [ "$status" -eq 0 ]
-  has "px4-v1.5.5, exact, 11 rates, groups rates, tpa; cases $(cat "$SOURCE/cases/VERSION"), golden $(cat "$SOURCE/golden/VERSION")"
+  cases=$(cat "$SOURCE/cases/VERSION") golden=$(cat "$SOURCE/golden/VERSION")
+  has "px4-v1.5.5, exact, 11 rates, groups rates, tpa; cases $cases, golden $golden"
   grep -q "px4-v1.5.5 exact" badge.svg
 }

@@ -1,0 +1,107 @@
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "harness/cli/command.hpp"
+#include "harness/cli/find_case.hpp"
+#include "harness/cli/interrupt.hpp"
+#include "harness/cli/suite_folder.hpp"
+#include "harness/core/file.hpp"
+#include "harness/report/progress.hpp"
+#include "harness/report/sweep_text.hpp"
+#include "harness/suite/sweep.hpp"
+
+namespace attest::cli {
+namespace {
+
+struct Plan {
+  Case the_case;
+  std::vector<Rate> rates;
+  Batches batches;
+};
+
+Result<std::vector<Flyer>> flyers_of(const Case& the_case, const SweepOptions& options) {
+  std::vector<Flyer> flyers;
+  for (const Flyer& flyer : the_case.flight->flyers) {
+    const auto wanted = [](const std::vector<std::string>& names, std::string_view name) {
+      return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+    };
+    if (wanted(options.vehicles, flyer.vehicle) && wanted(options.plants, name_of(flyer.plant))) {
+      flyers.push_back(flyer);
+    }
+  }
+  if (!flyers.empty()) return flyers;
+  return fail(
+      fmt::format("{} is flown by no such vehicle on no such plant; see `attest list "
+                  "--vehicles`, and the case's own `vehicles` and `plants`",
+                  the_case.id()));
+}
+
+Result<Plan> make_plan(const SweepOptions& options, const SuiteFolder& suite) {
+  auto the_case = find_flight(options.case_name, suite);
+  if (!the_case) return tl::unexpected(the_case.error());
+  Plan plan;
+  for (const std::string& text : options.rates) {
+    const auto rate = Rate::parse(text);
+    if (!rate) return tl::unexpected(rate.error());
+    plan.rates.push_back(*rate);
+  }
+  const auto flyers = flyers_of(*the_case, options);
+  if (!flyers) return tl::unexpected(flyers.error());
+  const auto port = describe_port(options.worker.port, {}, options.worker.timeout_s);
+  if (!port) return tl::unexpected(port.error());
+  Fleet fleet(suite.models());
+  for (const Flyer& flyer : *flyers) {
+    auto airframe = fleet.get(flyer.vehicle);
+    if (!airframe) return tl::unexpected(airframe.error());
+    plan.batches.push_back(
+        std::make_unique<SweepBatch>(*the_case, flyer, plan.rates, std::move(*airframe)));
+  }
+  plan.the_case = std::move(*the_case);
+  return plan;
+}
+
+Result<void> write_csv_file(const std::string& path, const std::string& text) {
+  if (path.empty()) return {};
+  auto file = AtomicFile::open(path);
+  if (!file) return tl::unexpected(file.error());
+  if (auto written = file->write(text); !written) return written;
+  return file->commit();
+}
+
+}  // namespace
+
+int sweep_rate_command(const SweepOptions& options, const Globals& globals) {
+  const auto suite = find_suite(globals.suite);
+  if (!suite) return report_error(suite.error());
+  const auto plan = make_plan(options, *suite);
+  if (!plan) return report_error(plan.error());
+  note_interrupts();
+  Progress progress(plan->batches.size() * (plan->rates.size() + 1),
+                    Progress::on_stderr(globals.quiet));
+  WorkerOptions worker = options.worker;
+  worker.on_result = [&](const CaseResult& result) { progress.add(result); };
+  worker.stop = interrupted;
+  const WorkerOutcome outcome = run_batches(plan->batches, worker);
+  progress.finish();
+  if (interrupted()) return exit_interrupted;
+  for (const Error& error : outcome.errors) report_error(error);
+  if (!outcome.errors.empty()) return exit_usage;
+
+  const std::vector<SweepRow> rows = sweep_rows(outcome.results);
+  if (auto written = write_csv_file(options.csv, sweep_csv(rows, plan->rates)); !written) {
+    return report_error(written.error());
+  }
+  if (!globals.quiet) {
+    fmt::print(
+        "{}: lowest loop rate, and largest delay of the motor commands, within its bounds\n"
+        "{}",
+        plan->the_case.id(), render_sweep(rows, plan->rates));
+  }
+  const bool failed = std::any_of(rows.begin(), rows.end(),
+                                  [](const SweepRow& row) { return !row.failure.empty(); });
+  return failed ? exit_failed : exit_ok;
+}
+
+}  // namespace attest::cli

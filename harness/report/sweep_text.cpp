@@ -1,0 +1,62 @@
+#include "harness/report/sweep_text.hpp"
+
+#include <fmt/format.h>
+
+#include "harness/report/text.hpp"
+#include "harness/suite/sweep.hpp"
+
+namespace attest {
+namespace {
+
+std::string cell(double value, const char* unit) {
+  return value < 0 ? "none" : fmt::format("{:g} {}", value, unit);
+}
+
+std::string csv_cell(double value) { return value < 0 ? "" : fmt::format("{:g}", value); }
+
+}  // namespace
+
+std::vector<SweepRow> sweep_rows(const std::vector<CaseResult>& results) {
+  std::vector<SweepRow> rows;
+  for (const CaseResult& result : results) {
+    if (rows.empty() || rows.back().flyer != *result.flyer)
+      rows.push_back({*result.flyer, -1, {}, {}});
+    SweepRow& row = rows.back();
+    if (result.verdict != Verdict::pass && row.failure.empty()) {
+      row.failure = fmt::format("{}: {}", name_of(result.verdict), one_line(result.reason));
+    }
+    const auto rate = result.figures.find(lowest_rate_figure);
+    const auto delay = result.figures.find(largest_delay_figure);
+    if (rate != result.figures.end()) row.lowest_rate_hz = rate->second;
+    if (delay != result.figures.end()) row.largest_delay_ms.push_back(delay->second);
+  }
+  return rows;
+}
+
+std::string render_sweep(const std::vector<SweepRow>& rows, const std::vector<Rate>& rates) {
+  std::string out = fmt::format("{:<14}{:<8}{:>12}", "vehicle", "plant", "lowest rate");
+  for (const Rate& rate : rates) out += fmt::format("{:>14}", "at " + rate.to_string() + " Hz");
+  out += "\n";
+  for (const SweepRow& row : rows) {
+    out += fmt::format("{:<14}{:<8}{:>12}", row.flyer.vehicle, name_of(row.flyer.plant),
+                       cell(row.lowest_rate_hz, "Hz"));
+    for (const double delay : row.largest_delay_ms) out += fmt::format("{:>14}", cell(delay, "ms"));
+    if (!row.failure.empty()) out += "  " + row.failure;
+    out += "\n";
+  }
+  return out;
+}
+
+std::string sweep_csv(const std::vector<SweepRow>& rows, const std::vector<Rate>& rates) {
+  std::string out = "vehicle,plant,rate_hz,largest_delay_ms,lowest_rate_hz\n";
+  for (const SweepRow& row : rows) {
+    for (std::size_t i = 0; i < row.largest_delay_ms.size(); ++i) {
+      out += fmt::format("{},{},{:g},{},{}\n", row.flyer.vehicle, name_of(row.flyer.plant),
+                         rates[i].hertz(), csv_cell(row.largest_delay_ms[i]),
+                         csv_cell(row.lowest_rate_hz));
+    }
+  }
+  return out;
+}
+
+}  // namespace attest

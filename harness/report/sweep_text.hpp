@@ -1,0 +1,27 @@
+// The result of a sweep: a row a vehicle and plant.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/suite/verdict.hpp"
+
+namespace attest {
+
+struct SweepRow {
+  Flyer flyer;
+  double lowest_rate_hz = -1;
+  std::vector<double> largest_delay_ms;  // by rate, as of sweep.hpp
+  std::string failure;                   // of the port; empty: none
+};
+
+// Of the results of SweepBatches, in their order.
+std::vector<SweepRow> sweep_rows(const std::vector<CaseResult>& results);
+
+std::string render_sweep(const std::vector<SweepRow>& rows, const std::vector<Rate>& rates);
+
+// "vehicle,plant,rate_hz,largest_delay_ms,lowest_rate_hz" and a row for each; empty where nothing
+// holds.
+std::string sweep_csv(const std::vector<SweepRow>& rows, const std::vector<Rate>& rates);
+
+}  // namespace attest
