@@ -116,6 +116,15 @@ struct SweepOptions {
 };
 int sweep_rate_command(const SweepOptions& options, const Globals& globals);
 
+struct ScheduleOptions {
+  std::string tasks;  // file
+  std::string case_name = "flight/tilt_step_30";
+  std::string vehicle, plant;
+  std::string port = "builtin";
+  std::string record_timing;
+};
+int schedule_command(const ScheduleOptions& options, const Globals& globals);
+
 struct FaultOptions {
   std::vector<std::string> ids;  // empty: all
   bool list = false;

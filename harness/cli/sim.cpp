@@ -7,6 +7,7 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/find_case.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/report/failure_text.hpp"
 #include "harness/run/case_timing.hpp"
 #include "harness/suite/sim_batch.hpp"
 
@@ -50,18 +51,12 @@ Result<Sim> prepare(const SimOptions& options, const Globals& globals) {
   return Sim{std::move(*the_case), {*rate, *flyer}, std::move(timing), std::move(*airframe)};
 }
 
-std::string bounds(const MetricResult& metric) {
-  if (std::isinf(metric.min)) return fmt::format("at most {:g}", metric.max);
-  if (std::isinf(metric.max)) return fmt::format("at least {:g}", metric.min);
-  return fmt::format("{:g} to {:g}", metric.min, metric.max);
-}
-
 void print(const CaseResult& result, const std::string& out) {
   fmt::print("{}  {} ticks -> {}\n", result.id(), result.ticks, out);
   if (!result.reason.empty()) fmt::print("  {}: {}\n", name_of(result.verdict), result.reason);
   for (const MetricResult& metric : result.metrics) {
     fmt::print("  {:<20} {:<24}{:>10.4g}  {}{}\n", metric.name, name_of(metric.measure),
-               metric.value, bounds(metric), metric.within() ? "" : "  MISSED");
+               metric.value, metric_bounds(metric), metric.within() ? "" : "  MISSED");
   }
 }
 

@@ -100,11 +100,38 @@ void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
   });
 }
 
+void add_schedule(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<ScheduleOptions>();
+  CLI::App* command = app.add_subcommand("schedule",
+                                         "What a loop feels of the tasks beside it: fixed "
+                                         "priorities on one or two CPUs, and a flight");
+  command->add_option("tasks", options->tasks, "The tasks (TOML): [task.unit] and those beside it")
+      ->type_name("TASKS.toml")
+      ->required();
+  command->add_option("--case", options->case_name, "A flight: its name or id, or a case file")
+      ->type_name("CASE")
+      ->capture_default_str();
+  command->add_option("--vehicle", options->vehicle, "One of `attest list --vehicles`")
+      ->type_name("VEHICLE");
+  command->add_option("--plant", options->plant, "`mujoco` or `ode`")->type_name("PLANT");
+  command->add_option("--port", options->port, "`builtin`, `lib:PATH` or `fault:ID`")
+      ->type_name("PORT")
+      ->capture_default_str();
+  command
+      ->add_option("--record-timing", options->record_timing,
+                   "Write when everything happens, for `run --timing` and `sim --timing`")
+      ->type_name("F");
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return schedule_command(*options, globals); };
+  });
+}
+
 }  // namespace
 
 void add_timing_commands(CLI::App& app, const Globals& globals, Action& action) {
   add_stress(app, globals, action);
   add_sweep_rate(app, globals, action);
+  add_schedule(app, globals, action);
 }
 
 }  // namespace attest::cli

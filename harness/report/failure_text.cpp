@@ -115,6 +115,12 @@ std::string failure_headline(const CaseResult& result) {
                      decimal(channel, deviation.want), name_of(channel.stage));
 }
 
+std::string metric_bounds(const MetricResult& metric) {
+  if (std::isinf(metric.min)) return fmt::format("at most {:g}", metric.max);
+  if (std::isinf(metric.max)) return fmt::format("at least {:g}", metric.min);
+  return fmt::format("{:g} to {:g}", metric.min, metric.max);
+}
+
 std::string reproduce_command(const CaseResult& result, const RunResult& run) {
   if (run.command == "stress") {
     return one_line(fmt::format("attest stress --port {} --case {} --rates {}",

@@ -20,6 +20,9 @@ std::string failure_text(const CaseResult& result, const RunResult& run);
 // the verdict is known.
 std::string finding_text(const CaseResult& result, Level level);
 
+// "at most 1.2", "at least 0", "0 to 3".
+std::string metric_bounds(const MetricResult& metric);
+
 // "attest run --port lib:./mine.so --filter 'px4-v1.5.5/attitude/roll_30@250hz'"
 std::string reproduce_command(const CaseResult& result, const RunResult& run);
 

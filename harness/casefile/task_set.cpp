@@ -1,0 +1,77 @@
+#include "harness/casefile/task_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "harness/core/toml.hpp"
+
+namespace attest {
+namespace {
+
+Nanoseconds micros(double us) { return Nanoseconds(std::llround(us * 1000)); }
+
+// One number, or several that the jobs take by turns. A timestamp is a microsecond, so that no two
+// jobs of a unit may be nearer.
+std::vector<Nanoseconds> parse_execution(const TomlTable& table) {
+  constexpr const char* key = "execution_us";
+  std::vector<double> numbers;
+  if (table.kind(key) == TomlKind::array) {
+    numbers = table.numbers(key);
+  } else {
+    numbers.push_back(table.number(key));
+  }
+  std::vector<Nanoseconds> execution;
+  for (const double us : numbers) {
+    if (table.has(key) && !(us >= 1 && us <= 1e9)) table.error(key, "must be from 1 to 1e9");
+    execution.push_back(micros(us));
+  }
+  if (numbers.empty()) table.error(key, "is empty");
+  return execution;
+}
+
+ScheduledTask parse_task(const TomlTable& table, const std::string& name) {
+  ScheduledTask task;
+  task.name = name;
+  const auto rate = Rate::parse(fmt::format("{}", table.number("rate_hz")));
+  if (!rate && table.has("rate_hz")) table.error("rate_hz", rate.error().message);
+  if (rate) task.rate = *rate;
+  task.execution = parse_execution(table);
+  task.priority = static_cast<int>(table.integer("priority"));
+  task.cpu = static_cast<int>(table.integer("cpu", 0));
+  if (task.cpu < 0 || task.cpu > 1) table.error("cpu", "must be 0 or 1");
+  const double phase_us = table.number("phase_us", 0);
+  if (!(phase_us >= 0 && phase_us <= 1e9)) table.error("phase_us", "must be from 0 to 1e9");
+  task.phase = micros(phase_us);
+  return task;
+}
+
+std::optional<std::size_t> find_task(const std::vector<ScheduledTask>& tasks,
+                                     const std::string& name) {
+  const auto found = std::find_if(tasks.begin(), tasks.end(),
+                                  [&](const ScheduledTask& task) { return task.name == name; });
+  if (found == tasks.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - tasks.begin());
+}
+
+}  // namespace
+
+Result<TaskSet> read_task_set(const std::filesystem::path& path) {
+  const auto file = TomlFile::read(path);
+  if (!file) return tl::unexpected(file.error());
+  const TomlTable root = file->root();
+  const TomlTable tasks = root.table("task");
+  TaskSet set;
+  for (const std::string& name : tasks.keys()) {
+    set.tasks.push_back(parse_task(tasks.table(name), name));
+  }
+  const auto unit = find_task(set.tasks, "unit");
+  if (!unit && root.has("task")) root.error("task", "needs [task.unit], the controller");
+  set.unit = unit.value_or(0);
+  set.estimator = find_task(set.tasks, "estimator");
+  if (auto done = file->finish(); !done) return tl::unexpected(done.error());
+  return set;
+}
+
+}  // namespace attest

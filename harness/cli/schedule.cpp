@@ -1,0 +1,85 @@
+#include <fmt/format.h>
+
+#include "harness/casefile/stimulus.hpp"
+#include "harness/casefile/task_set.hpp"
+#include "harness/cli/command.hpp"
+#include "harness/cli/find_case.hpp"
+#include "harness/cli/suite_folder.hpp"
+#include "harness/report/schedule_text.hpp"
+#include "harness/run/case_timing.hpp"
+#include "harness/run/scheduled_timing.hpp"
+
+namespace attest::cli {
+namespace {
+
+struct Plan {
+  TaskSet set;
+  std::vector<std::vector<Job>> jobs;
+  Batches batches;  // the flight in time, and as scheduled
+  TimingFile scheduled;
+
+  const std::vector<Job>& unit() const { return jobs[set.unit]; }
+};
+
+Result<Plan> make_plan(const ScheduleOptions& options, const SuiteFolder& suite) {
+  auto set = read_task_set(options.tasks);
+  if (!set) return tl::unexpected(set.error());
+  auto the_case = find_flight(options.case_name, suite);
+  if (!the_case) return tl::unexpected(the_case.error());
+  const auto flyer = find_flyer(*the_case, options.vehicle, options.plant);
+  if (!flyer) return tl::unexpected(flyer.error());
+  const auto airframe = Airframe::load(suite.models(), flyer->vehicle);
+  if (!airframe) return tl::unexpected(airframe.error());
+  const auto port = describe_port(options.port, {}, 60);
+  if (!port) return tl::unexpected(port.error());
+
+  const Setup setup{set->tasks[set->unit].rate, *flyer};
+  const Nanoseconds duration = timeline_of(*the_case, setup.rate).duration;
+  auto jobs = simulate(set->tasks, duration);
+  if (!jobs) return fail_at(options.tasks, jobs.error().message);
+  const std::vector<Job>* estimator = set->estimator ? &(*jobs)[*set->estimator] : nullptr;
+
+  Plan plan;
+  plan.scheduled = {the_case->id(), the_case->sha256, setup,
+                    static_cast<double>(duration.count()) * 1e-9,
+                    scheduled_timing((*jobs)[set->unit], estimator)};
+  TimingFile in_time = plan.scheduled;
+  in_time.ticks = case_timing(*the_case, setup.rate);
+  for (const TimingFile& timing : {in_time, plan.scheduled}) {
+    plan.batches.push_back(std::make_unique<TimedBatch>(*the_case, timing, *airframe));
+  }
+  plan.set = std::move(*set);
+  plan.jobs = std::move(*jobs);
+  return plan;
+}
+
+}  // namespace
+
+int schedule_command(const ScheduleOptions& options, const Globals& globals) {
+  const auto suite = find_suite(globals.suite);
+  if (!suite) return report_error(suite.error());
+  const auto plan = make_plan(options, *suite);
+  if (!plan) return report_error(plan.error());
+  if (!globals.quiet) {
+    fmt::print("{}\n{}\n", render_tasks(plan->set, plan->jobs),
+               render_delays(plan->unit(), plan->scheduled.ticks));
+  }
+  if (!options.record_timing.empty()) {
+    if (auto written = write_timing(plan->scheduled, options.record_timing); !written) {
+      return report_error(written.error());
+    }
+  }
+  WorkerOptions worker;
+  worker.port = options.port;
+  worker.timeout_s = 60;
+  const WorkerOutcome outcome = run_batches(plan->batches, worker);
+  if (!outcome.errors.empty()) return report_error(outcome.errors.front());
+  const CaseResult& scheduled = outcome.results[1];
+  if (!globals.quiet) fmt::print("{}", render_flights(outcome.results[0], scheduled));
+  for (const CaseResult& result : outcome.results) {
+    if (fails_a_run(result.verdict)) return exit_failed;
+  }
+  return exit_ok;
+}
+
+}  // namespace attest::cli

@@ -1,0 +1,69 @@
+#include "harness/report/schedule_text.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "harness/report/failure_text.hpp"
+#include "harness/report/stress_text.hpp"
+#include "harness/report/text.hpp"
+#include "harness/schedule/response_time.hpp"
+
+namespace attest {
+namespace {
+
+std::string spread(std::string_view name, std::vector<Nanoseconds> times) {
+  if (times.empty()) return "";
+  std::sort(times.begin(), times.end());
+  return fmt::format("  {:<32}{:>10}{:>10}{:>10}\n", name, human_time(times.front()),
+                     human_time(times[times.size() / 2]), human_time(times.back()));
+}
+
+}  // namespace
+
+std::string render_tasks(const TaskSet& set, const std::vector<std::vector<Job>>& jobs) {
+  std::string out = fmt::format("{:<16}{:>4}{:>10}{:>10}{:>12}{:>14}{:>14}\n", "task", "CPU",
+                                "priority", "rate", "execution", "response:", "");
+  out += fmt::format("{:<52}{:>14}{:>14}\n", "", "analysed", "simulated");
+  for (std::size_t i = 0; i < set.tasks.size(); ++i) {
+    const ScheduledTask& task = set.tasks[i];
+    Nanoseconds longest{0};
+    for (const Job& job : jobs[i]) longest = std::max(longest, job.response());
+    const auto analysed = response_time(set.tasks, i);
+    out += fmt::format("{:<16}{:>4}{:>10}{:>10}{:>12}{:>14}{:>14}{}\n", one_line(task.name),
+                       task.cpu, task.priority, task.rate.to_string() + " Hz",
+                       human_time(task.worst_execution()),
+                       analysed ? human_time(*analysed) : "over a period", human_time(longest),
+                       longest > task.rate.tick(1) ? "  longer than its period" : "");
+  }
+  return out;
+}
+
+std::string render_delays(const std::vector<Job>& unit, const LoopTiming& timing) {
+  std::vector<Nanoseconds> begins, commands, ages;
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    begins.push_back(unit[i].start - unit[i].release);
+    commands.push_back(unit[i].finish - unit[i].release);
+    if (timing[i].sampled >= Nanoseconds(0)) ages.push_back(unit[i].finish - timing[i].sampled);
+  }
+  return fmt::format("what the loop feels{:>25}{:>10}{:>10}\n", "least", "median", "most") +
+         spread("a tick begins after its release", begins) +
+         spread("its command comes after that", commands) +
+         spread("age of the sample behind it", ages);
+}
+
+std::string render_flights(const CaseResult& in_time, const CaseResult& scheduled) {
+  std::string out = fmt::format("{:<44}{:>12}{:>12}\n", in_time.case_id(), "in time", "scheduled");
+  for (std::size_t i = 0; i < in_time.metrics.size() && i < scheduled.metrics.size(); ++i) {
+    const MetricResult& metric = in_time.metrics[i];
+    out +=
+        fmt::format("  {:<18}{:<24}{:>12.4g}{:>12.4g}  {}\n", metric.name, name_of(metric.measure),
+                    metric.value, scheduled.metrics[i].value, metric_bounds(metric));
+  }
+  if (!scheduled.reason.empty()) {
+    out += fmt::format("  {}: {}\n", name_of(scheduled.verdict), one_line(scheduled.reason));
+  }
+  return out;
+}
+
+}  // namespace attest

@@ -1,0 +1,65 @@
+#include "harness/casefile/task_set.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/core/file.hpp"
+#include "tests/harness/core/temporary_directory.hpp"
+
+namespace attest {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr Nanoseconds us(std::int64_t count) { return std::chrono::microseconds(count); }
+
+constexpr const char* unit = "[task.unit]\nrate_hz = 250\nexecution_us = 76\npriority = 2\n";
+
+Result<TaskSet> read(const std::string& text) {
+  const TemporaryDirectory directory;
+  const auto path = directory.path() / "tasks.toml";
+  auto file = AtomicFile::open(path);
+  EXPECT_TRUE(file && file->write(text) && file->commit());
+  return read_task_set(path);
+}
+
+std::string error_of(const std::string& text) {
+  const auto set = read(text);
+  return set ? "" : fmt::format("{}: {}", set.error().line, set.error().message);
+}
+
+TEST(TaskSet, IsRead) {
+  const auto set = read(std::string("[task.estimator]\nrate_hz = 333\nexecution_us = [400, 500.5]\n"
+                                    "priority = 3\ncpu = 1\nphase_us = 10\n") +
+                        unit);
+  ASSERT_TRUE(set) << set.error().to_string();
+  ASSERT_EQ(set->tasks.size(), 2u);
+  EXPECT_EQ(set->tasks[set->unit].name, "unit");
+  EXPECT_EQ(set->tasks[set->unit].rate, Rate::hz(250));
+  EXPECT_THAT(set->tasks[set->unit].execution, ElementsAre(us(76)));
+  const ScheduledTask& estimator = set->tasks[set->estimator.value()];
+  EXPECT_THAT(estimator.execution, ElementsAre(us(400), Nanoseconds(500'500)));
+  EXPECT_EQ(estimator.cpu, 1);
+  EXPECT_EQ(estimator.phase, us(10));
+  EXPECT_FALSE(read(unit)->estimator);
+}
+
+TEST(TaskSet, MistakesHaveTheirLine) {
+  EXPECT_THAT(error_of(""), HasSubstr("`task`"));
+  EXPECT_THAT(error_of("[task.io]\nrate_hz = 1\nexecution_us = 1\npriority = 1\n"),
+              HasSubstr("needs [task.unit]"));
+  EXPECT_THAT(error_of(std::string(unit) + "cpu = 2\n"), HasSubstr("5: must be 0 or 1"));
+  EXPECT_THAT(error_of(std::string(unit) + "phase_us = -1\n"), HasSubstr("5: must be from 0"));
+  EXPECT_THAT(error_of(std::string(unit) + "prority = 1\n"), HasSubstr("5: unknown key"));
+  EXPECT_THAT(error_of("[task.unit]\nrate_hz = 0\nexecution_us = 1\npriority = 1\n"),
+              HasSubstr("2: "));
+  EXPECT_THAT(error_of("[task.unit]\nrate_hz = 250\nexecution_us = 0.5\npriority = 1\n"),
+              HasSubstr("3: must be from 1"));
+  EXPECT_THAT(error_of("[task.unit]\nrate_hz = 250\nexecution_us = []\npriority = 1\n"),
+              HasSubstr("3: is empty"));
+}
+
+}  // namespace
+}  // namespace attest

@@ -1,0 +1,160 @@
+#include "harness/schedule/fixed_priority.hpp"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include "harness/schedule/response_time.hpp"
+
+namespace attest {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr Nanoseconds ms(std::int64_t count) { return std::chrono::milliseconds(count); }
+
+// Periods and executions in ms, as textbooks have them without a unit; the first is the highest.
+std::vector<ScheduledTask> rate_monotonic(const std::vector<std::pair<int, int>>& periods) {
+  std::vector<ScheduledTask> tasks;
+  int priority = 100;
+  for (const auto& [period, execution] : periods) {
+    ScheduledTask task;
+    task.name = std::string(1, static_cast<char>('a' + static_cast<int>(tasks.size())));
+    task.rate = Rate::hz(1000, period);
+    task.execution = {ms(execution)};
+    task.priority = priority--;
+    tasks.push_back(task);
+  }
+  return tasks;
+}
+
+std::vector<Nanoseconds> analysed(const std::vector<ScheduledTask>& tasks) {
+  std::vector<Nanoseconds> times;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    times.push_back(response_time(tasks, i).value_or(Nanoseconds(-1)));
+  }
+  return times;
+}
+
+std::vector<Nanoseconds> simulated(const std::vector<ScheduledTask>& tasks, Nanoseconds duration) {
+  std::vector<Nanoseconds> times;
+  const auto all = *simulate(tasks, duration);
+  for (const auto& jobs : all) {
+    Nanoseconds longest{0};
+    for (const Job& job : jobs) longest = std::max(longest, job.response());
+    times.push_back(longest);
+  }
+  return times;
+}
+
+struct Published {
+  const char* source;
+  std::vector<std::pair<int, int>> tasks;  // period, execution
+  std::vector<Nanoseconds> responses;
+};
+
+const Published published[] = {
+    {"Burns and Wellings, Real-Time Systems: 82% of the CPU is too much for the utilisation test",
+     {{20, 5}, {40, 10}, {80, 40}},
+     {ms(5), ms(15), ms(80)}},
+    {"Burns and Wellings, Real-Time Systems", {{7, 3}, {12, 3}, {20, 5}}, {ms(3), ms(6), ms(20)}},
+    {"Buttazzo, Hard Real-Time Computing Systems, response time analysis",
+     {{4, 1}, {5, 1}, {6, 2}, {11, 1}},
+     {ms(1), ms(2), ms(4), ms(10)}},
+    {"Lehoczky, Sha and Ding 1989", {{100, 40}, {150, 40}, {350, 100}}, {ms(40), ms(80), ms(300)}},
+};
+
+TEST(ResponseTime, IsThatOfPublishedExamples) {
+  for (const Published& example : published) {
+    EXPECT_EQ(analysed(rate_monotonic(example.tasks)), example.responses) << example.source;
+  }
+}
+
+TEST(FixedPriority, RespondsAsThePublishedExamplesDo) {
+  for (const Published& example : published) {
+    EXPECT_EQ(simulated(rate_monotonic(example.tasks), ms(9240)), example.responses)
+        << example.source;
+  }
+}
+
+TEST(ResponseTime, OfATaskThatMissesItsPeriodIsNone) {
+  const auto tasks = rate_monotonic({{4, 2}, {6, 3}, {20, 2}});
+  EXPECT_THAT(analysed(tasks), ElementsAre(ms(2), Nanoseconds(-1), Nanoseconds(-1)));
+}
+
+// Released together at time 0, each task's first job meets the worst there is (Liu and Layland's
+// critical instant): analysis and simulation are two ways to one number.
+RC_GTEST_PROP(FixedPriority, TheLongestResponseIsTheAnalysed, ()) {
+  const auto count = *rc::gen::inRange(1, 6);
+  std::vector<std::pair<int, int>> periods;
+  for (int i = 0; i < count; ++i) {
+    const int period = *rc::gen::inRange(3, 60);
+    periods.emplace_back(period, *rc::gen::inRange(1, period / 2 + 1));
+  }
+  const auto tasks = rate_monotonic(periods);
+  RC_PRE(utilisation(tasks, 0) <= 1);
+  const auto expected = analysed(tasks);
+  const auto got = simulated(tasks, ms(2000));
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (expected[i] < Nanoseconds(0)) continue;
+    RC_ASSERT(got[i] == expected[i]);
+  }
+}
+
+RC_GTEST_PROP(FixedPriority, NoJobRunsBeforeItsReleaseNorLessThanItsExecution, ()) {
+  auto tasks = rate_monotonic({{7, 2}, {11, 3}, {30, 4}});
+  for (ScheduledTask& task : tasks) task.phase = ms(*rc::gen::inRange(0, 30));
+  tasks[1].execution = {ms(1), ms(3), ms(2)};
+  const auto jobs = *simulate(tasks, ms(500));
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    for (std::size_t j = 0; j < jobs[i].size(); ++j) {
+      const Job& job = jobs[i][j];
+      RC_ASSERT(job.start >= job.release);
+      RC_ASSERT(job.finish - job.start >= tasks[i].execution[j % tasks[i].execution.size()]);
+      RC_ASSERT(j == 0 || job.start >= jobs[i][j - 1].finish);
+    }
+  }
+}
+
+TEST(FixedPriority, AHigherTaskPreempts) {
+  auto tasks = rate_monotonic({{10, 2}, {100, 5}});
+  tasks[0].phase = ms(3);
+  const auto jobs = *simulate(tasks, ms(20));
+  ASSERT_EQ(jobs[1].size(), 1u);
+  EXPECT_EQ(jobs[1][0].start, ms(0));
+  EXPECT_EQ(jobs[1][0].finish, ms(7));
+  ASSERT_EQ(jobs[0].size(), 2u);
+  EXPECT_EQ(jobs[0][1].start, ms(13));
+}
+
+TEST(FixedPriority, TwoCpusDoNotDisturbEachOther) {
+  auto tasks = rate_monotonic({{10, 6}, {10, 6}});
+  EXPECT_FALSE(simulate(tasks, ms(100)));
+  tasks[1].cpu = 1;
+  tasks[1].priority = tasks[0].priority;
+  EXPECT_THAT(simulated(tasks, ms(100)), ElementsAre(ms(6), ms(6)));
+}
+
+TEST(FixedPriority, WhatCannotBeScheduledIsRefused) {
+  auto tasks = rate_monotonic({{10, 6}, {20, 10}});
+  EXPECT_THAT(simulate(tasks, ms(100)).error().message, HasSubstr("110.0%"));
+  tasks[0].execution = {ms(1)};
+  tasks[1].priority = tasks[0].priority;
+  EXPECT_THAT(simulate(tasks, ms(100)).error().message, HasSubstr("same priority 100 on CPU 0"));
+}
+
+// A rate that is no whole number of nanoseconds does not drift.
+TEST(FixedPriority, ReleasesAreThoseOfTheRate) {
+  auto tasks = rate_monotonic({{3, 1}});
+  tasks[0].rate = Rate::hz(333);
+  const auto jobs = *simulate(tasks, std::chrono::seconds(10));
+  ASSERT_EQ(jobs[0].size(), 3330u);
+  EXPECT_EQ(jobs[0].back().release, Rate::hz(333).tick(3329));
+}
+
+}  // namespace
+}  // namespace attest
