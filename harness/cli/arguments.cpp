@@ -29,31 +29,6 @@ constexpr const char* footer =
     "\n"
     "Exit codes: 0 nothing failed, 1 something did not conform, 2 usage or environment.\n";
 
-void add_selection(CLI::App& command, SelectionOptions& options) {
-  command
-      .add_option("--filter", options.filters,
-                  "Only cases whose id matches this shell pattern; quote it. Ids are "
-                  "PROFILE/GROUP/NAME@SETUP; profile and setup may be left out")
-      ->type_name("GLOB")
-      ->allow_extra_args(false);
-  command.add_option("--group", options.groups, "Only this group of cases")
-      ->type_name("GROUP")
-      ->allow_extra_args(false);
-  command.add_option("--profile", options.profiles, "Only this version of the law")
-      ->type_name("PROFILE")
-      ->allow_extra_args(false);
-  command.add_option("--rate", options.rates, "Only these loop rates [Hz], separated by commas")
-      ->type_name("HZ,...")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command.add_option("--vehicle", options.vehicles, "Only flights of this vehicle")
-      ->type_name("VEHICLE")
-      ->allow_extra_args(false);
-  command.add_option("--plant", options.plants, "Only flights on this plant: `mujoco` or `ode`")
-      ->type_name("PLANT")
-      ->allow_extra_args(false);
-}
-
 void add_run(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<RunOptions>();
   options->worker.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));

@@ -9,6 +9,7 @@
 
 #include "harness/core/result.hpp"
 #include "harness/suite/select.hpp"
+#include "harness/suite/time_batch.hpp"
 #include "harness/suite/worker.hpp"
 
 namespace attest::cli {
@@ -124,6 +125,16 @@ struct ScheduleOptions {
   std::string record_timing;
 };
 int schedule_command(const ScheduleOptions& options, const Globals& globals);
+
+struct TimeCommandOptions {
+  SelectionOptions select;
+  WorkerOptions worker;
+  TimeOptions measure;
+  int allowed = 0;  // steps over the budget
+  bool instructions = false;
+  std::string json;
+};
+int time_command(const TimeCommandOptions& options, const Globals& globals);
 
 struct FaultOptions {
   std::vector<std::string> ids;  // empty: all

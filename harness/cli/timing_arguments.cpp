@@ -7,6 +7,32 @@
 #include <CLI/CLI.hpp>
 
 namespace attest::cli {
+
+void add_selection(CLI::App& command, SelectionOptions& options) {
+  command
+      .add_option("--filter", options.filters,
+                  "Only cases whose id matches this shell pattern; quote it. Ids are "
+                  "PROFILE/GROUP/NAME@SETUP; profile and setup may be left out")
+      ->type_name("GLOB")
+      ->allow_extra_args(false);
+  command.add_option("--group", options.groups, "Only this group of cases")
+      ->type_name("GROUP")
+      ->allow_extra_args(false);
+  command.add_option("--profile", options.profiles, "Only this version of the law")
+      ->type_name("PROFILE")
+      ->allow_extra_args(false);
+  command.add_option("--rate", options.rates, "Only these loop rates [Hz], separated by commas")
+      ->type_name("HZ,...")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command.add_option("--vehicle", options.vehicles, "Only flights of this vehicle")
+      ->type_name("VEHICLE")
+      ->allow_extra_args(false);
+  command.add_option("--plant", options.plants, "Only flights on this plant: `mujoco` or `ode`")
+      ->type_name("PLANT")
+      ->allow_extra_args(false);
+}
+
 namespace {
 
 void add_stress(CLI::App& app, const Globals& globals, Action& action) {
@@ -126,12 +152,49 @@ void add_schedule(CLI::App& app, const Globals& globals, Action& action) {
   });
 }
 
+void add_time(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<TimeCommandOptions>();
+  options->worker.timeout_s = 60;
+  CLI::App* command = app.add_subcommand(
+      "time", "How long a port's steps take over the corpus, and which input takes longest");
+  command->add_option("--port", options->worker.port, "`builtin`, `lib:PATH` or `fault:ID`")
+      ->type_name("PORT")
+      ->capture_default_str();
+  add_selection(*command, options->select);
+  command
+      ->add_option("--repeat", options->measure.repeats,
+                   "Runs of each vector; of each step the quickest counts, which is the port's and "
+                   "not the machine's")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command
+      ->add_option("--budget", options->measure.budget_us,
+                   "Fail when steps take longer than this [us]")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--allow", options->allowed, "So many steps may be over the budget")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--worst", options->measure.worst,
+                   "Write the vector up to its slowest step, for `attest replay`")
+      ->type_name("F.csv");
+  command->add_flag("--instructions", options->instructions,
+                    "Count the instructions of the slowest vector's steps, with valgrind");
+  command->add_option("--json", options->json, "Write all times, by vector")->type_name("F");
+  command->add_flag("--in-process", options->worker.in_process,
+                    "No worker process: for valgrind, perf or a debugger");
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return time_command(*options, globals); };
+  });
+}
+
 }  // namespace
 
 void add_timing_commands(CLI::App& app, const Globals& globals, Action& action) {
   add_stress(app, globals, action);
   add_sweep_rate(app, globals, action);
   add_schedule(app, globals, action);
+  add_time(app, globals, action);
 }
 
 }  // namespace attest::cli

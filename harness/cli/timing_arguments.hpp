@@ -14,6 +14,9 @@ namespace attest::cli {
 // The work of the command that was chosen; its result is the exit code.
 using Action = std::function<int()>;
 
+// --filter and its kin.
+void add_selection(CLI::App& command, SelectionOptions& options);
+
 // REQUIRES: `globals` and `action` live as long as `app`.
 void add_timing_commands(CLI::App& app, const Globals& globals, Action& action);
 

@@ -60,3 +60,51 @@ CHECK
   [ "$status" -eq 2 ]
   has "is flown by no such vehicle"
 }
+
+@test "steps are timed over the corpus, and the slowest input can be replayed" {
+  run "$ATTEST" time --group large_angle --rate 250 --worst w.csv --json t.json
+  [ "$status" -eq 0 ]
+  has "steps of"
+  has "slowest steps:"
+  run "$ATTEST" replay w.csv --level exact
+  [ "$status" -eq 0 ]
+  python3 - <<'CHECK'
+import json
+report = json.load(open("t.json"))
+assert report["schema"] == "attest-time-1"
+assert report["slowest"] in {vector["id"] for vector in report["vectors"]}
+assert report["all"]["steps"] == sum(vector["steps"] for vector in report["vectors"])
+assert report["all"]["min_ns"] <= report["all"]["median_ns"] <= report["all"]["max_ns"]
+CHECK
+}
+
+@test "a budget fails on the count of steps over it" {
+  run "$ATTEST" time --filter 'attitude/*@250hz' --budget 0.001
+  [ "$status" -eq 1 ]
+  has "steps took longer than 0.001 us"
+  run "$ATTEST" time --filter 'attitude/*@250hz' --budget 0.001 --allow 1000000
+  [ "$status" -eq 0 ]
+  run "$ATTEST" time --filter 'attitude/*@250hz' --budget 100000
+  [ "$status" -eq 0 ]
+  has "0 of"
+}
+
+@test "a port that goes wrong is told, with the vector" {
+  run "$ATTEST" time --filter 'attitude/*@250hz' --port "lib:$PORTS/port_crash.so"
+  [ "$status" -ne 0 ]
+  run "$ATTEST" time --group flight
+  [ "$status" -eq 2 ]
+  has "only flights are selected"
+}
+
+@test "instructions are counted where valgrind is" {
+  command -v valgrind || skip "no valgrind"
+  nm "$ATTEST" | grep -q __asan_init && skip "valgrind and sanitizers do not go together"
+  "$ATTEST" time --filter 'large_angle/exactly_inverted@250hz' --instructions --json one.json
+  "$ATTEST" time --filter 'large_angle/exactly_inverted@250hz' --instructions --json two.json
+  python3 - <<'CHECK'
+import json
+one, two = (json.load(open(name))["instructions"] for name in ("one.json", "two.json"))
+assert one == two and len(one) > 10 and min(one) > 100, (one, two)
+CHECK
+}

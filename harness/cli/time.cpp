@@ -1,0 +1,88 @@
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "harness/cli/command.hpp"
+#include "harness/cli/interrupt.hpp"
+#include "harness/cli/suite_folder.hpp"
+#include "harness/core/file.hpp"
+#include "harness/realtime/instructions.hpp"
+#include "harness/report/progress.hpp"
+#include "harness/report/time_text.hpp"
+#include "harness/suite/time_batch.hpp"
+
+namespace attest::cli {
+namespace {
+
+// A flight's steps cannot be repeated without flying it again, and their inputs are no others.
+Result<std::vector<SelectedCase>> open_loop_cases(const TimeCommandOptions& options,
+                                                  const SuiteFolder& suite) {
+  auto cases = options.select.cases_in(suite.cases());
+  if (!cases) return cases;
+  std::erase_if(*cases, [](const SelectedCase& one) { return one.the_case.flight.has_value(); });
+  if (cases->empty()) return fail("only flights are selected; steps are timed in open loop");
+  return cases;
+}
+
+// This program again, on that vector only, once.
+std::vector<std::uint64_t> counted(const TimeCommandOptions& options, const SuiteFolder& suite,
+                                   const std::string& id) {
+  std::error_code ignored;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", ignored);
+  return instructions_of_calls(
+      {self.string(), "--suite", suite.root.string(), "--quiet", "time", "--port",
+       options.worker.port, "--filter", id, "--repeat", "1", "--in-process"},
+      counted_step_symbol);
+}
+
+Result<void> write_json(const std::string& path, const TimeRun& run) {
+  if (path.empty()) return {};
+  auto file = AtomicFile::open(path);
+  if (!file) return tl::unexpected(file.error());
+  if (auto written = file->write(time_json(run)); !written) return written;
+  return file->commit();
+}
+
+}  // namespace
+
+int time_command(const TimeCommandOptions& options, const Globals& globals) {
+  const auto suite = find_suite(globals.suite);
+  if (!suite) return report_error(suite.error());
+  auto cases = open_loop_cases(options, *suite);
+  if (!cases) return report_error(cases.error());
+  const auto port = describe_port(options.worker.port, {}, options.worker.timeout_s);
+  if (!port) return report_error(port.error());
+
+  note_interrupts();
+  TimeRun run{options.worker.port, options.measure.repeats, options.measure.budget_us, {}, {}};
+  Batches batches;
+  batches.push_back(std::make_unique<TimeBatch>(std::move(*cases), options.measure));
+  Progress progress(batches.front()->size(), Progress::on_stderr(globals.quiet));
+  WorkerOptions worker = options.worker;
+  worker.on_result = [&](const CaseResult& result) { progress.add(result); };
+  worker.stop = interrupted;
+  WorkerOutcome outcome = run_batches(batches, worker);
+  progress.finish();
+  if (interrupted()) return exit_interrupted;
+  if (!outcome.errors.empty()) return report_error(outcome.errors.front());
+  run.results = std::move(outcome.results);
+  if (run.all().figures.empty() || run.all().figures.at(figure::steps) == 0) {
+    return report_error({"nothing was timed: every selected case was skipped or went wrong"});
+  }
+  if (options.instructions) {
+    run.instructions = counted(options, *suite, run.all().reason);
+    if (run.instructions.empty()) {
+      fmt::print(stderr, "attest: no instructions were counted: valgrind is missing, or failed\n");
+    }
+  }
+  if (auto written = write_json(options.json, run); !written) return report_error(written.error());
+  const bool over = run.all().figures.at(figure::over_budget) > options.allowed;
+  const bool failed = over || std::any_of(run.results.begin(), run.results.end(),
+                                          [](const auto& one) { return fails_a_run(one.verdict); });
+  if (!globals.quiet || failed) fmt::print("{}", render_times(run));
+  return failed ? exit_failed : exit_ok;
+}
+
+}  // namespace attest::cli

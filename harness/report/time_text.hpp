@@ -1,0 +1,29 @@
+// Execution times for people and for programs.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/suite/verdict.hpp"
+
+namespace attest {
+
+struct TimeRun {
+  std::string port;
+  int repeats = 1;
+  std::optional<double> budget_us;
+  std::vector<CaseResult> results;          // of a TimeBatch: the last is of all together
+  std::vector<std::uint64_t> instructions;  // of the slowest vector's steps; empty: not counted
+
+  const CaseResult& all() const { return results.back(); }
+};
+
+std::string render_times(const TimeRun& run);
+
+// {"schema": "attest-time-1", "attest_version": ..., "port": ..., "repeats": 5, "budget_us": null,
+//  "all": {figures}, "slowest": id, "instructions": [...], "vectors": [{"id": ..., figures}, ...]}
+std::string time_json(const TimeRun& run);
+
+}  // namespace attest
