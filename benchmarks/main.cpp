@@ -1,17 +1,40 @@
 // Prints the table of ratios (ci/bench). Google Benchmark's options apply, such as
 // --benchmark_filter=step and --benchmark_repetitions=21.
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "benchmarks/memory.hpp"
 #include "benchmarks/pairs.hpp"
+#include "harness/core/file.hpp"
 #include "harness/core/version.hpp"
+
+namespace {
+
+// "model name : AMD EPYC ..." of the first processor.
+std::string cpu_model() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (line.starts_with("model name")) return line.substr(line.find(": ") + 2);
+  }
+  return "unknown CPU";
+}
+
+std::string today() { return fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))); }
+
+}  // namespace
 
 int main(int argc, char** argv) {
   // In turn and in random order, so that a drifting machine slows both of a pair.
   std::vector<std::string> defaults = {"--benchmark_enable_random_interleaving=true",
                                        "--benchmark_repetitions=15", "--benchmark_min_time=0.05"};
+  const bool whole = argc == 1;  // nothing is filtered out
   std::vector<char*> arguments{argv[0]};
   for (std::string& text : defaults) arguments.push_back(text.data());
   for (int i = 1; i < argc; ++i) arguments.push_back(argv[i]);
@@ -22,7 +45,14 @@ int main(int argc, char** argv) {
   attest::bench::PairReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
   bool met = true;
-  const std::string table = reporter.table(met);
-  fmt::print("attest {}, {}\n\n{}", attest::version, attest::compiler(), table);
+  std::string text =
+      fmt::format("attest {}, {}, {}, {} processors, {}\n\n{}", attest::version, attest::compiler(),
+                  cpu_model(), std::thread::hardware_concurrency(), today(), reporter.table(met));
+  if (whole) text += "\n" + attest::bench::memory_table(met);
+  fmt::print("{}", text);
+  if (const char* const path = std::getenv("ATTEST_BENCH_JSON")) {
+    auto file = attest::AtomicFile::open(path);
+    if (!file || !file->write(reporter.json()) || !file->commit()) return 2;
+  }
   return met ? 0 : 1;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace attest::bench {
 namespace {
@@ -36,6 +37,10 @@ const std::vector<Pair>& pairs() {
        "at most 1.15x the law written by hand in C"},
       {"trace CSV, read", "csv/read_csv", "csv/from_chars", 1 / 0.8,
        "at least 0.8x the speed of a bare from_chars loop"},
+      {"trace CSV, write", "csv/write_csv", "csv/to_chars", 1 / 0.8,
+       "at least 0.8x the speed of a bare to_chars loop"},
+      {"traces compared, all bits alike", "compare/compare", "compare/memcmp", 3,
+       "at most 3x memcmp"},
       {"flight, 250 Hz, MuJoCo at 1 kHz", "flight/250hz", "mj_step/250hz", 1.06,
        "at most 1.06x the bare steps"},
       {"the same, trace kept", "flight/250hz_trace", "mj_step/250hz", 1.08,
@@ -71,6 +76,21 @@ const PairReporter::Times* PairReporter::find(const std::string& name) const {
   const auto found = std::find_if(times_.begin(), times_.end(),
                                   [&](const Times& times) { return times.name == name; });
   return found == times_.end() ? nullptr : &*found;
+}
+
+std::string PairReporter::json() const {
+  nlohmann::ordered_json out = nlohmann::json::array();
+  for (const Pair& pair : pairs()) {
+    const Times* measured = find(pair.measured);
+    const Times* floor = find(pair.floor);
+    if (!measured || !floor) continue;
+    out.push_back({{"figure", pair.what},
+                   {"measured_s", measured->seconds},
+                   {"floor_s", floor->seconds},
+                   {"ratio", median(measured->seconds) / median(floor->seconds)},
+                   {"claim", pair.claim}});
+  }
+  return out.dump(1) + "\n";
 }
 
 std::string PairReporter::table(bool& met) const {

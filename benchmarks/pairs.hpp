@@ -30,6 +30,10 @@ class PairReporter : public benchmark::BenchmarkReporter {
   // Markdown. Says which bounds were missed. `met` is false when any was, or was not measured.
   std::string table(bool& met) const;
 
+  // Every repetition: [{"figure": ..., "measured_s": [...], "floor_s": [...], "ratio": 1.03,
+  // "claim": ...}, ...]
+  std::string json() const;
+
  private:
   struct Times {
     std::string name;

@@ -37,9 +37,9 @@ Result<void> CsvText::finish() {
 }
 
 void CsvText::begin_cell() {
-  if (!is_first_in_row_) append(",");
+  if (block_.size() - used_ < longest_number + 1) flush();
+  if (!is_first_in_row_) block_[used_++] = ',';
   is_first_in_row_ = false;
-  if (block_.size() - used_ < longest_number) flush();
 }
 
 void CsvText::append(std::string_view text) {

@@ -1,0 +1,53 @@
+// Comparing two traces that agree to the bit, against memcmp of their samples: what is left to the
+// comparison is to walk over them.
+#include "harness/compare/compare.hpp"
+
+#include <cstring>
+
+#include <benchmark/benchmark.h>
+
+namespace attest::bench {
+namespace {
+
+constexpr std::size_t ticks = 100'000;
+
+Trace made() {
+  Trace trace;
+  trace.present = channels_with_prefix("");
+  trace.samples.resize(ticks);
+  for (std::size_t i = 0; i < ticks; ++i) {
+    Sample& sample = trace.samples[i];
+    sample.in.timestamp = 5'000'000 + 4000 * i;
+    sample.out.vehicle_rates_setpoint.roll = static_cast<float>(i % 1000) * 0.001f;
+  }
+  return trace;
+}
+
+const Trace& one() {
+  static const Trace trace = made();
+  return trace;
+}
+const Trace& other() {
+  static const Trace trace = made();
+  return trace;
+}
+
+void bare_memcmp(benchmark::State& state) {
+  one(), other();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        std::memcmp(one().samples.data(), other().samples.data(), ticks * sizeof(Sample)));
+  }
+}
+
+void comparison(benchmark::State& state) {
+  one(), other();
+  const Tolerances tolerances(Level::numeric);
+  for (auto _ : state) benchmark::DoNotOptimize(compare(one(), other(), tolerances));
+}
+
+BENCHMARK(bare_memcmp)->Name("compare/memcmp");
+BENCHMARK(comparison)->Name("compare/compare");
+
+}  // namespace
+}  // namespace attest::bench
