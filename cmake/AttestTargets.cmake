@@ -24,9 +24,9 @@ function(attest_library name)
                                                                           ${ARG_PRIVATE})
 endfunction()
 
-# attest_test(NAME SOURCES a.cpp ... LINK target ...): one GoogleTest program a folder.
+# attest_test(NAME SOURCES a.cpp ... LINK target ... [LABEL label]): one GoogleTest program a folder.
 function(attest_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "LABEL" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE attest_flags attest_warnings ${ARG_LINK} GTest::gmock
                                         GTest::gtest_main)
@@ -36,5 +36,8 @@ function(attest_test name)
   target_compile_options(${name} PRIVATE -O0)
   target_precompile_headers(${name} PRIVATE "$<$<COMPILE_LANGUAGE:CXX>:<gmock/gmock.h$<ANGLE-R>>"
                             "$<$<COMPILE_LANGUAGE:CXX>:<gtest/gtest.h$<ANGLE-R>>")
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
+  if(ARG_LABEL)
+    set(properties PROPERTIES LABELS ${ARG_LABEL})
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60 ${properties})
 endfunction()

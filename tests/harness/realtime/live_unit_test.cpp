@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/controller/allocation_count.hpp"
+#include "harness/realtime/allocations.hpp"
 #include "tests/harness/realtime/flights.hpp"
 
 namespace attest {
@@ -156,10 +156,10 @@ TEST_F(LiveUnitTest, EndsWhenAPortGoesWrong) {
 TEST_F(LiveUnitTest, ATickDoesNotAllocate) {
   unit_.timestamps.reserve(64);
   clock_.deadlines.reserve(64);
-  std::size_t at_first = 0, at_last = 0;
+  std::uint64_t at_first = 0, at_last = 0;
   unit_.takes = [&](std::size_t step) {
-    if (step == 1) at_first = test::allocation_count();
-    if (step == 7) at_last = test::allocation_count();
+    if (step == 1) at_first = thread_allocations();
+    if (step == 7) at_last = thread_allocations();
     return us(10);
   };
   run();
