@@ -24,7 +24,8 @@ function(attest_library name)
                                                                           ${ARG_PRIVATE})
 endfunction()
 
-# attest_test(NAME SOURCES a.cpp ... LINK target ... [LABEL label]): one GoogleTest program a folder.
+# attest_test(NAME SOURCES a.cpp ... LINK target ... [LABEL label]): one GoogleTest program a
+# folder.
 function(attest_test name)
   cmake_parse_arguments(ARG "" "LABEL" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})

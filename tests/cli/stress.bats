@@ -1,7 +1,7 @@
 load common
 
-# Real time on a machine that does other things: what is asserted is what its lateness cannot change.
-# The budgets are wide open, so that only the port can fail.
+# Real time on a machine that does other things: what is asserted is what its lateness cannot
+# change. The budgets are wide open, so that only the port can fail.
 open=(--policy other --no-cyclictest --misses-per-million 1000000 --p99-lateness 1000000)
 
 @test "a port is measured at each rate, beside the machine alone" {
@@ -41,8 +41,8 @@ CHECK
 }
 
 @test "a wrong port fails, and the way to see it again is told" {
-  run "$ATTEST" stress --port "lib:$PORTS/port_sign_flip.so" --rates 250 --duration 0.5 "${open[@]}" \
-    --junit s.xml
+  run "$ATTEST" stress --port "lib:$PORTS/port_sign_flip.so" --rates 250 --duration 0.5 \
+    "${open[@]}" --junit s.xml
   [ "$status" -eq 1 ]
   has "look first at the rate law"
   grep -q "attest stress --port .*sign_flip.so --case px4-v1.5.5/flight/hover --rates 250" s.xml
@@ -52,7 +52,8 @@ CHECK
   run "$ATTEST" stress --port "lib:$PORTS/port_crash.so" --rates 250 --duration 0.5 "${open[@]}"
   [ "$status" -eq 1 ]
   has "crash: the process was killed by signal"
-  run timeout 60 "$ATTEST" stress --port "lib:$PORTS/port_hang.so" --rates 250 --duration 0.5 "${open[@]}"
+  run timeout 60 "$ATTEST" stress --port "lib:$PORTS/port_hang.so" --rates 250 --duration 0.5 \
+    "${open[@]}"
   [ "$status" -eq 1 ]
   has "timeout: the port did not come back"
 }
@@ -124,7 +125,11 @@ CHECK
   wait $pid || status=$?
   [ "$status" -eq 130 ]
   grep -q "interrupted" out.txt
-  python3 -c 'import json; r = json.load(open("s.json")); assert r["interrupted"]; assert r["results"][0]["ticks"] > 0'
+  python3 - <<'CHECK'
+import json
+report = json.load(open("s.json"))
+assert report["interrupted"] and report["results"][0]["ticks"] > 0
+CHECK
 }
 
 @test "what cannot be stressed is refused" {

@@ -84,6 +84,10 @@ class Documents(unittest.TestCase):
     def test_expected_exit_status(self):
         self.assert_passes("```sh\nfalse  # exit 1\nbash -c 'exit 3' # exit 3\n```\n")
         self.assert_passes("```sh\nbash -c \\\n  'exit 2'  # exit 2\n```\n")
+        self.assert_passes("```sh\nfalse  # exit 0 or 1\ntrue  # exit 0 or 1\n```\n")
+        self.assert_fails(
+            "```sh\nfalse  # exit 0 or 2\n```\n", "README.md:2: exit status 1 instead of 0 or 2"
+        )
         self.assert_fails("```sh\ntrue  # exit 1\n```\n", "README.md:2: exit status 0 instead of 1")
         self.assert_fails("```sh\ntrue\nbash -c \\\n  'exit 3'  # exit 2\n```\n", "README.md:3:")
 
