@@ -42,13 +42,15 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&count, arguments.data());
   if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
 
+  bool met = true;
+  // First, in a process that has not yet taken memory for itself.
+  const std::string memory = whole ? "\n" + attest::bench::memory_table(met) : "";
   attest::bench::PairReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
-  bool met = true;
   std::string text =
       fmt::format("attest {}, {}, {}, {} processors, {}\n\n{}", attest::version, attest::compiler(),
-                  cpu_model(), std::thread::hardware_concurrency(), today(), reporter.table(met));
-  if (whole) text += "\n" + attest::bench::memory_table(met);
+                  cpu_model(), std::thread::hardware_concurrency(), today(), reporter.table(met)) +
+      memory;
   fmt::print("{}", text);
   if (const char* const path = std::getenv("ATTEST_BENCH_JSON")) {
     auto file = attest::AtomicFile::open(path);

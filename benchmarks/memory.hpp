@@ -5,7 +5,7 @@
 
 namespace attest::bench {
 
-// A Markdown table of peaks, measured in processes of their own. `met` is false when a bound was
+// A Markdown table of the peak, sampled while the suite runs. `met` is false when a bound was
 // missed.
 std::string memory_table(bool& met);
 
