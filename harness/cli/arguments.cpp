@@ -26,6 +26,7 @@ constexpr const char* footer =
     "  attest run --port lib:./libmine.so --level exact --filter 'attitude/*@250hz'\n"
     "  attest replay TRACE.csv --port lib:./libmine.so\n"
     "  attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv\n"
+    "  attest stress --port lib:./libmine.so          in real time, at 250 Hz to 8 kHz\n"
     "\n"
     "Exit codes: 0 nothing failed, 1 something did not conform, 2 usage or environment.\n";
 
@@ -34,11 +35,7 @@ void add_run(CLI::App& app, const Globals& globals, Action& action) {
   options->worker.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   CLI::App* command = app.add_subcommand(
       "run", "Run a port through the cases and compare it with the golden traces");
-  command
-      ->add_option("--port", options->worker.port,
-                   "`builtin` (the reference), `lib:PATH` or `fault:ID`")
-      ->type_name("PORT")
-      ->capture_default_str();
+  add_port(*command, options->worker.port);
   add_selection(*command, options->select);
   command
       ->add_option("--level", options->level,
@@ -87,9 +84,7 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("files", options->files, "Traces (CSV) of a controller, or of a mixer")
       ->type_name("TRACE")
       ->required();
-  command->add_option("--port", options->port, "`builtin`, `lib:PATH` or `fault:ID`")
-      ->type_name("PORT")
-      ->capture_default_str();
+  add_port(*command, options->port);
   command
       ->add_option("--profile", options->profile,
                    "Version of the law; default: what the provenance.toml beside the trace says, "
@@ -127,9 +122,7 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("--vehicle", options->vehicle, "One of `attest list --vehicles`")
       ->type_name("VEHICLE");
   command->add_option("--plant", options->plant, "`mujoco` or `ode`")->type_name("PLANT");
-  command->add_option("--port", options->port, "`builtin`, `lib:PATH` or `fault:ID`")
-      ->type_name("PORT")
-      ->capture_default_str();
+  add_port(*command, options->port);
   command->add_option("--out", options->out, "The flown trace (CSV)")
       ->type_name("F.csv")
       ->required();
@@ -224,9 +217,7 @@ void add_doctor(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<DoctorOptions>();
   CLI::App* command = app.add_subcommand(
       "doctor", "Check the machine, the suite, the reference and a port, and say what is wrong");
-  command->add_option("--port", options->port, "`builtin`, `lib:PATH` or `fault:ID`")
-      ->type_name("PORT")
-      ->capture_default_str();
+  add_port(*command, options->port);
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return doctor_command(*options, globals); };
   });

@@ -22,6 +22,17 @@ Result<Case> find_case(const std::string& name, const SuiteFolder& suite) {
                           (*found)[0].the_case.id(), (*found)[1].the_case.id()));
 }
 
+Result<Flyer> find_flyer(const Case& the_case, const std::string& vehicle,
+                         const std::string& plant) {
+  Flyer flyer{vehicle.empty() ? the_case.flight->lead_vehicle : vehicle,
+              the_case.flight->flyers.front().plant};
+  if (plant.empty()) return flyer;
+  const auto kind = parse_plant_kind(plant);
+  if (!kind) return tl::unexpected(kind.error());
+  flyer.plant = *kind;
+  return flyer;
+}
+
 }  // namespace
 
 Result<Case> find_flight(const std::string& name, const SuiteFolder& suite) {
@@ -33,15 +44,15 @@ Result<Case> find_flight(const std::string& name, const SuiteFolder& suite) {
   return the_case;
 }
 
-Result<Flyer> find_flyer(const Case& the_case, const std::string& vehicle,
-                         const std::string& plant) {
-  Flyer flyer{vehicle.empty() ? the_case.flight->lead_vehicle : vehicle,
-              the_case.flight->flyers.front().plant};
-  if (plant.empty()) return flyer;
-  const auto kind = parse_plant_kind(plant);
-  if (!kind) return tl::unexpected(kind.error());
-  flyer.plant = *kind;
-  return flyer;
+Result<ChosenFlight> choose_flight(const std::string& name, const std::string& vehicle,
+                                   const std::string& plant, const SuiteFolder& suite) {
+  auto the_case = find_flight(name, suite);
+  if (!the_case) return tl::unexpected(the_case.error());
+  auto flyer = find_flyer(*the_case, vehicle, plant);
+  if (!flyer) return tl::unexpected(flyer.error());
+  auto airframe = Airframe::load(suite.models(), flyer->vehicle);
+  if (!airframe) return tl::unexpected(airframe.error());
+  return ChosenFlight{std::move(*the_case), std::move(*flyer), std::move(*airframe)};
 }
 
 Result<TimedFlight> find_timed_flight(const std::string& file, const SuiteFolder& suite) {

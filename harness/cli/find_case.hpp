@@ -15,9 +15,14 @@ namespace attest::cli {
 // names none or several.
 Result<Case> find_flight(const std::string& name, const SuiteFolder& suite);
 
-// What flies it: empty texts leave it to the case, whose lead vehicle and first plant fly.
-Result<Flyer> find_flyer(const Case& the_case, const std::string& vehicle,
-                         const std::string& plant);
+// With what flies it: empty texts leave that to the case, whose lead vehicle and first plant fly.
+struct ChosenFlight {
+  Case the_case;
+  Flyer flyer;
+  std::shared_ptr<const Airframe> airframe;
+};
+Result<ChosenFlight> choose_flight(const std::string& name, const std::string& vehicle,
+                                   const std::string& plant, const SuiteFolder& suite);
 
 // A recorded timing with what it is flown with.
 struct TimedFlight {

@@ -24,29 +24,26 @@ struct Plan {
 Result<Plan> make_plan(const ScheduleOptions& options, const SuiteFolder& suite) {
   auto set = read_task_set(options.tasks);
   if (!set) return tl::unexpected(set.error());
-  auto the_case = find_flight(options.case_name, suite);
-  if (!the_case) return tl::unexpected(the_case.error());
-  const auto flyer = find_flyer(*the_case, options.vehicle, options.plant);
-  if (!flyer) return tl::unexpected(flyer.error());
-  const auto airframe = Airframe::load(suite.models(), flyer->vehicle);
-  if (!airframe) return tl::unexpected(airframe.error());
+  const auto chosen = choose_flight(options.case_name, options.vehicle, options.plant, suite);
+  if (!chosen) return tl::unexpected(chosen.error());
   const auto port = describe_port(options.port, {}, 60);
   if (!port) return tl::unexpected(port.error());
 
-  const Setup setup{set->tasks[set->unit].rate, *flyer};
-  const Nanoseconds duration = timeline_of(*the_case, setup.rate).duration;
+  const Case& the_case = chosen->the_case;
+  const Setup setup{set->tasks[set->unit].rate, chosen->flyer};
+  const Nanoseconds duration = timeline_of(the_case, setup.rate).duration;
   auto jobs = simulate(set->tasks, duration);
   if (!jobs) return fail_at(options.tasks, jobs.error().message);
   const std::vector<Job>* estimator = set->estimator ? &(*jobs)[*set->estimator] : nullptr;
 
   Plan plan;
-  plan.scheduled = {the_case->id(), the_case->sha256, setup,
+  plan.scheduled = {the_case.id(), the_case.sha256, setup,
                     static_cast<double>(duration.count()) * 1e-9,
                     scheduled_timing((*jobs)[set->unit], estimator)};
   TimingFile in_time = plan.scheduled;
-  in_time.ticks = case_timing(*the_case, setup.rate);
+  in_time.ticks = case_timing(the_case, setup.rate);
   for (const TimingFile& timing : {in_time, plan.scheduled}) {
-    plan.batches.push_back(std::make_unique<TimedBatch>(*the_case, timing, *airframe));
+    plan.batches.push_back(std::make_unique<TimedBatch>(the_case, timing, chosen->airframe));
   }
   plan.set = std::move(*set);
   plan.jobs = std::move(*jobs);

@@ -41,14 +41,13 @@ Result<Sim> prepare(const SimOptions& options, const Globals& globals) {
   }
   const auto rate = Rate::parse(options.rate);
   if (!rate) return tl::unexpected(rate.error());
-  auto the_case = find_flight(options.case_name, *suite);
-  if (!the_case) return tl::unexpected(the_case.error());
-  const auto flyer = find_flyer(*the_case, options.vehicle, options.plant);
-  if (!flyer) return tl::unexpected(flyer.error());
-  auto airframe = Airframe::load(suite->models(), flyer->vehicle);
-  if (!airframe) return tl::unexpected(airframe.error());
-  LoopTiming timing = case_timing(*the_case, *rate);
-  return Sim{std::move(*the_case), {*rate, *flyer}, std::move(timing), std::move(*airframe)};
+  auto chosen = choose_flight(options.case_name, options.vehicle, options.plant, *suite);
+  if (!chosen) return tl::unexpected(chosen.error());
+  LoopTiming timing = case_timing(chosen->the_case, *rate);
+  return Sim{std::move(chosen->the_case),
+             {*rate, std::move(chosen->flyer)},
+             std::move(timing),
+             std::move(chosen->airframe)};
 }
 
 void print(const CaseResult& result, const std::string& out) {

@@ -50,12 +50,8 @@ void set_budget(const StressOptions& options, RealtimeBudget& budget) {
 }
 
 Result<Plan> make_plan(const StressOptions& options, const SuiteFolder& suite) {
-  auto the_case = find_flight(options.case_name, suite);
-  if (!the_case) return tl::unexpected(the_case.error());
-  const auto flyer = find_flyer(*the_case, options.vehicle, options.plant);
-  if (!flyer) return tl::unexpected(flyer.error());
-  const auto airframe = Airframe::load(suite.models(), flyer->vehicle);
-  if (!airframe) return tl::unexpected(airframe.error());
+  auto chosen = choose_flight(options.case_name, options.vehicle, options.plant, suite);
+  if (!chosen) return tl::unexpected(chosen.error());
   const auto live = live_options(options);
   if (!live) return tl::unexpected(live.error());
   const auto load = parse_load_kind(options.load_kind);
@@ -66,14 +62,15 @@ Result<Plan> make_plan(const StressOptions& options, const SuiteFolder& suite) {
   auto port = describe_port(options.port, {}, 60);
   if (!port) return tl::unexpected(port.error());
 
-  the_case->duration = {options.duration_s, Span::In::seconds};
-  set_budget(options, the_case->flight->realtime);
+  Case& the_case = chosen->the_case;
+  the_case.duration = {options.duration_s, Span::In::seconds};
+  set_budget(options, the_case.flight->realtime);
   Plan plan;
   plan.load = *load;
   for (const std::string& text : options.rates) {
     const auto rate = Rate::parse(text);
     if (!rate) return tl::unexpected(rate.error());
-    plan.tasks.push_back({*the_case, Setup{*rate, *flyer}, *airframe, *live,
+    plan.tasks.push_back({the_case, Setup{*rate, chosen->flyer}, chosen->airframe, *live,
                           nanoseconds(std::min(options.duration_s, idle_s_max)),
                           options.record_timing});
   }

@@ -62,14 +62,6 @@ Result<Plan> make_plan(const SweepOptions& options, const SuiteFolder& suite) {
   return plan;
 }
 
-Result<void> write_csv_file(const std::string& path, const std::string& text) {
-  if (path.empty()) return {};
-  auto file = AtomicFile::open(path);
-  if (!file) return tl::unexpected(file.error());
-  if (auto written = file->write(text); !written) return written;
-  return file->commit();
-}
-
 }  // namespace
 
 int sweep_rate_command(const SweepOptions& options, const Globals& globals) {
@@ -90,7 +82,7 @@ int sweep_rate_command(const SweepOptions& options, const Globals& globals) {
   if (!outcome.errors.empty()) return exit_usage;
 
   const std::vector<SweepRow> rows = sweep_rows(outcome.results);
-  if (auto written = write_csv_file(options.csv, sweep_csv(rows, plan->rates)); !written) {
+  if (auto written = write_file(options.csv, sweep_csv(rows, plan->rates)); !written) {
     return report_error(written.error());
   }
   if (!globals.quiet) {

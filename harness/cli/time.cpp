@@ -37,14 +37,6 @@ std::vector<std::uint64_t> counted(const TimeCommandOptions& options, const Suit
       counted_step_symbol);
 }
 
-Result<void> write_json(const std::string& path, const TimeRun& run) {
-  if (path.empty()) return {};
-  auto file = AtomicFile::open(path);
-  if (!file) return tl::unexpected(file.error());
-  if (auto written = file->write(time_json(run)); !written) return written;
-  return file->commit();
-}
-
 }  // namespace
 
 int time_command(const TimeCommandOptions& options, const Globals& globals) {
@@ -77,7 +69,8 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
       fmt::print(stderr, "attest: no instructions were counted: valgrind is missing, or failed\n");
     }
   }
-  if (auto written = write_json(options.json, run); !written) return report_error(written.error());
+  if (auto written = write_file(options.json, time_json(run)); !written)
+    return report_error(written.error());
   const bool over = run.all().figures.at(figure::over_budget) > options.allowed;
   const bool failed = over || std::any_of(run.results.begin(), run.results.end(),
                                           [](const auto& one) { return fails_a_run(one.verdict); });

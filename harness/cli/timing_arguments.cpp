@@ -8,6 +8,12 @@
 
 namespace attest::cli {
 
+void add_port(CLI::App& command, std::string& port) {
+  command.add_option("--port", port, "`builtin` (the reference), `lib:PATH` or `fault:ID`")
+      ->type_name("PORT")
+      ->capture_default_str();
+}
+
 void add_selection(CLI::App& command, SelectionOptions& options) {
   command
       .add_option("--filter", options.filters,
@@ -39,9 +45,7 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<StressOptions>();
   CLI::App* command = app.add_subcommand(
       "stress", "Let a port fly in real time, at each loop rate: lateness, execution time, misses");
-  command->add_option("--port", options->port, "`builtin`, `lib:PATH` or `fault:ID`")
-      ->type_name("PORT")
-      ->capture_default_str();
+  add_port(*command, options->port);
   command->add_option("--rates", options->rates, "Loop rates [Hz], separated by commas")
       ->type_name("HZ,...")
       ->delimiter(',')
@@ -114,9 +118,7 @@ void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("--plant", options->plants, "Only on this plant: `mujoco` or `ode`")
       ->type_name("PLANT")
       ->allow_extra_args(false);
-  command->add_option("--port", options->worker.port, "`builtin`, `lib:PATH` or `fault:ID`")
-      ->type_name("PORT")
-      ->capture_default_str();
+  add_port(*command, options->worker.port);
   command->add_option("--csv", options->csv, "Write the table")->type_name("F.csv");
   command->add_option("--jobs,-j", options->worker.jobs, "Vehicles at a time")
       ->check(CLI::Range(1, 1024))
@@ -140,9 +142,7 @@ void add_schedule(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("--vehicle", options->vehicle, "One of `attest list --vehicles`")
       ->type_name("VEHICLE");
   command->add_option("--plant", options->plant, "`mujoco` or `ode`")->type_name("PLANT");
-  command->add_option("--port", options->port, "`builtin`, `lib:PATH` or `fault:ID`")
-      ->type_name("PORT")
-      ->capture_default_str();
+  add_port(*command, options->port);
   command
       ->add_option("--record-timing", options->record_timing,
                    "Write when everything happens, for `run --timing` and `sim --timing`")
@@ -157,9 +157,7 @@ void add_time(CLI::App& app, const Globals& globals, Action& action) {
   options->worker.timeout_s = 60;
   CLI::App* command = app.add_subcommand(
       "time", "How long a port's steps take over the corpus, and which input takes longest");
-  command->add_option("--port", options->worker.port, "`builtin`, `lib:PATH` or `fault:ID`")
-      ->type_name("PORT")
-      ->capture_default_str();
+  add_port(*command, options->worker.port);
   add_selection(*command, options->select);
   command
       ->add_option("--repeat", options->measure.repeats,

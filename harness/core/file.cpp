@@ -208,4 +208,12 @@ Result<void> AtomicFile::commit() {
   return {};
 }
 
+Result<void> write_file(const std::filesystem::path& path, std::string_view bytes) {
+  if (path.empty()) return {};
+  auto file = AtomicFile::open(path);
+  if (!file) return tl::unexpected(file.error());
+  if (auto written = file->write(bytes); !written) return written;
+  return file->commit();
+}
+
 }  // namespace attest

@@ -41,4 +41,7 @@ class AtomicFile {
   int descriptor_;                   // -1 once committed
 };
 
+// The whole of a file through the above. An empty path is no file: nothing is written.
+Result<void> write_file(const std::filesystem::path& path, std::string_view bytes);
+
 }  // namespace attest

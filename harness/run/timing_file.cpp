@@ -102,10 +102,7 @@ Result<void> write_timing(const TimingFile& timing, const std::filesystem::path&
                      {"plant", name_of(timing.setup.flyer->plant)},
                      {"duration_s", timing.duration_s},
                      {"ticks_ns", std::move(ticks)}};
-  auto file = AtomicFile::open(path);
-  if (!file) return tl::unexpected(file.error());
-  if (auto written = file->write(root.dump() + "\n"); !written) return written;
-  return file->commit();
+  return write_file(path, root.dump() + "\n");
 }
 
 Case timed(Case the_case, const TimingFile& timing) {

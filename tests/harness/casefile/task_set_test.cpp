@@ -20,8 +20,7 @@ constexpr const char* unit = "[task.unit]\nrate_hz = 250\nexecution_us = 76\npri
 Result<TaskSet> read(const std::string& text) {
   const TemporaryDirectory directory;
   const auto path = directory.path() / "tasks.toml";
-  auto file = AtomicFile::open(path);
-  EXPECT_TRUE(file && file->write(text) && file->commit());
+  EXPECT_TRUE(write_file(path, text));
   return read_task_set(path);
 }
 

@@ -28,10 +28,7 @@ class TimingFileTest : public testing::Test {
  protected:
   std::filesystem::path path() const { return directory_.path() / "timing.json"; }
 
-  void write(const std::string& text) const {
-    auto file = AtomicFile::open(path());
-    ASSERT_TRUE(file && file->write(text) && file->commit());
-  }
+  void write(const std::string& text) const { ASSERT_TRUE(write_file(path(), text)); }
 
   // The message, without the folder.
   std::string error_of(const std::string& text) const {
