@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 
@@ -9,8 +10,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "harness/compare/compare_files.hpp"
 #include "harness/suite/select.hpp"
 #include "harness/suite/worker.hpp"
+#include "harness/trace/csv.hpp"
 
 namespace attest::bench {
 namespace {
@@ -60,17 +63,47 @@ void whole_suite() {
   run_batches(*batches, options);
 }
 
+// Outputs only, which is what a long comparison is about.
+void write_long_trace(const std::filesystem::path& path, std::size_t ticks) {
+  Trace trace;
+  trace.present = channels_with_prefix("out/") | channels_with_prefix("timestamp");
+  trace.samples.resize(ticks);
+  for (std::size_t i = 0; i < ticks; ++i) {
+    trace.samples[i].in.timestamp = 5'000'000 + 125 * i;
+    trace.samples[i].out.actuator_controls_0.control[0] = static_cast<float>(i % 1000) * 1e-3f;
+  }
+  auto file = AtomicFile::open(path);
+  if (file && write_csv(trace, all_columns(trace), *file)) file->commit();
+}
+
+// Of comparing a trace of so many ticks with itself, file by file.
+double comparison_mb(std::size_t ticks) {
+  std::string folder = (std::filesystem::temp_directory_path() / "attest-XXXXXX").string();
+  if (::mkdtemp(folder.data()) == nullptr) return 0;
+  const auto path = std::filesystem::path(folder) / "long.csv";
+  peak_mb([&] { write_long_trace(path, ticks); });  // elsewhere, so that it is not counted
+  const double peak = peak_mb([&] { compare_files(path, path, Tolerances(Level::numeric)); });
+  std::filesystem::remove_all(folder);
+  return peak;
+}
+
 }  // namespace
 
 std::string memory_table(bool& met) {
+  constexpr std::size_t few = 100'000, many = 1'000'000;
+  constexpr double same = 1.1;
   const double suite = peak_mb(whole_suite);
+  const double of_few = comparison_mb(few), of_many = comparison_mb(many);
+  const bool constant = of_few > 0 && of_many <= same * of_few;
   const bool holds = suite > 0 && suite <= bound_mb;
-  met = met && holds;
+  met = met && holds && constant;
   return fmt::format(
       "| memory | peak | claimed | |\n"
       "|---|---|---|---|\n"
-      "| whole suite, {} jobs, all processes together | {:.0f} MB | at most {:g} MB | {} |\n",
-      jobs, suite, bound_mb, holds ? "met" : "MISSED");
+      "| whole suite, {} jobs, all processes together | {:.0f} MB | at most {:g} MB | {} |\n"
+      "| two files compared, {} and {} ticks | {:.2f} and {:.2f} MB | the same | {} |\n",
+      jobs, suite, bound_mb, holds ? "met" : "MISSED", few, many, of_few, of_many,
+      constant ? "met" : "MISSED");
 }
 
 }  // namespace attest::bench

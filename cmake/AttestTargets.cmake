@@ -16,12 +16,35 @@ target_compile_options(
                             # False alarms of gcc 12 about std::string (gcc bug 105651).
                             $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 
+# What nearly every source reads takes longer to read than the source takes to compile. Tests always
+# share it precompiled; the harness only in builds whose warnings nobody waits for, as gcc 12 raises
+# share it precompiled; the harness only in builds whose warnings nobody waits for: gcc 12 raises
+# false alarms about precompiled headers, and a source that forgets an include is to be told.
+
+# attest_headers(TARGET header ...): a target whose precompiled headers others reuse, which have its
+# flags at least, and no source in C.
+function(attest_headers name)
+  set(headers <algorithm> <array> <filesystem> <functional> <map> <memory> <optional> <string>
+              <string_view> <variant> <vector> <tl/expected.hpp> ${ARGN})
+  target_precompile_headers(${name} PRIVATE ${headers})
+endfunction()
+
+function(attest_reuse_headers name from)
+  get_target_property(sources ${name} SOURCES)
+  if(NOT sources MATCHES "\\.c(;|$)")
+    target_precompile_headers(${name} REUSE_FROM ${from})
+  endif()
+endfunction()
+
 # attest_library(NAME SOURCES a.cpp ... [PUBLIC target ...] [PRIVATE target ...])
 function(attest_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC attest_flags ${ARG_PUBLIC} PRIVATE attest_warnings
                                                                           ${ARG_PRIVATE})
+  if(ATTEST_PRECOMPILE AND fmt::fmt IN_LIST ARG_PRIVATE)
+    attest_reuse_headers(${name} attest_library_headers)
+  endif()
 endfunction()
 
 # attest_test(NAME SOURCES a.cpp ... LINK target ... [LABEL label]): one GoogleTest program a
@@ -32,11 +55,9 @@ function(attest_test name)
   target_link_libraries(${name} PRIVATE attest_flags attest_warnings ${ARG_LINK} GTest::gmock
                                         GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE ATTEST_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  # Tests run once for each time that they are compiled; optimising them, and reading these two
-  # headers for each, is most of what a build from nothing takes.
+  # Tests run once for each time that they are compiled.
   target_compile_options(${name} PRIVATE -O0)
-  target_precompile_headers(${name} PRIVATE "$<$<COMPILE_LANGUAGE:CXX>:<gmock/gmock.h$<ANGLE-R>>"
-                            "$<$<COMPILE_LANGUAGE:CXX>:<gtest/gtest.h$<ANGLE-R>>")
+  attest_reuse_headers(${name} attest_test_headers)
   if(ARG_LABEL)
     set(properties PROPERTIES LABELS ${ARG_LABEL})
   endif()

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "harness/cli/command.hpp"
+#include "harness/compare/compare_files.hpp"
 #include "harness/report/failure_text.hpp"
-#include "harness/trace/csv.hpp"
 
 namespace attest::cli {
 namespace {
@@ -23,12 +23,9 @@ CaseResult as_result(const Comparison& comparison) {
 int compare_command(const CompareOptions& options, const Globals& globals) {
   const auto level = parse_level(options.level);
   if (!level) return report_error(level.error());
-  const auto got = read_csv(options.got, CsvNeed::outputs);
-  if (!got) return report_error(got.error());
-  const auto want = read_csv(options.want, CsvNeed::outputs);
-  if (!want) return report_error(want.error());
-
-  const Comparison comparison = compare(*got, *want, Tolerances(*level));
+  const auto compared = compare_files(options.got, options.want, Tolerances(*level));
+  if (!compared) return report_error(compared.error());
+  const Comparison& comparison = *compared;
   if (!comparison.agrees()) {
     fmt::print("differ: {} (got), {} (want)\n", options.got, options.want);
     if (!comparison.mismatch.empty()) fmt::print("  {}\n", comparison.mismatch);

@@ -36,151 +36,152 @@ bool same_bits(float a, float b) {
 
 bool truth(std::uint8_t flag) { return flag != 0; }
 
-std::vector<std::size_t> compared_channels(const Trace& want) {
-  std::vector<std::size_t> chosen;
+}  // namespace
+
+TickComparer::TickComparer(const ChannelSet& got, const ChannelSet& want,
+                           const Tolerances& tolerances)
+    : tolerances_(tolerances) {
   const auto table = channels();
   for (std::size_t i = 0; i < table.size(); ++i) {
-    if (table[i].is_output() && want.present[i]) chosen.push_back(i);
+    if (!table[i].is_output() || !want[i]) continue;
+    if (got[i]) {
+      chosen_.push_back(i);
+    } else if (not_recorded_.empty()) {
+      not_recorded_ = fmt::format("{} was not recorded", table[i].name);
+    }
   }
-  return chosen;
+  if (chosen_.empty() && not_recorded_.empty()) {
+    not_recorded_ = "nothing to compare: no out/ channels";
+  }
 }
 
-class Comparer {
- public:
-  Comparer(const Trace& got, const Trace& want, const Tolerances& tolerances)
-      : got_(got), want_(want), tolerances_(tolerances), gain_(want) {}
-
-  Comparison run() {
-    result_.mismatch = structural_mismatch();
-    if (!result_.mismatch.empty()) return result_;
-    result_.ticks = want_.samples.size();
-    if (tolerances_.level() == Level::events) {
-      compare_events();
-      return result_;
-    }
-    const std::vector<std::size_t> chosen = compared_channels(want_);
-    for (std::size_t tick = 0; tick < want_.samples.size(); ++tick) compare_tick(tick, chosen);
-    return result_;
+void TickComparer::add(const Sample& got, const Sample& want,
+                       std::span<const ParameterChange> changes) {
+  if (!result_.mismatch.empty()) return;
+  if (got.in.timestamp != want.in.timestamp) {
+    result_.mismatch = fmt::format(
+        "tick {} is at {} us, expected at {} us; traces are compared tick by tick, so record both "
+        "at the same times",
+        tick_, got.in.timestamp, want.in.timestamp);
+    return;
   }
-
- private:
-  std::string structural_mismatch() const {
-    const std::size_t common = std::min(got_.samples.size(), want_.samples.size());
-    for (std::size_t tick = 0; tick < common; ++tick) {
-      const auto got = got_.samples[tick].in.timestamp;
-      const auto want = want_.samples[tick].in.timestamp;
-      if (got != want) {
-        return fmt::format(
-            "tick {} is at {} us, expected at {} us; traces are compared tick by "
-            "tick, so record both at the same times",
-            tick, got, want);
-      }
-    }
-    if (got_.samples.size() != want_.samples.size()) {
-      return fmt::format("{} ticks, expected {}", got_.samples.size(), want_.samples.size());
-    }
-    const std::vector<std::size_t> chosen = compared_channels(want_);
-    for (const std::size_t channel : chosen) {
-      if (!got_.present[channel])
-        return fmt::format("{} was not recorded", channels()[channel].name);
-    }
-    return chosen.empty() ? "nothing to compare: no out/ channels" : "";
-  }
-
-  void compare_events() {
-    const auto difference = first_event_difference(got_, want_);
-    if (!difference) return;
-    note(difference->tick, difference->channel, 0, 0);
-    result_.event = difference->what;
-    result_.deviating_ticks = 1;
-  }
-
-  void compare_tick(std::size_t tick, const std::vector<std::size_t>& chosen) {
-    const Sample& got = got_.samples[tick];
-    const Sample& want = want_.samples[tick];
-    if (want.in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) setpoint_ = tick;
-    if (std::memcmp(&got.out, &want.out, sizeof got.out) == 0) return;
-
+  for (const ParameterChange& change : changes) gain_.set(change);
+  const bool has_setpoint = (want.in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;
+  if (tick_ == 0 || has_setpoint) setpoint_ = want.in;
+  const bool differs = std::memcmp(&got.out, &want.out, sizeof got.out) != 0;
+  if (differs && tolerances_.level() != Level::events) {
     bool deviates = false;
-    for (const std::size_t channel : chosen) deviates |= !channel_agrees(tick, channel);
+    for (const std::size_t channel : chosen_) deviates |= !channel_agrees(channel, got, want);
     result_.deviating_ticks += deviates ? 1 : 0;
   }
+  ++tick_;
+}
 
-  bool channel_agrees(std::size_t tick, std::size_t channel) {
-    const Channel& what = channels()[channel];
-    const Sample& got = got_.samples[tick];
-    const Sample& want = want_.samples[tick];
-    if (what.type != ChannelType::f32) {
-      const auto g = static_cast<std::uint8_t>(value_of(what, got));
-      const auto w = static_cast<std::uint8_t>(value_of(what, want));
-      if (truth(g) == truth(w)) return true;
-      note(tick, channel, 0, 0);
-      return false;
-    }
-    const float g = float_of(what, got);
-    const float w = float_of(what, want);
-    if (same_bits(g, w)) return true;
-    const bool both_finite = std::isfinite(g) && std::isfinite(w);
-    const double tolerance = both_finite ? tolerance_at(tick, channel, g, w) : 0;
-    const double difference = std::abs(static_cast<double>(g) - static_cast<double>(w));
-    // Written so that a NaN difference is outside.
-    if (tolerances_.level() == Level::numeric && both_finite && difference <= tolerance) {
-      note_headroom(tick, channel, difference, tolerance);
-      return true;
-    }
-    if (!result_.first) result_.got_non_finite = !std::isfinite(g) && std::isfinite(w);
-    note(tick, channel, ulp_distance(g, w), tolerance);
+Comparison TickComparer::finish(std::size_t got_ticks, std::size_t want_ticks) {
+  if (result_.mismatch.empty() && got_ticks != want_ticks) {
+    result_.mismatch = fmt::format("{} ticks, expected {}", got_ticks, want_ticks);
+  }
+  if (result_.mismatch.empty()) result_.mismatch = not_recorded_;
+  if (!result_.mismatch.empty()) {
+    Comparison incomparable;
+    incomparable.mismatch = result_.mismatch;
+    return incomparable;
+  }
+  result_.ticks = tick_;
+  return result_;
+}
+
+bool TickComparer::channel_agrees(std::size_t channel, const Sample& got, const Sample& want) {
+  const Channel& what = channels()[channel];
+  if (what.type != ChannelType::f32) {
+    const auto g = static_cast<std::uint8_t>(value_of(what, got));
+    const auto w = static_cast<std::uint8_t>(value_of(what, want));
+    if (truth(g) == truth(w)) return true;
+    note(channel, got, want, 0, 0);
     return false;
   }
-
-  double tolerance_at(std::size_t tick, std::size_t channel, float got, float want) {
-    const Tolerance base = tolerances_.of(channel);
-    const double w = want;
-    const double tolerance = std::max(base.absolute, base.relative * std::abs(w));
-    const double difference = std::abs(static_cast<double>(got) - w);
-    const attest_inputs& in = want_.samples[tick].in;
-    const bool widens = channels()[channel].quantity == Quantity::rate &&
-                        tolerances_.level() == Level::numeric &&
-                        in.vehicle_control_mode.flag_control_attitude_enabled != 0;
-    if (!widens || difference <= tolerance) return tolerance;
-    const double tilt = tilt_error(in, want_.samples[setpoint_].in);
-    const double wider = tolerances_.widening(tilt, gain_.at(tick));
-    // No attitude, or a time constant of zero: nothing that floats could be near to.
-    return std::isfinite(wider) ? tolerance + wider : tolerance;
+  const float g = float_of(what, got);
+  const float w = float_of(what, want);
+  if (same_bits(g, w)) return true;
+  const bool both_finite = std::isfinite(g) && std::isfinite(w);
+  const double tolerance = both_finite ? tolerance_at(channel, want.in, g, w) : 0;
+  const double difference = std::abs(static_cast<double>(g) - static_cast<double>(w));
+  // Written so that a NaN difference is outside.
+  if (tolerances_.level() == Level::numeric && both_finite && difference <= tolerance) {
+    note_headroom(channel, difference, tolerance);
+    return true;
   }
+  if (!result_.first) result_.got_non_finite = !std::isfinite(g) && std::isfinite(w);
+  note(channel, got, want, ulp_distance(g, w), tolerance);
+  return false;
+}
 
-  void note(std::size_t tick, std::size_t channel, std::int64_t ulp, double tolerance) {
-    if (result_.first) return;
-    const Channel& what = channels()[channel];
-    result_.first = Deviation{tick,
-                              want_.samples[tick].in.timestamp,
-                              channel,
-                              value_of(what, got_.samples[tick]),
-                              value_of(what, want_.samples[tick]),
-                              ulp,
-                              tolerance};
-  }
+double TickComparer::tolerance_at(std::size_t channel, const attest_inputs& in, float got,
+                                  float want) const {
+  const Tolerance base = tolerances_.of(channel);
+  const double w = want;
+  const double tolerance = std::max(base.absolute, base.relative * std::abs(w));
+  const double difference = std::abs(static_cast<double>(got) - w);
+  const bool widens = channels()[channel].quantity == Quantity::rate &&
+                      tolerances_.level() == Level::numeric &&
+                      in.vehicle_control_mode.flag_control_attitude_enabled != 0;
+  if (!widens || difference <= tolerance) return tolerance;
+  const double wider = tolerances_.widening(tilt_error(in, setpoint_), gain_.value());
+  // No attitude, or a time constant of zero: nothing that floats could be near to.
+  return std::isfinite(wider) ? tolerance + wider : tolerance;
+}
 
-  void note_headroom(std::size_t tick, std::size_t channel, double difference, double tolerance) {
-    // -0 against +0 differs in bits, not in value.
-    const double ratio =
-        difference > 0 ? tolerance / difference : std::numeric_limits<double>::infinity();
-    if (result_.tightest && result_.tightest->ratio <= ratio) return;
-    result_.tightest = Headroom{ratio, tick, channel};
-  }
+void TickComparer::note(std::size_t channel, const Sample& got, const Sample& want,
+                        std::int64_t ulp, double tolerance) {
+  if (result_.first) return;
+  const Channel& what = channels()[channel];
+  result_.first = Deviation{
+      tick_, want.in.timestamp, channel, value_of(what, got), value_of(what, want), ulp, tolerance};
+}
 
-  const Trace& got_;
-  const Trace& want_;
-  const Tolerances& tolerances_;
-  AttitudeGain gain_;
-  std::size_t setpoint_ = 0;  // tick of the last attitude setpoint
-  Comparison result_;
-};
+void TickComparer::note_headroom(std::size_t channel, double difference, double tolerance) {
+  // -0 against +0 differs in bits, not in value.
+  const double ratio =
+      difference > 0 ? tolerance / difference : std::numeric_limits<double>::infinity();
+  if (result_.tightest && result_.tightest->ratio <= ratio) return;
+  result_.tightest = Headroom{ratio, tick_, channel};
+}
+
+namespace {
+
+// At the events level, where what happens at one tick is looked for at others.
+void compare_events(const Trace& got, const Trace& want, Comparison& result) {
+  const auto difference = first_event_difference(got, want);
+  if (!difference) return;
+  const auto& [tick, channel, what] = *difference;
+  const Channel& signal = channels()[channel];
+  result.first = Deviation{tick,
+                           want.samples[tick].in.timestamp,
+                           channel,
+                           value_of(signal, got.samples[tick]),
+                           value_of(signal, want.samples[tick]),
+                           0,
+                           0};
+  result.event = what;
+  result.deviating_ticks = 1;
+}
 
 }  // namespace
 
 Comparison compare(const Trace& got, const Trace& want, const Tolerances& tolerances) {
-  return Comparer(got, want, tolerances).run();
+  TickComparer comparer(got.present, want.present, tolerances);
+  std::span<const ParameterChange> changes = want.parameters;
+  const std::size_t common = std::min(got.samples.size(), want.samples.size());
+  for (std::size_t tick = 0; tick < common; ++tick) {
+    std::size_t now = 0;
+    while (now < changes.size() && changes[now].tick <= tick) ++now;
+    comparer.add(got.samples[tick], want.samples[tick], changes.first(now));
+    changes = changes.subspan(now);
+  }
+  Comparison result = comparer.finish(got.samples.size(), want.samples.size());
+  const bool of_events = tolerances.level() == Level::events && result.mismatch.empty();
+  if (of_events) compare_events(got, want, result);
+  return result;
 }
 
 namespace {

@@ -8,8 +8,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
+#include "harness/compare/tilt.hpp"
 #include "harness/compare/tolerance.hpp"
 #include "harness/trace/trace.hpp"
 
@@ -47,6 +50,35 @@ struct Comparison {
 };
 
 Comparison compare(const Trace& got, const Trace& want, const Tolerances& tolerances);
+
+// The same tick by tick, for traces that are not in memory. At the events level only whether the
+// traces can be compared at all.
+class TickComparer {
+ public:
+  // What the two have recorded. REQUIRES: the tolerances outlive this.
+  TickComparer(const ChannelSet& got, const ChannelSet& want, const Tolerances& tolerances);
+
+  // The next tick of both; `changes` are the parameters that `want` sets at it.
+  void add(const Sample& got, const Sample& want, std::span<const ParameterChange> changes);
+
+  // How long both were in all: the longer one's rest is not added.
+  Comparison finish(std::size_t got_ticks, std::size_t want_ticks);
+
+ private:
+  bool channel_agrees(std::size_t channel, const Sample& got, const Sample& want);
+  double tolerance_at(std::size_t channel, const attest_inputs& in, float got, float want) const;
+  void note(std::size_t channel, const Sample& got, const Sample& want, std::int64_t ulp,
+            double tolerance);
+  void note_headroom(std::size_t channel, double difference, double tolerance);
+
+  const Tolerances& tolerances_;
+  std::vector<std::size_t> chosen_;  // channels that both have and that are compared
+  std::string not_recorded_;         // what is wrong with the channels
+  std::size_t tick_ = 0;             // the next
+  attest_inputs setpoint_{};         // as of the last attitude setpoint
+  AttitudeGain gain_;
+  Comparison result_;
+};
 
 // Index of the first tick whose inputs (in/..., parameters in force and timestamp, by bits) differ;
 // empty when all agree.

@@ -27,15 +27,15 @@ double tilt_error(const attest_inputs& state, const attest_inputs& setpoint) {
   return std::atan2(sine, a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
 }
 
-double AttitudeGain::at(std::size_t tick) {
-  const auto& changes = trace_.parameters;
-  for (; next_ < changes.size() && changes[next_].tick <= tick; ++next_) {
-    const auto& [when, name, value] = changes[next_];
-    if (name == "MC_ROLL_P") roll_p_ = value;
-    if (name == "MC_ROLL_TC") roll_tc_ = value;
-    if (name == "MC_PITCH_P") pitch_p_ = value;
-    if (name == "MC_PITCH_TC") pitch_tc_ = value;
-  }
+void AttitudeGain::set(const ParameterChange& change) {
+  const auto& [when, name, value] = change;
+  if (name == "MC_ROLL_P") roll_p_ = value;
+  if (name == "MC_ROLL_TC") roll_tc_ = value;
+  if (name == "MC_PITCH_P") pitch_p_ = value;
+  if (name == "MC_PITCH_TC") pitch_tc_ = value;
+}
+
+double AttitudeGain::value() const {
   return std::max(std::abs(roll_p_ * 0.2 / roll_tc_), std::abs(pitch_p_ * 0.2 / pitch_tc_));
 }
 

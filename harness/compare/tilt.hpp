@@ -11,18 +11,14 @@ namespace attest {
 // quaternion is not finite or zero.
 double tilt_error(const attest_inputs& state, const attest_inputs& setpoint);
 
-// The larger of the roll and pitch attitude gains [1/s], without their signs, in force at each
-// tick, walking forward.
+// The larger of the roll and pitch attitude gains [1/s], without their signs, as parameters are
+// set.
 class AttitudeGain {
  public:
-  explicit AttitudeGain(const Trace& trace) : trace_(trace) {}
-
-  // REQUIRES: ticks do not decrease from call to call.
-  double at(std::size_t tick);
+  void set(const ParameterChange& change);
+  double value() const;
 
  private:
-  const Trace& trace_;
-  std::size_t next_ = 0;  // first change not yet in force
   // Defaults of PX4 v1.5.5: MC_{ROLL,PITCH}_P and MC_{ROLL,PITCH}_TC.
   double roll_p_ = 6.5, roll_tc_ = 0.2, pitch_p_ = 6.5, pitch_tc_ = 0.2;
 };

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,26 @@ enum class CsvNeed {
 // column, missing channel, short or long row, a cell that is not a number of its channel's type,
 // timestamps that do not increase, no rows.
 Result<Trace> read_csv(const std::filesystem::path& path, CsvNeed need);
+
+// The same a tick at a time, in memory that does not grow with the length of the trace.
+class TraceReader {
+ public:
+  static Result<TraceReader> open(const std::filesystem::path& path, CsvNeed need);
+  TraceReader(TraceReader&&) noexcept;
+  ~TraceReader();
+
+  const std::string& file() const;
+  const ChannelSet& present() const;
+
+  // The next tick, with the parameters that change at it in place of what was in `changes`; false
+  // after the last.
+  Result<bool> next(Sample& sample, std::vector<ParameterChange>& changes);
+
+ private:
+  struct Impl;
+  explicit TraceReader(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
 
 // Which columns to write. Constant channels are left to the provenance.
 struct CsvColumns {

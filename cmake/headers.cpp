@@ -1,0 +1,1 @@
+// Headers that others reuse precompiled need a source to be compiled with.

@@ -1,0 +1,52 @@
+#include "harness/compare/compare_files.hpp"
+
+#include "harness/trace/csv.hpp"
+
+namespace attest {
+namespace {
+
+// A file, the tick it is at, and how many there were.
+struct Side {
+  TraceReader reader;
+  Sample sample{};
+  std::vector<ParameterChange> changes{};
+  std::size_t ticks = 0;
+
+  Result<bool> next() {
+    auto more = reader.next(sample, changes);
+    if (more && *more) ++ticks;
+    return more;
+  }
+};
+
+Result<Comparison> compare_whole(const std::filesystem::path& got,
+                                 const std::filesystem::path& want, const Tolerances& tolerances) {
+  const auto all_got = read_csv(got, CsvNeed::outputs);
+  if (!all_got) return tl::unexpected(all_got.error());
+  const auto all_want = read_csv(want, CsvNeed::outputs);
+  if (!all_want) return tl::unexpected(all_want.error());
+  return compare(*all_got, *all_want, tolerances);
+}
+
+}  // namespace
+
+Result<Comparison> compare_files(const std::filesystem::path& got,
+                                 const std::filesystem::path& want, const Tolerances& tolerances) {
+  if (tolerances.level() == Level::events) return compare_whole(got, want, tolerances);
+  auto got_reader = TraceReader::open(got, CsvNeed::outputs);
+  if (!got_reader) return tl::unexpected(got_reader.error());
+  auto want_reader = TraceReader::open(want, CsvNeed::outputs);
+  if (!want_reader) return tl::unexpected(want_reader.error());
+  Side a{std::move(*got_reader)}, b{std::move(*want_reader)};
+  TickComparer comparer(a.reader.present(), b.reader.present(), tolerances);
+  while (true) {
+    // Both to their end, so that a mistake anywhere in a file is told.
+    const auto more_a = a.next(), more_b = b.next();
+    if (!more_a) return tl::unexpected(more_a.error());
+    if (!more_b) return tl::unexpected(more_b.error());
+    if (!*more_a && !*more_b) return comparer.finish(a.ticks, b.ticks);
+    if (*more_a && *more_b) comparer.add(a.sample, b.sample, b.changes);
+  }
+}
+
+}  // namespace attest

@@ -1,0 +1,81 @@
+// Files beside each other, a tick at a time: what the comparison of whole traces says.
+#include "harness/compare/compare_files.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/trace/csv.hpp"
+#include "tests/harness/compare/sample_trace.hpp"
+#include "tests/harness/core/temporary_directory.hpp"
+
+namespace attest {
+namespace {
+
+using testing::HasSubstr;
+
+class CompareFilesTest : public testing::Test {
+ protected:
+  std::filesystem::path write(const std::string& name, const Trace& trace) const {
+    const auto path = directory_.path() / name;
+    auto file = AtomicFile::open(path);
+    EXPECT_TRUE(file && write_csv(trace, all_columns(trace), *file) && file->commit());
+    return path;
+  }
+
+  Result<Comparison> compared(const Trace& got, const Trace& want) const {
+    const auto a = write("got.csv", got), b = write("want.csv", want);
+    const auto whole =
+        compare(*read_csv(a, CsvNeed::outputs), *read_csv(b, CsvNeed::outputs), tolerances_);
+    auto files = compare_files(a, b, tolerances_);
+    if (!files) return files;
+    EXPECT_EQ(files->ticks, whole.ticks);
+    EXPECT_EQ(files->deviating_ticks, whole.deviating_ticks);
+    EXPECT_EQ(files->mismatch, whole.mismatch);
+    EXPECT_EQ(files->first.has_value(), whole.first.has_value());
+    return files;
+  }
+
+  Tolerances tolerances_{Level::numeric};
+  TemporaryDirectory directory_;
+};
+
+TEST_F(CompareFilesTest, SayWhatTracesSay) {
+  const Trace want = sample_trace(50);
+  EXPECT_TRUE(compared(want, want)->agrees());
+  Trace got = want;
+  got.samples[17].out.vehicle_rates_setpoint.pitch += 1;
+  const auto off = compared(got, want);
+  ASSERT_TRUE(off->first);
+  EXPECT_EQ(off->first->tick, 17u);
+}
+
+TEST_F(CompareFilesTest, ThatAreOfAnotherLengthAreNotAlike) {
+  const Trace want = sample_trace(50);
+  Trace got = want;
+  got.samples.resize(20);
+  EXPECT_EQ(compared(got, want)->mismatch, "20 ticks, expected 50");
+  EXPECT_EQ(compared(want, got)->mismatch, "50 ticks, expected 20");
+}
+
+TEST_F(CompareFilesTest, ATimestampThatIsAnotherEndsIt) {
+  const Trace want = sample_trace(50);
+  Trace got = want;
+  got.samples[3].out.vehicle_rates_setpoint.pitch += 1;
+  got.samples[40].in.timestamp += 1;
+  const auto other = compared(got, want);
+  EXPECT_THAT(other->mismatch, HasSubstr("tick 40 is at"));
+  EXPECT_FALSE(other->first);
+}
+
+TEST_F(CompareFilesTest, AMistakeBehindTheShorterTraceIsTold) {
+  const auto a = write("got.csv", sample_trace(2)), b = write("want.csv", sample_trace(5));
+  std::string text = *read_file(b);
+  text.replace(text.rfind(',') + 1, std::string::npos, "x\n");
+  ASSERT_TRUE(write_file(b, text));
+  const auto result = compare_files(a, b, tolerances_);
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().line, 6);
+}
+
+}  // namespace
+}  // namespace attest
