@@ -17,9 +17,9 @@ target_compile_options(
                             $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 
 # What nearly every source reads takes longer to read than the source takes to compile. Tests always
-# share it precompiled; the harness only in builds whose warnings nobody waits for, as gcc 12 raises
 # share it precompiled; the harness only in builds whose warnings nobody waits for: gcc 12 raises
 # false alarms about precompiled headers, and a source that forgets an include is to be told.
+option(ATTEST_PRECOMPILE "Precompile common headers for the harness: quicker from nothing" OFF)
 
 # attest_headers(TARGET header ...): a target whose precompiled headers others reuse, which have its
 # flags at least, and no source in C.
