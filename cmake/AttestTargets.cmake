@@ -16,9 +16,9 @@ target_compile_options(
                             # False alarms of gcc 12 about std::string (gcc bug 105651).
                             $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 
-# What nearly every source reads takes longer to read than the source takes to compile. Tests always
-# share it precompiled; the harness in builds from nothing, not in daily work, where a source that
-# forgets an include is to be told.
+# What nearly every source reads takes longer to read than the source takes to compile. Tests
+# always share it precompiled; the harness in builds from nothing, not in daily work, where a source
+# that forgets an include is to be told.
 option(ATTEST_PRECOMPILE "Precompile common headers for the harness: quicker from nothing" OFF)
 # About std::string in precompiled headers gcc 12 raises these, which are false; nor are they errors.
 if(ATTEST_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
