@@ -20,7 +20,7 @@ target_compile_options(
 # always share it precompiled; the harness in builds from nothing, not in daily work, where a source
 # that forgets an include is to be told.
 option(ATTEST_PRECOMPILE "Precompile common headers for the harness: quicker from nothing" OFF)
-# About std::string in precompiled headers gcc 12 raises these, which are false; nor are they errors.
+# About std::string in precompiled headers gcc 12 raises these, which are false alarms.
 if(ATTEST_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(attest_warnings INTERFACE -Wno-array-bounds -Wno-stringop-overflow)
 endif()
