@@ -66,7 +66,8 @@ void whole_suite() {
 // Outputs only, which is what a long comparison is about.
 void write_long_trace(const std::filesystem::path& path, std::size_t ticks) {
   Trace trace;
-  trace.present = channels_with_prefix("out/") | channels_with_prefix("timestamp");
+  trace.present =
+      channels_of(Part::mc_att_control, "out/") | channels_of(Part::mc_att_control, "timestamp");
   trace.samples.resize(ticks);
   for (std::size_t i = 0; i < ticks; ++i) {
     trace.samples[i].in.timestamp = 5'000'000 + 125 * i;

@@ -1,7 +1,7 @@
-# What `cmake --install` gives a port author: the attest binary, the ABI header, the cases with
+# What `cmake --install` gives a port author: the attest binary, the ABI headers, the cases with
 # their goldens, the starters, and the CMake package `attest` with
 #
-#     attest::unit     the ABI header, for the port to link (C or C++)
+#     attest::unit     the ABI headers, for the port to link (C or C++)
 #     attest::attest   the binary, for add_test(COMMAND attest::attest run --port lib:...)
 include(CMakePackageConfigHelpers)
 
@@ -10,7 +10,8 @@ set(ATTEST_INSTALL_DATADIR ${CMAKE_INSTALL_DATADIR}/attest)
 
 install(TARGETS attest_unit EXPORT attestTargets)
 install(TARGETS attest EXPORT attestTargets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(FILES controller/attest_unit.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(FILES controller/attest_unit.h controller/attest_actuation.h
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY cases golden models DESTINATION ${ATTEST_INSTALL_DATADIR})
 # Without what a build in the source tree leaves there.
 install(

@@ -1,45 +1,40 @@
 #include "controller/actuation/battery_status.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace attest::actuation {
 namespace {
 
-constexpr float filter_keep = 0.99f;
-constexpr float filter_take = 0.01f;
-constexpr float scale_max = 1.3f;
+constexpr BatteryOptions defaults;
+constexpr float unknown_resistance = -1;
 
-// The drop under load is fitted to throttle plus this share, so that it is not zero at idle.
-constexpr float idle_share = 0.1f;
+constexpr BatteryParameter table[] = {
+    {"BAT_N_CELLS", static_cast<float>(defaults.cell_count), "1", "cells in series"},
+    {"BAT_V_EMPTY", defaults.empty_cell_V, "V", "a cell's voltage when it is empty"},
+    {"BAT_V_CHARGED", defaults.full_cell_V, "V", "a cell's voltage when it is full"},
+    {"BAT_V_LOAD_DROP", defaults.load_drop_V, "V", "a cell's drop at full throttle"},
+    {"BAT_R_INTERNAL", unknown_resistance, "ohm", "a cell's resistance; negative: unknown"},
+};
 
 }  // namespace
 
-float BatteryStatus::update(const BatterySample& sample) {
-  const float cell_V = sample.voltage_V / static_cast<float>(options_.cell_count);
-  const float range_V = options_.full_cell_V - options_.empty_cell_V;
-  filter_remaining((cell_V - (options_.empty_cell_V - load_drop_V(sample))) / range_V);
-  return scale();
-}
+std::span<const BatteryParameter> battery_parameters() { return table; }
 
-float BatteryStatus::load_drop_V(const BatterySample& sample) const {
-  if (options_.internal_resistance_ohm) return sample.current_A * *options_.internal_resistance_ohm;
-  if (!sample.armed) return 0.0f;
-  return options_.load_drop_V * (std::abs(sample.throttle) + idle_share) / (1.0f + idle_share);
-}
-
-void BatteryStatus::filter_remaining(float measured) {
-  const float filtered = started_ ? remaining_ * filter_keep + measured * filter_take : measured;
-  started_ = true;
-  remaining_ = std::clamp(filtered, 0.0f, 1.0f);
-}
-
-// The rest voltage of a full cell over that of this one.
-float BatteryStatus::scale() const {
-  const float range_V = options_.full_cell_V - options_.empty_cell_V;
-  const float factor = options_.full_cell_V / (options_.empty_cell_V + range_V * remaining_);
-  if (!std::isfinite(factor) || factor < 1.0f) return 1.0f;
-  return std::min(factor, scale_max);
+bool set_battery_parameter(BatteryOptions& options, std::string_view name, float value) {
+  if (name == "BAT_N_CELLS") {
+    constexpr float most_cells = 100;
+    if (!(value >= 1 && value <= most_cells && value == std::floor(value))) return false;
+    options.cell_count = static_cast<int>(value);
+  } else if (name == "BAT_V_EMPTY") {
+    options.empty_cell_V = value;
+  } else if (name == "BAT_V_CHARGED") {
+    options.full_cell_V = value;
+  } else if (name == "BAT_V_LOAD_DROP") {
+    options.load_drop_V = value;
+  } else if (name == "BAT_R_INTERNAL") {
+    options.internal_resistance_ohm = value >= 0 ? std::optional(value) : std::nullopt;
+  } else {
+    return false;
+  }
+  return true;
 }
 
 }  // namespace attest::actuation

@@ -1,14 +1,10 @@
 // The multirotor mixer: from torque and thrust controls to motor commands, with saturation.
 //
-// The algorithm of PX4 v1.5.5 MultirotorMixer: when motors saturate, roll and pitch are kept as
-// long as collective thrust can be traded for them, then scaled; yaw gives way last, rotor by
-// rotor.
-//
-// Controls: roll, pitch, yaw about body x, y, z (FRD), dimensionless, and thrust 0..1. Motor
-// commands are -1 (stopped) .. 1 (full). All in binary32. mix() does not allocate; a mixer holds
-// the previous commands and belongs to one thread at a time.
+// Motor commands are -1 (stopped) .. 1 (full). mix() does not allocate; a mixer holds the previous
+// commands and belongs to one thread at a time.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -17,70 +13,67 @@
 
 #include <tl/expected.hpp>
 
+#include "controller/actuation/mixer_geometry.hpp"
+#include "controller/actuation/mixer_stages.hpp"
+
 namespace attest::actuation {
 
-// What one unit of each control does to one motor.
-struct Rotor {
-  float roll;
-  float pitch;
-  float yaw;  // +1 turns counter-clockwise seen from above, -1 clockwise
+inline constexpr std::size_t rotors_max = 8;
+
+struct MixerDefinition {
+  std::span<const Rotor> rotors;  // of the static geometry table
+  float roll_scale, pitch_scale, yaw_scale;
+  float idle;  // command of a motor that is asked for nothing
 };
 
-struct Controls {
-  float roll;
-  float pitch;
-  float yaw;
-  float thrust;
-};
+// From one line of a mixer file, "R: <geometry> <roll> <pitch> <yaw> <deadband>", such as
+// "R: 4x 10000 10000 10000 0". Geometries: 4x 4+ 6x 8x. The numbers are integers in 1/10000: scales
+// of the controls, and the fraction of the range in which a motor does not turn. The error says
+// what is wrong with the text.
+tl::expected<MixerDefinition, std::string> parse_mixer(std::string_view text);
 
-// What the mixer had to give up in one call: goes back to the controller as
-// multirotor_motor_limits.
-struct Saturation {
-  bool lower;  // a motor was asked for less than idle
-  bool upper;  // a motor was asked for more than full
-  bool yaw;    // yaw was cut
-};
-
-class Mixer {
+// Stages replace those of mixer_stages.hpp: controller/faults has wrong ones.
+template <typename Scalar, typename Stages = MixerStages<Scalar>>
+class BasicMixer {
  public:
-  static constexpr std::size_t rotors_max = 8;
+  using Controls = MixerControls<Scalar>;
 
-  // From one line of a mixer file, "R: <geometry> <roll> <pitch> <yaw> <deadband>", such as
-  // "R: 4x 10000 10000 10000 0". Geometries: 4x 4+ 6x 8x. The numbers are integers in 1/10000:
-  // scales of the controls, and the fraction of the range in which a motor does not turn. The
-  // error says what is wrong with the text.
-  static tl::expected<Mixer, std::string> parse(std::string_view text);
+  explicit BasicMixer(const MixerDefinition& definition, const Stages& stages = {})
+      : rotors_(definition.rotors),
+        scales_{definition.roll_scale, definition.pitch_scale, definition.yaw_scale,
+                definition.idle},
+        stages_(stages) {}
 
   // One command for each rotor, valid until the next call. delta_out_max [1] limits the change of
   // each command since the previous call, which starts from 0; not positive: no limit.
-  std::span<const float> mix(const Controls& controls, float delta_out_max, Saturation& saturation);
-
-  std::size_t rotor_count() const { return rotors_.size(); }
+  std::span<const Scalar> mix(const Controls& controls, Scalar delta_out_max,
+                              Saturation& saturation) {
+    Controls c = stages_.scaled(controls, scales_);
+    Scalar min_out = 1, max_out = 0;
+    for (const Rotor& rotor : rotors_) {
+      const Scalar out = stages_.without_yaw(rotor, c, 1) + c.thrust;
+      if (out < min_out) min_out = out;
+      if (out > max_out) max_out = out;
+    }
+    const MixerFit<Scalar> fit = stages_.fit(min_out, max_out, c.thrust);
+    saturation = stages_.saturation(min_out, max_out);
+    saturation.yaw = stages_.yield_yaw(rotors_, c, fit);
+    for (std::size_t i = 0; i < rotors_.size(); ++i) {
+      const Scalar wanted = stages_.command(rotors_[i], c, fit, scales_.idle);
+      commands_[i] = stages_.slew(wanted, commands_[i], delta_out_max);
+    }
+    return std::span<const Scalar>(commands_).first(rotors_.size());
+  }
 
   std::span<const Rotor> rotors() const { return rotors_; }
 
  private:
-  struct Scales {
-    float roll, pitch, yaw, idle;
-  };
-
-  // How saturated roll and pitch are fitted between the motors' limits.
-  struct Fit {
-    float boost = 0.0f;             // added to the thrust of all rotors
-    float roll_pitch_scale = 1.0f;  // what is left of roll and pitch
-  };
-
-  Mixer(std::span<const Rotor> rotors, const Scales& scales) : rotors_(rotors), scales_(scales) {}
-
-  Controls scaled(const Controls& controls) const;
-  static Fit fit(float min_out, float max_out, float thrust);
-  bool yield_yaw(Controls& controls, const Fit& fit) const;
-  float command(const Rotor& rotor, const Controls& controls, const Fit& fit) const;
-  static float slew(float wanted, float previous, float delta_out_max);
-
-  std::span<const Rotor> rotors_;  // of the static geometry table
-  Scales scales_;
-  std::array<float, rotors_max> commands_{};
+  std::span<const Rotor> rotors_;
+  MixerScales<Scalar> scales_;
+  [[no_unique_address]] Stages stages_;
+  std::array<Scalar, rotors_max> commands_{};
 };
+
+using Mixer = BasicMixer<float>;
 
 }  // namespace attest::actuation

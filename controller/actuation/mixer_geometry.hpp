@@ -4,9 +4,14 @@
 #include <span>
 #include <string_view>
 
-#include "controller/actuation/mixer.hpp"
-
 namespace attest::actuation {
+
+// What one unit of each control does to one motor.
+struct Rotor {
+  float roll;
+  float pitch;
+  float yaw;  // +1 turns counter-clockwise seen from above, -1 clockwise
+};
 
 struct MixerGeometry {
   std::string_view name;

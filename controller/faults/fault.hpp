@@ -37,6 +37,11 @@ enum class Stage {
   timing,
   recovery,
   output,
+  mixer_scaling,
+  mixer_fit,
+  mixer_yaw,
+  mixer_output,
+  battery_status,
 };
 std::string_view name_of(Stage stage);  // "integrator gate"
 
@@ -59,6 +64,9 @@ std::span<const Fault* const> catalogue();
 
 // Null when there is none of that id.
 const Fault* find_fault(std::string_view id);
+
+// The law with these mistakes in it, together.
+FaultyLaw law_with(std::span<const Fault* const> faults);
 
 // A controller of profile `px4-v1.5.5` or `px4-v1.3.4` with some mistakes.
 class FaultyController {

@@ -2,15 +2,12 @@
 #include "controller/reference/mc_att_control_definition.hpp"
 
 namespace attest::faults {
-namespace {
 
 FaultyLaw law_with(std::span<const Fault* const> faults) {
   FaultyLaw law;
   for (const Fault* fault : faults) fault->put_in(law);
   return law;
 }
-
-}  // namespace
 
 struct FaultyController::Controller {
   reference::McAttControl<Scalar, FaultyLaw> control;

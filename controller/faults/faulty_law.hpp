@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "controller/actuation/battery_status.hpp"
+#include "controller/actuation/mixer.hpp"
 #include "controller/reference/mc_att_control.hpp"
 
 namespace attest::faults {
@@ -90,11 +92,41 @@ struct StepStages {
   std::function<float(const Topics&, const Gains&, Profile)> battery_factor = Law::battery_factor;
 };
 
+// As actuation::MixerStages.
+struct MixerStages {
+  using Law = actuation::MixerStages<Scalar>;
+  using Controls = Law::Controls;
+  using Fit = Law::Fit;
+  std::function<Controls(const Controls&, const Law::Scales&)> scaled = Law::scaled;
+  std::function<Scalar(const actuation::Rotor&, const Controls&, Scalar)> without_yaw =
+      Law::without_yaw;
+  std::function<actuation::Saturation(Scalar, Scalar)> saturation = Law::saturation;
+  std::function<Fit(Scalar, Scalar, Scalar)> fit = Law::fit;
+  std::function<bool(std::span<const actuation::Rotor>, Controls&, const Fit&)> yield_yaw =
+      Law::yield_yaw;
+  std::function<Scalar(const actuation::Rotor&, const Controls&, const Fit&, Scalar)> command =
+      Law::command;
+  std::function<Scalar(Scalar, Scalar, Scalar)> slew = Law::slew;
+};
+
+// As actuation::BatteryStages.
+struct BatteryStages {
+  using Law = actuation::BatteryStages<Scalar>;
+  using Options = actuation::BatteryOptions;
+  using Sample = actuation::BatterySample;
+  std::function<Scalar(const Sample&, const Options&)> load_drop_V = Law::load_drop_V;
+  std::function<Scalar(const Sample&, Scalar, const Options&)> measured = Law::measured;
+  std::function<Scalar(Scalar, Scalar, bool)> filtered = Law::filtered;
+  std::function<Scalar(Scalar, const Options&)> scale = Law::scale;
+};
+
 struct FaultyLaw {
   StepStages step;
   AttitudeStages attitude;
   RateStages rate;
   RecoveryStages recovery;
+  MixerStages mixer;
+  BatteryStages battery;
 
   // What a port does to its inputs before the law and to its outputs after it.
   std::function<void(attest_inputs&)> before = [](attest_inputs&) {};

@@ -1,5 +1,6 @@
 #include "controller/reference/unit.hpp"
 
+#include "controller/actuation/unit_table.hpp"
 #include "controller/reference/mc_att_control.hpp"
 #include "controller/reference/unit_table.hpp"
 
@@ -16,7 +17,8 @@ namespace {
 
 template <typename Scalar>
 constexpr attest_unit table = UnitTable<McAttControl<Scalar>>::named("attest-reference",
-                                                                     ATTEST_REFERENCE_VERSION);
+                                                                     ATTEST_REFERENCE_VERSION,
+                                                                     actuation::extension<Scalar>);
 
 }  // namespace
 

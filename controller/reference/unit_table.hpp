@@ -31,8 +31,12 @@ struct UnitTable {
     return ATTEST_OK;
   }
 
-  static constexpr attest_unit named(const char* name, const char* version) {
-    return {ATTEST_UNIT_ABI_VERSION, name, version, create, destroy, set_parameter, step, nullptr};
+  using Extension = decltype(attest_unit::extension);
+
+  static constexpr attest_unit named(const char* name, const char* version,
+                                     Extension extension = nullptr) {
+    return {ATTEST_UNIT_ABI_VERSION, name, version,  create, destroy,
+            set_parameter,           step, extension};
   }
 };
 

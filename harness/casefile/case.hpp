@@ -108,7 +108,9 @@ struct Case {
   bool exact_only = false;
   // Where bits are the platform's (its exp and acos) and not the law's: never compared exactly.
   bool numeric_only = false;
-  std::optional<Flight> flight;  // empty: open loop, every input is scripted
+  std::optional<Flight> flight;      // empty: open loop, every input is scripted
+  Part part = Part::mc_att_control;  // which is given the inputs
+  std::string mixer;                 // of Part::mixer, its definition
 
   // Every way to run it: open loop one a rate, ascending; a flight by flyer, then rate.
   std::vector<Setup> setups() const;

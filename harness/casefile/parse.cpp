@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "controller/actuation/battery_status.hpp"
+#include "controller/actuation/mixer.hpp"
 #include "controller/reference/parameters.hpp"
 #include "harness/casefile/parse_flight.hpp"
 #include "harness/casefile/parse_signal.hpp"
@@ -27,11 +29,23 @@ constexpr std::int64_t schema_version = 1;
 // A minute of an 8 kHz loop is half of it; a trace of a million samples fits in memory.
 constexpr std::int64_t max_ticks = 1'000'000;
 
-std::vector<Rate> parse_rates(const TomlTable& root) {
+// A mixer has no clock, and a battery is looked at 100 times a second.
+std::vector<Rate> default_rates(Part part) {
+  switch (part) {
+    case Part::mixer:
+      return {Rate::hz(250)};
+    case Part::battery_status:
+      return {Rate::hz(100)};
+    default:
+      return standard_rates();
+  }
+}
+
+std::vector<Rate> parse_rates(const TomlTable& root, Part part) {
   constexpr const char* key = "rates_hz";
   if (!root.has(key)) {
     if (root.has("rates_why")) root.error("rates_why", "explains `rates_hz`, which is not there");
-    return standard_rates();
+    return default_rates(part);
   }
   root.text("rates_why");  // required: a case that leaves out rates must say why
   std::vector<Rate> rates;
@@ -118,22 +132,36 @@ void check_unit(const TomlTable& root, const Case& parsed) {
   }
 }
 
-std::vector<std::string> parameter_names() {
-  std::vector<std::string> names;
-  for (const auto& info : reference::parameter_table()) names.emplace_back(info.name);
-  return names;
+// What the case is for: `[mixer]` and `[battery]` say so.
+void parse_part(const TomlTable& root, Case& parsed) {
+  for (const char* other : {"mixer", "battery"}) {
+    if (!root.has(other)) continue;
+    if (root.has("flight")) root.error(other, "is a case of its own; leave [flight] out");
+    if (parsed.part != Part::mc_att_control) root.error(other, "`mixer` is given too; keep one");
+    parsed.part = root.has("mixer") ? Part::mixer : Part::battery_status;
+  }
+  if (parsed.part != Part::mixer) return;
+  const TomlTable table = root.table("mixer");
+  parsed.mixer = table.text("definition");
+  if (const auto mixer = actuation::parse_mixer(parsed.mixer); !mixer) {
+    table.error("definition", mixer.error());
+  }
 }
 
-std::vector<ParameterStimulus> parse_parameters(const TomlTable& root) {
+std::vector<ParameterStimulus> parse_parameters(const TomlTable& root, Part part) {
   std::vector<ParameterStimulus> parameters;
   if (!root.has("parameters")) return parameters;
   const TomlTable table = root.table("parameters");
+  const std::vector<std::string> known = parameter_names(part);
   for (const std::string& name : table.keys()) {
     parameters.push_back({name, parse_signal(table, name)});
-    if (!reference::find_parameter(name)) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
       table.error(name, fmt::format("unknown parameter `{}`{}; `attest list --parameters` shows "
                                     "them all",
-                                    name, suggestion(name, parameter_names())));
+                                    name, suggestion(name, known)));
+    }
+    if (part != Part::mc_att_control && varies(parameters.back().signal)) {
+      table.error(name, "does not change while it runs: give one value");
     }
   }
   return parameters;
@@ -203,7 +231,8 @@ void parse_body(const TomlTable& root, Case& parsed) {
   if (root.integer("schema") != schema_version && root.has("schema")) {
     root.error("schema", fmt::format("must be {}", schema_version));
   }
-  parsed.rates = parse_rates(root);
+  parse_part(root, parsed);
+  parsed.rates = parse_rates(root, parsed.part);
   parse_duration(root, parsed);
   if (root.has("level")) {
     const std::string level = root.text("level");
@@ -213,13 +242,23 @@ void parse_body(const TomlTable& root, Case& parsed) {
   }
   parsed.unit = parse_unit(root);
   check_unit(root, parsed);
-  parsed.parameters = parse_parameters(root);
-  parsed.topics = parse_topics(root, root.has("flight"));
+  parsed.parameters = parse_parameters(root, parsed.part);
+  parsed.topics = parse_topics(root, parsed.part, root.has("flight"));
   if (root.has("flight")) parse_flight(root, models_beside(parsed.file), parsed);
   parse_tolerances(root, parsed);
 }
 
 }  // namespace
+
+std::vector<std::string> parameter_names(Part part) {
+  std::vector<std::string> names;
+  if (part == Part::mc_att_control) {
+    for (const auto& info : reference::parameter_table()) names.emplace_back(info.name);
+  } else if (part == Part::battery_status) {
+    for (const auto& info : actuation::battery_parameters()) names.emplace_back(info.name);
+  }
+  return names;
+}
 
 Result<Case> parse_case(const fs::path& file) {
   auto text = read_file(file);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "harness/casefile/case.hpp"
@@ -16,5 +17,8 @@ Result<Case> parse_case(const std::filesystem::path& file);
 
 // The case files below a folder, in the order of their paths. Errors: no such folder, no cases.
 Result<std::vector<std::filesystem::path>> find_case_files(const std::filesystem::path& folder);
+
+// Of the parameters that a case may set.
+std::vector<std::string> parameter_names(Part part);
 
 }  // namespace attest

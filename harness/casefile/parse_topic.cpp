@@ -39,6 +39,10 @@ double baseline(std::string_view name) {
       {"in/vehicle_control_mode.flag_control_rates_enabled", 1},
       {"in/vehicle_control_mode.flag_control_attitude_enabled", 1},
       {"in/vehicle_control_mode.flag_control_rattitude_enabled", 1},
+      {"in/actuator_controls_0.control[3]", 0.5},
+      {"in/battery.voltage_v", 12.15},
+      {"in/battery.throttle", 0.5},
+      {"in/battery.armed", 1},
   };
   const auto found = values.find(name);
   return found == values.end() ? 0 : found->second;
@@ -219,25 +223,11 @@ TopicStimulus baseline_topic(std::string_view name, std::uint32_t updated_bit, b
   return topic;
 }
 
-void parse_topic(const TomlTable& table, TopicStimulus& topic) {
-  if (topic.topic == control_mode) parse_flight_mode(table, topic);
-  for (FieldStimulus& field : topic.fields) {
-    const std::string name(field_of(channels()[field.channel].name));
-    parse_field(table, name, field);
+std::vector<TopicStimulus> baseline_topics(Part part, bool is_flight) {
+  if (part == Part::mixer) {
+    return {baseline_topic("actuator_controls_0", 0, false), baseline_topic("mixer", 0, false)};
   }
-  for (std::size_t i = 0; i < topic.fields.size(); ++i) {
-    const std::string_view name = field_of(channels()[topic.fields[i].channel].name);
-    if (!name.ends_with("[0]")) continue;
-    parse_quaternion(table, std::string(name.substr(0, name.size() - 3)), topic, i);
-    break;
-  }
-  // control_state is what makes a step: it has no publication of its own.
-  if (topic.topic != control_state) topic.publication = parse_publication(table);
-}
-
-}  // namespace
-
-std::vector<TopicStimulus> parse_topics(const TomlTable& root, bool is_flight) {
+  if (part == Part::battery_status) return {baseline_topic("battery", 0, false)};
   std::vector<TopicStimulus> topics{baseline_topic(control_state, 0, is_flight)};
   std::uint32_t bit = 1;
   for (const std::string_view name : updated_topics()) {
@@ -246,6 +236,30 @@ std::vector<TopicStimulus> parse_topics(const TomlTable& root, bool is_flight) {
     }
     bit <<= 1;
   }
+  return topics;
+}
+
+void parse_topic(const TomlTable& table, TopicStimulus& topic) {
+  if (topic.topic == control_mode) parse_flight_mode(table, topic);
+  for (FieldStimulus& field : topic.fields) {
+    const std::string name(field_of(channels()[field.channel].name));
+    parse_field(table, name, field);
+  }
+  for (std::size_t i = 0; i < topic.fields.size(); ++i) {
+    const std::string_view name = field_of(channels()[topic.fields[i].channel].name);
+    const bool is_quaternion = channels()[topic.fields[i].channel].quantity == Quantity::quaternion;
+    if (!is_quaternion || !name.ends_with("[0]")) continue;
+    parse_quaternion(table, std::string(name.substr(0, name.size() - 3)), topic, i);
+    break;
+  }
+  // What makes a step, as control_state, has no publication of its own.
+  if (topic.updated_bit != 0) topic.publication = parse_publication(table);
+}
+
+}  // namespace
+
+std::vector<TopicStimulus> parse_topics(const TomlTable& root, Part part, bool is_flight) {
+  std::vector<TopicStimulus> topics = baseline_topics(part, is_flight);
   if (is_flight) {
     std::erase_if(topics, [&](const TopicStimulus& topic) {
       if (topic.topic != control_state && topic.topic != motor_limits) return false;

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "controller/actuation/mixer.hpp"
 #include "harness/schedule/ticks.hpp"
 
 namespace attest {
@@ -206,12 +207,14 @@ std::vector<Nanoseconds> unit_ticks(const Case& the_case, const Rate& rate) {
 
 struct Stimulus::Impl {
   Impl(const Case& the_case, const Rate& rate)
-      : start(the_case.unit.start.on(rate)),
+      : part(the_case.part),
+        start(the_case.unit.start.on(rate)),
         parameters(the_case.parameters, timeline_of(the_case, rate)) {
     const Timeline timeline = timeline_of(the_case, rate);
     for (const TopicStimulus& topic : the_case.topics) publishers.emplace_back(topic, timeline);
   }
 
+  Part part;
   Nanoseconds start;
   std::vector<Publisher> publishers;
   ParameterPublisher parameters;
@@ -228,12 +231,28 @@ void Stimulus::tick(std::size_t tick, Nanoseconds now, Sample& sample,
   sample.in.updated = 0;
   for (Publisher& publisher : impl_->publishers) publisher.tick(now, sample);
   impl_->parameters.tick(tick, now, sample, changes);
+  // Only the controller is told what is new.
+  if (impl_->part != Part::mc_att_control) sample.in.updated = 0;
 }
+
+namespace {
+
+// A mixer has outputs for as many rotors as it has.
+ChannelSet channels_of(const Case& the_case) {
+  ChannelSet channels = attest::channels_of(the_case.part);
+  if (the_case.part != Part::mixer) return channels;
+  const std::size_t rotors = actuation::parse_mixer(the_case.mixer)->rotors.size();
+  const std::size_t first = *find_channel("out/actuator_outputs.output[0]");
+  for (std::size_t i = rotors; i < actuation::rotors_max; ++i) channels.reset(first + i);
+  return channels;
+}
+
+}  // namespace
 
 Trace stimulate(const Case& the_case, const Rate& rate) {
   Trace trace;
   trace.source = fmt::format("{}@{}", the_case.id(), rate.label());
-  trace.present = channels_with_prefix("");
+  trace.present = channels_of(the_case);
   Stimulus stimulus(the_case, rate);
   Sample sample{};
   for (const Nanoseconds now : unit_ticks(the_case, rate)) {

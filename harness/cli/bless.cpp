@@ -37,12 +37,7 @@ Result<void> check_reference(const SuiteFolder& suite) {
 
 Result<GoldenTrace> open_loop_trace(const Case& the_case, const Setup& setup, Port& port) {
   Trace trace = stimulate(the_case, setup.rate);
-  const auto unit = port.create(the_case.profile);
-  if (!unit) {
-    return fail_at(the_case.file.string(),
-                   fmt::format("the reference has no profile `{}`", the_case.profile));
-  }
-  if (const auto fault = drive(*unit, trace)) {
+  if (const auto fault = drive(port, subject_of(the_case), trace)) {
     return fail_at(the_case.file.string(), fmt::format("the reference: {}", fault->what));
   }
   return GoldenTrace{setup, std::move(trace)};

@@ -35,7 +35,7 @@ int lint_command(const VectorOptions& options, const Globals& globals) {
   for (const auto& [the_case, setups] : *cases) {
     if (the_case.flight || the_case.exact_only) continue;
     for (const Setup& setup : setups) {
-      const Margins found = margins(stimulate(the_case, setup.rate), the_case.profile);
+      const Margins found = margins(stimulate(the_case, setup.rate), subject_of(the_case));
       ++vectors;
       for (std::size_t i = 0; i < decision_count; ++i) {
         const auto decision = static_cast<Decision>(i);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "controller/actuation/battery_status.hpp"
 #include "controller/reference/parameters.hpp"
 #include "harness/casefile/flight_mode.hpp"
 #include "harness/cli/command.hpp"
@@ -21,6 +22,11 @@ void list_parameters() {
   for (const auto& info : reference::parameter_table()) {
     fmt::print("{:<17}{:>9}{:>8}{:>8}  {:<8} {}\n", info.name, info.default_value, info.min,
                info.max, info.unit, info.description);
+  }
+  fmt::print("\nof battery_status:\n");
+  for (const auto& info : actuation::battery_parameters()) {
+    fmt::print("{:<17}{:>9}{:>16}  {:<8} {}\n", info.name, info.default_value, "", info.unit,
+               info.description);
   }
 }
 

@@ -1,29 +1,23 @@
 #include <algorithm>
 #include <charconv>
-#include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "controller/reference/parameters.hpp"
+#include "harness/casefile/parse.hpp"
 #include "harness/cli/command.hpp"
 #include "harness/core/nearest.hpp"
 #include "harness/core/version.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/text.hpp"
-#include "harness/run/mixer_replay.hpp"
+#include "harness/run/recorded.hpp"
 #include "harness/suite/worker.hpp"
-#include "harness/trace/mixer_csv.hpp"
-#include "harness/trace/provenance.hpp"
 
 namespace attest::cli {
 namespace {
-
-constexpr const char* default_profile = "px4-v1.5.5";
 
 // "NAME=VALUE" becomes a change at tick 0 that replaces whatever the trace says of NAME.
 Result<void> override_parameter(Trace& trace, const std::string& text) {
@@ -35,9 +29,8 @@ Result<void> override_parameter(Trace& trace, const std::string& text) {
   if (equals == text.size() || error != std::errc{} || rest != end) {
     return fail(fmt::format("--param {}: write NAME=VALUE, such as MC_ROLL_P=6.5", text));
   }
-  if (!reference::find_parameter(name)) {
-    std::vector<std::string> names;
-    for (const auto& info : reference::parameter_table()) names.emplace_back(info.name);
+  const std::vector<std::string> names = parameter_names(part_of(trace.present));
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
     return fail(fmt::format("--param {}: unknown parameter{}", text, suggestion(name, names)));
   }
   std::erase_if(trace.parameters, [&](const ParameterChange& c) { return c.name == name; });
@@ -45,23 +38,15 @@ Result<void> override_parameter(Trace& trace, const std::string& text) {
   return {};
 }
 
-// The one given, else the one that the trace's provenance names, else the default.
-std::string profile_of(const std::string& file, const ReplayOptions& options) {
-  if (!options.profile.empty()) return options.profile;
-  const auto path = std::filesystem::path(file).parent_path() / provenance_name;
-  const auto provenance = read_provenance(path);
-  return provenance && !provenance->profile.empty() ? provenance->profile : default_profile;
-}
-
 Result<std::unique_ptr<Batch>> trace_batch(const std::string& file, const ReplayOptions& options,
                                            Level level) {
-  auto trace = read_csv(file, CsvNeed::inputs_and_outputs);
-  if (!trace) return tl::unexpected(trace.error());
+  auto recorded = read_recorded(file, options.profile, options.mixer);
+  if (!recorded) return tl::unexpected(recorded.error());
+  auto& [trace, subject] = *recorded;
   for (const std::string& parameter : options.parameters) {
-    if (auto set = override_parameter(*trace, parameter); !set) return tl::unexpected(set.error());
+    if (auto set = override_parameter(trace, parameter); !set) return tl::unexpected(set.error());
   }
-  return std::make_unique<TraceBatch>(std::move(*trace), profile_of(file, options),
-                                      Tolerances(level));
+  return std::make_unique<TraceBatch>(std::move(trace), std::move(subject), Tolerances(level));
 }
 
 // One line a trace, more for one that differs.
@@ -85,7 +70,7 @@ class Replay {
 
   int run() {
     for (const std::string& file : options_.files) {
-      auto done = looks_like_mixer_csv(file) ? mixer(file) : trace(file);
+      auto done = replay(file);
       if (!done) return report_error(done.error());
     }
     if (!globals_.quiet || passed_ != options_.files.size()) {
@@ -97,7 +82,7 @@ class Replay {
   }
 
  private:
-  Result<void> trace(const std::string& file) {
+  Result<void> replay(const std::string& file) {
     auto batch = trace_batch(file, options_, level_);
     if (!batch) return tl::unexpected(batch.error());
     Batches batches;
@@ -108,37 +93,10 @@ class Replay {
     const WorkerOutcome outcome = run_batches(batches, worker);
     if (!outcome.errors.empty()) return tl::unexpected(outcome.errors.front());
     const CaseResult& result = outcome.results.front();
-    note(result.verdict == Verdict::pass, [&] { print_result(result, level_); });
-    return {};
-  }
-
-  // The mixer is no part of the unit ABI: only the reference's can be replayed.
-  Result<void> mixer(const std::string& file) {
-    if (options_.port != "builtin") {
-      return fail_at(file, "is a mixer trace; only the built-in mixer can be replayed");
-    }
-    auto recorded = read_mixer_csv(file);
-    if (!recorded) return tl::unexpected(recorded.error());
-    const auto definition = options_.mixer.empty() ? mixer_of(file) : std::optional(options_.mixer);
-    if (!definition) {
-      return fail_at(file, "which mixer made it? pass --mixer \"R: 4x 10000 10000 10000 0\"");
-    }
-    const auto replay = replay_mixer(*recorded, *definition);
-    if (!replay) return tl::unexpected(replay.error());
-    note(replay->deviating == 0, [&] {
-      fmt::print("{:<12}{}  {}  {} samples, exact\n", replay->deviating ? "fail" : "pass", file,
-                 *definition, replay->samples);
-      if (replay->deviating) {
-        fmt::print("  {} samples differ; first: {}\n", replay->deviating, replay->first);
-      }
-    });
-    return {};
-  }
-
-  template <typename Print>
-  void note(bool passed, Print print) {
+    const bool passed = result.verdict == Verdict::pass;
     passed_ += passed ? 1 : 0;
-    if (!passed || !globals_.quiet) print();
+    if (!passed || !globals_.quiet) print_result(result, level_);
+    return {};
   }
 
   const ReplayOptions& options_;

@@ -16,7 +16,7 @@ namespace {
 Result<void> write_vector(const Case& the_case, const Rate& rate,
                           const std::filesystem::path& path) {
   Trace trace = stimulate(the_case, rate);
-  trace.present &= ~channels_with_prefix("out/");
+  trace.present &= ~channels_of(the_case.part, "out/");
   auto file = AtomicFile::open(path);
   if (!file) return tl::unexpected(file.error());
   if (auto written = write_csv(trace, all_columns(trace), *file); !written) return written;

@@ -36,6 +36,13 @@ bool same_bits(float a, float b) {
 
 bool truth(std::uint8_t flag) { return flag != 0; }
 
+// In any byte, of any part.
+bool outputs_differ(const Sample& a, const Sample& b) {
+  return std::memcmp(&a.out, &b.out, sizeof a.out) != 0 ||
+         std::memcmp(&a.mixer_out, &b.mixer_out, sizeof a.mixer_out) != 0 ||
+         std::memcmp(&a.battery_out, &b.battery_out, sizeof a.battery_out) != 0;
+}
+
 }  // namespace
 
 TickComparer::TickComparer(const ChannelSet& got, const ChannelSet& want,
@@ -68,7 +75,7 @@ void TickComparer::add(const Sample& got, const Sample& want,
   for (const ParameterChange& change : changes) gain_.set(change);
   const bool has_setpoint = (want.in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;
   if (tick_ == 0 || has_setpoint) setpoint_ = want.in;
-  const bool differs = std::memcmp(&got.out, &want.out, sizeof got.out) != 0;
+  const bool differs = outputs_differ(got, want);
   if (differs && tolerances_.level() != Level::events) {
     bool deviates = false;
     for (const std::size_t channel : chosen_) deviates |= !channel_agrees(channel, got, want);

@@ -18,6 +18,10 @@ Tolerance default_of(Quantity quantity) {
       return Tolerances::integral;
     case Quantity::thrust:
       return Tolerances::passed_through;
+    case Quantity::motor:
+      return Tolerances::motor;
+    case Quantity::scale:
+      return Tolerances::scale;
     default:
       return {};  // time and flags agree or do not
   }
@@ -53,11 +57,11 @@ Tolerances::Tolerances(Level level) : level_(level) {
 }
 
 bool Tolerances::set(std::string_view prefix, Tolerance tolerance) {
-  const ChannelSet chosen = channels_with_prefix(fmt::format("out/{}", prefix));
+  const std::string beginning = fmt::format("out/{}", prefix);
   const auto table = channels();
   bool any = false;
   for (std::size_t i = 0; i < table.size(); ++i) {
-    if (!chosen[i] || table[i].type != ChannelType::f32) continue;
+    if (!table[i].name.starts_with(beginning) || table[i].type != ChannelType::f32) continue;
     any = true;
     if (level_ == Level::numeric) of_channel_[i] = tolerance;
   }

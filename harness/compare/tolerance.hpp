@@ -34,6 +34,9 @@ class Tolerances {
   static constexpr Tolerance control{1e-4, 1e-5};
   static constexpr Tolerance integral{2e-5, 1e-5};
   static constexpr Tolerance passed_through{1e-6, 1e-6};  // thrust: copied, at most scaled
+  // Of mixer and battery estimate. Double precision stays within 3e-7 and 2e-6 of binary32.
+  static constexpr Tolerance motor{2e-5, 0};
+  static constexpr Tolerance scale{2e-5, 0};
 
   explicit Tolerances(Level level = Level::numeric);
 

@@ -105,15 +105,15 @@ std::optional<std::string> disagreement(const VehicleRotor& rotor, const actuati
 
 void check_mixer(const TomlTable& root, const Vehicle& vehicle) {
   if (!root.has("mixer") || !root.has("rotors")) return;
-  const auto mixer = actuation::Mixer::parse(vehicle.mixer);
+  const auto mixer = actuation::parse_mixer(vehicle.mixer);
   if (!mixer) return root.error("mixer", mixer.error());
-  if (mixer->rotor_count() != vehicle.rotors.size()) {
-    return root.error("mixer", fmt::format("has {} rotors, the vehicle {}", mixer->rotor_count(),
+  if (mixer->rotors.size() != vehicle.rotors.size()) {
+    return root.error("mixer", fmt::format("has {} rotors, the vehicle {}", mixer->rotors.size(),
                                            vehicle.rotors.size()));
   }
   const TomlTable rotors = root.table("rotors");
   for (std::size_t i = 0; i < vehicle.rotors.size(); ++i) {
-    if (const auto what = disagreement(vehicle.rotors[i], mixer->rotors()[i])) {
+    if (const auto what = disagreement(vehicle.rotors[i], mixer->rotors[i])) {
       rotors.error(fmt::format("r{}", i),
                    fmt::format("the mixer `{}` has output {} {}", vehicle.mixer, i, *what));
     }

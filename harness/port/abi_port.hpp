@@ -11,22 +11,28 @@
 
 namespace attest {
 
-class AbiUnit final : public Unit {
+// Table is attest_unit, attest_mixer or attest_battery_status.
+template <typename Table, typename Interface>
+class AbiUnit final : public Interface {
  public:
-  AbiUnit(const attest_unit& table, void* self) : table_(table), self_(self) {}
+  using typename Interface::Inputs;
+  using typename Interface::Outputs;
+
+  AbiUnit(const Table& table, void* self) : table_(table), self_(self) {}
   ~AbiUnit() override { table_.destroy(self_); }
   AbiUnit(const AbiUnit&) = delete;
   AbiUnit& operator=(const AbiUnit&) = delete;
 
   int set_parameter(const std::string& name, float value) override {
-    return table_.set_parameter(self_, name.c_str(), value);
+    if constexpr (requires { table_.set_parameter; }) {
+      return table_.set_parameter(self_, name.c_str(), value);
+    }
+    return ATTEST_INVALID;
   }
-  int step(const attest_inputs& in, attest_outputs& out) override {
-    return table_.step(self_, &in, &out);
-  }
+  int step(const Inputs& in, Outputs& out) override { return table_.step(self_, &in, &out); }
 
  private:
-  const attest_unit& table_;
+  const Table& table_;
   void* self_;
 };
 
@@ -39,19 +45,42 @@ class AbiPort final : public Port {
   std::string name() const override { return table_.name; }
   std::string version() const override { return table_.version; }
   std::vector<std::string> unsupported_groups() const override {
-    const void* list =
-        table_.extension ? table_.extension(ATTEST_EXTENSION_UNSUPPORTED_GROUPS) : nullptr;
+    const auto* list = extension<char>(ATTEST_EXTENSION_UNSUPPORTED_GROUPS);
     std::vector<std::string> groups;
-    std::istringstream names(list ? static_cast<const char*>(list) : "");
+    std::istringstream names(list ? list : "");
     for (std::string name; std::getline(names, name, ',');) groups.push_back(name);
     return groups;
   }
   std::unique_ptr<Unit> create(const std::string& profile) override {
-    void* self = table_.create(profile.c_str());
-    return self ? std::make_unique<AbiUnit>(table_, self) : nullptr;
+    return wrapped<Unit>(table_, table_.create(profile.c_str()));
+  }
+  bool has_mixer() const override { return mixer() != nullptr; }
+  bool has_battery_status() const override { return battery_status() != nullptr; }
+  std::unique_ptr<MixerUnit> create_mixer(const std::string& profile,
+                                          const std::string& definition) override {
+    const attest_mixer& table = *mixer();
+    return wrapped<MixerUnit>(table, table.create(profile.c_str(), definition.c_str()));
+  }
+  std::unique_ptr<BatteryUnit> create_battery_status(const std::string& profile) override {
+    const attest_battery_status& table = *battery_status();
+    return wrapped<BatteryUnit>(table, table.create(profile.c_str()));
   }
 
  private:
+  template <typename Interface>
+  const Interface* extension(const char* id) const {
+    return table_.extension ? static_cast<const Interface*>(table_.extension(id)) : nullptr;
+  }
+  const attest_mixer* mixer() const { return extension<attest_mixer>(ATTEST_EXTENSION_MIXER); }
+  const attest_battery_status* battery_status() const {
+    return extension<attest_battery_status>(ATTEST_EXTENSION_BATTERY_STATUS);
+  }
+
+  template <typename Interface, typename Table>
+  static std::unique_ptr<Interface> wrapped(const Table& table, void* self) {
+    return self ? std::make_unique<AbiUnit<Table, Interface>>(table, self) : nullptr;
+  }
+
   std::shared_ptr<void> owner_;
   const attest_unit& table_;
 };

@@ -1,10 +1,12 @@
 #include "harness/port/fault_port.hpp"
 
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "controller/actuation/unit_table.hpp"
 #include "controller/faults/fault.hpp"
 #include "controller/reference/profile.hpp"
 #include "harness/core/nearest.hpp"
@@ -31,6 +33,40 @@ class FaultyUnit final : public Unit {
   faults::FaultyController controller_;
 };
 
+class FaultyMixer final : public MixerUnit {
+ public:
+  FaultyMixer(const actuation::MixerDefinition& definition, const faults::MixerStages& stages)
+      : mixer_(definition, stages) {}
+
+  int set_parameter(const std::string&, float) override { return ATTEST_INVALID; }
+  int step(const attest_mixer_inputs& in, attest_mixer_outputs& out) override {
+    actuation::step_mixer(mixer_, in, out);
+    return ATTEST_OK;
+  }
+
+ private:
+  actuation::BasicMixer<faults::Scalar, faults::MixerStages> mixer_;
+};
+
+class FaultyBattery final : public BatteryUnit {
+ public:
+  explicit FaultyBattery(faults::BatteryStages stages) : stages_(std::move(stages)) {}
+
+  int set_parameter(const std::string& name, float value) override {
+    return actuation::set_battery_parameter(options_, name, value) ? ATTEST_OK : ATTEST_INVALID;
+  }
+  int step(const attest_battery_inputs& in, attest_battery_outputs& out) override {
+    if (!battery_) battery_.emplace(options_, stages_);
+    actuation::step_battery(*battery_, in, out);
+    return ATTEST_OK;
+  }
+
+ private:
+  actuation::BatteryOptions options_;
+  faults::BatteryStages stages_;
+  std::optional<actuation::BasicBatteryStatus<faults::Scalar, faults::BatteryStages>> battery_;
+};
+
 class FaultPort final : public Port {
  public:
   FaultPort(std::string ids, std::vector<const Fault*> faults)
@@ -41,6 +77,18 @@ class FaultPort final : public Port {
   std::unique_ptr<Unit> create(const std::string& profile) override {
     const auto known = reference::profile_from_name(profile);
     return known ? std::make_unique<FaultyUnit>(*known, faults_) : nullptr;
+  }
+  bool has_mixer() const override { return true; }
+  bool has_battery_status() const override { return true; }
+  std::unique_ptr<MixerUnit> create_mixer(const std::string& profile,
+                                          const std::string& definition) override {
+    const auto parsed = actuation::parse_mixer(definition);
+    if (!parsed || !actuation::is_profile(profile.c_str())) return nullptr;
+    return std::make_unique<FaultyMixer>(*parsed, faults::law_with(faults_).mixer);
+  }
+  std::unique_ptr<BatteryUnit> create_battery_status(const std::string& profile) override {
+    if (!actuation::is_profile(profile.c_str())) return nullptr;
+    return std::make_unique<FaultyBattery>(faults::law_with(faults_).battery);
   }
 
  private:

@@ -9,21 +9,30 @@
 #include <string_view>
 #include <vector>
 
+#include "controller/attest_actuation.h"
 #include "controller/attest_unit.h"
 #include "harness/core/result.hpp"
 
 namespace attest {
 
 // One instance, used by one thread at a time.
-class Unit {
+template <typename In, typename Out>
+class Steppable {
  public:
-  virtual ~Unit() = default;
+  using Inputs = In;
+  using Outputs = Out;
+
+  virtual ~Steppable() = default;
 
   // Both return ATTEST_OK, ATTEST_UNSUPPORTED, ATTEST_INVALID or ATTEST_FAILED; anything else is
   // the port's fault and is reported as such.
   virtual int set_parameter(const std::string& name, float value) = 0;
-  virtual int step(const attest_inputs& in, attest_outputs& out) = 0;
+  virtual int step(const Inputs& in, Outputs& out) = 0;
 };
+
+using Unit = Steppable<attest_inputs, attest_outputs>;
+using MixerUnit = Steppable<attest_mixer_inputs, attest_mixer_outputs>;
+using BatteryUnit = Steppable<attest_battery_inputs, attest_battery_outputs>;
 
 class Port {
  public:
@@ -38,6 +47,19 @@ class Port {
   // A unit in its power-on state; null when the port does not support the profile.
   // The port must outlive the unit.
   virtual std::unique_ptr<Unit> create(const std::string& profile) = 0;
+
+  // Does the port have this part at all?
+  virtual bool has_mixer() const { return false; }
+  virtual bool has_battery_status() const { return false; }
+
+  // As create(), where it has.
+  virtual std::unique_ptr<MixerUnit> create_mixer(const std::string& /*profile*/,
+                                                  const std::string& /*definition*/) {
+    return nullptr;
+  }
+  virtual std::unique_ptr<BatteryUnit> create_battery_status(const std::string& /*profile*/) {
+    return nullptr;
+  }
 };
 
 // Opens "builtin", "lib:PATH" or "fault:ID". Loading a library runs its code: a program that must

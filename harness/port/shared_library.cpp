@@ -28,6 +28,26 @@ std::string missing_function(const attest_unit& unit) {
   return "";
 }
 
+// An extension that is there has to be whole.
+Result<void> check_extensions(const attest_unit& unit, const std::string& path) {
+  const auto incomplete = [&](const char* id) {
+    return fail_at(path,
+                   fmt::format("a member of its extension {} is NULL; every one must be set", id));
+  };
+  if (!unit.extension) return {};
+  const auto* mixer = static_cast<const attest_mixer*>(unit.extension(ATTEST_EXTENSION_MIXER));
+  if (mixer && !(mixer->create && mixer->destroy && mixer->step)) {
+    return incomplete(ATTEST_EXTENSION_MIXER);
+  }
+  const auto* battery =
+      static_cast<const attest_battery_status*>(unit.extension(ATTEST_EXTENSION_BATTERY_STATUS));
+  if (battery &&
+      !(battery->create && battery->destroy && battery->set_parameter && battery->step)) {
+    return incomplete(ATTEST_EXTENSION_BATTERY_STATUS);
+  }
+  return {};
+}
+
 Result<void> check_table(const attest_unit* unit, const std::string& path) {
   if (!unit) return fail_at(path, fmt::format("{}() returned NULL; return the table", symbol_name));
   if (unit->abi_version != ATTEST_UNIT_ABI_VERSION) {
@@ -40,7 +60,7 @@ Result<void> check_table(const attest_unit* unit, const std::string& path) {
                                      "set",
                                      name));
   }
-  return {};
+  return check_extensions(*unit, path);
 }
 
 }  // namespace

@@ -69,7 +69,8 @@ std::string failure(const Together& group, const RunResult& run, TerminalStyle s
 
 // Which stage is to blame for most: one line for a log with hundreds of failures.
 std::string stages(const RunResult& run) {
-  constexpr std::array order{Stage::input, Stage::attitude_law, Stage::rate_law, Stage::integrator};
+  constexpr std::array order{Stage::input,      Stage::attitude_law, Stage::rate_law,
+                             Stage::integrator, Stage::mixer,        Stage::battery_status};
   std::array<std::size_t, order.size()> counts{};
   for (const CaseResult& result : run.results) {
     if (!fails_a_run(result.verdict) || !result.first) continue;
@@ -142,6 +143,10 @@ std::string_view plural_of(Quantity quantity) {
       return "integrals";
     case Quantity::thrust:
       return "thrust";
+    case Quantity::motor:
+      return "motors";
+    case Quantity::scale:
+      return "scale";
     default:
       return "others";
   }

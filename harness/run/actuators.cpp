@@ -17,7 +17,7 @@ MotorLimits limits_of(const actuation::Saturation& saturation) {
 }  // namespace
 
 Actuators::Actuators(const Vehicle& vehicle)
-    : vehicle_(vehicle), mixer_(actuation::Mixer::parse(vehicle.mixer).value()) {
+    : vehicle_(vehicle), mixer_(actuation::parse_mixer(vehicle.mixer).value()) {
   commands_.fill(-1);
 }
 

@@ -28,14 +28,15 @@ Trace decimated(const Trace& flown) {
   std::set<std::size_t> kept;
   for (std::size_t tick = 0; tick < std::min(first_ticks, last); ++tick) kept.insert(tick);
   for (std::size_t i = 0; i <= regular_ticks; ++i) kept.insert(last * i / regular_ticks);
-  for (const Channel& channel : channels()) {
-    if (channel.is_output() && channel.type == ChannelType::f32) {
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    const Channel& channel = channels()[i];
+    if (flown.present[i] && channel.is_output() && channel.type == ChannelType::f32) {
       add_extremes(channel, flown, kept);
     }
   }
   Trace rows;
   rows.source = flown.source;
-  rows.present = flown.present & ~channels_with_prefix("in/updated.");
+  rows.present = flown.present & ~channels_of(Part::mc_att_control, "in/updated.");
   for (const std::size_t tick : kept) {
     rows.samples.push_back(flown.samples[tick]);
     rows.samples.back().in.updated = 0;

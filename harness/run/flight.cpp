@@ -80,7 +80,7 @@ Result<Flown> fly(const Case& the_case, const Setup& setup, const Airframe& airf
 
   Flown flown;
   flown.trace.source = fmt::format("{}@{}", the_case.id(), setup.label());
-  flown.trace.present = channels_with_prefix("");
+  flown.trace.present = channels_of(Part::mc_att_control);
   flown.trace.samples.reserve(ticks);
   flown.trace.plant.reserve(ticks);
   FlightEnd end = loop.run(&flown.trace);

@@ -65,6 +65,7 @@ Result<void> write_folder(const fs::path& folder, const Case& the_case,
     auto hash = write_trace(folder / name, trace, division.columns);
     if (!hash) return tl::unexpected(hash.error());
     provenance.sha256[name] = *hash;
+    if (!the_case.mixer.empty()) provenance.mixers[setup.label()] = the_case.mixer;
     if (horizon_s) provenance.horizon_s[setup.label()] = *horizon_s;
     for (const auto& [metric, value] : metrics) {
       provenance.metrics[metric_key(setup, metric)] = value;

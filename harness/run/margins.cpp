@@ -5,6 +5,7 @@
 #include <numbers>
 #include <span>
 
+#include "controller/actuation/unit_table.hpp"
 #include "controller/reference/mc_att_control_definition.hpp"
 
 namespace attest {
@@ -134,6 +135,43 @@ struct NotingLaw {
       : step{{}, notes}, attitude{{}, notes}, rate{{}, notes}, recovery{{}, notes} {}
 };
 
+struct Mixing : actuation::MixerStages<double> {
+  using Law = actuation::MixerStages<double>;
+  Notes* notes;
+
+  explicit Mixing(Notes* to) : notes(to) {}
+
+  Fit fit(double min_out, double max_out, double thrust) const {
+    notes->note(Decision::mixer_limit, std::min(std::abs(min_out), std::abs(max_out - 1)));
+    const bool one_end = (min_out < 0) != (max_out > 1);
+    if (one_end) notes->note(Decision::mixer_branch, std::abs(min_out + max_out - 1));
+    return Law::fit(min_out, max_out, thrust);
+  }
+  // The flag is set by the rotor that is furthest out, whichever comes first.
+  bool yield_yaw(std::span<const actuation::Rotor> rotors, Controls& c, const Fit& fit) const {
+    double beyond = -std::numeric_limits<double>::infinity();
+    for (const actuation::Rotor& rotor : rotors) {
+      const double out =
+          without_yaw(rotor, c, fit.roll_pitch_scale) + c.yaw * rotor.yaw + c.thrust + fit.boost;
+      beyond = std::max({beyond, -out, out - 1});
+    }
+    notes->note(Decision::mixer_yaw, std::abs(beyond));
+    return Law::yield_yaw(rotors, c, fit);
+  }
+};
+
+Margins mixer_margins(const Trace& given, const std::string& definition) {
+  Notes notes;
+  const auto parsed = actuation::parse_mixer(definition);
+  if (!parsed) return {};
+  actuation::BasicMixer<double, Mixing> mixer(*parsed, Mixing(&notes));
+  attest_mixer_outputs out{};
+  for (notes.tick = 0; notes.tick < given.samples.size(); ++notes.tick) {
+    actuation::step_mixer(mixer, given.samples[notes.tick].mixer_in, out);
+  }
+  return notes.margins;
+}
+
 void note_norm(const float (&q)[4], Notes& notes) {
   double squared = 0;
   for (const float component : q) squared += double(component) * double(component);
@@ -148,10 +186,19 @@ void note_norm(const float (&q)[4], Notes& notes) {
 
 std::string_view name_of(Decision decision) {
   // In the order of the enumerators.
-  constexpr std::array<std::string_view, decision_count> names{
-      "norm of quaternions", "thrust gate",        "integrator gate", "rattitude",
-      "shorter rotation",    "yaw at +-180 deg",   "tilt at 180 deg", "battery scale",
-      "recovery's latch",    "recovery's rotation"};
+  constexpr std::array<std::string_view, decision_count> names{"norm of quaternions",
+                                                               "thrust gate",
+                                                               "integrator gate",
+                                                               "rattitude",
+                                                               "shorter rotation",
+                                                               "yaw at +-180 deg",
+                                                               "tilt at 180 deg",
+                                                               "battery scale",
+                                                               "recovery's latch",
+                                                               "recovery's rotation",
+                                                               "mixer limit",
+                                                               "mixer branch",
+                                                               "mixer yaw"};
   return names[static_cast<std::size_t>(decision)];
 }
 
@@ -169,6 +216,9 @@ double least_margin(Decision decision) {
     case Decision::yaw_wrap:
     case Decision::recovery_latch:
     case Decision::recovery_rotation:
+    case Decision::mixer_limit:
+    case Decision::mixer_branch:
+    case Decision::mixer_yaw:
       return 1e-5;
     case Decision::tilt_axis:
       return 1e-3;  // where the tolerance stops widening (tolerance.hpp)
@@ -184,9 +234,11 @@ bool Margins::is_safe(Decision decision) const {
   return distance >= least_margin(decision);
 }
 
-Margins margins(const Trace& given, std::string_view profile) {
+Margins margins(const Trace& given, const Subject& subject) {
+  if (subject.part == Part::mixer) return mixer_margins(given, subject.mixer);
+  if (subject.part == Part::battery_status) return {};
   Notes notes;
-  const auto known = reference::profile_from_name(profile);
+  const auto known = reference::profile_from_name(subject.profile);
   if (!known) return {};
   reference::McAttControl<double, NotingLaw> control(*known, NotingLaw(&notes));
   std::span<const ParameterChange> changes = given.parameters;

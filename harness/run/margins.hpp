@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 
+#include "harness/run/open_loop.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace attest {
@@ -28,8 +29,11 @@ enum class Decision {
   battery_scale,      // scale > 0
   recovery_latch,     // the tailsitter's 30 and 5 deg
   recovery_rotation,  // its q_e.w > 0
+  mixer_limit,        // a rotor's share of roll, pitch and thrust against 0 and 1
+  mixer_branch,       // which end has more room than the other lacks
+  mixer_yaw,          // yaw against the rotors' limits, which it sets the flag by
 };
-inline constexpr std::size_t decision_count = 10;
+inline constexpr std::size_t decision_count = 13;
 
 std::string_view name_of(Decision decision);  // "integrator gate"
 
@@ -52,7 +56,7 @@ struct Margins {
   bool is_safe(Decision decision) const;
 };
 
-// Of the inputs of `given`, for one of the law's profiles.
-Margins margins(const Trace& given, std::string_view profile);
+// Of the inputs of `given`. A battery estimate decides nothing: it is continuous.
+Margins margins(const Trace& given, const Subject& subject);
 
 }  // namespace attest

@@ -33,35 +33,58 @@ std::optional<PortFault> fault_of(int code, std::size_t tick, const std::string&
   }
 }
 
+// Where in a sample the inputs and outputs of a part are.
+template <typename PartUnit>
+struct Place;
+template <>
+struct Place<Unit> {
+  static constexpr auto in = &Sample::in;
+  static constexpr auto out = &Sample::out;
+};
+template <>
+struct Place<MixerUnit> {
+  static constexpr auto in = &Sample::mixer_in;
+  static constexpr auto out = &Sample::mixer_out;
+};
+template <>
+struct Place<BatteryUnit> {
+  static constexpr auto in = &Sample::battery_in;
+  static constexpr auto out = &Sample::battery_out;
+};
+
 }  // namespace
 
-UnitDriver::UnitDriver(Unit& unit) : unit_(unit) {
+template <typename PartUnit>
+PartDriver<PartUnit>::PartDriver(PartUnit& unit) : unit_(unit) {
   exchange_.behind_in = untouched;
   exchange_.behind_out = untouched;
 }
 
-std::optional<PortFault> UnitDriver::step(std::size_t tick,
-                                          std::span<const ParameterChange> changes,
-                                          Sample& sample) {
+template <typename PartUnit>
+std::optional<PortFault> PartDriver<PartUnit>::step(std::size_t tick,
+                                                    std::span<const ParameterChange> changes,
+                                                    Sample& sample) {
   for (const ParameterChange& change : changes) {
     const int code = unit_.set_parameter(change.name, change.value);
     if (code == ATTEST_OK) continue;
     return fault_of(code, tick, fmt::format("set_parameter({}) at tick {}", change.name, tick));
   }
-  exchange_.in = sample.in;
+  const Inputs& given = sample.*Place<PartUnit>::in;
+  exchange_.in = given;
   if (const int code = unit_.step(exchange_.in, exchange_.out); code != ATTEST_OK) {
     return fault_of(code, tick, fmt::format("step at tick {}", tick));
   }
-  if (auto fault = broken_rule(sample.in, tick)) return fault;
-  sample.out = exchange_.out;
+  if (auto fault = broken_rule(given, tick)) return fault;
+  sample.*Place<PartUnit>::out = exchange_.out;
   return std::nullopt;
 }
 
-std::optional<PortFault> UnitDriver::broken_rule(const attest_inputs& given,
-                                                 std::size_t tick) const {
+template <typename PartUnit>
+std::optional<PortFault> PartDriver<PartUnit>::broken_rule(const Inputs& given,
+                                                           std::size_t tick) const {
   if (exchange_.behind_in != untouched || exchange_.behind_out != untouched) {
     return PortFault{Kind::protocol, tick,
-                     fmt::format("step wrote outside attest_outputs at tick {}; was the port "
+                     fmt::format("step wrote outside its outputs at tick {}; was the port "
                                  "compiled with another attest_unit.h?",
                                  tick)};
   }
@@ -71,5 +94,9 @@ std::optional<PortFault> UnitDriver::broken_rule(const attest_inputs& given,
   }
   return std::nullopt;
 }
+
+template class PartDriver<Unit>;
+template class PartDriver<MixerUnit>;
+template class PartDriver<BatteryUnit>;
 
 }  // namespace attest

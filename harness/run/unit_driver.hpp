@@ -16,7 +16,8 @@ namespace attest {
 // in the comparison.
 struct PortFault {
   enum class Kind {
-    unsupported,  // ATTEST_UNSUPPORTED
+    profile,      // does not do the profile
+    unsupported,  // ATTEST_UNSUPPORTED, or a part that the port does not have
     failed,       // ATTEST_FAILED, ATTEST_INVALID
     protocol,     // broke the rules of the ABI
   };
@@ -25,10 +26,12 @@ struct PortFault {
   std::string what;  // one line
 };
 
-class UnitDriver {
+// PartUnit is Unit, MixerUnit or BatteryUnit.
+template <typename PartUnit>
+class PartDriver {
  public:
   // REQUIRES: the unit is in its power-on state, and outlives this.
-  explicit UnitDriver(Unit& unit);
+  explicit PartDriver(PartUnit& unit);
 
   // One tick:
   //
@@ -41,19 +44,28 @@ class UnitDriver {
                                 Sample& sample);
 
  private:
+  using Inputs = typename PartUnit::Inputs;
+  using Outputs = typename PartUnit::Outputs;
+
   // What the unit gets, with a margin behind it that must stay as it was: a port compiled with
   // another layout writes there first.
   struct Exchange {
-    attest_inputs in{};
+    Inputs in{};
     std::array<unsigned char, 64> behind_in;
-    attest_outputs out{};
+    Outputs out{};
     std::array<unsigned char, 64> behind_out;
   };
 
-  std::optional<PortFault> broken_rule(const attest_inputs& given, std::size_t tick) const;
+  std::optional<PortFault> broken_rule(const Inputs& given, std::size_t tick) const;
 
-  Unit& unit_;
+  PartUnit& unit_;
   Exchange exchange_;
 };
+
+extern template class PartDriver<Unit>;
+extern template class PartDriver<MixerUnit>;
+extern template class PartDriver<BatteryUnit>;
+
+using UnitDriver = PartDriver<Unit>;
 
 }  // namespace attest

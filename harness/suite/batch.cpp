@@ -48,10 +48,10 @@ Result<CaseResult> TimedBatch::evaluate(std::size_t, Port& port) {
   return evaluate_timed_flight(case_, timing_.setup, *airframe_, timing_.ticks, port);
 }
 
-CaseResult TraceBatch::identity(std::size_t) const { return unjudged(recorded_, profile_); }
+CaseResult TraceBatch::identity(std::size_t) const { return unjudged(recorded_, subject_.profile); }
 
 Result<CaseResult> TraceBatch::evaluate(std::size_t, Port& port) {
-  return evaluate_trace(recorded_, profile_, port, tolerances_);
+  return evaluate_trace(recorded_, subject_, port, tolerances_);
 }
 
 }  // namespace attest

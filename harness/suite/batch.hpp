@@ -12,6 +12,7 @@
 #include "harness/plant/fleet.hpp"
 #include "harness/port/port.hpp"
 #include "harness/run/golden.hpp"
+#include "harness/run/open_loop.hpp"
 #include "harness/run/timing_file.hpp"
 #include "harness/suite/select.hpp"
 #include "harness/suite/verdict.hpp"
@@ -86,8 +87,8 @@ Result<std::vector<std::unique_ptr<Batch>>> make_batches(const std::vector<Selec
 // A recorded trace.
 class TraceBatch final : public Batch {
  public:
-  TraceBatch(Trace recorded, std::string profile, Tolerances tolerances)
-      : recorded_(std::move(recorded)), profile_(std::move(profile)), tolerances_(tolerances) {}
+  TraceBatch(Trace recorded, Subject subject, Tolerances tolerances)
+      : recorded_(std::move(recorded)), subject_(std::move(subject)), tolerances_(tolerances) {}
 
   std::size_t size() const override { return 1; }
   CaseResult identity(std::size_t i) const override;
@@ -95,7 +96,7 @@ class TraceBatch final : public Batch {
 
  private:
   Trace recorded_;
-  std::string profile_;
+  Subject subject_;
   Tolerances tolerances_;
 };
 

@@ -25,8 +25,9 @@ Rate rate_for(const SelectedCase& selected) {
 Answers answers_to(const SelectedCase& selected) {
   Trace law = stimulate(selected.the_case, rate_for(selected));
   const auto reference = open_builtin();
-  drive(*reference->create(selected.the_case.profile), law);
-  return {outputs_of(law), answers_of_faults(law, selected.the_case.profile)};
+  const Subject subject = subject_of(selected.the_case);
+  drive(*reference, subject, law);
+  return {outputs_of(law), answers_of_faults(law, subject)};
 }
 
 }  // namespace

@@ -66,13 +66,13 @@ Result<CaseResult> DiagnosisBatch::evaluate(std::size_t i, Port& port) {
     return stimulate(case_, rate_);
   }();
   Trace got = law;
-  const std::unique_ptr<Unit> unit = create_unit(port, case_.profile, result);
-  if (!unit || drive(*unit, got)) return result;
+  const Subject subject = subject_of(case_);
+  if (declines(port, result) || drive(port, subject, got)) return result;
   const DefaultFloatEnvironment environment;
   const auto reference = open_builtin();
-  if (drive(*reference->create(case_.profile), law)) return result;
+  if (drive(*reference, subject, law)) return result;
   result.likeness =
-      likeness(outputs_of(got), outputs_of(law), answers_of_faults(law, case_.profile, partner_));
+      likeness(outputs_of(got), outputs_of(law), answers_of_faults(law, subject, partner_));
   return result;
 }
 

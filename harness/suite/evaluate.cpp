@@ -14,11 +14,10 @@ namespace attest {
 namespace {
 
 // Drives a fresh unit through `answered`, whose inputs are those of `want`, and compares.
-void run_and_judge(Trace& answered, const Trace& want, const std::string& profile, Port& port,
+void run_and_judge(Trace& answered, const Trace& want, const Subject& subject, Port& port,
                    const Tolerances& tolerances, CaseResult& result) {
-  const std::unique_ptr<Unit> unit = create_unit(port, profile, result);
-  if (!unit) return;
-  if (const auto fault = drive(*unit, answered)) return judge(*fault, result);
+  if (declines(port, result)) return;
+  if (const auto fault = drive(port, subject, answered)) return judge(*fault, result);
   const DefaultFloatEnvironment environment;
   judge(compare(answered, want, tolerances), result);
 }
@@ -74,7 +73,7 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
   auto prepared = prepare(the_case, rate, golden);
   if (!prepared) return tl::unexpected(prepared.error());
   run_and_judge(
-      prepared->answered, prepared->want, the_case.profile, port,
+      prepared->answered, prepared->want, subject_of(the_case), port,
       tolerances_of(the_case,
                     level == Level::exact && the_case.numeric_only ? Level::numeric : level),
       result);
@@ -82,13 +81,17 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
   return result;
 }
 
-CaseResult evaluate_trace(const Trace& recorded, const std::string& profile, Port& port,
+CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, Port& port,
                           const Tolerances& tolerances) {
   const Stopwatch stopwatch;
-  CaseResult result = unjudged(recorded, profile);
+  CaseResult result = unjudged(recorded, subject.profile);
   Trace answered = recorded;
-  for (Sample& sample : answered.samples) sample.out = {};
-  run_and_judge(answered, recorded, profile, port, tolerances, result);
+  for (Sample& sample : answered.samples) {
+    sample.out = {};
+    sample.mixer_out = {};
+    sample.battery_out = {};
+  }
+  run_and_judge(answered, recorded, subject, port, tolerances, result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }

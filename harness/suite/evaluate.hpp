@@ -11,6 +11,7 @@
 #include "harness/port/port.hpp"
 #include "harness/run/flight.hpp"
 #include "harness/run/golden.hpp"
+#include "harness/run/open_loop.hpp"
 #include "harness/suite/verdict.hpp"
 
 namespace attest {
@@ -41,9 +42,9 @@ Result<CaseResult> evaluate_timed_flight(const Case& the_case, const Setup& setu
 // divergence.
 std::string how_it_ended(const Flown& flown);
 
-// The recorded inputs are given to a fresh unit, and what it answers is compared with the recorded
-// outputs.
-CaseResult evaluate_trace(const Trace& recorded, const std::string& profile, Port& port,
+// The recorded inputs are given to a fresh instance of that part of the port, and what it answers
+// is compared with the recorded outputs.
+CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, Port& port,
                           const Tolerances& tolerances);
 
 }  // namespace attest

@@ -12,13 +12,16 @@ Tolerances tolerances_of(const Case& the_case, Level level) {
   return tolerances;
 }
 
-std::unique_ptr<Unit> create_unit(Port& port, const std::string& profile, CaseResult& result) {
+bool declines(const Port& port, CaseResult& result) {
   const std::vector<std::string> declined = port.unsupported_groups();
-  if (std::find(declined.begin(), declined.end(), result.group) != declined.end()) {
-    result.verdict = Verdict::unsupported;
-    result.reason = fmt::format("the port declares that it does not do {}", result.group);
-    return nullptr;
-  }
+  if (std::find(declined.begin(), declined.end(), result.group) == declined.end()) return false;
+  result.verdict = Verdict::unsupported;
+  result.reason = fmt::format("the port declares that it does not do {}", result.group);
+  return true;
+}
+
+std::unique_ptr<Unit> create_unit(Port& port, const std::string& profile, CaseResult& result) {
+  if (declines(port, result)) return nullptr;
   std::unique_ptr<Unit> unit = port.create(profile);
   if (!unit) {
     result.verdict = Verdict::skip;
@@ -30,6 +33,9 @@ std::unique_ptr<Unit> create_unit(Port& port, const std::string& profile, CaseRe
 void judge(const PortFault& fault, CaseResult& result) {
   result.reason = fault.what;
   switch (fault.kind) {
+    case PortFault::Kind::profile:
+      result.verdict = Verdict::skip;
+      return;
     case PortFault::Kind::unsupported:
       result.verdict = Verdict::unsupported;
       return;

@@ -15,8 +15,10 @@ namespace attest {
 // The case's own tolerances where it has some.
 Tolerances tolerances_of(const Case& the_case, Level level);
 
-// Null when the port does not support the profile (verdict skip), or declares that it does not do
-// the result's group (unsupported).
+// The port declares that it does not do the result's group: the verdict is unsupported.
+bool declines(const Port& port, CaseResult& result);
+
+// Null when the port declines, or does not support the profile (verdict skip).
 std::unique_ptr<Unit> create_unit(Port& port, const std::string& profile, CaseResult& result);
 
 void judge(const PortFault& fault, CaseResult& result);

@@ -12,7 +12,7 @@
 namespace attest {
 namespace {
 
-// A bit for each output value that differs.
+// A bit for each output value that differs; there are 30.
 using Mask = std::uint32_t;
 
 struct Output {
@@ -45,12 +45,17 @@ bool differs(const Output& output, const Sample& a, const Sample& b) {
   return std::abs(x - y) > std::max(absolute, relative * std::abs(y));
 }
 
-Mask difference(const attest_outputs& a, const attest_outputs& b) {
+Sample sample_of(const Answer& answer) {
+  Sample sample{};
+  sample.out = answer.out;
+  sample.mixer_out = answer.mixer_out;
+  sample.battery_out = answer.battery_out;
+  return sample;
+}
+
+Mask difference(const Answer& a, const Answer& b) {
   if (std::memcmp(&a, &b, sizeof a) == 0) return 0;
-  static_assert(sizeof(Mask) * 8 >= 20);
-  Sample x{}, y{};
-  x.out = a;
-  y.out = b;
+  const Sample x = sample_of(a), y = sample_of(b);
   Mask mask = 0, bit = 1;
   for (const Output& output : output_table()) {
     if (differs(output, x, y)) mask |= bit;
@@ -78,11 +83,13 @@ Likeness likeness_of(const Outputs& port, const Outputs& law, const Outputs& fau
 Outputs outputs_of(const Trace& trace) {
   Outputs outputs;
   outputs.reserve(trace.samples.size());
-  for (const Sample& sample : trace.samples) outputs.push_back(sample.out);
+  for (const Sample& sample : trace.samples) {
+    outputs.push_back({sample.out, sample.mixer_out, sample.battery_out});
+  }
   return outputs;
 }
 
-std::vector<Outputs> answers_of_faults(const Trace& given, const std::string& profile,
+std::vector<Outputs> answers_of_faults(const Trace& given, const Subject& subject,
                                        const faults::Fault* partner) {
   std::vector<Outputs> answers;
   Trace answered = given;
@@ -90,8 +97,7 @@ std::vector<Outputs> answers_of_faults(const Trace& given, const std::string& pr
     std::string ids(fault->id);
     if (partner != nullptr) ids += "+" + std::string(partner->id);
     const auto port = open_fault(ids);
-    const auto unit = (*port)->create(profile);
-    const bool done = unit && !drive(*unit, answered);
+    const bool done = !drive(**port, subject, answered);
     answers.push_back(done ? outputs_of(answered) : Outputs{});
   }
   return answers;

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "controller/attest_unit.h"
 #include "controller/faults/fault.hpp"
+#include "harness/run/open_loop.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace attest {
@@ -27,13 +27,19 @@ struct VectorLikeness {
   std::vector<Likeness> likenesses;  // of each fault of the catalogue, in its order
 };
 
-using Outputs = std::vector<attest_outputs>;  // one a tick
+// Of whichever part; zero of the others.
+struct Answer {
+  attest_outputs out;
+  attest_mixer_outputs mixer_out;
+  attest_battery_outputs battery_out;
+};
+using Outputs = std::vector<Answer>;  // one a tick
 
 Outputs outputs_of(const Trace& trace);
 
 // What the faults answer to the inputs of `given`, in the order of the catalogue, each alone or
 // together with `partner`; empty where one does not do the profile.
-std::vector<Outputs> answers_of_faults(const Trace& given, const std::string& profile,
+std::vector<Outputs> answers_of_faults(const Trace& given, const Subject& subject,
                                        const faults::Fault* partner = nullptr);
 
 // Values are the same when the numeric level would pass them.

@@ -41,7 +41,7 @@ Sample hovering(std::size_t tick) {
 // Small attitude errors and rates that wander, and a setpoint that tilts a little.
 Trace hover() {
   Trace trace;
-  trace.present = channels_with_prefix("");
+  trace.present = channels_of(Part::mc_att_control);
   Random random(1);
   double roll = 0, pitch = 0;
   for (std::size_t tick = 0; tick < 2500; ++tick) {
@@ -60,8 +60,8 @@ Trace hover() {
 
 Trace random_attitudes() {
   Trace trace;
-  trace.present = channels_with_prefix("") & ~channels_with_prefix("out/");
-  trace.present |= channels_with_prefix("out/vehicle_rates_setpoint.");
+  trace.present = channels_of(Part::mc_att_control) & ~channels_of(Part::mc_att_control, "out/");
+  trace.present |= channels_of(Part::mc_att_control, "out/vehicle_rates_setpoint.");
   Random random(2);
   const auto any = [&](float(&q)[4]) {
     set_quaternion(q, between(random, -1, 1), between(random, -1, 1), between(random, -1, 1),

@@ -7,10 +7,8 @@
 #include <fmt/format.h>
 
 #include "harness/port/port.hpp"
-#include "harness/run/mixer_replay.hpp"
+#include "harness/run/recorded.hpp"
 #include "harness/suite/evaluate.hpp"
-#include "harness/trace/csv.hpp"
-#include "harness/trace/mixer_csv.hpp"
 #include "harness/trace/provenance.hpp"
 
 namespace attest {
@@ -43,17 +41,6 @@ Result<void> check_bytes(const fs::path& file, const Provenance& provenance) {
                  "provenance.toml); restore it from version control");
 }
 
-// What differs, in words; empty when nothing does.
-Result<std::string> mixer_difference(const fs::path& file) {
-  const auto definition = mixer_of(file.string());
-  if (!definition) return fail_at(file.string(), "no mixer is named for it in provenance.toml");
-  const auto recorded = read_mixer_csv(file);
-  if (!recorded) return tl::unexpected(recorded.error());
-  const auto replay = replay_mixer(*recorded, *definition);
-  if (!replay) return tl::unexpected(replay.error());
-  return replay->first;
-}
-
 Tolerances tolerances_for(const fs::path& file, const Provenance& provenance) {
   const auto stated = provenance.tolerances.find(file.stem().string());
   if (stated == provenance.tolerances.end()) return Tolerances(Level::exact);
@@ -62,13 +49,14 @@ Tolerances tolerances_for(const fs::path& file, const Provenance& provenance) {
   return tolerances;
 }
 
+// What differs, in words; empty when nothing does.
 Result<std::string> trace_difference(const fs::path& file, const Provenance& provenance) {
-  const auto recorded = read_csv(file, CsvNeed::inputs_and_outputs);
+  const auto recorded = read_recorded(file);
   if (!recorded) return tl::unexpected(recorded.error());
   const auto port = open_port("builtin");
   if (!port) return tl::unexpected(port.error());
   const CaseResult result =
-      evaluate_trace(*recorded, provenance.profile, **port, tolerances_for(file, provenance));
+      evaluate_trace(recorded->trace, recorded->subject, **port, tolerances_for(file, provenance));
   if (result.verdict == Verdict::pass) return std::string();
   if (!result.first) return result.reason;
   return fmt::format("{} at tick {}", channels()[result.first->channel].name, result.first->tick);
@@ -80,7 +68,7 @@ Result<std::string> difference(const fs::path& file) {
   if (auto intact = check_bytes(file, *provenance); !intact) {
     return tl::unexpected(intact.error());
   }
-  return looks_like_mixer_csv(file) ? mixer_difference(file) : trace_difference(file, *provenance);
+  return trace_difference(file, *provenance);
 }
 
 }  // namespace

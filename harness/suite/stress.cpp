@@ -25,7 +25,7 @@ double micros(Nanoseconds time) { return static_cast<double>(time.count()) / 100
 // another output. A decision of the law on a threshold is.
 void check_outputs(const Case& the_case, LiveUnitRecord& unit, CaseResult& result) {
   Trace got;
-  got.present = channels_with_prefix("");
+  got.present = channels_of(Part::mc_att_control);
   got.samples = std::move(unit.samples);
   got.parameters = std::move(unit.changes);
   if (got.samples.empty()) return;
@@ -36,7 +36,7 @@ void check_outputs(const Case& the_case, LiveUnitRecord& unit, CaseResult& resul
   const DefaultFloatEnvironment environment;
   judge(compare(got, want, tolerances_of(the_case, Level::numeric)), result);
   if (result.verdict == Verdict::pass) return;
-  const Margins near = margins(got, the_case.profile);
+  const Margins near = margins(got, subject_of(the_case));
   for (std::size_t i = 0; i < decision_count; ++i) {
     const auto decision = static_cast<Decision>(i);
     if (near.is_safe(decision) || near[decision].tick > result.first.value_or(Deviation{}).tick) {

@@ -151,7 +151,7 @@ Result<void> TimeBatch::write_worst(Port& port) const {
   const auto unit = port.create(slowest.the_case->profile);
   if (const auto fault = drive(*unit, trace)) return fail(fault->what);
   const DefaultFloatEnvironment environment;
-  trace.present = channels_with_prefix("");
+  trace.present = channels_of(Part::mc_att_control);
   auto file = AtomicFile::open(options_.worst);
   if (!file) return tl::unexpected(file.error());
   if (auto written = write_csv(trace, all_columns(trace), *file); !written) return written;

@@ -6,51 +6,54 @@
 namespace attest {
 namespace {
 
-constexpr std::size_t in_offset = offsetof(Sample, in);
-constexpr std::size_t out_offset = offsetof(Sample, out);
-
-constexpr Channel input(std::string_view name, ChannelType type, Quantity quantity,
-                        std::size_t offset) {
-  return {name, type, quantity, Stage::input, in_offset + offset, 0};
+constexpr Channel number(std::string_view name, Quantity quantity, Part part, Stage stage,
+                         std::size_t offset) {
+  return {name, ChannelType::f32, quantity, part, stage, offset, 0};
 }
 
-constexpr Channel number(std::string_view name, Quantity quantity, std::size_t offset) {
-  return input(name, ChannelType::f32, quantity, offset);
-}
-
-constexpr Channel flag(std::string_view name, std::size_t offset) {
-  return input(name, ChannelType::u8, Quantity::flag, offset);
+constexpr Channel flag(std::string_view name, Part part, Stage stage, std::size_t offset) {
+  return {name, ChannelType::u8, Quantity::flag, part, stage, offset, 0};
 }
 
 constexpr Channel updated(std::string_view name, int mask) {
   return {name,
           ChannelType::bit,
           Quantity::flag,
+          Part::mc_att_control,
           Stage::input,
-          in_offset + offsetof(attest_inputs, updated),
+          offsetof(Sample, in.updated),
           static_cast<std::uint32_t>(mask)};
 }
 
-constexpr Channel output(std::string_view name, Quantity quantity, Stage stage,
-                         std::size_t offset) {
-  return {name, ChannelType::f32, quantity, stage, out_offset + offset, 0};
-}
+// The name is the member: "in/" #member at offsetof(Sample, in.member).
+#define IN(member, quantity)                                                    \
+  number("in/" #member, Quantity::quantity, Part::mc_att_control, Stage::input, \
+         offsetof(Sample, in.member))
+#define FLAG(member) \
+  flag("in/" #member, Part::mc_att_control, Stage::input, offsetof(Sample, in.member))
+#define OUT(member, quantity, stage)                                             \
+  number("out/" #member, Quantity::quantity, Part::mc_att_control, Stage::stage, \
+         offsetof(Sample, out.member))
+#define PUBLISHED(topic, stage)                                        \
+  flag("out/" #topic ".published", Part::mc_att_control, Stage::stage, \
+       offsetof(Sample, out.topic.published))
 
-constexpr Channel published(std::string_view name, Stage stage, std::size_t offset) {
-  return {name, ChannelType::u8, Quantity::flag, stage, out_offset + offset, 0};
-}
+#define MIXER_IN(member, quantity)                                     \
+  number("in/" #member, Quantity::quantity, Part::mixer, Stage::input, \
+         offsetof(Sample, mixer_in.member))
+#define MIXER_OUT(rotor)                                                                        \
+  number("out/actuator_outputs.output[" #rotor "]", Quantity::motor, Part::mixer, Stage::mixer, \
+         offsetof(Sample, mixer_out.actuator_outputs.output) + sizeof(float) * rotor)
+#define MIXER_FLAG(member) \
+  flag("out/" #member, Part::mixer, Stage::mixer, offsetof(Sample, mixer_out.member))
 
-// The name is the member: "in/" #member at offsetof(attest_inputs, member).
-#define IN(member, quantity) \
-  number("in/" #member, Quantity::quantity, offsetof(attest_inputs, member))
-#define FLAG(member) flag("in/" #member, offsetof(attest_inputs, member))
-#define OUT(member, quantity, stage) \
-  output("out/" #member, Quantity::quantity, Stage::stage, offsetof(attest_outputs, member))
-#define PUBLISHED(topic, stage) \
-  published("out/" #topic ".published", Stage::stage, offsetof(attest_outputs, topic.published))
+#define BATTERY_IN(member, quantity)                                            \
+  number("in/" #member, Quantity::quantity, Part::battery_status, Stage::input, \
+         offsetof(Sample, battery_in.member))
 
 constexpr std::array<Channel, max_channels> table = {{
-    input("timestamp", ChannelType::u64, Quantity::time, offsetof(attest_inputs, timestamp)),
+    {"timestamp", ChannelType::u64, Quantity::time, Part::mc_att_control, Stage::input,
+     offsetof(Sample, in.timestamp), 0},
     IN(control_state.q[0], quaternion),
     IN(control_state.q[1], quaternion),
     IN(control_state.q[2], quaternion),
@@ -114,12 +117,39 @@ constexpr std::array<Channel, max_channels> table = {{
     OUT(mc_att_ctrl_status.roll_rate_integ, integral, integrator),
     OUT(mc_att_ctrl_status.pitch_rate_integ, integral, integrator),
     OUT(mc_att_ctrl_status.yaw_rate_integ, integral, integrator),
+    MIXER_IN(actuator_controls_0.control[0], control),
+    MIXER_IN(actuator_controls_0.control[1], control),
+    MIXER_IN(actuator_controls_0.control[2], control),
+    MIXER_IN(actuator_controls_0.control[3], thrust),
+    MIXER_IN(mixer.delta_out_max, motor),
+    MIXER_OUT(0),
+    MIXER_OUT(1),
+    MIXER_OUT(2),
+    MIXER_OUT(3),
+    MIXER_OUT(4),
+    MIXER_OUT(5),
+    MIXER_OUT(6),
+    MIXER_OUT(7),
+    MIXER_FLAG(multirotor_motor_limits.lower_limit),
+    MIXER_FLAG(multirotor_motor_limits.upper_limit),
+    MIXER_FLAG(multirotor_motor_limits.yaw),
+    BATTERY_IN(battery.voltage_v, voltage),
+    BATTERY_IN(battery.current_a, current),
+    BATTERY_IN(battery.throttle, thrust),
+    flag("in/battery.armed", Part::battery_status, Stage::input,
+         offsetof(Sample, battery_in.battery.armed)),
+    number("out/battery_status.scale", Quantity::scale, Part::battery_status, Stage::battery_status,
+           offsetof(Sample, battery_out.battery_status.scale)),
 }};
 
 #undef IN
 #undef FLAG
 #undef OUT
 #undef PUBLISHED
+#undef MIXER_IN
+#undef MIXER_OUT
+#undef MIXER_FLAG
+#undef BATTERY_IN
 
 constexpr std::string_view updated_prefix = "in/updated.";
 
@@ -165,13 +195,35 @@ std::optional<std::string_view> parameter_of(std::string_view column) {
   return column;
 }
 
-ChannelSet channels_with_prefix(std::string_view prefix) {
+ChannelSet channels_of(Part part, std::string_view prefix) {
   ChannelSet set;
-  for (std::size_t i = 0; i < table.size(); ++i) set[i] = table[i].name.starts_with(prefix);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const bool is_of_part = i == 0 || table[i].part == part;
+    set[i] = is_of_part && table[i].name.starts_with(prefix);
+  }
   return set;
 }
 
+Part part_of(const ChannelSet& channels) {
+  for (std::size_t i = 1; i < table.size(); ++i) {
+    if (channels[i]) return table[i].part;
+  }
+  return Part::mc_att_control;
+}
+
 std::span<const std::string_view> updated_topics() { return topics; }
+
+std::string_view name_of(Part part) {
+  switch (part) {
+    case Part::mc_att_control:
+      return "mc_att_control";
+    case Part::mixer:
+      return "mixer";
+    case Part::battery_status:
+      return "battery_status";
+  }
+  return "";
+}
 
 std::string_view unit_of(Quantity quantity) {
   switch (quantity) {
@@ -179,6 +231,10 @@ std::string_view unit_of(Quantity quantity) {
       return "us";
     case Quantity::rate:
       return "rad/s";
+    case Quantity::voltage:
+      return "V";
+    case Quantity::current:
+      return "A";
     default:
       return "";
   }
@@ -194,6 +250,10 @@ std::string_view name_of(Stage stage) {
       return "rate law";
     case Stage::integrator:
       return "integrator";
+    case Stage::mixer:
+      return "mixer";
+    case Stage::battery_status:
+      return "battery status";
   }
   return "";
 }

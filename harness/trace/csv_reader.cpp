@@ -91,7 +91,8 @@ Result<void> check_need(const ChannelSet& present, CsvNeed need, const std::stri
   if (!present[timestamp_channel]) {
     return missing("timestamp", 0, "add the time of each sample in microseconds");
   }
-  const ChannelSet absent = channels_with_prefix("in/") & ~present;
+  const Part part = part_of(present);
+  const ChannelSet absent = channels_of(part, "in/") & ~present;
   if (need != CsvNeed::outputs && absent.any()) {
     const std::string_view name = channels()[absent._Find_first()].name;
     return missing(
@@ -100,7 +101,7 @@ Result<void> check_need(const ChannelSet& present, CsvNeed need, const std::stri
                     "the file",
                     name, provenance_name));
   }
-  if (need != CsvNeed::inputs && (present & channels_with_prefix("out/")).none()) {
+  if (need != CsvNeed::inputs && (present & channels_of(part, "out/")).none()) {
     return missing("out/...", 0, "add at least one output of the unit");
   }
   return {};

@@ -1,52 +1,39 @@
 #include "harness/trace/mixer_csv.hpp"
 
 #include <algorithm>
-#include <span>
+#include <array>
 #include <string_view>
 
 #include <fmt/format.h>
 
 #include "harness/core/nearest.hpp"
 #include "harness/trace/csv_rows.hpp"
-#include "harness/trace/csv_text.hpp"
 
 namespace attest {
 namespace {
 
 struct Named {
   std::string_view name;
-  CsvColumn column;
+  std::string_view channel;
 };
 
-constexpr Named number(std::string_view name, std::size_t offset) {
-  return {name, {ChannelType::f32, offset, 0}};
-}
-
-constexpr Named out(std::string_view name, std::size_t rotor) {
-  return number(name, offsetof(MixerSample, out) + rotor * sizeof(float));
-}
-
-constexpr Named flag(std::string_view name, std::size_t offset) {
-  return {name, {ChannelType::u8, offset, 0}};
-}
-
 constexpr std::array<Named, 16> table = {{
-    number("roll", offsetof(MixerSample, roll)),
-    number("pitch", offsetof(MixerSample, pitch)),
-    number("yaw", offsetof(MixerSample, yaw)),
-    number("thrust", offsetof(MixerSample, thrust)),
-    number("delta_out_max", offsetof(MixerSample, delta_out_max)),
-    out("out[0]", 0),
-    out("out[1]", 1),
-    out("out[2]", 2),
-    out("out[3]", 3),
-    out("out[4]", 4),
-    out("out[5]", 5),
-    out("out[6]", 6),
-    out("out[7]", 7),
-    flag("lower_limit", offsetof(MixerSample, lower_limit)),
-    flag("upper_limit", offsetof(MixerSample, upper_limit)),
-    flag("yaw_limit", offsetof(MixerSample, yaw_limit)),
+    {"roll", "in/actuator_controls_0.control[0]"},
+    {"pitch", "in/actuator_controls_0.control[1]"},
+    {"yaw", "in/actuator_controls_0.control[2]"},
+    {"thrust", "in/actuator_controls_0.control[3]"},
+    {"delta_out_max", "in/mixer.delta_out_max"},
+    {"out[0]", "out/actuator_outputs.output[0]"},
+    {"out[1]", "out/actuator_outputs.output[1]"},
+    {"out[2]", "out/actuator_outputs.output[2]"},
+    {"out[3]", "out/actuator_outputs.output[3]"},
+    {"out[4]", "out/actuator_outputs.output[4]"},
+    {"out[5]", "out/actuator_outputs.output[5]"},
+    {"out[6]", "out/actuator_outputs.output[6]"},
+    {"out[7]", "out/actuator_outputs.output[7]"},
+    {"lower_limit", "out/multirotor_motor_limits.lower_limit"},
+    {"upper_limit", "out/multirotor_motor_limits.upper_limit"},
+    {"yaw_limit", "out/multirotor_motor_limits.yaw"},
 }};
 
 bool is_out(std::string_view name) { return name.starts_with("out["); }
@@ -67,7 +54,7 @@ const Named* find(std::string_view name) {
   return found == table.end() ? nullptr : &*found;
 }
 
-Result<std::vector<CsvColumn>> columns_of(const CsvRows& rows) {
+Result<std::vector<CsvColumn>> columns_of(const CsvRows& rows, ChannelSet& present) {
   std::vector<CsvColumn> columns;
   for (std::size_t i = 0; i < rows.header().size(); ++i) {
     const std::string_view name = rows.header()[i];
@@ -78,13 +65,15 @@ Result<std::vector<CsvColumn>> columns_of(const CsvRows& rows) {
       return rows.fail_at_name(i, fmt::format("unknown column {} in a mixer trace{}",
                                               in_backquotes(name), suggestion(name, names)));
     }
-    columns.push_back(named->column);
+    const std::size_t index = *find_channel(named->channel);
+    columns.push_back({channels()[index].type, channels()[index].offset, 0});
+    present.set(index);
   }
   return columns;
 }
 
-// The number of rotors, once all columns for them are there.
-Result<std::size_t> rotors_of(const CsvRows& rows) {
+// Are all columns there for as many rotors as there are outputs?
+Result<void> check_rotors(const CsvRows& rows) {
   const std::vector<std::string>& header = rows.header();
   const auto rotors = static_cast<std::size_t>(std::count_if(header.begin(), header.end(), is_out));
   if (rotors != 4 && rotors != 6 && rotors != 8) {
@@ -95,50 +84,34 @@ Result<std::size_t> rotors_of(const CsvRows& rows) {
     if (std::find(header.begin(), header.end(), named.name) != header.end()) continue;
     return fail_at(rows.file(), fmt::format("no column {}; add it", named.name), 1);
   }
-  return rotors;
+  return {};
 }
 
 }  // namespace
 
-Result<MixerTrace> read_mixer_csv(const std::filesystem::path& path) {
+Result<Trace> read_mixer_csv(const std::filesystem::path& path) {
   auto rows = CsvRows::open(path);
   if (!rows) return tl::unexpected(rows.error());
-  auto columns = columns_of(*rows);
+  Trace trace;
+  trace.source = rows->file();
+  trace.present.set(*find_channel("timestamp"));
+  auto columns = columns_of(*rows, trace.present);
   if (!columns) return tl::unexpected(columns.error());
-  const auto rotors = rotors_of(*rows);
-  if (!rotors) return tl::unexpected(rotors.error());
+  if (auto checked = check_rotors(*rows); !checked) return tl::unexpected(checked.error());
   rows->set_columns(*std::move(columns));
 
-  MixerTrace trace{rows->file(), *rotors, {}};
-  MixerSample sample{};
+  Sample sample{};
   while (true) {
     const auto more = rows->next(&sample);
     if (!more) return tl::unexpected(more.error());
     if (!*more) break;
+    sample.in.timestamp = trace.samples.size();
     trace.samples.push_back(sample);
   }
   if (trace.samples.empty()) {
     return fail_at(rows->file(), "no rows; a mixer trace has a row for each call", 2);
   }
   return trace;
-}
-
-Result<void> write_mixer_csv(const MixerTrace& trace, AtomicFile& file) {
-  CsvText text(file);
-  for (const Named& named : columns_for(trace.rotors)) text.name(named.name);
-  text.end_row();
-  for (const MixerSample& sample : trace.samples) {
-    for (const float value :
-         {sample.roll, sample.pitch, sample.yaw, sample.thrust, sample.delta_out_max}) {
-      text.number(value);
-    }
-    for (const float value : std::span(sample.out).first(trace.rotors)) text.number(value);
-    for (const std::uint8_t limit : {sample.lower_limit, sample.upper_limit, sample.yaw_limit}) {
-      text.integer(limit);
-    }
-    text.end_row();
-  }
-  return text.finish();
 }
 
 bool looks_like_mixer_csv(const std::filesystem::path& path) {

@@ -45,13 +45,27 @@ recorded() { ls "$SOURCE"/golden/recorded/*/*.csv | grep -v tailsitter; }
 }
 
 @test "a mixer trace is replayed on the mixer that its provenance names" {
-  run "$ATTEST" replay "$SOURCE"/golden/recorded/mixer-v1.5.5/4x_scaled_idle.csv
+  run "$ATTEST" replay --level exact "$SOURCE"/golden/recorded/mixer-v1.5.5/4x_scaled_idle.csv
   [ "$status" -eq 0 ]
-  has "R: 4x 8000 9000 5000 1500"
+  has "1100 ticks, exact"
   run "$ATTEST" replay "$SOURCE"/golden/recorded/mixer-v1.5.5/4x.csv \
     --mixer "R: 4+ 10000 10000 10000 0"
   [ "$status" -eq 1 ]
-  has "out[1] at sample 0"
+  has "out/actuator_outputs.output[1]"
+  has "tick 0"
+}
+
+@test "a mixer trace is given to the port's mixer, if it has one" {
+  trace="$SOURCE/golden/recorded/mixer-v1.5.5/6x.csv"
+  run "$ATTEST" replay --level exact "$trace" --port "lib:$PORTS/port_with_actuation.so"
+  [ "$status" -eq 0 ]
+  run "$ATTEST" replay "$trace" --port fault:mixer-no-boost
+  [ "$status" -eq 1 ]
+  has "out/actuator_outputs"
+  run "$ATTEST" replay "$trace" --port "lib:$PORTS/port_prints.so"
+  [ "$status" -eq 1 ]
+  has "unsupported"
+  has "the port has no mixer (extension attest.mixer.v1)"
 }
 
 @test "a malformed trace is shown with file, line and column" {

@@ -49,6 +49,21 @@ TEST(BatteryStatus, KnownResistanceReplacesTheThrottleModel) {
   EXPECT_NEAR(battery.remaining(), (3.6f + 0.2f - 3.4f) / 0.65f, 1e-5f);
 }
 
+TEST(BatteryStatus, ParametersAreTheOptions) {
+  BatteryOptions options;
+  for (const BatteryParameter& parameter : battery_parameters()) {
+    EXPECT_TRUE(set_battery_parameter(options, parameter.name, parameter.default_value));
+  }
+  EXPECT_EQ(options.cell_count, BatteryOptions{}.cell_count);
+  EXPECT_EQ(options.internal_resistance_ohm, std::nullopt);
+  EXPECT_TRUE(set_battery_parameter(options, "BAT_R_INTERNAL", 0));
+  EXPECT_EQ(options.internal_resistance_ohm, 0.0f);
+  for (const float count : {0.0f, -1.0f, 2.5f, NAN}) {
+    EXPECT_FALSE(set_battery_parameter(options, "BAT_N_CELLS", count)) << count;
+  }
+  EXPECT_FALSE(set_battery_parameter(options, "BAT_CELLS", 3));
+}
+
 RC_GTEST_PROP(BatteryStatus, ScaleIsAlwaysUsable, ()) {
   BatteryStatus battery({.cell_count = cells});
   for (int sample = 0; sample < 20; ++sample) {

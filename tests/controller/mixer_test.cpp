@@ -17,10 +17,11 @@ namespace attest::actuation {
 namespace {
 
 using test::uniform;
+using Controls = MixerControls<float>;
 using ::testing::HasSubstr;
 
 Mixer make_mixer(const std::string& geometry) {
-  return Mixer::parse("R: " + geometry + " 10000 10000 10000 0").value();
+  return Mixer(parse_mixer("R: " + geometry + " 10000 10000 10000 0").value());
 }
 
 Mixer any_mixer() {
@@ -36,7 +37,7 @@ Controls any_controls() {
 }
 
 TEST(Mixer, BadTextIsRefusedWithAReason) {
-  const auto message = [](const char* text) { return Mixer::parse(text).error(); };
+  const auto message = [](const char* text) { return parse_mixer(text).error(); };
   EXPECT_THAT(message(""), HasSubstr("expected 'R:"));
   EXPECT_THAT(message("M: 4x 1 1 1 0"), HasSubstr("expected 'R:"));
   EXPECT_THAT(message("R: 5x 1 1 1 0"), HasSubstr("unknown geometry '5x', known are 4x 4+ 6x 8x"));
@@ -71,7 +72,7 @@ TEST(Mixer, RollRightRaisesTheLeftRotors) {
 }
 
 TEST(Mixer, DeadbandLiftsTheIdle) {
-  Mixer mixer = Mixer::parse("R: 4x 8000 9000 5000 1500").value();
+  Mixer mixer(parse_mixer("R: 4x 8000 9000 5000 1500").value());
   Saturation saturation{};
   for (const float out : mixer.mix({0, 0, 0, 0}, 0.0f, saturation)) EXPECT_FLOAT_EQ(out, -0.7f);
   for (const float out : mixer.mix({0, 0, 0, 1}, 0.0f, saturation)) EXPECT_FLOAT_EQ(out, 1.0f);
@@ -122,7 +123,7 @@ RC_GTEST_PROP(Mixer, FlagsSayWhetherRollAndPitchFit, ()) {
 RC_GTEST_PROP(Mixer, SlewLimitHoldsFromCallToCall, ()) {
   Mixer mixer = any_mixer();
   constexpr float delta = 0.05f;
-  std::vector<float> previous(mixer.rotor_count(), 0.0f);
+  std::vector<float> previous(mixer.rotors().size(), 0.0f);
   for (int call = 0; call < 20; ++call) {
     Saturation saturation{};
     const auto out = mixer.mix(any_controls(), delta, saturation);

@@ -13,6 +13,7 @@
 #include "tests/controller/generators.hpp"
 
 extern "C" int attest_abi_from_c(const attest_unit* unit);
+extern "C" int attest_actuation_from_c(const attest_unit* unit);
 
 namespace attest::reference {
 namespace {
@@ -21,6 +22,11 @@ const attest_unit& unit() { return *reference_unit(); }
 
 TEST(Unit, WorksFromC) {
   EXPECT_EQ(attest_abi_from_c(reference_unit()), 0) << "line of abi_from_c";
+}
+
+TEST(Unit, HasAMixerAndABatteryEstimate) {
+  EXPECT_EQ(attest_actuation_from_c(reference_unit()), 0) << "line of abi_from_c";
+  EXPECT_EQ(attest_actuation_from_c(reference_unit_in_double()), 0) << "line of abi_from_c";
 }
 
 TEST(Unit, KnowsItsProfiles) {

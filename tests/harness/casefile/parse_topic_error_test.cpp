@@ -19,6 +19,26 @@ TEST(TopicErrors, UnknownFields) {
   EXPECT_THAT(errors_of("control_state = 1\n"), HasSubstr("`control_state` must be a table"));
 }
 
+TEST(TopicErrors, OfMixerAndBattery) {
+  const std::string mixer = "[mixer]\ndefinition = \"R: 4x 10000 10000 10000 0\"\n";
+  EXPECT_EQ(errors_of(mixer + "[actuator_controls_0]\n\"control[0]\" = 0.5\n"), "");
+  EXPECT_THAT(error_of("mixer", "definition = \"R: 5x 1 1 1 0\""),
+              HasSubstr("7:1: mixer: unknown geometry '5x'"));
+  EXPECT_THAT(errors_of("[mixer]\n"), HasSubstr("missing key `definition`"));
+  EXPECT_THAT(errors_of(mixer + "[control_state]\nroll_rate = 1\n"),
+              HasSubstr("8:2: unknown key `control_state`"));
+  EXPECT_THAT(errors_of(mixer + "[battery]\n"), HasSubstr("`mixer` is given too; keep one"));
+  EXPECT_THAT(errors_of(mixer + "[flight]\n"), HasSubstr("leave [flight] out"));
+  EXPECT_THAT(errors_of(mixer + "[parameters]\nMC_ROLL_P = 1\n"),
+              HasSubstr("unknown parameter `MC_ROLL_P`"));
+  EXPECT_EQ(errors_of("[battery]\nvoltage_v = 11\n[parameters]\nBAT_N_CELLS = 4\n"), "");
+  EXPECT_THAT(error_of("battery", "armed = 0.5"), HasSubstr("7:1: is a flag"));
+  EXPECT_THAT(error_of("battery", "rate_hz = 50"), HasSubstr("unknown key `rate_hz`"));
+  EXPECT_THAT(errors_of("[battery]\n[parameters]\nBAT_N_CELLS = { signal = \"step\", from = 3, to "
+                        "= 4, at_ticks = 2 }\n"),
+              HasSubstr("8:1: does not change while it runs"));
+}
+
 TEST(TopicErrors, Flags) {
   for (const char* value :
        {"0.5", "256", "-1", "nan", "{ signal = \"sine\", amplitude = 1, cycles = 1 }",

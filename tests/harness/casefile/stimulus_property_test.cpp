@@ -65,7 +65,9 @@ Case any_case() {
 
 bool same_inputs(const attest_inputs& a, const attest_inputs& b) {
   for (const Channel& channel : channels()) {
-    const Sample x{a, {}}, y{b, {}};
+    Sample x{}, y{};
+    x.in = a;
+    y.in = b;
     if (value_of(channel, x) != value_of(channel, y)) return false;
   }
   return true;

@@ -16,7 +16,7 @@ void set(Trace& trace, std::size_t tick, std::string_view name, double value) {
 
 Trace sample_trace(std::size_t ticks) {
   Trace trace;
-  trace.present = channels_with_prefix("");
+  trace.present = channels_of(Part::mc_att_control);
   const auto table = channels();
   for (std::size_t tick = 0; tick < ticks; ++tick) {
     Sample sample{};
@@ -26,7 +26,7 @@ Trace sample_trace(std::size_t ticks) {
     sample.in.vehicle_control_mode.flag_control_attitude_enabled = 1;
     if (tick == 0) sample.in.updated = ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT;
     for (std::size_t i = 0; i < table.size(); ++i) {
-      if (!table[i].is_output()) continue;
+      if (!table[i].is_output() || !trace.present[i]) continue;
       const bool is_flag = table[i].type == ChannelType::u8;
       const double value = 0.01 * static_cast<double>(i) - 0.001 * static_cast<double>(tick);
       set_value(table[i], sample, is_flag ? 1 : value);

@@ -61,7 +61,7 @@ TEST(Models, EachIsTheVehicleOfItsToml) {
     EXPECT_GT(vehicle.hover_thrust(), 0.3) << name;
     EXPECT_LT(vehicle.hover_thrust(), 0.9) << name;
     EXPECT_GE(vehicle.parameters.size(), 10u) << name;
-    EXPECT_EQ(actuation::Mixer::parse(vehicle.mixer)->rotor_count(), vehicle.rotors.size());
+    EXPECT_EQ(actuation::parse_mixer(vehicle.mixer)->rotors.size(), vehicle.rotors.size());
   }
 }
 

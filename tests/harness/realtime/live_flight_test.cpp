@@ -79,7 +79,7 @@ TEST(LiveFlight, ItsTimesCanBeFlownAgain) {
 TEST(LiveFlight, WhatItComputesDoesNotDependOnTheThreads) {
   LiveFlight flight = flown(tilt_case(0.2), [] { return false; });
   Trace trace;
-  trace.present = channels_with_prefix("");
+  trace.present = channels_of(Part::mc_att_control);
   trace.samples = flight.unit.samples;
   trace.parameters = flight.unit.changes;
   Trace again = trace;

@@ -11,7 +11,7 @@ namespace {
 
 Trace flown(std::size_t ticks) {
   Trace trace;
-  trace.present = channels_with_prefix("");
+  trace.present = channels_of(Part::mc_att_control);
   for (std::size_t tick = 0; tick < ticks; ++tick) {
     Sample sample{};
     sample.in.timestamp = 1000 * (tick + 1);
@@ -59,7 +59,7 @@ TEST(Decimated, AShortFlightIsKeptWhole) {
 // Between two rows anything may have been new.
 TEST(Decimated, SaysNothingOfWhatWasNew) {
   const Trace rows = decimated(flown(30));
-  EXPECT_EQ(rows.present & channels_with_prefix("in/updated."), ChannelSet());
+  EXPECT_EQ(rows.present & channels_of(Part::mc_att_control, "in/updated."), ChannelSet());
   EXPECT_EQ(rows.samples[0].in.updated, 0u);
   EXPECT_TRUE(rows.plant.empty());
 }

@@ -11,7 +11,7 @@ namespace attest {
 namespace {
 
 Margins margins_of(const std::string& body) {
-  return margins(stimulate(case_of(body), Rate::hz(250)), "px4-v1.5.5");
+  return margins(stimulate(case_of(body), Rate::hz(250)), Subject{"px4-v1.5.5"});
 }
 
 TEST(Margins, LevelFlightIsFarFromMost) {
@@ -30,6 +30,29 @@ TEST(Margins, TheThrustGate) {
       "= [0.5, 0.2] }\n");
   EXPECT_FALSE(found.is_safe(Decision::thrust_gate));
   EXPECT_EQ(found[Decision::thrust_gate].tick, 4u);
+}
+
+Margins mixer_margins_of(const std::string& controls) {
+  const std::string definition = "R: 4x 10000 10000 10000 0";
+  const Case the_case =
+      case_of("[mixer]\ndefinition = \"" + definition + "\"\n[actuator_controls_0]\n" + controls);
+  return margins(stimulate(the_case, Rate::hz(250)), subject_of(the_case));
+}
+
+TEST(Margins, OfAMixerWithinItsLimits) {
+  const Margins found = mixer_margins_of("\"control[3]\" = 0.75\n");
+  EXPECT_NEAR(found[Decision::mixer_limit].distance, 0.25, 1e-9);
+  EXPECT_NEAR(found[Decision::mixer_yaw].distance, 0.25, 1e-9);
+  EXPECT_TRUE(std::isinf(found[Decision::mixer_branch].distance));
+}
+
+// Roll is fitted so that the lowest rotor is at its limit: whether it is beyond is rounding's.
+TEST(Margins, AMixerThatFitsRollIsAtTheLimitOfYaw) {
+  const Margins found = mixer_margins_of("\"control[0]\" = 0.5\n\"control[3]\" = 0.3\n");
+  EXPECT_FALSE(found.is_safe(Decision::mixer_yaw));
+  const Margins yawed =
+      mixer_margins_of("\"control[0]\" = 0.5\n\"control[2]\" = 0.05\n\"control[3]\" = 0.3\n");
+  EXPECT_TRUE(yawed.is_safe(Decision::mixer_yaw));
 }
 
 // A gate counts by what would flip the decision: while another is shut it may be near.

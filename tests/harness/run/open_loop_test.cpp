@@ -145,6 +145,78 @@ TEST(Drive, InputsAreConst) {
   EXPECT_EQ(fault->what, "step changed its inputs at tick 1; they are const");
 }
 
+// Of which a test says what it does.
+class FakeMixer final : public MixerUnit {
+ public:
+  using Step = std::function<int(const attest_mixer_inputs&, attest_mixer_outputs&)>;
+  explicit FakeMixer(Step step) : step_(std::move(step)) {}
+  int set_parameter(const std::string&, float) override { return ATTEST_INVALID; }
+  int step(const attest_mixer_inputs& in, attest_mixer_outputs& out) override {
+    return step_(in, out);
+  }
+
+ private:
+  Step step_;
+};
+
+class FakePort final : public Port {
+ public:
+  explicit FakePort(FakeMixer::Step step) : step_(std::move(step)) {}
+  std::string name() const override { return "fake"; }
+  std::string version() const override { return "1"; }
+  std::unique_ptr<Unit> create(const std::string&) override { return nullptr; }
+  bool has_mixer() const override { return true; }
+  std::unique_ptr<MixerUnit> create_mixer(const std::string& profile,
+                                          const std::string& definition) override {
+    if (profile != "known") return nullptr;
+    asked_for = definition;
+    return std::make_unique<FakeMixer>(step_);
+  }
+
+  std::string asked_for;
+
+ private:
+  FakeMixer::Step step_;
+};
+
+TEST(DriveAPart, GivesAMixerItsInputsAndRecordsItsOutputs) {
+  FakePort port([](const attest_mixer_inputs& in, attest_mixer_outputs& out) {
+    out.actuator_outputs.output[2] += in.actuator_controls_0.control[1];
+    return ATTEST_OK;
+  });
+  Trace trace = trace_of(3);
+  for (Sample& sample : trace.samples) sample.mixer_in.actuator_controls_0.control[1] = 0.25f;
+  EXPECT_FALSE(drive(port, {"known", Part::mixer, "R: 4x 1 1 1 0"}, trace));
+  EXPECT_EQ(port.asked_for, "R: 4x 1 1 1 0");
+  EXPECT_EQ(trace.samples[2].mixer_out.actuator_outputs.output[2], 0.75f);
+}
+
+TEST(DriveAPart, WhatThePortDoesNotHaveIsUnsupported) {
+  FakePort port([](const auto&, auto&) { return ATTEST_OK; });
+  Trace trace = trace_of(1);
+  const auto without = drive(port, {"known", Part::battery_status}, trace);
+  ASSERT_TRUE(without);
+  EXPECT_EQ(without->kind, Kind::unsupported);
+  EXPECT_THAT(without->what, HasSubstr("attest.battery_status.v1"));
+  const auto unknown = drive(port, {"unknown", Part::mixer, "R: 4x 1 1 1 0"}, trace);
+  ASSERT_TRUE(unknown);
+  EXPECT_EQ(unknown->kind, Kind::profile);
+  EXPECT_THAT(unknown->what, HasSubstr("profile unknown of `R: 4x 1 1 1 0`"));
+  EXPECT_EQ(drive(port, {"known"}, trace)->kind, Kind::profile);
+}
+
+TEST(DriveAPart, WritingBehindItsOutputsIsSeen) {
+  FakePort port([](const attest_mixer_inputs&, attest_mixer_outputs& out) {
+    unsigned char* volatile place = reinterpret_cast<unsigned char*>(&out) + sizeof out;
+    *place = 0;
+    return ATTEST_OK;
+  });
+  Trace trace = trace_of(1);
+  const auto fault = drive(port, {"known", Part::mixer}, trace);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->kind, Kind::protocol);
+}
+
 TEST(Drive, OneByteBehindTheStructsIsSeen) {
   for (const bool behind_inputs : {false, true}) {
     FakeUnit unit([&](const attest_inputs& in, attest_outputs& out) {
@@ -161,7 +233,7 @@ TEST(Drive, OneByteBehindTheStructsIsSeen) {
     const auto fault = drive(unit, trace);
     ASSERT_TRUE(fault);
     EXPECT_EQ(fault->kind, Kind::protocol);
-    EXPECT_THAT(fault->what, HasSubstr("wrote outside attest_outputs at tick 0"));
+    EXPECT_THAT(fault->what, HasSubstr("wrote outside its outputs at tick 0"));
   }
 }
 

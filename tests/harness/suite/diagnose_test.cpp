@@ -31,7 +31,8 @@ std::vector<VectorLikeness> vectors(const char* faults) {
     drive(*reference->create("px4-v1.5.5"), law);
     const auto port = open_fault(faults);
     drive(*(*port)->create("px4-v1.5.5"), got);
-    all.push_back(likeness(outputs_of(got), outputs_of(law), answers_of_faults(law, "px4-v1.5.5")));
+    all.push_back(
+        likeness(outputs_of(got), outputs_of(law), answers_of_faults(law, {"px4-v1.5.5"})));
   }
   return all;
 }

@@ -98,7 +98,7 @@ TEST_F(EvaluateTest, ARecordedTraceIsGivenToThePort) {
   Trace recorded = answers_of_reference(suite_[0])[0].trace;
   recorded.source = "flight.csv";
   const auto judge = [&](const std::string& port) {
-    return evaluate_trace(recorded, "px4-v1.5.5", *opened(port), Tolerances());
+    return evaluate_trace(recorded, {"px4-v1.5.5"}, *opened(port), Tolerances());
   };
   EXPECT_EQ(judge("builtin").verdict, Verdict::pass);
   EXPECT_EQ(judge("builtin").name, "flight.csv");

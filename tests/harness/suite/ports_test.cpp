@@ -122,7 +122,7 @@ TEST_F(PortsTest, UnsupportedAndRefusedAreNoFailures) {
 
 TEST_F(PortsTest, WritingBehindTheOutputsBreaksTheProtocol) {
   for (const CaseResult& result : all_are("writes_wild", Verdict::protocol)) {
-    EXPECT_THAT(result.reason, HasSubstr("step wrote outside attest_outputs at tick 20"));
+    EXPECT_THAT(result.reason, HasSubstr("step wrote outside its outputs at tick 20"));
   }
 }
 

@@ -59,7 +59,8 @@ TEST_F(RecordedCheckTest, ADifferenceIsNamed) {
   ASSERT_TRUE(check) << check.error().to_string();
   EXPECT_EQ(check->traces, 1u);
   EXPECT_EQ(check->conforming, 0u);
-  EXPECT_THAT(check->first_difference, AllOf(HasSubstr("4x.csv: "), HasSubstr("at sample 0")));
+  EXPECT_THAT(check->first_difference,
+              AllOf(HasSubstr("4x.csv: "), HasSubstr("output[1] at tick 0")));
 }
 
 TEST_F(RecordedCheckTest, EditedBytesAreAnError) {

@@ -1,0 +1,204 @@
+// Wrong battery estimates.
+#include <algorithm>
+#include <cmath>
+
+#include "controller/faults/groups.hpp"
+
+namespace attest::faults {
+namespace {
+
+using Law = BatteryStages::Law;
+using Options = BatteryStages::Options;
+using Sample = BatteryStages::Sample;
+
+template <typename Drop>
+void change_drop(FaultyLaw& law, Drop drop) {
+  law.battery.load_drop_V = [drop](const Sample& sample, const Options& options) {
+    return drop(Law::load_drop_V(sample, options), sample, options);
+  };
+}
+
+const Fault faults[] = {
+    {"battery-status-pack", "battery_status", Stage::battery_status,
+     "takes the pack's voltage for a cell's", "always", "a missing factor",
+     [](FaultyLaw& law) {
+       law.battery.measured = [](const Sample& sample, float drop, const Options& options) {
+         Options one_cell = options;
+         one_cell.cell_count = 1;
+         return Law::measured(sample, drop, one_cell);
+       };
+     }},
+    {"battery-status-three-cells", "battery_status", Stage::battery_status,
+     "has three cells always", "another number of cells", "a wrong parameter",
+     [](FaultyLaw& law) {
+       law.battery.measured = [](const Sample& sample, float drop, const Options& options) {
+         Options three_cells = options;
+         three_cells.cell_count = 3;
+         return Law::measured(sample, drop, three_cells);
+       };
+     }},
+    {"battery-status-default-voltages", "battery_status", Stage::battery_status,
+     "keeps the default voltages of a cell", "other voltages", "a wrong parameter",
+     [](FaultyLaw& law) {
+       law.battery.measured = [](const Sample& sample, float drop, const Options& options) {
+         return Law::measured(sample, drop, Options{.cell_count = options.cell_count});
+       };
+       law.battery.scale = [](float remaining, const Options&) {
+         return Law::scale(remaining, Options{});
+       };
+     }},
+    {"battery-status-no-load", "battery_status", Stage::battery_status,
+     "does not correct for the load", "throttle while armed", "a missing term",
+     [](FaultyLaw& law) {
+       change_drop(law, [](float, const Sample&, const Options&) { return 0.0f; });
+     }},
+    {"battery-status-load-subtracted", "battery_status", Stage::battery_status,
+     "subtracts the drop under load", "throttle while armed", "a sign",
+     [](FaultyLaw& law) {
+       change_drop(law, [](float drop, const Sample&, const Options&) { return -drop; });
+     }},
+    {"battery-status-load-disarmed", "battery_status", Stage::battery_status,
+     "corrects for a load while disarmed", "throttle while disarmed", "a condition dropped",
+     [](FaultyLaw& law) {
+       law.battery.load_drop_V = [](Sample sample, const Options& options) {
+         sample.armed = true;
+         return Law::load_drop_V(sample, options);
+       };
+     }},
+    {"battery-status-no-idle-share", "battery_status", Stage::battery_status,
+     "takes the drop to be 0 at no throttle", "throttle below full while armed", "a missing term",
+     [](FaultyLaw& law) {
+       change_drop(law, [](float drop, const Sample& sample, const Options& options) {
+         const bool modelled = sample.armed && !options.internal_resistance_ohm;
+         return modelled ? options.load_drop_V * std::abs(sample.throttle) : drop;
+       });
+     }},
+    {"battery-status-not-normalised", "battery_status", Stage::battery_status,
+     "lets the drop exceed itself at full throttle", "throttle while armed", "a missing factor",
+     [](FaultyLaw& law) {
+       change_drop(law, [](float drop, const Sample&, const Options& options) {
+         return options.internal_resistance_ohm ? drop : drop * (1 + Law::idle_share);
+       });
+     }},
+    {"battery-status-signed-throttle", "battery_status", Stage::battery_status,
+     "does not take the throttle's magnitude", "negative throttle", "a sign",
+     [](FaultyLaw& law) {
+       change_drop(law, [](float drop, const Sample& sample, const Options& options) {
+         const bool modelled = sample.armed && !options.internal_resistance_ohm;
+         if (!modelled || !(sample.throttle < 0)) return drop;
+         return options.load_drop_V * (sample.throttle + Law::idle_share) / (1 + Law::idle_share);
+       });
+     }},
+    {"battery-status-no-resistance", "battery_status", Stage::battery_status,
+     "ignores a known resistance", "a known resistance", "a missing branch",
+     [](FaultyLaw& law) {
+       law.battery.load_drop_V = [](const Sample& sample, Options options) {
+         options.internal_resistance_ohm.reset();
+         return Law::load_drop_V(sample, options);
+       };
+     }},
+    {"battery-status-both-drops", "battery_status", Stage::battery_status,
+     "adds the modelled drop to that of the resistance", "a known resistance",
+     "a condition dropped",
+     [](FaultyLaw& law) {
+       change_drop(law, [](float drop, const Sample& sample, Options options) {
+         if (!options.internal_resistance_ohm) return drop;
+         options.internal_resistance_ohm.reset();
+         return drop + Law::load_drop_V(sample, options);
+       });
+     }},
+    {"battery-status-resistance-armed-only", "battery_status", Stage::battery_status,
+     "uses a known resistance only while armed", "a known resistance while disarmed",
+     "a helpful extra",
+     [](FaultyLaw& law) {
+       change_drop(law, [](float drop, const Sample& sample, const Options&) {
+         return sample.armed ? drop : 0.0f;
+       });
+     }},
+    {"battery-status-no-filter", "battery_status", Stage::battery_status, "does not filter",
+     "a voltage that changes", "a missing step",
+     [](FaultyLaw& law) {
+       law.battery.filtered = [](float remaining, float measured, bool) {
+         return Law::filtered(remaining, measured, true);
+       };
+     }},
+    {"battery-status-filter-exchanged", "battery_status", Stage::battery_status,
+     "exchanges the weights of the filter", "a voltage that changes", "wrong order",
+     [](FaultyLaw& law) {
+       law.battery.filtered = [](float remaining, float measured, bool is_first) {
+         return is_first ? Law::filtered(remaining, measured, true)
+                         : Law::filtered(measured, remaining, false);
+       };
+     }},
+    {"battery-status-filter-from-0", "battery_status", Stage::battery_status,
+     "starts the filter at 0", "the first seconds", "a wrong initial value",
+     [](FaultyLaw& law) {
+       law.battery.filtered = [](float remaining, float measured, bool) {
+         return Law::filtered(remaining, measured, false);
+       };
+     }},
+    {"battery-status-filter-faster", "battery_status", Stage::battery_status,
+     "filters with 0.98 and 0.02", "a voltage that changes", "a wrong constant",
+     [](FaultyLaw& law) {
+       law.battery.filtered = [](float remaining, float measured, bool is_first) {
+         const float next = is_first ? measured : remaining * 0.98f + measured * 0.02f;
+         return std::clamp(next, 0.0f, 1.0f);
+       };
+     }},
+    {"battery-status-unclamped", "battery_status", Stage::battery_status,
+     "lets the filter leave 0..1", "a voltage beyond full, then a lower one", "missing clamp",
+     [](FaultyLaw& law) {
+       law.battery.filtered = [](float remaining, float measured, bool is_first) {
+         return is_first ? measured : remaining * Law::filter_keep + measured * Law::filter_take;
+       };
+     }},
+    {"battery-status-clamps-sample", "battery_status", Stage::battery_status,
+     "clamps the sample in place of the filter", "a voltage beyond full while the filter is not",
+     "a misplaced clamp",
+     [](FaultyLaw& law) {
+       law.battery.filtered = [](float remaining, float measured, bool is_first) {
+         return Law::filtered(remaining, std::clamp(measured, 0.0f, 1.0f), is_first);
+       };
+     }},
+    {"battery-status-never", "battery_status", Stage::battery_status, "answers 1 always",
+     "a battery that is not full", "a missing step",
+     [](FaultyLaw& law) { law.battery.scale = [](float, const Options&) { return 1.0f; }; }},
+    {"battery-status-inverse", "battery_status", Stage::battery_status,
+     "answers the part of the voltage that is left", "a battery that is not full", "a wrong factor",
+     [](FaultyLaw& law) {
+       law.battery.scale = [](float remaining, const Options& options) {
+         return 1 / Law::scale(remaining, options);
+       };
+     }},
+    {"battery-status-by-charge", "battery_status", Stage::battery_status,
+     "divides by the charge that is left", "a battery that is not full", "another law",
+     [](FaultyLaw& law) {
+       law.battery.scale = [](float remaining, const Options&) {
+         return std::clamp(1 / remaining, 1.0f, Law::scale_max);
+       };
+     }},
+    {"battery-status-uncapped", "battery_status", Stage::battery_status,
+     "lets the scale exceed 1.3", "cells whose empty voltage is low", "missing clamp",
+     [](FaultyLaw& law) {
+       law.battery.scale = [](float remaining, const Options& options) {
+         const float factor =
+             options.full_cell_V / (options.empty_cell_V + Law::range_V(options) * remaining);
+         return std::isfinite(factor) && factor >= 1 ? factor : 1.0f;
+       };
+     }},
+    {"battery-status-below-1", "battery_status", Stage::battery_status,
+     "lets the scale fall below 1", "voltages of empty and full cells exchanged", "missing clamp",
+     [](FaultyLaw& law) {
+       law.battery.scale = [](float remaining, const Options& options) {
+         const float factor =
+             options.full_cell_V / (options.empty_cell_V + Law::range_V(options) * remaining);
+         return std::isfinite(factor) ? std::min(factor, Law::scale_max) : 1.0f;
+       };
+     }},
+};
+
+}  // namespace
+
+std::span<const Fault> battery_status_faults() { return faults; }
+
+}  // namespace attest::faults

@@ -1,0 +1,295 @@
+// Wrong mixers.
+#include <algorithm>
+#include <cmath>
+
+#include "controller/faults/groups.hpp"
+
+namespace attest::faults {
+namespace {
+
+using Law = MixerStages::Law;
+using Controls = MixerStages::Controls;
+using Fit = MixerStages::Fit;
+using Scales = Law::Scales;
+using actuation::Rotor;
+using actuation::Saturation;
+using Rotors = std::span<const Rotor>;
+
+// The rotors as another table has them.
+template <typename Change>
+void change_rotors(FaultyLaw& law, Change change) {
+  law.mixer.without_yaw = [change](const Rotor& rotor, const Controls& c, float scale) {
+    return Law::without_yaw(change(rotor), c, scale);
+  };
+  law.mixer.yield_yaw = [change](Rotors rotors, Controls& c, const Fit& fit) {
+    std::array<Rotor, actuation::rotors_max> changed{};
+    std::transform(rotors.begin(), rotors.end(), changed.begin(), change);
+    return Law::yield_yaw(Rotors(changed).first(rotors.size()), c, fit);
+  };
+  law.mixer.command = [change](const Rotor& rotor, const Controls& c, const Fit& fit, float idle) {
+    return Law::command(change(rotor), c, fit, idle);
+  };
+}
+
+// Roll and pitch as another fit of theirs leaves them; `room` is what a port takes for the range
+// that thrust may be raised and lowered in.
+template <typename Change>
+void change_fit(FaultyLaw& law, Change change) {
+  law.mixer.fit = [change](float min_out, float max_out, float thrust) {
+    return change(Law::fit(min_out, max_out, thrust), min_out, max_out, thrust);
+  };
+}
+
+// Yaw and thrust that one rotor beyond its limits leaves to the next.
+template <typename Yield>
+void change_yield(FaultyLaw& law, Yield yield) {
+  law.mixer.yield_yaw = [yield](Rotors rotors, Controls& c, const Fit& fit) {
+    bool cut = false;
+    for (const Rotor& rotor : rotors) {
+      const float base = Law::without_yaw(rotor, c, fit.roll_pitch_scale) + fit.boost;
+      const float out = base + c.yaw * rotor.yaw + c.thrust;
+      if (out >= 0 && out <= 1) continue;
+      yield(rotor, c, base, out);
+      cut = true;
+    }
+    return cut;
+  };
+}
+
+// As the law does, but for the thrust that is given up.
+template <typename Thrust>
+void change_thrust_given_up(FaultyLaw& law, Thrust given_up) {
+  change_yield(law, [given_up](const Rotor& rotor, Controls& c, float base, float out) {
+    if (out > 1) c.thrust -= given_up(out - 1);
+    c.yaw = ((out > 1 ? 1.0f : 0.0f) - base - c.thrust) / rotor.yaw;
+  });
+}
+
+const Fault faults[] = {
+    {"mixer-unclamped", "mixer", Stage::mixer_scaling, "takes roll, pitch and yaw beyond 1",
+     "controls beyond 1", "missing clamp",
+     [](FaultyLaw& law) {
+       law.mixer.scaled = [](const Controls& c, const Scales& scales) {
+         return Controls{c.roll * scales.roll, c.pitch * scales.pitch, c.yaw * scales.yaw,
+                         Law::clamp(c.thrust, 0, 1)};
+       };
+     }},
+    {"mixer-thrust-unclamped", "mixer", Stage::mixer_scaling, "takes thrust outside 0..1",
+     "thrust outside 0..1", "missing clamp",
+     [](FaultyLaw& law) {
+       law.mixer.scaled = [](const Controls& c, const Scales& scales) {
+         Controls scaled = Law::scaled(c, scales);
+         scaled.thrust = c.thrust;
+         return scaled;
+       };
+     }},
+    {"mixer-unscaled", "mixer", Stage::mixer_scaling, "leaves the scales of its definition out",
+     "a scale but 1", "a missing factor",
+     [](FaultyLaw& law) {
+       law.mixer.scaled = [](const Controls& c, const Scales&) {
+         return Law::scaled(c, {1, 1, 1, 0});
+       };
+     }},
+    {"mixer-clamp-then-scale", "mixer", Stage::mixer_scaling, "clamps before it scales",
+     "a control beyond 1 and a scale below 1", "scaling order",
+     [](FaultyLaw& law) {
+       law.mixer.scaled = [](const Controls& c, const Scales& scales) {
+         const Controls clamped = Law::scaled(c, {1, 1, 1, 0});
+         return Controls{clamped.roll * scales.roll, clamped.pitch * scales.pitch,
+                         clamped.yaw * scales.yaw, clamped.thrust};
+       };
+     }},
+    {"mixer-roll-left", "mixer", Stage::mixer_scaling, "rolls the other way", "roll", "a sign",
+     [](FaultyLaw& law) {
+       change_rotors(law, [](const Rotor& r) { return Rotor{-r.roll, r.pitch, r.yaw}; });
+     }},
+    {"mixer-pitch-down", "mixer", Stage::mixer_scaling, "pitches the other way", "pitch", "a sign",
+     [](FaultyLaw& law) {
+       change_rotors(law, [](const Rotor& r) { return Rotor{r.roll, -r.pitch, r.yaw}; });
+     }},
+    {"mixer-yaw-left", "mixer", Stage::mixer_scaling, "yaws the other way", "yaw",
+     "propellers that turn the other way",
+     [](FaultyLaw& law) {
+       change_rotors(law, [](const Rotor& r) { return Rotor{r.roll, r.pitch, -r.yaw}; });
+     }},
+    {"mixer-roll-pitch-exchanged", "mixer", Stage::mixer_scaling, "exchanges roll and pitch",
+     "roll or pitch", "wrong axis",
+     [](FaultyLaw& law) {
+       change_rotors(law, [](const Rotor& r) { return Rotor{r.pitch, r.roll, r.yaw}; });
+     }},
+    {"mixer-rotor-order", "mixer", Stage::mixer_scaling,
+     "exchanges opposite rotors that turn clockwise", "roll or pitch", "another order of rotors",
+     [](FaultyLaw& law) {
+       change_rotors(law, [](const Rotor& r) {
+         return r.yaw < 0 ? Rotor{-r.roll, -r.pitch, r.yaw} : r;
+       });
+     }},
+    {"mixer-no-fit", "mixer", Stage::mixer_fit, "clips what is beyond the limits",
+     "roll or pitch that saturate", "a missing step",
+     [](FaultyLaw& law) { law.mixer.fit = [](float, float, float) { return Fit{}; }; }},
+    {"mixer-no-boost", "mixer", Stage::mixer_fit, "trades no thrust for roll and pitch",
+     "roll or pitch that saturate", "a missing term",
+     [](FaultyLaw& law) {
+       change_fit(law, [](Fit fit, float, float, float) { return Fit{0, fit.roll_pitch_scale}; });
+     }},
+    {"mixer-boost-unlimited", "mixer", Stage::mixer_fit, "raises thrust as far as is needed",
+     "roll at little thrust", "missing clamp",
+     [](FaultyLaw& law) {
+       change_fit(law, [](Fit fit, float min_out, float max_out, float) {
+         return min_out < 0 && -min_out <= 1 - max_out ? Fit{-min_out, 1} : fit;
+       });
+     }},
+    {"mixer-roll-pitch-unscaled", "mixer", Stage::mixer_fit, "does not scale roll and pitch down",
+     "roll or pitch beyond what thrust can make room for", "a missing factor",
+     [](FaultyLaw& law) {
+       change_fit(law, [](Fit fit, float, float, float) { return Fit{fit.boost, 1}; });
+     }},
+    {"mixer-raise-to-1.6", "mixer", Stage::mixer_fit, "raises thrust to 1.6 times",
+     "roll that wants more than half as much thrust again", "a wrong constant",
+     [](FaultyLaw& law) {
+       change_fit(law, [](Fit fit, float min_out, float max_out, float thrust) {
+         const float up = 0.6f * thrust;
+         const bool wants = min_out < 0 && max_out < 1 && -min_out <= 1 - max_out;
+         if (!wants || up >= -min_out) return wants ? Fit{-min_out, 1} : fit;
+         return Fit{up, (thrust + up) / (thrust - min_out)};
+       });
+     }},
+    {"mixer-lower-by-0.6", "mixer", Stage::mixer_fit, "lowers thrust by 0.6 of it, not to 0.6",
+     "roll near full thrust", "a wrong constant",
+     [](FaultyLaw& law) {
+       change_fit(law, [](Fit fit, float min_out, float max_out, float thrust) {
+         const float down = 0.6f * thrust;
+         const bool wants = max_out > 1 && min_out > 0 && min_out >= max_out - 1;
+         return wants && down >= max_out - 1 ? Fit{-(max_out - 1), 1} : fit;
+       });
+     }},
+    {"mixer-not-in-the-middle", "mixer", Stage::mixer_fit,
+     "lifts the lowest rotor to its limit where both ends are near",
+     "roll that fits at neither end", "a missing term",
+     [](FaultyLaw& law) {
+       change_fit(law, [](Fit fit, float min_out, float max_out, float thrust) {
+         if (!(min_out < 0 && max_out < 1 && -min_out > 1 - max_out)) return fit;
+         const float boost = Law::clamp(-min_out, 0, 0.5f * thrust);
+         return Fit{boost, (thrust + boost) / (thrust - min_out)};
+       });
+     }},
+    {"mixer-both-ends-from-above", "mixer", Stage::mixer_fit,
+     "scales by the upper end where both are beyond", "roll beyond both limits",
+     "wrong branch threshold",
+     [](FaultyLaw& law) {
+       change_fit(law, [](Fit fit, float min_out, float max_out, float thrust) {
+         if (!(min_out < 0 && max_out > 1)) return fit;
+         return Fit{fit.boost, (1 - (thrust + fit.boost)) / (max_out - thrust)};
+       });
+     }},
+    {"mixer-flags-exchanged", "mixer", Stage::mixer_fit, "exchanges lower and upper limit",
+     "a rotor at a limit", "wrong order",
+     [](FaultyLaw& law) {
+       law.mixer.saturation = [](float min_out, float max_out) {
+         return Saturation{max_out > 1, min_out < 0, false};
+       };
+     }},
+    {"mixer-no-lower-flag", "mixer", Stage::mixer_fit, "never reports the lower limit",
+     "a rotor at its lower limit", "a missing step",
+     [](FaultyLaw& law) {
+       law.mixer.saturation = [](float, float max_out) {
+         return Saturation{false, max_out > 1, false};
+       };
+     }},
+    {"mixer-no-upper-flag", "mixer", Stage::mixer_fit, "never reports the upper limit",
+     "a rotor at its upper limit", "a missing step",
+     [](FaultyLaw& law) {
+       law.mixer.saturation = [](float min_out, float) {
+         return Saturation{min_out < 0, false, false};
+       };
+     }},
+    {"mixer-no-yaw-flag", "mixer", Stage::mixer_yaw, "never reports that yaw was cut",
+     "yaw that saturates", "a missing step",
+     [](FaultyLaw& law) {
+       law.mixer.yield_yaw = [](Rotors rotors, Controls& c, const Fit& fit) {
+         Law::yield_yaw(rotors, c, fit);
+         return false;
+       };
+     }},
+    {"mixer-yaw-clipped", "mixer", Stage::mixer_yaw, "clips yaw rotor by rotor",
+     "yaw that saturates", "a missing step",
+     [](FaultyLaw& law) { change_yield(law, [](const Rotor&, Controls&, float, float) {}); }},
+    {"mixer-yaw-dropped", "mixer", Stage::mixer_yaw, "drops yaw where it does not fit",
+     "yaw that saturates", "a helpful simplification",
+     [](FaultyLaw& law) {
+       change_yield(law, [](const Rotor&, Controls& c, float, float) { c.yaw = 0; });
+     }},
+    {"mixer-yaw-not-carried-on", "mixer", Stage::mixer_yaw,
+     "forgets what one rotor gave up when it comes to the next", "yaw that several rotors cut",
+     "a copy in place of a reference",
+     [](FaultyLaw& law) {
+       law.mixer.yield_yaw = [](Rotors rotors, Controls& c, const Fit& fit) {
+         const Controls given = c;
+         bool cut = false;
+         for (std::size_t i = 0; i < rotors.size(); ++i) {
+           Controls alone = given;
+           if (!Law::yield_yaw(rotors.subspan(i, 1), alone, fit)) continue;
+           c = alone;
+           cut = true;
+         }
+         return cut;
+       };
+     }},
+    {"mixer-yaw-keeps-thrust", "mixer", Stage::mixer_yaw, "gives up no thrust for yaw",
+     "yaw at the upper limit", "a missing step",
+     [](FaultyLaw& law) { change_thrust_given_up(law, [](float) { return 0.0f; }); }},
+    {"mixer-yaw-takes-all-thrust", "mixer", Stage::mixer_yaw,
+     "gives up as much thrust as yaw wants", "much yaw at the upper limit", "missing clamp",
+     [](FaultyLaw& law) { change_thrust_given_up(law, [](float beyond) { return beyond; }); }},
+    {"mixer-yaw-without-boost", "mixer", Stage::mixer_yaw, "forgets the boost when it cuts yaw",
+     "yaw beside roll that saturates", "a missing term",
+     [](FaultyLaw& law) {
+       law.mixer.yield_yaw = [](Rotors rotors, Controls& c, const Fit& fit) {
+         return Law::yield_yaw(rotors, c, {0, fit.roll_pitch_scale});
+       };
+     }},
+    {"mixer-output-0-to-1", "mixer", Stage::mixer_output, "answers 0..1", "always",
+     "another convention",
+     [](FaultyLaw& law) {
+       law.mixer.command = [](const Rotor& rotor, const Controls& c, const Fit& fit, float idle) {
+         return (Law::command(rotor, c, fit, idle) + 1) / 2;
+       };
+     }},
+    {"mixer-deadband-halved", "mixer", Stage::mixer_output, "lifts the idle by half the deadband",
+     "a deadband", "a missing factor",
+     [](FaultyLaw& law) {
+       law.mixer.command = [](const Rotor& rotor, const Controls& c, const Fit& fit, float idle) {
+         return Law::command(rotor, c, fit, (idle - 1) / 2);
+       };
+     }},
+    {"mixer-idle-clips", "mixer", Stage::mixer_output, "clips at idle in place of scaling to it",
+     "a deadband", "a helpful simplification",
+     [](FaultyLaw& law) {
+       law.mixer.command = [](const Rotor& rotor, const Controls& c, const Fit& fit, float idle) {
+         return std::max(idle, Law::command(rotor, c, fit, -1));
+       };
+     }},
+    {"mixer-no-slew", "mixer", Stage::mixer_output, "does not limit how fast outputs move",
+     "a limit and a jump", "a missing step",
+     [](FaultyLaw& law) { law.mixer.slew = [](float wanted, float, float) { return wanted; }; }},
+    {"mixer-slew-up-only", "mixer", Stage::mixer_output, "limits outputs that rise only",
+     "a limit and a fall", "a condition dropped",
+     [](FaultyLaw& law) {
+       law.mixer.slew = [](float wanted, float previous, float limit) {
+         return wanted < previous ? wanted : Law::slew(wanted, previous, limit);
+       };
+     }},
+    {"mixer-slew-always", "mixer", Stage::mixer_output, "takes a limit of 0 for one", "no limit",
+     "a condition dropped",
+     [](FaultyLaw& law) {
+       law.mixer.slew = [](float wanted, float previous, float limit) {
+         return std::clamp(wanted, previous - limit, previous + limit);
+       };
+     }},
+};
+
+}  // namespace
+
+std::span<const Fault> mixer_faults() { return faults; }
+
+}  // namespace attest::faults
