@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How far right ports that compute otherwise are from being accused.
 
-    headroom.py ATTEST FOLDER [--group GROUP]...
+    headroom.py ATTEST FOLDER [--group GROUP]... [--rate HZ,...]
 
 Runs each right port in FOLDER through the suite at the numeric level and prints a Markdown table:
 what did not pass, and the tightest headroom (tolerance / difference) of each kind of output.
@@ -32,9 +32,14 @@ RIGHT = [
 ]
 
 
+KINDS = ("rates", "controls", "integrals", "motors and battery")
+
+
 def kind_of(channel):
     if "vehicle_rates_setpoint" in channel:
         return "rates"
+    if "actuator_outputs" in channel or "battery_status" in channel:
+        return "motors and battery"
     return "integrals" if "mc_att_ctrl_status" in channel else "controls"
 
 
@@ -51,12 +56,10 @@ def tightest(results):
     return least
 
 
-def run(attest, library, groups):
+def run(attest, library, selection):
     with tempfile.TemporaryDirectory() as folder:
         report = pathlib.Path(folder) / "report.json"
-        command = [attest, "-q", "run", "--port", f"lib:{library}", "--json", report]
-        for group in groups:
-            command += ["--group", group]
+        command = [attest, "-q", "run", "--port", f"lib:{library}", "--json", report, *selection]
         subprocess.run(command, stdout=subprocess.DEVNULL, check=False)
         return json.loads(report.read_text())["results"]
 
@@ -66,18 +69,21 @@ def main():
     parser.add_argument("attest")
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--group", action="append", default=[])
+    parser.add_argument("--rate")
     args = parser.parse_args()
+    selection = [word for group in args.group for word in ("--group", group)]
+    selection += ["--rate", args.rate] if args.rate else []
     good = True
-    print("| right port | passed | accused | rates | controls | integrals |")
-    print("|---|---|---|---|---|---|")
+    print(f"| right port | passed | accused | {' | '.join(KINDS)} |")
+    print("|---|---|---|---|---|---|---|")
     for name, what in RIGHT:
-        results = run(args.attest, args.folder / f"{name}.so", args.group)
+        results = run(args.attest, args.folder / f"{name}.so", selection)
         counted = [r for r in results if r["verdict"] not in ("skip", "unsupported")]
         accused = [r for r in counted if r["verdict"] != "pass"]
         least = tightest(counted)
         cells = [
             f"{least[kind][0]:.0f}x in {least[kind][1]}" if kind in least else "same bits"
-            for kind in ("rates", "controls", "integrals")
+            for kind in KINDS
         ]
         print(f"| {what} | {len(counted) - len(accused)} | {len(accused)} | {' | '.join(cells)} |")
         for result in accused[:5]:
