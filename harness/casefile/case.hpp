@@ -90,6 +90,13 @@ struct ToleranceOverride {
   Tolerance tolerance;
 };
 
+// Thresholds of the attitude law that a case stands on, where turning one way is as right as the
+// other: at such a tick a port may answer what either side does.
+struct EitherSide {
+  bool yaw_wrap = false;          // a yaw error of 180 deg
+  bool shorter_rotation = false;  // beyond 90 deg of tilt, a direct rotation of 180 deg
+};
+
 struct Case {
   std::filesystem::path file;
   std::string sha256;   // of the file: a golden of another version of it is stale
@@ -108,6 +115,7 @@ struct Case {
   bool exact_only = false;
   // Where bits are the platform's (its exp and acos) and not the law's: never compared exactly.
   bool numeric_only = false;
+  EitherSide either_side;
   std::optional<Flight> flight;      // empty: open loop, every input is scripted
   Part part = Part::mc_att_control;  // which is given the inputs
   std::string mixer;                 // of Part::mixer, its definition

@@ -101,6 +101,23 @@ UnitTiming parse_unit(const TomlTable& root) {
   return unit;
 }
 
+EitherSide parse_either_side(const TomlTable& root) {
+  constexpr const char* key = "either_side";
+  EitherSide sides;
+  if (!root.has(key)) return sides;
+  for (const std::string& decision : root.texts(key)) {
+    sides.yaw_wrap |= decision == "yaw_wrap";
+    sides.shorter_rotation |= decision == "shorter_rotation";
+    if (decision != "yaw_wrap" && decision != "shorter_rotation") {
+      root.error(key, fmt::format("no decision `{}`; use yaw_wrap, shorter_rotation", decision));
+    }
+  }
+  if (root.has("level") || root.has("flight") || root.has("mixer") || root.has("battery")) {
+    root.error(key, "is for the controller in open loop, at any level");
+  }
+  return sides;
+}
+
 // What jitter and dropped ticks may be depends on the rates and the duration.
 void check_unit(const TomlTable& root, const Case& parsed) {
   const bool is_known = parsed.duration.amount > 0 && !parsed.rates.empty();
@@ -240,6 +257,7 @@ void parse_body(const TomlTable& root, Case& parsed) {
     parsed.numeric_only = level == "numeric";
     if (level != "numeric" && level != "exact") root.error("level", "must be numeric or exact");
   }
+  parsed.either_side = parse_either_side(root);
   parsed.unit = parse_unit(root);
   check_unit(root, parsed);
   parsed.parameters = parse_parameters(root, parsed.part);

@@ -17,6 +17,7 @@
 #include "harness/port/port.hpp"
 #include "harness/run/golden.hpp"
 #include "harness/run/open_loop.hpp"
+#include "harness/run/other_side.hpp"
 #include "harness/run/reference_flight.hpp"
 #include "harness/suite/recorded_check.hpp"
 
@@ -40,7 +41,11 @@ Result<GoldenTrace> open_loop_trace(const Case& the_case, const Setup& setup, Po
   if (const auto fault = drive(port, subject_of(the_case), trace)) {
     return fail_at(the_case.file.string(), fmt::format("the reference: {}", fault->what));
   }
-  return GoldenTrace{setup, std::move(trace)};
+  GoldenTrace golden{setup, std::move(trace)};
+  auto others = other_sides(the_case, golden.trace);
+  if (!others) return tl::unexpected(others.error());
+  golden.other_sides = std::move(*others);
+  return golden;
 }
 
 // What the reference makes of a case, and the vehicles' files that it depends on.
@@ -127,20 +132,28 @@ std::string summary(const Case& the_case, const std::vector<GoldenTrace>& traces
 
   std::size_t changed = 0;
   Change total;
-  for (const auto& [setup, trace, horizon_s, metrics] : traces) {
-    const auto old_trace = golden->read(setup);
-    if (!old_trace) {
-      ++changed;
-      continue;
-    }
-    const Change change = change_between(*old_trace, trace);
-    if (change.ticks == 0) continue;
+  const auto add = [&](const Trace& old_trace, const Trace& trace) {
+    const Change change = change_between(old_trace, trace);
+    if (change.ticks == 0) return;
     ++changed;
     total.channels |= change.channels;
     total.ticks += change.ticks;
-    if (change.max_deviation <= total.max_deviation) continue;
+    if (change.max_deviation <= total.max_deviation) return;
     total.max_deviation = change.max_deviation;
     total.max_channel = change.max_channel;
+  };
+  for (const GoldenTrace& made : traces) {
+    const auto old_trace = golden->read(made.setup);
+    const auto old_others = golden->read_other_sides(made.setup);
+    if (!old_trace || !old_others || old_others->size() != made.other_sides.size()) {
+      ++changed;
+      continue;
+    }
+    add(*old_trace, made.trace);
+    for (const auto& [side, other] : made.other_sides) {
+      const auto old_other = old_others->find(side);
+      if (old_other != old_others->end()) add(old_other->second, other);
+    }
   }
   const bool same_case = provenance->case_sha256 == the_case.sha256;
   if (changed == 0 && same_case) return "";

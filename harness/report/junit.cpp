@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
+#include "harness/report/diagnosis_text.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/text.hpp"
 
@@ -124,6 +125,13 @@ std::string suite_name(const CaseResult& result) {
   return one_line(result.profile + "." + result.group);
 }
 
+// What a reader of one test's page needs: CI servers do not show what is said of the whole run.
+std::string failure_content(const CaseResult& result, const RunResult& run) {
+  const std::string text = failure_text(result, run);
+  if (!run.diagnosis || !result.first) return text;
+  return text + "\nFrom all that fails in this run, " + diagnosis_text(*run.diagnosis);
+}
+
 void add_result(pugi::xml_node suite, const CaseResult& result, const RunResult& run) {
   const std::string name = one_line(result.name + "@" + result.setup().label());
   const pugi::xml_node test = add_test(suite, suite_name(result), name, result.elapsed_s);
@@ -131,7 +139,7 @@ void add_result(pugi::xml_node suite, const CaseResult& result, const RunResult&
   if (outcome == Outcome::passed) return;
   const std::string headline = failure_headline(result);
   add_outcome(test, outcome, name_of(result.verdict), headline,
-              outcome == Outcome::skipped ? headline : failure_text(result, run));
+              outcome == Outcome::skipped ? headline : failure_content(result, run));
 }
 
 pugi::xml_node add_suite(pugi::xml_node root, const std::string& name, const Counts& counts,

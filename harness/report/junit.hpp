@@ -3,9 +3,10 @@
 //
 // A group is a testsuite, a case at one rate a testcase, and the failure text is the content of
 // <failure> (fail, non-finite, xpass) or <error> (crash, timeout, protocol): GitLab shows content,
-// not `message`. unsupported, skip and xfail are <skipped>. GitLab drops all but the first of equal
-// classname and name, so the name has the rate. Errors of the environment are a testsuite of their
-// own, "attest.environment". Times are those of the single cases and their sums.
+// not `message`. A diagnosis of the run stands in each. unsupported, skip and xfail are <skipped>.
+// GitLab drops all but the first of equal classname and name, so the name has the rate. Errors of
+// the environment are a testsuite of their own, "attest.environment". Times are those of the single
+// cases and their sums.
 #pragma once
 
 #include <string>

@@ -15,6 +15,10 @@ namespace fs = std::filesystem;
 
 std::string file_name(const Setup& setup) { return setup.label() + ".csv"; }
 
+std::string file_name(const Setup& setup, const std::string& other_side) {
+  return fmt::format("{}.{}.csv", setup.label(), other_side);
+}
+
 std::string metric_key(const Setup& setup, const std::string& metric) {
   return fmt::format("{}.{}", setup.label(), metric);
 }
@@ -43,7 +47,10 @@ Result<std::string> write_trace(const fs::path& path, const Trace& trace,
 
 std::vector<Trace> samples_of(const std::vector<GoldenTrace>& traces) {
   std::vector<Trace> samples;
-  for (const GoldenTrace& trace : traces) samples.push_back(trace.trace);
+  for (const GoldenTrace& trace : traces) {
+    samples.push_back(trace.trace);
+    for (const auto& [side, other] : trace.other_sides) samples.push_back(other);
+  }
   return samples;
 }
 
@@ -60,11 +67,17 @@ Result<void> write_folder(const fs::path& folder, const Case& the_case,
   provenance.compiler = compiler();
   provenance.reason = reason;
   provenance.constants = division.constants;
-  for (const auto& [setup, trace, horizon_s, metrics] : traces) {
-    const std::string name = file_name(setup);
+  const auto write = [&](const std::string& name, const Trace& trace) -> Result<void> {
     auto hash = write_trace(folder / name, trace, division.columns);
     if (!hash) return tl::unexpected(hash.error());
     provenance.sha256[name] = *hash;
+    return {};
+  };
+  for (const auto& [setup, trace, horizon_s, metrics, other_sides] : traces) {
+    if (auto written = write(file_name(setup), trace); !written) return written;
+    for (const auto& [side, other] : other_sides) {
+      if (auto written = write(file_name(setup, side), other); !written) return written;
+    }
     if (!the_case.mixer.empty()) provenance.mixers[setup.label()] = the_case.mixer;
     if (horizon_s) provenance.horizon_s[setup.label()] = *horizon_s;
     for (const auto& [metric, value] : metrics) {
@@ -105,7 +118,25 @@ Result<Golden> Golden::open(const fs::path& golden_root, const Case& the_case) {
 }
 
 Result<Trace> Golden::read(const Setup& setup) const {
-  const std::string name = file_name(setup);
+  return read_file(file_name(setup), setup.flyer ? CsvNeed::outputs : CsvNeed::inputs_and_outputs);
+}
+
+Result<OtherSides> Golden::read_other_sides(const Setup& setup) const {
+  const std::string prefix = setup.label() + ".", suffix = ".csv";
+  OtherSides others;
+  for (const auto& [name, hash] : provenance_.sha256) {
+    const bool is_of_setup =
+        name.starts_with(prefix) && name.size() > prefix.size() + suffix.size();
+    if (!is_of_setup) continue;
+    auto trace = read_file(name, CsvNeed::inputs_and_outputs);
+    if (!trace) return tl::unexpected(trace.error());
+    const std::size_t length = name.size() - prefix.size() - suffix.size();
+    others[name.substr(prefix.size(), length)] = std::move(*trace);
+  }
+  return others;
+}
+
+Result<Trace> Golden::read_file(const std::string& name, CsvNeed need) const {
   const fs::path path = folder_ / name;
   const auto blessed = provenance_.sha256.find(name);
   if (blessed == provenance_.sha256.end()) {
@@ -119,7 +150,7 @@ Result<Trace> Golden::read(const Setup& setup) const {
                    "is not the file that was blessed (its SHA-256 is another than in "
                    "provenance.toml); restore it from version control, or bless it anew");
   }
-  return read_csv(path, setup.flyer ? CsvNeed::outputs : CsvNeed::inputs_and_outputs);
+  return read_csv(path, need);
 }
 
 Result<ReferenceFlight> Golden::read_flight(const Setup& setup, const Vehicle& vehicle) const {

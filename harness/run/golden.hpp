@@ -11,6 +11,7 @@
 
 #include "harness/casefile/case.hpp"
 #include "harness/core/result.hpp"
+#include "harness/run/other_side.hpp"
 #include "harness/run/reference_flight.hpp"
 #include "harness/trace/provenance.hpp"
 
@@ -26,6 +27,9 @@ class Golden {
   // Errors: no trace for that setup, bytes that are not those that were blessed, a broken CSV.
   Result<Trace> read(const Setup& setup) const;
 
+  // What it is on other sides; empty for a case without Case::either_side. Errors: as of read().
+  Result<OtherSides> read_other_sides(const Setup& setup) const;
+
   // The rows, horizon and metrics of a flight. Errors: as of read(), and a vehicle whose files have
   // changed since.
   Result<ReferenceFlight> read_flight(const Setup& setup, const Vehicle& vehicle) const;
@@ -34,6 +38,8 @@ class Golden {
 
  private:
   Golden(std::filesystem::path folder, Provenance provenance);
+
+  Result<Trace> read_file(const std::string& name, CsvNeed need) const;
 
   std::filesystem::path folder_;
   Provenance provenance_;
@@ -47,6 +53,7 @@ struct GoldenTrace {
   Trace trace;  // of a flight: its rows
   std::optional<double> horizon_s = std::nullopt;
   std::map<std::string, double> metrics = {};
+  OtherSides other_sides = {};  // of a case with Case::either_side
 };
 
 // A golden that has been written beside its place, complete, and not yet put there.

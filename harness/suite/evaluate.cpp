@@ -7,25 +7,33 @@
 #include "harness/casefile/stimulus.hpp"
 #include "harness/core/float_environment.hpp"
 #include "harness/run/open_loop.hpp"
+#include "harness/run/other_side.hpp"
 #include "harness/suite/judge.hpp"
 #include "harness/suite/stopwatch.hpp"
 
 namespace attest {
 namespace {
 
-// Drives a fresh unit through `answered`, whose inputs are those of `want`, and compares.
-void run_and_judge(Trace& answered, const Trace& want, const Subject& subject, Port& port,
-                   const Tolerances& tolerances, CaseResult& result) {
+// Drives a fresh unit through `answered`, whose inputs are those of `want`, and compares. Where
+// there are other sides they are as right; the exact level is the law's.
+void run_and_judge(Trace& answered, const Trace& want, const OtherSides& others,
+                   const Subject& subject, Port& port, const Tolerances& tolerances,
+                   CaseResult& result) {
   if (declines(port, result)) return;
   if (const auto fault = drive(port, subject, answered)) return judge(*fault, result);
   const DefaultFloatEnvironment environment;
-  judge(compare(answered, want, tolerances), result);
+  if (others.empty() || tolerances.level() == Level::exact) {
+    return judge(compare(answered, want, tolerances), result);
+  }
+  const Trace allowed = on_the_side_of(answered, want, others, Tolerances(Level::numeric));
+  judge(compare(answered, allowed, tolerances), result);
 }
 
 // What the case gives the unit, and what the reference answered to just that.
 struct Prepared {
   Trace answered;  // inputs only, so far
   Trace want;
+  OtherSides other_sides;
 };
 
 Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& golden) {
@@ -39,7 +47,9 @@ Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& g
                                "it anew, or restore it from version control",
                                *tick, the_case.file.string()));
   }
-  return Prepared{std::move(made), std::move(*want)};
+  auto others = golden.read_other_sides({rate, std::nullopt});
+  if (!others) return tl::unexpected(others.error());
+  return Prepared{std::move(made), std::move(*want), std::move(*others)};
 }
 
 }  // namespace
@@ -73,7 +83,7 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
   auto prepared = prepare(the_case, rate, golden);
   if (!prepared) return tl::unexpected(prepared.error());
   run_and_judge(
-      prepared->answered, prepared->want, subject_of(the_case), port,
+      prepared->answered, prepared->want, prepared->other_sides, subject_of(the_case), port,
       tolerances_of(the_case,
                     level == Level::exact && the_case.numeric_only ? Level::numeric : level),
       result);
@@ -91,7 +101,7 @@ CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, Port& p
     sample.mixer_out = {};
     sample.battery_out = {};
   }
-  run_and_judge(answered, recorded, subject, port, tolerances, result);
+  run_and_judge(answered, recorded, {}, subject, port, tolerances, result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }

@@ -52,6 +52,24 @@ TEST(JunitReport, CountsAreThoseOfTheElements) {
   }
 }
 
+TEST(JunitReport, AFailureSaysWhatTheRunLooksLike) {
+  RunResult run = sample_run();
+  const auto looks = [&] {
+    const pugi::xml_document document = parsed(run);
+    std::size_t count = 0;
+    for (const auto& found : document.select_nodes("//failure")) {
+      const std::string text = found.node().text().get();
+      count += text.find("in this run, it looks like:\n  `yaw-reversed`") != text.npos ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(looks(), 0u);
+  Suspect suspect;
+  suspect.fault = faults::find_fault("yaw-reversed");
+  run.diagnosis.emplace().suspects.push_back(suspect);
+  EXPECT_GT(looks(), 0u);
+}
+
 TEST(JunitReport, EveryResultIsOneTestcaseOfItsGroup) {
   const RunResult run = sample_run();
   const pugi::xml_document document = parsed(run);

@@ -1,0 +1,128 @@
+#include "harness/run/other_side.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "controller/reference/mc_att_control_definition.hpp"
+#include "harness/compare/compare.hpp"
+#include "harness/run/margins.hpp"
+
+namespace attest {
+namespace {
+
+using Vector = reference::Vector3<float>;
+using Matrix = reference::Matrix3<float>;
+
+struct OtherSide : reference::AttitudeStages<float> {
+  using Law = reference::AttitudeStages<float>;
+  EitherSide sides;
+
+  float yaw_error(const Vector& nose, const Matrix& R_WD, float weight) const {
+    const float error = Law::yaw_error(nose, R_WD, weight);
+    const auto margin = static_cast<float>(least_margin(Decision::yaw_wrap));
+    const float from_wrap = std::numbers::pi_v<float> - std::abs(error / weight);
+    return sides.yaw_wrap && from_wrap < margin ? -error : error;
+  }
+  Vector direct_error(const Matrix& R_WB, const Matrix& R_WD) const {
+    const Vector error = Law::direct_error(R_WB, R_WD);
+    const auto q = reference::quaternion_of(reference::ordered::transpose_product(R_WB, R_WD));
+    const auto margin = static_cast<float>(least_margin(Decision::shorter_rotation));
+    const bool is_near = sides.shorter_rotation && std::abs(q.w()) < margin;
+    return is_near ? Vector(-error) : error;
+  }
+};
+
+struct LawOnOtherSide {
+  reference::StepStages<float> step;
+  OtherSide attitude;
+  reference::RateStages<float> rate;
+  reference::RecoveryStages<float> recovery;
+};
+
+bool same_outputs(const Sample& a, const Sample& b) {
+  return std::memcmp(&a.out, &b.out, sizeof a.out) == 0;
+}
+
+bool same_integrals(const Sample& a, const Sample& b) {
+  const auto& x = a.out.mc_att_ctrl_status;
+  const auto& y = b.out.mc_att_ctrl_status;
+  return std::memcmp(&x, &y, sizeof x) == 0;
+}
+
+// One tick by itself.
+bool agrees(const Trace& like, const Sample& got, const Sample& want,
+            const Tolerances& tolerances) {
+  TickComparer comparer(like.present, like.present, tolerances);
+  comparer.add(got, want, {});
+  return comparer.finish(1, 1).agrees();
+}
+
+Result<Trace> answers_of(const EitherSide& sides, const Case& the_case, const Trace& law) {
+  const auto profile = reference::profile_from_name(the_case.profile);
+  if (!profile) return fail_at(the_case.file.string(), "either_side: no such profile");
+  LawOnOtherSide stages;
+  stages.attitude.sides = sides;
+  reference::McAttControl<float, LawOnOtherSide> control(*profile, stages);
+  Trace other = law;
+  std::span<const ParameterChange> changes = law.parameters;
+  attest_outputs out{};
+  bool any = false;
+  for (std::size_t tick = 0; tick < other.samples.size(); ++tick) {
+    for (; !changes.empty() && changes.front().tick <= tick; changes = changes.subspan(1)) {
+      control.set_parameter(changes.front().name, changes.front().value);
+    }
+    Sample& sample = other.samples[tick];
+    control.step(sample.in, out);
+    sample.out = out;
+    any = any || !same_outputs(sample, law.samples[tick]);
+    if (!same_integrals(sample, law.samples[tick])) {
+      return fail_at(the_case.file.string(),
+                     fmt::format("either_side: at tick {} the integrals are not those of the other "
+                                 "side; keep them from moving, for example by a thrust of 0.15",
+                                 tick));
+    }
+  }
+  if (!any) {
+    return fail_at(the_case.file.string(), "either_side: no tick stands on such a threshold");
+  }
+  return other;
+}
+
+}  // namespace
+
+Result<OtherSides> other_sides(const Case& the_case, const Trace& law) {
+  const EitherSide allowed = the_case.either_side;
+  OtherSides others;
+  for (const EitherSide sides : {EitherSide{true, false}, {false, true}, {true, true}}) {
+    if ((sides.yaw_wrap && !allowed.yaw_wrap) ||
+        (sides.shorter_rotation && !allowed.shorter_rotation)) {
+      continue;
+    }
+    auto answers = answers_of(sides, the_case, law);
+    if (!answers) return tl::unexpected(answers.error());
+    std::string name = sides.yaw_wrap ? "yaw_wrap" : "shorter_rotation";
+    if (sides.yaw_wrap && sides.shorter_rotation) name += "+shorter_rotation";
+    others[name] = std::move(*answers);
+  }
+  return others;
+}
+
+Trace on_the_side_of(const Trace& got, const Trace& law, const OtherSides& others,
+                     const Tolerances& tolerances) {
+  Trace want = law;
+  for (std::size_t tick = 0; tick < want.samples.size(); ++tick) {
+    if (agrees(law, got.samples[tick], law.samples[tick], tolerances)) continue;
+    for (const auto& [name, other] : others) {
+      if (!agrees(law, got.samples[tick], other.samples[tick], tolerances)) continue;
+      want.samples[tick] = other.samples[tick];
+      break;
+    }
+  }
+  return want;
+}
+
+}  // namespace attest
