@@ -9,10 +9,10 @@
 namespace attest {
 namespace {
 
-// A vector, and what everybody answers to it.
-struct Answers {
-  Outputs law;
-  std::vector<Outputs> faults;
+// A vector, and what each of the distinct answers to it is like.
+struct Answered {
+  FaultAnswers faults;
+  std::vector<VectorLikeness> of_distinct;
 };
 
 Rate rate_for(const SelectedCase& selected) {
@@ -22,12 +22,18 @@ Rate rate_for(const SelectedCase& selected) {
   return selected.setups.front().rate;
 }
 
-Answers answers_to(const SelectedCase& selected) {
+Answered answered(const SelectedCase& selected) {
   Trace law = stimulate(selected.the_case, rate_for(selected));
   const auto reference = open_builtin();
   const Subject subject = subject_of(selected.the_case);
   drive(*reference, subject, law);
-  return {outputs_of(law), answers_of_faults(law, subject)};
+  Answered vector{answers_of_faults(law, subject), {}};
+  const Outputs right = outputs_of(law);
+  for (const Outputs& outputs : vector.faults.distinct) {
+    vector.of_distinct.push_back(distinct_likeness(outputs, right, vector.faults.distinct));
+  }
+  vector.faults.distinct.clear();  // some hundred megabytes in all
+  return vector;
 }
 
 }  // namespace
@@ -43,16 +49,17 @@ bool SelfDiagnosis::is_stage_named() const { return diagnosis && diagnosis->stag
 
 std::vector<SelfDiagnosis> diagnose_catalogue(const std::vector<SelectedCase>& cases) {
   const auto catalogue = faults::catalogue();
-  std::vector<std::vector<VectorLikeness>> vectors(catalogue.size());
-  for (const SelectedCase& selected : cases) {
-    const Answers answers = answers_to(selected);
-    for (std::size_t i = 0; i < catalogue.size(); ++i) {
-      vectors[i].push_back(likeness(answers.faults[i], answers.law, answers.faults));
-    }
-  }
+  std::vector<Answered> vectors;
+  for (const SelectedCase& selected : cases) vectors.push_back(answered(selected));
   std::vector<SelfDiagnosis> results;
   for (std::size_t i = 0; i < catalogue.size(); ++i) {
-    if (catalogue[i]->is_killable()) results.push_back({catalogue[i], diagnose(vectors[i])});
+    if (!catalogue[i]->is_killable()) continue;
+    std::vector<VectorLikeness> of_fault;
+    for (const Answered& vector : vectors) {
+      const std::size_t index = vector.faults.of_fault[i];
+      of_fault.push_back(of_each_fault(vector.of_distinct[index], vector.faults));
+    }
+    results.push_back({catalogue[i], diagnose(of_fault)});
   }
   return results;
 }

@@ -78,6 +78,11 @@ Likeness likeness_of(const Outputs& port, const Outputs& law, const Outputs& fau
   return result;
 }
 
+bool same_bytes(const Outputs& a, const Outputs& b) {
+  if (a.size() != b.size()) return false;
+  return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Answer)) == 0;
+}
+
 }  // namespace
 
 Outputs outputs_of(const Trace& trace) {
@@ -89,21 +94,26 @@ Outputs outputs_of(const Trace& trace) {
   return outputs;
 }
 
-std::vector<Outputs> answers_of_faults(const Trace& given, const Subject& subject,
-                                       const faults::Fault* partner) {
-  std::vector<Outputs> answers;
+FaultAnswers answers_of_faults(const Trace& given, const Subject& subject,
+                               const faults::Fault* partner) {
+  FaultAnswers answers;
   Trace answered = given;
   for (const faults::Fault* fault : faults::catalogue()) {
     std::string ids(fault->id);
     if (partner != nullptr) ids += "+" + std::string(partner->id);
     const auto port = open_fault(ids);
     const bool done = !drive(**port, subject, answered);
-    answers.push_back(done ? outputs_of(answered) : Outputs{});
+    Outputs outputs = done ? outputs_of(answered) : Outputs{};
+    const auto known = std::find_if(answers.distinct.begin(), answers.distinct.end(),
+                                    [&](const Outputs& one) { return same_bytes(one, outputs); });
+    answers.of_fault.push_back(static_cast<std::size_t>(known - answers.distinct.begin()));
+    if (known == answers.distinct.end()) answers.distinct.push_back(std::move(outputs));
   }
   return answers;
 }
 
-VectorLikeness likeness(const Outputs& port, const Outputs& law, std::span<const Outputs> faults) {
+VectorLikeness distinct_likeness(const Outputs& port, const Outputs& law,
+                                 std::span<const Outputs> distinct) {
   VectorLikeness result;
   result.ticks = port.size();
   std::vector<Mask> port_deviates;
@@ -111,12 +121,25 @@ VectorLikeness likeness(const Outputs& port, const Outputs& law, std::span<const
     port_deviates.push_back(difference(port[tick], law[tick]));
     result.deviates = result.deviates || port_deviates.back() != 0;
   }
-  for (const Outputs& fault : faults) {
+  for (const Outputs& fault : distinct) {
     const bool answered = fault.size() == port.size();
     result.likenesses.push_back(answered ? likeness_of(port, law, fault, port_deviates)
                                          : Likeness{});
   }
   return result;
+}
+
+VectorLikeness of_each_fault(const VectorLikeness& distinct, const FaultAnswers& faults) {
+  VectorLikeness result{distinct.ticks, distinct.deviates, {}};
+  result.likenesses.reserve(faults.of_fault.size());
+  for (const std::size_t index : faults.of_fault) {
+    result.likenesses.push_back(distinct.likenesses[index]);
+  }
+  return result;
+}
+
+VectorLikeness likeness(const Outputs& port, const Outputs& law, const FaultAnswers& faults) {
+  return of_each_fault(distinct_likeness(port, law, faults.distinct), faults);
 }
 
 }  // namespace attest

@@ -37,12 +37,23 @@ using Outputs = std::vector<Answer>;  // one a tick
 
 Outputs outputs_of(const Trace& trace);
 
-// What the faults answer to the inputs of `given`, in the order of the catalogue, each alone or
-// together with `partner`; empty where one does not do the profile.
-std::vector<Outputs> answers_of_faults(const Trace& given, const Subject& subject,
-                                       const faults::Fault* partner = nullptr);
+// What the faults of the catalogue answer. Most answer alike on one vector: as the law does.
+struct FaultAnswers {
+  std::vector<Outputs> distinct;      // empty for faults that do not do the profile
+  std::vector<std::size_t> of_fault;  // index into `distinct`, in the order of the catalogue
+};
 
-// Values are the same when the numeric level would pass them.
-VectorLikeness likeness(const Outputs& port, const Outputs& law, std::span<const Outputs> faults);
+// To the inputs of `given`, each fault alone or together with `partner`.
+FaultAnswers answers_of_faults(const Trace& given, const Subject& subject,
+                               const faults::Fault* partner = nullptr);
+
+// Of each of the distinct answers. Values are the same when the numeric level would pass them.
+VectorLikeness distinct_likeness(const Outputs& port, const Outputs& law,
+                                 std::span<const Outputs> distinct);
+
+// Of each fault, from what its answers have been found to be like.
+VectorLikeness of_each_fault(const VectorLikeness& distinct, const FaultAnswers& faults);
+
+VectorLikeness likeness(const Outputs& port, const Outputs& law, const FaultAnswers& faults);
 
 }  // namespace attest
