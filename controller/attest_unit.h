@@ -197,6 +197,11 @@ typedef struct attest_unit {
  * "tailsitter,robustness". They are counted apart, never as conformant. */
 #define ATTEST_EXTENSION_UNSUPPORTED_GROUPS "attest.unsupported_groups"
 
+/* Extension: const char*, the arithmetic of a port in fixed point: "fixed:22" when its signals have
+ * 22 bits behind the point, of 20 to 32. The numeric level then allows it, beside the tolerances
+ * for floats, some multiples of that last bit (LSB), and every report says so. */
+#define ATTEST_EXTENSION_ARITHMETIC "attest.arithmetic"
+
 /* The one exported symbol. The table is static: it outlives every instance. */
 ATTEST_EXPORT const attest_unit* attest_unit_v1(void);
 

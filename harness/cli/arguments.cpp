@@ -143,6 +143,10 @@ void add_faults(CLI::App& app, const Globals& globals, Action& action) {
   command->add_flag("--list", options->list, "What is in the catalogue; runs nothing");
   command->add_flag("--diagnose", options->diagnose,
                     "How good diagnosis is, instead: is each fault recognised?");
+  command
+      ->add_option("--fraction-bits", options->fraction_bits,
+                   "With the tolerances of a port in fixed point that has so many")
+      ->check(CLI::Range(20, 32));
   command->add_option("--jobs,-j", options->jobs, "Faults at a time")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();

@@ -140,6 +140,7 @@ struct FaultOptions {
   std::vector<std::string> ids;  // empty: all
   bool list = false;
   bool diagnose = false;
+  std::optional<int> fraction_bits;
   int jobs = 1;
 };
 int faults_command(const FaultOptions& options, const Globals& globals);

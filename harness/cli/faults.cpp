@@ -104,7 +104,8 @@ int faults_command(const FaultOptions& options, const Globals& globals) {
   if (options.diagnose) return diagnose_all(*cases);
   Batches batches;
   for (const Fault* fault : *faults) {
-    batches.push_back(std::make_unique<FaultBatch>(*fault, *cases, suite->golden()));
+    batches.push_back(
+        std::make_unique<FaultBatch>(*fault, *cases, suite->golden(), options.fraction_bits));
   }
   note_interrupts();
   WorkerOptions worker;

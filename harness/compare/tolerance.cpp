@@ -1,6 +1,7 @@
 #include "harness/compare/tolerance.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -24,6 +25,24 @@ Tolerance default_of(Quantity quantity) {
       return Tolerances::scale;
     default:
       return {};  // time and flags agree or do not
+  }
+}
+
+// Of a fixed-point port.
+double lsb_of(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::rate:
+      return Tolerances::rate_lsb;
+    case Quantity::control:
+      return Tolerances::control_lsb;
+    case Quantity::integral:
+      return Tolerances::integral_lsb;
+    case Quantity::thrust:
+    case Quantity::motor:
+    case Quantity::scale:
+      return 16;  // copied, scaled or a few sums
+    default:
+      return 0;
   }
 }
 
@@ -66,6 +85,18 @@ bool Tolerances::set(std::string_view prefix, Tolerance tolerance) {
     if (level_ == Level::numeric) of_channel_[i] = tolerance;
   }
   return any;
+}
+
+void Tolerances::allow_lsb(int fraction_bits) {
+  if (level_ != Level::numeric) return;
+  const auto table = channels();
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (!table[i].is_output()) continue;
+    auto& [absolute, relative] = of_channel_[i];
+    absolute = std::max(absolute, std::ldexp(lsb_of(table[i].quantity), -fraction_bits));
+    if (table[i].quantity != Quantity::control) continue;
+    relative = std::max(relative, std::ldexp(control_relative_lsb, -fraction_bits));
+  }
 }
 
 Tolerances Tolerances::scaled(double factor) const {

@@ -51,6 +51,12 @@ class AbiPort final : public Port {
     for (std::string name; std::getline(names, name, ',');) groups.push_back(name);
     return groups;
   }
+  std::optional<int> fraction_bits() const override {
+    const auto* arithmetic = extension<char>(ATTEST_EXTENSION_ARITHMETIC);
+    if (arithmetic == nullptr) return std::nullopt;
+    const auto bits = parse_fraction_bits(arithmetic);
+    return bits ? std::optional(*bits) : std::nullopt;
+  }
   std::unique_ptr<Unit> create(const std::string& profile) override {
     return wrapped<Unit>(table_, table_.create(profile.c_str()));
   }

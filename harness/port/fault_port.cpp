@@ -69,11 +69,12 @@ class FaultyBattery final : public BatteryUnit {
 
 class FaultPort final : public Port {
  public:
-  FaultPort(std::string ids, std::vector<const Fault*> faults)
-      : ids_(std::move(ids)), faults_(std::move(faults)) {}
+  FaultPort(std::string ids, std::vector<const Fault*> faults, std::optional<int> fraction_bits)
+      : ids_(std::move(ids)), faults_(std::move(faults)), fraction_bits_(fraction_bits) {}
 
   std::string name() const override { return "fault " + ids_; }
   std::string version() const override { return "of the catalogue"; }
+  std::optional<int> fraction_bits() const override { return fraction_bits_; }
   std::unique_ptr<Unit> create(const std::string& profile) override {
     const auto known = reference::profile_from_name(profile);
     return known ? std::make_unique<FaultyUnit>(*known, faults_) : nullptr;
@@ -94,11 +95,12 @@ class FaultPort final : public Port {
  private:
   std::string ids_;
   std::vector<const Fault*> faults_;
+  std::optional<int> fraction_bits_;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<Port>> open_fault(std::string_view ids) {
+Result<std::unique_ptr<Port>> open_fault(std::string_view ids, std::optional<int> fraction_bits) {
   std::vector<const Fault*> faults;
   for (std::size_t at = 0; at <= ids.size();) {
     const std::size_t end = std::min(ids.find('+', at), ids.size());
@@ -113,7 +115,7 @@ Result<std::unique_ptr<Port>> open_fault(std::string_view ids) {
     faults.push_back(fault);
     at = end + 1;
   }
-  return std::make_unique<FaultPort>(std::string(ids), std::move(faults));
+  return std::make_unique<FaultPort>(std::string(ids), std::move(faults), fraction_bits);
 }
 
 }  // namespace attest

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -9,7 +10,9 @@
 
 namespace attest {
 
-// Errors: no such fault; says which is near.
-Result<std::unique_ptr<Port>> open_fault(std::string_view ids);
+// With `fraction_bits` it says that it is in fixed point, which it is not: to see which mistakes
+// the tolerance for such ports lets pass. Errors: no such fault; says which is near.
+Result<std::unique_ptr<Port>> open_fault(std::string_view ids,
+                                         std::optional<int> fraction_bits = std::nullopt);
 
 }  // namespace attest

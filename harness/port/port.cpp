@@ -1,5 +1,8 @@
 #include "harness/port/port.hpp"
 
+#include <algorithm>
+#include <charconv>
+
 #include <fmt/format.h>
 
 #include "harness/port/builtin.hpp"
@@ -7,6 +10,24 @@
 #include "harness/port/shared_library.hpp"
 
 namespace attest {
+
+Result<int> parse_fraction_bits(std::string_view arithmetic) {
+  constexpr std::string_view prefix = "fixed:";
+  // With fewer the tolerance would let wrong ports pass; with more it is that of floats.
+  constexpr int fewest = 20, most = 32;
+  int bits = 0;
+  const char* const end = arithmetic.data() + arithmetic.size();
+  const char* const begin = arithmetic.data() + std::min(prefix.size(), arithmetic.size());
+  const auto [stop, error] = std::from_chars(begin, end, bits);
+  if (!arithmetic.starts_with(prefix) || error != std::errc() || stop != end || bits < fewest ||
+      bits > most) {
+    return fail(
+        fmt::format("its arithmetic is `{}`; known is `fixed:BITS`, from {} to {} bits "
+                    "behind the point",
+                    arithmetic, fewest, most));
+  }
+  return bits;
+}
 
 Result<std::unique_ptr<Port>> open_port(const std::string& specification) {
   constexpr std::string_view library_prefix = "lib:";

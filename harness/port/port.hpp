@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,6 +45,9 @@ class Port {
   // The groups of cases that the port declares not to do.
   virtual std::vector<std::string> unsupported_groups() const { return {}; }
 
+  // Bits behind the point of a port in fixed point.
+  virtual std::optional<int> fraction_bits() const { return std::nullopt; }
+
   // A unit in its power-on state; null when the port does not support the profile.
   // The port must outlive the unit.
   virtual std::unique_ptr<Unit> create(const std::string& profile) = 0;
@@ -61,6 +65,9 @@ class Port {
     return nullptr;
   }
 };
+
+// "fixed:22" -> 22, of ATTEST_EXTENSION_ARITHMETIC. Errors: anything else, and bits out of range.
+Result<int> parse_fraction_bits(std::string_view arithmetic);
 
 // Opens "builtin", "lib:PATH" or "fault:ID". Loading a library runs its code: a program that must
 // survive a bad port does this in a child process. Errors: unknown kind, missing library, missing

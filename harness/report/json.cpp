@@ -76,8 +76,9 @@ ordered_json diagnosis(const Diagnosis& found) {
 }  // namespace
 
 std::string json_report(const RunResult& run) {
-  const ordered_json port = {
+  ordered_json port = {
       {"specification", run.port}, {"name", run.port_name}, {"version", run.port_version}};
+  if (run.fraction_bits) port["fraction_bits"] = *run.fraction_bits;
   ordered_json report = {
       {"schema", "attest-report-1"},
       {"attest_version", run.attest_version},

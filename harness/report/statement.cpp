@@ -68,6 +68,12 @@ std::string which_groups(const Groups& groups) {
   return fmt::format("group{} {}", in.size() == 1 ? "" : "s", fmt::join(in, ", "));
 }
 
+// Only the numeric level makes allowances for it.
+std::string arithmetic_of(const RunResult& run) {
+  if (!run.fraction_bits || run.level != Level::numeric) return "";
+  return fmt::format(" for fixed point with {} fraction bits", *run.fraction_bits);
+}
+
 // Of the profiles in which some group conforms.
 std::vector<std::string> statements_of(const RunResult& run) {
   std::vector<std::string> statements;
@@ -75,8 +81,9 @@ std::vector<std::string> statements_of(const RunResult& run) {
     const bool some = std::any_of(groups.begin(), groups.end(),
                                   [](const auto& group) { return group.second.conforms(); });
     if (!some) continue;
-    statements.push_back(fmt::format("{}, {}, {}, {}", one_line(profile), name_of(run.level),
-                                     counted(run.rates.size(), "rate"), which_groups(groups)));
+    statements.push_back(fmt::format("{}, {}{}, {}, {}", one_line(profile), name_of(run.level),
+                                     arithmetic_of(run), counted(run.rates.size(), "rate"),
+                                     which_groups(groups)));
   }
   return statements;
 }

@@ -85,7 +85,8 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
   run_and_judge(
       prepared->answered, prepared->want, prepared->other_sides, subject_of(the_case), port,
       tolerances_of(the_case,
-                    level == Level::exact && the_case.numeric_only ? Level::numeric : level),
+                    level == Level::exact && the_case.numeric_only ? Level::numeric : level,
+                    port.fraction_bits()),
       result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
@@ -101,7 +102,9 @@ CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, Port& p
     sample.mixer_out = {};
     sample.battery_out = {};
   }
-  run_and_judge(answered, recorded, {}, subject, port, tolerances, result);
+  Tolerances allowed = tolerances;
+  if (const auto bits = port.fraction_bits()) allowed.allow_lsb(*bits);
+  run_and_judge(answered, recorded, {}, subject, port, allowed, result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }

@@ -78,9 +78,13 @@ void judge_metrics(const Case& the_case, const Trace& flown, const ReferenceFlig
 }
 
 void judge_flight(const Case& the_case, const Flown& flown, const ReferenceFlight& reference,
-                  CaseResult& result) {
-  const Comparison comparison = compare_rows(flown.trace, reference.rows, reference.horizon_s,
-                                             tolerances_of(the_case, Level::numeric));
+                  std::optional<int> fraction_bits, CaseResult& result) {
+  // The horizon is of floats. How long a port in fixed point stays beside them nobody measured: its
+  // flights are judged by their metrics.
+  const double horizon_s = fraction_bits ? 0 : reference.horizon_s;
+  const Comparison comparison =
+      compare_rows(flown.trace, reference.rows, horizon_s,
+                   tolerances_of(the_case, Level::numeric, fraction_bits));
   judge(comparison, result);
   std::vector<std::string> reasons;
   if (!result.reason.empty()) reasons.push_back(result.reason);
@@ -117,7 +121,7 @@ Result<CaseResult> evaluate_beside(const Case& the_case, const Setup& setup,
     judge(*flown->fault, result);
   } else {
     const DefaultFloatEnvironment environment;
-    judge_flight(the_case, *flown, reference, result);
+    judge_flight(the_case, *flown, reference, port.fraction_bits(), result);
   }
   result.elapsed_s = stopwatch.elapsed_s();
   return result;

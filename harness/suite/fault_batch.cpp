@@ -47,7 +47,7 @@ CaseResult FaultBatch::identity(std::size_t) const {
 }
 
 Result<CaseResult> FaultBatch::evaluate(std::size_t i, Port&) {
-  auto port = open_fault(fault_.id);
+  auto port = open_fault(fault_.id, fraction_bits_);
   if (!port) return tl::unexpected(port.error());
   CaseResult found = identity(i);
   std::optional<Golden> golden;

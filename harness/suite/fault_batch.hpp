@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "controller/faults/fault.hpp"
@@ -15,8 +16,11 @@ class FaultBatch final : public Batch {
  public:
   // `cases` are open loop, and outlive this.
   FaultBatch(const faults::Fault& fault, const std::vector<SelectedCase>& cases,
-             std::filesystem::path golden_root)
-      : fault_(fault), cases_(cases), golden_root_(std::move(golden_root)) {}
+             std::filesystem::path golden_root, std::optional<int> fraction_bits)
+      : fault_(fault),
+        cases_(cases),
+        golden_root_(std::move(golden_root)),
+        fraction_bits_(fraction_bits) {}
 
   std::size_t size() const override { return 1; }
 
@@ -33,6 +37,7 @@ class FaultBatch final : public Batch {
   const faults::Fault& fault_;
   const std::vector<SelectedCase>& cases_;
   std::filesystem::path golden_root_;
+  std::optional<int> fraction_bits_;  // judged as a port with so many would be
 };
 
 }  // namespace attest

@@ -6,9 +6,10 @@
 
 namespace attest {
 
-Tolerances tolerances_of(const Case& the_case, Level level) {
+Tolerances tolerances_of(const Case& the_case, Level level, std::optional<int> fraction_bits) {
   Tolerances tolerances(level);
   for (const auto& [prefix, tolerance] : the_case.tolerances) tolerances.set(prefix, tolerance);
+  if (fraction_bits) tolerances.allow_lsb(*fraction_bits);
   return tolerances;
 }
 

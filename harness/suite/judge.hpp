@@ -12,8 +12,8 @@
 
 namespace attest {
 
-// The case's own tolerances where it has some.
-Tolerances tolerances_of(const Case& the_case, Level level);
+// The case's own tolerances where it has some; of a port in fixed point at least its LSBs.
+Tolerances tolerances_of(const Case& the_case, Level level, std::optional<int> fraction_bits);
 
 // The port declares that it does not do the result's group: the verdict is unsupported.
 bool declines(const Port& port, CaseResult& result);

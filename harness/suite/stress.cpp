@@ -23,7 +23,8 @@ double micros(Nanoseconds time) { return static_cast<double>(time.count()) / 100
 
 // The reference, given the same inputs at the same times: late and missing ticks are no excuse for
 // another output. A decision of the law on a threshold is.
-void check_outputs(const Case& the_case, LiveUnitRecord& unit, CaseResult& result) {
+void check_outputs(const Case& the_case, LiveUnitRecord& unit, std::optional<int> fraction_bits,
+                   CaseResult& result) {
   Trace got;
   got.present = channels_of(Part::mc_att_control);
   got.samples = std::move(unit.samples);
@@ -34,7 +35,7 @@ void check_outputs(const Case& the_case, LiveUnitRecord& unit, CaseResult& resul
   const auto reference = reference_port->create(the_case.profile);
   if (!reference || drive(*reference, want)) return;
   const DefaultFloatEnvironment environment;
-  judge(compare(got, want, tolerances_of(the_case, Level::numeric)), result);
+  judge(compare(got, want, tolerances_of(the_case, Level::numeric, fraction_bits)), result);
   if (result.verdict == Verdict::pass) return;
   const Margins near = margins(got, subject_of(the_case));
   for (std::size_t i = 0; i < decision_count; ++i) {
@@ -176,7 +177,7 @@ Result<StressResult> stress_here(const StressTask& task, Port& port,
     judge(*flight->unit.fault, result);
     return stress;
   }
-  check_outputs(task.the_case, flight->unit, result);
+  check_outputs(task.the_case, flight->unit, port.fraction_bits(), result);
   if (const auto& lost = flight->plant.divergence; lost && result.verdict == Verdict::pass) {
     result.verdict = Verdict::fail;
     result.reason = fmt::format("the flight ended at {:.3f} s: {}",

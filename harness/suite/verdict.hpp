@@ -81,6 +81,7 @@ struct RunResult {
   std::string port;             // as given: "lib:./libmine.so"
   std::string port_name;        // as the port says
   std::string port_version;
+  std::optional<int> fraction_bits;  // of a port in fixed point
   Level level = Level::numeric;
   std::vector<Rate> rates;              // selected, ascending
   std::vector<std::string> all_groups;  // "profile/group" that the suite has, selected or not

@@ -68,8 +68,10 @@ void send_description(const std::string& specification, const std::vector<std::s
   for (const std::string& profile : profiles) {
     if ((*port)->create(profile)) supported.push_back(profile);
   }
-  send(repaired(
-      {{"name", (*port)->name()}, {"version", (*port)->version()}, {"profiles", supported}}));
+  json description = {
+      {"name", (*port)->name()}, {"version", (*port)->version()}, {"profiles", supported}};
+  if (const auto bits = (*port)->fraction_bits()) description["fraction_bits"] = *bits;
+  send(repaired(description));
 }
 
 }  // namespace
@@ -94,8 +96,12 @@ Result<PortDescription> describe_port(const std::string& port,
     return tl::unexpected(error ? *error : error.error());
   }
   if (!answer.is_object()) return fail_at(port, "gave no sensible description of itself");
-  return PortDescription{answer.value("name", ""), answer.value("version", ""),
-                         answer.value("profiles", std::vector<std::string>{})};
+  PortDescription description{answer.value("name", ""), answer.value("version", ""),
+                              answer.value("profiles", std::vector<std::string>{}), std::nullopt};
+  if (answer.contains("fraction_bits")) {
+    description.fraction_bits = answer.value("fraction_bits", 0);
+  }
+  return description;
 }
 
 }  // namespace attest

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,7 @@ struct PortDescription {
   std::string name;
   std::string version;
   std::vector<std::string> profiles;  // of those asked for, the ones it supports
+  std::optional<int> fraction_bits;
 };
 Result<PortDescription> describe_port(const std::string& port,
                                       const std::vector<std::string>& profiles, double timeout_s);

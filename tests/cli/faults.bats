@@ -50,3 +50,17 @@ load common
   [ "$status" -eq 1 ]
   lacks "it looks like"
 }
+
+@test "a port in fixed point is judged as one, and wrong ones are caught all the same" {
+  [ -e "$PORTS/right_fixed_22.so" ] || skip "built without right ports"
+  run "$ATTEST" run --port "lib:$PORTS/right_fixed_22.so" --rate 250 --group rates \
+    --group large_angle --json report.json
+  [ "$status" -eq 0 ]
+  has "numeric for fixed point with 22 fraction bits"
+  grep -q '"fraction_bits": 22' report.json
+  run "$ATTEST" faults --fraction-bits 22 yaw-dropped tpa-missing battery-divides
+  [ "$status" -eq 0 ]
+  has "3 faults: 3 of 3"
+  run "$ATTEST" faults --fraction-bits 12
+  [ "$status" -eq 2 ]
+}

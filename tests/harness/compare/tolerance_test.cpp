@@ -69,6 +69,22 @@ TEST(Tolerances, TheExactLevelHasNone) {
   }
 }
 
+TEST(Tolerances, OfFixedPointAreAtLeastItsLsbs) {
+  const std::size_t yaw = channel("out/vehicle_rates_setpoint.yaw");
+  const std::size_t integral = channel("out/mc_att_ctrl_status.yaw_rate_integ");
+  Tolerances coarse;
+  coarse.allow_lsb(22);
+  EXPECT_DOUBLE_EQ(coarse.of(yaw).absolute, Tolerances::rate_lsb / (1 << 22));
+  EXPECT_DOUBLE_EQ(coarse.of(integral).absolute, Tolerances::integral_lsb / (1 << 22));
+  EXPECT_EQ(coarse.of(channel("out/actuator_controls_0.published")).absolute, 0);
+  Tolerances fine;
+  fine.allow_lsb(32);
+  EXPECT_EQ(fine.of(yaw).absolute, Tolerances::rate.absolute);
+  Tolerances exact(Level::exact);
+  exact.allow_lsb(22);
+  EXPECT_EQ(exact.of(yaw).absolute, 0);
+}
+
 TEST(Tolerances, AreScaledAltogether) {
   const Tolerances tenth = Tolerances().scaled(0.1);
   const Tolerance rate = tenth.of(channel("out/vehicle_rates_setpoint.yaw"));

@@ -24,6 +24,17 @@ TEST(Builtin, MakesUnitsOfItsProfilesOnly) {
   EXPECT_EQ((*port)->create(""), nullptr);
 }
 
+TEST(FractionBits, AreThoseOfTheArithmetic) {
+  EXPECT_EQ(parse_fraction_bits("fixed:20").value(), 20);
+  EXPECT_EQ(parse_fraction_bits("fixed:32").value(), 32);
+  for (const char* text :
+       {"", "fixed", "fixed:", "fixed:19", "fixed:33", "fixed:22x", "float", "22"}) {
+    const auto bits = parse_fraction_bits(text);
+    ASSERT_FALSE(bits) << text;
+    EXPECT_THAT(bits.error().message, HasSubstr("known is `fixed:BITS`, from 20 to 32"));
+  }
+}
+
 TEST(Builtin, UnitsAreIndependent) {
   const auto port = open_port("builtin");
   ASSERT_TRUE(port);

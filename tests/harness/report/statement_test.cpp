@@ -33,6 +33,15 @@ TEST(Statement, NamesWhatConforms) {
               HasSubstr("2 rates, group tpa;"));
 }
 
+TEST(Statement, SaysWhatWasAllowedToFixedPoint) {
+  RunResult run = run_of({"tpa"}, {"tpa"});
+  run.fraction_bits = 22;
+  EXPECT_THAT(conformance_statement(run),
+              HasSubstr("px4-v1.5.5, numeric for fixed point with 22 fraction bits, 2 rates"));
+  run.level = Level::exact;
+  EXPECT_THAT(conformance_statement(run), HasSubstr("px4-v1.5.5, exact, 2 rates"));
+}
+
 // Neither what is unsupported nor what is expected to fail is conformant.
 TEST(Statement, WhatIsCountedApartIsLeftOut) {
   for (const Verdict verdict : {Verdict::unsupported, Verdict::xfail}) {

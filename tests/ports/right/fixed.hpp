@@ -1,5 +1,5 @@
-// Numbers as a processor without floating point has them: Q31.32 in 64 bits, rounded, saturated,
-// with products in 128 bits.
+// Numbers as a processor without floating point has them: 64 bits of which FRACTION_BITS stand
+// behind the point (32), rounded, saturated, with products in 128 bits.
 #pragma once
 
 #include <algorithm>
@@ -10,10 +10,14 @@
 
 #include <Eigen/Core>
 
+#ifndef FRACTION_BITS
+#define FRACTION_BITS 32
+#endif
+
 class Fixed {
  public:
   __extension__ using Wide = __int128;
-  static constexpr int fraction_bits = 32;
+  static constexpr int fraction_bits = FRACTION_BITS;
 
   constexpr Fixed() = default;
   constexpr Fixed(int value) : Fixed(of_raw(Wide{value} << fraction_bits)) {}  // NOLINT
@@ -60,7 +64,7 @@ inline Fixed abs(Fixed value) { return value.raw() < 0 ? -value : value; }
 inline Fixed sqrt(Fixed value) {
   Fixed::Wide rest = std::max<Fixed::Wide>(value.raw(), 0) << Fixed::fraction_bits;
   Fixed::Wide root = 0;
-  for (Fixed::Wide bit = Fixed::Wide{1} << 94; bit != 0; bit >>= 2) {
+  for (Fixed::Wide bit = Fixed::Wide{1} << (62 + Fixed::fraction_bits); bit != 0; bit >>= 2) {
     const bool fits = rest >= root + bit;
     if (fits) rest -= root + bit;
     root = (root >> 1) + (fits ? bit : 0);

@@ -1,6 +1,7 @@
-// The law in fixed point, Q31.32: quaternions, matrices, angles, rates, controls and integrals.
-// Nothing that is not finite can be said in it, and it recovers no tailsitter: it declares both.
-// Must pass at the numeric level.
+// The law in fixed point: quaternions, matrices, angles, rates, controls and integrals. Nothing
+// that is not finite can be said in it, and it recovers no tailsitter: it declares both. Must pass
+// at the numeric level: with 32 bits behind the point as any port, with 22, as a processor of 32
+// bits has room for, as the fixed-point port that it then says it is.
 #include <algorithm>
 #include <cstring>
 
@@ -71,15 +72,16 @@ struct Law {
 };
 
 const void* extension(const char* id) {
-  const bool asked = std::strcmp(id, ATTEST_EXTENSION_UNSUPPORTED_GROUPS) == 0;
-  return asked ? "tailsitter,robustness" : nullptr;
+  if (std::strcmp(id, ATTEST_EXTENSION_UNSUPPORTED_GROUPS) == 0) return "tailsitter,robustness";
+  const bool asked = std::strcmp(id, ATTEST_EXTENSION_ARITHMETIC) == 0;
+  return asked && Fixed::fraction_bits == 22 ? "fixed:22" : nullptr;
 }
 
 }  // namespace
 
 extern "C" __attribute__((visibility("default"))) const attest_unit* attest_unit_v1(void) {
   static const attest_unit table = [] {
-    attest_unit unit = UnitTable<McAttControl<Fixed, Law>>::named("fixed point Q31.32", "1");
+    attest_unit unit = UnitTable<McAttControl<Fixed, Law>>::named("fixed point", "1");
     unit.extension = extension;
     return unit;
   }();
