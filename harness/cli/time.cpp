@@ -16,13 +16,16 @@
 namespace attest::cli {
 namespace {
 
-// A flight's steps cannot be repeated without flying it again, and their inputs are no others.
+// Of the controller. A flight's steps cannot be repeated without flying it again, and their inputs
+// are no others.
 Result<std::vector<SelectedCase>> open_loop_cases(const TimeCommandOptions& options,
                                                   const SuiteFolder& suite) {
   auto cases = options.select.cases_in(suite.cases());
   if (!cases) return cases;
-  std::erase_if(*cases, [](const SelectedCase& one) { return one.the_case.flight.has_value(); });
-  if (cases->empty()) return fail("only flights are selected; steps are timed in open loop");
+  std::erase_if(*cases, [](const SelectedCase& one) {
+    return one.the_case.flight || one.the_case.part != Part::mc_att_control;
+  });
+  if (cases->empty()) return fail("nothing of the controller in open loop is selected to be timed");
   return cases;
 }
 

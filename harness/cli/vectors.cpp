@@ -8,6 +8,7 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/trace/csv.hpp"
+#include "harness/trace/provenance.hpp"
 
 namespace attest::cli {
 namespace {
@@ -23,6 +24,16 @@ Result<void> write_vector(const Case& the_case, const Rate& rate,
   return file->commit();
 }
 
+// Which mixer the controls are for.
+Result<void> write_mixer(const Case& the_case, const std::vector<Setup>& setups,
+                         const std::filesystem::path& folder) {
+  if (the_case.part != Part::mixer) return {};
+  Provenance provenance;
+  provenance.profile = the_case.profile;
+  for (const Setup& setup : setups) provenance.mixers[setup.label()] = the_case.mixer;
+  return write_file(folder / provenance_name, to_toml(provenance));
+}
+
 Result<std::size_t> write_vectors(const VectorOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return tl::unexpected(suite.error());
@@ -35,6 +46,9 @@ Result<std::size_t> write_vectors(const VectorOptions& options, const Globals& g
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) return fail_at(folder.string(), fmt::format("cannot be made: {}", error.message()));
+    if (auto written = write_mixer(the_case, setups, folder); !written) {
+      return tl::unexpected(written.error());
+    }
     for (const Setup& setup : setups) {
       auto written = write_vector(the_case, setup.rate, folder / (setup.label() + ".csv"));
       if (!written) return tl::unexpected(written.error());

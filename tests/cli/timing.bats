@@ -94,7 +94,7 @@ CHECK
   [ "$status" -ne 0 ]
   run "$ATTEST" time --group flight
   [ "$status" -eq 2 ]
-  has "only flights are selected"
+  has "nothing of the controller in open loop is selected"
 }
 
 @test "instructions are counted where valgrind is" {

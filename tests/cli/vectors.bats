@@ -46,3 +46,11 @@ T
   run "$ATTEST" vectors
   [ "$status" -eq 2 ]
 }
+
+@test "a mixer's vectors say which mixer they are for" {
+  run "$ATTEST" vectors out --filter 'mixer/linear_*'
+  [ "$status" -eq 0 ]
+  has "4 input traces in out"
+  grep -q "R: 6x 10000 10000 10000 0" out/px4-v1.5.5/mixer/linear_hexa_x/provenance.toml
+  head -1 out/px4-v1.5.5/mixer/linear_hexa_x/250hz.csv | grep -q "in/actuator_controls_0.control"
+}
