@@ -45,11 +45,12 @@ int lint_command(const VectorOptions& options, const Globals& globals) {
       ++vectors;
       for (std::size_t i = 0; i < decision_count; ++i) {
         const auto decision = static_cast<Decision>(i);
+        if (stands_on(the_case.either_side, decision)) continue;
         const Margin& margin = found[decision];
         const std::string where =
             fmt::format("{}@{} at tick {}", the_case.id(), setup.label(), margin.tick);
         if (is_nearer(decision, margin, nearest[i])) nearest[i] = {margin, where};
-        if (found.is_safe(decision) || stands_on(the_case.either_side, decision)) continue;
+        if (found.is_safe(decision)) continue;
         ++refused;
         fmt::print(stderr,
                    "attest: error: {}: at {}, tick {}, {} is at {:.2g}; a numeric vector "
