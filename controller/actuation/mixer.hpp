@@ -40,8 +40,8 @@ class BasicMixer {
 
   explicit BasicMixer(const MixerDefinition& definition, const Stages& stages = {})
       : rotors_(definition.rotors),
-        scales_{definition.roll_scale, definition.pitch_scale, definition.yaw_scale,
-                definition.idle},
+        scales_{Scalar(definition.roll_scale), Scalar(definition.pitch_scale),
+                Scalar(definition.yaw_scale), Scalar(definition.idle)},
         stages_(stages) {}
 
   // One command for each rotor, valid until the next call. delta_out_max [1] limits the change of

@@ -111,7 +111,7 @@ struct MixerStages {
     bool cut = false;
     for (const Rotor& rotor : rotors) {
       const Scalar roll_pitch = without_yaw(rotor, c, fit.roll_pitch_scale);
-      const Scalar turn(rotor.yaw);
+      const Scalar turn = Scalar(rotor.yaw);
       const Scalar out = roll_pitch + c.yaw * turn + c.thrust + fit.boost;
       const bool has_yaw = std::abs(rotor.yaw) > FLT_EPSILON;
       if (out < 0) {

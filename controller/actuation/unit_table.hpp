@@ -19,13 +19,15 @@ inline bool is_profile(const char* name) {
   return name != nullptr && std::strcmp(name, profile_name) == 0;
 }
 
-// Binary32 in and out, whatever Mixer computes in.
-template <typename Mixer>
-void step_mixer(Mixer& mixer, const attest_mixer_inputs& in, attest_mixer_outputs& out) {
+// Binary32 in and out, whatever Scalar is.
+template <typename Scalar, typename Stages>
+void step_mixer(BasicMixer<Scalar, Stages>& mixer, const attest_mixer_inputs& in,
+                attest_mixer_outputs& out) {
   const float* control = in.actuator_controls_0.control;
   Saturation saturation{};
-  const auto mixed = mixer.mix({control[0], control[1], control[2], control[3]},
-                               in.mixer.delta_out_max, saturation);
+  const auto mixed =
+      mixer.mix({Scalar(control[0]), Scalar(control[1]), Scalar(control[2]), Scalar(control[3])},
+                Scalar(in.mixer.delta_out_max), saturation);
   for (std::size_t i = 0; i < mixed.size(); ++i) {
     out.actuator_outputs.output[i] = static_cast<float>(mixed[i]);
   }
