@@ -1,5 +1,5 @@
 // Prints the table of ratios (ci/bench). Google Benchmark's options apply, such as
-// --benchmark_filter=step and --benchmark_repetitions=21.
+// --benchmark_filter=step and --benchmark_min_time=0.5.
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
@@ -31,12 +31,10 @@ std::string today() { return fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nu
 }  // namespace
 
 int main(int argc, char** argv) {
-  // In turn and in random order, so that a drifting machine slows both of a pair.
-  std::vector<std::string> defaults = {"--benchmark_enable_random_interleaving=true",
-                                       "--benchmark_repetitions=15", "--benchmark_min_time=0.05"};
+  // Short, so that one turn of a pair is over before the machine has changed its pace.
+  std::string short_runs = "--benchmark_min_time=0.05";
   const bool whole = argc == 1;  // nothing is filtered out
-  std::vector<char*> arguments{argv[0]};
-  for (std::string& text : defaults) arguments.push_back(text.data());
+  std::vector<char*> arguments{argv[0], short_runs.data()};
   for (int i = 1; i < argc; ++i) arguments.push_back(argv[i]);
   int count = static_cast<int>(arguments.size());
   benchmark::Initialize(&count, arguments.data());
@@ -46,7 +44,11 @@ int main(int argc, char** argv) {
   // First, in a process that has not yet taken memory for itself.
   const std::string memory = whole ? "\n" + attest::bench::memory_table(met) : "";
   attest::bench::PairReporter reporter;
-  benchmark::RunSpecifiedBenchmarks(&reporter);
+  const std::string filter = benchmark::GetBenchmarkFilter();
+  if (!attest::bench::run_by_turns(filter, reporter)) {
+    fmt::print(stderr, "--benchmark_filter={}: no benchmark of that name\n", filter);
+    return 2;
+  }
   std::string text =
       fmt::format("attest {}, {}, {}, {} processors, {}\n\n{}", attest::version, attest::compiler(),
                   cpu_model(), std::thread::hardware_concurrency(), today(), reporter.table(met)) +

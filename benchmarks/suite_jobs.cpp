@@ -26,17 +26,14 @@ void suite(benchmark::State& state, int jobs) {
 void one_job(benchmark::State& state) { suite(state, 1); }
 void two_jobs(benchmark::State& state) { suite(state, 2); }
 
-// Half a minute of work each, so a few times only.
-constexpr int repetitions = 3;
-
 void four_jobs(benchmark::State& state) {
   if (std::thread::hardware_concurrency() < 4) return state.SkipWithError("needs 4 processors");
   suite(state, 4);
 }
 
-BENCHMARK(one_job)->Name("suite/1_job")->UseRealTime()->Repetitions(repetitions)->Iterations(1);
-BENCHMARK(two_jobs)->Name("suite/2_jobs")->UseRealTime()->Repetitions(repetitions)->Iterations(1);
-BENCHMARK(four_jobs)->Name("suite/4_jobs")->UseRealTime()->Repetitions(repetitions)->Iterations(1);
+BENCHMARK(one_job)->Name("suite/1_job")->UseRealTime()->Iterations(1);
+BENCHMARK(two_jobs)->Name("suite/2_jobs")->UseRealTime()->Iterations(1);
+BENCHMARK(four_jobs)->Name("suite/4_jobs")->UseRealTime()->Iterations(1);
 
 }  // namespace
 }  // namespace attest::bench
