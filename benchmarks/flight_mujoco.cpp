@@ -1,6 +1,7 @@
 // A flight against what no harness can leave out: the same steps of MuJoCo on the same model, with
 // the same rotor commands read from memory.
 #include <chrono>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -67,7 +68,9 @@ std::vector<double> commands(int hertz) {
 }
 
 void bare_steps(benchmark::State& state, int hertz) {
-  const std::vector<double> all = commands(hertz);  // loads the vehicle, which installs callbacks
+  static std::map<int, std::vector<double>> flown;             // once a rate: a turn begins at once
+  if (!flown.contains(hertz)) flown[hertz] = commands(hertz);  // installs MuJoCo's callbacks too
+  const std::vector<double>& all = flown[hertz];
   mjModel* model = mj_loadXML(ATTEST_SOURCE_DIR "/models/iris.xml", nullptr, nullptr, 0);
   mjData* data = mj_makeData(model);
   for (auto _ : state) {

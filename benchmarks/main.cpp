@@ -31,8 +31,8 @@ std::string today() { return fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nu
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Short, so that one turn of a pair is over before the machine has changed its pace.
-  std::string short_runs = "--benchmark_min_time=0.05";
+  // Short, so that a turn of a pair is over before the machine has changed its pace.
+  std::string short_runs = "--benchmark_min_time=0.02";
   const bool whole = argc == 1;  // nothing is filtered out
   std::vector<char*> arguments{argv[0], short_runs.data()};
   for (int i = 1; i < argc; ++i) arguments.push_back(argv[i]);

@@ -41,32 +41,40 @@ std::vector<double> by_turn(const std::vector<double>& measured, const std::vect
   return out;
 }
 
-// Benchmarks that are run beside each other: a floor and all that stand on it.
-std::vector<std::vector<std::string>> groups(const std::string& filter) {
-  std::vector<std::vector<std::string>> out;
+// Benchmarks that are run one after the other: a figure, its floor, and another on the same floor.
+struct Group {
+  std::string floor;
+  std::vector<std::string> names;
+};
+
+std::vector<Group> groups(const std::string& filter) {
+  std::vector<Group> out;
   for (const Pair& pair : pairs()) {
     if ((pair.measured + " " + pair.floor).find(filter) == std::string::npos) continue;
-    if (out.empty() || out.back().front() != pair.floor) out.push_back({pair.floor});
-    out.back().push_back(pair.measured);
+    if (out.empty() || out.back().floor != pair.floor) {
+      out.push_back({pair.floor, {pair.measured, pair.floor}});
+    } else {
+      out.back().names.push_back(pair.measured);
+    }
   }
   return out;
 }
 
 // Half a minute of work each, so a few times only.
-int turns(const std::string& floor) { return floor.starts_with("suite/") ? 3 : 21; }
+int turns(const std::string& floor) { return floor.starts_with("suite/") ? 3 : 101; }
 
 }  // namespace
 
 bool run_by_turns(const std::string& filter, PairReporter& reporter) {
   auto wanted = groups(filter);
-  for (std::vector<std::string>& names : wanted) {
-    const int count = turns(names.front());
+  for (Group& group : wanted) {
+    const int count = turns(group.floor);
     for (int turn = 0; turn < count; ++turn) {
-      for (const std::string& name : names) {
+      for (const std::string& name : group.names) {
         benchmark::RunSpecifiedBenchmarks(&reporter, "^" + name + "(/.*)?$");
       }
       // To and fro: a machine that slows down steadily favours neither.
-      std::reverse(names.begin(), names.end());
+      std::reverse(group.names.begin(), group.names.end());
     }
   }
   return !wanted.empty();

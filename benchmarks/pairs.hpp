@@ -19,7 +19,7 @@ struct Pair {
   double beyond_s = 0;  // bound of the difference
 };
 
-// The claims, in the order of the table. Those that share a floor stand together.
+// The claims, in the order of the table. Those that share a floor, two at most, stand together.
 const std::vector<Pair>& pairs();
 
 // Collects every run of every benchmark; the table is made of their medians.
