@@ -52,6 +52,9 @@ tl::expected<MixerDefinition, std::string> parse_mixer(std::string_view text) {
     if (!value) return tl::unexpected(value.error());
     values[i] = *value;
   }
+  if (!(values[3] >= 0 && values[3] < 1)) {
+    return tl::unexpected<std::string>("mixer: the deadband must be from 0 to 9999");
+  }
   const std::string_view rest = next_word(text);
   if (!rest.empty()) {
     return tl::unexpected("mixer: nothing may follow the deadband, found '" + std::string(rest) +

@@ -65,6 +65,22 @@ const Fault faults[] = {
          return Law::load_drop_V(sample, options);
        };
      }},
+    {"battery-status-throttle-clamped", "battery_status", Stage::battery_status,
+     "takes throttle beyond 1 for 1", "throttle beyond 1", "a helpful clamp",
+     [](FaultyLaw& law) {
+       law.battery.load_drop_V = [](Sample sample, const Options& options) {
+         sample.throttle = std::clamp(sample.throttle, -1.0f, 1.0f);
+         return Law::load_drop_V(sample, options);
+       };
+     }},
+    {"battery-status-no-charging", "battery_status", Stage::battery_status,
+     "takes a current that charges for none", "a current below 0", "a helpful clamp",
+     [](FaultyLaw& law) {
+       law.battery.load_drop_V = [](Sample sample, const Options& options) {
+         sample.current_A = std::max(sample.current_A, 0.0f);
+         return Law::load_drop_V(sample, options);
+       };
+     }},
     {"battery-status-no-idle-share", "battery_status", Stage::battery_status,
      "takes the drop to be 0 at no throttle", "throttle below full while armed", "a missing term",
      [](FaultyLaw& law) {

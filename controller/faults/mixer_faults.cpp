@@ -99,6 +99,22 @@ const Fault faults[] = {
                          clamped.yaw * scales.yaw, clamped.thrust};
        };
      }},
+    {"mixer-scales-at-most-1", "mixer", Stage::mixer_scaling, "takes scales beyond 1 for 1",
+     "a scale beyond 1", "a helpful clamp",
+     [](FaultyLaw& law) {
+       law.mixer.scaled = [](const Controls& c, const Scales& scales) {
+         return Law::scaled(c, {std::min(scales.roll, 1.0f), std::min(scales.pitch, 1.0f),
+                                std::min(scales.yaw, 1.0f), scales.idle});
+       };
+     }},
+    {"mixer-scales-unsigned", "mixer", Stage::mixer_scaling, "takes a scale's magnitude",
+     "a scale below 0", "a sign",
+     [](FaultyLaw& law) {
+       law.mixer.scaled = [](const Controls& c, const Scales& scales) {
+         return Law::scaled(c, {std::abs(scales.roll), std::abs(scales.pitch),
+                                std::abs(scales.yaw), scales.idle});
+       };
+     }},
     {"mixer-roll-left", "mixer", Stage::mixer_scaling, "rolls the other way", "roll", "a sign",
      [](FaultyLaw& law) {
        change_rotors(law, [](const Rotor& r) { return Rotor{-r.roll, r.pitch, r.yaw}; });
@@ -180,6 +196,45 @@ const Fault faults[] = {
        change_fit(law, [](Fit fit, float min_out, float max_out, float thrust) {
          if (!(min_out < 0 && max_out > 1)) return fit;
          return Fit{fit.boost, (1 - (thrust + fit.boost)) / (max_out - thrust)};
+       });
+     }},
+    {"mixer-both-ends-lower-unlimited", "mixer", Stage::mixer_fit,
+     "lowers thrust to the middle, however far, where both ends are beyond",
+     "roll and pitch at almost full thrust", "missing clamp",
+     [](FaultyLaw& law) {
+       change_fit(law, [](Fit fit, float min_out, float max_out, float thrust) {
+         if (!(min_out < 0 && max_out > 1)) return fit;
+         const float boost = std::min(-(max_out - 1 + min_out) / 2, 0.5f * thrust);
+         return Fit{boost, (thrust + boost) / (thrust - min_out)};
+       });
+     }},
+    {"mixer-above-lower-unlimited", "mixer", Stage::mixer_fit,
+     "lowers thrust to the middle, however far, where the upper end is beyond",
+     "roll with little room below, at almost full thrust", "missing clamp",
+     [](FaultyLaw& law) {
+       change_fit(law, [](Fit fit, float min_out, float max_out, float thrust) {
+         if (!(max_out > 1 && min_out > 0 && min_out < max_out - 1)) return fit;
+         const float boost = -(max_out - 1 - min_out) / 2;
+         return Fit{boost, (1 - (thrust + boost)) / (max_out - thrust)};
+       });
+     }},
+    {"mixer-middle-from-below-strict", "mixer", Stage::mixer_fit,
+     "needs more room above than is missing below, to lift", "as much room as is missing",
+     "comparison made strict",
+     [](FaultyLaw& law) {
+       change_fit(law, [](Fit fit, float min_out, float max_out, float thrust) {
+         if (!(min_out < 0 && max_out < 1 && -min_out == 1 - max_out)) return fit;
+         const float boost = Law::clamp(-min_out - (1 - max_out) / 2, 0, 0.5f * thrust);
+         return Fit{boost, (thrust + boost) / (thrust - min_out)};
+       });
+     }},
+    {"mixer-middle-from-above-strict", "mixer", Stage::mixer_fit,
+     "needs more room below than is missing above, to lower", "as much room as is missing",
+     "comparison made strict",
+     [](FaultyLaw& law) {
+       change_fit(law, [](Fit fit, float min_out, float max_out, float thrust) {
+         if (!(max_out > 1 && min_out > 0 && min_out == max_out - 1)) return fit;
+         return Fit{0, (1 - thrust) / (max_out - thrust)};
        });
      }},
     {"mixer-flags-exchanged", "mixer", Stage::mixer_fit, "exchanges lower and upper limit",
@@ -283,7 +338,14 @@ const Fault faults[] = {
      "a condition dropped",
      [](FaultyLaw& law) {
        law.mixer.slew = [](float wanted, float previous, float limit) {
-         return std::clamp(wanted, previous - limit, previous + limit);
+         return Law::clamp(wanted, previous - limit, previous + limit);
+       };
+     }},
+    {"mixer-slew-by-magnitude", "mixer", Stage::mixer_output,
+     "takes a negative limit for one of its size", "a limit below 0", "a helpful simplification",
+     [](FaultyLaw& law) {
+       law.mixer.slew = [](float wanted, float previous, float limit) {
+         return Law::slew(wanted, previous, std::abs(limit));
        };
      }},
 };
