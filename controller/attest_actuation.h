@@ -47,7 +47,8 @@ typedef struct attest_mixer_outputs {
 typedef struct attest_mixer {
   /* A new mixer whose outputs before the first call are 0. `definition` is a line of a PX4 mixer
    * file, "R: <geometry> <roll> <pitch> <yaw> <deadband>" with numbers in 1/10000, such as
-   * "R: 4x 10000 10000 10000 0". NULL: profile or geometry not supported. */
+   * "R: 4x 10000 10000 10000 0". NULL: not supported; its cases are then counted as
+   * unsupported. */
   void* (*create)(const char* profile, const char* definition);
   void (*destroy)(void* self);
   int (*step)(void* self, const attest_mixer_inputs* in, attest_mixer_outputs* out);

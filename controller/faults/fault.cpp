@@ -41,12 +41,26 @@ std::string_view name_of(Stage stage) {
 std::span<const Fault* const> catalogue() {
   static const std::vector<const Fault*> all = [] {
     std::vector<const Fault*> list;
-    for (const auto& part :
-         {attitude_faults(), yaw_faults(), large_angle_faults(), rate_limit_faults(),
-          yaw_feed_forward_faults(), weathervane_faults(), rate_faults(), tpa_faults(),
-          anti_windup_faults(), battery_faults(), mode_faults(), arming_faults(),
-          parameter_faults(), timing_faults(), robustness_faults(), tailsitter_faults(),
-          actuator_faults(), mixer_faults(), battery_status_faults()}) {
+    for (const auto& part : {attitude_faults(),
+                             yaw_faults(),
+                             large_angle_faults(),
+                             rate_limit_faults(),
+                             yaw_feed_forward_faults(),
+                             weathervane_faults(),
+                             rate_faults(),
+                             tpa_faults(),
+                             anti_windup_faults(),
+                             battery_faults(),
+                             mode_faults(),
+                             arming_faults(),
+                             parameter_faults(),
+                             timing_faults(),
+                             robustness_faults(),
+                             tailsitter_faults(),
+                             actuator_faults(),
+                             mixer_faults(),
+                             mixer_fit_faults(),
+                             battery_status_faults()}) {
       for (const Fault& fault : part) list.push_back(&fault);
     }
     return list;

@@ -95,6 +95,8 @@ struct ToleranceOverride {
 struct EitherSide {
   bool yaw_wrap = false;          // a yaw error of 180 deg
   bool shorter_rotation = false;  // beyond 90 deg of tilt, a direct rotation of 180 deg
+
+  bool any() const { return yaw_wrap || shorter_rotation; }
 };
 
 struct Case {

@@ -1,6 +1,8 @@
 #include "harness/cli/arguments.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <string>
 #include <thread>
@@ -10,6 +12,7 @@
 
 #include "harness/cli/command.hpp"
 #include "harness/cli/timing_arguments.hpp"
+#include "harness/core/nearest.hpp"
 #include "harness/core/version.hpp"
 
 namespace attest::cli {
@@ -42,14 +45,17 @@ void add_run(CLI::App& app, const Globals& globals, Action& action) {
                    "How strictly: `exact` (float32 bits), `numeric` (a tolerance a channel) or "
                    "`events` (what happens, within a tick); flights are judged alike at all")
       ->capture_default_str();
-  command
-      ->add_option("--expected-failures", options->expected_failures,
-                   "Failures that are accepted, with reasons (TOML); one that passes fails the run")
-      ->type_name("F");
+  CLI::Option* const expected =
+      command
+          ->add_option("--expected-failures", options->expected_failures,
+                       "Failures that are accepted, with reasons (TOML); one that passes fails the "
+                       "run")
+          ->type_name("F");
   command
       ->add_option("--write-expected", options->write_expected,
                    "Write what fails as such a file, to fill in the reasons")
-      ->type_name("F");
+      ->type_name("F")
+      ->excludes(expected);
   command
       ->add_option("--timing", options->timing,
                    "Only the flight of `stress --record-timing`, at the very times it had, beside "
@@ -139,14 +145,18 @@ void add_faults(CLI::App& app, const Globals& globals, Action& action) {
   options->jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   CLI::App* command = app.add_subcommand(
       "faults", "How good the suite is: which wrong controllers of the catalogue it catches");
-  command->add_option("fault", options->ids, "Only these faults")->type_name("ID");
+  CLI::Option* const ids =
+      command->add_option("fault", options->ids, "Only these faults")->type_name("ID");
   command->add_flag("--list", options->list, "What is in the catalogue; runs nothing");
-  command->add_flag("--diagnose", options->diagnose,
-                    "How good diagnosis is, instead: is each fault recognised?");
+  CLI::Option* const bits =
+      command
+          ->add_option("--fraction-bits", options->fraction_bits,
+                       "With the tolerances of a port in fixed point that has so many")
+          ->check(CLI::Range(20, 32));
   command
-      ->add_option("--fraction-bits", options->fraction_bits,
-                   "With the tolerances of a port in fixed point that has so many")
-      ->check(CLI::Range(20, 32));
+      ->add_flag("--diagnose", options->diagnose,
+                 "How good diagnosis is, instead: is each fault recognised?")
+      ->excludes(bits, ids);
   command->add_option("--jobs,-j", options->jobs, "Faults at a time")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
@@ -174,11 +184,14 @@ void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<VectorOptions>();
   CLI::App* command = app.add_subcommand(
       "vectors", "Write the inputs of the cases as CSV, for a port that runs elsewhere");
-  command->add_option("folder", options->folder, "Where: DIR/PROFILE/GROUP/NAME/RATEhz.csv")
-      ->type_name("DIR");
-  command->add_flag("--lint", options->lint,
-                    "Write nothing; refuse numeric cases that come too near to a decision of the "
-                    "law, where right controllers differ");
+  CLI::Option* const folder =
+      command->add_option("folder", options->folder, "Where: DIR/PROFILE/GROUP/NAME/RATEhz.csv")
+          ->type_name("DIR");
+  command
+      ->add_flag("--lint", options->lint,
+                 "Write nothing; refuse numeric cases that come too near to a decision of the law, "
+                 "where right controllers differ")
+      ->excludes(folder);
   add_selection(*command, options->select);
   command->callback([options, &globals, &action] {
     if (!options->lint && options->folder.empty()) throw CLI::RequiredError("folder");
@@ -227,6 +240,34 @@ void add_doctor(CLI::App& app, const Globals& globals, Action& action) {
   });
 }
 
+// CLI11 says no more than that a command is required. Empty: the first word is one, or an option.
+std::string unknown_command(const CLI::App& app, int argc, char** argv) {
+  const std::string word = argc > 1 ? argv[1] : "";
+  if (word.empty() || word.starts_with('-')) return "";
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
+  if (std::find(names.begin(), names.end(), word) != names.end()) return "";
+  return fmt::format("unknown command `{}`{}; attest --help shows them", word,
+                     suggestion(word, names));
+}
+
+// What no option means: nothing at all, as of a variable that is not set, or a number that is none,
+// which passes every check of a range. Empty: no option says so.
+std::string wrong_value(const CLI::App& app) {
+  for (const CLI::App* command : app.get_subcommands()) {
+    for (const CLI::Option* option : command->get_options()) {
+      const bool is_number = option->get_type_name().starts_with("FLOAT");
+      for (const std::string& text : option->results()) {
+        if (text.empty()) return option->get_name() + ": is empty; is a variable not set?";
+        if (is_number && !std::isfinite(std::strtod(text.c_str(), nullptr))) {
+          return fmt::format("{}: {} is no number that it can have", option->get_name(), text);
+        }
+      }
+    }
+  }
+  return "";
+}
+
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
@@ -253,6 +294,9 @@ int run_command_line(int argc, char** argv) {
   add_bless(app, globals, action);
   add_doctor(app, globals, action);
 
+  if (const std::string wrong = unknown_command(app, argc, argv); !wrong.empty()) {
+    return report_error({wrong});
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {
@@ -261,6 +305,7 @@ int run_command_line(int argc, char** argv) {
     app.exit(error);
     return exit_usage;
   }
+  if (const std::string wrong = wrong_value(app); !wrong.empty()) return report_error({wrong});
   return action();
 }
 

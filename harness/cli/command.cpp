@@ -1,12 +1,35 @@
 #include "harness/cli/command.hpp"
 
+#include <algorithm>
+#include <cstdio>
+#include <set>
+
 #include <fmt/format.h>
 
 namespace attest::cli {
 
 int report_error(const Error& error) {
-  fmt::print(stderr, "attest: error: {}\n", error.to_string());
+  // Not through fmt::print: it throws when nobody can be told.
+  std::fputs(fmt::format("attest: error: {}\n", error.to_string()).c_str(), stderr);
   return exit_usage;
+}
+
+Result<void> check_distinct(const std::vector<std::string>& paths) {
+  std::set<std::filesystem::path> known;
+  for (const std::string& path : paths) {
+    if (path.empty()) continue;
+    if (!known.insert(std::filesystem::absolute(path).lexically_normal()).second) {
+      return fail_at(path, "is asked for twice; each report needs a file of its own");
+    }
+  }
+  return {};
+}
+
+bool SelectionOptions::selects_all_setups() const {
+  const bool of_setups = std::any_of(filters.begin(), filters.end(), [](const std::string& filter) {
+    return filter.find('@') != std::string::npos;
+  });
+  return !of_setups && rates.empty() && vehicles.empty() && plants.empty() && shard == "1/1";
 }
 
 Result<std::vector<SelectedCase>> SelectionOptions::cases_in(

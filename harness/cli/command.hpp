@@ -30,6 +30,9 @@ struct Globals {
 // "attest: error: <file:line: message>" on stderr; the exit code for it.
 int report_error(const Error& error);
 
+// No two of these files that are to be written may be the same; an empty path is none.
+Result<void> check_distinct(const std::vector<std::string>& paths);
+
 // --filter, --group, --profile, --rate, --vehicle, --plant and --shard, as text until they are
 // used.
 struct SelectionOptions {
@@ -40,6 +43,9 @@ struct SelectionOptions {
     return filters.empty() && groups.empty() && profiles.empty() && rates.empty() &&
            vehicles.empty() && plants.empty() && shard == "1/1";
   }
+
+  // Each selected case at all its rates, on all its vehicles and plants?
+  bool selects_all_setups() const;
 
   // The cases below `folder` that are selected. Errors: as of select_cases, and text that is no
   // rate or shard.

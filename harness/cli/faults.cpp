@@ -24,7 +24,14 @@ Result<std::vector<const Fault*>> chosen(const FaultOptions& options) {
   std::vector<const Fault*> list;
   for (const std::string& id : options.ids) {
     if (auto port = open_fault(id); !port) return tl::unexpected(port.error());
-    list.push_back(faults::find_fault(id));
+    const Fault* const fault = faults::find_fault(id);
+    if (fault == nullptr) {
+      return fail(
+          fmt::format("{}: the table has one fault a line; two at once are a port: attest "
+                      "run --port fault:{}",
+                      id, id));
+    }
+    list.push_back(fault);
   }
   return list;
 }

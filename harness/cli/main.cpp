@@ -1,17 +1,41 @@
 // attest: is this port the same attitude controller as the reference?
+#include <cstdio>
 #include <exception>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "harness/cli/arguments.hpp"
 #include "harness/cli/command.hpp"
 
+namespace {
+
+// A file that is opened in the place of a closed stdin, stdout or stderr would be taken for it.
+void open_standard_streams() {
+  int descriptor = 0;
+  do {
+    descriptor = ::open("/dev/null", O_RDWR);
+  } while (descriptor >= 0 && descriptor <= STDERR_FILENO);
+  if (descriptor > STDERR_FILENO) ::close(descriptor);
+}
+
+// A summary that nobody received is not a success.
+int flushed(int code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  std::fputs("attest: error: stdout: cannot be written\n", stderr);
+  return code == attest::cli::exit_ok ? attest::cli::exit_usage : code;
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
+  open_standard_streams();
   try {
-    return attest::cli::run_command_line(argc, argv);
+    return flushed(attest::cli::run_command_line(argc, argv));
   } catch (const std::exception& error) {
     // Out of memory, or a bug of ours.
-    fmt::print(stderr, "attest: error: {}\n", error.what());
+    std::fputs(fmt::format("attest: error: {}\n", error.what()).c_str(), stderr);
     return attest::cli::exit_usage;
   }
 }

@@ -7,9 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "harness/casefile/parse.hpp"
 #include "harness/cli/command.hpp"
-#include "harness/core/nearest.hpp"
 #include "harness/core/version.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/text.hpp"
@@ -29,12 +27,12 @@ Result<void> override_parameter(Trace& trace, const std::string& text) {
   if (equals == text.size() || error != std::errc{} || rest != end) {
     return fail(fmt::format("--param {}: write NAME=VALUE, such as MC_ROLL_P=6.5", text));
   }
-  const std::vector<std::string> names = parameter_names(part_of(trace.present));
-  if (std::find(names.begin(), names.end(), name) == names.end()) {
-    return fail(fmt::format("--param {}: unknown parameter{}", text, suggestion(name, names)));
+  const ParameterChange change{0, name, value};
+  if (auto checked = check_parameter(part_of(trace.present), change); !checked) {
+    return fail(fmt::format("--param {}: {}", text, checked.error().message));
   }
   std::erase_if(trace.parameters, [&](const ParameterChange& c) { return c.name == name; });
-  trace.parameters.insert(trace.parameters.begin(), ParameterChange{0, name, value});
+  trace.parameters.insert(trace.parameters.begin(), change);
   return {};
 }
 
@@ -65,20 +63,24 @@ void print_result(const CaseResult& result, Level level) {
 
 class Replay {
  public:
-  Replay(const ReplayOptions& options, const Globals& globals, Level level)
-      : options_(options), globals_(globals), level_(level) {}
+  Replay(const ReplayOptions& options, const Globals& globals, Level level, std::string arithmetic)
+      : options_(options), globals_(globals), level_(level), arithmetic_(std::move(arithmetic)) {}
 
   int run() {
     for (const std::string& file : options_.files) {
       auto done = replay(file);
       if (!done) return report_error(done.error());
     }
-    if (!globals_.quiet || passed_ != options_.files.size()) {
-      fmt::print("{} {} of {} traces conform ({}, {})\n",
-                 passed_ == options_.files.size() ? "PASS" : "FAIL", passed_, options_.files.size(),
-                 options_.port, name_of(level_));
+    const std::size_t apart = options_.files.size() - passed_ - failed_;
+    if (!globals_.quiet || failed_ > 0) {
+      fmt::print("{} {} of {} traces conform{} ({}, {}{})\n", failed_ == 0 ? "PASS" : "FAIL",
+                 passed_, options_.files.size(),
+                 apart > 0 ? fmt::format(", {} not compared", apart) : "", options_.port,
+                 name_of(level_), arithmetic_);
     }
-    return passed_ == options_.files.size() ? exit_ok : exit_failed;
+    if (failed_ > 0) return exit_failed;
+    if (passed_ > 0) return exit_ok;
+    return report_error({"nothing was compared: every trace was skipped or unsupported"});
   }
 
  private:
@@ -95,6 +97,7 @@ class Replay {
     const CaseResult& result = outcome.results.front();
     const bool passed = result.verdict == Verdict::pass;
     passed_ += passed ? 1 : 0;
+    failed_ += fails_a_run(result.verdict) ? 1 : 0;
     if (!passed || !globals_.quiet) print_result(result, level_);
     return {};
   }
@@ -102,7 +105,9 @@ class Replay {
   const ReplayOptions& options_;
   const Globals& globals_;
   Level level_;
+  std::string arithmetic_;  // how the port computes, if not in floats
   std::size_t passed_ = 0;
+  std::size_t failed_ = 0;
 };
 
 }  // namespace
@@ -112,7 +117,11 @@ int replay_command(const ReplayOptions& options, const Globals& globals) {
   if (!level) return report_error(level.error());
   const auto port = describe_port(options.port, {}, options.timeout_s);
   if (!port) return report_error(port.error());
-  return Replay(options, globals, *level).run();
+  std::string arithmetic;
+  if (port->fraction_bits && *level == Level::numeric) {
+    arithmetic = fmt::format(" for fixed point with {} fraction bits", *port->fraction_bits);
+  }
+  return Replay(options, globals, *level, std::move(arithmetic)).run();
 }
 
 }  // namespace attest::cli

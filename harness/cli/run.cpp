@@ -30,6 +30,9 @@ struct ReportFile {
 };
 
 Result<std::vector<ReportFile>> open_reports(const RunOptions& options) {
+  auto distinct =
+      check_distinct({options.junit, options.json, options.badge, options.write_expected});
+  if (!distinct) return tl::unexpected(distinct.error());
   std::vector<ReportFile> reports;
   using Render = std::string (*)(const RunResult&);
   const std::pair<const std::string&, Render> wanted[] = {
@@ -76,6 +79,7 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Pla
   auto batches = make_batches(*cases, suite.golden(), fleet, plan.run.level);
   if (!batches) return tl::unexpected(batches.error());
   plan.batches = std::move(*batches);
+  plan.run.all_setups = options.select.selects_all_setups();
   plan.run.rates.assign(rates.begin(), rates.end());
   plan.cases = std::move(*cases);
   return {};
@@ -167,6 +171,9 @@ int run_command(const RunOptions& options, const Globals& globals) {
   Progress progress(plan->results, Progress::on_stderr(globals.quiet));
   WorkerOptions worker = options.worker;
   worker.on_result = [&](const CaseResult& result) { progress.add(result); };
+  worker.fails = [&](const CaseResult& result) {
+    return fails_a_run(result.verdict) && !(plan->expected && plan->expected->expects(result));
+  };
   worker.stop = interrupted;
   WorkerOutcome outcome = run_batches(plan->batches, worker);
   progress.finish();

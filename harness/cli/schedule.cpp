@@ -75,6 +75,9 @@ int schedule_command(const ScheduleOptions& options, const Globals& globals) {
   if (!globals.quiet) fmt::print("{}", render_flights(outcome.results[0], scheduled));
   for (const CaseResult& result : outcome.results) {
     if (fails_a_run(result.verdict)) return exit_failed;
+    if (result.verdict != Verdict::pass) {
+      return report_error({fmt::format("nothing was flown: {}", result.reason)});
+    }
   }
   return exit_ok;
 }

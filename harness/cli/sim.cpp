@@ -51,7 +51,9 @@ Result<Sim> prepare(const SimOptions& options, const Globals& globals) {
 }
 
 void print(const CaseResult& result, const std::string& out) {
-  fmt::print("{}  {} ticks -> {}\n", result.id(), result.ticks, out);
+  const std::string written =
+      result.ticks > 0 ? fmt::format("{} ticks -> {}", result.ticks, out) : "no trace was written";
+  fmt::print("{}  {}\n", result.id(), written);
   if (!result.reason.empty()) fmt::print("  {}: {}\n", name_of(result.verdict), result.reason);
   for (const MetricResult& metric : result.metrics) {
     fmt::print("  {:<20} {:<24}{:>10.4g}  {}{}\n", metric.name, name_of(metric.measure),

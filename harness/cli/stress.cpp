@@ -50,6 +50,8 @@ void set_budget(const StressOptions& options, RealtimeBudget& budget) {
 }
 
 Result<Plan> make_plan(const StressOptions& options, const SuiteFolder& suite) {
+  auto distinct = check_distinct({options.json, options.junit, options.record_timing});
+  if (!distinct) return tl::unexpected(distinct.error());
   auto chosen = choose_flight(options.case_name, options.vehicle, options.plant, suite);
   if (!chosen) return tl::unexpected(chosen.error());
   const auto live = live_options(options);

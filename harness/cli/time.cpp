@@ -50,6 +50,9 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
   const auto port = describe_port(options.worker.port, {}, options.worker.timeout_s);
   if (!port) return report_error(port.error());
 
+  if (auto distinct = check_distinct({options.json, options.measure.worst}); !distinct) {
+    return report_error(distinct.error());
+  }
   note_interrupts();
   TimeRun run{options.worker.port, options.measure.repeats, options.measure.budget_us, {}, {}};
   Batches batches;
@@ -63,8 +66,14 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
   if (interrupted()) return exit_interrupted;
   if (!outcome.errors.empty()) return report_error(outcome.errors.front());
   run.results = std::move(outcome.results);
+  const bool wrong = std::any_of(run.results.begin(), run.results.end(),
+                                 [](const auto& one) { return fails_a_run(one.verdict); });
   if (run.all().figures.empty() || run.all().figures.at(figure::steps) == 0) {
-    return report_error({"nothing was timed: every selected case was skipped or went wrong"});
+    if (wrong) {
+      fmt::print("{}", what_went_wrong(run));
+      return exit_failed;
+    }
+    return report_error({"nothing was timed: every selected case was skipped or unsupported"});
   }
   if (options.instructions) {
     run.instructions = counted(options, *suite, run.all().reason);
@@ -75,8 +84,7 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
   if (auto written = write_file(options.json, time_json(run)); !written)
     return report_error(written.error());
   const bool over = run.all().figures.at(figure::over_budget) > options.allowed;
-  const bool failed = over || std::any_of(run.results.begin(), run.results.end(),
-                                          [](const auto& one) { return fails_a_run(one.verdict); });
+  const bool failed = over || wrong;
   if (!globals.quiet || failed) fmt::print("{}", render_times(run));
   return failed ? exit_failed : exit_ok;
 }

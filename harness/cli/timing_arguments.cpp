@@ -78,12 +78,18 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
       ->add_option("--spin", options->spin_us, "Wake up so long before the deadline and spin [us]")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
-  command->add_option("--misses-per-million", options->misses_per_million,
-                      "Budget of missed deadlines, instead of the case's");
-  command->add_option("--p99-lateness", options->p99_lateness_us,
-                      "Budget of the wake-ups [us], instead of the case's");
-  command->add_option("--budget", options->execution_us,
-                      "Steps longer than this [us] count like misses");
+  command
+      ->add_option("--misses-per-million", options->misses_per_million,
+                   "Budget of missed deadlines, instead of the case's")
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--p99-lateness", options->p99_lateness_us,
+                   "Budget of the wake-ups [us], instead of the case's")
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--budget", options->execution_us,
+                   "Steps longer than this [us] count like misses")
+      ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--record-timing", options->record_timing,
                    "Write when everything happened, for `run --timing`; one rate only")
@@ -165,12 +171,13 @@ void add_time(CLI::App& app, const Globals& globals, Action& action) {
                    "not the machine's")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command
-      ->add_option("--budget", options->measure.budget_us,
-                   "Fail when steps take longer than this [us]")
-      ->check(CLI::PositiveNumber);
+  CLI::Option* const budget = command
+                                  ->add_option("--budget", options->measure.budget_us,
+                                               "Fail when steps take longer than this [us]")
+                                  ->check(CLI::PositiveNumber);
   command->add_option("--allow", options->allowed, "So many steps may be over the budget")
       ->check(CLI::NonNegativeNumber)
+      ->needs(budget)
       ->capture_default_str();
   command
       ->add_option("--worst", options->measure.worst,

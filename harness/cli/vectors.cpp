@@ -24,13 +24,14 @@ Result<void> write_vector(const Case& the_case, const Rate& rate,
   return file->commit();
 }
 
-// Which mixer the controls are for.
-Result<void> write_mixer(const Case& the_case, const std::vector<Setup>& setups,
-                         const std::filesystem::path& folder) {
-  if (the_case.part != Part::mixer) return {};
-  Provenance provenance;
+// Which law, and which mixer, the inputs are for; beside what the folder holds already.
+Result<void> write_origin(const Case& the_case, const std::vector<Setup>& setups,
+                          const std::filesystem::path& folder) {
+  Provenance provenance = read_provenance(folder / provenance_name).value_or(Provenance{});
   provenance.profile = the_case.profile;
-  for (const Setup& setup : setups) provenance.mixers[setup.label()] = the_case.mixer;
+  if (the_case.part == Part::mixer) {
+    for (const Setup& setup : setups) provenance.mixers[setup.label()] = the_case.mixer;
+  }
   return write_file(folder / provenance_name, to_toml(provenance));
 }
 
@@ -46,7 +47,7 @@ Result<std::size_t> write_vectors(const VectorOptions& options, const Globals& g
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) return fail_at(folder.string(), fmt::format("cannot be made: {}", error.message()));
-    if (auto written = write_mixer(the_case, setups, folder); !written) {
+    if (auto written = write_origin(the_case, setups, folder); !written) {
       return tl::unexpected(written.error());
     }
     for (const Setup& setup : setups) {

@@ -1,6 +1,8 @@
 #include "harness/compare/events.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include <fmt/format.h>
@@ -95,6 +97,11 @@ std::optional<std::size_t> first_difference(const std::vector<State>& got,
 }
 
 }  // namespace
+
+bool tells_events(const ChannelSet& present) {
+  return std::any_of(std::begin(kinds), std::end(kinds),
+                     [&](const Kind& kind) { return present[*find_channel(kind.channel)]; });
+}
 
 std::optional<EventDifference> first_event_difference(const Trace& got, const Trace& want) {
   std::optional<EventDifference> first;

@@ -19,6 +19,12 @@ struct EventDifference {
   std::string what;  // "the integral moves, expected still"
 };
 
+// A mixer and a battery estimate are judged by their values.
+inline bool has_events(Part part) { return part == Part::mc_att_control; }
+
+// Is there a channel that an event is told from?
+bool tells_events(const ChannelSet& present);
+
 // The first tick at which `got` is in a state that `want` is in neither at that tick, nor the one
 // before or after it, or the other way round. REQUIRES: as many ticks in both.
 std::optional<EventDifference> first_event_difference(const Trace& got, const Trace& want);

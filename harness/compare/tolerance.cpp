@@ -37,9 +37,10 @@ double lsb_of(Quantity quantity) {
       return Tolerances::control_lsb;
     case Quantity::integral:
       return Tolerances::integral_lsb;
+    case Quantity::scale:
+      return Tolerances::scale_lsb;
     case Quantity::thrust:
     case Quantity::motor:
-    case Quantity::scale:
       return 16;  // copied, scaled or a few sums
     default:
       return 0;

@@ -52,7 +52,8 @@ class Tolerances {
   // the rates setpoints, near a half turn, 750 in the controls, 60 in the integrals; and controls
   // of which D is most by part of themselves, as 1 / dt is up to 500 and dt has an error of half an
   // LSB. At the numeric level only.
-  static constexpr double rate_lsb = 2560, control_lsb = 2560, integral_lsb = 256;
+  // A battery's filter gathers a hundred roundings, each up to one LSB where a port truncates.
+  static constexpr double rate_lsb = 2560, control_lsb = 2560, integral_lsb = 256, scale_lsb = 512;
   static constexpr double control_relative_lsb = 1024;
   void allow_lsb(int fraction_bits);
 

@@ -124,17 +124,39 @@ std::string random_suffix() {
   return suffix;
 }
 
-// A new file beside `target`; its descriptor, or -1 with errno.
-int create_beside(const fs::path& target, fs::path& temporary) {
+constexpr mode_t new_file_mode = 0644;  // less the umask, as for any new file
+
+// Gives `create` names beside `target` until one is not taken: what it answers, or -1 with errno.
+template <typename Create>
+int named_beside(const fs::path& target, fs::path& temporary, Create create) {
   constexpr int attempts = 100;
-  constexpr mode_t mode = 0644;  // less the umask, as for any new file
   for (int i = 0; i < attempts; ++i) {
     temporary = target;
     temporary.replace_filename(fmt::format(".{}.{}", target.filename().string(), random_suffix()));
-    const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-    if (file >= 0 || errno != EEXIST) return file;
+    const int created = create(temporary);
+    if (created >= 0 || errno != EEXIST) return created;
   }
   return -1;
+}
+
+// A new file in the folder of `target`; its descriptor, or -1 with errno. It has no name, so that
+// nothing of it is left when this process is killed; `temporary` is its name where the file system
+// cannot do that.
+int create_beside(const fs::path& target, fs::path& temporary) {
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const int nameless = ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, new_file_mode);
+  if (nameless >= 0) return nameless;
+  return named_beside(target, temporary, [](const fs::path& name) {
+    return ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, new_file_mode);
+  });
+}
+
+// Gives a nameless file a name beside `target`.
+int name_beside(int file, const fs::path& target, fs::path& temporary) {
+  const std::string source = fmt::format("/proc/self/fd/{}", file);
+  return named_beside(target, temporary, [&](const fs::path& name) {
+    return ::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW);
+  });
 }
 
 }  // namespace
@@ -147,7 +169,7 @@ AtomicFile::AtomicFile(fs::path path, fs::path target, fs::path temporary, int d
 
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept
     : path_(std::move(other.path_)),
-      target_(std::move(other.target_)),
+      target_(std::exchange(other.target_, fs::path())),
       temporary_(std::exchange(other.temporary_, fs::path())),
       descriptor_(std::exchange(other.descriptor_, -1)) {}
 
@@ -169,7 +191,7 @@ Result<AtomicFile> AtomicFile::open(const fs::path& path) {
   if (exists && is_written_in_place(path, status)) {
     const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
     if (file < 0) return system_failure(path, "cannot write the file");
-    return AtomicFile(path, path, "", file);
+    return AtomicFile(path, "", "", file);
   }
   // A symbolic link stays, and what it points to is replaced.
   std::error_code failed;
@@ -192,10 +214,14 @@ Result<void> AtomicFile::write(std::string_view bytes) {
 }
 
 Result<void> AtomicFile::commit() {
-  const bool in_place = temporary_.empty();
+  const bool in_place = target_.empty();
   // A pipe or terminal has nothing to flush.
   if (!in_place && ::fsync(descriptor_) != 0) {
     return system_failure(path_, "cannot write the file");
+  }
+  if (!in_place && temporary_.empty() && name_beside(descriptor_, target_, temporary_) != 0) {
+    temporary_.clear();
+    return system_failure(path_, "cannot replace the file");
   }
   if (::close(std::exchange(descriptor_, -1)) != 0) {
     return system_failure(path_, "cannot write the file");

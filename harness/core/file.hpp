@@ -16,7 +16,8 @@ std::string sha256(std::string_view bytes);
 Result<std::string> sha256_of_file(const std::filesystem::path& path);
 
 // A file that is written beside its place and renamed at commit(). Opening it early shows an
-// unwritable path before the work, not after; without commit() nothing is left behind. What is not
+// unwritable path before the work, not after; without commit() nothing is left behind, nor when the
+// process is killed, where the file system has files without a name. What is not
 // an ordinary file (/dev/stdout, /dev/null, a pipe) is written to directly.
 class AtomicFile {
  public:
@@ -36,8 +37,8 @@ class AtomicFile {
              std::filesystem::path temporary, int descriptor);
 
   std::filesystem::path path_;       // as given, for messages
-  std::filesystem::path target_;     // with symbolic links followed
-  std::filesystem::path temporary_;  // empty: written directly, or committed
+  std::filesystem::path target_;     // with symbolic links followed; empty: written directly
+  std::filesystem::path temporary_;  // what it is called until then; empty: nothing
   int descriptor_;                   // -1 once committed
 };
 

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include "controller/actuation/mixer.hpp"
+#include "controller/reference/parameters.hpp"
+#include "harness/core/nearest.hpp"
 #include "harness/core/toml.hpp"
 
 namespace attest {
@@ -127,6 +129,18 @@ void check_hover(const TomlTable& root, const Vehicle& vehicle) {
   }
 }
 
+void check_parameter(const TomlTable& parameters, const std::string& name, double value) {
+  std::vector<std::string> known;
+  for (const auto& info : reference::parameter_table()) known.emplace_back(info.name);
+  if (std::find(known.begin(), known.end(), name) == known.end()) {
+    parameters.error(name, fmt::format("unknown parameter `{}`{}; `attest list --parameters` shows "
+                                       "them all",
+                                       name, suggestion(name, known)));
+  } else if (!std::isfinite(value)) {
+    parameters.error(name, "must be a finite number");
+  }
+}
+
 void read_root(const TomlTable& root, Vehicle& vehicle) {
   vehicle.description = root.text("description");
   vehicle.mass_kg = positive(root, "mass_kg");
@@ -145,6 +159,7 @@ void read_root(const TomlTable& root, Vehicle& vehicle) {
     const TomlTable parameters = root.table("parameters");
     for (const std::string& name : parameters.keys()) {
       vehicle.parameters.emplace_back(name, parameters.number(name));
+      check_parameter(parameters, name, vehicle.parameters.back().second);
     }
   }
   check_mixer(root, vehicle);

@@ -48,7 +48,10 @@ class AbiPort final : public Port {
     const auto* list = extension<char>(ATTEST_EXTENSION_UNSUPPORTED_GROUPS);
     std::vector<std::string> groups;
     std::istringstream names(list ? list : "");
-    for (std::string name; std::getline(names, name, ',');) groups.push_back(name);
+    for (std::string name; std::getline(names >> std::ws, name, ',');) {
+      name.erase(name.find_last_not_of(" \t\r\n") + 1);
+      groups.push_back(name);
+    }
     return groups;
   }
   std::optional<int> fraction_bits() const override {

@@ -115,7 +115,7 @@ std::string render_fault_table(const std::vector<FaultFinding>& findings) {
 std::string render_fault_list() {
   std::string out;
   for (const faults::Fault* fault : faults::catalogue()) {
-    out += fmt::format("{:<26} {:<17} {:<16} {}\n", fault->id, fault->group, name_of(fault->stage),
+    out += fmt::format("{:<32} {:<17} {:<16} {}\n", fault->id, fault->group, name_of(fault->stage),
                        fault->what);
   }
   return out;

@@ -68,9 +68,11 @@ std::string which_groups(const Groups& groups) {
   return fmt::format("group{} {}", in.size() == 1 ? "" : "s", fmt::join(in, ", "));
 }
 
-// Only the numeric level makes allowances for it.
+// Where allowances were made for it: at the numeric level, and for flights at all.
 std::string arithmetic_of(const RunResult& run) {
-  if (!run.fraction_bits || run.level != Level::numeric) return "";
+  const bool flew = std::any_of(run.results.begin(), run.results.end(),
+                                [](const CaseResult& result) { return result.flyer.has_value(); });
+  if (!run.fraction_bits || (run.level != Level::numeric && !flew)) return "";
   return fmt::format(" for fixed point with {} fraction bits", *run.fraction_bits);
 }
 
@@ -137,8 +139,9 @@ std::string conformance_statement(const RunResult& run) {
 std::string badge(const RunResult& run) {
   const bool good = run.conformant();
   const std::string left = "attest";
-  const std::string right =
-      good ? fmt::format("{} {}", profile_of(run), name_of(run.level)) : "does not conform";
+  const std::string right = good ? fmt::format("{} {}{}", profile_of(run), name_of(run.level),
+                                               arithmetic_of(run).empty() ? "" : ", fixed point")
+                                 : "does not conform";
   const auto width = [](const std::string& text) { return 7 * static_cast<int>(text.size()) + 10; };
   pugi::xml_document document;
   pugi::xml_node svg = document.append_child("svg");

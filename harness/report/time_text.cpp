@@ -52,12 +52,28 @@ std::string instructions(std::vector<std::uint64_t> calls) {
 }
 
 nlohmann::ordered_json figures_json(const CaseResult& result) {
-  nlohmann::ordered_json out;
+  auto out = nlohmann::ordered_json::object();  // of what went wrong: none
   for (const auto& [name, value] : result.figures) out[name] = value;
   return out;
 }
 
 }  // namespace
+
+bool TimeRun::crashed() const {
+  return std::any_of(results.begin(), results.end(), [](const CaseResult& result) {
+    return result.verdict == Verdict::crash || result.verdict == Verdict::timeout;
+  });
+}
+
+std::string what_went_wrong(const TimeRun& run) {
+  std::string out;
+  for (const CaseResult& result : run.results) {
+    if (!fails_a_run(result.verdict)) continue;
+    out += fmt::format("{} {}: {}\n", one_line(result.id()), name_of(result.verdict),
+                       one_line(result.reason));
+  }
+  return out;
+}
 
 std::string render_times(const TimeRun& run) {
   const CaseResult& all = run.all();
@@ -73,10 +89,9 @@ std::string render_times(const TimeRun& run) {
                      "p99.9", "max");
   for (const char* column : columns) out += fmt::format("{:>10}", time_of(all, column));
   out += "\nslowest steps:\n" + slowest(run) + instructions(run.instructions);
-  for (const CaseResult& result : run.results) {
-    if (!fails_a_run(result.verdict)) continue;
-    out += fmt::format("{} {}: {}\n", one_line(result.id()), name_of(result.verdict),
-                       one_line(result.reason));
+  out += what_went_wrong(run);
+  if (run.crashed()) {
+    out += "a crash takes the figures with it: those above are of what ran after the last one\n";
   }
   if (run.budget_us) {
     out += fmt::format("{:.0f} of {:.0f} steps took longer than {:g} us\n",

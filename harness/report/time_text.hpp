@@ -18,9 +18,15 @@ struct TimeRun {
   std::vector<std::uint64_t> instructions;  // of the slowest vector's steps; empty: not counted
 
   const CaseResult& all() const { return results.back(); }
+
+  // A worker that died, or was given up, took what it had measured with it.
+  bool crashed() const;
 };
 
 std::string render_times(const TimeRun& run);
+
+// A line for each vector that fails a run; empty when none does.
+std::string what_went_wrong(const TimeRun& run);
 
 // {"schema": "attest-time-1", "attest_version": ..., "port": ..., "repeats": 5, "budget_us": null,
 //  "all": {figures}, "slowest": id, "instructions": [...], "vectors": [{"id": ..., figures}, ...]}

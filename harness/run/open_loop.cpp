@@ -25,9 +25,13 @@ template <typename PartUnit>
 std::optional<PortFault> drive_created(std::unique_ptr<PartUnit> unit, const Subject& subject,
                                        Trace& trace) {
   if (unit) return drive_part(*unit, trace);
-  const std::string mixer = subject.mixer.empty() ? "" : fmt::format(" of `{}`", subject.mixer);
+  if (subject.part == Part::mixer) {
+    return PortFault{
+        PortFault::Kind::unsupported, 0,
+        fmt::format("the port makes no mixer `{}` of profile {}", subject.mixer, subject.profile)};
+  }
   return PortFault{PortFault::Kind::profile, 0,
-                   fmt::format("the port does not support profile {}{}", subject.profile, mixer)};
+                   fmt::format("the port does not support profile {}", subject.profile)};
 }
 
 PortFault without(std::string_view part, const char* extension) {

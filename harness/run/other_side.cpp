@@ -1,5 +1,6 @@
 #include "harness/run/other_side.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -53,12 +54,24 @@ bool same_integrals(const Sample& a, const Sample& b) {
   return std::memcmp(&x, &y, sizeof x) == 0;
 }
 
-// One tick by itself.
-bool agrees(const Trace& like, const Sample& got, const Sample& want,
-            const Tolerances& tolerances) {
-  TickComparer comparer(like.present, like.present, tolerances);
-  comparer.add(got, want, {});
+// One tick by itself, with the parameters in force at it.
+bool agrees(const Trace& got, const Trace& want, std::size_t tick, const Tolerances& tolerances) {
+  const auto& all = want.parameters;
+  const auto later = std::find_if(
+      all.begin(), all.end(), [tick](const ParameterChange& change) { return change.tick > tick; });
+  TickComparer comparer(want.present, want.present, tolerances);
+  comparer.add(got.samples[tick], want.samples[tick], {all.begin(), later});
   return comparer.finish(1, 1).agrees();
+}
+
+// Null when `got` agrees with none of them.
+const Trace* side_of(const Trace& got, const Trace& law, const OtherSides& others, std::size_t tick,
+                     const Tolerances& tolerances) {
+  if (agrees(got, law, tick, tolerances)) return &law;
+  for (const auto& [name, other] : others) {
+    if (agrees(got, other, tick, tolerances)) return &other;
+  }
+  return nullptr;
 }
 
 Result<Trace> answers_of(const EitherSide& sides, const Case& the_case, const Trace& law) {
@@ -115,12 +128,12 @@ Trace on_the_side_of(const Trace& got, const Trace& law, const OtherSides& other
                      const Tolerances& tolerances) {
   Trace want = law;
   for (std::size_t tick = 0; tick < want.samples.size(); ++tick) {
-    if (agrees(law, got.samples[tick], law.samples[tick], tolerances)) continue;
-    for (const auto& [name, other] : others) {
-      if (!agrees(law, got.samples[tick], other.samples[tick], tolerances)) continue;
-      want.samples[tick] = other.samples[tick];
-      break;
+    // What is right on no side is told from the nearest, not from the far one.
+    const Trace* side = nullptr;
+    for (double factor = 1; side == nullptr && factor <= 1e4; factor *= 10) {
+      side = side_of(got, law, others, tick, tolerances.scaled(factor));
     }
+    if (side != nullptr) want.samples[tick] = side->samples[tick];
   }
   return want;
 }

@@ -24,7 +24,7 @@ using OtherSides = std::map<std::string, Trace>;
 Result<OtherSides> other_sides(const Case& the_case, const Trace& law);
 
 // `law` with the answers of another side at those ticks at which `got` agrees with them and not
-// with the law's. REQUIRES: as many samples in all.
+// with the law's, or is nearer to them. REQUIRES: as many samples in all.
 Trace on_the_side_of(const Trace& got, const Trace& law, const OtherSides& others,
                      const Tolerances& tolerances);
 

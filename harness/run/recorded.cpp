@@ -1,8 +1,14 @@
 #include "harness/run/recorded.hpp"
 
+#include <algorithm>
+#include <system_error>
+
 #include <fmt/format.h>
 
+#include "controller/actuation/battery_status.hpp"
 #include "controller/actuation/mixer.hpp"
+#include "harness/casefile/parse.hpp"
+#include "harness/core/nearest.hpp"
 #include "harness/trace/csv.hpp"
 #include "harness/trace/mixer_csv.hpp"
 #include "harness/trace/provenance.hpp"
@@ -33,20 +39,67 @@ Result<void> check_mixer(const Trace& trace, const std::string& definition) {
                                            definition, mixer->rotors.size()));
 }
 
+// A folder without one is as good.
+Result<Provenance> provenance_beside(const std::filesystem::path& file) {
+  const std::filesystem::path provenance = file.parent_path() / provenance_name;
+  std::error_code error;
+  if (!std::filesystem::exists(provenance, error)) return Provenance{};
+  return read_provenance(provenance);
+}
+
+// Outputs and parameters of one part only.
+Result<void> check_part(const Trace& trace, Part part) {
+  const ChannelSet others = trace.present & ~channels_of(part, "out/");
+  const auto table = channels();
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (!others[i] || !table[i].is_output()) continue;
+    return fail_at(trace.source, fmt::format("{} is of another part than {}; keep the outputs of "
+                                             "one part",
+                                             table[i].name, name_of(part)));
+  }
+  for (const ParameterChange& change : trace.parameters) {
+    if (auto checked = check_parameter(part, change); !checked) {
+      return fail_at(trace.source, checked.error().message);
+    }
+  }
+  return {};
+}
+
 }  // namespace
+
+Result<void> check_parameter(Part part, const ParameterChange& change) {
+  const std::vector<std::string> names = parameter_names(part);
+  if (std::find(names.begin(), names.end(), change.name) == names.end()) {
+    return fail(fmt::format("unknown parameter `{}` of {}{}", change.name, name_of(part),
+                            suggestion(change.name, names)));
+  }
+  actuation::BatteryOptions battery;
+  if (part == Part::battery_status &&
+      !actuation::set_battery_parameter(battery, change.name, change.value)) {
+    return fail(fmt::format("{} cannot be {}", change.name, change.value));
+  }
+  return {};
+}
 
 Result<Recorded> read_recorded(const std::filesystem::path& file, const std::string& profile,
                                const std::string& mixer) {
   auto trace = looks_like_mixer_csv(file) ? read_mixer_csv(file)
                                           : read_csv(file, CsvNeed::inputs_and_outputs);
   if (!trace) return tl::unexpected(trace.error());
-  const Provenance provenance =
-      read_provenance(file.parent_path() / provenance_name).value_or(Provenance{});
+  const auto beside = provenance_beside(file);
+  if (!beside) return tl::unexpected(beside.error());
+  const Provenance& provenance = *beside;
   Recorded recorded{std::move(*trace), {profile, Part::mc_att_control, ""}};
   Subject& subject = recorded.subject;
   subject.part = part_of(recorded.trace.present);
+  if (auto checked = check_part(recorded.trace, subject.part); !checked) {
+    return tl::unexpected(checked.error());
+  }
   if (subject.profile.empty()) subject.profile = provenance.profile;
   if (subject.profile.empty()) subject.profile = default_profile;
+  if (subject.part != Part::mixer && !mixer.empty()) {
+    return fail_at(recorded.trace.source, "is no mixer trace; leave --mixer out");
+  }
   if (subject.part != Part::mixer) return recorded;
   subject.mixer = mixer.empty() ? mixer_of(file, provenance) : mixer;
   if (auto checked = check_mixer(recorded.trace, subject.mixer); !checked) {

@@ -22,4 +22,7 @@ struct Recorded {
 Result<Recorded> read_recorded(const std::filesystem::path& file, const std::string& profile = "",
                                const std::string& mixer = "");
 
+// Errors: the part has no such parameter, or not of that value.
+Result<void> check_parameter(Part part, const ParameterChange& change);
+
 }  // namespace attest

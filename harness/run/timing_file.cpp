@@ -70,9 +70,10 @@ Result<TimingFile> read_timing(const std::filesystem::path& path) {
   if (!text) return tl::unexpected(text.error());
   const json root = json::parse(*text, nullptr, false);
   const auto texts = {"case", "case_sha256", "rate", "vehicle", "plant"};
-  bool complete = root.is_object() && root.value("attest_timing", 0) == format &&
-                  root.contains("ticks_ns") && root["ticks_ns"].is_array() &&
-                  root.contains("duration_s") && root["duration_s"].is_number();
+  bool complete = root.is_object() && root.contains("attest_timing") &&
+                  root["attest_timing"] == format && root.contains("ticks_ns") &&
+                  root["ticks_ns"].is_array() && root.contains("duration_s") &&
+                  root["duration_s"].is_number();
   for (const char* key : texts) complete = complete && root.contains(key) && root[key].is_string();
   if (!complete) {
     return fail_at(file, "is no timing file; `attest stress --record-timing` writes them");

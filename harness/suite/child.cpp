@@ -38,12 +38,16 @@ void write_all(int descriptor, std::string_view bytes) {
 
 // Everything a child must have arranged before it runs code of others.
 void isolate(pid_t parent, int output) {
+  ::setpgid(0, 0);  // what a port starts ends with it
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(EXIT_FAILURE);  // it died before the line above
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
-  const rlimit output_limit{max_output_bytes, max_output_bytes};
-  ::setrlimit(RLIMIT_FSIZE, &output_limit);
+  rlimit files{};
+  ::getrlimit(RLIMIT_FSIZE, &files);
+  files.rlim_cur = std::min(files.rlim_max, max_output_bytes);
+  ::setrlimit(RLIMIT_FSIZE, &files);
+  ::signal(SIGTERM, SIG_DFL);  // the parent's handler would pass over a port that raises it
   ::signal(SIGXFSZ, SIG_IGN);  // writing past the limit fails, it does not kill
   ::signal(SIGINT, SIG_IGN);   // Ctrl-C is the parent's to handle
   if (const int nothing = ::open("/dev/null", O_RDONLY); nothing >= 0) {
@@ -57,8 +61,13 @@ void isolate(pid_t parent, int output) {
 // Neither returns nor throws: what the parent has on its stack (files to be renamed, other
 // children) is not the child's to unwind, nor are its exit handlers to run.
 [[noreturn]] void work_and_end(const std::function<void(const SendLine&)>& work, int pipe) {
+  // A port that forks must not have its copy of us answer too.
+  const auto send = [pipe, self = ::getpid()](const std::string& line) {
+    if (::getpid() != self) ::_exit(EXIT_SUCCESS);
+    write_all(pipe, line + "\n");
+  };
   try {
-    work([pipe](const std::string& line) { write_all(pipe, line + "\n"); });
+    work(send);
   } catch (const std::exception& error) {
     fmt::print(stderr, "uncaught exception: {}\n", error.what());
     std::abort();
@@ -69,6 +78,13 @@ void isolate(pid_t parent, int output) {
 }
 
 }  // namespace
+
+void allow_large_files() {
+  rlimit files{};
+  ::getrlimit(RLIMIT_FSIZE, &files);
+  files.rlim_cur = files.rlim_max;
+  ::setrlimit(RLIMIT_FSIZE, &files);
+}
 
 Result<Child> Child::spawn(const std::function<void(const SendLine&)>& work) {
   std::array<int, 2> ends{};
@@ -90,6 +106,7 @@ Result<Child> Child::spawn(const std::function<void(const SendLine&)>& work) {
     isolate(parent, output);
     work_and_end(work, ends[1]);
   }
+  ::setpgid(pid, pid);  // here too: whichever of us is first
   ::close(ends[1]);
   return Child(pid, ends[0], output);
 }
@@ -144,7 +161,21 @@ std::optional<std::string> Child::wait_for_line(double timeout_s) {
 }
 
 void Child::kill() {
-  if (pid_ > 0) ::kill(pid_, SIGKILL);
+  if (pid_ <= 0) return;
+  was_killed_ = true;
+  ::kill(-pid_, SIGKILL);
+  ::kill(pid_, SIGKILL);
+}
+
+bool Child::ends_within(double seconds) {
+  constexpr int poll_ms = 2;
+  for (int left = static_cast<int>(seconds * 1000); pid_ > 0 && left > 0; left -= poll_ms) {
+    siginfo_t info{};
+    const int waited = ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT);
+    if (waited != 0 || info.si_pid != 0) return true;
+    ::poll(nullptr, 0, poll_ms);
+  }
+  return pid_ <= 0;
 }
 
 void Child::ask_to_stop() {
@@ -153,6 +184,12 @@ void Child::ask_to_stop() {
 
 std::string Child::end() {
   int status = 0;
+  siginfo_t info{};
+  while (pid_ > 0 && ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT) < 0 &&
+         errno == EINTR) {
+  }
+  // What it started, while its number cannot be another's yet.
+  if (pid_ > 0) ::kill(-pid_, SIGKILL);
   while (pid_ > 0 && ::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
   }
   pid_ = -1;

@@ -16,6 +16,10 @@ namespace attest {
 // Sends one line (without its end) to the parent. In the child only.
 using SendLine = std::function<void(const std::string& line)>;
 
+// What a child prints is bounded, and with it each file it writes. For work that writes files of
+// its own, once the port has nothing more to say.
+void allow_large_files();
+
 class Child {
  public:
   // Forks; `work` runs in the child, which then ends. The child dies with its parent and leaves no
@@ -35,7 +39,12 @@ class Child {
   // The first line it sends; empty when it ended, or said nothing in time (then it is killed).
   std::optional<std::string> wait_for_line(double timeout_s);
 
-  void kill();
+  void kill();  // with all that it started
+  bool was_killed() const { return was_killed_; }
+
+  // Did it end by itself, or does it in that time? Leaves it to end() to be waited for.
+  bool ends_within(double seconds);
+
   void ask_to_stop();  // SIGTERM, for work that has arranged for it
 
   // How it ended, as a verb: "was killed by signal 11 (Segmentation fault)", "exited with status
@@ -53,6 +62,7 @@ class Child {
   int pipe_ = -1;
   int output_ = -1;  // file that holds what the child prints
   std::string partial_;
+  bool was_killed_ = false;
 };
 
 }  // namespace attest

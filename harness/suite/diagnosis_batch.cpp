@@ -8,6 +8,7 @@
 #include "harness/core/float_environment.hpp"
 #include "harness/port/builtin.hpp"
 #include "harness/run/open_loop.hpp"
+#include "harness/run/other_side.hpp"
 #include "harness/suite/evaluate.hpp"
 #include "harness/suite/judge.hpp"
 
@@ -71,6 +72,12 @@ Result<CaseResult> DiagnosisBatch::evaluate(std::size_t i, Port& port) {
   const DefaultFloatEnvironment environment;
   const auto reference = open_builtin();
   if (drive(*reference, subject, law)) return result;
+  if (case_.either_side.any()) {
+    const auto others = other_sides(case_, law);
+    if (!others) return tl::unexpected(others.error());
+    law = on_the_side_of(got, law, *others,
+                         tolerances_of(case_, Level::numeric, port.fraction_bits()));
+  }
   result.likeness =
       likeness(outputs_of(got), outputs_of(law), answers_of_faults(law, subject, partner_));
   return result;

@@ -5,11 +5,13 @@
 #include <fmt/format.h>
 
 #include "harness/casefile/stimulus.hpp"
+#include "harness/compare/events.hpp"
 #include "harness/core/float_environment.hpp"
 #include "harness/run/open_loop.hpp"
 #include "harness/run/other_side.hpp"
 #include "harness/suite/judge.hpp"
 #include "harness/suite/stopwatch.hpp"
+#include "harness/trace/provenance.hpp"
 
 namespace attest {
 namespace {
@@ -18,14 +20,14 @@ namespace {
 // there are other sides they are as right; the exact level is the law's.
 void run_and_judge(Trace& answered, const Trace& want, const OtherSides& others,
                    const Subject& subject, Port& port, const Tolerances& tolerances,
-                   CaseResult& result) {
+                   const Tolerances& of_sides, CaseResult& result) {
   if (declines(port, result)) return;
   if (const auto fault = drive(port, subject, answered)) return judge(*fault, result);
   const DefaultFloatEnvironment environment;
   if (others.empty() || tolerances.level() == Level::exact) {
     return judge(compare(answered, want, tolerances), result);
   }
-  const Trace allowed = on_the_side_of(answered, want, others, Tolerances(Level::numeric));
+  const Trace allowed = on_the_side_of(answered, want, others, of_sides);
   judge(compare(answered, allowed, tolerances), result);
 }
 
@@ -41,6 +43,12 @@ Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& g
   auto want = golden.read({rate, std::nullopt});
   if (!want) return tl::unexpected(want.error());
   Trace made = stimulate(the_case, rate);
+  if (const ChannelSet missing = made.present & ~want->present; missing.any()) {
+    return fail_at(want->source,
+                   fmt::format("has no {}, neither as a column nor in the {} beside it; bless it "
+                               "anew, or restore it from version control",
+                               channels()[missing._Find_first()].name, provenance_name));
+  }
   if (const auto tick = first_input_difference(made, *want)) {
     return fail_at(want->source,
                    fmt::format("at tick {} the golden's inputs are not those that {} makes; bless "
@@ -82,12 +90,13 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
   }
   auto prepared = prepare(the_case, rate, golden);
   if (!prepared) return tl::unexpected(prepared.error());
-  run_and_judge(
-      prepared->answered, prepared->want, prepared->other_sides, subject_of(the_case), port,
-      tolerances_of(the_case,
-                    level == Level::exact && the_case.numeric_only ? Level::numeric : level,
-                    port.fraction_bits()),
-      result);
+  const bool numeric_for_exact = level == Level::exact && the_case.numeric_only;
+  const bool numeric_for_events = level == Level::events && !has_events(the_case.part);
+  if (numeric_for_exact || numeric_for_events) level = Level::numeric;
+  const auto bits = port.fraction_bits();
+  run_and_judge(prepared->answered, prepared->want, prepared->other_sides, subject_of(the_case),
+                port, tolerances_of(the_case, level, bits),
+                tolerances_of(the_case, Level::numeric, bits), result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }
@@ -102,9 +111,10 @@ CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, Port& p
     sample.mixer_out = {};
     sample.battery_out = {};
   }
-  Tolerances allowed = tolerances;
+  const bool numeric_for_events = tolerances.level() == Level::events && !has_events(subject.part);
+  Tolerances allowed = numeric_for_events ? Tolerances(Level::numeric) : tolerances;
   if (const auto bits = port.fraction_bits()) allowed.allow_lsb(*bits);
-  run_and_judge(answered, recorded, {}, subject, port, allowed, result);
+  run_and_judge(answered, recorded, {}, subject, port, allowed, allowed, result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }

@@ -79,9 +79,14 @@ void judge_metrics(const Case& the_case, const Trace& flown, const ReferenceFlig
 
 void judge_flight(const Case& the_case, const Flown& flown, const ReferenceFlight& reference,
                   std::optional<int> fraction_bits, CaseResult& result) {
-  // The horizon is of floats. How long a port in fixed point stays beside them nobody measured: its
-  // flights are judged by their metrics.
-  const double horizon_s = fraction_bits ? 0 : reference.horizon_s;
+  // The horizon is of floats. In flight, where what it rounds comes back to it, a port with 22 bits
+  // behind the point was measured to leave the reference by seven times what its LSBs are allowed,
+  // and by a tick at the yaw wrap of a spinning vehicle. With 30 bits that is a tenth of what
+  // floats are allowed; with fewer, flights are judged by their metrics.
+  constexpr int as_near_as_floats_bits = 30;
+  const double horizon_s = fraction_bits.value_or(as_near_as_floats_bits) < as_near_as_floats_bits
+                               ? 0
+                               : reference.horizon_s;
   const Comparison comparison =
       compare_rows(flown.trace, reference.rows, horizon_s,
                    tolerances_of(the_case, Level::numeric, fraction_bits));

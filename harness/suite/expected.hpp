@@ -24,6 +24,8 @@ class ExpectedFailures {
   // Errors: unreadable, not TOML, an unknown key, an entry without a reason.
   static Result<ExpectedFailures> read(const std::filesystem::path& file);
 
+  bool expects(const CaseResult& result) const;
+
   // What fails and is listed becomes xfail, what passes and is listed xpass. An entry that names no
   // result is an error of the run when `complete`: when nothing was filtered out.
   void apply(bool complete, RunResult& run) const;
@@ -33,8 +35,8 @@ class ExpectedFailures {
   std::vector<ExpectedFailure> entries_;
 };
 
-// The file for what fails in this run: one entry a case when it fails at all its setups, else one a
-// setup.
+// The file for what fails in this run: one entry a case when it fails at all its setups and all
+// were run, else one a setup.
 std::string expected_failures_of(const RunResult& run);
 
 }  // namespace attest

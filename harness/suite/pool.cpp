@@ -27,8 +27,6 @@ void work_through(Batch& batch, std::size_t first, const std::string& specificat
   send(encode(BatchDone{}));
 }
 
-bool fails(const CaseResult& result) { return fails_a_run(result.verdict); }
-
 }  // namespace
 
 Pool::Pool(const Batches& batches, const WorkerOptions& options)
@@ -88,7 +86,8 @@ void Pool::serve(Worker& worker) {
     for (const std::string& line : worker.child.read_lines(ended)) {
       if (const auto message = decode(line)) take(worker, *message);
     }
-    if (ended) return conclude(worker, false);
+    // Not when the pipe ends: a process that the port started may hold it open.
+    if (ended || worker.finished) return conclude(worker, false);
   }
   if (Clock::now() >= worker.deadline) conclude(worker, true);
 }
@@ -130,10 +129,13 @@ void Pool::conclude(Worker& worker, bool timed_out) {
 }
 
 CaseResult Pool::verdict_on_the_dead(Worker& worker, bool timed_out) {
-  // Its pipe is closed or its time is up. A process that is ending already keeps its own end; one
-  // that closed the pipe and lives on would never be waited for to the end.
+  // Its pipe is closed or its time is up. A process that is ending keeps its own end; one that
+  // closed the pipe and lives on would never be waited for to the end.
+  constexpr double enough_to_end_s = 2;
+  const bool ended = !timed_out && worker.child.ends_within(enough_to_end_s);
   worker.child.kill();
-  const std::string how = worker.child.end();
+  const std::string end = worker.child.end();
+  const std::string how = ended ? end : "closed the pipe on which it answers, and went on";
   CaseResult result = batches_[worker.batch]->identity(worker.task);
   result.verdict = timed_out ? Verdict::timeout : Verdict::crash;
   result.reason = timed_out ? fmt::format("no answer within {} s", options_.timeout_s)
@@ -146,8 +148,8 @@ CaseResult Pool::verdict_on_the_dead(Worker& worker, bool timed_out) {
 void Pool::stop_after_failure(std::size_t batch) {
   if (!options_.fail_fast) return;
   const Outcome& outcome = outcomes_[batch];
-  const bool failed =
-      !outcome.errors.empty() || std::any_of(outcome.results.begin(), outcome.results.end(), fails);
+  const bool failed = !outcome.errors.empty() ||
+                      std::any_of(outcome.results.begin(), outcome.results.end(), options_.fails);
   if (failed) end_ = std::min(end_, batch + 1);
 }
 

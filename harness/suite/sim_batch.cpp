@@ -2,6 +2,7 @@
 
 #include "harness/core/float_environment.hpp"
 #include "harness/run/flight.hpp"
+#include "harness/suite/child.hpp"
 #include "harness/suite/evaluate.hpp"
 #include "harness/suite/judge.hpp"
 #include "harness/trace/csv.hpp"
@@ -10,6 +11,7 @@ namespace attest {
 namespace {
 
 Result<void> write_flown(const Trace& trace, const std::filesystem::path& path) {
+  allow_large_files();
   auto file = AtomicFile::open(path);
   if (!file) return tl::unexpected(file.error());
   CsvColumns columns = all_columns(trace);

@@ -7,6 +7,7 @@
 #include "harness/core/float_environment.hpp"
 #include "harness/realtime/pacer.hpp"
 #include "harness/run/open_loop.hpp"
+#include "harness/suite/child.hpp"
 #include "harness/suite/evaluate.hpp"
 #include "harness/suite/judge.hpp"
 #include "harness/trace/csv.hpp"
@@ -152,6 +153,7 @@ Result<void> TimeBatch::write_worst(Port& port) const {
   if (const auto fault = drive(*unit, trace)) return fail(fault->what);
   const DefaultFloatEnvironment environment;
   trace.present = channels_of(Part::mc_att_control);
+  allow_large_files();
   auto file = AtomicFile::open(options_.worst);
   if (!file) return tl::unexpected(file.error());
   if (auto written = write_csv(trace, all_columns(trace), *file); !written) return written;

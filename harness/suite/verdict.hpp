@@ -84,6 +84,7 @@ struct RunResult {
   std::optional<int> fraction_bits;  // of a port in fixed point
   Level level = Level::numeric;
   std::vector<Rate> rates;              // selected, ascending
+  bool all_setups = false;              // of each case that was selected, all were
   std::vector<std::string> all_groups;  // "profile/group" that the suite has, selected or not
   std::string cases_version = "unversioned", golden_version = "unversioned";  // of the suite
   std::vector<CaseResult> results;

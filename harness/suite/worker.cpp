@@ -16,10 +16,9 @@ namespace {
 
 using nlohmann::json;
 
-bool any_failed(const WorkerOutcome& outcome) {
+bool any_failed(const WorkerOutcome& outcome, const WorkerOptions& options) {
   return !outcome.errors.empty() ||
-         std::any_of(outcome.results.begin(), outcome.results.end(),
-                     [](const CaseResult& result) { return fails_a_run(result.verdict); });
+         std::any_of(outcome.results.begin(), outcome.results.end(), options.fails);
 }
 
 void run_batch_here(Batch& batch, Port& port, const WorkerOptions& options,
@@ -47,7 +46,7 @@ WorkerOutcome run_here(const Batches& batches, const WorkerOptions& options) {
   if (!port) return {{}, {port.error()}, false};
   for (std::size_t index = 0; index < batches.size() && !options.stop(); ++index) {
     run_batch_here(*batches[index], **port, options, outcome);
-    if (options.fail_fast && any_failed(outcome)) {
+    if (options.fail_fast && any_failed(outcome, options)) {
       outcome.stopped_early = index + 1 < batches.size();
       break;
     }
@@ -86,9 +85,11 @@ Result<PortDescription> describe_port(const std::string& port,
   if (!child) return tl::unexpected(child.error());
   const auto line = child->wait_for_line(timeout_s);
   if (!line) {
-    return fail_at(port, fmt::format("gave no answer when it was loaded and asked for its name and "
-                                     "profiles: its process {}",
-                                     child->end()));
+    const std::string end = "its process " + child->end();
+    const std::string how =
+        child->was_killed() ? fmt::format("nothing within {} s", timeout_s) : end;
+    return fail_at(port,
+                   "gave no answer when it was loaded and asked for its name and profiles: " + how);
   }
   const json answer = json::parse(*line, nullptr, false);
   if (answer.is_object() && answer.contains("error")) {

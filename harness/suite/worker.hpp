@@ -17,9 +17,12 @@ struct WorkerOptions {
   std::string port = "builtin";  // as for open_port
   int jobs = 1;                  // worker processes at a time
   double timeout_s = 10;         // of one task; they take milliseconds
-  bool fail_fast = false;        // nothing after the first batch, in their order, that fails a run
+  bool fail_fast = false;        // nothing after the first batch, in their order, that `fails`
   bool in_process = false;       // for a debugger: no children, no protection, one after the other
   std::function<void(const CaseResult&)> on_result = [](const CaseResult&) {};
+  std::function<bool(const CaseResult&)> fails = [](const CaseResult& result) {
+    return fails_a_run(result.verdict);
+  };
   std::function<bool()> stop = [] { return false; };  // true: end soon, results do not matter
 };
 

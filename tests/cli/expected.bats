@@ -3,7 +3,9 @@ load common
 @test "what fails is written down, filled in, and then accepted" {
   run "$ATTEST" run --port fault:tpa-missing --group tpa --rate 250 --write-expected known.toml
   [ "$status" -eq 1 ]
-  grep -q "px4-v1.5.5/tpa/each_axis@\*" known.toml
+  grep -q "px4-v1.5.5/tpa/each_axis@250hz" known.toml  # the other rates were not seen to fail
+  run "$ATTEST" run --port fault:tpa-missing --group tpa --write-expected all.toml
+  grep -q "px4-v1.5.5/tpa/each_axis@\*" all.toml
   run "$ATTEST" run --port fault:tpa-missing --group tpa --rate 250 --expected-failures known.toml
   [ "$status" -eq 0 ]
   has "xfail: fail: say why this is accepted"
@@ -30,4 +32,15 @@ T
   cases=$(cat "$SOURCE/cases/VERSION") golden=$(cat "$SOURCE/golden/VERSION")
   has "px4-v1.5.5, exact, 11 rates, groups rates, tpa; cases $cases, golden $golden"
   grep -q "px4-v1.5.5 exact" badge.svg
+}
+
+@test "a failure that is expected does not end a run that ends with the first" {
+  cat >known.toml <<'T'
+[expected]
+"px4-v1.5.5/tpa/each_axis@*" = "not ported"
+T
+  run "$ATTEST" run --group tpa --rate 250 --port fault:tpa-missing --expected-failures known.toml \
+    --fail-fast --no-diagnose
+  [ "$status" -eq 1 ]
+  has "stopped early"
 }

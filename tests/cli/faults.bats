@@ -64,3 +64,11 @@ load common
   run "$ATTEST" faults --fraction-bits 12
   [ "$status" -eq 2 ]
 }
+
+@test "two faults at once are a port, not a line of the table" {
+  run "$ATTEST" faults tpa-missing+yaw-dropped
+  [ "$status" -eq 2 ]
+  has "attest run --port fault:tpa-missing+yaw-dropped"
+  run "$ATTEST" faults --diagnose tpa-missing
+  [ "$status" -eq 2 ]
+}

@@ -217,3 +217,17 @@ CHECK
   [ "$status" -eq 0 ]
   has "heavy_quad"
 }
+
+@test "a long flight at 8 kHz is written whole" {
+  "$ATTEST" sim flip_100_level --rate 8000 --out long.csv
+  [ "$(wc -l <long.csv)" -eq 32001 ]
+}
+
+@test "a parameter of a vehicle that the law does not have is refused with file and line" {
+  flight_suite
+  sed -i 's/^MC_ROLL_P/MC_ROL_P/' suite/models/iris.toml
+  run "$ATTEST" --suite suite sim tilt --rate 100 --out flown.csv
+  [ "$status" -eq 2 ]
+  has "models/iris.toml:"
+  has 'did you mean `MC_ROLL_P`'
+}

@@ -23,3 +23,10 @@ open_loop=(--group anti_windup --group modes --group arming --group attitude --g
   has "unsupported: the port declares that it does not do tailsitter"
   has "px4-v1.5.5, numeric, 11 rates, group tpa;"
 }
+
+@test "a mixer has no events: it is judged by its values at that level too" {
+  run "$ATTEST" run --level events --group mixer --port fault:mixer-output-0-to-1 --no-diagnose
+  [ "$status" -eq 1 ]
+  run "$ATTEST" run --level events --group mixer --group battery_status
+  [ "$status" -eq 0 ]
+}

@@ -127,3 +127,32 @@ judged() {
   run "$ATTEST" run --port "lib:$STARTER" --level exact --group attitude
   [ "$status" -eq 0 ]
 }
+
+@test "a port that forks is judged once a case, at once, and leaves nothing behind" {
+  judged forks
+  [ "$status" -eq 0 ]
+  "$ATTEST" run --filter 'rates/*@250hz' --json reference.json
+  [ "$(grep -c '"id"' report.json)" -eq "$(grep -c '"id"' reference.json)" ]
+  # Its sixty seconds are not over; the process has its name from its command line.
+  ! grep -qa "port_fork[s].so" /proc/[0-9]*/cmdline 2>/dev/null
+}
+
+@test "a port that stops listening is not said to be killed" {
+  judged closes_descriptors --fail-fast
+  [ "$status" -eq 1 ]
+  has "crash: the port's process closed the pipe on which it answers, and went on"
+}
+
+@test "stdin, stdout and stderr may be closed, and a summary that is lost is no success" {
+  "$ATTEST" run --filter 'rates/*@250hz' <&- 2>&- >out.txt
+  grep -q PASS out.txt
+  "$ATTEST" run --filter 'rates/*@250hz' --json closed.json >&- 2>&- <&- || true
+  grep -q '"verdict": "pass"' closed.json
+  status=0
+  "$ATTEST" run --filter 'rates/*@250hz' >/dev/full 2>errors.txt || status=$?
+  [ "$status" -eq 2 ]
+  grep -q "stdout" errors.txt
+  status=0
+  "$ATTEST" run --group nope 2>/dev/full || status=$?
+  [ "$status" -eq 2 ]
+}

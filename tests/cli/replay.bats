@@ -63,7 +63,8 @@ recorded() { ls "$SOURCE"/golden/recorded/*/*.csv | grep -v tailsitter; }
   [ "$status" -eq 1 ]
   has "out/actuator_outputs"
   run "$ATTEST" replay "$trace" --port "lib:$PORTS/port_prints.so"
-  [ "$status" -eq 1 ]
+  [ "$status" -eq 2 ]
+  has "nothing was compared"
   has "unsupported"
   has "the port has no mixer (extension attest.mixer.v1)"
 }
@@ -81,4 +82,32 @@ recorded() { ls "$SOURCE"/golden/recorded/*/*.csv | grep -v tailsitter; }
   run "$ATTEST" replay nowhere.csv
   [ "$status" -eq 2 ]
   has "nowhere.csv"
+}
+
+@test "outputs and parameters of another part are refused, with file and reason" {
+  trace="$SOURCE/golden/recorded/px4-v1.5.5/tracking_100hz.csv"
+  python3 - "$trace" <<'PYTHON'
+import csv, pathlib, shutil, sys
+trace = pathlib.Path(sys.argv[1])
+shutil.copy(trace.parent / "provenance.toml", "provenance.toml")
+rows = list(csv.reader(trace.open()))
+added = {"part": "out/actuator_outputs.output[0]", "name": "in/parameter.MC_ROL_P"}
+for name, column in added.items():
+    csv.writer(open(f"{name}.csv", "w")).writerows(
+        row + [column if i == 0 else "0.25"] for i, row in enumerate(rows))
+PYTHON
+  run "$ATTEST" replay part.csv
+  [ "$status" -eq 2 ]
+  has "out/actuator_outputs.output[0] is of another part than mc_att_control"
+  run "$ATTEST" replay name.csv
+  [ "$status" -eq 2 ]
+  has 'did you mean `MC_ROLL_P`'
+}
+
+@test "a provenance that cannot be read is not passed over" {
+  cp "$SOURCE"/golden/recorded/mixer-v1.5.5/{4x.csv,provenance.toml} .
+  echo typo >>provenance.toml
+  run "$ATTEST" replay 4x.csv
+  [ "$status" -eq 2 ]
+  has "provenance.toml:"
 }

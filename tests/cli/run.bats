@@ -170,3 +170,31 @@ quick=(--group attitude --group battery --group rates)
     head -n 1 || true
   python3 -c 'import json; json.load(open("r.json"))'
 }
+
+@test "a golden that lacks an output is refused: nothing would be compared with it" {
+  blessed_suite
+  sed -i "/^'out/d" suite/golden/px4-v1.5.5/attitude/roll/provenance.toml
+  run "$ATTEST" --suite suite run
+  [ "$status" -eq 2 ]
+  has "has no out/"
+  has "bless it anew, or restore it from version control"
+}
+
+@test "what no option means is refused: a word that is no command, nothing at all, no number" {
+  run "$ATTEST" rnu
+  [ "$status" -eq 2 ]
+  has 'unknown command `rnu`; did you mean `run`?'
+  run "$ATTEST" run --json "" --group rates
+  [ "$status" -eq 2 ]
+  has "--json: is empty"
+  run "$ATTEST" run --group rates --timeout nan
+  [ "$status" -eq 2 ]
+  has "--timeout: nan is no number that it can have"
+}
+
+@test "two reports in one file are refused" {
+  run "$ATTEST" run --group rates --json report --junit ./report
+  [ "$status" -eq 2 ]
+  has "report: is asked for twice"
+  [ ! -e report ]
+}

@@ -89,9 +89,7 @@ CHECK
   has "0 of"
 }
 
-@test "a port that goes wrong is told, with the vector" {
-  run "$ATTEST" time --filter 'attitude/*@250hz' --port "lib:$PORTS/port_crash.so"
-  [ "$status" -ne 0 ]
+@test "flights are not timed" {
   run "$ATTEST" time --group flight
   [ "$status" -eq 2 ]
   has "nothing of the controller in open loop is selected"
@@ -107,4 +105,27 @@ import json
 one, two = (json.load(open(name))["instructions"] for name in ("one.json", "two.json"))
 assert one == two and len(one) > 10 and min(one) > 100, (one, two)
 CHECK
+}
+
+@test "a port that crashes on one input: the others are timed, and the crash is named" {
+  run "$ATTEST" time --port "lib:$PORTS/port_crash.so" --filter 'rates/*@250hz' --json times.json
+  [ "$status" -eq 1 ]
+  has "crash: the port's process was killed by signal"
+  run "$ATTEST" time --port "lib:$PORTS/port_refuses_profile.so" --filter 'rates/*@250hz'
+  [ "$status" -eq 2 ]
+  has "nothing was timed"
+}
+
+@test "a schedule that no port flew is no success" {
+  tasks
+  run "$ATTEST" schedule tasks.toml --port "lib:$PORTS/port_refuses_profile.so"
+  [ "$status" -eq 2 ]
+  has "nothing was flown: the port does not support profile"
+}
+
+@test "a timing file that is none is refused by name" {
+  echo '{"attest_timing": "x"}' >late.json
+  run "$ATTEST" run --timing late.json
+  [ "$status" -eq 2 ]
+  has "late.json: is no timing file"
 }

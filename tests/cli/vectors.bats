@@ -54,3 +54,11 @@ T
   grep -q "R: 6x 10000 10000 10000 0" out/px4-v1.5.5/mixer/linear_hexa_x/provenance.toml
   head -1 out/px4-v1.5.5/mixer/linear_hexa_x/250hz.csv | grep -q "in/actuator_controls_0.control"
 }
+
+@test "vectors say which law they are for, and keep what stands beside them" {
+  "$ATTEST" vectors out --profile px4-v1.3.4 --group anti_windup --rate 250
+  grep -q "px4-v1.3.4" out/px4-v1.3.4/anti_windup/*/provenance.toml
+  "$ATTEST" vectors out --profile px4-v1.5.5 --filter 'rates/*' --rate 250
+  "$ATTEST" vectors out --profile px4-v1.5.5 --filter 'rates/*' --rate 100
+  grep -q "px4-v1.5.5" out/px4-v1.5.5/rates/*/provenance.toml
+}

@@ -200,8 +200,8 @@ TEST(DriveAPart, WhatThePortDoesNotHaveIsUnsupported) {
   EXPECT_THAT(without->what, HasSubstr("attest.battery_status.v1"));
   const auto unknown = drive(port, {"unknown", Part::mixer, "R: 4x 1 1 1 0"}, trace);
   ASSERT_TRUE(unknown);
-  EXPECT_EQ(unknown->kind, Kind::profile);
-  EXPECT_THAT(unknown->what, HasSubstr("profile unknown of `R: 4x 1 1 1 0`"));
+  EXPECT_EQ(unknown->kind, Kind::unsupported);
+  EXPECT_THAT(unknown->what, HasSubstr("no mixer `R: 4x 1 1 1 0` of profile unknown"));
   EXPECT_EQ(drive(port, {"known"}, trace)->kind, Kind::profile);
 }
 

@@ -59,6 +59,9 @@ TEST(OtherSide, IsAllowedAtEachTickByItself) {
   // Neither side: the way of one with the size of none; and a turn where the law is not free.
   got.samples[3].out.vehicle_rates_setpoint.yaw *= 0.9f;
   EXPECT_FALSE(compare(got, on_the_side_of(got, law, others, tolerances), tolerances).agrees());
+  // It is told from the nearest side.
+  EXPECT_EQ(yaw_at(on_the_side_of(got, law, others, tolerances), 3),
+            yaw_at(others.at("yaw_wrap"), 3));
   got = law;
   got.samples[7].out.vehicle_rates_setpoint.yaw *= -1;
   EXPECT_FALSE(compare(got, on_the_side_of(got, law, others, tolerances), tolerances).agrees());
