@@ -65,7 +65,8 @@ struct BatteryStages {
       return Scalar(sample.current_A) * Scalar(*options.internal_resistance_ohm);
     }
     if (!sample.armed) return 0;
-    return Scalar(options.load_drop_V) * (std::abs(Scalar(sample.throttle)) + idle_share) /
+    using std::abs;
+    return Scalar(options.load_drop_V) * (abs(Scalar(sample.throttle)) + idle_share) /
            (1 + idle_share);
   }
 
@@ -85,7 +86,8 @@ struct BatteryStages {
   static Scalar scale(Scalar remaining, const BatteryOptions& options) {
     const Scalar factor =
         Scalar(options.full_cell_V) / (Scalar(options.empty_cell_V) + range_V(options) * remaining);
-    if (!std::isfinite(factor) || factor < 1) return 1;
+    using std::isfinite;
+    if (!isfinite(factor) || factor < 1) return 1;
     return std::min(factor, scale_max);
   }
 };

@@ -118,7 +118,8 @@ struct MixerStages {
         c.yaw = has_yaw ? -(roll_pitch + c.thrust + fit.boost) / turn : Scalar(0);
         cut = true;
       } else if (out > 1) {
-        c.thrust -= std::fmin(thrust_for_yaw_max, out - 1);
+        using std::fmin;
+        c.thrust -= fmin(thrust_for_yaw_max, out - 1);
         c.yaw = has_yaw ? (1 - (roll_pitch + c.thrust + fit.boost)) / turn : Scalar(0);
         cut = true;
       }

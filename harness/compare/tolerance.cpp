@@ -39,9 +39,10 @@ double lsb_of(Quantity quantity) {
       return Tolerances::integral_lsb;
     case Quantity::scale:
       return Tolerances::scale_lsb;
-    case Quantity::thrust:
     case Quantity::motor:
-      return 16;  // copied, scaled or a few sums
+      return Tolerances::motor_lsb;
+    case Quantity::thrust:
+      return 16;  // copied, at most scaled
     default:
       return 0;
   }

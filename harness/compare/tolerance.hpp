@@ -49,11 +49,12 @@ class Tolerances {
 
   // What a right port in fixed point with so many bits behind the point differs by: at least so
   // many of its last bits (LSB). Measured at 20 to 24 bits, of a port that rounds: up to 740 LSB in
-  // the rates setpoints, near a half turn, 750 in the controls, 60 in the integrals; and controls
-  // of which D is most by part of themselves, as 1 / dt is up to 500 and dt has an error of half an
-  // LSB. At the numeric level only.
-  // A battery's filter gathers a hundred roundings, each up to one LSB where a port truncates.
-  static constexpr double rate_lsb = 2560, control_lsb = 2560, integral_lsb = 256, scale_lsb = 512;
+  // the rates setpoints, near a half turn, 750 in the controls, 60 in the integrals; controls of
+  // which D is most by part of themselves, as 1 / dt is up to 500 and dt has an error of half an
+  // LSB; 13 in the motors, where roll and pitch are fitted. A battery's filter gathers a hundred
+  // roundings, each up to one LSB where a port truncates. At the numeric level only.
+  static constexpr double rate_lsb = 2560, control_lsb = 2560, integral_lsb = 256;
+  static constexpr double motor_lsb = 64, scale_lsb = 512;
   static constexpr double control_relative_lsb = 1024;
   void allow_lsb(int fraction_bits);
 

@@ -22,8 +22,8 @@ class Fixed {
   constexpr Fixed() = default;
   constexpr Fixed(int value) : Fixed(of_raw(Wide{value} << fraction_bits)) {}  // NOLINT
   // The one place where floats come in and go out: sensors, parameters and outputs.
-  explicit Fixed(float value) : Fixed(double{value}) {}
-  explicit Fixed(double value) : Fixed(of_raw(std::llround(std::ldexp(value, fraction_bits)))) {}
+  explicit constexpr Fixed(float value) : Fixed(double{value}) {}
+  explicit constexpr Fixed(double value) : Fixed(of_raw(rounded(value))) {}
   explicit operator float() const {
     return static_cast<float>(std::ldexp(static_cast<double>(raw_), -fraction_bits));
   }
@@ -55,10 +55,25 @@ class Fixed {
   friend constexpr auto operator<=>(Fixed a, Fixed b) = default;
 
  private:
+  // Saturated; NaN, which no fixed point has, is the lowest.
+  static constexpr Wide rounded(double value) {
+    constexpr double most = 9.2e18;
+    const double scaled = value * static_cast<double>(Wide{1} << fraction_bits);
+    if (!(scaled > -most && scaled < most)) return scaled > 0 ? Wide{1} << 64 : -(Wide{1} << 64);
+    return static_cast<std::int64_t>(scaled + (scaled < 0 ? -0.5 : 0.5));
+  }
+
   std::int64_t raw_ = 0;
 };
 
 inline Fixed abs(Fixed value) { return value.raw() < 0 ? -value : value; }
+
+inline Fixed fmin(Fixed a, Fixed b) { return std::min(a, b); }
+
+// A quotient by zero is as large as a number can be.
+inline bool isfinite(Fixed value) {
+  return abs(value).raw() != std::numeric_limits<std::int64_t>::max();
+}
 
 // Bit by bit.
 inline Fixed sqrt(Fixed value) {

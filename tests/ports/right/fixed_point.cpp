@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "controller/actuation/unit_table.hpp"
 #include "controller/reference/mc_att_control_definition.hpp"
 #include "controller/reference/unit_table.hpp"
 #include "tests/ports/right/fixed.hpp"
@@ -73,6 +74,7 @@ struct Law {
 
 const void* extension(const char* id) {
   if (std::strcmp(id, ATTEST_EXTENSION_UNSUPPORTED_GROUPS) == 0) return "tailsitter,robustness";
+  if (const void* part = attest::actuation::extension<Fixed>(id)) return part;
   const bool asked = std::strcmp(id, ATTEST_EXTENSION_ARITHMETIC) == 0;
   return asked && Fixed::fraction_bits == 22 ? "fixed:22" : nullptr;
 }
