@@ -108,9 +108,20 @@ CHECK
 }
 
 @test "a port that crashes on one input: the others are timed, and the crash is named" {
-  run "$ATTEST" time --port "lib:$PORTS/port_crash.so" --filter 'rates/*@250hz' --json times.json
+  port="lib:$PORTS/port_crashes_on_ff.so"
+  run "$ATTEST" time --port "$port" --filter 'rates/*@250hz' --json t.json
   [ "$status" -eq 1 ]
-  has "crash: the port's process was killed by signal"
+  has "rates/ff_alone@250hz crash: the port's process"
+  has "slowest steps:"
+  has "a crash takes the figures with it"
+  python3 - <<'CHECK'
+import json
+vectors = json.load(open("t.json"))["vectors"]
+assert {vector["verdict"] for vector in vectors} == {"pass", "skip", "crash"}
+CHECK
+  run "$ATTEST" time --port "lib:$PORTS/port_crash.so" --filter 'rates/*@250hz'
+  [ "$status" -eq 1 ]
+  has "crash: the port's process"
   run "$ATTEST" time --port "lib:$PORTS/port_refuses_profile.so" --filter 'rates/*@250hz'
   [ "$status" -eq 2 ]
   has "nothing was timed"
