@@ -17,8 +17,8 @@ Result<std::string> sha256_of_file(const std::filesystem::path& path);
 
 // A file that is written beside its place and renamed at commit(). Opening it early shows an
 // unwritable path before the work, not after; without commit() nothing is left behind, nor when the
-// process is killed, where the file system has files without a name. What is not
-// an ordinary file (/dev/stdout, /dev/null, a pipe) is written to directly.
+// process is killed, where the file system has files without a name. What is not an ordinary file
+// (/dev/stdout, /dev/null, a pipe) is written to directly.
 class AtomicFile {
  public:
   static Result<AtomicFile> open(const std::filesystem::path& path);

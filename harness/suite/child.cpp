@@ -115,7 +115,8 @@ Child::Child(Child&& other) noexcept
     : pid_(std::exchange(other.pid_, -1)),
       pipe_(std::exchange(other.pipe_, -1)),
       output_(std::exchange(other.output_, -1)),
-      partial_(std::move(other.partial_)) {}
+      partial_(std::move(other.partial_)),
+      was_killed_(other.was_killed_) {}
 
 Child& Child::operator=(Child&& other) noexcept {
   if (this == &other) return *this;
@@ -124,6 +125,7 @@ Child& Child::operator=(Child&& other) noexcept {
   pipe_ = std::exchange(other.pipe_, -1);
   output_ = std::exchange(other.output_, -1);
   partial_ = std::move(other.partial_);
+  was_killed_ = other.was_killed_;
   return *this;
 }
 
