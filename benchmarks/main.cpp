@@ -33,7 +33,6 @@ std::string today() { return fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nu
 int main(int argc, char** argv) {
   // Short, so that a turn of a pair is over before the machine has changed its pace.
   std::string short_runs = "--benchmark_min_time=0.02";
-  const bool whole = argc == 1;  // nothing is filtered out
   std::vector<char*> arguments{argv[0], short_runs.data()};
   for (int i = 1; i < argc; ++i) arguments.push_back(argv[i]);
   int count = static_cast<int>(arguments.size());
@@ -41,11 +40,12 @@ int main(int argc, char** argv) {
   if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
 
   bool met = true;
-  // First, in a process that has not yet taken memory for itself.
-  const std::string memory = whole ? "\n" + attest::bench::memory_table(met) : "";
-  attest::bench::PairReporter reporter;
   const std::string filter = benchmark::GetBenchmarkFilter();
-  if (!attest::bench::run_by_turns(filter, reporter)) {
+  // First, in a process that has not yet taken memory for itself.
+  const bool of_memory = filter.empty() || filter == "memory";
+  const std::string memory = of_memory ? "\n" + attest::bench::memory_table(met) : "";
+  attest::bench::PairReporter reporter;
+  if (!attest::bench::run_by_turns(filter, reporter) && !of_memory) {
     fmt::print(stderr, "--benchmark_filter={}: no benchmark of that name\n", filter);
     return 2;
   }
