@@ -41,6 +41,7 @@ Result<LiveOptions> live_options(const StressOptions& options) {
 struct Plan {
   std::vector<StressTask> tasks;
   LoadKind load = LoadKind::cpu;
+  PortDescription port;
 };
 
 void set_budget(const StressOptions& options, RealtimeBudget& budget) {
@@ -69,6 +70,7 @@ Result<Plan> make_plan(const StressOptions& options, const SuiteFolder& suite) {
   set_budget(options, the_case.flight->realtime);
   Plan plan;
   plan.load = *load;
+  plan.port = std::move(*port);
   for (const std::string& text : options.rates) {
     const auto rate = Rate::parse(text);
     if (!rate) return tl::unexpected(rate.error());
@@ -163,6 +165,7 @@ int stress_command(const StressOptions& options, const Globals& globals) {
   note_interrupts();
   StressRun run;
   run.port = options.port;
+  run.description = plan->port;
   run.live = plan->tasks.front().live;
   if (auto done = run_all(*plan, options, globals, run); !done) return report_error(done.error());
   const RunResult all = run_of(run);

@@ -27,12 +27,13 @@ Result<void> write_vector(const Case& the_case, const Rate& rate,
 // Which law, and which mixer, the inputs are for; beside what the folder holds already.
 Result<void> write_origin(const Case& the_case, const std::vector<Setup>& setups,
                           const std::filesystem::path& folder) {
-  Provenance provenance = read_provenance(folder / provenance_name).value_or(Provenance{});
-  provenance.profile = the_case.profile;
+  auto provenance = provenance_in(folder);
+  if (!provenance) return tl::unexpected(provenance.error());
+  provenance->profile = the_case.profile;
   if (the_case.part == Part::mixer) {
-    for (const Setup& setup : setups) provenance.mixers[setup.label()] = the_case.mixer;
+    for (const Setup& setup : setups) provenance->mixers[setup.label()] = the_case.mixer;
   }
-  return write_file(folder / provenance_name, to_toml(provenance));
+  return write_file(folder / provenance_name, to_toml(*provenance));
 }
 
 Result<std::size_t> write_vectors(const VectorOptions& options, const Globals& globals) {

@@ -144,6 +144,9 @@ RunResult run_of(const StressRun& run) {
   RunResult all;
   all.attest_version = version;
   all.port = run.port;
+  all.port_name = run.description.name;
+  all.port_version = run.description.version;
+  all.fraction_bits = run.description.fraction_bits;
   all.command = "stress";
   for (const StressResult& stress : run.results) {
     all.results.push_back(stress.result);

@@ -5,12 +5,14 @@
 
 #include "harness/report/terminal.hpp"
 #include "harness/suite/stress.hpp"
+#include "harness/suite/worker.hpp"
 
 namespace attest {
 
 struct StressRun {
-  std::string port;  // as given
-  std::string load;  // "none"
+  std::string port;             // as given
+  PortDescription description;  // as it says
+  std::string load;             // "none"
   LiveOptions live;
   std::vector<StressResult> results;
   bool interrupted = false;

@@ -1,7 +1,6 @@
 #include "harness/run/recorded.hpp"
 
 #include <algorithm>
-#include <system_error>
 
 #include <fmt/format.h>
 
@@ -37,14 +36,6 @@ Result<void> check_mixer(const Trace& trace, const std::string& definition) {
   if (outputs.count() == mixer->rotors.size()) return {};
   return fail_at(trace.source, fmt::format("has {} rotors, mixer `{}` has {}", outputs.count(),
                                            definition, mixer->rotors.size()));
-}
-
-// A folder without one is as good.
-Result<Provenance> provenance_beside(const std::filesystem::path& file) {
-  const std::filesystem::path provenance = file.parent_path() / provenance_name;
-  std::error_code error;
-  if (!std::filesystem::exists(provenance, error)) return Provenance{};
-  return read_provenance(provenance);
 }
 
 // Outputs and parameters of one part only.
@@ -86,7 +77,7 @@ Result<Recorded> read_recorded(const std::filesystem::path& file, const std::str
   auto trace = looks_like_mixer_csv(file) ? read_mixer_csv(file)
                                           : read_csv(file, CsvNeed::inputs_and_outputs);
   if (!trace) return tl::unexpected(trace.error());
-  const auto beside = provenance_beside(file);
+  const auto beside = provenance_in(file.parent_path());
   if (!beside) return tl::unexpected(beside.error());
   const Provenance& provenance = *beside;
   Recorded recorded{std::move(*trace), {profile, Part::mc_att_control, ""}};

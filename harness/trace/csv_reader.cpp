@@ -3,7 +3,6 @@
 #include <cstring>
 #include <optional>
 #include <set>
-#include <system_error>
 
 #include <fmt/format.h>
 
@@ -51,16 +50,6 @@ Result<Layout> layout_of(const CsvRows& rows) {
     }
   }
   return layout;
-}
-
-// The constants of the provenance.toml beside the file; none if there is no such file.
-Result<std::map<std::string, double>> constants_beside(const std::filesystem::path& path) {
-  const std::filesystem::path beside = path.parent_path() / provenance_name;
-  std::error_code ignored;
-  if (!std::filesystem::exists(beside, ignored)) return {};
-  const auto provenance = read_provenance(beside);
-  if (!provenance) return tl::unexpected(provenance.error());
-  return provenance->constants;
 }
 
 // Fills what every row has in common: channels into `sample`, parameters as changes at tick 0.
@@ -191,14 +180,14 @@ Result<TraceReader> TraceReader::open(const std::filesystem::path& path, CsvNeed
   if (!rows) return tl::unexpected(rows.error());
   auto layout = layout_of(*rows);
   if (!layout) return tl::unexpected(layout.error());
-  const auto constants = constants_beside(path);
-  if (!constants) return tl::unexpected(constants.error());
+  const auto provenance = provenance_in(path.parent_path());
+  if (!provenance) return tl::unexpected(provenance.error());
 
   auto impl = std::make_unique<Impl>(
       Impl{std::move(*rows), layout->present, ParameterColumns(std::move(layout->parameters)), {}});
   Sample common{};
-  if (const auto done =
-          apply_constants(*constants, impl->rows, common, impl->present, impl->constants);
+  if (const auto done = apply_constants(provenance->constants, impl->rows, common, impl->present,
+                                        impl->constants);
       !done) {
     return tl::unexpected(done.error());
   }

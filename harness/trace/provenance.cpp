@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -154,6 +155,13 @@ Result<Provenance> read_provenance(const std::filesystem::path& file) {
   provenance.models = read_texts(root, "models");
   if (const auto done = toml->finish(); !done) return tl::unexpected(done.error());
   return provenance;
+}
+
+Result<Provenance> provenance_in(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / provenance_name;
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return Provenance{};
+  return read_provenance(file);
 }
 
 std::string to_toml(const Provenance& provenance) {

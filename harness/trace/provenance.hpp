@@ -38,6 +38,10 @@ inline constexpr const char* provenance_name = "provenance.toml";
 // The keys are the members' names; none is required. Errors: unreadable file, not TOML, an unknown
 // key, a constant that is no channel or parameter, `timestamp`, or not a value of its channel.
 Result<Provenance> read_provenance(const std::filesystem::path& file);
+
+// Of a folder; an empty one when it has none. Errors: as above, of one that is there.
+Result<Provenance> provenance_in(const std::filesystem::path& folder);
+
 std::string to_toml(const Provenance& provenance);
 
 // Divides the columns of traces that will stand in one folder: what has the same value in every

@@ -15,6 +15,7 @@ open=(--policy other --no-cyclictest --misses-per-million 1000000 --p99-lateness
   has "age of the sample"
   has "timer slack 1 ns"
   xmllint --noout --schema "$SOURCE/tests/harness/report/junit.xsd" s.xml
+  grep -q '"port.name" value="attest-reference"' s.xml
   python3 - <<'CHECK'
 import json
 report = json.load(open("s.json"))

@@ -61,4 +61,9 @@ T
   "$ATTEST" vectors out --profile px4-v1.5.5 --filter 'rates/*' --rate 250
   "$ATTEST" vectors out --profile px4-v1.5.5 --filter 'rates/*' --rate 100
   grep -q "px4-v1.5.5" out/px4-v1.5.5/rates/*/provenance.toml
+  echo typo >>out/px4-v1.5.5/rates/p_alone/provenance.toml
+  run "$ATTEST" vectors out --profile px4-v1.5.5 --filter 'rates/*' --rate 100
+  [ "$status" -eq 2 ]
+  has "rates/p_alone/provenance.toml:"
+  grep -q typo out/px4-v1.5.5/rates/p_alone/provenance.toml
 }

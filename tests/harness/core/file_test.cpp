@@ -3,9 +3,11 @@
 #include <thread>
 #include <utility>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "tests/harness/core/temporary_directory.hpp"
@@ -72,6 +74,22 @@ TEST(AtomicFile, LeavesNothingBehindWithoutCommit) {
     auto file = AtomicFile::open(directory.path() / "a.csv");
     ASSERT_TRUE(file->write("half"));
   }
+  EXPECT_THAT(names_in(directory.path()), IsEmpty());
+}
+
+TEST(AtomicFile, LeavesNothingBehindWhenTheProcessIsKilled) {
+  const TemporaryDirectory directory;
+  const int nameless = ::open(directory.path().c_str(), O_WRONLY | O_TMPFILE, 0600);
+  if (nameless < 0) GTEST_SKIP() << "this file system has no files without a name";
+  ::close(nameless);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    auto file = AtomicFile::open(directory.path() / "a.csv");
+    ::_exit(file && file->write("half") ? 0 : 1);  // destroys nothing, like a kill
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
   EXPECT_THAT(names_in(directory.path()), IsEmpty());
 }
 
