@@ -7,7 +7,8 @@ constexpr BatteryOptions defaults;
 constexpr float unknown_resistance = -1;
 
 constexpr BatteryParameter table[] = {
-    {"BAT_N_CELLS", static_cast<float>(defaults.cell_count), "1", "cells in series"},
+    {"BAT_N_CELLS", static_cast<float>(defaults.cell_count), "1",
+     "cells in series; 0: not known, and the scale stays 1"},
     {"BAT_V_EMPTY", defaults.empty_cell_V, "V", "a cell's voltage when it is empty"},
     {"BAT_V_CHARGED", defaults.full_cell_V, "V", "a cell's voltage when it is full"},
     {"BAT_V_LOAD_DROP", defaults.load_drop_V, "V", "a cell's drop at full throttle"},
@@ -21,7 +22,7 @@ std::span<const BatteryParameter> battery_parameters() { return table; }
 bool set_battery_parameter(BatteryOptions& options, std::string_view name, float value) {
   if (name == "BAT_N_CELLS") {
     constexpr float most_cells = 100;
-    if (!(value >= 1 && value <= most_cells && value == std::floor(value))) return false;
+    if (!(value >= 0 && value <= most_cells && value == std::floor(value))) return false;
     options.cell_count = static_cast<int>(value);
   } else if (name == "BAT_V_EMPTY") {
     options.empty_cell_V = value;

@@ -2,6 +2,7 @@
 //
 // The estimate of PX4 v1.5.5 systemlib Battery: the cell voltage, corrected for the drop under load
 // and low-passed, gives the remaining charge, which gives the voltage the cell would have at rest.
+// The order of the operations is part of it: golden/recorded/battery-v1.5.5 is matched to the bit.
 //
 // Voltages [V], currents [A], throttle [0..1]. No clock: one update is one sample at 100 Hz. No
 // allocation; one thread at a time.
@@ -15,9 +16,10 @@
 
 namespace attest::actuation {
 
-// Voltages are the defaults of PX4 v1.5.5; the number of cells is the vehicle's.
+// The defaults are those of PX4 v1.5.5. Nobody has set the number of cells then: the measured
+// charge is not finite and the scale stays 1.
 struct BatteryOptions {
-  int cell_count = 3;
+  int cell_count = 0;
   float empty_cell_V = 3.4f;
   float full_cell_V = 4.05f;
   float load_drop_V = 0.3f;  // of one cell at full throttle
@@ -35,8 +37,8 @@ struct BatteryParameter {
 // The parameters of PX4 that the options are made of.
 std::span<const BatteryParameter> battery_parameters();
 
-// False, and nothing changes: no parameter has that name, or it cannot have that value (a number of
-// cells that is none).
+// Returns false, and changes nothing, when no parameter has that name or when it cannot have that
+// value: BAT_N_CELLS is a whole number from 0 to 100.
 bool set_battery_parameter(BatteryOptions& options, std::string_view name, float value);
 
 struct BatterySample {
@@ -53,6 +55,9 @@ struct BatteryStages {
   static constexpr Scalar filter_take = Scalar(0.01f);
   static constexpr Scalar scale_max = Scalar(1.3f);
 
+  // A pack with less voltage than this is taken to be unplugged, and its scale is not used.
+  static constexpr Scalar plugged_in_V = Scalar(2.1f);
+
   // The drop under load is fitted to throttle plus this share, so that it is not zero at idle.
   static constexpr Scalar idle_share = Scalar(0.1f);
 
@@ -60,36 +65,45 @@ struct BatteryStages {
     return Scalar(options.full_cell_V) - Scalar(options.empty_cell_V);
   }
 
+  // A sample that would make the filter NaN or infinite leaves it as it is.
+  static Scalar low_passed(Scalar kept, Scalar sample) {
+    const Scalar next = kept * filter_keep + sample * filter_take;
+    using std::isfinite;
+    return isfinite(next) ? next : kept;
+  }
+
+  // Of one cell.
   static Scalar load_drop_V(const BatterySample& sample, const BatteryOptions& options) {
     if (options.internal_resistance_ohm) {
       return Scalar(sample.current_A) * Scalar(*options.internal_resistance_ohm);
     }
-    if (!sample.armed) return 0;
     using std::abs;
-    return Scalar(options.load_drop_V) * (abs(Scalar(sample.throttle)) + idle_share) /
-           (1 + idle_share);
+    const Scalar load = (abs(Scalar(sample.throttle)) + idle_share) / (1 + idle_share);
+    return Scalar(options.load_drop_V) * (sample.armed ? load : Scalar(0));
   }
 
-  // What one sample by itself says is left.
+  // The charge that is left, by this sample alone. Without cells it is not finite.
   static Scalar measured(const BatterySample& sample, Scalar load_drop_V,
                          const BatteryOptions& options) {
-    const Scalar cell_V = Scalar(sample.voltage_V) / static_cast<Scalar>(options.cell_count);
-    return (cell_V - (Scalar(options.empty_cell_V) - load_drop_V)) / range_V(options);
+    const Scalar cells = static_cast<Scalar>(options.cell_count);
+    const Scalar empty_V = Scalar(options.empty_cell_V) - load_drop_V;
+    return (Scalar(sample.voltage_V) - cells * empty_V) / (cells * range_V(options));
   }
 
-  static Scalar filtered(Scalar remaining, Scalar measured, bool is_first) {
-    const Scalar next = is_first ? measured : remaining * filter_keep + measured * filter_take;
-    return std::clamp(next, Scalar(0), Scalar(1));
+  static Scalar remaining(Scalar before, Scalar measured) {
+    return std::clamp(low_passed(before, measured), Scalar(0), Scalar(1));
   }
 
   // The rest voltage of a full cell over that of this one.
   static Scalar scale(Scalar remaining, const BatteryOptions& options) {
     const Scalar factor =
         Scalar(options.full_cell_V) / (Scalar(options.empty_cell_V) + range_V(options) * remaining);
+    if (factor > scale_max) return scale_max;  // infinity too
     using std::isfinite;
-    if (!isfinite(factor) || factor < 1) return 1;
-    return std::min(factor, scale_max);
+    return isfinite(factor) && !(factor < 1) ? factor : 1;
   }
+
+  static bool is_plugged_in(Scalar filtered_V) { return filtered_V > plugged_in_V; }
 };
 
 // Stages replace those of above: controller/faults has wrong ones.
@@ -99,24 +113,25 @@ class BasicBatteryStatus {
   explicit BasicBatteryStatus(const BatteryOptions& options, const Stages& stages = {})
       : options_(options), stages_(stages) {}
 
-  // Takes one 100 Hz sample and returns the new scale, 1 .. 1.3. A NaN voltage leaves it at 1 for
-  // ever, because the filter remembers.
+  // Takes one 100 Hz sample and returns the new scale, 1 .. 1.3.
   Scalar update(const BatterySample& sample) {
+    // Below 0 the filter has not started: the sample starts it.
+    if (filtered_V_ < 0) filtered_V_ = Scalar(sample.voltage_V);
+    filtered_V_ = stages_.low_passed(filtered_V_, Scalar(sample.voltage_V));
     const Scalar drop_V = stages_.load_drop_V(sample, options_);
-    const Scalar measured = stages_.measured(sample, drop_V, options_);
-    remaining_ = stages_.filtered(remaining_, measured, is_first_);
-    is_first_ = false;
-    return stages_.scale(remaining_, options_);
+    remaining_ = stages_.remaining(remaining_, stages_.measured(sample, drop_V, options_));
+    const Scalar scale = stages_.scale(remaining_, options_);
+    return stages_.is_plugged_in(filtered_V_) ? scale : Scalar(1);
   }
 
-  // What the filtered voltage says is left, 0..1. The first sample starts the filter.
+  // What the filtered voltage says is left, 0..1. A new estimate takes the battery to be full.
   Scalar remaining() const { return remaining_; }
 
  private:
   BatteryOptions options_;
   [[no_unique_address]] Stages stages_;
-  Scalar remaining_ = 0;
-  bool is_first_ = true;
+  Scalar filtered_V_ = -1;  // of the pack
+  Scalar remaining_ = 1;
 };
 
 using BatteryStatus = BasicBatteryStatus<float>;

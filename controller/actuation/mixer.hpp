@@ -42,10 +42,12 @@ class BasicMixer {
       : rotors_(definition.rotors),
         scales_{Scalar(definition.roll_scale), Scalar(definition.pitch_scale),
                 Scalar(definition.yaw_scale), Scalar(definition.idle)},
-        stages_(stages) {}
+        stages_(stages),
+        has_previous_(stages_.starts_at_0(scales_.idle)) {}
 
   // One command for each rotor, valid until the next call. delta_out_max [1] limits the change of
-  // each command since the previous call, which starts from 0; not positive: no limit.
+  // each command since the previous call; not positive: no limit. The first call is limited from 0,
+  // or not at all where the mixer has no deadband.
   std::span<const Scalar> mix(const Controls& controls, Scalar delta_out_max,
                               Saturation& saturation) {
     Controls c = stages_.scaled(controls, scales_);
@@ -60,8 +62,9 @@ class BasicMixer {
     saturation.yaw = stages_.yield_yaw(rotors_, c, fit);
     for (std::size_t i = 0; i < rotors_.size(); ++i) {
       const Scalar wanted = stages_.command(rotors_[i], c, fit, scales_.idle);
-      commands_[i] = stages_.slew(wanted, commands_[i], delta_out_max);
+      commands_[i] = has_previous_ ? stages_.slew(wanted, commands_[i], delta_out_max) : wanted;
     }
+    has_previous_ = true;
     return std::span<const Scalar>(commands_).first(rotors_.size());
   }
 
@@ -72,6 +75,8 @@ class BasicMixer {
   MixerScales<Scalar> scales_;
   [[no_unique_address]] Stages stages_;
   std::array<Scalar, rotors_max> commands_{};
+  bool
+      has_previous_;  // `commands_` are those of a previous call, or what the first is limited from
 };
 
 using Mixer = BasicMixer<float>;

@@ -133,6 +133,10 @@ struct MixerStages {
     return clamp(idle + out * (1 - idle), idle, 1);
   }
 
+  // Before the first call the outputs are 0, or without a deadband unknown: then the first call is
+  // not limited.
+  static bool starts_at_0(Scalar idle) { return idle > Scalar(-1); }
+
   static Scalar slew(Scalar wanted, Scalar previous, Scalar delta_out_max) {
     if (!(delta_out_max > 0)) return wanted;
     const Scalar delta = wanted - previous;

@@ -1,6 +1,7 @@
 // Wrong battery estimates.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "controller/faults/groups.hpp"
 
@@ -134,46 +135,90 @@ const Fault faults[] = {
     {"battery-status-no-filter", "battery_status", Stage::battery_status, "does not filter",
      "a voltage that changes", "a missing step",
      [](FaultyLaw& law) {
-       law.battery.filtered = [](float remaining, float measured, bool) {
-         return Law::filtered(remaining, measured, true);
+       law.battery.remaining = [](float, float measured) {
+         return std::clamp(measured, 0.0f, 1.0f);
        };
      }},
     {"battery-status-filter-exchanged", "battery_status", Stage::battery_status,
      "exchanges the weights of the filter", "a voltage that changes", "wrong order",
      [](FaultyLaw& law) {
-       law.battery.filtered = [](float remaining, float measured, bool is_first) {
-         return is_first ? Law::filtered(remaining, measured, true)
-                         : Law::filtered(measured, remaining, false);
+       law.battery.remaining = [](float before, float measured) {
+         return Law::remaining(measured, before);
+       };
+     }},
+    {"battery-status-first-sample-starts", "battery_status", Stage::battery_status,
+     "starts the filter at the first sample in place of a full battery", "the first seconds",
+     "a wrong initial value",
+     [](FaultyLaw& law) {
+       law.battery.remaining = [is_first = true](float before, float measured) mutable {
+         const bool starts = std::exchange(is_first, false) && std::isfinite(measured);
+         return starts ? std::clamp(measured, 0.0f, 1.0f) : Law::remaining(before, measured);
        };
      }},
     {"battery-status-filter-from-0", "battery_status", Stage::battery_status,
      "starts the filter at 0", "the first seconds", "a wrong initial value",
      [](FaultyLaw& law) {
-       law.battery.filtered = [](float remaining, float measured, bool) {
-         return Law::filtered(remaining, measured, false);
+       law.battery.remaining = [is_first = true](float before, float measured) mutable {
+         return Law::remaining(std::exchange(is_first, false) ? 0.0f : before, measured);
        };
      }},
     {"battery-status-filter-faster", "battery_status", Stage::battery_status,
      "filters with 0.98 and 0.02", "a voltage that changes", "a wrong constant",
      [](FaultyLaw& law) {
-       law.battery.filtered = [](float remaining, float measured, bool is_first) {
-         const float next = is_first ? measured : remaining * 0.98f + measured * 0.02f;
-         return std::clamp(next, 0.0f, 1.0f);
+       law.battery.remaining = [](float before, float measured) {
+         const float next = before * 0.98f + measured * 0.02f;
+         return std::clamp(std::isfinite(next) ? next : before, 0.0f, 1.0f);
        };
      }},
     {"battery-status-unclamped", "battery_status", Stage::battery_status,
      "lets the filter leave 0..1", "a voltage beyond full, then a lower one", "missing clamp",
-     [](FaultyLaw& law) {
-       law.battery.filtered = [](float remaining, float measured, bool is_first) {
-         return is_first ? measured : remaining * Law::filter_keep + measured * Law::filter_take;
-       };
-     }},
+     [](FaultyLaw& law) { law.battery.remaining = Law::low_passed; }},
     {"battery-status-clamps-sample", "battery_status", Stage::battery_status,
      "clamps the sample in place of the filter", "a voltage beyond full while the filter is not",
      "a misplaced clamp",
      [](FaultyLaw& law) {
-       law.battery.filtered = [](float remaining, float measured, bool is_first) {
-         return Law::filtered(remaining, std::clamp(measured, 0.0f, 1.0f), is_first);
+       law.battery.remaining = [](float before, float measured) {
+         return Law::remaining(before, std::clamp(measured, 0.0f, 1.0f));
+       };
+     }},
+    {"battery-status-nan-stays", "battery_status", Stage::battery_status,
+     "lets one sample that is not finite into the filter", "a voltage that is NaN or infinite",
+     "a missing guard",
+     [](FaultyLaw& law) {
+       law.battery.remaining = [](float before, float measured) {
+         return std::clamp(before * Law::filter_keep + measured * Law::filter_take, 0.0f, 1.0f);
+       };
+     }},
+    {"battery-status-voltage-nan-stays", "battery_status", Stage::battery_status,
+     "lets a voltage that is not finite into the filtered voltage",
+     "a voltage that is NaN once, and the battery not full after", "a missing guard",
+     [](FaultyLaw& law) {
+       law.battery.low_passed = [](float kept, float sample) {
+         return kept * Law::filter_keep + sample * Law::filter_take;
+       };
+     }},
+    {"battery-status-always-plugged-in", "battery_status", Stage::battery_status,
+     "scales by a pack that has almost no voltage", "a pack below 2.1 V", "a missing gate",
+     [](FaultyLaw& law) { law.battery.is_plugged_in = [](float) { return true; }; }},
+    {"battery-status-plugged-in-by-sample", "battery_status", Stage::battery_status,
+     "compares the latest voltage with 2.1 V, and not the filtered one",
+     "a voltage that drops out for a moment", "the wrong signal",
+     [](FaultyLaw& law) { law.battery.low_passed = [](float, float sample) { return sample; }; }},
+    {"battery-status-plugged-in-by-cell", "battery_status", Stage::battery_status,
+     "compares the voltage of a cell with 2.1 V, and not that of the pack",
+     "a pack of 3 cells below 6.3 V", "the wrong signal",
+     [](FaultyLaw& law) {
+       law.battery.is_plugged_in = [](float filtered_V) {
+         return Law::is_plugged_in(filtered_V / 3);
+       };
+     }},
+    {"battery-status-infinite-is-1", "battery_status", Stage::battery_status,
+     "answers 1 in place of 1.3 to an infinite scale", "cells that are empty at 0 V", "wrong order",
+     [](FaultyLaw& law) {
+       law.battery.scale = [](float remaining, const Options& options) {
+         const float factor =
+             options.full_cell_V / (options.empty_cell_V + Law::range_V(options) * remaining);
+         return std::isfinite(factor) ? Law::scale(remaining, options) : 1.0f;
        };
      }},
     {"battery-status-never", "battery_status", Stage::battery_status, "answers 1 always",

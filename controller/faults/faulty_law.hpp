@@ -86,6 +86,7 @@ struct StepStages {
   std::function<bool(const decltype(Topics::mode)&, Profile)> is_autonomous = Law::is_autonomous;
   std::function<bool(bool, const decltype(Topics::attitude_setpoint)&)> is_weathervaning =
       Law::is_weathervaning;
+  std::function<bool(bool)> supersedes_pending = Law::supersedes_pending;
   std::function<RateCommand(const decltype(Topics::manual)&, const Gains&)> acro = Law::acro;
   std::function<bool(const Topics&)> is_flying = Law::is_flying;
   std::function<float(float)> guarded = Law::guarded;
@@ -106,6 +107,7 @@ struct MixerStages {
       Law::yield_yaw;
   std::function<Scalar(const actuation::Rotor&, const Controls&, const Fit&, Scalar)> command =
       Law::command;
+  std::function<bool(Scalar)> starts_at_0 = Law::starts_at_0;
   std::function<Scalar(Scalar, Scalar, Scalar)> slew = Law::slew;
 };
 
@@ -114,10 +116,12 @@ struct BatteryStages {
   using Law = actuation::BatteryStages<Scalar>;
   using Options = actuation::BatteryOptions;
   using Sample = actuation::BatterySample;
+  std::function<Scalar(Scalar, Scalar)> low_passed = Law::low_passed;  // of the voltage
   std::function<Scalar(const Sample&, const Options&)> load_drop_V = Law::load_drop_V;
   std::function<Scalar(const Sample&, Scalar, const Options&)> measured = Law::measured;
-  std::function<Scalar(Scalar, Scalar, bool)> filtered = Law::filtered;
+  std::function<Scalar(Scalar, Scalar)> remaining = Law::remaining;
   std::function<Scalar(Scalar, const Options&)> scale = Law::scale;
+  std::function<bool(Scalar)> is_plugged_in = Law::is_plugged_in;
 };
 
 struct FaultyLaw {

@@ -227,6 +227,24 @@ const Fault modes[] = {
            in.updated &= ~std::uint32_t{ATTEST_UPDATED_VEHICLE_RATES_SETPOINT};
        });
      }},
+    {"vtol-supersedes", "modes", Stage::mode,
+     "drops a pending rates sample when a VTOL publishes its own", "is_vtol, rates before OFFBOARD",
+     "a condition dropped",
+     [](FaultyLaw& law) { law.step.supersedes_pending = [](bool) { return true; }; }},
+    {"own-rates-do-not-supersede", "modes", Stage::mode,
+     "takes a rates sample that is older than its own", "rates before OFFBOARD", "a latch",
+     [](FaultyLaw& law) { law.step.supersedes_pending = [](bool) { return false; }; }},
+    {"topics-by-latest-status", "modes", Stage::mode,
+     "selects its topics by each vehicle_status, and not by the first", "is_vtol changes",
+     "a latch",
+     [](FaultyLaw& law) {
+       const auto is_vtol = std::make_shared<bool>(false);
+       also_before(law, [is_vtol](attest_inputs& in) {
+         if ((in.updated & ATTEST_UPDATED_VEHICLE_STATUS) == 0) return;
+         *is_vtol = in.vehicle_status.is_vtol != 0;
+       });
+       law.step.supersedes_pending = [is_vtol](bool) { return !*is_vtol; };
+     }},
     {"mode-late", "modes", Stage::mode, "changes its mode one tick late", "a change of mode",
      "one-tick delay",
      [](FaultyLaw& law) {

@@ -74,7 +74,8 @@ class McAttControl {
   std::uint32_t pending_ = 0;  // ATTEST_UPDATED_... bits of topics not yet latched
   bool first_step_ = true;
   bool recovery_enabled_ = false;  // decided at the first step
-  bool status_seen_ = false;       // vehicle_status selects the topics to publish on
+  bool status_seen_ = false;       // the first vehicle_status selects the topics to publish on:
+  bool is_vtol_ = false;           // the virtual ones, or not
 };
 
 extern template class McAttControl<float>;

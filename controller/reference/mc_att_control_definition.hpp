@@ -23,7 +23,7 @@ McAttControl<Scalar, Law>::McAttControl(Profile profile, const Law& law)
 
 template <typename Scalar, typename Law>
 bool McAttControl<Scalar, Law>::set_parameter(std::string_view name, float value) {
-  return reference::set_parameter(parameters_, name, value);
+  return reference::set_parameter(parameters_, profile_, name, value);
 }
 
 template <typename Scalar, typename Law>
@@ -52,6 +52,7 @@ ATTEST_INLINE void McAttControl<Scalar, Law>::latch_topics(const attest_inputs& 
   if (updated(ATTEST_UPDATED_BATTERY_STATUS)) topics_.battery_scale = in.battery_status.scale;
   if (updated(ATTEST_UPDATED_VEHICLE_STATUS)) {
     topics_.is_rotary_wing = in.vehicle_status.is_rotary_wing != 0;
+    if (!status_seen_) is_vtol_ = in.vehicle_status.is_vtol != 0;
     status_seen_ = true;
   }
   if (updated(ATTEST_UPDATED_MULTIROTOR_MOTOR_LIMITS)) {
@@ -140,8 +141,7 @@ ATTEST_INLINE void McAttControl<Scalar, Law>::publish_rates_setpoint(
   if (!status_seen_) return;
   const auto& setpoint = topics_.rates_setpoint;
   out.vehicle_rates_setpoint = {setpoint.roll, setpoint.pitch, setpoint.yaw, setpoint.thrust, 1};
-  // The own sample is now the latest on the topic: one from outside is no longer waiting.
-  take_pending(ATTEST_UPDATED_VEHICLE_RATES_SETPOINT);
+  if (stages_.supersedes_pending(is_vtol_)) take_pending(ATTEST_UPDATED_VEHICLE_RATES_SETPOINT);
 }
 
 template <typename Scalar, typename Law>

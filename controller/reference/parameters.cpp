@@ -10,7 +10,7 @@ using P = Parameters;
 constexpr ParameterType real = ParameterType::real;
 constexpr ParameterType integer = ParameterType::integer;
 
-// name, member, default, min, max, unit, type, description
+// name, member, default, min, max, unit, type, description, profiles where not all have it
 constexpr std::array<ParameterInfo, 33> all_parameters{{
     {"MC_ROLL_TC", &P::mc_roll_tc, 0.2f, 0.15f, 0.25f, "s", real,
      "roll time constant; 0.2 s divided by it scales MC_ROLL_P, MC_ROLLRATE_P and _D"},
@@ -65,11 +65,12 @@ constexpr std::array<ParameterInfo, 33> all_parameters{{
     {"MC_RATT_TH", &P::mc_ratt_th, 1.0f, 0.0f, 1.0f, "1", real,
      "stick deflection beyond which rattitude flies rates instead of attitude"},
     {"MC_TPA_BREAK", &P::mc_tpa_break, 1.0f, 0.0f, 1.0f, "1", real,
-     "thrust above which the proportional rate gain is reduced"},
+     "thrust above which the proportional rate gain is reduced", from_v1_5_5},
     {"MC_TPA_SLOPE", &P::mc_tpa_slope, 1.0f, 0.0f, 2.0f, "1", real,
-     "reduction of the proportional rate gain for each unit of thrust above the break"},
+     "reduction of the proportional rate gain for each unit of thrust above the break",
+     from_v1_5_5},
     {"MC_BAT_SCALE_EN", &P::mc_bat_scale_en, 0.0f, 0.0f, 1.0f, "1", integer,
-     "not 0: controls are multiplied by battery_status.scale"},
+     "not 0: controls are multiplied by battery_status.scale", from_v1_5_5},
     {"VT_WV_YAWR_SCL", &P::vt_wv_yawr_scl, 0.15f, 0.0f, 1.0f, "1", real,
      "share of MC_YAWRAUTO_MAX that is left while weather-vaning"},
     {"VT_TYPE", &P::vt_type, 0.0f, 0.0f, 2.0f, "1", integer,
@@ -97,9 +98,9 @@ Parameters default_parameters() {
   return parameters;
 }
 
-bool set_parameter(Parameters& parameters, std::string_view name, float value) {
+bool set_parameter(Parameters& parameters, Profile profile, std::string_view name, float value) {
   const ParameterInfo* const info = find_parameter(name);
-  if (info == nullptr) return false;
+  if (info == nullptr || !info->profiles.contains(profile)) return false;
   const bool is_integer = std::isfinite(value) && std::trunc(value) == value;
   if (info->type == ParameterType::integer && !is_integer) return false;
   parameters.*info->member = value;

@@ -11,6 +11,8 @@
 #include <span>
 #include <string_view>
 
+#include "controller/reference/profile.hpp"
+
 namespace attest::reference {
 
 // Raw values, as set. Integer parameters are held as the float of the same value.
@@ -40,6 +42,7 @@ struct ParameterInfo {
   std::string_view unit;  // "1" when dimensionless
   ParameterType type;
   std::string_view description;
+  ProfileSet profiles = all_profiles;  // versions of the law that have it
 };
 
 // Every parameter of the law, in a fixed order.
@@ -51,8 +54,8 @@ const ParameterInfo* find_parameter(std::string_view name);
 // The values of a new controller.
 Parameters default_parameters();
 
-// Sets one value by name. Returns false, and changes nothing, when no parameter has that name or
-// when an integer parameter is given a value that is no integer.
-bool set_parameter(Parameters& parameters, std::string_view name, float value);
+// Sets one value by name. Returns false, and changes nothing, when the profile has no parameter of
+// that name or when an integer parameter is given a value that is no integer.
+bool set_parameter(Parameters& parameters, Profile profile, std::string_view name, float value);
 
 }  // namespace attest::reference

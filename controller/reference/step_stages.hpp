@@ -68,6 +68,10 @@ struct StepStages {
     return autonomous && setpoint.disable_mc_yaw_control != 0;
   }
 
+  // Does a rates setpoint of our own replace one from outside that is still waiting? It does where
+  // both are on one topic. A VTOL publishes its own on mc_virtual_rates_setpoint.
+  ATTEST_INLINE static bool supersedes_pending(bool is_vtol) { return !is_vtol; }
+
   // Acro leaves the mixer some room above the throttle stick.
   ATTEST_INLINE static RateCommand<Scalar> acro(const decltype(Topics::manual)& manual,
                                                 const Gains<Scalar>& gains) {

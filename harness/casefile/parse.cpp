@@ -11,6 +11,7 @@
 #include "controller/actuation/battery_status.hpp"
 #include "controller/actuation/mixer.hpp"
 #include "controller/reference/parameters.hpp"
+#include "controller/reference/profile.hpp"
 #include "harness/casefile/parse_flight.hpp"
 #include "harness/casefile/parse_signal.hpp"
 #include "harness/casefile/parse_topic.hpp"
@@ -165,19 +166,22 @@ void parse_part(const TomlTable& root, Case& parsed) {
   }
 }
 
-std::vector<ParameterStimulus> parse_parameters(const TomlTable& root, Part part) {
+void check_parameter_name(const TomlTable& table, const std::string& name, const Case& parsed) {
+  const std::vector<std::string> known = parameter_names(parsed.part, parsed.profile);
+  if (std::find(known.begin(), known.end(), name) != known.end()) return;
+  table.error(name, fmt::format("{} has no parameter `{}`{}; `attest list --parameters --profile "
+                                "{}` shows them all",
+                                parsed.profile, name, suggestion(name, known), parsed.profile));
+}
+
+std::vector<ParameterStimulus> parse_parameters(const TomlTable& root, const Case& parsed) {
   std::vector<ParameterStimulus> parameters;
   if (!root.has("parameters")) return parameters;
   const TomlTable table = root.table("parameters");
-  const std::vector<std::string> known = parameter_names(part);
   for (const std::string& name : table.keys()) {
     parameters.push_back({name, parse_signal(table, name)});
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
-      table.error(name, fmt::format("unknown parameter `{}`{}; `attest list --parameters` shows "
-                                    "them all",
-                                    name, suggestion(name, known)));
-    }
-    if (part != Part::mc_att_control && varies(parameters.back().signal)) {
+    check_parameter_name(table, name, parsed);
+    if (parsed.part != Part::mc_att_control && varies(parameters.back().signal)) {
       table.error(name, "does not change while it runs: give one value");
     }
   }
@@ -260,7 +264,7 @@ void parse_body(const TomlTable& root, Case& parsed) {
   parsed.either_side = parse_either_side(root);
   parsed.unit = parse_unit(root);
   check_unit(root, parsed);
-  parsed.parameters = parse_parameters(root, parsed.part);
+  parsed.parameters = parse_parameters(root, parsed);
   parsed.topics = parse_topics(root, parsed.part, root.has("flight"));
   if (root.has("flight")) parse_flight(root, models_beside(parsed.file), parsed);
   parse_tolerances(root, parsed);
@@ -268,10 +272,13 @@ void parse_body(const TomlTable& root, Case& parsed) {
 
 }  // namespace
 
-std::vector<std::string> parameter_names(Part part) {
+std::vector<std::string> parameter_names(Part part, const std::string& profile) {
+  const auto known = reference::profile_from_name(profile);
   std::vector<std::string> names;
   if (part == Part::mc_att_control) {
-    for (const auto& info : reference::parameter_table()) names.emplace_back(info.name);
+    for (const auto& info : reference::parameter_table()) {
+      if (!known || info.profiles.contains(*known)) names.emplace_back(info.name);
+    }
   } else if (part == Part::battery_status) {
     for (const auto& info : actuation::battery_parameters()) names.emplace_back(info.name);
   }

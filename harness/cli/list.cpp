@@ -4,29 +4,64 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "controller/actuation/battery_status.hpp"
+#include "controller/actuation/unit_table.hpp"
 #include "controller/reference/parameters.hpp"
 #include "harness/casefile/flight_mode.hpp"
 #include "harness/cli/command.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/core/nearest.hpp"
 #include "harness/plant/vehicle.hpp"
 #include "harness/trace/channels.hpp"
 
 namespace attest::cli {
 namespace {
 
-void list_parameters() {
-  fmt::print("{:<17}{:>9}{:>8}{:>8}  {:<8} {}\n", "parameter", "default", "min", "max", "unit",
-             "what it does");
-  for (const auto& info : reference::parameter_table()) {
-    fmt::print("{:<17}{:>9}{:>8}{:>8}  {:<8} {}\n", info.name, info.default_value, info.min,
-               info.max, info.unit, info.description);
+// The profiles that are asked for; all of them when none is.
+Result<std::vector<reference::Profile>> chosen_profiles(const std::vector<std::string>& names) {
+  const auto all = reference::profile_names();
+  std::vector<reference::Profile> profiles;
+  for (const std::string& name : names) {
+    const auto profile = reference::profile_from_name(name);
+    if (!profile) {
+      return fail(fmt::format("no profile `{}`{}; there are {}", name,
+                              suggestion(name, {all.begin(), all.end()}), fmt::join(all, ", ")));
+    }
+    profiles.push_back(*profile);
   }
+  if (!profiles.empty()) return profiles;
+  for (const std::string_view name : all) profiles.push_back(*reference::profile_from_name(name));
+  return profiles;
+}
+
+// The names of those that have it.
+template <typename Has>
+std::string names_of(const std::vector<reference::Profile>& profiles, Has has) {
+  std::vector<std::string> names;
+  for (const reference::Profile profile : profiles) {
+    if (has(profile)) names.emplace_back(name_of(profile));
+  }
+  return fmt::format("{}", fmt::join(names, " "));
+}
+
+void list_parameters(const std::vector<reference::Profile>& profiles) {
+  constexpr const char* row = "{:<17}{:>9}{:>8}{:>8}  {:<8} {:<22} {}\n";
+  fmt::print(row, "parameter", "default", "min", "max", "unit", "profiles", "what it does");
+  for (const auto& info : reference::parameter_table()) {
+    const std::string names =
+        names_of(profiles, [&](auto profile) { return info.profiles.contains(profile); });
+    if (names.empty()) continue;
+    fmt::print(row, info.name, info.default_value, info.min, info.max, info.unit, names,
+               info.description);
+  }
+  const std::string names = names_of(
+      profiles, [](auto profile) { return actuation::is_profile(name_of(profile).data()); });
+  if (names.empty()) return;
   fmt::print("\nof battery_status:\n");
   for (const auto& info : actuation::battery_parameters()) {
-    fmt::print("{:<17}{:>9}{:>16}  {:<8} {}\n", info.name, info.default_value, "", info.unit,
-               info.description);
+    fmt::print(row, info.name, info.default_value, "", "", info.unit, names, info.description);
   }
 }
 
@@ -108,7 +143,11 @@ Result<void> list_vehicles(const std::filesystem::path& models) {
 }  // namespace
 
 int list_command(const ListOptions& options, const Globals& globals) {
-  if (options.parameters) list_parameters();
+  if (options.parameters) {
+    const auto profiles = chosen_profiles(options.select.profiles);
+    if (!profiles) return report_error(profiles.error());
+    list_parameters(*profiles);
+  }
   if (options.channels) list_channels();
   if (options.modes) list_modes();
   if (options.parameters || options.channels || options.modes) return exit_ok;

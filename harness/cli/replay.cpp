@@ -18,7 +18,7 @@ namespace attest::cli {
 namespace {
 
 // "NAME=VALUE" becomes a change at tick 0 that replaces whatever the trace says of NAME.
-Result<void> override_parameter(Trace& trace, const std::string& text) {
+Result<void> override_parameter(Trace& trace, const Subject& subject, const std::string& text) {
   const auto equals = std::min(text.find('='), text.size());
   const std::string name = text.substr(0, equals);
   const char* const end = text.data() + text.size();
@@ -28,7 +28,7 @@ Result<void> override_parameter(Trace& trace, const std::string& text) {
     return fail(fmt::format("--param {}: write NAME=VALUE, such as MC_ROLL_P=6.5", text));
   }
   const ParameterChange change{0, name, value};
-  if (auto checked = check_parameter(part_of(trace.present), change); !checked) {
+  if (auto checked = check_parameter(subject, change); !checked) {
     return fail(fmt::format("--param {}: {}", text, checked.error().message));
   }
   std::erase_if(trace.parameters, [&](const ParameterChange& c) { return c.name == name; });
@@ -40,10 +40,12 @@ Result<std::unique_ptr<Batch>> trace_batch(const std::string& file, const Replay
                                            Level level) {
   auto recorded = read_recorded(file, options.profile, options.mixer);
   if (!recorded) return tl::unexpected(recorded.error());
-  auto& [trace, subject] = *recorded;
+  auto& [trace, subject, notes] = *recorded;
   for (const std::string& parameter : options.parameters) {
-    if (auto set = override_parameter(trace, parameter); !set) return tl::unexpected(set.error());
+    auto set = override_parameter(trace, subject, parameter);
+    if (!set) return tl::unexpected(set.error());
   }
+  for (const std::string& note : notes) fmt::print(stderr, "attest: note: {}: {}\n", file, note);
   return std::make_unique<TraceBatch>(std::move(trace), std::move(subject), Tolerances(level));
 }
 

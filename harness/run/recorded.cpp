@@ -1,8 +1,10 @@
 #include "harness/run/recorded.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "controller/actuation/battery_status.hpp"
 #include "controller/actuation/mixer.hpp"
@@ -38,7 +40,7 @@ Result<void> check_mixer(const Trace& trace, const std::string& definition) {
                                            definition, mixer->rotors.size()));
 }
 
-// Outputs and parameters of one part only.
+// Outputs of one part only.
 Result<void> check_part(const Trace& trace, Part part) {
   const ChannelSet others = trace.present & ~channels_of(part, "out/");
   const auto table = channels();
@@ -48,9 +50,52 @@ Result<void> check_part(const Trace& trace, Part part) {
                                              "one part",
                                              table[i].name, name_of(part)));
   }
-  for (const ParameterChange& change : trace.parameters) {
-    if (auto checked = check_parameter(part, change); !checked) {
-      return fail_at(trace.source, checked.error().message);
+  return {};
+}
+
+bool is_one_of(const std::string& name, const std::vector<std::string>& names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// A trace of one version of the law may have been written with the columns of another.
+void leave_out_foreign_parameters(Recorded& recorded) {
+  const Subject& subject = recorded.subject;
+  const auto own = parameter_names(subject.part, subject.profile);
+  const auto all = parameter_names(subject.part, "");
+  std::set<std::string> foreign;
+  for (const ParameterChange& change : recorded.trace.parameters) {
+    if (!is_one_of(change.name, own) && is_one_of(change.name, all)) foreign.insert(change.name);
+  }
+  if (foreign.empty()) return;
+  std::erase_if(recorded.trace.parameters,
+                [&](const ParameterChange& change) { return foreign.contains(change.name); });
+  recorded.notes.push_back(fmt::format("not set, because {} does not have them: {}",
+                                       subject.profile, fmt::join(foreign, ", ")));
+}
+
+// Without cells the estimate never leaves 1, so a recording says how many there were, or had 3.
+void give_cells(Recorded& recorded) {
+  constexpr const char* name = "BAT_N_CELLS";
+  constexpr float usual_cells = 3;
+  if (recorded.subject.part != Part::battery_status) return;
+  const auto& parameters = recorded.trace.parameters;
+  const bool is_given =
+      std::any_of(parameters.begin(), parameters.end(),
+                  [](const ParameterChange& change) { return change.name == name; });
+  if (is_given) return;
+  recorded.trace.parameters.insert(recorded.trace.parameters.begin(), {0, name, usual_cells});
+  recorded.notes.push_back(
+      fmt::format("no column in/parameter.{0}: {1:g} cells are assumed; "
+                  "`--param {0}=N` sets another number",
+                  name, usual_cells));
+}
+
+Result<void> check_parameters(Recorded& recorded) {
+  leave_out_foreign_parameters(recorded);
+  give_cells(recorded);
+  for (const ParameterChange& change : recorded.trace.parameters) {
+    if (auto checked = check_parameter(recorded.subject, change); !checked) {
+      return fail_at(recorded.trace.source, checked.error().message);
     }
   }
   return {};
@@ -58,14 +103,14 @@ Result<void> check_part(const Trace& trace, Part part) {
 
 }  // namespace
 
-Result<void> check_parameter(Part part, const ParameterChange& change) {
-  const std::vector<std::string> names = parameter_names(part);
-  if (std::find(names.begin(), names.end(), change.name) == names.end()) {
-    return fail(fmt::format("unknown parameter `{}` of {}{}", change.name, name_of(part),
-                            suggestion(change.name, names)));
+Result<void> check_parameter(const Subject& subject, const ParameterChange& change) {
+  const std::vector<std::string> names = parameter_names(subject.part, subject.profile);
+  if (!is_one_of(change.name, names)) {
+    return fail(fmt::format("{} has no parameter `{}` of {}{}", subject.profile, change.name,
+                            name_of(subject.part), suggestion(change.name, names)));
   }
   actuation::BatteryOptions battery;
-  if (part == Part::battery_status &&
+  if (subject.part == Part::battery_status &&
       !actuation::set_battery_parameter(battery, change.name, change.value)) {
     return fail(fmt::format("{} cannot be {}", change.name, change.value));
   }
@@ -80,7 +125,7 @@ Result<Recorded> read_recorded(const std::filesystem::path& file, const std::str
   const auto beside = provenance_in(file.parent_path());
   if (!beside) return tl::unexpected(beside.error());
   const Provenance& provenance = *beside;
-  Recorded recorded{std::move(*trace), {profile, Part::mc_att_control, ""}};
+  Recorded recorded{std::move(*trace), {profile, Part::mc_att_control, ""}, {}};
   Subject& subject = recorded.subject;
   subject.part = part_of(recorded.trace.present);
   if (auto checked = check_part(recorded.trace, subject.part); !checked) {
@@ -88,6 +133,9 @@ Result<Recorded> read_recorded(const std::filesystem::path& file, const std::str
   }
   if (subject.profile.empty()) subject.profile = provenance.profile;
   if (subject.profile.empty()) subject.profile = default_profile;
+  if (auto checked = check_parameters(recorded); !checked) {
+    return tl::unexpected(checked.error());
+  }
   if (subject.part != Part::mixer && !mixer.empty()) {
     return fail_at(recorded.trace.source, "is no mixer trace; leave --mixer out");
   }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "harness/core/result.hpp"
 #include "harness/run/open_loop.hpp"
@@ -13,16 +14,20 @@ namespace attest {
 struct Recorded {
   Trace trace;
   Subject subject;
+  // What was taken for granted, or left out, so that the trace can be given to a port: a line each.
+  std::vector<std::string> notes;
 };
 
 // With inputs and outputs; of mixers also as mixer_csv.hpp. What `profile` and `mixer` leave empty
-// the provenance.toml beside the file says, or else: px4-v1.5.5, and the unscaled geometry that the
-// file is named after ("4x.csv"). Errors: of reading, and a mixer trace whose definition nobody
-// says, is none, or has another number of rotors.
+// the provenance.toml in the folder of the file says, or else: px4-v1.5.5, and the unscaled
+// geometry that the file is named after ("4x.csv"). Parameters that the profile does not have are
+// left out. A battery without BAT_N_CELLS has 3 cells, as in the recordings of the firmware.
+// Errors: of reading, and a mixer trace whose definition is missing, invalid, or of another number
+// of rotors.
 Result<Recorded> read_recorded(const std::filesystem::path& file, const std::string& profile = "",
                                const std::string& mixer = "");
 
-// Errors: the part has no such parameter, or not of that value.
-Result<void> check_parameter(Part part, const ParameterChange& change);
+// Errors: the part has no such parameter in that profile, or not of that value.
+Result<void> check_parameter(const Subject& subject, const ParameterChange& change);
 
 }  // namespace attest

@@ -63,9 +63,11 @@ int attest_actuation_from_c(const attest_unit* unit) {
   if (self == NULL) return __LINE__;
   attest_battery_inputs sample = {{10.2f, 0.0f, 0.0f, 0}};
   attest_battery_outputs status = {{0.0f}};
-  if (battery->set_parameter(self, "BAT_N_CELLS", 0.0f) != ATTEST_INVALID) return __LINE__;
+  if (battery->set_parameter(self, "BAT_N_CELLS", -1.0f) != ATTEST_INVALID) return __LINE__;
   if (battery->set_parameter(self, "BAT_N_CELLS", 3.0f) != ATTEST_OK) return __LINE__;
-  if (battery->step(self, &sample, &status) != ATTEST_OK) return __LINE__;
+  for (int i = 0; i < 1000; ++i) {
+    if (battery->step(self, &sample, &status) != ATTEST_OK) return __LINE__;
+  }
   if (status.battery_status.scale < 1.19f) return __LINE__;
   if (battery->set_parameter(self, "BAT_N_CELLS", 4.0f) != ATTEST_INVALID) return __LINE__;
   battery->destroy(self);

@@ -120,12 +120,21 @@ RC_GTEST_PROP(Mixer, FlagsSayWhetherRollAndPitchFit, ()) {
   RC_ASSERT(saturation.upper == (high > 1.0f));
 }
 
+TEST(Mixer, FirstCallIsLimitedFrom0OnlyWithADeadband) {
+  Saturation saturation{};
+  Mixer without = make_mixer("4x");
+  for (const float out : without.mix({0, 0, 0, 1}, 0.1f, saturation)) EXPECT_FLOAT_EQ(out, 1.0f);
+  Mixer with(parse_mixer("R: 4x 10000 10000 10000 1000").value());
+  for (const float out : with.mix({0, 0, 0, 1}, 0.1f, saturation)) EXPECT_FLOAT_EQ(out, 0.1f);
+}
+
 RC_GTEST_PROP(Mixer, SlewLimitHoldsFromCallToCall, ()) {
   Mixer mixer = any_mixer();
   constexpr float delta = 0.05f;
-  std::vector<float> previous(mixer.rotors().size(), 0.0f);
+  Saturation saturation{};
+  const auto first = mixer.mix(any_controls(), 0.0f, saturation);
+  std::vector<float> previous(first.begin(), first.end());
   for (int call = 0; call < 20; ++call) {
-    Saturation saturation{};
     const auto out = mixer.mix(any_controls(), delta, saturation);
     for (std::size_t i = 0; i < out.size(); ++i) {
       RC_ASSERT(std::abs(out[i] - previous[i]) <= delta + 1e-6f);

@@ -40,19 +40,32 @@ TEST(Parameters, DefaultsAreInsideTheirRange) {
 TEST(Parameters, SetByName) {
   Parameters parameters = default_parameters();
   EXPECT_EQ(parameters.mc_roll_p, 6.5f);
-  EXPECT_TRUE(set_parameter(parameters, "MC_ROLL_P", 7.25f));
+  EXPECT_TRUE(set_parameter(parameters, Profile::px4_v1_5_5, "MC_ROLL_P", 7.25f));
   EXPECT_EQ(parameters.mc_roll_p, 7.25f);
-  EXPECT_FALSE(set_parameter(parameters, "MC_ROLL_PP", 1.0f));
-  EXPECT_FALSE(set_parameter(parameters, "", 1.0f));
+  EXPECT_FALSE(set_parameter(parameters, Profile::px4_v1_5_5, "MC_ROLL_PP", 1.0f));
+  EXPECT_FALSE(set_parameter(parameters, Profile::px4_v1_5_5, "", 1.0f));
 }
 
 TEST(Parameters, IntegersTakeWholeNumbersOnly) {
   Parameters parameters = default_parameters();
-  EXPECT_TRUE(set_parameter(parameters, "CBRK_RATE_CTRL", 140253.0f));
-  EXPECT_FALSE(set_parameter(parameters, "MC_BAT_SCALE_EN", 0.5f));
-  EXPECT_FALSE(set_parameter(parameters, "MC_BAT_SCALE_EN", NAN));
-  EXPECT_FALSE(set_parameter(parameters, "MC_BAT_SCALE_EN", INFINITY));
+  EXPECT_TRUE(set_parameter(parameters, Profile::px4_v1_5_5, "CBRK_RATE_CTRL", 140253.0f));
+  EXPECT_FALSE(set_parameter(parameters, Profile::px4_v1_5_5, "MC_BAT_SCALE_EN", 0.5f));
+  EXPECT_FALSE(set_parameter(parameters, Profile::px4_v1_5_5, "MC_BAT_SCALE_EN", NAN));
+  EXPECT_FALSE(set_parameter(parameters, Profile::px4_v1_5_5, "MC_BAT_SCALE_EN", INFINITY));
   EXPECT_EQ(parameters.mc_bat_scale_en, 0.0f);
+}
+
+TEST(Parameters, OfAnotherProfileAreRefused) {
+  for (const ParameterInfo& info : parameter_table()) {
+    Parameters parameters = default_parameters();
+    const bool is_set = set_parameter(parameters, Profile::px4_v1_3_4, info.name, 1.0f);
+    EXPECT_EQ(is_set, info.profiles.contains(Profile::px4_v1_3_4)) << info.name;
+  }
+  Parameters parameters = default_parameters();
+  for (const char* name : {"MC_TPA_BREAK", "MC_TPA_SLOPE", "MC_BAT_SCALE_EN"}) {
+    EXPECT_FALSE(set_parameter(parameters, Profile::px4_v1_3_4, name, 1.0f)) << name;
+    EXPECT_TRUE(set_parameter(parameters, Profile::px4_v1_5_5, name, 1.0f)) << name;
+  }
 }
 
 TEST(Gains, TimeConstantsScaleProportionalAndDerivativeOfRollAndPitch) {

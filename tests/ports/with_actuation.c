@@ -67,6 +67,7 @@ static void* mixer_create(const char* profile, const char* definition) {
   m->pitch_scale = (float)pitch / 10000.0f;
   m->yaw_scale = (float)yaw / 10000.0f;
   m->idle = -1.0f + 2.0f * ((float)deadband / 10000.0f);
+  for (int i = 0; i < 8; ++i) m->last[i] = deadband == 0 ? NAN : 0.0f;
   return m;
 }
 
@@ -162,12 +163,11 @@ static int mixer_step(void* self, const attest_mixer_inputs* in, attest_mixer_ou
 
 struct battery {
   float cells, empty, charged, drop, resistance;
-  float remaining;
-  int has_seen_a_sample;
+  float remaining, filtered_v;
 };
 
 static void* battery_create(const char* profile) {
-  static const struct battery fresh = {3.0f, 3.4f, 4.05f, 0.3f, -1.0f, 0.0f, 0};
+  static const struct battery fresh = {0.0f, 3.4f, 4.05f, 0.3f, -1.0f, 1.0f, -1.0f};
   if (strcmp(profile, "px4-v1.5.5") != 0) return NULL;
   struct battery* b = malloc(sizeof *b);
   if (b != NULL) *b = fresh;
@@ -192,21 +192,31 @@ static int battery_set_parameter(void* self, const char* name, float value) {
   return ATTEST_OK;
 }
 
+/* A first-order filter that forgets what is not a number. */
+static void follow(float* state, float sample) {
+  const float next = *state * 0.99f + sample * 0.01f;
+  if (isfinite(next)) *state = next;
+}
+
 static int battery_step(void* self, const attest_battery_inputs* in, attest_battery_outputs* out) {
   struct battery* b = self;
+  const float voltage = in->battery.voltage_v;
   const float range = b->charged - b->empty;
-  float drop = 0.0f;
+  float empty = b->empty;
+  if (b->filtered_v < 0.0f) b->filtered_v = voltage;
+  follow(&b->filtered_v, voltage);
   if (b->resistance >= 0.0f) {
-    drop = in->battery.current_a * b->resistance;
-  } else if (in->battery.armed) {
-    drop = b->drop * (fabsf(in->battery.throttle) + 0.1f) / 1.1f;
+    empty -= in->battery.current_a * b->resistance;
+  } else {
+    const float load = (fabsf(in->battery.throttle) + 0.1f) / 1.1f;
+    empty -= b->drop * (in->battery.armed ? load : 0.0f);
   }
-  const float now = (in->battery.voltage_v / b->cells - (b->empty - drop)) / range;
-  b->remaining = b->has_seen_a_sample ? b->remaining * 0.99f + now * 0.01f : now;
+  follow(&b->remaining, (voltage - b->cells * empty) / (b->cells * range));
   b->remaining = between(0.0f, b->remaining, 1.0f);
-  b->has_seen_a_sample = 1;
-  const float scale = b->charged / (b->empty + range * b->remaining);
-  out->battery_status.scale = !isfinite(scale) || scale < 1.0f ? 1.0f : fminf(scale, 1.3f);
+  float scale = b->charged / (b->empty + range * b->remaining);
+  if (scale > 1.3f) scale = 1.3f;
+  if (!isfinite(scale) || scale < 1.0f) scale = 1.0f;
+  out->battery_status.scale = b->filtered_v > 2.1f ? scale : 1.0f;
   return ATTEST_OK;
 }
 

@@ -52,7 +52,8 @@ typedef struct controller {
   attest_inputs copy;       /* each topic as it was last latched */
   uint32_t pending;         /* ATTEST_UPDATED_ bits of samples not latched yet */
   bool started;             /* false until the first step has begun */
-  bool have_vehicle_status; /* which selects the topics to publish to */
+  bool have_vehicle_status; /* the first one selects the topics to publish to */
+  bool on_virtual_topics;   /* those of a VTOL; vehicle_rates_setpoint is still read */
 
   bool tailsitter; /* tailsitter.c takes the place of attitude.c; decided at the first step */
   bool recovering; /* tailsitter.c: a large tilt is being recovered */

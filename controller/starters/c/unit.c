@@ -108,7 +108,11 @@ static void latch_inputs(controller* c, const attest_inputs* in) {
     c->tailsitter = c->parameters.vtol_type == 0.0f && c->parameters.recovery_enabled != 0.0f;
     c->started = true;
   }
-  if (in->updated & ATTEST_UPDATED_VEHICLE_STATUS) c->have_vehicle_status = true;
+  if ((in->updated & ATTEST_UPDATED_VEHICLE_STATUS) && !c->have_vehicle_status) {
+    /* The first sample selects the topics, for good. */
+    c->have_vehicle_status = true;
+    c->on_virtual_topics = in->vehicle_status.is_vtol != 0;
+  }
   LATCH(manual_control_setpoint, MANUAL_CONTROL_SETPOINT);
   LATCH(vehicle_control_mode, VEHICLE_CONTROL_MODE);
   LATCH(actuator_armed, ACTUATOR_ARMED);
@@ -123,7 +127,8 @@ static void publish_rates_setpoint(controller* c, attest_outputs* out) {
   c->copy.vehicle_rates_setpoint.yaw = c->rates_sp[2];
   c->copy.vehicle_rates_setpoint.thrust = c->thrust_sp;
   if (!c->have_vehicle_status) return;
-  take(c, ATTEST_UPDATED_VEHICLE_RATES_SETPOINT); /* superseded by this newer sample */
+  /* A pending sample from outside is superseded by this newer one, if that is on the same topic. */
+  if (!c->on_virtual_topics) take(c, ATTEST_UPDATED_VEHICLE_RATES_SETPOINT);
   out->vehicle_rates_setpoint.roll = c->rates_sp[0];
   out->vehicle_rates_setpoint.pitch = c->rates_sp[1];
   out->vehicle_rates_setpoint.yaw = c->rates_sp[2];
@@ -226,9 +231,15 @@ static void* create(const char* profile_name) {
 
 static void destroy(void* self) { free(self); }
 
+/* px4-v1.3.4 has neither throttle attenuation nor battery scaling. */
+static bool exists(const controller* c, const char* name) {
+  if (c->profile != PROFILE_PX4_V1_3_4) return true;
+  return strncmp(name, "MC_TPA_", 7) != 0 && strcmp(name, "MC_BAT_SCALE_EN") != 0;
+}
+
 static int set_parameter(void* self, const char* name, float value) {
   for (size_t i = 0; i < PARAMETER_COUNT; i++) {
-    if (strcmp(parameter_table[i].name, name) == 0) {
+    if (strcmp(parameter_table[i].name, name) == 0 && exists(self, name)) {
       write_parameter(self, i, value);
       return ATTEST_OK;
     }
