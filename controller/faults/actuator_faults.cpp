@@ -40,11 +40,17 @@ const Fault battery[] = {
     {"battery-never", "battery", Stage::scaling, "never scales", "scaling switched on",
      "a missing step",
      [](FaultyLaw& law) { change_factor(law, [](float, bool) { return 1.0f; }); }},
-    {"battery-always", "battery", Stage::scaling, "scales without being asked to",
-     "a scale with scaling off", "a condition dropped",
+    {"battery-always",
+     "battery",
+     Stage::scaling,
+     "scales without being asked to",
+     "a scale with scaling off",
+     "a condition dropped",
      [](FaultyLaw& law) {
        change_factor(law, [](float scale, bool) { return scale > 0 ? scale : 1.0f; });
-     }},
+     },
+     {},
+     reference::all_profiles},
     {"battery-unguarded", "battery", Stage::scaling, "scales by zero and less", "a scale of 0",
      "a condition dropped",
      [](FaultyLaw& law) {
@@ -86,14 +92,20 @@ const Fault battery[] = {
          for (float& c : control) c *= factor;
        });
      }},
-    {"battery-clamped", "battery", Stage::scaling, "clamps to 1 after scaling",
-     "controls beyond 1 by the scale", "misplaced clamp",
+    {"battery-clamped",
+     "battery",
+     Stage::scaling,
+     "clamps to 1 after scaling",
+     "controls beyond 1 by the scale",
+     "misplaced clamp",
      [](FaultyLaw& law) {
        scale_otherwise(law, [](Controls& control, float factor) {
          for (int i = 0; i < 4; ++i)
            control[i] = reference::clamp(control[i] * factor, -1.0f, 1.0f);
        });
-     }},
+     },
+     {},
+     reference::all_profiles},
     {"battery-before-guard", "battery", Stage::scaling, "scales before it asks for finite",
      "an infinite scale", "order of stages",
      [](FaultyLaw& law) {
@@ -132,17 +144,29 @@ const Fault battery[] = {
 };
 
 const Fault actuators[] = {
-    {"gear-missing", "actuators", Stage::output, "does not pass the landing gear on",
-     "a landing gear", "a missing step",
+    {"gear-missing",
+     "actuators",
+     Stage::output,
+     "does not pass the landing gear on",
+     "a landing gear",
+     "a missing step",
      [](FaultyLaw& law) {
        change_controls(law, [](Controls& control, const attest_inputs&) { control[7] = 0; });
-     }},
-    {"gear-on-4", "actuators", Stage::output, "puts the landing gear on control 4",
-     "a landing gear", "wrong index",
+     },
+     {},
+     reference::from_v1_5_5},
+    {"gear-on-4",
+     "actuators",
+     Stage::output,
+     "puts the landing gear on control 4",
+     "a landing gear",
+     "wrong index",
      [](FaultyLaw& law) {
        change_controls(
            law, [](Controls& control, const attest_inputs&) { std::swap(control[4], control[7]); });
-     }},
+     },
+     {},
+     reference::from_v1_5_5},
     {"gear-at-once", "actuators", Stage::output, "takes the landing gear in every mode",
      "a setpoint in acro", "a latch",
      [](FaultyLaw& law) {
@@ -150,13 +174,19 @@ const Fault actuators[] = {
          control[7] = in.vehicle_attitude_setpoint.landing_gear;
        });
      }},
-    {"gear-clamped", "actuators", Stage::output, "clamps the landing gear to 0 .. 1",
-     "a landing gear of -1", "misplaced clamp",
+    {"gear-clamped",
+     "actuators",
+     Stage::output,
+     "clamps the landing gear to 0 .. 1",
+     "a landing gear of -1",
+     "misplaced clamp",
      [](FaultyLaw& law) {
        change_controls(law, [](Controls& control, const attest_inputs&) {
          control[7] = reference::clamp(control[7], 0.0f, 1.0f);
        });
-     }},
+     },
+     {},
+     reference::from_v1_5_5},
     {"breaker-ignored", "actuators", Stage::output, "has no circuit breaker", "CBRK_RATE_CTRL",
      "a missing step",
      [](FaultyLaw& law) {

@@ -82,9 +82,15 @@ const Fault faults[] = {
          return t > takeoff_thrust && !(l.lower && l.upper);
        });
      }},
-    {"gate-yaw-dropped", "anti_windup", Stage::gate, "integrates yaw at the yaw limit",
-     "the yaw limit", "a condition dropped",
-     [](FaultyLaw& law) { use_gates(law, {.obeys_yaw_flag = false}); }},
+    {"gate-yaw-dropped",
+     "anti_windup",
+     Stage::gate,
+     "integrates yaw at the yaw limit",
+     "the yaw limit",
+     "a condition dropped",
+     [](FaultyLaw& law) { use_gates(law, {.obeys_yaw_flag = false}); },
+     {},
+     reference::from_v1_5_5},
     {"gate-yaw-for-all", "anti_windup", Stage::gate, "freezes all axes at the yaw limit",
      "the yaw limit", "wrong axis",
      [](FaultyLaw& law) {

@@ -134,6 +134,27 @@ const Fault faults[] = {
          if (out.actuator_controls_0.published == 0) out.mc_att_ctrl_status.published = 0;
        });
      }},
+    {"limits-armed-only", "arming", Stage::input, "takes motor limits only while armed",
+     "a limit that changes while disarmed", "a condition added",
+     [](FaultyLaw& law) {
+       also_before(law, [](attest_inputs& in) {
+         if (in.actuator_armed.armed == 0) {
+           in.updated &= ~std::uint32_t{ATTEST_UPDATED_MULTIROTOR_MOTOR_LIMITS};
+         }
+       });
+     }},
+    {"previous-rates-shared", "instances", Stage::d,
+     "keeps the rates of the step before where all instances see them", "a second instance",
+     "static state",
+     [](FaultyLaw& law) {
+       law.rate.derivative = [](const Vector&, const Vector& rates, float dt,
+                                const RateGains& gains) {
+         static Vector prev = Vector::Zero();
+         const Vector d = RateStages::Law::derivative(prev, rates, dt, gains);
+         prev = rates;
+         return d;
+       };
+     }},
     {"vtol-silent", "arming", Stage::output, "publishes no actuators for a VTOL", "is_vtol",
      "a helpful extra",
      [](FaultyLaw& law) {

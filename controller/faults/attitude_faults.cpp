@@ -179,6 +179,14 @@ const Fault faults[] = {
      [](FaultyLaw& law) {
        change_tilt_angle(law, [](float s, float c) { return std::atan2(s, c) * s; });
      }},
+    {"tilt-dead-zone", "attitude", Stage::tilt, "takes tilts below 0.01 rad for none",
+     "a tilt error below 0.6 deg", "a helpful extra",
+     [](FaultyLaw& law) {
+       change_tilt_angle(law, [](float sine, float cosine) {
+         const float angle = std::atan2(sine, cosine);
+         return angle < 0.01f ? 0.0f : angle;
+       });
+     }},
     {"tilt-dead-band", "attitude", Stage::tilt, "takes tilts below 0.06 deg for none",
      "a tiny error", "wrong branch threshold",
      [](FaultyLaw& law) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -55,11 +56,16 @@ struct Fault {
   void (*put_in)(FaultyLaw& law);
   // Not empty: no input can tell it from the law, and why.
   std::string_view equivalent = {};
+  // The profiles in which some input can: those that have what is wrong here. Empty: those of the
+  // fault's subject, which the catalogue fills in.
+  std::optional<reference::ProfileSet> profiles = {};
 
-  bool is_killable() const { return equivalent.empty(); }
+  bool is_killable(Profile profile) const {
+    return equivalent.empty() && profiles->contains(profile);
+  }
 };
 
-// In the order of the groups.
+// In the order of the groups. The pointers stay valid until the program ends.
 std::span<const Fault* const> catalogue();
 
 // Null when there is none of that id.

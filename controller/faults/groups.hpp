@@ -25,6 +25,7 @@ std::span<const Fault> timing_faults();
 std::span<const Fault> robustness_faults();
 std::span<const Fault> tailsitter_faults();
 std::span<const Fault> actuator_faults();
+std::span<const Fault> v1_3_4_faults();
 std::span<const Fault> mixer_faults();
 std::span<const Fault> mixer_fit_faults();
 std::span<const Fault> battery_status_faults();

@@ -101,8 +101,12 @@ const Fault faults[] = {
          return filtered;
        };
      }},
-    {"ff-of-change", "rates", Stage::ff, "feeds the setpoint's change forward, as v1.3.4",
-     "a feed-forward gain", "another version of the law",
+    {"ff-of-change",
+     "rates",
+     Stage::ff,
+     "feeds the setpoint's change forward, as v1.3.4",
+     "a feed-forward gain",
+     "another version of the law",
      [](FaultyLaw& law) {
        auto seen = watch(law);
        law.rate.feed_forward = [seen](V rates_sp, const RateGains& gains) {
@@ -111,15 +115,23 @@ const Fault faults[] = {
          seen->last = rates_sp;
          return ff;
        };
-     }},
-    {"ff-on-error", "rates", Stage::ff, "feeds the error forward", "a feed-forward gain",
+     },
+     {},
+     reference::from_v1_5_5},
+    {"ff-on-error",
+     "rates",
+     Stage::ff,
+     "feeds the error forward",
+     "a feed-forward gain",
      "a wrong input",
      [](FaultyLaw& law) {
        auto seen = watch(law);
        law.rate.feed_forward = [seen](V, const RateGains& gains) {
          return RateStages::Law::feed_forward(seen->error, gains);
        };
-     }},
+     },
+     {},
+     reference::from_v1_5_5},
     {"i-before-control", "rates", Stage::i, "adds this step's error before it controls",
      "a rate error", "order of stages",
      [](FaultyLaw& law) {

@@ -115,13 +115,19 @@ const Fault limit_faults[] = {
          return Vector(bound[1], bound[0], bound[2]);
        });
      }},
-    {"auto-by-velocity", "rate_limit", Stage::mode, "takes velocity control alone for autonomous",
-     "DESCEND, which has no velocity control", "a condition dropped",
+    {"auto-by-velocity",
+     "rate_limit",
+     Stage::mode,
+     "takes velocity control alone for autonomous",
+     "DESCEND, which has no velocity control",
+     "a condition dropped",
      [](FaultyLaw& law) {
        change_autonomous(law, [](const Mode& mode) {
          return mode.flag_control_velocity_enabled != 0 && mode.flag_control_manual_enabled == 0;
        });
-     }},
+     },
+     {},
+     reference::from_v1_5_5},
     {"auto-by-auto", "rate_limit", Stage::mode, "takes the auto flag alone for autonomous",
      "velocity control without the auto flag", "a condition dropped",
      [](FaultyLaw& law) {

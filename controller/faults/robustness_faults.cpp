@@ -61,14 +61,20 @@ const Fault faults[] = {
          return command;
        };
      }},
-    {"nan-thrust-no-p", "robustness", Stage::guard, "attenuates by 0 at a NaN thrust",
-     "a NaN thrust", "NaN handling",
+    {"nan-thrust-no-p",
+     "robustness",
+     Stage::guard,
+     "attenuates by 0 at a NaN thrust",
+     "a NaN thrust",
+     "NaN handling",
      [](FaultyLaw& law) {
        law.rate.throttle_attenuation = [](float thrust, const RateGains& gains) {
          const float factor = RateStages::Law::throttle_attenuation(thrust, gains);
          return std::isnan(thrust) ? 0.0f : factor;
        };
-     }},
+     },
+     {},
+     reference::from_v1_5_5},
     {"nan-poisons-integral", "robustness", Stage::guard, "refuses only what is beyond the bound",
      "a NaN rate", "NaN handling",
      [](FaultyLaw& law) {

@@ -1,7 +1,7 @@
 // A case: a situation that a controller must handle like the reference, as plain data.
 //
 // Read from cases/<profile>/<group>/<behaviour>.toml (parse.hpp, SCHEMA.md), made into the inputs
-// of a unit at one loop rate by stimulus.hpp.
+// of a unit at one loop rate by stimulus.hpp. A file that names several profiles is a case of each.
 #pragma once
 
 #include <array>
@@ -99,10 +99,19 @@ struct EitherSide {
   bool any() const { return yaw_wrap || shorter_rotation; }
 };
 
+// How instances of the port come and go around the one that is judged.
+enum class Instances : std::uint8_t {
+  one,
+  again,     // another one has run to its end and was destroyed
+  together,  // another one is given other inputs, by turns with this one
+  crossed,   // another one was made before this one, ran, and was destroyed after this was made
+};
+
 struct Case {
   std::filesystem::path file;
-  std::string sha256;   // of the file: a golden of another version of it is stale
-  std::string profile;  // version of the law: "px4-v1.5.5"
+  std::string sha256;                 // of the file: a golden of another version of it is stale
+  std::string profile;                // version of the law that this is a case of: "px4-v1.5.5"
+  std::vector<std::string> profiles;  // of the file; the first is that of its folder
   std::string group;
   std::string name;  // stem of the file
   std::string why;   // which mistake or property it is there for
@@ -118,6 +127,7 @@ struct Case {
   // Where bits are the platform's (its exp and acos) and not the law's: never compared exactly.
   bool numeric_only = false;
   EitherSide either_side;
+  Instances instances = Instances::one;
   std::optional<Flight> flight;      // empty: open loop, every input is scripted
   Part part = Part::mc_att_control;  // which is given the inputs
   std::string mixer;                 // of Part::mixer, its definition
@@ -126,6 +136,13 @@ struct Case {
   std::vector<Setup> setups() const;
 
   std::string id() const { return profile + "/" + group + "/" + name; }
+
+  // The inputs and most answers are the same in all profiles of the file: the golden of the first
+  // holds them, those of the others hold what differs.
+  bool is_of_first_profile() const { return profiles.empty() || profile == profiles.front(); }
+
+  // The same case of another profile of its file.
+  Case in_profile(const std::string& other) const;
 };
 
 }  // namespace attest

@@ -119,6 +119,18 @@ EitherSide parse_either_side(const TomlTable& root) {
   return sides;
 }
 
+Instances parse_instances(const TomlTable& root) {
+  constexpr const char* key = "instances";
+  if (!root.has(key)) return Instances::one;
+  if (root.has("flight")) root.error(key, "is for open loop; leave [flight] out");
+  const std::string text = root.text(key);
+  if (text == "again") return Instances::again;
+  if (text == "together") return Instances::together;
+  if (text == "crossed") return Instances::crossed;
+  root.error(key, "must be again, together or crossed");
+  return Instances::one;
+}
+
 // What jitter and dropped ticks may be depends on the rates and the duration.
 void check_unit(const TomlTable& root, const Case& parsed) {
   const bool is_known = parsed.duration.amount > 0 && !parsed.rates.empty();
@@ -167,11 +179,14 @@ void parse_part(const TomlTable& root, Case& parsed) {
 }
 
 void check_parameter_name(const TomlTable& table, const std::string& name, const Case& parsed) {
-  const std::vector<std::string> known = parameter_names(parsed.part, parsed.profile);
-  if (std::find(known.begin(), known.end(), name) != known.end()) return;
-  table.error(name, fmt::format("{} has no parameter `{}`{}; `attest list --parameters --profile "
-                                "{}` shows them all",
-                                parsed.profile, name, suggestion(name, known), parsed.profile));
+  for (const std::string& profile : parsed.profiles) {
+    const std::vector<std::string> known = parameter_names(parsed.part, profile);
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    table.error(name, fmt::format("unknown parameter `{}`{}; `attest list --parameters --profile "
+                                  "{}` shows those of {}",
+                                  name, suggestion(name, known), profile, profile));
+    return;
+  }
 }
 
 std::vector<ParameterStimulus> parse_parameters(const TomlTable& root, const Case& parsed) {
@@ -208,21 +223,34 @@ void parse_tolerances(const TomlTable& root, Case& parsed) {
   }
 }
 
+// A file is a case of each of its profiles, and stands in the folder of the first.
+void parse_profiles(const TomlTable& root, const std::string& folder, Case& parsed) {
+  constexpr const char* key = "profiles";
+  parsed.profiles = root.texts(key);
+  if (parsed.profiles.empty()) {
+    if (root.has(key)) root.error(key, "names no profile");
+    parsed.profiles = {folder};
+  }
+  parsed.profile = parsed.profiles.front();
+  if (root.has(key) && parsed.profile != folder) {
+    root.error(key,
+               fmt::format("begins with `{}`, but the folder is `{}`", parsed.profile, folder));
+  }
+  const std::set<std::string> distinct(parsed.profiles.begin(), parsed.profiles.end());
+  if (distinct.size() != parsed.profiles.size()) root.error(key, "names a profile twice");
+}
+
 // The place of a case is its name: cases/<profile>/<group>/<name>.toml.
 void parse_identity(const TomlTable& root, const fs::path& file, Case& parsed) {
   // Normal, because the folder of "./roll.toml" is not called ".".
   const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
   parsed.name = file.stem().string();
-  parsed.profile = root.text("profile");
+  parse_profiles(root, folder.parent_path().filename().string(), parsed);
   parsed.group = root.text("group");
   parsed.why = root.text("why");
   if (root.has("group") && parsed.group != folder.filename()) {
     root.error("group", fmt::format("is `{}`, but the folder is `{}`", parsed.group,
                                     folder.filename().string()));
-  }
-  if (root.has("profile") && parsed.profile != folder.parent_path().filename()) {
-    root.error("profile", fmt::format("is `{}`, but the folder is `{}`", parsed.profile,
-                                      folder.parent_path().filename().string()));
   }
   if (root.has("why") && parsed.why.empty()) root.error("why", "must say why the case exists");
 }
@@ -262,6 +290,7 @@ void parse_body(const TomlTable& root, Case& parsed) {
     if (level != "numeric" && level != "exact") root.error("level", "must be numeric or exact");
   }
   parsed.either_side = parse_either_side(root);
+  parsed.instances = parse_instances(root);
   parsed.unit = parse_unit(root);
   check_unit(root, parsed);
   parsed.parameters = parse_parameters(root, parsed);

@@ -10,9 +10,9 @@
 
 namespace attest {
 
-// Reads cases/<profile>/<group>/<name>.toml. Errors, all of them at once with file:line: syntax,
-// unknown keys (with the nearest known one), values out of range, a profile or group that is not
-// that of the folder.
+// Reads cases/<profile>/<group>/<name>.toml, as a case of the first of its profiles. Errors, all of
+// them at once with file:line: syntax, unknown keys (with the nearest known one), values out of
+// range, a first profile or a group that is not that of the folder.
 Result<Case> parse_case(const std::filesystem::path& file);
 
 // The case files below a folder, in the order of their paths. Errors: no such folder, no cases.

@@ -147,6 +147,11 @@ void add_faults(CLI::App& app, const Globals& globals, Action& action) {
       "faults", "How good the suite is: which wrong controllers of the catalogue it catches");
   CLI::Option* const ids =
       command->add_option("fault", options->ids, "Only these faults")->type_name("ID");
+  command
+      ->add_option("--profile", options->profiles, "Only by the cases of this version of the law")
+      ->type_name("PROFILE")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   command->add_flag("--list", options->list, "What is in the catalogue; runs nothing");
   CLI::Option* const bits =
       command

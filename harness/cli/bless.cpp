@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include "harness/casefile/stimulus.hpp"
@@ -15,6 +16,7 @@
 #include "harness/cli/suite_folder.hpp"
 #include "harness/plant/fleet.hpp"
 #include "harness/port/port.hpp"
+#include "harness/run/decimate.hpp"
 #include "harness/run/golden.hpp"
 #include "harness/run/open_loop.hpp"
 #include "harness/run/other_side.hpp"
@@ -36,6 +38,21 @@ Result<void> check_reference(const SuiteFolder& suite) {
                   check->traces - check->conforming, check->traces, check->first_difference));
 }
 
+// Who blesses has to know which goldens only our own code has seen.
+Result<void> note_uncovered(const std::vector<SelectedCase>& cases, const SuiteFolder& suite) {
+  const auto covered = covered_groups(suite.recorded());
+  if (!covered) return tl::unexpected(covered.error());
+  std::set<std::string> uncovered;
+  for (const SelectedCase& one : cases) {
+    const std::string group = one.the_case.profile + "/" + one.the_case.group;
+    if (!covered->contains(group)) uncovered.insert(group);
+  }
+  if (uncovered.empty()) return {};
+  fmt::print(stderr, "attest: note: no recording of the firmware covers {}\n",
+             fmt::join(uncovered, ", "));
+  return {};
+}
+
 Result<GoldenTrace> open_loop_trace(const Case& the_case, const Setup& setup, Port& port) {
   Trace trace = stimulate(the_case, setup.rate);
   if (const auto fault = drive(port, subject_of(the_case), trace)) {
@@ -45,6 +62,8 @@ Result<GoldenTrace> open_loop_trace(const Case& the_case, const Setup& setup, Po
   auto others = other_sides(the_case, golden.trace);
   if (!others) return tl::unexpected(others.error());
   golden.other_sides = std::move(*others);
+  golden.is_whole = keeps_every_tick(golden.trace.samples.size());
+  if (!golden.is_whole) golden.trace = decimated(golden.trace);
   return golden;
 }
 
@@ -69,7 +88,7 @@ Result<Reference> reference_of(const Case& the_case, Port& port, Fleet& fleet) {
     auto flight = reference_flight(the_case, setup, **airframe);
     if (!flight) return tl::unexpected(flight.error());
     reference.traces.push_back(
-        {setup, std::move(flight->rows), flight->horizon_s, std::move(flight->metrics)});
+        {setup, std::move(flight->rows), false, flight->horizon_s, std::move(flight->metrics)});
     for (auto& file : (*airframe)->vehicle().files()) files.insert(std::move(file));
   }
   reference.vehicle_files.assign(files.begin(), files.end());
@@ -169,26 +188,66 @@ struct Pending {
   std::size_t unchanged = 0;
 };
 
-Result<Pending> write_beside(const std::vector<SelectedCase>& cases, const SuiteFolder& suite,
-                             const std::string& reason) {
-  auto port = open_port("builtin");
-  if (!port) return tl::unexpected(port.error());
-  Fleet fleet(suite.models());
-  Pending pending;
-  for (const SelectedCase& selected : cases) {
-    const Case& the_case = selected.the_case;
-    const auto reference = reference_of(the_case, **port, fleet);
+// What makes a golden, and where it goes.
+struct Blessing {
+  Port& port;
+  Fleet& fleet;
+  std::filesystem::path golden_root;
+  std::string reason;
+};
+
+// A file with all its profiles: the goldens of the others rest on that of the first.
+Result<void> write_file_beside(const Case& first, Blessing& blessing, Pending& pending) {
+  Reference of_first;
+  std::filesystem::path base_folder = golden_folder(blessing.golden_root, first);
+  bool base_changes = false;
+  for (const std::string& profile : first.profiles) {
+    const Case the_case = first.in_profile(profile);
+    auto reference = reference_of(the_case, blessing.port, blessing.fleet);
     if (!reference) return tl::unexpected(reference.error());
-    const std::string line = summary(the_case, reference->traces, suite.golden());
+    const bool is_first = the_case.is_of_first_profile();
+    if (is_first) of_first = *reference;
+    std::string line = summary(the_case, reference->traces, blessing.golden_root);
+    if (line.empty() && base_changes && !the_case.flight)
+      line = fmt::format("{}: its base changes", the_case.id());
     if (line.empty()) {
       ++pending.unchanged;
       continue;
     }
     fmt::print("{}\n", line);
-    auto golden = NewGolden::write(suite.golden(), the_case, reference->traces,
-                                   reference->vehicle_files, reason);
+    const GoldenBase base{of_first.traces, base_folder};
+    // Ticks that are kept are not those that another profile keeps.
+    const bool rests_on_base =
+        !is_first && std::all_of(reference->traces.begin(), reference->traces.end(),
+                                 [](const GoldenTrace& trace) { return trace.is_whole; });
+    auto golden = NewGolden::write(blessing.golden_root, the_case, reference->traces,
+                                   reference->vehicle_files, blessing.reason,
+                                   rests_on_base ? &base : nullptr);
     if (!golden) return tl::unexpected(golden.error());
+    if (is_first) {
+      base_folder = golden->written();
+      base_changes = true;
+    }
     pending.goldens.push_back(std::move(*golden));
+  }
+  return {};
+}
+
+Result<Pending> write_beside(const std::vector<SelectedCase>& cases, const SuiteFolder& suite,
+                             const std::string& reason) {
+  auto port = open_port("builtin");
+  if (!port) return tl::unexpected(port.error());
+  Fleet fleet(suite.models());
+  Blessing blessing{**port, fleet, suite.golden(), reason};
+  Pending pending;
+  std::set<std::filesystem::path> done;
+  for (const SelectedCase& selected : cases) {
+    const Case& the_case = selected.the_case;
+    if (!done.insert(the_case.file).second) continue;
+    const Case first = the_case.in_profile(the_case.profiles.front());
+    if (auto written = write_file_beside(first, blessing, pending); !written) {
+      return tl::unexpected(written.error());
+    }
   }
   return pending;
 }
@@ -208,6 +267,7 @@ Result<int> bless_selected(const BlessOptions& options, const Globals& globals) 
   const auto cases = options.select.cases_in(suite->cases());
   if (!cases) return tl::unexpected(cases.error());
   if (auto checked = check_reference(*suite); !checked) return tl::unexpected(checked.error());
+  if (auto noted = note_uncovered(*cases, *suite); !noted) return tl::unexpected(noted.error());
   auto pending = write_beside(*cases, *suite, options.reason);
   if (!pending) return tl::unexpected(pending.error());
 

@@ -143,7 +143,8 @@ struct TimeCommandOptions {
 int time_command(const TimeCommandOptions& options, const Globals& globals);
 
 struct FaultOptions {
-  std::vector<std::string> ids;  // empty: all
+  std::vector<std::string> ids;       // empty: all
+  std::vector<std::string> profiles;  // empty: all
   bool list = false;
   bool diagnose = false;
   std::optional<int> fraction_bits;

@@ -5,14 +5,15 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "controller/reference/profile.hpp"
-#include "harness/casefile/parse.hpp"
 #include "harness/cli/command.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/version.hpp"
 #include "harness/run/golden.hpp"
 #include "harness/suite/recorded_check.hpp"
+#include "harness/suite/select.hpp"
 #include "harness/suite/worker.hpp"
 
 namespace attest::cli {
@@ -46,22 +47,35 @@ void examine_arithmetic(Examination& examination) {
 }
 
 void examine_cases(const SuiteFolder& suite, Examination& examination) {
-  const auto files = find_case_files(suite.cases());
-  if (!files) return examination.bad("cases", files.error().to_string());
+  const auto cases = select_cases(suite.cases(), {});
+  if (!cases) return examination.bad("cases", cases.error().to_string());
   std::size_t vectors = 0;
   std::vector<std::string> stale;
-  for (const auto& file : *files) {
-    const auto parsed = parse_case(file);
-    if (!parsed) return examination.bad("cases", parsed.error().to_string());
-    vectors += parsed->setups().size();
-    if (const auto golden = Golden::open(suite.golden(), *parsed); !golden) {
+  for (const auto& [the_case, setups] : *cases) {
+    vectors += setups.size();
+    if (const auto golden = Golden::open(suite.golden(), the_case); !golden) {
       stale.push_back(golden.error().to_string());
     }
   }
-  examination.good("cases", fmt::format("{} cases, {} with all their setups, in {}", files->size(),
+  examination.good("cases", fmt::format("{} cases, {} with all their setups, in {}", cases->size(),
                                         vectors, suite.cases().string()));
   if (stale.empty()) return examination.good("golden", "one for each case, none stale");
   examination.bad("golden", fmt::format("{} missing or stale; first: {}", stale.size(), stale[0]));
+}
+
+// No fault of the machine, but what a reader of a verdict should know.
+void examine_coverage(const SuiteFolder& suite, Examination& examination) {
+  const auto covered = covered_groups(suite.recorded());
+  if (!covered) return examination.bad("recordings", covered.error().to_string());
+  std::vector<std::string> uncovered;
+  for (const std::string& group : suite.groups()) {
+    if (!covered->contains(group)) uncovered.push_back(group);
+  }
+  examination.good("recordings", uncovered.empty()
+                                     ? std::string("cover every group")
+                                     : fmt::format("no recording covers {}; what is right there "
+                                                   "rests on the description of the law",
+                                                   fmt::join(uncovered, ", ")));
 }
 
 void examine_reference(const SuiteFolder& suite, Examination& examination) {
@@ -95,6 +109,7 @@ int doctor_command(const DoctorOptions& options, const Globals& globals) {
   if (const auto suite = find_suite(globals.suite)) {
     examine_cases(*suite, examination);
     examine_reference(*suite, examination);
+    examine_coverage(*suite, examination);
   } else {
     examination.bad("suite", suite.error().to_string());
   }

@@ -1,4 +1,7 @@
+#include <algorithm>
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/cli/command.hpp"
 #include "harness/cli/interrupt.hpp"
@@ -37,21 +40,25 @@ Result<std::vector<const Fault*>> chosen(const FaultOptions& options) {
 }
 
 // Flights catch what open loop catches, but take a thousand times as long.
-Result<std::vector<SelectedCase>> open_loop_cases(const SuiteFolder& suite) {
-  auto cases = select_cases(suite.cases(), {});
+Result<std::vector<SelectedCase>> open_loop_cases(const SuiteFolder& suite,
+                                                  const std::string& profile) {
+  Selection selection;
+  selection.profiles = {profile};
+  auto cases = select_cases(suite.cases(), selection);
   if (!cases) return cases;
   std::erase_if(*cases, [](const SelectedCase& one) { return one.the_case.flight.has_value(); });
   return cases;
 }
 
-std::vector<FaultFinding> find_naively(const std::vector<const Fault*>& faults) {
+std::vector<FaultFinding> find_naively(const std::vector<const Fault*>& faults,
+                                       const std::string& profile) {
   std::vector<FaultFinding> findings;
   for (const Fault* fault : faults) {
     const auto port = open_fault(fault->id);
     FaultFinding finding;
     finding.fault = fault;
-    finding.by_hover = caught_by_hover(**port);
-    finding.by_random_attitudes = caught_by_random_attitudes(**port);
+    finding.by_hover = caught_by_hover(**port, profile);
+    finding.by_random_attitudes = caught_by_random_attitudes(**port, profile);
     findings.push_back(std::move(finding));
   }
   return findings;
@@ -75,8 +82,8 @@ int verdict(const std::vector<FaultFinding>& findings) {
   return good ? exit_ok : exit_failed;
 }
 
-int diagnose_all(const std::vector<SelectedCase>& cases) {
-  const std::vector<SelfDiagnosis> results = diagnose_catalogue(cases);
+int diagnose_all(const std::vector<SelectedCase>& cases, faults::Profile profile) {
+  const std::vector<SelfDiagnosis> results = diagnose_catalogue(cases, profile);
   std::size_t named = 0, stages = 0;
   for (const SelfDiagnosis& result : results) {
     named += result.is_named() ? 1 : 0;
@@ -87,11 +94,54 @@ int diagnose_all(const std::vector<SelectedCase>& cases) {
   }
   const double part = 100 * static_cast<double>(named) / static_cast<double>(results.size());
   fmt::print(
-      "{} of {} faults are named first, or with those that they cannot be told from "
+      "{}: {} of {} faults are named first, or with those that they cannot be told from "
       "({:.1f}%); the stage of {} is\n",
-      named, results.size(), part, stages);
+      name_of(profile), named, results.size(), part, stages);
   constexpr double enough = 95;
   return part >= enough ? exit_ok : exit_failed;
+}
+
+// Whether every fault that the profile can tell is caught, by its own group.
+Result<int> measure(const FaultOptions& options, const SuiteFolder& suite, faults::Profile profile,
+                    const std::vector<const Fault*>& faults) {
+  const std::string name(name_of(profile));
+  const auto cases = open_loop_cases(suite, name);
+  if (!cases) return tl::unexpected(cases.error());
+  if (options.diagnose) return diagnose_all(*cases, profile);
+  Batches batches;
+  for (const Fault* fault : faults) {
+    batches.push_back(std::make_unique<FaultBatch>(*fault, profile, *cases, suite.golden(),
+                                                   options.fraction_bits));
+  }
+  WorkerOptions worker;
+  worker.jobs = options.jobs;
+  worker.timeout_s = 600;  // of one fault that nothing catches
+  worker.stop = interrupted;
+  const WorkerOutcome outcome = run_batches(batches, worker);
+  if (interrupted()) return exit_interrupted;
+  if (!outcome.errors.empty()) return tl::unexpected(outcome.errors.front());
+  std::vector<FaultFinding> findings = find_naively(faults, name);
+  for (std::size_t i = 0; i < findings.size(); ++i) findings[i].result = outcome.results[i];
+  fmt::print("{}", render_fault_table(findings));
+  return verdict(findings);
+}
+
+// Those asked for; all when none is.
+Result<std::vector<faults::Profile>> chosen_profiles(const FaultOptions& options) {
+  const auto known = reference::profile_names();
+  std::vector<std::string> names = options.profiles;
+  if (names.empty()) names.assign(known.begin(), known.end());
+  std::vector<faults::Profile> profiles;
+  for (const std::string& name : names) {
+    const auto profile = reference::profile_from_name(name);
+    if (!profile) {
+      return fail(fmt::format("no profile `{}`{}; there are {}", name,
+                              suggestion(name, {known.begin(), known.end()}),
+                              fmt::join(known, ", ")));
+    }
+    profiles.push_back(*profile);
+  }
+  return profiles;
 }
 
 }  // namespace
@@ -105,27 +155,19 @@ int faults_command(const FaultOptions& options, const Globals& globals) {
   if (!suite) return report_error(suite.error());
   const auto faults = chosen(options);
   if (!faults) return report_error(faults.error());
-  const auto cases = open_loop_cases(*suite);
-  if (!cases) return report_error(cases.error());
-
-  if (options.diagnose) return diagnose_all(*cases);
-  Batches batches;
-  for (const Fault* fault : *faults) {
-    batches.push_back(
-        std::make_unique<FaultBatch>(*fault, *cases, suite->golden(), options.fraction_bits));
-  }
+  const auto profiles = chosen_profiles(options);
+  if (!profiles) return report_error(profiles.error());
   note_interrupts();
-  WorkerOptions worker;
-  worker.jobs = options.jobs;
-  worker.timeout_s = 600;  // of one fault that nothing catches
-  worker.stop = interrupted;
-  const WorkerOutcome outcome = run_batches(batches, worker);
-  if (interrupted()) return exit_interrupted;
-  if (!outcome.errors.empty()) return report_error(outcome.errors.front());
-  std::vector<FaultFinding> findings = find_naively(*faults);
-  for (std::size_t i = 0; i < findings.size(); ++i) findings[i].result = outcome.results[i];
-  fmt::print("{}", render_fault_table(findings));
-  return verdict(findings);
+  int worst = exit_ok;
+  for (const faults::Profile profile : *profiles) {
+    if (profile != profiles->front()) fmt::print("\n");
+    if (!options.diagnose) fmt::print("### {}\n\n", name_of(profile));
+    const auto code = measure(options, *suite, profile, *faults);
+    if (!code) return report_error(code.error());
+    if (*code == exit_interrupted) return *code;
+    worst = std::max(worst, *code);
+  }
+  return worst;
 }
 
 }  // namespace attest::cli

@@ -1,6 +1,7 @@
 #include "harness/cli/find_case.hpp"
 
 #include <filesystem>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -17,7 +18,11 @@ Result<Case> find_case(const std::string& name, const SuiteFolder& suite) {
   selection.filters = {name};
   const auto found = select_cases(suite.cases(), selection);
   if (!found) return tl::unexpected(found.error());
-  if (found->size() == 1) return found->front().the_case;
+  // One file that is a case of several profiles is meant in the first of them.
+  std::set<std::filesystem::path> files;
+  for (const SelectedCase& one : *found) files.insert(one.the_case.file);
+  const Case& first = found->front().the_case;
+  if (files.size() == 1) return found->size() == 1 ? first : first.in_profile(first.profiles[0]);
   return fail(fmt::format("`{}` names {} cases, the first {} and {}; name one", name, found->size(),
                           (*found)[0].the_case.id(), (*found)[1].the_case.id()));
 }

@@ -11,8 +11,9 @@
 
 namespace attest::cli {
 
-// `name` is a case file, or the name or pattern of exactly one case. Errors: it is no flight; it
-// names none or several.
+// `name` is a case file, or the name, pattern or id of exactly one. Of a file with several profiles
+// it is the case of the first, unless the id says another. Errors: it is no flight; it names none
+// or several.
 Result<Case> find_flight(const std::string& name, const SuiteFolder& suite);
 
 // With what flies it: empty texts leave that to the case, whose lead vehicle and first plant fly.

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "harness/suite/select.hpp"
+
 namespace attest::cli {
 namespace {
 
@@ -34,14 +36,10 @@ std::string SuiteFolder::version_of(const fs::path& folder) const {
 
 std::vector<std::string> SuiteFolder::groups() const {
   std::set<std::string> names;
-  std::error_code error;
-  for (const auto& profile : fs::directory_iterator(cases(), error)) {
-    if (!profile.is_directory(error)) continue;
-    for (const auto& group : fs::directory_iterator(profile.path(), error)) {
-      if (!group.is_directory(error)) continue;
-      names.insert(fs::relative(group.path(), cases(), error).string());
-    }
-  }
+  const auto all = select_cases(cases(), {});
+  if (!all) return {};
+  for (const SelectedCase& one : *all)
+    names.insert(one.the_case.profile + "/" + one.the_case.group);
   return {names.begin(), names.end()};
 }
 

@@ -20,7 +20,8 @@ struct SuiteFolder {
   // Of cases() or golden(): what the file VERSION there says, or "unversioned".
   std::string version_of(const std::filesystem::path& folder) const;
 
-  // The groups that there are: "px4-v1.5.5/tpa", sorted.
+  // The groups that there are, profile by profile: "px4-v1.5.5/tpa", sorted. Reads the case files;
+  // none when one of them is malformed, which select_cases() reports.
   std::vector<std::string> groups() const;
 };
 

@@ -22,7 +22,7 @@ std::vector<std::pair<std::string, GroupCount>> by_group(
     auto found = std::find_if(groups.begin(), groups.end(),
                               [&](const auto& known) { return known.first == group; });
     if (found == groups.end()) found = groups.insert(groups.end(), {group, {}});
-    if (!finding.fault->is_killable()) continue;
+    if (!finding.is_killable()) continue;
     GroupCount& count = found->second;
     ++count.killable;
     count.by_own += finding.is_caught_by_own_group() ? 1 : 0;
@@ -33,7 +33,8 @@ std::vector<std::pair<std::string, GroupCount>> by_group(
 }
 
 std::string caught_by(const FaultFinding& finding) {
-  if (!finding.fault->is_killable()) {
+  if (!finding.is_killable()) {
+    if (finding.fault->equivalent.empty()) return "the profile does not have this";
     return fmt::format("equivalent: {}", finding.fault->equivalent);
   }
   if (!finding.is_caught()) return "**survives**";
@@ -59,6 +60,10 @@ double percent(std::size_t part, std::size_t whole) {
 
 }  // namespace
 
+bool FaultFinding::is_killable() const {
+  return fault->is_killable(*reference::profile_from_name(result.profile));
+}
+
 bool FaultFinding::is_caught_by_own_group() const {
   const std::string own = result.profile + "/" + std::string(fault->group) + "/";
   return is_caught() && result.reason.starts_with(own);
@@ -67,7 +72,7 @@ bool FaultFinding::is_caught_by_own_group() const {
 FaultSummary summary_of(const std::vector<FaultFinding>& findings) {
   FaultSummary summary;
   for (const FaultFinding& finding : findings) {
-    if (!finding.fault->is_killable()) {
+    if (!finding.is_killable()) {
       if (finding.is_caught()) summary.false_alarms.push_back(&finding);
       continue;
     }
@@ -101,10 +106,11 @@ std::string render_fault_table(const std::vector<FaultFinding>& findings) {
   }
   const FaultSummary summary = summary_of(findings);
   out += fmt::format(
-      "\n{} faults: {} of {} that can be told from the law are caught ({:.1f}%), {} by their own "
-      "group; {} are equivalent to it. A hover trace catches {} ({:.0f}%), random attitude pairs "
-      "{} ({:.0f}%), both together {} ({:.0f}%).\n",
-      findings.size(), summary.caught, summary.killable, percent(summary.caught, summary.killable),
+      "\n{}: {} faults; {} of {} that can be told from the law are caught ({:.1f}%), {} by their "
+      "own group; {} are equivalent to it. A hover trace catches {} ({:.0f}%), random attitude "
+      "pairs {} ({:.0f}%), both together {} ({:.0f}%).\n",
+      findings.empty() ? "" : findings.front().result.profile, findings.size(), summary.caught,
+      summary.killable, percent(summary.caught, summary.killable),
       summary.caught - summary.not_by_own.size(), findings.size() - summary.killable,
       summary.by_hover, percent(summary.by_hover, summary.killable), summary.by_random_attitudes,
       percent(summary.by_random_attitudes, summary.killable), summary.by_naive,
@@ -115,8 +121,13 @@ std::string render_fault_table(const std::vector<FaultFinding>& findings) {
 std::string render_fault_list() {
   std::string out;
   for (const faults::Fault* fault : faults::catalogue()) {
-    out += fmt::format("{:<32} {:<17} {:<16} {}\n", fault->id, fault->group, name_of(fault->stage),
-                       fault->what);
+    std::string profiles;
+    for (const std::string_view name : reference::profile_names()) {
+      if (!fault->is_killable(*reference::profile_from_name(name))) continue;
+      profiles += fmt::format("{}{}", profiles.empty() ? "" : " ", name);
+    }
+    out += fmt::format("{:<36} {:<17} {:<16} {:<22} {}\n", fault->id, fault->group,
+                       name_of(fault->stage), profiles, fault->what);
   }
   return out;
 }

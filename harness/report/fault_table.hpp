@@ -14,6 +14,8 @@ struct FaultFinding {
   CaseResult result;  // of a FaultBatch
   bool by_hover = false, by_random_attitudes = false;
 
+  // In the profile of the result, is there an input that tells it from the law?
+  bool is_killable() const;
   bool is_caught() const { return fails_a_run(result.verdict); }
   bool is_caught_by_own_group() const;
 };
@@ -26,10 +28,11 @@ struct FaultSummary {
 };
 FaultSummary summary_of(const std::vector<FaultFinding>& findings);
 
-// Markdown: a row a group with what of it is caught, a row a fault, and the figures.
+// Markdown: a row a group with what of it is caught, a row a fault, and the figures. Of one
+// profile.
 std::string render_fault_table(const std::vector<FaultFinding>& findings);
 
-// One line a fault: id, group, stage, what it does.
+// One line a fault: id, group, stage, profiles that can tell it, what it does.
 std::string render_fault_list();
 
 }  // namespace attest

@@ -54,11 +54,25 @@ std::vector<Trace> samples_of(const std::vector<GoldenTrace>& traces) {
   return samples;
 }
 
+// The base is named by its place, and by the bytes that it has now.
+Result<void> note_base(const GoldenBase& base, const Case& the_case, Provenance& provenance) {
+  const fs::path above = fs::path("..") / ".." / "..";
+  provenance.base = (above / the_case.profiles.front() / the_case.group / the_case.name).string();
+  for (const auto& [name, hash] : provenance.sha256) {
+    auto of_base = sha256_of_file(base.folder / name);
+    if (!of_base) return tl::unexpected(of_base.error());
+    provenance.base_sha256[name] = *of_base;
+  }
+  return {};
+}
+
 // What stays the same is said once in the provenance.
 Result<void> write_folder(const fs::path& folder, const Case& the_case,
                           const std::vector<GoldenTrace>& traces,
-                          const std::vector<fs::path>& vehicle_files, const std::string& reason) {
-  const Division division = divide(samples_of(traces));
+                          const std::vector<fs::path>& vehicle_files, const std::string& reason,
+                          const GoldenBase* base) {
+  const Division division =
+      base ? divide(samples_of(traces), samples_of(base->traces)) : divide(samples_of(traces));
   Provenance provenance;
   provenance.profile = the_case.profile;
   provenance.case_id = the_case.id();
@@ -73,7 +87,7 @@ Result<void> write_folder(const fs::path& folder, const Case& the_case,
     provenance.sha256[name] = *hash;
     return {};
   };
-  for (const auto& [setup, trace, horizon_s, metrics, other_sides] : traces) {
+  for (const auto& [setup, trace, is_whole, horizon_s, metrics, other_sides] : traces) {
     if (auto written = write(file_name(setup), trace); !written) return written;
     for (const auto& [side, other] : other_sides) {
       if (auto written = write(file_name(setup, side), other); !written) return written;
@@ -89,10 +103,18 @@ Result<void> write_folder(const fs::path& folder, const Case& the_case,
     if (!hash) return tl::unexpected(hash.error());
     provenance.models[file.filename().string()] = *hash;
   }
+  if (base) {
+    if (auto noted = note_base(*base, the_case, provenance); !noted) return noted;
+  }
   return write_text(folder / provenance_name, to_toml(provenance));
 }
 
 }  // namespace
+
+bool keeps_every_tick(std::size_t ticks) {
+  constexpr std::size_t most = 1000;
+  return ticks <= most;
+}
 
 fs::path golden_folder(const fs::path& golden_root, const Case& the_case) {
   return golden_root / the_case.profile / the_case.group / the_case.name;
@@ -117,9 +139,7 @@ Result<Golden> Golden::open(const fs::path& golden_root, const Case& the_case) {
   return Golden(folder, std::move(*provenance));
 }
 
-Result<Trace> Golden::read(const Setup& setup) const {
-  return read_file(file_name(setup), setup.flyer ? CsvNeed::outputs : CsvNeed::inputs_and_outputs);
-}
+Result<Trace> Golden::read(const Setup& setup) const { return read_file(file_name(setup)); }
 
 Result<OtherSides> Golden::read_other_sides(const Setup& setup) const {
   const std::string prefix = setup.label() + ".", suffix = ".csv";
@@ -128,7 +148,7 @@ Result<OtherSides> Golden::read_other_sides(const Setup& setup) const {
     const bool is_of_setup =
         name.starts_with(prefix) && name.size() > prefix.size() + suffix.size();
     if (!is_of_setup) continue;
-    auto trace = read_file(name, CsvNeed::inputs_and_outputs);
+    auto trace = read_file(name);
     if (!trace) return tl::unexpected(trace.error());
     const std::size_t length = name.size() - prefix.size() - suffix.size();
     others[name.substr(prefix.size(), length)] = std::move(*trace);
@@ -136,21 +156,36 @@ Result<OtherSides> Golden::read_other_sides(const Setup& setup) const {
   return others;
 }
 
-Result<Trace> Golden::read_file(const std::string& name, CsvNeed need) const {
+Result<Trace> Golden::read_file(const std::string& name) const {
   const fs::path path = folder_ / name;
   const auto blessed = provenance_.sha256.find(name);
   if (blessed == provenance_.sha256.end()) {
     return fail_at((folder_ / provenance_name).string(),
                    fmt::format("no golden {}; `attest bless` makes it", name));
   }
+  if (auto intact = check_bytes(path, blessed->second); !intact) {
+    return tl::unexpected(intact.error());
+  }
+  if (!provenance_.base.empty()) {
+    const auto of_base = provenance_.base_sha256.find(name);
+    const bool is_known = of_base != provenance_.base_sha256.end();
+    const fs::path base = (folder_ / provenance_.base / name).lexically_normal();
+    if (auto intact = check_bytes(base, is_known ? of_base->second : ""); !intact) {
+      return tl::unexpected(intact.error());
+    }
+  }
+  return read_csv(path, CsvNeed::outputs);  // inputs are compared with those that the case makes
+}
+
+Result<void> Golden::check_bytes(const fs::path& path, const std::string& blessed) const {
   auto hash = sha256_of_file(path);
   if (!hash) return tl::unexpected(hash.error());
-  if (*hash != blessed->second) {
-    return fail_at(path.string(),
-                   "is not the file that was blessed (its SHA-256 is another than in "
-                   "provenance.toml); restore it from version control, or bless it anew");
-  }
-  return read_csv(path, need);
+  if (*hash == blessed) return {};
+  return fail_at(
+      path.string(),
+      fmt::format("is not the file that was blessed (its SHA-256 is another than in {}); "
+                  "restore it from version control, or bless it anew",
+                  (folder_ / provenance_name).string()));
 }
 
 Result<ReferenceFlight> Golden::read_flight(const Setup& setup, const Vehicle& vehicle) const {
@@ -193,7 +228,7 @@ NewGolden::~NewGolden() {
 Result<NewGolden> NewGolden::write(const fs::path& golden_root, const Case& the_case,
                                    const std::vector<GoldenTrace>& traces,
                                    const std::vector<fs::path>& vehicle_files,
-                                   const std::string& reason) {
+                                   const std::string& reason, const GoldenBase* base) {
   const fs::path folder = golden_folder(golden_root, the_case);
   NewGolden golden(folder, fs::path(folder).concat(".new"));
   std::error_code error;
@@ -202,7 +237,7 @@ Result<NewGolden> NewGolden::write(const fs::path& golden_root, const Case& the_
   if (error) {
     return fail_at(golden.written_.string(), fmt::format("cannot be made: {}", error.message()));
   }
-  auto done = write_folder(golden.written_, the_case, traces, vehicle_files, reason);
+  auto done = write_folder(golden.written_, the_case, traces, vehicle_files, reason, base);
   if (!done) return tl::unexpected(done.error());
   return golden;
 }

@@ -20,11 +20,13 @@ struct Subject {
   std::string profile;
   Part part = Part::mc_att_control;
   std::string mixer = {};  // of Part::mixer, its definition: "R: 4x 10000 10000 10000 0"
+  Instances instances = Instances::one;
 };
 
 Subject subject_of(const Case& the_case);
 
-// The same with a fresh instance of that part of the port.
+// The same with a fresh instance of that part of the port, in the company that the subject says. A
+// port that makes no second instance beside a living one does not support such a subject.
 std::optional<PortFault> drive(Port& port, const Subject& subject, Trace& trace);
 
 }  // namespace attest

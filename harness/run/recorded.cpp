@@ -106,8 +106,9 @@ Result<void> check_parameters(Recorded& recorded) {
 Result<void> check_parameter(const Subject& subject, const ParameterChange& change) {
   const std::vector<std::string> names = parameter_names(subject.part, subject.profile);
   if (!is_one_of(change.name, names)) {
-    return fail(fmt::format("{} has no parameter `{}` of {}{}", subject.profile, change.name,
-                            name_of(subject.part), suggestion(change.name, names)));
+    return fail(fmt::format("unknown parameter `{}` of {} in {}{}", change.name,
+                            name_of(subject.part), subject.profile,
+                            suggestion(change.name, names)));
   }
   actuation::BatteryOptions battery;
   if (subject.part == Part::battery_status &&

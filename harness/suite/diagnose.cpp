@@ -49,7 +49,7 @@ Record record_of(std::size_t fault, const std::vector<VectorLikeness>& vectors) 
 std::vector<Record> records_of(const std::vector<VectorLikeness>& vectors) {
   std::vector<Record> records;
   for (std::size_t i = 0; i < faults::catalogue().size(); ++i) {
-    if (faults::catalogue()[i]->is_killable()) records.push_back(record_of(i, vectors));
+    if (faults::catalogue()[i]->equivalent.empty()) records.push_back(record_of(i, vectors));
   }
   return records;
 }

@@ -47,13 +47,14 @@ bool SelfDiagnosis::is_named() const {
 
 bool SelfDiagnosis::is_stage_named() const { return diagnosis && diagnosis->stage == fault->stage; }
 
-std::vector<SelfDiagnosis> diagnose_catalogue(const std::vector<SelectedCase>& cases) {
+std::vector<SelfDiagnosis> diagnose_catalogue(const std::vector<SelectedCase>& cases,
+                                              faults::Profile profile) {
   const auto catalogue = faults::catalogue();
   std::vector<Answered> vectors;
   for (const SelectedCase& selected : cases) vectors.push_back(answered(selected));
   std::vector<SelfDiagnosis> results;
   for (std::size_t i = 0; i < catalogue.size(); ++i) {
-    if (!catalogue[i]->is_killable()) continue;
+    if (!catalogue[i]->is_killable(profile)) continue;
     std::vector<VectorLikeness> of_fault;
     for (const Answered& vector : vectors) {
       const std::size_t index = vector.faults.of_fault[i];

@@ -18,7 +18,9 @@ struct SelfDiagnosis {
   bool is_stage_named() const;
 };
 
-// On one vector a case, at 250 Hz where there is one. `cases` are open loop.
-std::vector<SelfDiagnosis> diagnose_catalogue(const std::vector<SelectedCase>& cases);
+// Of the faults that the profile can tell, on one vector a case, at 250 Hz where there is one.
+// `cases` are open loop, all of that profile.
+std::vector<SelfDiagnosis> diagnose_catalogue(const std::vector<SelectedCase>& cases,
+                                              faults::Profile profile);
 
 }  // namespace attest

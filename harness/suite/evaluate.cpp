@@ -7,6 +7,7 @@
 #include "harness/casefile/stimulus.hpp"
 #include "harness/compare/events.hpp"
 #include "harness/core/float_environment.hpp"
+#include "harness/run/keyframes.hpp"
 #include "harness/run/open_loop.hpp"
 #include "harness/run/other_side.hpp"
 #include "harness/suite/judge.hpp"
@@ -43,6 +44,11 @@ Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& g
   auto want = golden.read({rate, std::nullopt});
   if (!want) return tl::unexpected(want.error());
   Trace made = stimulate(the_case, rate);
+  if (!keeps_every_tick(made.samples.size())) {
+    auto whole = filled_in(made, *want, subject_of(the_case), !the_case.numeric_only);
+    if (!whole) return tl::unexpected(whole.error());
+    return Prepared{std::move(made), std::move(*whole), {}};
+  }
   if (const ChannelSet missing = made.present & ~want->present; missing.any()) {
     return fail_at(want->source,
                    fmt::format("has no {}, neither as a column nor in the {} beside it; bless it "

@@ -14,17 +14,19 @@ namespace attest {
 
 class FaultBatch final : public Batch {
  public:
-  // `cases` are open loop, and outlive this.
-  FaultBatch(const faults::Fault& fault, const std::vector<SelectedCase>& cases,
-             std::filesystem::path golden_root, std::optional<int> fraction_bits)
+  // `cases` are open loop, all of `profile`, and outlive this.
+  FaultBatch(const faults::Fault& fault, faults::Profile profile,
+             const std::vector<SelectedCase>& cases, std::filesystem::path golden_root,
+             std::optional<int> fraction_bits)
       : fault_(fault),
+        profile_(profile),
         cases_(cases),
         golden_root_(std::move(golden_root)),
         fraction_bits_(fraction_bits) {}
 
   std::size_t size() const override { return 1; }
 
-  // Group and name are the fault's.
+  // Profile, and the fault's group and name.
   CaseResult identity(std::size_t i) const override;
 
   // Cases of the fault's own group come first, and of each group 250 Hz. The verdict is what the
@@ -35,6 +37,7 @@ class FaultBatch final : public Batch {
 
  private:
   const faults::Fault& fault_;
+  faults::Profile profile_;
   const std::vector<SelectedCase>& cases_;
   std::filesystem::path golden_root_;
   std::optional<int> fraction_bits_;  // judged as a port with so many would be

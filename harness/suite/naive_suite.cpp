@@ -10,8 +10,6 @@
 namespace attest {
 namespace {
 
-constexpr const char* profile = "px4-v1.5.5";
-
 double between(Random& random, double low, double high) {
   return low + (high - low) * random.uniform();
 }
@@ -76,7 +74,7 @@ Trace random_attitudes() {
   return trace;
 }
 
-bool differs(Port& port, Trace given) {
+bool differs(Port& port, const std::string& profile, Trace given) {
   Trace want = given;
   const auto reference = open_builtin();
   drive(*reference->create(profile), want);
@@ -86,8 +84,12 @@ bool differs(Port& port, Trace given) {
 
 }  // namespace
 
-bool caught_by_hover(Port& port) { return differs(port, hover()); }
+bool caught_by_hover(Port& port, const std::string& profile) {
+  return differs(port, profile, hover());
+}
 
-bool caught_by_random_attitudes(Port& port) { return differs(port, random_attitudes()); }
+bool caught_by_random_attitudes(Port& port, const std::string& profile) {
+  return differs(port, profile, random_attitudes());
+}
 
 }  // namespace attest

@@ -88,4 +88,18 @@ Result<RecordedCheck> check_recorded(const fs::path& folder) {
   return check;
 }
 
+Result<std::set<std::string>> covered_groups(const fs::path& folder) {
+  std::set<fs::path> folders;
+  for (const fs::path& file : traces_below(folder)) folders.insert(file.parent_path());
+  std::set<std::string> groups;
+  for (const fs::path& one : folders) {
+    const auto provenance = read_provenance(one / provenance_name);
+    if (!provenance) return tl::unexpected(provenance.error());
+    for (const std::string& group : provenance->covers) {
+      groups.insert(provenance->profile + "/" + group);
+    }
+  }
+  return groups;
+}
+
 }  // namespace attest

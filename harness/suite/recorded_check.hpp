@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <set>
 #include <string>
 
 #include "harness/core/result.hpp"
@@ -19,5 +20,10 @@ struct RecordedCheck {
 // except where the provenance beside a trace states a tolerance. Errors: a trace that cannot be
 // read, no traces at all.
 Result<RecordedCheck> check_recorded(const std::filesystem::path& folder);
+
+// The groups, "px4-v1.5.5/tpa", whose behaviour the recordings below `folder` show, as the
+// provenance of each says. What no recording covers, only our own code has seen. Errors: a
+// provenance that cannot be read.
+Result<std::set<std::string>> covered_groups(const std::filesystem::path& folder);
 
 }  // namespace attest

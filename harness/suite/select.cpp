@@ -53,20 +53,13 @@ Result<void> check_names(const std::vector<std::string>& asked, const std::set<s
   return {};
 }
 
-// Profile and group are in the path, so that files that cannot match need not be read.
+// The group is in the path, so that files that cannot match need not be read.
 std::string group_of(const fs::path& file) { return file.parent_path().filename().string(); }
-std::string profile_of(const fs::path& file) {
-  return file.parent_path().parent_path().filename().string();
-}
 
-Result<void> check_selection(const std::vector<fs::path>& files, const Selection& selection) {
-  std::set<std::string> groups, profiles;
-  for (const fs::path& file : files) {
-    groups.insert(group_of(file));
-    profiles.insert(profile_of(file));
-  }
-  if (auto known = check_names(selection.groups, groups, "group"); !known) return known;
-  return check_names(selection.profiles, profiles, "profile");
+Result<void> check_groups(const std::vector<fs::path>& files, const Selection& selection) {
+  std::set<std::string> groups;
+  for (const fs::path& file : files) groups.insert(group_of(file));
+  return check_names(selection.groups, groups, "group");
 }
 
 bool is_selected(const Setup& setup, const Selection& selection) {
@@ -87,9 +80,10 @@ std::vector<Setup> selected_setups(const Case& the_case, const Selection& select
 // What there is to choose from in the files that were read.
 struct Known {
   std::set<Rate> rates;
-  std::set<std::string> vehicles, plants;
+  std::set<std::string> profiles, vehicles, plants;
 
   void add(const Case& the_case) {
+    profiles.insert(the_case.profiles.begin(), the_case.profiles.end());
     for (const Setup& setup : the_case.setups()) {
       rates.insert(setup.rate);
       if (!setup.flyer) continue;
@@ -111,7 +105,9 @@ Result<void> check_rates(const std::vector<Rate>& asked, const std::set<Rate>& k
   return {};
 }
 
-Result<void> check_setups(const Selection& selection, const Known& known) {
+Result<void> check_known(const Selection& selection, const Known& known) {
+  auto profiles = check_names(selection.profiles, known.profiles, "profile");
+  if (!profiles) return profiles;
   if (auto checked = check_rates(selection.rates, known.rates); !checked) return checked;
   auto vehicles = check_names(selection.vehicles, known.vehicles, "vehicle");
   return vehicles ? check_names(selection.plants, known.plants, "plant") : vehicles;
@@ -123,6 +119,17 @@ std::vector<SelectedCase> part_of(std::vector<SelectedCase> all, const Shard& sh
     part.push_back(std::move(all[i]));
   }
   return part;
+}
+
+// A file is a case of each of its profiles.
+void add_selected(const Case& parsed, const Selection& selection,
+                  std::vector<SelectedCase>& selected) {
+  for (const std::string& profile : parsed.profiles) {
+    if (!contains(selection.profiles, profile)) continue;
+    Case the_case = parsed.in_profile(profile);
+    auto setups = selected_setups(the_case, selection);
+    if (!setups.empty()) selected.push_back({std::move(the_case), std::move(setups)});
+  }
 }
 
 }  // namespace
@@ -142,22 +149,18 @@ Result<Shard> Shard::parse(const std::string& text) {
 Result<std::vector<SelectedCase>> select_cases(const fs::path& folder, const Selection& selection) {
   auto files = find_case_files(folder);
   if (!files) return tl::unexpected(files.error());
-  if (auto known = check_selection(*files, selection); !known) {
-    return tl::unexpected(known.error());
-  }
+  if (auto known = check_groups(*files, selection); !known) return tl::unexpected(known.error());
   std::vector<SelectedCase> selected;
-  Known known_setups;
+  Known known;
   for (const fs::path& file : *files) {
     if (!contains(selection.groups, group_of(file))) continue;
-    if (!contains(selection.profiles, profile_of(file))) continue;
     auto parsed = parse_case(file);
     if (!parsed) return tl::unexpected(parsed.error());
-    known_setups.add(*parsed);
-    auto chosen = selected_setups(*parsed, selection);
-    if (!chosen.empty()) selected.push_back({std::move(*parsed), std::move(chosen)});
+    known.add(*parsed);
+    add_selected(*parsed, selection, selected);
   }
-  if (auto known = check_setups(selection, known_setups); !known) {
-    return tl::unexpected(known.error());
+  if (auto checked = check_known(selection, known); !checked) {
+    return tl::unexpected(checked.error());
   }
   if (selected.empty()) {
     return fail(fmt::format("no case matches {}; `attest list` shows them all",
@@ -165,6 +168,9 @@ Result<std::vector<SelectedCase>> select_cases(const fs::path& folder, const Sel
                                 ? std::string("the selection")
                                 : fmt::format("`{}`", fmt::join(selection.filters, "` or `"))));
   }
+  std::sort(selected.begin(), selected.end(), [](const SelectedCase& a, const SelectedCase& b) {
+    return a.the_case.id() < b.the_case.id();
+  });
   selected = part_of(std::move(selected), selection.shard);
   if (selected.empty()) return fail("this shard is empty: there are more shards than cases");
   return selected;

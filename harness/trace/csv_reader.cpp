@@ -52,6 +52,51 @@ Result<Layout> layout_of(const CsvRows& rows) {
   return layout;
 }
 
+// The trace whose columns another one has too, except those that it has itself.
+class Base {
+ public:
+  static Result<std::unique_ptr<Base>> open(const std::filesystem::path& path,
+                                            const ChannelSet& own, const std::string& folder) {
+    const auto place = (path.parent_path() / folder / path.filename()).lexically_normal();
+    const auto provenance = provenance_in(place.parent_path());
+    if (!provenance) return tl::unexpected(provenance.error());
+    if (!provenance->base.empty()) {
+      return fail_at(path.string(),
+                     fmt::format("its base {} has a base itself; name that one", place.string()));
+    }
+    auto reader = TraceReader::open(place, CsvNeed::outputs);
+    if (!reader) return tl::unexpected(reader.error());
+    return std::unique_ptr<Base>(new Base(std::move(*reader), own));
+  }
+
+  const ChannelSet& present() const { return reader_.present(); }
+
+  // Fills in what `sample` does not have itself; `more`: there is such a sample. Parameters are
+  // those of the base.
+  Result<void> complete(bool more, Sample& sample, std::vector<ParameterChange>& changes,
+                        const CsvRows& rows) {
+    const Sample own = sample;
+    Sample base{};
+    const auto base_has_more = reader_.next(base, changes);
+    if (!base_has_more) return tl::unexpected(base_has_more.error());
+    if (*base_has_more != more || (more && base.in.timestamp != own.in.timestamp)) {
+      return fail_at(rows.file(), fmt::format("has other ticks than its base {}", reader_.file()));
+    }
+    sample = base;
+    for (std::size_t i = 0; i < channels().size(); ++i) {
+      const Channel& channel = channels()[i];
+      if (own_[i]) set_value(channel, sample, value_of(channel, own));
+    }
+    return {};
+  }
+
+ private:
+  Base(TraceReader reader, const ChannelSet& own) : reader_(std::move(reader)), own_(own) {}
+
+  TraceReader reader_;
+  ChannelSet own_;
+};
+
 // Fills what every row has in common: channels into `sample`, parameters as changes at tick 0.
 Result<void> apply_constants(const std::map<std::string, double>& constants, const CsvRows& rows,
                              Sample& sample, ChannelSet& present,
@@ -130,6 +175,7 @@ struct TraceReader::Impl {
   ParameterColumns parameters{{}};
   std::vector<ParameterChange> constants;  // parameters of the provenance, set at tick 0
   std::vector<char> row{};
+  std::unique_ptr<Base> base{};  // null: the trace has all of its columns itself
   std::size_t tick = 0;
   std::uint64_t last_timestamp = 0;
 
@@ -144,6 +190,15 @@ struct TraceReader::Impl {
 
   Result<bool> next(Sample& sample, std::vector<ParameterChange>& changes) {
     changes.clear();
+    const auto more = next_row(sample, changes);
+    if (!more || !base) return more;
+    const auto completed = base->complete(*more, sample, changes, rows);
+    if (!completed) return tl::unexpected(completed.error());
+    return more;
+  }
+
+  // What the file itself has.
+  Result<bool> next_row(Sample& sample, std::vector<ParameterChange>& changes) {
     const auto more = rows.next(row.data());
     if (!more) return more;
     if (!*more && tick == 0) {
@@ -190,6 +245,12 @@ Result<TraceReader> TraceReader::open(const std::filesystem::path& path, CsvNeed
                                         impl->constants);
       !done) {
     return tl::unexpected(done.error());
+  }
+  if (!provenance->base.empty()) {
+    auto base = Base::open(path, impl->present, provenance->base);
+    if (!base) return tl::unexpected(base.error());
+    impl->present |= (*base)->present();
+    impl->base = std::move(*base);
   }
   if (const auto done = check_need(impl->present, need, impl->rows.file()); !done) {
     return tl::unexpected(done.error());

@@ -99,6 +99,18 @@ std::optional<double> constant_value(const Channel& channel, const std::vector<T
   return first;
 }
 
+bool is_same(const Channel& channel, const std::vector<Trace>& traces,
+             const std::vector<Trace>& base) {
+  for (std::size_t i = 0; i < traces.size(); ++i) {
+    for (std::size_t tick = 0; tick < traces[i].samples.size(); ++tick) {
+      const double value = value_of(channel, traces[i].samples[tick]);
+      const double other = value_of(channel, base[i].samples[tick]);
+      if (canonical_bits(value) != canonical_bits(other)) return false;
+    }
+  }
+  return true;
+}
+
 // The value of a parameter if it is set at tick 0 of every trace and never to anything else.
 std::optional<double> constant_value(const std::string& parameter,
                                      const std::vector<Trace>& traces) {
@@ -147,9 +159,12 @@ Result<Provenance> read_provenance(const std::filesystem::path& file) {
   if (root.has(constants_table)) {
     provenance.constants = read_constants(root.table(constants_table));
   }
+  if (root.has("covers")) provenance.covers = root.texts("covers");
   provenance.mixers = read_texts(root, "mixers");
   provenance.tolerances = read_tolerances(root);
   provenance.sha256 = read_texts(root, "sha256");
+  provenance.base = root.text("base", "");
+  provenance.base_sha256 = read_texts(root, "base_sha256");
   provenance.horizon_s = read_numbers(root, "horizon_s");
   provenance.metrics = read_numbers(root, "metrics");
   provenance.models = read_texts(root, "models");
@@ -175,10 +190,12 @@ std::string to_toml(const Provenance& provenance) {
   set("reference", provenance.reference);
   set("compiler", provenance.compiler);
   set("reason", provenance.reason);
+  set("base", provenance.base);
   write_constants(provenance.constants, toml);
   for (const auto& [stem, geometry] : provenance.mixers) toml.set("mixers", stem, geometry);
   for (const auto& [stem, value] : provenance.tolerances) toml.set("tolerances", stem, value);
   for (const auto& [name, hash] : provenance.sha256) toml.set("sha256", name, hash);
+  for (const auto& [name, hash] : provenance.base_sha256) toml.set("base_sha256", name, hash);
   for (const auto& [stem, value] : provenance.horizon_s) toml.set("horizon_s", stem, value);
   for (const auto& [name, value] : provenance.metrics) toml.set("metrics", name, value);
   for (const auto& [name, hash] : provenance.models) toml.set("models", name, hash);
@@ -203,6 +220,20 @@ Division divide(const std::vector<Trace>& traces) {
       division.columns.parameters.push_back(parameter);
     }
   }
+  return division;
+}
+
+Division divide(const std::vector<Trace>& traces, const std::vector<Trace>& base) {
+  Division division = divide(traces);
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    const Channel& channel = channels()[i];
+    if (channel.type == ChannelType::u64 || !is_same(channel, traces, base)) continue;
+    division.columns.channels.reset(i);
+    division.constants.erase(std::string(channel.name));
+  }
+  division.columns.parameters.clear();
+  std::erase_if(division.constants,
+                [](const auto& constant) { return parameter_of(constant.first).has_value(); });
   return division;
 }
 

@@ -19,6 +19,7 @@ struct Provenance {
   std::string reference;                    // "attest 0.1.0"
   std::string compiler;                     // "gcc 12.2.0"
   std::string reason;                       // why this golden was blessed
+  std::vector<std::string> covers;          // of recordings: the groups whose behaviour they show
   std::map<std::string, double> constants;  // channel or in/parameter.<NAME> -> value
   std::map<std::string, std::string>
       mixers;  // stem of a mixer trace -> "R: 4x 8000 9000 5000 1500"
@@ -26,6 +27,10 @@ struct Provenance {
   // transcendental functions) and not the law's.
   std::map<std::string, double> tolerances;
   std::map<std::string, std::string> sha256;  // file name -> hash
+  // A folder of other traces, relative to this one: a trace here has the columns and constants of
+  // the trace of the same name there, except those that it has itself. Empty: it has all.
+  std::string base;
+  std::map<std::string, std::string> base_sha256;  // file name there -> hash
   // Of flights. Stem of a trace -> seconds of it that two right controllers stay together.
   std::map<std::string, double> horizon_s;
   // "<stem>.<metric>" -> what the reference's flight measured.
@@ -53,5 +58,10 @@ struct Division {
   std::map<std::string, double> constants;
 };
 Division divide(const std::vector<Trace>& traces);
+
+// The same for traces that have `base` (Provenance): what is the same there, sample by sample, is
+// left out. REQUIRES: as above; as many traces in `base`, of the same lengths, with the same
+// parameters.
+Division divide(const std::vector<Trace>& traces, const std::vector<Trace>& base);
 
 }  // namespace attest

@@ -94,3 +94,38 @@ golden=suite/golden/px4-v1.5.5/attitude/roll
   run "$ATTEST" --suite suite bless --yes --reason "again"
   has "2 unchanged"
 }
+
+@test "the golden of another profile rests on that of the first and is blessed with it" {
+  make_suite
+  sed -i 's/profiles = .*/profiles = ["px4-v1.5.5", "px4-v1.3.4"]/' suite/cases/*/attitude/roll.toml
+  "$ATTEST" --suite suite bless --yes --reason "first" >/dev/null
+  other=suite/golden/px4-v1.3.4/attitude/roll
+  grep -q "^base = '../../../px4-v1.5.5/attitude/roll'" $other/provenance.toml
+  [ "$(head -1 $other/250hz.csv)" = timestamp ]
+  run "$ATTEST" --suite suite run --level exact
+  [ "$status" -eq 0 ]
+  has "22 of 22"
+  # An edit of the first is noticed in both.
+  sed -i '$s/[0-9]$/1/;$s/$/1/' suite/golden/px4-v1.5.5/attitude/roll/250hz.csv
+  run "$ATTEST" --suite suite run --profile px4-v1.3.4
+  [ "$status" -eq 2 ]
+  has "is not the file that was blessed"
+  # A filter that names one profile blesses both.
+  sed -i 's/to = 20/to = 25/' suite/cases/px4-v1.5.5/attitude/roll.toml
+  run "$ATTEST" --suite suite bless --filter 'px4-v1.3.4/*' --yes --reason "larger tilt"
+  has "blessed 2"
+  run "$ATTEST" --suite suite run --level exact
+  [ "$status" -eq 0 ]
+}
+
+@test "of a long case some ticks are kept, and all are judged" {
+  make_suite
+  sed -i 's/duration_ticks = 30/duration_ticks = 1200/' suite/cases/*/attitude/roll.toml
+  "$ATTEST" --suite suite bless --yes --reason "long" >/dev/null
+  [ "$(wc -l <suite/golden/px4-v1.5.5/attitude/roll/250hz.csv)" -lt 60 ]
+  run "$ATTEST" --suite suite run --level exact
+  [ "$status" -eq 0 ]
+  run "$ATTEST" --suite suite run --rate 250 --port "lib:$PORTS/port_sign_flip.so"
+  [ "$status" -eq 1 ]
+  has "of 1200"
+}

@@ -11,7 +11,7 @@ make_suite() {
   cp -r "$SOURCE/golden/recorded" suite/golden/
   cat >suite/cases/px4-v1.5.5/attitude/roll.toml <<'CASE'
 schema = 1
-profile = "px4-v1.5.5"
+profiles = ["px4-v1.5.5"]
 group = "attitude"
 why = "A level vehicle is asked to roll."
 duration_ticks = 30

@@ -7,12 +7,26 @@ load common
   has "quat-order-xyzw"
   run "$ATTEST" faults yaw-dropped tpa-missing
   [ "$status" -eq 0 ]
-  has "2 faults: 2 of 2"
+  has "px4-v1.5.5: 2 faults; 2 of 2"
   run "$ATTEST" faults quat-order-xyz
   [ "$status" -eq 2 ]
   has "did you mean \`quat-order-xyzw\`?"
   run "$ATTEST" run --port fault:nothing
   [ "$status" -eq 2 ]
+}
+
+@test "a fault is judged by the profiles that can tell it" {
+  run "$ATTEST" faults --profile px4-v1.3.4 v1.3.4-ff-of-setpoint tpa-missing
+  [ "$status" -eq 0 ]
+  has "px4-v1.3.4: 2 faults; 1 of 1 that can be told from the law are caught"
+  has "the profile does not have this"
+  lacks "### px4-v1.5.5"
+  run "$ATTEST" faults --profile px4-v1.5.5 v1.3.4-ff-of-setpoint tpa-missing
+  [ "$status" -eq 0 ]
+  has "px4-v1.5.5: 2 faults; 1 of 1 that can be told from the law are caught"
+  run "$ATTEST" faults --profile px4-v1.4.0 tpa-missing
+  [ "$status" -eq 2 ]
+  has "there are px4-v1.5.5, px4-v1.3.4"
 }
 
 @test "a failure says what mistake it looks like" {
@@ -60,7 +74,7 @@ load common
   grep -q '"fraction_bits": 22' report.json
   run "$ATTEST" faults --fraction-bits 22 yaw-dropped tpa-missing battery-divides
   [ "$status" -eq 0 ]
-  has "3 faults: 3 of 3"
+  has "px4-v1.5.5: 3 faults; 3 of 3"
   run "$ATTEST" faults --fraction-bits 12
   [ "$status" -eq 2 ]
 }

@@ -9,7 +9,7 @@ flight_suite() {
   cp "$SOURCE"/models/iris.* "$SOURCE"/models/hexa.* suite/models/
   cat >suite/cases/px4-v1.5.5/flight/tilt.toml <<'CASE'
 schema = 1
-profile = "px4-v1.5.5"
+profiles = ["px4-v1.5.5"]
 group = "flight"
 why = "A hovering vehicle is asked to roll."
 duration_s = 0.5

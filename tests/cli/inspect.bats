@@ -20,10 +20,29 @@ load common
   has "RATTITUDE"
 }
 
+@test "parameters are listed by profile, and a profile that is none is refused" {
+  run "$ATTEST" list --parameters --profile px4-v1.3.4
+  [ "$status" -eq 0 ]
+  has "MC_ROLL_P"
+  for name in MC_TPA_BREAK MC_TPA_SLOPE MC_BAT_SCALE_EN BAT_N_CELLS; do lacks "$name"; done
+  run "$ATTEST" list --parameters --profile px4-v1.5.5
+  for name in MC_TPA_BREAK MC_TPA_SLOPE MC_BAT_SCALE_EN BAT_N_CELLS; do has "$name"; done
+  run "$ATTEST" list --parameters --profile px4-v1.5.6
+  [ "$status" -eq 2 ]
+  has 'did you mean `px4-v1.5.5`'
+}
+
+@test "doctor names the groups that no recording covers" {
+  run "$ATTEST" doctor
+  has "no recording covers px4-v1.3.4/flight, px4-v1.3.4/flight_timing, px4-v1.3.4/instances"
+  lacks "px4-v1.3.4/tpa"
+  lacks "px4-v1.5.5/battery_status"
+}
+
 @test "doctor finds this tree in good health" {
   run "$ATTEST" doctor
   [ "$status" -eq 0 ]
-  has "agrees with 17 of 17 traces recorded from the firmware"
+  has "agrees with 45 of 45 traces recorded from the firmware"
   lacks "BAD"
 }
 

@@ -5,7 +5,7 @@ recorded() { ls "$SOURCE"/golden/recorded/*/*.csv | grep -v tailsitter; }
 @test "the reference agrees to the bit with what the firmware recorded" {
   run "$ATTEST" replay --level exact $(recorded)
   [ "$status" -eq 0 ]
-  has "16 of 16 traces conform"
+  has "43 of 43 traces conform"
 }
 
 @test "tailsitter recovery agrees within a tolerance" {
@@ -42,6 +42,31 @@ recorded() { ls "$SOURCE"/golden/recorded/*/*.csv | grep -v tailsitter; }
   run "$ATTEST" replay "$trace" --param MC_ROLL_P
   [ "$status" -eq 2 ]
   has "NAME=VALUE"
+}
+
+@test "a battery trace without a number of cells is of 3, and says so" {
+  trace="$SOURCE"/golden/recorded/battery-v1.5.5/discharge.csv
+  run "$ATTEST" replay --level exact "$trace"
+  [ "$status" -eq 0 ]
+  has "no column in/parameter.BAT_N_CELLS: 3 cells are assumed"
+  run "$ATTEST" replay --level exact "$trace" --param BAT_N_CELLS=4
+  [ "$status" -eq 1 ]
+}
+
+@test "parameters that the profile does not have are not set" {
+  trace="$SOURCE"/golden/recorded/px4-v1.3.4/fuzz_250hz.csv
+  head -1 "$trace" | grep -q in/parameter.MC_TPA_BREAK
+  run "$ATTEST" replay --level exact "$trace"
+  [ "$status" -eq 0 ]
+  has "not set, because px4-v1.3.4 does not have them: MC_BAT_SCALE_EN, MC_TPA_BREAK, MC_TPA_SLOPE"
+  run "$ATTEST" replay "$trace" --param MC_TPA_BREAK=0.5
+  [ "$status" -eq 2 ]
+}
+
+@test "a golden that rests on that of another profile is replayed whole" {
+  run "$ATTEST" replay --level exact "$SOURCE"/golden/px4-v1.3.4/attitude/yaw_error/250hz.csv
+  [ "$status" -eq 0 ]
+  has "px4-v1.3.4"
 }
 
 @test "a mixer trace is replayed on the mixer that its provenance names" {

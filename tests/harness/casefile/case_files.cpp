@@ -23,7 +23,7 @@ void CaseFiles::name_vehicle(std::string_view name) const {
 }
 
 std::string CaseFiles::with(std::string_view body) {
-  return "schema = 1\nprofile = \"px4-v1.5.5\"\ngroup = \"tests\"\nwhy = \"a test\"\n"
+  return "schema = 1\nprofiles = [\"px4-v1.5.5\"]\ngroup = \"tests\"\nwhy = \"a test\"\n"
          "duration_ticks = 10\n" +
          std::string(body);
 }

@@ -14,7 +14,7 @@ using testing::Not;
 // Five valid lines with one of them replaced.
 std::string with_line(int line, const std::string& replacement) {
   std::string text;
-  const std::string lines[] = {"schema = 1", "profile = \"px4-v1.5.5\"", "group = \"tests\"",
+  const std::string lines[] = {"schema = 1", "profiles = [\"px4-v1.5.5\"]", "group = \"tests\"",
                                "why = \"a test\"", "duration_ticks = 10"};
   for (int i = 1; i <= 5; ++i) text += (i == line ? replacement : lines[i - 1]) + "\n";
   return text;
@@ -28,12 +28,15 @@ TEST(CaseErrors, SyntaxHasALine) {
 TEST(CaseErrors, IdentityIsThePlaceOfTheFile) {
   EXPECT_EQ(errors_of_text(with_line(3, "group = \"test\"")),
             "3:1: is `test`, but the folder is `tests`");
-  EXPECT_EQ(errors_of_text(with_line(2, "profile = \"px4-v1.3.4\"")),
-            "2:1: is `px4-v1.3.4`, but the folder is `px4-v1.5.5`");
+  EXPECT_EQ(errors_of_text(with_line(2, "profiles = [\"px4-v1.3.4\"]")),
+            "2:1: begins with `px4-v1.3.4`, but the folder is `px4-v1.5.5`");
+  EXPECT_EQ(errors_of_text(with_line(2, "profiles = []")), "2:1: names no profile");
+  EXPECT_EQ(errors_of_text(with_line(2, "profiles = [\"px4-v1.5.5\", \"px4-v1.5.5\"]")),
+            "2:1: names a profile twice");
 }
 
 TEST(CaseErrors, EachRequiredKeyIsMissedOnce) {
-  for (const char* key : {"schema", "profile", "group", "why", "duration_ticks"}) {
+  for (const char* key : {"schema", "profiles", "group", "why", "duration_ticks"}) {
     SCOPED_TRACE(key);
     std::string text = CaseFiles::with("");
     const auto begin = text.find(key);
@@ -139,6 +142,21 @@ TEST(CaseErrors, EitherSide) {
             "6:1: no decision `yaw`; use yaw_wrap, shorter_rotation");
   EXPECT_THAT(errors_of("either_side = [\"yaw_wrap\"]\nlevel = \"exact\"\n"),
               HasSubstr("6:1: is for the controller in open loop"));
+}
+
+TEST(CaseErrors, AParameterExistsInEveryProfileOfTheFile) {
+  std::string text = CaseFiles::with("[parameters]\nMC_TPA_BREAK = 0.5\n");
+  EXPECT_EQ(errors_of_text(text), "");
+  const std::string one = "[\"px4-v1.5.5\"]";
+  text.replace(text.find(one), one.size(), "[\"px4-v1.5.5\", \"px4-v1.3.4\"]");
+  EXPECT_THAT(errors_of_text(text), HasSubstr("unknown parameter `MC_TPA_BREAK`"));
+  EXPECT_THAT(errors_of_text(text), HasSubstr("--profile px4-v1.3.4` shows those of px4-v1.3.4"));
+}
+
+TEST(CaseErrors, Instances) {
+  EXPECT_EQ(errors_of("instances = \"together\"\n"), "");
+  EXPECT_THAT(errors_of("instances = \"two\"\n"),
+              HasSubstr("6:1: must be again, together or crossed"));
 }
 
 TEST(CaseErrors, Parameters) {

@@ -116,6 +116,61 @@ TEST_F(GoldenTest, BytesThatWereNotBlessedAreAnError) {
   EXPECT_FALSE(golden->read(at(100)));
 }
 
+// A feed-forward of the setpoint in one profile, of its change in the other: one control differs.
+class TwoProfiles : public GoldenTest {
+ protected:
+  void SetUp() override {
+    first_ = a_case(
+        "[parameters]\nMC_ROLLRATE_FF = 0.1\n"
+        "[control_state]\nq = { tilt_deg = { signal = \"ramp\", from = 1, to = 9, end_ticks = 9 } "
+        "}\n"
+        "[vehicle_attitude_setpoint]\nthrust = 0.1\n");
+    first_.profiles = {"px4-v1.5.5", "px4-v1.3.4"};
+    other_ = first_.in_profile("px4-v1.3.4");
+    bless(root(), first_);
+    bless(root(), other_);
+  }
+
+  fs::path file(const Case& the_case) const {
+    return golden_folder(root(), the_case) / "100hz.csv";
+  }
+
+  Case first_, other_;
+};
+
+TEST_F(TwoProfiles, EachIsReadWhole) {
+  for (const Case& the_case : {first_, other_}) {
+    const auto golden = Golden::open(root(), the_case);
+    ASSERT_TRUE(golden) << golden.error().to_string();
+    const Trace want = answers_of_reference(the_case)[0].trace;
+    const auto read = golden->read(at(100));
+    ASSERT_TRUE(read) << read.error().to_string();
+    EXPECT_EQ(first_input_difference(*read, want), std::nullopt);
+    EXPECT_TRUE(compare(want, *read, Tolerances(Level::exact)).agrees());
+  }
+}
+
+TEST_F(TwoProfiles, TheOtherHoldsOnlyWhatDiffers) {
+  std::ifstream other(file(other_));
+  std::string header;
+  std::getline(other, header);
+  EXPECT_EQ(header, "timestamp,out/actuator_controls_0.control[0]");
+  EXPECT_THAT(Golden::open(root(), other_)->provenance().constants, testing::IsEmpty());
+}
+
+TEST_F(TwoProfiles, BytesOfTheFirstThatWereNotBlessedAreAnErrorOfTheOther) {
+  std::ofstream(file(first_), std::ios::app) << "\n";
+  const auto read = Golden::open(root(), other_)->read(at(100));
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().file, file(first_).string());
+  EXPECT_THAT(read.error().message, HasSubstr("is not the file that was blessed"));
+}
+
+TEST_F(TwoProfiles, WithoutTheFirstTheOtherIsAnError) {
+  fs::remove_all(golden_folder(root(), first_));
+  EXPECT_FALSE(Golden::open(root(), other_)->read(at(100)));
+}
+
 TEST_F(GoldenTest, IsNotInPlaceBeforeItIsPutThere) {
   {
     const auto written =

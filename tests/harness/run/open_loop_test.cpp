@@ -237,5 +237,82 @@ TEST(Drive, OneByteBehindTheStructsIsSeen) {
   }
 }
 
+// Says what its instances do, and shares a counter among them if it is asked to.
+class CountingPort final : public Port {
+ public:
+  std::string name() const override { return "counting"; }
+  std::string version() const override { return "1"; }
+  std::unique_ptr<Unit> create(const std::string&) override {
+    if (alive_ == most_alive) return nullptr;
+    ++alive_;
+    calls.push_back(fmt::format("create {}", ++made_));
+    return std::make_unique<Counting>(*this, made_);
+  }
+
+  int most_alive = 9;
+  std::vector<std::string> calls;
+
+ private:
+  class Counting final : public Unit {
+   public:
+    Counting(CountingPort& port, int number) : port_(port), number_(number) {}
+    ~Counting() override {
+      port_.calls.push_back(fmt::format("destroy {}", number_));
+      --port_.alive_;
+    }
+    int set_parameter(const std::string&, float) override { return ATTEST_OK; }
+    int step(const attest_inputs& in, attest_outputs& out) override {
+      port_.calls.push_back(fmt::format("step {} {:g}", number_, in.control_state.roll_rate));
+      out.actuator_controls_0.control[0] = in.control_state.roll_rate;
+      return ATTEST_OK;
+    }
+
+   private:
+    CountingPort& port_;
+    int number_;
+  };
+
+  int made_ = 0, alive_ = 0;
+};
+
+class Company : public testing::Test {
+ protected:
+  std::optional<PortFault> drive_with(Instances instances) {
+    trace_ = trace_of(2);
+    for (Sample& sample : trace_.samples) sample.in.control_state.roll_rate = 1;
+    return drive(port_, Subject{.profile = "any", .instances = instances}, trace_);
+  }
+
+  CountingPort port_;
+  Trace trace_;
+};
+
+TEST_F(Company, AgainDestroysTheOtherBeforeTheJudgedIsMade) {
+  EXPECT_FALSE(drive_with(Instances::again));
+  EXPECT_THAT(port_.calls, ElementsAre("create 1", "step 1 -1", "step 1 -1", "destroy 1",
+                                       "create 2", "step 2 1", "step 2 1", "destroy 2"));
+  EXPECT_EQ(trace_.samples[1].out.actuator_controls_0.control[0], 1);
+}
+
+TEST_F(Company, TogetherStepsThemByTurns) {
+  EXPECT_FALSE(drive_with(Instances::together));
+  EXPECT_THAT(port_.calls, ElementsAre("create 1", "create 2", "step 1 -1", "step 2 1", "step 1 -1",
+                                       "step 2 1", "destroy 2", "destroy 1"));
+}
+
+TEST_F(Company, CrossedDestroysTheFirstWhileTheJudgedLives) {
+  EXPECT_FALSE(drive_with(Instances::crossed));
+  EXPECT_THAT(port_.calls, ElementsAre("create 1", "create 2", "step 1 -1", "step 1 -1",
+                                       "destroy 1", "step 2 1", "step 2 1", "destroy 2"));
+}
+
+TEST_F(Company, APortThatMakesOneInstanceDoesNotSupportTwo) {
+  port_.most_alive = 1;
+  const auto fault = drive_with(Instances::together);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->kind, Kind::unsupported);
+  EXPECT_FALSE(drive_with(Instances::again));
+}
+
 }  // namespace
 }  // namespace attest

@@ -24,7 +24,7 @@ class SelectTest : public testing::Test {
 
   void add(const std::string& group, const std::string& name, const std::string& more = "") {
     files_.write(group, name,
-                 fmt::format("schema = 1\nprofile = \"px4-v1.5.5\"\ngroup = \"{}\"\n"
+                 fmt::format("schema = 1\nprofiles = [\"px4-v1.5.5\"]\ngroup = \"{}\"\n"
                              "why = \"a test\"\nduration_ticks = 10\n{}",
                              group, more));
   }
@@ -63,6 +63,21 @@ TEST_F(SelectTest, FiltersMatchTheIdOrParts) {
   EXPECT_THAT(filter("*@10hz"), ElementsAre("rates/slow:1"));
   EXPECT_THAT(filter("[ps]*"),
               AllOf(testing::Contains("attitude/pitch:11"), testing::Contains("rates/slow:2")));
+}
+
+TEST_F(SelectTest, AFileIsACaseOfEachOfItsProfiles) {
+  files_.write("rates", "shared",
+               "schema = 1\nprofiles = [\"px4-v1.5.5\", \"px4-v1.3.4\"]\ngroup = \"rates\"\n"
+               "why = \"a test\"\nduration_ticks = 10\n");
+  Selection selection;
+  selection.filters = {"shared"};
+  const auto both = select_cases(files_.folder(), selection);
+  ASSERT_TRUE(both);
+  ASSERT_EQ(both->size(), 2u);
+  EXPECT_EQ((*both)[0].the_case.id(), "px4-v1.3.4/rates/shared");
+  EXPECT_EQ((*both)[1].the_case.id(), "px4-v1.5.5/rates/shared");
+  selection.profiles = {"px4-v1.3.4"};
+  EXPECT_THAT(select(selection), ElementsAre("rates/shared:11"));
 }
 
 TEST_F(SelectTest, AnyOfSeveralFilters) {

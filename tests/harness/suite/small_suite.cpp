@@ -13,7 +13,7 @@ std::string test_port(const std::string& name) {
 
 void SmallSuite::add_unblessed(std::string_view name, std::string_view body) {
   const std::string text = fmt::format(
-      "schema = 1\nprofile = \"px4-v1.5.5\"\ngroup = \"tests\"\nwhy = \"a test\"\n"
+      "schema = 1\nprofiles = [\"px4-v1.5.5\"]\ngroup = \"tests\"\nwhy = \"a test\"\n"
       "duration_ticks = 30\nrates_hz = [100, 250]\nrates_why = \"two\"\n{}",
       body);
   auto parsed = parse_case(files_.write("tests", name, text));

@@ -1,0 +1,189 @@
+// Mistakes where v1.3.4 differs from v1.5.5: ported from the wrong version, or not quite. Some are
+// mistakes in v1.5.5 too.
+#include <memory>
+#include <utility>
+
+#include "controller/faults/groups.hpp"
+
+namespace attest::faults {
+namespace {
+
+using reference::only_v1_3_4;
+using V = const Vector&;
+
+template <typename FeedForward>
+void change_feed_forward(FaultyLaw& law, FeedForward feed_forward) {
+  law.rate.feed_forward_change = [feed_forward](V sp, V prev, float dt, const RateGains& gains) {
+    return Vector(gains.feed_forward.cwiseProduct(feed_forward(sp, prev, dt)));
+  };
+}
+
+// The weather-vane's clamp, before or after the feed-forward only.
+void clamp_once(FaultyLaw& law, bool after) {
+  auto fed = std::make_shared<bool>(false);
+  law.attitude.limit = [fed](V rates_sp, bool autonomous, const AttitudeGains& gains) {
+    *fed = false;
+    return AttitudeStages::Law::limit(rates_sp, autonomous, gains);
+  };
+  law.attitude.yaw_feed_forward = [fed](float yaw, float rate, float weight,
+                                        const AttitudeGains& gains) {
+    *fed = true;
+    return AttitudeStages::Law::yaw_feed_forward(yaw, rate, weight, gains);
+  };
+  law.attitude.weathervane_limit = [fed, after](float yaw, const AttitudeGains& gains) {
+    return *fed == after ? AttitudeStages::Law::weathervane_limit(yaw, gains) : yaw;
+  };
+}
+
+void freeze_yaw_by_its_flag(FaultyLaw& law) {
+  struct Turn {
+    bool yaw_limited = false;
+    int axis = 0;
+  };
+  auto turn = std::make_shared<Turn>();
+  law.rate.may_integrate = [turn](float thrust_sp, const MotorLimits& limits) {
+    *turn = {limits.yaw, 0};
+    return RateStages::Law::may_integrate(thrust_sp, limits);
+  };
+  law.rate.integrate_axis = [turn](float integral, float control, float thrust_sp, float growth,
+                                   bool frozen) {
+    const bool is_yaw = turn->axis++ == 2;
+    return RateStages::Law::integrate_axis(integral, control, thrust_sp, growth,
+                                           frozen || (is_yaw && turn->yaw_limited));
+  };
+}
+
+// With the defaults of v1.5.5: a break at full thrust and a slope of 1.
+void attenuate_by_thrust(FaultyLaw& law) {
+  auto thrust = std::make_shared<float>(0.0f);
+  also_before(law, [thrust](const attest_inputs& in) {
+    const auto& mode = in.vehicle_control_mode;
+    *thrust = in.vehicle_rates_setpoint.thrust;
+    if (mode.flag_control_manual_enabled != 0) *thrust = in.manual_control_setpoint.z;
+    if (mode.flag_control_attitude_enabled != 0) *thrust = in.vehicle_attitude_setpoint.thrust;
+  });
+  law.rate.proportional = [thrust](V error, float, const RateGains& gains) {
+    const float attenuation =
+        RateStages::Law::throttle_attenuation(*thrust, RateGains{.tpa_break = 1, .tpa_slope = 1});
+    return RateStages::Law::proportional(error, attenuation, gains);
+  };
+}
+
+void scale_by_battery(FaultyLaw& law) {
+  also_after(law, [](const attest_inputs& in, attest_outputs& out) {
+    const float scale = in.battery_status.scale;
+    if (out.actuator_controls_0.published == 0 || !(scale > 0)) return;
+    for (int i = 0; i < 4; ++i) out.actuator_controls_0.control[i] *= scale;
+  });
+}
+
+const Fault faults[] = {
+    {"v1.3.4-ff-of-setpoint",
+     "rates",
+     Stage::ff,
+     "feeds the setpoint forward, and not its change",
+     "a feed-forward gain",
+     "another version",
+     [](FaultyLaw& law) { change_feed_forward(law, [](V sp, V, float) { return sp; }); },
+     {},
+     only_v1_3_4},
+    {"v1.3.4-ff-without-dt",
+     "rates",
+     Stage::ff,
+     "does not divide the change by dt",
+     "a feed-forward gain and a setpoint that changes",
+     "a missing factor",
+     [](FaultyLaw& law) {
+       change_feed_forward(law, [](V sp, V prev, float) { return Vector(sp - prev); });
+     },
+     {},
+     only_v1_3_4},
+    {"v1.3.4-ff-backwards",
+     "rates",
+     Stage::ff,
+     "feeds the change forward with the other sign",
+     "a feed-forward gain and a setpoint that changes",
+     "a sign",
+     [](FaultyLaw& law) {
+       change_feed_forward(law, [](V sp, V prev, float dt) { return Vector((prev - sp) / dt); });
+     },
+     {},
+     only_v1_3_4},
+    {"v1.3.4-ff-from-0",
+     "rates",
+     Stage::ff,
+     "never remembers the setpoint before",
+     "a feed-forward gain and a setpoint that stays",
+     "a missing step",
+     [](FaultyLaw& law) {
+       change_feed_forward(law, [](V sp, V, float dt) { return Vector(sp / dt); });
+     },
+     {},
+     only_v1_3_4},
+    {"v1.3.4-ff-no-first-kick",
+     "rates",
+     Stage::ff,
+     "feeds nothing forward in the first step",
+     "a feed-forward gain and a setpoint at the start",
+     "a helpful extra",
+     [](FaultyLaw& law) {
+       law.rate.feed_forward_change = [is_first = true](V sp, V prev, float dt,
+                                                        const RateGains& gains) mutable {
+         const Vector before = std::exchange(is_first, false) ? Vector(sp) : Vector(prev);
+         return RateStages::Law::feed_forward_change(sp, before, dt, gains);
+       };
+     },
+     {},
+     only_v1_3_4},
+    {"v1.3.4-yaw-flag-freezes",
+     "anti_windup",
+     Stage::gate,
+     "freezes the yaw integral while yaw is limited",
+     "the yaw limit alone",
+     "another version",
+     freeze_yaw_by_its_flag,
+     {},
+     only_v1_3_4},
+    {"v1.3.4-vane-after-only",
+     "weathervane",
+     Stage::weathervane,
+     "limits yaw only after the feed-forward",
+     "weather-vaning against a commanded yaw rate",
+     "another version",
+     [](FaultyLaw& law) { clamp_once(law, true); },
+     {},
+     only_v1_3_4},
+    {"vane-before-only", "weathervane", Stage::weathervane,
+     "limits yaw only before the feed-forward", "weather-vaning with a commanded yaw rate",
+     "a missing clamp", [](FaultyLaw& law) { clamp_once(law, false); }},
+    {"v1.3.4-auto-by-flag",
+     "rate_limit",
+     Stage::limit,
+     "takes the automatic modes for autonomous, and not only those that control velocity",
+     "an automatic mode without velocity control",
+     "another version",
+     [](FaultyLaw& law) {
+       law.step.is_autonomous = [](const decltype(Topics::mode)& mode, Profile) {
+         return StepStages::Law::is_autonomous(mode, Profile::px4_v1_5_5);
+       };
+     },
+     {},
+     only_v1_3_4},
+    {"gear-unlatched", "actuators", Stage::output, "passes the landing gear on",
+     "a landing gear that is not 0", "another version",
+     [](FaultyLaw& law) {
+       also_after(law, [](const attest_inputs& in, attest_outputs& out) {
+         out.actuator_controls_0.control[7] = in.vehicle_attitude_setpoint.landing_gear;
+       });
+     }},
+    {"battery-always-scales", "battery", Stage::scaling, "scales the controls by the battery",
+     "a battery scale", "another version", scale_by_battery},
+    {"tpa-by-defaults", "tpa", Stage::tpa, "attenuates P by thrust", "thrust beyond 1",
+     "another version", attenuate_by_thrust},
+};
+
+}  // namespace
+
+std::span<const Fault> v1_3_4_faults() { return faults; }
+
+}  // namespace attest::faults
