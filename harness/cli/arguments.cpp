@@ -70,9 +70,7 @@ void add_run(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("I/N")
       ->capture_default_str();
   command->add_flag("--fail-fast", options->worker.fail_fast, "Stop after the first failing case");
-  command->add_option("--timeout", options->worker.timeout_s, "Limit for one case at one rate [s]")
-      ->check(CLI::Range(0.1, 3600.0))
-      ->capture_default_str();
+  add_timeout(*command, options->worker.timeout_s);
   command->add_flag("--in-process", options->worker.in_process,
                     "No worker processes: for a debugger, or a sanitizer in the port");
   command->add_option("--junit", options->junit, "Write a JUnit XML report")->type_name("FILE");
@@ -105,9 +103,7 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
       ->add_option("--mixer", options->mixer,
                    "Definition of the mixer of a mixer trace; default: from its name")
       ->type_name("TEXT");
-  command->add_option("--timeout", options->timeout_s, "Limit for one trace [s]")
-      ->check(CLI::Range(0.1, 86400.0))
-      ->capture_default_str();
+  add_timeout(*command, options->timeout_s);
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return replay_command(*options, globals); };
   });
@@ -132,9 +128,7 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("--out", options->out, "The flown trace (CSV)")
       ->type_name("F.csv")
       ->required();
-  command->add_option("--timeout", options->timeout_s, "Limit for the flight [s]")
-      ->check(CLI::Range(0.1, 86400.0))
-      ->capture_default_str();
+  add_timeout(*command, options->timeout_s);
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return sim_command(*options, globals); };
   });
@@ -165,6 +159,7 @@ void add_faults(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("--jobs,-j", options->jobs, "Faults at a time")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
+  add_timeout(*command, options->timeout_s);
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return faults_command(*options, globals); };
   });
@@ -240,6 +235,7 @@ void add_doctor(CLI::App& app, const Globals& globals, Action& action) {
   CLI::App* command = app.add_subcommand(
       "doctor", "Check the machine, the suite, the reference and a port, and say what is wrong");
   add_port(*command, options->port);
+  add_timeout(*command, options->timeout_s);
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return doctor_command(*options, globals); };
   });

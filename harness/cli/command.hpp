@@ -75,7 +75,7 @@ struct ReplayOptions {
   std::string level = "numeric";
   std::string mixer;
   std::vector<std::string> parameters;
-  double timeout_s = 60;
+  double timeout_s = default_timeout_s;
 };
 int replay_command(const ReplayOptions& options, const Globals& globals);
 
@@ -92,7 +92,7 @@ struct SimOptions {
   std::string timing;
   std::string port = "builtin";
   std::string out;
-  double timeout_s = 60;
+  double timeout_s = default_timeout_s;
 };
 int sim_command(const SimOptions& options, const Globals& globals);
 
@@ -111,6 +111,7 @@ struct StressOptions {
   std::optional<double> misses_per_million, p99_lateness_us, execution_us;
   std::string json, junit, record_timing;
   bool cyclictest = true;
+  double timeout_s = default_timeout_s;
 };
 int stress_command(const StressOptions& options, const Globals& globals);
 
@@ -129,6 +130,7 @@ struct ScheduleOptions {
   std::string vehicle, plant;
   std::string port = "builtin";
   std::string record_timing;
+  double timeout_s = default_timeout_s;
 };
 int schedule_command(const ScheduleOptions& options, const Globals& globals);
 
@@ -149,6 +151,7 @@ struct FaultOptions {
   bool diagnose = false;
   std::optional<int> fraction_bits;
   int jobs = 1;
+  double timeout_s = default_timeout_s;
 };
 int faults_command(const FaultOptions& options, const Globals& globals);
 
@@ -175,6 +178,7 @@ int bless_command(const BlessOptions& options, const Globals& globals);
 
 struct DoctorOptions {
   std::string port = "builtin";
+  double timeout_s = default_timeout_s;
 };
 int doctor_command(const DoctorOptions& options, const Globals& globals);
 

@@ -87,10 +87,12 @@ void examine_reference(const SuiteFolder& suite, Examination& examination) {
   examination.bad("reference", fmt::format("{}; first: {}", finding, check->first_difference));
 }
 
-void examine_port(const std::string& specification, Examination& examination) {
+void examine_port(const DoctorOptions& options, Examination& examination) {
   const auto known = reference::profile_names();
-  const auto port = describe_port(specification, {known.begin(), known.end()}, 10);
+  const std::string& specification = options.port;
+  const auto port = describe_port(specification, {known.begin(), known.end()}, options.timeout_s);
   if (!port) return examination.bad("port", port.error().to_string());
+  if (!port->hangs.empty()) return examination.bad("port", specification + ": " + port->hangs);
   const std::string who = fmt::format("{}: {} {}", specification, port->name, port->version);
   if (port->profiles.empty()) {
     return examination.bad("port", fmt::format("{}; create() returned NULL for each of {}", who,
@@ -113,7 +115,7 @@ int doctor_command(const DoctorOptions& options, const Globals& globals) {
   } else {
     examination.bad("suite", suite.error().to_string());
   }
-  examine_port(options.port, examination);
+  examine_port(options, examination);
   return examination.all_good() ? exit_ok : exit_usage;
 }
 

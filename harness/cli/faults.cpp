@@ -115,7 +115,7 @@ Result<int> measure(const FaultOptions& options, const SuiteFolder& suite, fault
   }
   WorkerOptions worker;
   worker.jobs = options.jobs;
-  worker.timeout_s = 600;  // of one fault that nothing catches
+  worker.timeout_s = options.timeout_s;
   worker.stop = interrupted;
   const WorkerOutcome outcome = run_batches(batches, worker);
   if (interrupted()) return exit_interrupted;

@@ -26,7 +26,7 @@ Result<Plan> make_plan(const ScheduleOptions& options, const SuiteFolder& suite)
   if (!set) return tl::unexpected(set.error());
   const auto chosen = choose_flight(options.case_name, options.vehicle, options.plant, suite);
   if (!chosen) return tl::unexpected(chosen.error());
-  const auto port = describe_port(options.port, {}, 60);
+  const auto port = describe_port(options.port, {}, options.timeout_s);
   if (!port) return tl::unexpected(port.error());
 
   const Case& the_case = chosen->the_case;
@@ -68,7 +68,7 @@ int schedule_command(const ScheduleOptions& options, const Globals& globals) {
   }
   WorkerOptions worker;
   worker.port = options.port;
-  worker.timeout_s = 60;
+  worker.timeout_s = options.timeout_s;
   const WorkerOutcome outcome = run_batches(plan->batches, worker);
   if (!outcome.errors.empty()) return report_error(outcome.errors.front());
   const CaseResult& scheduled = outcome.results[1];

@@ -10,6 +10,7 @@
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
+#include "harness/process/program.hpp"
 #include "harness/realtime/load.hpp"
 #include "harness/report/junit.hpp"
 #include "harness/report/stress_text.hpp"
@@ -62,7 +63,7 @@ Result<Plan> make_plan(const StressOptions& options, const SuiteFolder& suite) {
   if (!options.record_timing.empty() && options.rates.size() != 1) {
     return fail("--record-timing records one rate; name it with --rates");
   }
-  auto port = describe_port(options.port, {}, 60);
+  auto port = describe_port(options.port, {}, options.timeout_s);
   if (!port) return tl::unexpected(port.error());
 
   Case& the_case = chosen->the_case;
@@ -76,7 +77,7 @@ Result<Plan> make_plan(const StressOptions& options, const SuiteFolder& suite) {
     if (!rate) return tl::unexpected(rate.error());
     plan.tasks.push_back({the_case, Setup{*rate, chosen->flyer}, chosen->airframe, *live,
                           nanoseconds(std::min(options.duration_s, idle_s_max)),
-                          options.record_timing});
+                          options.record_timing, nanoseconds(options.timeout_s)});
   }
   return plan;
 }
@@ -124,6 +125,15 @@ Result<void> write_report(std::optional<AtomicFile>& file, const std::string& te
   return file->commit();
 }
 
+// A cyclictest that is installed and does not answer is said: its row is missing then.
+std::optional<Cyclictest> idle_by_cyclictest(const StressTask& task) {
+  auto idle = run_cyclictest(task.setup.rate, task.idle_duration, task.live, interrupted);
+  if (!idle && !interrupted() && is_installed("cyclictest")) {
+    fmt::print(stderr, "attest: cyclictest failed, or gave no figures in time\n");
+  }
+  return idle;
+}
+
 // Each rate in turn: cyclictest, the idle machine, the flight.
 Result<void> run_all(const Plan& plan, const StressOptions& options, const Globals& globals,
                      StressRun& run) {
@@ -134,8 +144,7 @@ Result<void> run_all(const Plan& plan, const StressOptions& options, const Globa
   for (const StressTask& task : plan.tasks) {
     if (interrupted()) break;
     const auto progress = [&](const StressProgress& now) { line.show(task, now); };
-    std::optional<Cyclictest> judge;
-    if (options.cyclictest) judge = run_cyclictest(task.setup.rate, task.idle_duration, task.live);
+    const auto judge = options.cyclictest ? idle_by_cyclictest(task) : std::nullopt;
     auto stress = run_stress(task, options.port, interrupted, progress);
     if (!stress) return tl::unexpected(stress.error());
     stress->cyclictest = judge;

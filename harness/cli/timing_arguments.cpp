@@ -14,6 +14,15 @@ void add_port(CLI::App& command, std::string& port) {
       ->capture_default_str();
 }
 
+void add_timeout(CLI::App& command, double& timeout_s) {
+  command
+      .add_option("--timeout", timeout_s,
+                  "Limit for one case at one rate [s]; a port that gives no answer in time has the "
+                  "verdict `timeout`")
+      ->check(CLI::Range(0.1, 86400.0))
+      ->capture_default_str();
+}
+
 void add_selection(CLI::App& command, SelectionOptions& options) {
   command
       .add_option("--filter", options.filters,
@@ -98,6 +107,7 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("--junit", options->junit, "Write a report for CI servers")->type_name("F");
   command->add_flag("--cyclictest,!--no-cyclictest", options->cyclictest,
                     "Let cyclictest measure the idle machine too, where it is installed");
+  add_timeout(*command, options->timeout_s);
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return stress_command(*options, globals); };
   });
@@ -106,7 +116,6 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
 void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<SweepOptions>();
   options->worker.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  options->worker.timeout_s = 600;
   CLI::App* command = app.add_subcommand(
       "sweep-rate",
       "Where each vehicle stops holding: lowest loop rate, largest delay of the motor commands");
@@ -126,6 +135,7 @@ void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
       ->allow_extra_args(false);
   add_port(*command, options->worker.port);
   command->add_option("--csv", options->csv, "Write the table")->type_name("F.csv");
+  add_timeout(*command, options->worker.timeout_s);
   command->add_option("--jobs,-j", options->worker.jobs, "Vehicles at a time")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
@@ -153,6 +163,7 @@ void add_schedule(CLI::App& app, const Globals& globals, Action& action) {
       ->add_option("--record-timing", options->record_timing,
                    "Write when everything happens, for `run --timing` and `sim --timing`")
       ->type_name("F");
+  add_timeout(*command, options->timeout_s);
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return schedule_command(*options, globals); };
   });
@@ -160,7 +171,6 @@ void add_schedule(CLI::App& app, const Globals& globals, Action& action) {
 
 void add_time(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<TimeCommandOptions>();
-  options->worker.timeout_s = 60;
   CLI::App* command = app.add_subcommand(
       "time", "How long a port's steps take over the corpus, and which input takes longest");
   add_port(*command, options->worker.port);
@@ -186,6 +196,7 @@ void add_time(CLI::App& app, const Globals& globals, Action& action) {
   command->add_flag("--instructions", options->instructions,
                     "Count the instructions of the slowest vector's steps, with valgrind");
   command->add_option("--json", options->json, "Write all times, by vector")->type_name("F");
+  add_timeout(*command, options->worker.timeout_s);
   command->add_flag("--in-process", options->worker.in_process,
                     "No worker process: for valgrind, perf or a debugger");
   command->callback([options, &globals, &action] {

@@ -1,37 +1,62 @@
 #include "harness/realtime/cyclictest.hpp"
 
+#include <algorithm>
+#include <charconv>
 #include <map>
 #include <string>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "harness/realtime/program.hpp"
+#include "harness/process/program.hpp"
 
 namespace attest {
 
+namespace {
+
+// A day: what is longer is no measurement.
+constexpr std::int64_t longest_us = 86'400'000'000;
+constexpr std::int64_t most_cycles = 1'000'000'000'000;
+// Time to start, and to write what it measured.
+constexpr double patience_s = 10;
+
+// The times of its histogram in microseconds, each with how often it was. Empty: no such histogram.
+std::optional<std::map<std::int64_t, std::int64_t>> counts_of(const nlohmann::json& histogram) {
+  std::map<std::int64_t, std::int64_t> counts;
+  if (!histogram.is_object()) return std::nullopt;
+  for (const auto& [text, count] : histogram.items()) {
+    std::int64_t us = 0;
+    const char* const end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, us);
+    const bool is_time = error == std::errc{} && rest == end && us >= 0 && us <= longest_us;
+    if (!is_time || !count.is_number_unsigned() || count > most_cycles) return std::nullopt;
+    counts[us] = count.get<std::int64_t>();
+  }
+  return counts;
+}
+
+}  // namespace
+
 std::optional<Cyclictest> parse_cyclictest(const std::string& text) {
   // The histogram as text comes after it.
-  const std::string first = text.substr(0, text.find("\n}") + 2);
-  const auto json = nlohmann::json::parse(first, nullptr, false);
+  const std::size_t end = std::min(text.find("\n}"), text.size());
+  const auto json = nlohmann::json::parse(text.substr(0, end + 2), nullptr, false);
   const auto path = nlohmann::json::json_pointer("/thread/0");
-  if (!json.is_object() || !json.contains(path)) return std::nullopt;
+  if (!json.is_object() || !json.contains(path) || !json[path].is_object()) return std::nullopt;
   const auto& thread = json[path];
-  if (!thread.contains("histogram") || !thread["histogram"].is_object()) return std::nullopt;
-  std::map<std::int64_t, std::int64_t> counts;
-  std::int64_t all = 0;
-  for (const auto& [us, count] : thread["histogram"].items()) {
-    counts[std::stoll(us)] = count.get<std::int64_t>();
-    all += count.get<std::int64_t>();
-  }
+  if (!thread.contains("histogram") || !thread.contains("max")) return std::nullopt;
+  const auto& max = thread["max"];
+  const auto counts = counts_of(thread["histogram"]);
+  if (!counts || !max.is_number_unsigned() || max > longest_us) return std::nullopt;
   Cyclictest result;
-  result.cycles = all;
-  result.max = std::chrono::microseconds(thread.value("max", std::int64_t{0}));
+  result.max = std::chrono::microseconds(max.get<std::int64_t>());
+  for (const auto& [us, count] : *counts) result.cycles += count;
   double before = 0;
-  const double half = static_cast<double>(all) / 2;
-  for (const auto& [us, count] : counts) {
+  const double half = static_cast<double>(result.cycles) / 2;
+  for (const auto& [us, count] : *counts) {
     const auto here = static_cast<double>(count);
-    if (before + here >= half) {
+    if (here > 0 && before + here >= half) {
       const double within = (half - before) / here;
       result.median = Nanoseconds(us * 1000 + static_cast<std::int64_t>(within * 1000));
       return result;
@@ -42,7 +67,8 @@ std::optional<Cyclictest> parse_cyclictest(const std::string& text) {
 }
 
 std::optional<Cyclictest> run_cyclictest(const Rate& rate, Nanoseconds duration,
-                                         const LiveOptions& options) {
+                                         const LiveOptions& options,
+                                         const std::function<bool()>& stop) {
   if (!is_installed("cyclictest")) return std::nullopt;
   const auto period_us = static_cast<std::int64_t>(rate.period_s() * 1e6);
   const std::string cpu = fmt::to_string(options.unit_cpu);
@@ -64,7 +90,8 @@ std::optional<Cyclictest> run_cyclictest(const Rate& rate, Nanoseconds duration,
   } else {
     command.insert(command.end(), {"--policy=other"});
   }
-  const auto json = output_of(command);
+  const double duration_s = static_cast<double>(duration.count()) * 1e-9;
+  const auto json = output_of(command, {duration_s + patience_s, stop});
   return json ? parse_cyclictest(*json) : std::nullopt;
 }
 

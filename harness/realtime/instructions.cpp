@@ -6,8 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "harness/realtime/program.hpp"
-
 namespace attest {
 namespace {
 
@@ -45,7 +43,8 @@ std::optional<std::uint64_t> total_of(const fs::path& dump) {
 }  // namespace
 
 std::vector<std::uint64_t> instructions_of_calls(const std::vector<std::string>& command,
-                                                 const std::string& symbol) {
+                                                 const std::string& symbol,
+                                                 const ProgramLimits& limits) {
   const Scratch scratch;
   if (!is_installed("valgrind") || scratch.path().empty()) return {};
   const std::string dumps = (scratch.path() / "dump").string();
@@ -57,7 +56,7 @@ std::vector<std::uint64_t> instructions_of_calls(const std::vector<std::string>&
                                       "--dump-after=" + symbol,
                                       "--callgrind-out-file=" + dumps};
   counted.insert(counted.end(), command.begin(), command.end());
-  if (!output_of(counted)) return {};
+  if (!output_of(counted, limits)) return {};
   std::vector<std::uint64_t> calls;
   for (int number = 1;; ++number) {
     const auto total = total_of(fmt::format("{}.{}", dumps, number));

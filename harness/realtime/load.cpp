@@ -1,19 +1,14 @@
 #include "harness/realtime/load.hpp"
 
 #include <array>
-#include <cerrno>
-#include <csignal>
 #include <cstdio>
-#include <cstdlib>
+#include <optional>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include "harness/realtime/program.hpp"
+#include "harness/process/program.hpp"
 
 namespace attest {
 namespace {
@@ -61,32 +56,15 @@ constexpr std::array<std::string_view, 3> names = {"cpu", "cache", "io"};
   use_cpu();
 }
 
-// Of its own process group, so that the workers that stress-ng makes end with it.
-template <typename Work>
-pid_t start(Work&& work) {
-  const pid_t parent = ::getpid();
-  std::fflush(nullptr);
-  const pid_t process = ::fork();
-  if (process > 0) ::setpgid(process, process);  // whoever of the two comes first
-  if (process != 0) return process;
-  ::setpgid(0, 0);
-  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (::getppid() != parent) ::_exit(EXIT_FAILURE);
-  work();
-  ::_exit(EXIT_FAILURE);
-}
-
-[[noreturn]] void become_stress_ng(LoadKind kind, int workers) {
-  if (const int nothing = ::open("/dev/null", O_RDWR); nothing >= 0) {
-    ::dup2(nothing, STDOUT_FILENO);
-    ::dup2(nothing, STDERR_FILENO);
-  }
-  const std::string option = fmt::format("--{}", name_of(kind));
-  const std::string count = fmt::to_string(workers);
+// Empty when it is not installed, or ends at once: then it makes no load.
+std::optional<Process> stress_ng(LoadKind kind, int workers) {
+  constexpr double refuses_within_s = 0.2;
+  if (!is_installed("stress-ng")) return std::nullopt;
   // Its files of --io and --hdd go to the folder for temporary files.
-  ::execlp("stress-ng", "stress-ng", option.c_str(), count.c_str(), "--temp-path", "/tmp",
-           static_cast<char*>(nullptr));
-  ::_exit(EXIT_FAILURE);
+  auto process = start_program({"stress-ng", fmt::format("--{}", name_of(kind)),
+                                fmt::to_string(workers), "--temp-path", "/tmp"});
+  if (!process || process->ends_within(refuses_within_s)) return std::nullopt;
+  return *std::move(process);
 }
 
 }  // namespace
@@ -103,22 +81,22 @@ Result<LoadKind> parse_load_kind(std::string_view name) {
 
 Load::Load(LoadKind kind, int workers) {
   if (workers == 0) return;
-  const bool has_stress_ng = is_installed("stress-ng");
-  if (has_stress_ng) {
-    processes_.push_back(start([&] { become_stress_ng(kind, workers); }));
-  } else {
-    for (int i = 0; i < workers; ++i) processes_.push_back(start([&] { use(kind); }));
+  if (auto process = stress_ng(kind, workers)) {
+    processes_.push_back(*std::move(process));
+    description_ = fmt::format("{} x {} (stress-ng)", workers, name_of(kind));
+    return;
   }
-  description_ = fmt::format("{} x {} ({})", workers, name_of(kind),
-                             has_stress_ng ? "stress-ng" : "own processes");
+  for (int i = 0; i < workers; ++i) {
+    if (auto process = Process::start([&] { use(kind); }))
+      processes_.push_back(*std::move(process));
+  }
+  description_ = fmt::format("{} x {} (own processes)", processes_.size(), name_of(kind));
 }
 
 Load::~Load() {
-  for (const pid_t process : processes_) ::kill(-process, SIGTERM);
-  for (const pid_t process : processes_) {
-    while (::waitpid(process, nullptr, 0) < 0 && errno == EINTR) {
-    }
-  }
+  constexpr double grace_s = 2;  // stress-ng removes its files
+  for (Process& process : processes_) process.terminate();
+  for (Process& process : processes_) process.end(grace_s);
 }
 
 }  // namespace attest

@@ -5,9 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include <sys/types.h>
-
 #include "harness/core/result.hpp"
+#include "harness/process/process.hpp"
 
 namespace attest {
 
@@ -15,8 +14,9 @@ enum class LoadKind { cpu, cache, io };
 std::string_view name_of(LoadKind kind);
 Result<LoadKind> parse_load_kind(std::string_view name);
 
-// Runs from construction to destruction: `workers` of stress-ng where it is installed, else
-// processes of our own. They run on all CPUs at ordinary priority, and die with this process.
+// Runs from construction to destruction: `workers` of stress-ng where it is installed and does not
+// end at once, else processes of our own. They run on all CPUs at ordinary priority, and die with
+// this process. Destruction takes a few seconds at most.
 class Load {
  public:
   Load(LoadKind kind, int workers);
@@ -28,7 +28,7 @@ class Load {
   const std::string& description() const { return description_; }
 
  private:
-  std::vector<pid_t> processes_;
+  std::vector<Process> processes_;
   std::string description_ = "none";
 };
 

@@ -1,6 +1,7 @@
 #include "harness/report/schedule_text.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -60,8 +61,10 @@ std::string render_flights(const CaseResult& in_time, const CaseResult& schedule
         fmt::format("  {:<18}{:<24}{:>12.4g}{:>12.4g}  {}\n", metric.name, name_of(metric.measure),
                     metric.value, scheduled.metrics[i].value, metric_bounds(metric));
   }
-  if (!scheduled.reason.empty()) {
-    out += fmt::format("  {}: {}\n", name_of(scheduled.verdict), one_line(scheduled.reason));
+  for (const auto& [when, result] :
+       {std::pair("in time", &in_time), std::pair("scheduled", &scheduled)}) {
+    if (result->reason.empty()) continue;
+    out += fmt::format("  {}: {}: {}\n", when, name_of(result->verdict), one_line(result->reason));
   }
   return out;
 }

@@ -66,12 +66,24 @@ bool TimeRun::crashed() const {
 }
 
 std::string what_went_wrong(const TimeRun& run) {
-  std::string out;
+  std::string out, last_reason;
+  std::size_t repeated = 0;
+  const auto say_repeated = [&] {
+    if (repeated > 0) out += fmt::format("  and {} more with the same reason\n", repeated);
+    repeated = 0;
+  };
   for (const CaseResult& result : run.results) {
     if (!fails_a_run(result.verdict)) continue;
+    if (result.reason == last_reason) {
+      ++repeated;
+      continue;
+    }
+    say_repeated();
+    last_reason = result.reason;
     out += fmt::format("{} {}: {}\n", one_line(result.id()), name_of(result.verdict),
                        one_line(result.reason));
   }
+  say_repeated();
   return out;
 }
 

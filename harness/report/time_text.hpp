@@ -25,7 +25,8 @@ struct TimeRun {
 
 std::string render_times(const TimeRun& run);
 
-// A line for each vector that fails a run; empty when none does.
+// A line for each vector that fails a run; those in a row that have the same reason are counted.
+// Empty when none does.
 std::string what_went_wrong(const TimeRun& run);
 
 // {"schema": "attest-time-1", "attest_version": ..., "port": ..., "repeats": 5, "budget_us": null,

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -33,6 +34,16 @@ class Batch {
 
   // REQUIRES: open() went well.
   virtual Result<CaseResult> evaluate(std::size_t i, Port& port) = 0;
+
+  // Calls `begins` before each part of a task; the time limit then starts anew.
+  void when_part_begins(std::function<void()> begins) { part_begins_ = std::move(begins); }
+
+ protected:
+  // For a task that runs many vectors: the time limit is that of one.
+  void begin_part() const { part_begins_(); }
+
+ private:
+  std::function<void()> part_begins_ = [] {};
 };
 
 // A case in some of its setups: any of an open-loop case, or those of one flyer.

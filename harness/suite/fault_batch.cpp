@@ -60,6 +60,7 @@ Result<CaseResult> FaultBatch::evaluate(std::size_t i, Port&) {
     }
     // Rounding tells a fault from the law that is equivalent to it.
     if (the_case->exact_only && !fault_.is_killable(profile_)) continue;
+    begin_part();
     const Level level = the_case->exact_only ? Level::exact : Level::numeric;
     const auto result = evaluate_case(*the_case, rate, *golden, **port, level);
     if (!result) return tl::unexpected(result.error());

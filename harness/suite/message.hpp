@@ -1,6 +1,6 @@
 // What a worker process says to its parent: one JSON object a line.
 //
-//     {"begin": 3}                 task 3 begins: the time limit starts anew
+//     {"begin": 3}                 task 3 begins, or a part of it: the time limit starts anew
 //     {"result": {...}}            the verdict on it, or
 //     {"error": {...}}             why there is none
 //     {"done": true}               after the last task

@@ -20,6 +20,7 @@ void work_through(Batch& batch, std::size_t first, const std::string& specificat
     return send(encode(BatchDone{}));
   }
   for (std::size_t i = first; i < batch.size(); ++i) {
+    batch.when_part_begins([&send, i] { send(encode(TaskBegins{i})); });
     send(encode(TaskBegins{i}));
     auto result = batch.evaluate(i, **port);
     send(result ? encode(std::move(*result)) : encode(result.error()));
@@ -50,7 +51,13 @@ Pool::Clock::time_point Pool::deadline() const {
 void Pool::start_workers() {
   const auto jobs = static_cast<std::size_t>(std::max(options_.jobs, 1));
   while (workers_.size() < jobs && next_ < end_) {
-    start(next_++, 0);
+    const std::size_t batch = next_++;
+    if (!hangs_when_loaded_) {
+      start(batch, 0);
+    } else {
+      give_up(batch, 0, "not run: the port had timed out when it was loaded");
+      stop_after_failure(batch);
+    }
   }
 }
 
@@ -93,8 +100,14 @@ void Pool::serve(Worker& worker) {
 }
 
 void Pool::take(Worker& worker, const Message& message) {
-  if (std::holds_alternative<TaskBegins>(message)) worker.deadline = deadline();
-  if (const auto* result = std::get_if<CaseResult>(&message)) add(worker, *result);
+  if (std::holds_alternative<TaskBegins>(message)) {
+    worker.deadline = deadline();
+    worker.is_loaded = true;
+  }
+  if (const auto* result = std::get_if<CaseResult>(&message)) {
+    add(worker.batch, *result);
+    ++worker.task;
+  }
   if (const auto* error = std::get_if<Error>(&message)) {
     outcomes_[worker.batch].errors.push_back(*error);
     ++worker.task;
@@ -102,10 +115,19 @@ void Pool::take(Worker& worker, const Message& message) {
   if (std::holds_alternative<BatchDone>(message)) worker.finished = true;
 }
 
-void Pool::add(Worker& worker, const CaseResult& result) {
-  outcomes_[worker.batch].results.push_back(result);
-  ++worker.task;
+void Pool::add(std::size_t batch, const CaseResult& result) {
+  outcomes_[batch].results.push_back(result);
   options_.on_result(result);
+}
+
+// The tasks of a batch from this one on are not run.
+void Pool::give_up(std::size_t batch, std::size_t first_task, const std::string& reason) {
+  for (std::size_t task = first_task; task < batches_[batch]->size(); ++task) {
+    CaseResult result = batches_[batch]->identity(task);
+    result.verdict = Verdict::timeout;
+    result.reason = reason;
+    add(batch, result);
+  }
 }
 
 // The child has ended or must: the task it left gets a verdict, the rest of the batch a new child.
@@ -114,13 +136,13 @@ void Pool::conclude(Worker& worker, bool timed_out) {
   const std::size_t size = batches_[batch]->size();
   worker.over = true;
   if (!worker.finished && worker.task < size) {
-    add(worker, verdict_on_the_dead(worker, timed_out));
-    // A port that hangs at one rate hangs at the others: their time would be wasted.
-    while (timed_out && worker.task < size) {
-      CaseResult result = batches_[batch]->identity(worker.task);
-      result.verdict = Verdict::timeout;
-      result.reason = "not run: the port had timed out in this case";
-      add(worker, result);
+    add(batch, verdict_on_the_dead(worker, timed_out));
+    ++worker.task;
+    if (timed_out) {
+      hangs_when_loaded_ = hangs_when_loaded_ || !worker.is_loaded;
+      // A port that hangs at one rate hangs at the others: their time would be wasted.
+      give_up(batch, worker.task, "not run: the port had timed out in this case");
+      worker.task = size;
     }
   }
   const std::size_t left = worker.finished ? size : worker.task;
@@ -129,16 +151,12 @@ void Pool::conclude(Worker& worker, bool timed_out) {
 }
 
 CaseResult Pool::verdict_on_the_dead(Worker& worker, bool timed_out) {
-  // Its pipe is closed or its time is up. A process that is ending keeps its own end; one that
-  // closed the pipe and lives on would never be waited for to the end.
-  constexpr double enough_to_end_s = 2;
-  const bool ended = !timed_out && worker.child.ends_within(enough_to_end_s);
-  worker.child.kill();
-  const std::string end = worker.child.end();
-  const std::string how = ended ? end : "closed the pipe on which it answers, and went on";
+  if (timed_out) worker.child.kill();
+  const std::string how = worker.child.end();
   CaseResult result = batches_[worker.batch]->identity(worker.task);
   result.verdict = timed_out ? Verdict::timeout : Verdict::crash;
-  result.reason = timed_out ? fmt::format("no answer within {} s", options_.timeout_s)
+  result.reason = timed_out ? fmt::format("no answer within {} s{}", options_.timeout_s,
+                                          worker.is_loaded ? "" : ", when it was loaded")
                             : fmt::format("the port's process {}", how);
   const std::string words = worker.child.last_words();
   if (!words.empty()) result.reason += fmt::format("; it last printed: {}", words);

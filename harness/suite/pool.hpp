@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/suite/child.hpp"
+#include "harness/process/child.hpp"
 #include "harness/suite/message.hpp"
 #include "harness/suite/worker.hpp"
 
@@ -28,6 +28,7 @@ class Pool {
     Child child;
     std::size_t task;  // that runs, or will
     Clock::time_point deadline;
+    bool is_loaded = false;  // the port: a task has begun
     bool readable = false;
     bool finished = false;  // said so
     bool over = false;
@@ -42,7 +43,8 @@ class Pool {
   void wait();
   void serve(Worker& worker);
   void take(Worker& worker, const Message& message);
-  void add(Worker& worker, const CaseResult& result);
+  void add(std::size_t batch, const CaseResult& result);
+  void give_up(std::size_t batch, std::size_t first_task, const std::string& reason);
   void conclude(Worker& worker, bool timed_out);
   CaseResult verdict_on_the_dead(Worker& worker, bool timed_out);
   void stop_after_failure(std::size_t batch);
@@ -53,8 +55,9 @@ class Pool {
   const WorkerOptions& options_;
   std::vector<Outcome> outcomes_;
   std::vector<Worker> workers_;
-  std::size_t next_ = 0;  // batch to start
-  std::size_t end_;       // of the batches that are wanted
+  std::size_t next_ = 0;            // batch to start
+  std::size_t end_;                 // of the batches that are wanted
+  bool hangs_when_loaded_ = false;  // in each process: the other batches are not tried
 };
 
 }  // namespace attest

@@ -1,8 +1,8 @@
 #include "harness/suite/sim_batch.hpp"
 
 #include "harness/core/float_environment.hpp"
+#include "harness/process/child.hpp"
 #include "harness/run/flight.hpp"
-#include "harness/suite/child.hpp"
 #include "harness/suite/evaluate.hpp"
 #include "harness/suite/judge.hpp"
 #include "harness/trace/csv.hpp"

@@ -52,7 +52,8 @@ struct StressTask {
   std::shared_ptr<const Airframe> airframe;
   LiveOptions live;
   Nanoseconds idle_duration{0};
-  std::string record_timing;  // file; empty: none
+  std::string record_timing;                       // file; empty: none
+  Nanoseconds timeout = std::chrono::seconds(10);  // for each answer of the port
 };
 
 struct StressProgress {

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <poll.h>
 
-#include "harness/suite/child.hpp"
+#include "harness/process/child.hpp"
 #include "harness/suite/error_json.hpp"
 #include "harness/suite/evaluate.hpp"
 #include "harness/suite/stress.hpp"
@@ -23,8 +23,6 @@ using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto report_every = std::chrono::seconds(1);
-// A child that says nothing for so long, or flies on so long after the end, hangs.
-constexpr auto patience = std::chrono::seconds(10);
 
 std::atomic<bool> asked_to_stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // written by a signal handler
@@ -93,9 +91,7 @@ class Listener {
     }
     if (!ended) {
       child_.kill();
-      return gone_wrong(task_, Verdict::timeout,
-                        fmt::format("the port did not come back {:.3f} s into the flight",
-                                    static_cast<double>(flown_.count()) * 1e-9));
+      return gone_wrong(task_, Verdict::timeout, how_it_hangs());
     }
     const std::string how = child_.end(), words = child_.last_words();
     return gone_wrong(
@@ -106,8 +102,19 @@ class Listener {
  private:
   bool hangs() const {
     const Nanoseconds duration(static_cast<std::int64_t>(task_.the_case.duration.amount * 1e9));
-    const auto limit = idle_ ? task_.idle_duration + patience : Nanoseconds(patience);
-    return Clock::now() - heard_ > limit || flown_ > duration + patience;
+    // A child that says nothing for so long, or flies on so long after the end, hangs.
+    const Nanoseconds limit = report_every + task_.timeout;
+    return Clock::now() - heard_ > (idle_ ? task_.idle_duration + limit : limit) ||
+           flown_ > duration + limit;
+  }
+
+  std::string how_it_hangs() const {
+    const double limit_s = static_cast<double>(task_.timeout.count()) * 1e-9;
+    const double flown_s = static_cast<double>(flown_.count()) * 1e-9;
+    return is_made_
+               ? fmt::format("the port did not come back {:.3f} s into the flight, within {:g} s",
+                             flown_s, limit_s)
+               : fmt::format("no answer within {:g} s, when it was loaded and created", limit_s);
   }
 
   std::optional<Result<StressResult>> answer_of(const std::string& line) {
@@ -121,6 +128,7 @@ class Listener {
     }
     if (!message.contains("progress")) return std::nullopt;
     if (const auto progress = progress_from(message)) {
+      is_made_ = true;
       idle_ = progress->idle;
       flown_ = progress->live.time;
       progress_(*progress);
@@ -132,6 +140,7 @@ class Listener {
   Child& child_;
   const std::function<void(const StressProgress&)>& progress_;
   Clock::time_point heard_ = Clock::now();
+  bool is_made_ = false;  // the unit: the first progress comes after that
   bool idle_ = true;
   Nanoseconds flown_{0};
 };

@@ -1,7 +1,9 @@
 #include "harness/suite/sweep.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <optional>
+#include <utility>
 
 #include "harness/core/float_environment.hpp"
 #include "harness/run/case_timing.hpp"
@@ -22,11 +24,18 @@ constexpr int longest_delay = 5000, delay_step = 20;
 // Flies a case again and again, each time in another way.
 class Trial {
  public:
-  Trial(const Case& the_case, const Airframe& airframe, Port& port, CaseResult& result)
-      : case_(the_case), airframe_(airframe), port_(port), result_(result) {}
+  // Calls `begins` before each flight.
+  Trial(const Case& the_case, const Airframe& airframe, Port& port, CaseResult& result,
+        std::function<void()> begins)
+      : case_(the_case),
+        airframe_(airframe),
+        port_(port),
+        result_(result),
+        begins_(std::move(begins)) {}
 
   bool holds(const Setup& setup, Nanoseconds delay) {
     if (result_.verdict != Verdict::pass || error_) return false;
+    begins_();
     const auto unit = create_unit(port_, case_.profile, result_);
     if (!unit) return false;
     LoopTiming timing = case_timing(case_, setup.rate);
@@ -58,6 +67,7 @@ class Trial {
   const Airframe& airframe_;
   Port& port_;
   CaseResult& result_;
+  std::function<void()> begins_;
   std::optional<Error> error_;
 };
 
@@ -103,7 +113,7 @@ CaseResult SweepBatch::identity(std::size_t i) const {
 
 Result<CaseResult> SweepBatch::evaluate(std::size_t i, Port& port) {
   CaseResult result = identity(i);
-  Trial trial(case_, *airframe_, port, result);
+  Trial trial(case_, *airframe_, port, result, [this] { begin_part(); });
   if (i == 0) {
     result.figures[lowest_rate_figure] = lowest_rate([&](int hertz) {
       return trial.holds({Rate::hz(hertz), flyer_}, Nanoseconds(0));

@@ -5,9 +5,9 @@
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/core/float_environment.hpp"
+#include "harness/process/child.hpp"
 #include "harness/realtime/pacer.hpp"
 #include "harness/run/open_loop.hpp"
-#include "harness/suite/child.hpp"
 #include "harness/suite/evaluate.hpp"
 #include "harness/suite/judge.hpp"
 #include "harness/trace/csv.hpp"
@@ -107,6 +107,7 @@ std::vector<Nanoseconds> TimeBatch::measure(const Vector& vector, Port& port, Ca
   std::vector<Nanoseconds> least, times;
   times.reserve(inputs.samples.size());
   for (int repeat = 0; repeat < options_.repeats; ++repeat) {
+    begin_part();
     const auto unit = create_unit(port, vector.the_case->profile, result);
     if (!unit) return {};
     Trace trace = inputs;

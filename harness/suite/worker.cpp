@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/core/float_environment.hpp"
-#include "harness/suite/child.hpp"
+#include "harness/process/child.hpp"
 #include "harness/suite/error_json.hpp"
 #include "harness/suite/pool.hpp"
 
@@ -85,11 +85,13 @@ Result<PortDescription> describe_port(const std::string& port,
   if (!child) return tl::unexpected(child.error());
   const auto line = child->wait_for_line(timeout_s);
   if (!line) {
-    const std::string end = "its process " + child->end();
-    const std::string how =
-        child->was_killed() ? fmt::format("nothing within {} s", timeout_s) : end;
-    return fail_at(port,
-                   "gave no answer when it was loaded and asked for its name and profiles: " + how);
+    constexpr const char* asked = "when it was loaded and asked for its name and profiles";
+    if (child->was_killed()) {
+      PortDescription silent;
+      silent.hangs = fmt::format("gave no answer within {} s, {}", timeout_s, asked);
+      return silent;
+    }
+    return fail_at(port, fmt::format("gave no answer {}: its process {}", asked, child->end()));
   }
   const json answer = json::parse(*line, nullptr, false);
   if (answer.is_object() && answer.contains("error")) {
@@ -97,7 +99,7 @@ Result<PortDescription> describe_port(const std::string& port,
     return tl::unexpected(error ? *error : error.error());
   }
   if (!answer.is_object()) return fail_at(port, "gave no sensible description of itself");
-  PortDescription description{answer.value("name", ""), answer.value("version", ""),
+  PortDescription description{"", answer.value("name", ""), answer.value("version", ""),
                               answer.value("profiles", std::vector<std::string>{}), std::nullopt};
   if (answer.contains("fraction_bits")) {
     description.fraction_bits = answer.value("fraction_bits", 0);

@@ -13,12 +13,15 @@
 
 namespace attest {
 
+// For one case at one rate, and for all other answers of a port [s]; they take milliseconds.
+inline constexpr double default_timeout_s = 10;
+
 struct WorkerOptions {
   std::string port = "builtin";  // as for open_port
   int jobs = 1;                  // worker processes at a time
-  double timeout_s = 10;         // of one task; they take milliseconds
-  bool fail_fast = false;        // nothing after the first batch, in their order, that `fails`
-  bool in_process = false;       // for a debugger: no children, no protection, one after the other
+  double timeout_s = default_timeout_s;
+  bool fail_fast = false;   // nothing after the first batch, in their order, that `fails`
+  bool in_process = false;  // for a debugger: no children, no protection, one after the other
   std::function<void(const CaseResult&)> on_result = [](const CaseResult&) {};
   std::function<bool(const CaseResult&)> fails = [](const CaseResult& result) {
     return fails_a_run(result.verdict);
@@ -39,11 +42,14 @@ WorkerOutcome run_batches(const Batches& batches, const WorkerOptions& options);
 
 // What a port says of itself, asked in a child process.
 struct PortDescription {
+  std::string hangs;  // why it says nothing: it gave no answer in time; empty: it answered
   std::string name;
   std::string version;
   std::vector<std::string> profiles;  // of those asked for, the ones it supports
   std::optional<int> fraction_bits;
 };
+// A port that hangs is described as such, so that its cases can have their verdicts. Errors: it
+// cannot be loaded, or its process ends.
 Result<PortDescription> describe_port(const std::string& port,
                                       const std::vector<std::string>& profiles, double timeout_s);
 

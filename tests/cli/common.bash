@@ -46,3 +46,21 @@ lacks() {
     return 1
   }
 }
+
+# fake PROGRAM: the text on stdin is a script that stands in for it, in the folder ./fakes.
+fake() {
+  mkdir -p fakes
+  { echo '#!/bin/sh' && cat; } >"fakes/$1"
+  chmod +x "fakes/$1"
+}
+
+# Nothing runs whose command line names this test's folder.
+nothing_is_left() {
+  local pattern="${BATS_TEST_TMPDIR%?}[${BATS_TEST_TMPDIR: -1}]"
+  for _ in $(seq 50); do
+    grep -qa -- "$pattern" /proc/[0-9]*/cmdline 2>/dev/null || return 0
+    sleep 0.1
+  done
+  echo "left: $(grep -la -- "$pattern" /proc/[0-9]*/cmdline)"
+  return 1
+}

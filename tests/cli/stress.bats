@@ -41,6 +41,76 @@ CHECK
   has 'no such kind of load: `fire`; there are cpu, cache, io'
 }
 
+@test "load needs no stress-ng, and ends" {
+  mkdir none
+  for kind in cpu cache io; do
+    run timeout -k 1 100 env PATH="$PWD/none" "$ATTEST" stress --rates 100 --duration 0.3 --load 2 \
+      --load-kind $kind "${open[@]}" --json "$PWD/s.json"
+    [ "$status" -ne 124 ]
+    has "(load: 2 x $kind (own processes))"
+  done
+  nothing_is_left
+}
+
+@test "a stress-ng that does not end is killed, with what it started" {
+  ln -s "$(command -v sleep)" "forever"
+  fake stress-ng <<<"trap '' TERM; while :; do '$PWD/forever' 1000; done"
+  run timeout -k 1 100 env PATH="$PWD/fakes" "$ATTEST" stress --rates 100 --duration 0.3 --load 1 \
+    "${open[@]}"
+  [ "$status" -ne 124 ]
+  has "(load: 1 x cpu (stress-ng))"
+  nothing_is_left
+}
+
+@test "a stress-ng that fails is done without" {
+  fake stress-ng <<<'echo "no such option"; exit 2'
+  run timeout -k 1 100 env PATH="$PWD/fakes" "$ATTEST" stress --rates 100 --duration 0.3 --load 1 \
+    "${open[@]}"
+  has "(load: 1 x cpu (own processes))"
+  lacks "no such option"
+}
+
+@test "an attest that is killed leaves no load behind" {
+  ln -s "$(command -v sleep)" "forever"
+  mkdir none
+  fake stress-ng <<<"trap '' TERM; '$PWD/forever' 1000 & '$PWD/forever' 1000"
+  for path in none fakes; do
+    PATH="$PWD/$path" "$ATTEST" stress --rates 100 --duration 600 --load 2 "${open[@]}" \
+      --json "$PWD/s.json" >out.txt 2>err.txt 3>&- &
+    pid=$!
+    for _ in $(seq 300); do
+      grep -q "of 600 s" err.txt && break
+      sleep 0.2
+    done
+    grep -q "of 600 s" err.txt
+    kill -KILL $pid
+    wait $pid || true
+    nothing_is_left
+    rm err.txt
+  done
+}
+
+@test "a cyclictest that never ends, fails or prints garbage is done without" {
+  idle=(--rates 100 --duration 0.3 --policy other --misses-per-million 1000000
+    --p99-lateness 1000000)
+  for script in 'echo "{\"thread\": {\"0\": {\"histogram\": {\"x\": 1}}}}"' 'exit 1' \
+    "trap '' TERM; while :; do /bin/sleep 1; done"; do
+    fake cyclictest <<<"$script"
+    run timeout -k 1 100 env PATH="$PWD/fakes" "$ATTEST" stress "${idle[@]}"
+    [ "$status" -eq 0 ] || [[ $output == *"does not step the plant"* ]]
+    has "cyclictest failed, or gave no figures in time"
+    lacks "cyclictest, idle"
+  done
+  nothing_is_left
+}
+
+@test "figures of cyclictest stand beside ours" {
+  fake cyclictest <<<"echo '{\"thread\": {\"0\": {\"histogram\": {\"40\": 9}, \"max\": 41}}}'"
+  run timeout -k 1 100 env PATH="$PWD/fakes" "$ATTEST" stress --rates 100 --duration 0.3 \
+    --policy other --misses-per-million 1000000 --p99-lateness 1000000
+  has "cyclictest, idle"
+}
+
 @test "a wrong port fails, and the way to see it again is told" {
   run "$ATTEST" stress --port "lib:$PORTS/port_sign_flip.so" --rates 250 --duration 0.5 \
     "${open[@]}" --junit s.xml
@@ -53,10 +123,12 @@ CHECK
   run "$ATTEST" stress --port "lib:$PORTS/port_crash.so" --rates 250 --duration 0.5 "${open[@]}"
   [ "$status" -eq 1 ]
   has "crash: the process "
-  run timeout 60 "$ATTEST" stress --port "lib:$PORTS/port_hang.so" --rates 250 --duration 0.5 \
-    "${open[@]}"
-  [ "$status" -eq 1 ]
-  has "timeout: the port did not come back"
+  for port in hang hangs_in_load hangs_in_create hangs_in_destroy; do
+    run timeout -k 1 100 "$ATTEST" stress --port "lib:$PORTS/port_$port.so" --rates 250 \
+      --duration 0.5 --timeout 0.5 "${open[@]}"
+    [ "$status" -eq 1 ]
+    has "timeout: "
+  done
 }
 
 @test "a stall every 1000 steps is found, and its ticks named" {

@@ -12,7 +12,7 @@ MAX_FILE_LINES = 350
 
 # A folder of harness/ includes itself and those before it.
 HARNESS_ORDER = (
-    "core schedule trace plant port compare casefile run realtime suite report cli".split()
+    "core process schedule trace plant port compare casefile run realtime suite report cli".split()
 )
 
 

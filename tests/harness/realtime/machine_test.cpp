@@ -1,15 +1,16 @@
 // What is asked of the operating system, and of other programs.
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
 #include "harness/realtime/allocations.hpp"
 #include "harness/realtime/cyclictest.hpp"
 #include "harness/realtime/load.hpp"
 #include "harness/realtime/pacer.hpp"
-#include "harness/realtime/program.hpp"
 #include "harness/realtime/rights.hpp"
 #include "harness/realtime/usage.hpp"
 
@@ -61,12 +62,14 @@ TEST(Usage, CountsWhatAThreadDoes) {
 #endif
 }
 
-TEST(Program, GivesItsOutput) {
-  EXPECT_TRUE(is_installed("sh"));
-  EXPECT_FALSE(is_installed("no-such-program-of-attest"));
-  EXPECT_EQ(output_of({"sh", "-c", "echo one; echo two >&2"}), "one\n");
-  EXPECT_FALSE(output_of({"sh", "-c", "exit 3"}));
-  EXPECT_FALSE(output_of({"no-such-program-of-attest"}));
+void note(int) {}
+
+// As attest does, to end a run cleanly.
+TEST(Load, EndsThoughThisProcessNotesInterrupts) {
+  const auto before = std::signal(SIGTERM, note);
+  { const Load load(LoadKind::cpu, 2); }
+  std::signal(SIGTERM, before);
+  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);
 }
 
 TEST(Load, RunsAsLongAsItLives) {
@@ -90,6 +93,23 @@ TEST(Cyclictest, IsReadWithTheTextBehindIt) {
   EXPECT_EQ(read->max, us(9));
   for (const char* text : {"", "{}", "{\"thread\": 3}", "Unable to change scheduling policy!"}) {
     EXPECT_FALSE(parse_cyclictest(text)) << text;
+  }
+}
+
+TEST(Cyclictest, GarbageIsRefused) {
+  const auto with = [](const std::string& histogram, const std::string& max) {
+    return parse_cyclictest("{\"thread\": {\"0\": {\"histogram\": " + histogram +
+                            ", \"max\": " + max + "}}}");
+  };
+  EXPECT_TRUE(with("{\"2\": 1}", "2"));
+  for (const char* histogram :
+       {"{}", "{\"2\": 0}", "{\"fast\": 1}", "{\"2us\": 1}", "{\"-2\": 1}", "{\"2\": \"1\"}",
+        "{\"2\": -1}", "{\"2\": 1.5}", "{\"2\": 18446744073709551615}",
+        "{\"9223372036854775807\": 1}", "[1, 2]", "null"}) {
+    EXPECT_FALSE(with(histogram, "2")) << histogram;
+  }
+  for (const char* max : {"\"2\"", "-2", "null", "9223372036854775807"}) {
+    EXPECT_FALSE(with("{\"2\": 1}", max)) << max;
   }
 }
 

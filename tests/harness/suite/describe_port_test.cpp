@@ -46,6 +46,16 @@ TEST(DescribePort, OneThatCannotBeLoadedSaysWhy) {
   EXPECT_THAT(error_of("nonsense"), HasSubstr("unknown port `nonsense`"));
 }
 
+TEST(DescribePort, OneThatHangsSaysSo) {
+  const auto load = describe_port(test_port("hangs_in_load"), {}, 0.3);
+  ASSERT_TRUE(load) << load.error().to_string();
+  EXPECT_THAT(load->hangs, HasSubstr("gave no answer within 0.3 s"));
+  const auto create = describe_port(test_port("hangs_in_create"), profiles, 0.3);
+  ASSERT_TRUE(create) << create.error().to_string();
+  EXPECT_THAT(create->hangs, HasSubstr("gave no answer within 0.3 s"));
+  EXPECT_EQ(describe_port("builtin", profiles, 60)->hangs, "");
+}
+
 TEST(DescribePort, ATextFileIsNoPort) {
   const TemporaryDirectory folder;
   const std::string file = folder.write("port.so", "text\n").string();

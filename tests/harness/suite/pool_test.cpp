@@ -45,6 +45,25 @@ class FakeBatch final : public Batch {
   std::vector<Task> tasks_;
 };
 
+// One task of so many slow parts.
+class PartsBatch final : public Batch {
+ public:
+  explicit PartsBatch(int parts) : parts_(parts) {}
+
+  std::size_t size() const override { return 1; }
+  CaseResult identity(std::size_t) const override { return {}; }
+  Result<CaseResult> evaluate(std::size_t i, Port&) override {
+    for (int part = 0; part < parts_; ++part) {
+      begin_part();
+      ::usleep(50'000);
+    }
+    return identity(i);
+  }
+
+ private:
+  int parts_;
+};
+
 class BrokenBatch final : public Batch {
  public:
   std::size_t size() const override { return 1; }
@@ -142,6 +161,31 @@ TEST(Pool, EachTaskHasTheWholeTimeLimit) {
   EXPECT_EQ(std::count_if(outcome.results.begin(), outcome.results.end(),
                           [](const CaseResult& r) { return r.verdict == Verdict::pass; }),
             50);
+}
+
+TEST(Pool, EachPartOfATaskHasTheWholeTimeLimit) {
+  Batches batches;
+  batches.push_back(std::make_unique<PartsBatch>(50));  // 2.5 s in all
+  WorkerOptions options = with_jobs(1);
+  options.timeout_s = 2;
+  const auto outcome = run_batches(batches, options);
+  ASSERT_EQ(outcome.results.size(), 1u);
+  EXPECT_EQ(outcome.results[0].verdict, Verdict::pass) << outcome.results[0].reason;
+}
+
+// It would hang in each process.
+TEST(Pool, APortThatHangsWhenItIsLoadedIsTriedOnce) {
+  WorkerOptions options = with_jobs(1);
+  options.timeout_s = 0.3;
+  options.port = test_port("hangs_in_load");
+  const auto outcome = run_batches(batches_of({{pass}, {pass, pass}}), options);
+  ASSERT_EQ(outcome.results.size(), 3u);
+  EXPECT_THAT(outcome.errors, IsEmpty());
+  EXPECT_EQ(outcome.results[0].reason, "no answer within 0.3 s, when it was loaded");
+  for (const CaseResult& result : outcome.results) EXPECT_EQ(result.verdict, Verdict::timeout);
+  for (const std::size_t i : {1u, 2u}) {
+    EXPECT_EQ(outcome.results[i].reason, "not run: the port had timed out when it was loaded");
+  }
 }
 
 TEST(Pool, FailFastEndsWithTheFirstBatchThatFailsInTheirOrder) {

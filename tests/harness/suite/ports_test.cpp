@@ -89,6 +89,20 @@ TEST_F(PortsTest, AHangIsATimeoutOnceACase) {
   }
 }
 
+TEST_F(PortsTest, AHangInAnyFunctionIsATimeout) {
+  suite_.add("rolls", "[parameters]\nMC_ROLL_P = 7.0\n");
+  for (const char* port :
+       {"hangs_in_load", "hangs_in_create", "hangs_in_set_parameter", "hangs_in_destroy"}) {
+    WorkerOptions options;
+    options.port = test_port(port);
+    options.timeout_s = 0.3;
+    const auto outcome = suite_.run(options);
+    EXPECT_THAT(outcome.errors, IsEmpty());
+    ASSERT_EQ(outcome.results.size(), 8u);
+    EXPECT_EQ(outcome.results[6].verdict, Verdict::timeout) << port;
+  }
+}
+
 TEST_F(PortsTest, NanWhereANumberBelongsIsNonFinite) {
   for (const CaseResult& result : all_are("non_finite", Verdict::non_finite)) {
     ASSERT_TRUE(result.first);

@@ -63,6 +63,23 @@ TEST(Stress, APortThatDiesHasAVerdict) {
   EXPECT_FALSE(stressed("lib:no_such_library.so"));
 }
 
+TEST(Stress, APortThatHangsAnywhereHasAVerdict) {
+  StressTask task = hover_task();
+  task.timeout = std::chrono::milliseconds(300);
+  for (const char* port : {"hangs_in_load", "hangs_in_create"}) {
+    const auto stress = stressed(test_port(port), task);
+    ASSERT_TRUE(stress) << stress.error().to_string();
+    EXPECT_EQ(stress->result.verdict, Verdict::timeout);
+    EXPECT_EQ(stress->result.reason, "no answer within 0.3 s, when it was loaded and created");
+  }
+  for (const char* port : {"hang", "hangs_in_destroy"}) {
+    const auto stress = stressed(test_port(port), task);
+    ASSERT_TRUE(stress) << stress.error().to_string();
+    EXPECT_EQ(stress->result.verdict, Verdict::timeout) << stress->result.reason;
+    EXPECT_THAT(stress->result.reason, HasSubstr("the port did not come back"));
+  }
+}
+
 TEST(StressJson, IsReadAsItWasWritten) {
   StressResult stress;
   stress.result.profile = "px4-v1.5.5";

@@ -1,4 +1,4 @@
-#include "harness/suite/child.hpp"
+#include "harness/process/child.hpp"
 
 #include <cstdio>
 #include <cstdlib>
@@ -73,6 +73,17 @@ TEST(Child, OneThatSaysNothingInTimeIsKilled) {
   });
   EXPECT_EQ(child.wait_for_line(0.05), std::nullopt);
   EXPECT_EQ(child.end(), "was killed by signal 9 (Killed)");
+}
+
+// As a library does that makes itself a daemon.
+TEST(Child, OneThatClosesItsPipeAndGoesOnIsNotWaitedFor) {
+  Child child = spawned([](const SendLine&) {
+    for (int descriptor = 3; descriptor < 1024; ++descriptor) ::close(descriptor);
+    while (true) ::pause();
+  });
+  EXPECT_EQ(child.wait_for_line(patience_s), std::nullopt);
+  EXPECT_FALSE(child.was_killed());
+  EXPECT_EQ(child.end(), "closed the pipe on which it answers, and went on");
 }
 
 TEST(Child, KeepsItsOutputApart) {

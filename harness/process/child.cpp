@@ -1,4 +1,4 @@
-#include "harness/suite/child.hpp"
+#include "harness/process/child.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,9 +16,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <sys/mman.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 namespace attest {
@@ -36,20 +34,13 @@ void write_all(int descriptor, std::string_view bytes) {
   }
 }
 
-// Everything a child must have arranged before it runs code of others.
-void isolate(pid_t parent, int output) {
-  ::setpgid(0, 0);  // what a port starts ends with it
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(EXIT_FAILURE);  // it died before the line above
-  const rlimit no_core{0, 0};
-  ::setrlimit(RLIMIT_CORE, &no_core);
+// What a child must have arranged, beyond what a Process has, before it runs code of others.
+void isolate(int output) {
   rlimit files{};
   ::getrlimit(RLIMIT_FSIZE, &files);
   files.rlim_cur = std::min(files.rlim_max, max_output_bytes);
   ::setrlimit(RLIMIT_FSIZE, &files);
-  ::signal(SIGTERM, SIG_DFL);  // the parent's handler would pass over a port that raises it
   ::signal(SIGXFSZ, SIG_IGN);  // writing past the limit fails, it does not kill
-  ::signal(SIGINT, SIG_IGN);   // Ctrl-C is the parent's to handle
   if (const int nothing = ::open("/dev/null", O_RDONLY); nothing >= 0) {
     ::dup2(nothing, STDIN_FILENO);
     ::close(nothing);
@@ -87,53 +78,44 @@ void allow_large_files() {
 }
 
 Result<Child> Child::spawn(const std::function<void(const SendLine&)>& work) {
-  std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
-    return fail(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
-  }
+  std::array<int, 2> ends{-1, -1};
   const int output = ::memfd_create("attest-port-output", MFD_CLOEXEC);
-  const pid_t parent = ::getpid();
-  // A port that calls exit() would print what the parent has not printed yet.
-  std::fflush(nullptr);
-  const pid_t pid = output < 0 ? -1 : ::fork();
-  if (pid < 0) {
+  if (output < 0 || ::pipe2(ends.data(), O_CLOEXEC) != 0) {
     const int reason = errno;
-    for (const int descriptor : {ends[0], ends[1], output}) ::close(descriptor);
-    return fail(fmt::format("cannot start a worker process: {}", std::strerror(reason)));
+    if (output >= 0) ::close(output);
+    return fail(fmt::format("cannot make the pipe of a worker: {}", std::strerror(reason)));
   }
-  if (pid == 0) {
+  auto process = Process::start([&] {
     ::close(ends[0]);
-    isolate(parent, output);
+    isolate(output);
     work_and_end(work, ends[1]);
-  }
-  ::setpgid(pid, pid);  // here too: whichever of us is first
+  });
   ::close(ends[1]);
-  return Child(pid, ends[0], output);
+  if (process) return Child(*std::move(process), ends[0], output);
+  ::close(ends[0]);
+  ::close(output);
+  return tl::unexpected(process.error());
 }
 
 Child::Child(Child&& other) noexcept
-    : pid_(std::exchange(other.pid_, -1)),
+    : process_(std::move(other.process_)),
       pipe_(std::exchange(other.pipe_, -1)),
       output_(std::exchange(other.output_, -1)),
-      partial_(std::move(other.partial_)),
-      was_killed_(other.was_killed_) {}
+      partial_(std::move(other.partial_)) {}
 
 Child& Child::operator=(Child&& other) noexcept {
   if (this == &other) return *this;
-  release();
-  pid_ = std::exchange(other.pid_, -1);
+  close_files();
+  process_ = std::move(other.process_);
   pipe_ = std::exchange(other.pipe_, -1);
   output_ = std::exchange(other.output_, -1);
   partial_ = std::move(other.partial_);
-  was_killed_ = other.was_killed_;
   return *this;
 }
 
-Child::~Child() { release(); }
+Child::~Child() { close_files(); }
 
-void Child::release() {
-  kill();
-  if (pid_ > 0) end();
+void Child::close_files() {
   if (pipe_ >= 0) ::close(pipe_);
   if (output_ >= 0) ::close(output_);
 }
@@ -162,44 +144,12 @@ std::optional<std::string> Child::wait_for_line(double timeout_s) {
   return std::nullopt;
 }
 
-void Child::kill() {
-  if (pid_ <= 0) return;
-  was_killed_ = true;
-  ::kill(-pid_, SIGKILL);
-  ::kill(pid_, SIGKILL);
-}
-
-bool Child::ends_within(double seconds) {
-  constexpr int poll_ms = 2;
-  for (int left = static_cast<int>(seconds * 1000); pid_ > 0 && left > 0; left -= poll_ms) {
-    siginfo_t info{};
-    const int waited = ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT);
-    if (waited != 0 || info.si_pid != 0) return true;
-    ::poll(nullptr, 0, poll_ms);
-  }
-  return pid_ <= 0;
-}
-
-void Child::ask_to_stop() {
-  if (pid_ > 0) ::kill(pid_, SIGTERM);
-}
-
 std::string Child::end() {
-  int status = 0;
-  siginfo_t info{};
-  while (pid_ > 0 && ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT) < 0 &&
-         errno == EINTR) {
-  }
-  // What it started, while its number cannot be another's yet.
-  if (pid_ > 0) ::kill(-pid_, SIGKILL);
-  while (pid_ > 0 && ::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
-  }
-  pid_ = -1;
-  if (WIFSIGNALED(status)) {
-    const int signal = WTERMSIG(status);
-    return fmt::format("was killed by signal {} ({})", signal, ::strsignal(signal));
-  }
-  return fmt::format("exited with status {}", WEXITSTATUS(status));
+  constexpr double enough_to_end_s = 2;
+  const bool was_killed = process_.was_killed();
+  const Ending ending = process_.end(enough_to_end_s);
+  const bool went_on = ending.was_killed && !was_killed;
+  return went_on ? "closed the pipe on which it answers, and went on" : ending.to_string();
 }
 
 std::string Child::last_words() const {

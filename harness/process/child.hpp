@@ -5,11 +5,11 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include <sys/types.h>
-
 #include "harness/core/result.hpp"
+#include "harness/process/process.hpp"
 
 namespace attest {
 
@@ -22,8 +22,8 @@ void allow_large_files();
 
 class Child {
  public:
-  // Forks; `work` runs in the child, which then ends. The child dies with its parent and leaves no
-  // core file; its stdout and stderr are kept apart (last_words), its stdin is empty.
+  // Forks; `work` runs in the child, a Process, which then ends. Its stdout and stderr are kept
+  // apart (last_words), its stdin is empty.
   static Result<Child> spawn(const std::function<void(const SendLine&)>& work);
 
   Child(Child&& other) noexcept;
@@ -39,30 +39,28 @@ class Child {
   // The first line it sends; empty when it ended, or said nothing in time (then it is killed).
   std::optional<std::string> wait_for_line(double timeout_s);
 
-  void kill();  // with all that it started
-  bool was_killed() const { return was_killed_; }
+  void kill() { process_.kill(); }  // with all that it started
+  bool was_killed() const { return process_.was_killed(); }
 
-  // Did it end by itself, or does it in that time? Leaves it to end() to be waited for.
-  bool ends_within(double seconds);
+  void ask_to_stop() { process_.terminate(); }  // SIGTERM, for work that has arranged for it
 
-  void ask_to_stop();  // SIGTERM, for work that has arranged for it
-
-  // How it ended, as a verb: "was killed by signal 11 (Segmentation fault)", "exited with status
-  // 0". Waits for the end.
+  // How it ended, as Ending::to_string() says. For a child that was killed or whose pipe has ended:
+  // it has two seconds to end by itself; one that goes on without its pipe is killed, and called
+  // so.
   std::string end();
 
   // The last line that the child printed on stdout or stderr; empty when it printed nothing.
   std::string last_words() const;
 
  private:
-  Child(pid_t pid, int pipe, int output) : pid_(pid), pipe_(pipe), output_(output) {}
-  void release();
+  Child(Process process, int pipe, int output)
+      : process_(std::move(process)), pipe_(pipe), output_(output) {}
+  void close_files();
 
-  pid_t pid_ = -1;
+  Process process_;
   int pipe_ = -1;
   int output_ = -1;  // file that holds what the child prints
   std::string partial_;
-  bool was_killed_ = false;
 };
 
 }  // namespace attest

@@ -1,0 +1,192 @@
+#include "harness/process/process.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace attest {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+// The kernel ends a killed process at once, unless it waits for a device.
+constexpr double time_to_die_s = 5;
+
+// Asks again and again, at first quickly: most processes end within a millisecond.
+template <typename Happened>
+bool happens_within(double seconds, Happened&& happened) {
+  const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
+  for (Clock::duration pause = 50us; !happened();
+       pause = std::min<Clock::duration>(2 * pause, 5ms)) {
+    if (Clock::now() >= deadline) return false;
+    std::this_thread::sleep_for(pause);
+  }
+  return true;
+}
+
+// Between fork() and the reset of the handlers, a handler of the parent must not run in the child.
+class SignalsBlocked {
+ public:
+  SignalsBlocked() {
+    sigset_t all;
+    ::sigfillset(&all);
+    ::pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  ~SignalsBlocked() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  SignalsBlocked(const SignalsBlocked&) = delete;
+  SignalsBlocked& operator=(const SignalsBlocked&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+
+// Those of errors stay: they are the sanitizers', which report with them.
+bool is_of_an_error(int signal) {
+  return signal == SIGSEGV || signal == SIGBUS || signal == SIGFPE || signal == SIGILL ||
+         signal == SIGABRT || signal == SIGTRAP;
+}
+
+void reset_signals() {
+  for (int signal = 1; signal < NSIG; ++signal) {
+    if (!is_of_an_error(signal)) std::signal(signal, SIG_DFL);
+  }
+  sigset_t none;
+  ::sigemptyset(&none);
+  ::pthread_sigmask(SIG_SETMASK, &none, nullptr);
+}
+
+[[noreturn]] void lead_group(pid_t parent, const std::function<void()>& work) {
+  ::setpgid(0, 0);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(EXIT_FAILURE);  // it died before the line above
+  const rlimit no_core{0, 0};
+  ::setrlimit(RLIMIT_CORE, &no_core);
+  reset_signals();
+  work();
+  ::_exit(EXIT_SUCCESS);
+}
+
+// The leader itself gets PR_SET_PDEATHSIG, but what it starts does not. The guard is in the group,
+// with all signals blocked, so that only SIGKILL to the group or the death of the parent ends it.
+[[noreturn]] void guard_group(pid_t parent, pid_t leader) {
+  // It must not hold a pipe open whose end somebody waits for.
+  ::close_range(0, ~0u, 0);
+  ::prctl(PR_SET_PDEATHSIG, SIGHUP);
+  if (::setpgid(0, leader) != 0) ::_exit(EXIT_FAILURE);
+  sigset_t death_of_parent;
+  ::sigemptyset(&death_of_parent);
+  ::sigaddset(&death_of_parent, SIGHUP);
+  while (::getppid() == parent) ::sigwaitinfo(&death_of_parent, nullptr);
+  ::kill(-leader, SIGKILL);
+  ::_exit(EXIT_SUCCESS);
+}
+
+void reap(pid_t process, Ending& ending) {
+  int status = 0;
+  const bool has_ended = happens_within(
+      time_to_die_s, [&] { return ::waitpid(process, &status, WNOHANG) == process; });
+  if (has_ended) ending.wait_status = status;
+}
+
+}  // namespace
+
+bool Ending::is_success() const {
+  return wait_status && WIFEXITED(*wait_status) && WEXITSTATUS(*wait_status) == EXIT_SUCCESS;
+}
+
+std::string Ending::to_string() const {
+  if (!wait_status) return fmt::format("did not end within {} s of SIGKILL", time_to_die_s);
+  if (WIFSIGNALED(*wait_status)) {
+    const int signal = WTERMSIG(*wait_status);
+    return fmt::format("was killed by signal {} ({})", signal, ::strsignal(signal));
+  }
+  return fmt::format("exited with status {}", WEXITSTATUS(*wait_status));
+}
+
+Result<Process> Process::start(const std::function<void()>& work) {
+  const pid_t parent = ::getpid();
+  // A child that calls exit() would print what the parent has not printed yet.
+  std::fflush(nullptr);
+  const SignalsBlocked blocked;
+  const pid_t leader = ::fork();
+  if (leader == 0) lead_group(parent, work);
+  if (leader > 0) ::setpgid(leader, leader);  // here too: the first of the two calls decides
+  const pid_t guard = leader > 0 ? ::fork() : -1;
+  if (guard == 0) guard_group(parent, leader);
+  if (guard > 0) return Process(leader, guard);
+  const int reason = errno;
+  if (leader > 0) Process(leader, -1).kill();
+  return fail(fmt::format("cannot start a process: {}", std::strerror(reason)));
+}
+
+Process::Process(Process&& other) noexcept
+    : pid_(std::exchange(other.pid_, -1)),
+      guard_(std::exchange(other.guard_, -1)),
+      was_killed_(other.was_killed_) {}
+
+Process& Process::operator=(Process&& other) noexcept {
+  if (this == &other) return *this;
+  end(0);
+  pid_ = std::exchange(other.pid_, -1);
+  guard_ = std::exchange(other.guard_, -1);
+  was_killed_ = other.was_killed_;
+  return *this;
+}
+
+Process::~Process() { end(0); }
+
+bool Process::ends_within(double seconds) {
+  return pid_ <= 0 || happens_within(seconds, [&] {
+           siginfo_t info{};
+           const auto id = static_cast<id_t>(pid_);
+           const int waited = ::waitid(P_PID, id, &info, WEXITED | WNOHANG | WNOWAIT);
+           return (waited != 0 && errno != EINTR) || info.si_pid != 0;
+         });
+}
+
+void Process::terminate() {
+  if (pid_ > 0) ::kill(-pid_, SIGTERM);
+}
+
+void Process::kill() {
+  if (pid_ <= 0) return;
+  was_killed_ = true;
+  ::kill(-pid_, SIGKILL);
+  ::kill(pid_, SIGKILL);  // it may have moved to another group
+}
+
+Ending Process::end(double patience_s) {
+  Ending ending;
+  if (pid_ <= 0) return ending;
+  if (!ends_within(patience_s)) kill();
+  ending.was_killed = was_killed_;
+  // What it started, while its number cannot be another's yet.
+  ::kill(-pid_, SIGKILL);
+  reap(std::exchange(pid_, -1), ending);
+  if (guard_ > 0) {
+    ::kill(guard_, SIGKILL);  // it may not have joined the group yet
+    Ending ignored;
+    reap(std::exchange(guard_, -1), ignored);
+  }
+  return ending;
+}
+
+Ending Process::stop(double grace_s) {
+  terminate();
+  return end(grace_s);
+}
+
+}  // namespace attest

@@ -1,0 +1,104 @@
+#include "harness/process/program.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+#include <system_error>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+namespace attest {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t max_output_bytes = 16u << 20;
+constexpr double grace_s = 1;      // for a program that is asked to end
+constexpr int look_every_ms = 20;  // at whether it has ended, or is to be stopped
+
+constexpr int cannot_be_executed = 127;  // as of a shell
+
+// REQUIRES: in a child. `output` is its stdout, or -1.
+[[noreturn]] void become(const std::vector<char*>& arguments, int output) {
+  const int nothing = ::open("/dev/null", O_RDWR);
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    ::dup2(descriptor == STDOUT_FILENO && output >= 0 ? output : nothing, descriptor);
+  }
+  ::close_range(STDERR_FILENO + 1, ~0u, 0);
+  ::execvp(arguments[0], arguments.data());
+  ::_exit(cannot_be_executed);
+}
+
+Result<Process> start_with_output(const std::vector<std::string>& command, int output) {
+  std::vector<char*> arguments;  // execvp() does not write to them
+  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  return Process::start([&] { become(arguments, output); });
+}
+
+double seconds_until(Clock::time_point deadline) {
+  return std::max(std::chrono::duration<double>(deadline - Clock::now()).count(), 0.0);
+}
+
+// Until the program has closed the pipe or has ended: what it started may hold the pipe open.
+std::optional<std::string> read_all(int pipe, Process& program, Clock::time_point deadline,
+                                    const ProgramLimits& limits) {
+  std::string text;
+  std::array<char, 65536> buffer;
+  while (Clock::now() < deadline && !limits.stop() && text.size() <= max_output_bytes) {
+    const bool has_ended = program.ends_within(0);
+    pollfd readable{pipe, POLLIN, 0};
+    if (::poll(&readable, 1, has_ended ? 0 : look_every_ms) <= 0) {
+      if (has_ended) return text;
+      continue;
+    }
+    const ssize_t count = ::read(pipe, buffer.data(), buffer.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return text;
+    text.append(buffer.data(), static_cast<std::size_t>(count));
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool is_installed(const std::string& program) {
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::string file = folder + "/" + program;
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(file, ignored) && ::access(file.c_str(), X_OK) == 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+Result<Process> start_program(const std::vector<std::string>& command) {
+  return start_with_output(command, -1);
+}
+
+std::optional<std::string> output_of(const std::vector<std::string>& command,
+                                     const ProgramLimits& limits) {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return std::nullopt;
+  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                           std::chrono::duration<double>(limits.timeout_s));
+  auto program = start_with_output(command, ends[1]);
+  ::close(ends[1]);
+  std::optional<std::string> output;
+  if (program) output = read_all(ends[0], *program, deadline, limits);
+  ::close(ends[0]);
+  if (!program) return std::nullopt;
+  const Ending ending = output ? program->end(seconds_until(deadline)) : program->stop(grace_s);
+  return ending.is_success() ? output : std::nullopt;
+}
+
+}  // namespace attest

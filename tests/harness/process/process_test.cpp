@@ -1,0 +1,188 @@
+// What a child process inherits, how it ends, and what it leaves behind.
+#include "harness/process/process.hpp"
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace attest {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr int patience_ms = 60'000;  // no test waits for it
+
+// Open as long as one of the processes that inherited it lives.
+class Alive {
+ public:
+  Alive() {
+    if (::pipe(ends_.data()) != 0) std::abort();
+  }
+  ~Alive() {
+    for (const int end : ends_) ::close(end);
+  }
+
+  // In a process that lives.
+  void say_so() const { static_cast<void>(!::write(ends_[1], "x", 1)); }
+
+  // Whether so many said that they live.
+  bool are_alive(int count) const {
+    char byte = 0;
+    for (int i = 0; i < count; ++i) {
+      pollfd readable{ends_[0], POLLIN, 0};
+      if (::poll(&readable, 1, patience_ms) <= 0 || ::read(ends_[0], &byte, 1) != 1) return false;
+    }
+    return true;
+  }
+
+  // Whether all have ended that held it.
+  bool are_gone() {
+    ::close(std::exchange(ends_[1], -1));
+    pollfd readable{ends_[0], POLLIN, 0};
+    char byte = 0;
+    return ::poll(&readable, 1, patience_ms) > 0 && ::read(ends_[0], &byte, 1) == 0;
+  }
+
+ private:
+  std::array<int, 2> ends_{};
+};
+
+[[noreturn]] void stay() {
+  while (true) ::pause();
+}
+
+[[noreturn]] void stay_whatever_comes(const Alive& alive) {
+  for (const int signal : {SIGTERM, SIGHUP, SIGINT}) std::signal(signal, SIG_IGN);
+  alive.say_so();
+  stay();
+}
+
+// Two processes of one group.
+[[noreturn]] void stay_with_another(const Alive& alive) {
+  if (::fork() == 0) stay_whatever_comes(alive);
+  stay_whatever_comes(alive);
+}
+
+Process started(const std::function<void()>& work) {
+  auto process = Process::start(work);
+  if (!process) {
+    ADD_FAILURE() << process.error().to_string();
+    std::abort();
+  }
+  return *std::move(process);
+}
+
+void pass_over(int) {}
+
+TEST(Process, SaysHowItEnded) {
+  EXPECT_TRUE(started([] {}).end(60).is_success());
+  const Ending exit = started([] { ::_exit(3); }).end(60);
+  EXPECT_EQ(exit.to_string(), "exited with status 3");
+  EXPECT_FALSE(exit.is_success());
+  EXPECT_FALSE(exit.was_killed);
+  const Ending crash = started([] { ::raise(SIGTERM); }).end(60);
+  EXPECT_EQ(crash.to_string(), "was killed by signal 15 (Terminated)");
+  EXPECT_FALSE(crash.was_killed);
+}
+
+TEST(Process, IsNotWaitedForBeyondTheLimit) {
+  Process process = started(stay);
+  EXPECT_FALSE(process.ends_within(0.01));
+  const Ending ending = process.end(0.01);
+  EXPECT_TRUE(ending.was_killed);
+  EXPECT_EQ(ending.to_string(), "was killed by signal 9 (Killed)");
+  EXPECT_EQ(process.pid(), -1);
+}
+
+TEST(Process, ThatIgnoresSigtermIsKilledAfterTheGracePeriod) {
+  const Alive alive;
+  Process process = started([&] { stay_whatever_comes(alive); });
+  ASSERT_TRUE(alive.are_alive(1));
+  const auto begin = Clock::now();
+  const Ending ending = process.stop(0.2);
+  EXPECT_GE(Clock::now() - begin, 200ms);
+  EXPECT_TRUE(ending.was_killed);
+  EXPECT_EQ(ending.to_string(), "was killed by signal 9 (Killed)");
+}
+
+// The command line notes SIGINT and SIGTERM: a child that noted them too would go on.
+TEST(Process, DoesNotHaveTheHandlersAndMaskOfItsParent) {
+  const auto before = std::signal(SIGTERM, pass_over);
+  sigset_t mask;
+  ::sigemptyset(&mask);
+  ::sigaddset(&mask, SIGTERM);
+  ::sigprocmask(SIG_BLOCK, &mask, nullptr);
+  Process process = started(stay);
+  const Ending ending = process.stop(60);
+  ::sigprocmask(SIG_UNBLOCK, &mask, nullptr);
+  std::signal(SIGTERM, before);
+  EXPECT_FALSE(ending.was_killed);
+  EXPECT_EQ(ending.to_string(), "was killed by signal 15 (Terminated)");
+}
+
+TEST(Process, WhatItStartedEndsWithIt) {
+  Alive alive;
+  Process process = started([&] { stay_with_another(alive); });
+  ASSERT_TRUE(alive.are_alive(2));
+  process.stop(0);
+  EXPECT_TRUE(alive.are_gone());
+}
+
+TEST(Process, WhatItLeftBehindEndsWhenItHasEnded) {
+  Alive alive;
+  Process process = started([&] {
+    if (::fork() == 0) stay_whatever_comes(alive);
+  });
+  ASSERT_TRUE(alive.are_alive(1));
+  EXPECT_TRUE(process.end(60).is_success());
+  EXPECT_TRUE(alive.are_gone());
+}
+
+// As the processes of an attest that is killed itself.
+TEST(Process, ItAndWhatItStartedEndWithItsParent) {
+  Alive alive;
+  const pid_t parent = ::fork();
+  if (parent == 0) {
+    std::signal(SIGTERM, pass_over);
+    const auto process = Process::start([&] { stay_with_another(alive); });
+    stay();
+  }
+  const bool were_alive = alive.are_alive(2);
+  ::kill(parent, SIGKILL);
+  ::waitpid(parent, nullptr, 0);
+  EXPECT_TRUE(were_alive);
+  EXPECT_TRUE(alive.are_gone());
+}
+
+TEST(Process, LeavesNoZombie) {
+  started([] {}).end(60);
+  started(stay).end(0);
+  { const Process process = started(stay); }
+  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);
+  EXPECT_EQ(errno, ECHILD);
+}
+
+TEST(Process, IsMovedWithWhatWasDoneToIt) {
+  Process one = started(stay);
+  Process two = started(stay);
+  const pid_t kept = one.pid();
+  one.kill();
+  two = std::move(one);  // the second is killed and reaped
+  EXPECT_EQ(two.pid(), kept);
+  EXPECT_TRUE(two.was_killed());
+  EXPECT_EQ(one.pid(), -1);  // NOLINT: that is what is tested
+  EXPECT_EQ(two.end(60).to_string(), "was killed by signal 9 (Killed)");
+}
+
+}  // namespace
+}  // namespace attest
