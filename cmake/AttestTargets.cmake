@@ -51,6 +51,12 @@ function(attest_library name)
   endif()
 endfunction()
 
+# In seconds: tens of times what the slowest takes with sanitizers on two cores that do other things
+# too. A test that hangs is to fail, a slow machine is not to.
+set(ATTEST_UNIT_TEST_TIMEOUT 600)
+set(ATTEST_COMMAND_TEST_TIMEOUT 1800)
+set(ATTEST_LONG_TEST_TIMEOUT 3600)
+
 # attest_test(NAME SOURCES a.cpp ... LINK target ... [LABEL label]): one GoogleTest program a
 # folder.
 function(attest_test name)
@@ -62,8 +68,26 @@ function(attest_test name)
   # Tests run once for each time that they are compiled.
   target_compile_options(${name} PRIVATE -O0)
   attest_reuse_headers(${name} attest_test_headers)
+  set(properties TIMEOUT ${ATTEST_UNIT_TEST_TIMEOUT})
   if(ARG_LABEL)
-    set(properties PROPERTIES LABELS ${ARG_LABEL})
+    list(APPEND properties LABELS ${ARG_LABEL})
   endif()
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60 ${properties})
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+                       PROPERTIES ${properties})
+endfunction()
+
+# attest_time_limits(): every test that the folder adds by add_test(), before this call or after it,
+# has a time limit: the default, if it sets none.
+function(attest_time_limits)
+  cmake_language(DEFER CALL attest_set_time_limits)
+endfunction()
+
+function(attest_set_time_limits)
+  get_property(tests DIRECTORY PROPERTY TESTS)
+  foreach(test IN LISTS tests)
+    get_test_property(${test} TIMEOUT limit)
+    if(NOT limit)
+      set_tests_properties(${test} PROPERTIES TIMEOUT ${ATTEST_COMMAND_TEST_TIMEOUT})
+    endif()
+  endforeach()
 endfunction()

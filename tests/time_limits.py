@@ -1,0 +1,41 @@
+#!/usr/bin/env python3
+"""Every test of a build has a time limit: one that hangs fails, and does not hold up the others.
+
+Usage: time_limits.py CTEST BUILD_DIR
+"""
+
+import json
+import subprocess
+import sys
+
+
+def without_limit(tests: list[dict]) -> list[str]:
+    """The names of the tests that have no TIMEOUT, or one of 0, which is none."""
+    found = []
+    for test in tests:
+        if test["name"].endswith("_NOT_BUILT"):  # not a test, and ctest fails it
+            continue
+        properties = {one["name"]: one["value"] for one in test.get("properties", [])}
+        if not properties.get("TIMEOUT", 0) > 0:
+            found.append(test["name"])
+    return found
+
+
+def main() -> int:
+    ctest, build = sys.argv[1:]
+    listed = subprocess.run(
+        [ctest, "--show-only=json-v1", "--test-dir", build],
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+    )
+    tests = json.loads(listed.stdout)["tests"]
+    found = without_limit(tests)
+    for name in found:
+        print(f"{name}: has no TIMEOUT: call attest_time_limits() in its folder")
+    print(f"{len(tests)} tests, {len(found)} without a time limit")
+    return 1 if found or not tests else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
