@@ -39,7 +39,7 @@ std::vector<std::uint64_t> counted(const TimeCommandOptions& options, const Suit
   const auto self = std::filesystem::read_symlink("/proc/self/exe", ignored);
   return instructions_of_calls(
       {self.string(), "--suite", suite.root.string(), "--quiet", "time", "--port",
-       options.worker.port, "--filter", id, "--repeat", "1", "--in-process"},
+       options.worker.port, "--filter", id, "--repeat", "1", "--no-stack", "--in-process"},
       counted_step_symbol, {options.worker.timeout_s * counting_is_slower_by, interrupted});
 }
 

@@ -172,7 +172,9 @@ void add_schedule(CLI::App& app, const Globals& globals, Action& action) {
 void add_time(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<TimeCommandOptions>();
   CLI::App* command = app.add_subcommand(
-      "time", "How long a port's steps take over the corpus, and which input takes longest");
+      "time",
+      "How long a port's steps take over the corpus, which input takes longest, and how "
+      "much stack they use");
   add_port(*command, options->worker.port);
   add_selection(*command, options->select);
   command
@@ -195,7 +197,12 @@ void add_time(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("F.csv");
   command->add_flag("--instructions", options->instructions,
                     "Count the instructions of the slowest vector's steps, with valgrind");
-  command->add_option("--json", options->json, "Write all times, by vector")->type_name("F");
+  command->add_flag(
+      "--stack,!--no-stack", options->measure.stack,
+      "Measure the most stack that a step uses, in one more run of each vector (on by "
+      "default)");
+  command->add_option("--json", options->json, "Write all times and stack use, by vector")
+      ->type_name("F");
   add_timeout(*command, options->worker.timeout_s);
   command->add_flag("--in-process", options->worker.in_process,
                     "No worker process: for valgrind, perf or a debugger");

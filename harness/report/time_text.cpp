@@ -40,6 +40,18 @@ std::string slowest(const TimeRun& run) {
   return out;
 }
 
+// Of all vectors, also of those before a crash.
+std::string stack(const TimeRun& run) {
+  const CaseResult* most = nullptr;
+  for (const CaseResult& result : run.results) {
+    if (&result == &run.all() || !result.figures.contains(figure::stack)) continue;
+    if (!most || figure_of(result, figure::stack) > figure_of(*most, figure::stack)) most = &result;
+  }
+  if (!most) return "";
+  return fmt::format("stack of a step: at most {:.0f} bytes ({})\n",
+                     figure_of(*most, figure::stack), one_line(most->id()));
+}
+
 std::string instructions(std::vector<std::uint64_t> calls) {
   if (calls.empty()) return "";
   const auto worst = std::max_element(calls.begin(), calls.end()) - calls.begin();
@@ -100,7 +112,7 @@ std::string render_times(const TimeRun& run) {
   out += fmt::format("  {:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n  ", "min", "median", "p90", "p99",
                      "p99.9", "max");
   for (const char* column : columns) out += fmt::format("{:>10}", time_of(all, column));
-  out += "\nslowest steps:\n" + slowest(run) + instructions(run.instructions);
+  out += "\nslowest steps:\n" + slowest(run) + stack(run) + instructions(run.instructions);
   out += what_went_wrong(run);
   if (run.crashed()) {
     out += "a crash takes the figures with it: those above are of what ran after the last one\n";

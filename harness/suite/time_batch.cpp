@@ -44,6 +44,25 @@ class TimedUnit final : public Unit {
   std::vector<Nanoseconds>& times_;
 };
 
+// A unit whose steps run on a stack of their own.
+class UnitOnStack final : public Unit {
+ public:
+  UnitOnStack(Unit& unit, PaintedStack& stack) : unit_(unit), stack_(stack) {}
+
+  int set_parameter(const std::string& name, float value) override {
+    return unit_.set_parameter(name, value);
+  }
+  int step(const attest_inputs& in, attest_outputs& out) override {
+    int code = ATTEST_FAILED;
+    stack_.run([&] { code = unit_.step(in, out); });
+    return code;
+  }
+
+ private:
+  Unit& unit_;
+  PaintedStack& stack_;
+};
+
 // The least that lies between two readings.
 Nanoseconds time_of_clock() {
   Nanoseconds least = Nanoseconds::max();
@@ -77,6 +96,10 @@ CaseResult TimeBatch::identity(std::size_t i) const {
 
 Result<void> TimeBatch::open() {
   clock_ = time_of_clock();
+  if (!options_.stack) return {};
+  auto stack = PaintedStack::make();
+  if (!stack) return tl::unexpected(stack.error());
+  stack_.emplace(*std::move(stack));
   return {};
 }
 
@@ -85,6 +108,12 @@ Result<CaseResult> TimeBatch::evaluate(std::size_t i, Port& port) {
   CaseResult result = identity(i);
   std::vector<Nanoseconds> times = measure(vectors_[i], port, result);
   if (times.empty()) return result;
+  if (stack_) {
+    const auto used = measure_stack(vectors_[i], port, result);
+    if (!used) return result;
+    most_stack_ = std::max(most_stack_, *used);
+    result.figures[figure::stack] = static_cast<double>(*used);
+  }
   for (const Nanoseconds time : times) times_.add(time);
   const auto worst = std::max_element(times.begin(), times.end());
   const auto tick = static_cast<std::size_t>(worst - times.begin());
@@ -99,11 +128,13 @@ Result<CaseResult> TimeBatch::evaluate(std::size_t i, Port& port) {
   return result;
 }
 
+Trace TimeBatch::inputs_of(const Vector& vector) {
+  const DefaultFloatEnvironment environment;
+  return stimulate(*vector.the_case, vector.setup.rate);
+}
+
 std::vector<Nanoseconds> TimeBatch::measure(const Vector& vector, Port& port, CaseResult& result) {
-  const Trace inputs = [&] {
-    const DefaultFloatEnvironment environment;
-    return stimulate(*vector.the_case, vector.setup.rate);
-  }();
+  const Trace inputs = inputs_of(vector);
   std::vector<Nanoseconds> least, times;
   times.reserve(inputs.samples.size());
   for (int repeat = 0; repeat < options_.repeats; ++repeat) {
@@ -123,6 +154,21 @@ std::vector<Nanoseconds> TimeBatch::measure(const Vector& vector, Port& port, Ca
   return least;
 }
 
+std::optional<std::size_t> TimeBatch::measure_stack(const Vector& vector, Port& port,
+                                                    CaseResult& result) {
+  Trace trace = inputs_of(vector);
+  begin_part();
+  const auto unit = create_unit(port, vector.the_case->profile, result);
+  if (!unit) return std::nullopt;
+  stack_->repaint();
+  UnitOnStack on_stack(*unit, *stack_);
+  if (const auto fault = drive(on_stack, trace)) {
+    judge(*fault, result);
+    return std::nullopt;
+  }
+  return stack_->used();
+}
+
 Result<CaseResult> TimeBatch::all_together(Port& port) {
   CaseResult all = identity(vectors_.size());
   all.figures = {{figure::steps, static_cast<double>(times_.count())},
@@ -134,6 +180,7 @@ Result<CaseResult> TimeBatch::all_together(Port& port) {
                  {figure::max, value_of(times_.max())},
                  {figure::over_budget, static_cast<double>(times_.over_limit())},
                  {figure::clock, value_of(clock_)}};
+  if (stack_) all.figures[figure::stack] = static_cast<double>(most_stack_);
   if (!slowest_) return all;
   const Vector& slowest = vectors_[slowest_->vector];
   all.reason = unjudged(*slowest.the_case, slowest.setup).id();

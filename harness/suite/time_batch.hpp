@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "harness/realtime/histogram.hpp"
+#include "harness/realtime/painted_stack.hpp"
 #include "harness/suite/batch.hpp"
 
 namespace attest {
@@ -14,6 +15,7 @@ namespace attest {
 struct TimeOptions {
   int repeats = 5;                  // of each vector: of each step the quickest counts
   std::optional<double> budget_us;  // steps longer than this are counted
+  bool stack = true;                // measure the stack of a step, in one more run of each vector
   std::filesystem::path worst;      // where to write the vector of the slowest step; empty: nowhere
 };
 
@@ -23,6 +25,7 @@ inline constexpr const char* steps = "steps";
 inline constexpr const char* median = "median_ns";
 inline constexpr const char* max = "max_ns";
 inline constexpr const char* worst_tick = "worst_tick";
+inline constexpr const char* stack = "stack_bytes";  // the most that a step used; of all too
 // and of all together, in the last result:
 inline constexpr const char* min = "min_ns";
 inline constexpr const char* p90 = "p90_ns";
@@ -54,8 +57,11 @@ class TimeBatch final : public Batch {
     Nanoseconds time{0};
   };
 
+  static Trace inputs_of(const Vector& vector);
   // The quickest of each step; empty where the port went wrong, which `result` then says.
   std::vector<Nanoseconds> measure(const Vector& vector, Port& port, CaseResult& result);
+  // The most stack that a step of the vector uses; empty where the port went wrong.
+  std::optional<std::size_t> measure_stack(const Vector& vector, Port& port, CaseResult& result);
   Result<CaseResult> all_together(Port& port);
   Result<void> write_worst(Port& port) const;
 
@@ -65,6 +71,8 @@ class TimeBatch final : public Batch {
   Nanoseconds clock_{0};
   Histogram times_;
   std::optional<Slowest> slowest_;
+  std::optional<PaintedStack> stack_;
+  std::size_t most_stack_ = 0;
 };
 
 // A step that other programs can find: valgrind counts what happens in it.

@@ -95,6 +95,26 @@ CHECK
   has "nothing of the controller in open loop is selected"
 }
 
+@test "the stack that a step uses is measured" {
+  "$ATTEST" time --filter 'attitude/*@250hz' --json reference.json
+  run "$ATTEST" time --port "lib:$PORTS/port_deep_stack.so" --filter 'attitude/*@250hz' \
+    --json t.json
+  [ "$status" -eq 0 ]
+  [[ $output =~ stack\ of\ a\ step:\ at\ most\ [0-9]+\ bytes\ \(px4-v1.*/attitude/ ]]
+  python3 - <<'CHECK'
+import json
+reference, deep = (json.load(open(name)) for name in ("reference.json", "t.json"))
+for report in (reference, deep):
+    used = [vector["stack_bytes"] for vector in report["vectors"]]
+    assert report["all"]["stack_bytes"] == max(used) and min(used) > 0, used
+assert 0 < reference["all"]["stack_bytes"] < 16384, reference["all"]
+assert 65536 <= deep["all"]["stack_bytes"] < 65536 + 16384, deep["all"]
+CHECK
+  run "$ATTEST" time --filter 'attitude/*@250hz' --no-stack --json t.json
+  lacks "stack of a step"
+  [ -z "$(grep stack_bytes t.json)" ]
+}
+
 @test "instructions are counted where valgrind is" {
   command -v valgrind || skip "no valgrind"
   nm "$ATTEST" | grep -q __asan_init && skip "valgrind and sanitizers do not go together"
