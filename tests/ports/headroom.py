@@ -28,6 +28,8 @@ RIGHT = [
     ("right_quaternion", "tilt and torsion from the error quaternion"),
     ("right_polynomial_atan2", "a polynomial atan2, right to 2e-7"),
     ("right_eigen_products", "Eigen's own products"),
+    ("right_cpp_style", "modern C++, written anew"),
+    ("right_simulink_style", "as generated from a model, other orders of sums"),
     ("right_fixed_point", "fixed point, 32 bits behind the point"),
     ("right_fixed_22", "fixed point, 22 bits, judged as one"),
 ]

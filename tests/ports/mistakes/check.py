@@ -1,0 +1,188 @@
+#!/usr/bin/env python3
+"""Checks the suite from outside: wrong ports must fail, right ones of other styles must pass.
+
+    check.py --attest PATH [--only NAME]... [--jobs N]
+
+A style is a folder here with a right port (c_starter: the starter of the repository) and patches,
+each a porting mistake. Every patch is applied to a copy of its port, compiled, and run through the
+suite, flights last. The text at the head of a patch says what the mistake is. A line `Passes: why`
+there marks a mistake that no case tells from the law yet, and is an error once a case does.
+
+Prints a table. Exits 1 if an unmarked mistake passes, a marked one fails, or a right port fails; 2
+if a patch does not apply or its port does not compile.
+"""
+
+import argparse
+import concurrent.futures
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+from typing import NamedTuple
+
+HERE = pathlib.Path(__file__).resolve().parent
+CONTROLLER = HERE.parents[2] / "controller"
+STYLES = {
+    "c_starter": CONTROLLER / "starters" / "c",
+    "cpp_style": HERE / "cpp_style",
+    "simulink_style": HERE / "simulink_style",
+}
+SOURCES = (".c", ".cpp", ".h", ".hpp")
+# Flights take most of the time and show few mistakes that the other groups do not. At 4 kHz they
+# have the most ticks.
+FLIGHTS = ("flight", "flight_timing")
+FLIGHT_RATES = "333,4000"
+COMPILES_AT_ONCE = threading.Semaphore(2)
+
+
+class BrokenPatch(Exception):
+    """A patch does not apply, or its port does not compile."""
+
+
+class Candidate(NamedTuple):
+    """A port to judge: right if it has no patch."""
+
+    style: str
+    patch: pathlib.Path | None
+    passes: str | None  # why no case tells it from the law yet
+
+    @property
+    def name(self) -> str:
+        return self.patch.stem if self.patch else "(the right port)"
+
+
+class Judged(NamedTuple):
+    candidate: Candidate
+    caught_by: str | None  # the first case that failed
+    broken: str | None  # why the candidate could not be judged
+
+    @property
+    def good(self) -> bool:
+        right = self.candidate.patch is None or self.candidate.passes is not None
+        return right == (self.caught_by is None)
+
+    @property
+    def remark(self) -> str:
+        if self.broken:
+            return "BROKEN"
+        if self.caught_by:
+            return self.caught_by if self.good else f"{self.caught_by}: SHOULD PASS"
+        if self.candidate.patch is None:
+            return "passes"
+        return "passes, as marked" if self.good else "PASSES"
+
+
+def candidates() -> list[Candidate]:
+    found = []
+    for style in STYLES:
+        found.append(Candidate(style, None, None))
+        for patch in sorted((HERE / style).glob("*.patch")):
+            head = patch.read_text().split("\n--- ", 1)[0]
+            marked = re.search(r"^Passes: (.+)", head, re.MULTILINE | re.DOTALL)
+            found.append(Candidate(style, patch, marked and marked[1]))
+    return found
+
+
+def execute(command: list, folder: pathlib.Path, what: str) -> None:
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise BrokenPatch(f"{what}\n{done.stdout}{done.stderr}")
+
+
+def build(candidate: Candidate, folder: pathlib.Path) -> pathlib.Path:
+    """The shared library of the candidate, made in `folder`."""
+    for source in sorted(STYLES[candidate.style].iterdir()):
+        if source.suffix in SOURCES:
+            shutil.copy(source, folder)
+    if candidate.patch:
+        patch = ["patch", "-p1", "--silent", "--no-backup-if-mismatch", "-i", candidate.patch]
+        execute(patch, folder, f"{candidate.patch} does not apply")
+    sources = sorted(path.name for path in folder.iterdir() if path.suffix in (".c", ".cpp"))
+    compiler = "c++" if sources[0].endswith(".cpp") else "cc"
+    flags = ["-O1", "-ffp-contract=off", "-fPIC", "-shared", "-fvisibility=hidden"]
+    command = [compiler, *flags, f"-I{CONTROLLER}", *sources, "-o", "port.so", "-lm"]
+    with COMPILES_AT_ONCE:
+        execute(command, folder, f"{candidate.style}/{candidate.name} does not compile")
+    return folder / "port.so"
+
+
+def groups(attest: pathlib.Path) -> list[str]:
+    """All groups of the suite that a port without mixer and battery estimate can be judged by."""
+    listed = subprocess.run(
+        [attest, "list", "--groups"], capture_output=True, text=True, check=True
+    ).stdout
+    names = {line.split()[0].rsplit("/", 1)[-1] for line in listed.splitlines() if line.strip()}
+    return sorted(names - {"mixer", "battery_status"})
+
+
+def first_failure(attest: pathlib.Path, library: pathlib.Path, selection: list[str]) -> str | None:
+    """The id of the first case that `attest run` finds wrong, None if it passes."""
+    report = library.with_name("report.json")
+    command = [attest, "-q", "run", "--port", f"lib:{library}", "--fail-fast", "--no-diagnose"]
+    command += ["--json", report, *selection]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode == 0:
+        return None
+    if done.returncode != 1:
+        raise BrokenPatch(f"attest run exited with {done.returncode}:\n{done.stdout}{done.stderr}")
+    failed = ("fail", "non-finite", "crash", "timeout", "protocol")
+    results = json.loads(report.read_text())["results"]
+    return next(result["id"] for result in results if result["verdict"] in failed)
+
+
+def judge(attest: pathlib.Path, all_groups: list[str], candidate: Candidate) -> Judged:
+    def selection(flights: bool) -> list[str]:
+        chosen = [group for group in all_groups if (group in FLIGHTS) == flights]
+        return [word for group in chosen for word in ("--group", group)]
+
+    try:
+        with tempfile.TemporaryDirectory() as name:
+            library = build(candidate, pathlib.Path(name))
+            caught_by = first_failure(attest, library, selection(flights=False))
+            if not caught_by and not candidate.passes:
+                rates = ["--rate", FLIGHT_RATES]
+                caught_by = first_failure(attest, library, selection(flights=True) + rates)
+    except BrokenPatch as error:
+        return Judged(candidate, None, str(error))
+    return Judged(candidate, caught_by, None)
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--attest", type=pathlib.Path, default=shutil.which("attest"))
+    parser.add_argument("--only", action="append", default=[], metavar="NAME")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    args = parser.parse_args()
+    if not args.attest:
+        parser.error("no attest in PATH: say --attest PATH")
+    return args
+
+
+def main() -> int:
+    args = arguments()
+    chosen = [c for c in candidates() if not args.only or c.name in args.only]
+    if not chosen:
+        print(f"no mistake is called {' or '.join(args.only)}", file=sys.stderr)
+        return 2
+    all_groups = groups(args.attest)
+    print("| mistake | style | caught by |\n|---|---|---|")
+    done = []
+    with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
+        for judged in pool.map(lambda c: judge(args.attest, all_groups, c), chosen):
+            done.append(judged)
+            name, style = judged.candidate.name, judged.candidate.style
+            print(f"| {name} | {style} | {judged.remark} |", flush=True)
+            if judged.broken:
+                print(judged.broken, file=sys.stderr)
+    if any(judged.broken for judged in done):
+        return 2
+    return 0 if all(judged.good for judged in done) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
