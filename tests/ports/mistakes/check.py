@@ -37,6 +37,8 @@ SOURCES = (".c", ".cpp", ".h", ".hpp")
 # have the most ticks.
 FLIGHTS = ("flight", "flight_timing")
 FLIGHT_RATES = "333,4000"
+# A mistake is a wrong number, never a slow step: on a busy machine a case may take its time.
+TIMEOUT_S = 300
 COMPILES_AT_ONCE = threading.Semaphore(2)
 
 
@@ -124,15 +126,17 @@ def first_failure(attest: pathlib.Path, library: pathlib.Path, selection: list[s
     """The id of the first case that `attest run` finds wrong, None if it passes."""
     report = library.with_name("report.json")
     command = [attest, "-q", "run", "--port", f"lib:{library}", "--fail-fast", "--no-diagnose"]
-    command += ["--json", report, *selection]
+    command += ["--timeout", str(TIMEOUT_S), "--json", report, *selection]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode == 0:
         return None
     if done.returncode != 1:
         raise BrokenPatch(f"attest run exited with {done.returncode}:\n{done.stdout}{done.stderr}")
-    failed = ("fail", "non-finite", "crash", "timeout", "protocol")
     results = json.loads(report.read_text())["results"]
-    return next(result["id"] for result in results if result["verdict"] in failed)
+    failed = [r["id"] for r in results if r["verdict"] in ("fail", "non-finite")]
+    if not failed:
+        raise BrokenPatch(f"attest run failed for another reason than its outputs:\n{done.stdout}")
+    return failed[0]
 
 
 def judge(attest: pathlib.Path, all_groups: list[str], candidate: Candidate) -> Judged:
