@@ -45,10 +45,12 @@ typedef struct attest_mixer_outputs {
 } attest_mixer_outputs;
 
 typedef struct attest_mixer {
-  /* A new mixer whose outputs before the first call are 0. `definition` is a line of a PX4 mixer
-   * file, "R: <geometry> <roll> <pitch> <yaw> <deadband>" with numbers in 1/10000, such as
-   * "R: 4x 10000 10000 10000 0". NULL: not supported; its cases are then counted as
-   * unsupported. */
+  /* A new mixer. Its outputs before the first call, which the first call's limit by delta_out_max
+   * starts from, are NaN if the deadband is 0: then the first call is not limited. With another
+   * deadband they are 0. `definition` is a line of a PX4 mixer file,
+   * "R: <geometry> <roll> <pitch> <yaw> <deadband>" with numbers in 1/10000, such as
+   * "R: 4x 10000 10000 10000 0"; it is valid during the call only. NULL: not supported; its cases
+   * are then counted as unsupported. */
   void* (*create)(const char* profile, const char* definition);
   void (*destroy)(void* self);
   int (*step)(void* self, const attest_mixer_inputs* in, attest_mixer_outputs* out);
@@ -79,7 +81,8 @@ typedef struct attest_battery_status {
   void* (*create)(const char* profile);
   void (*destroy)(void* self);
   /* BAT_N_CELLS, BAT_V_EMPTY, BAT_V_CHARGED, BAT_V_LOAD_DROP, BAT_R_INTERNAL (negative: unknown),
-   * before the first step. Those never set are 3, 3.4 V, 4.05 V, 0.3 V and -1. */
+   * before the first step. Those never set are 0, 3.4 V, 4.05 V, 0.3 V and -1. With 0 cells, the
+   * firmware's default, the estimate has no finite number and the scale stays 1. */
   int (*set_parameter)(void* self, const char* name, float value);
   /* One sample; 100 of them are a second. */
   int (*step)(void* self, const attest_battery_inputs* in, attest_battery_outputs* out);

@@ -9,6 +9,7 @@
  * Life cycle, in the order the host calls:
  *
  *     unit = attest_unit_v1();
+ *     unit->extension(id);                              any id, any number of times
  *     self = unit->create("px4-v1.5.5");
  *     unit->set_parameter(self, "MC_ROLL_P", 6.5f);     any number of times
  *     for each control_state sample:
@@ -23,10 +24,16 @@
  *
  * Time: `timestamp` is the only clock. A unit must not read another one.
  *
- * Threads: the host calls one instance from one thread at a time; several instances may exist.
+ * Threads: attest_unit_v1() and extension() are called on one thread at a time, any. The host calls
+ * one instance from one thread at a time. That thread may change between calls: `attest stress`
+ * calls create() and destroy() on one thread and the rest on a real-time thread. Several instances
+ * may exist at once; two instances may be called from two threads at the same time. (attest itself
+ * has one instance of a port at a time in each process, so a port with global state passes.)
  *
- * Memory: the host owns both structs. The unit owns what create() returned until destroy().
- * A step should neither allocate nor block.
+ * Memory: the host owns both structs, and they are valid during the call only. The unit owns what
+ * create() returned until destroy(). Strings that the host passes are valid during the call only.
+ * The table, `name`, `version` and all that extension() returns must stay valid and unchanged until
+ * the library is unloaded. A step should neither allocate nor block.
  */
 #ifndef ATTEST_UNIT_H
 #define ATTEST_UNIT_H
@@ -70,7 +77,9 @@ enum {
 };
 
 typedef struct attest_inputs {
-  uint64_t timestamp; /* [us] of the control_state sample; never decreases */
+  uint64_t timestamp; /* [us] at which this step runs; never decreases. The law's dt is the
+                       * difference between the timestamps of two steps. The sample in
+                       * control_state may be older: see ATTEST_EXTENSION_TIMESTAMP_SAMPLE. */
   uint32_t updated;   /* ATTEST_UPDATED_... bits */
 
   struct {            /* topic control_state: the estimate this step acts on */
@@ -81,7 +90,9 @@ typedef struct attest_inputs {
   } control_state;
 
   struct {                          /* topic vehicle_attitude_setpoint */
-    float q_d[4];                   /* desired attitude, body FRD to world NED */
+    float q_d[4];                   /* desired attitude, body FRD to world NED. The topic of
+                                     * px4-v1.3.4 has a rotation matrix instead: it is R(q_d),
+                                     * which a port of that profile computes itself */
     float thrust;                   /* [0..1] collective thrust along -z body */
     float yaw_sp_move_rate;         /* [rad/s] yaw rate commanded by the pilot, fed forward */
     float landing_gear;             /* [-1..1] passed through to control[7] */
@@ -121,7 +132,7 @@ typedef struct attest_inputs {
 
   struct {                  /* topic vehicle_status */
     uint8_t is_rotary_wing; /* the unit starts with this true, before the first sample */
-    uint8_t is_vtol;
+    uint8_t is_vtol;        /* the first sample selects the topics of the outputs, see below */
   } vehicle_status;
 
   struct {               /* topic multirotor_motor_limits: saturation seen by the mixer */
@@ -136,6 +147,17 @@ typedef struct attest_inputs {
  * `published` is 1 in a step that publishes the topic and 0 in one that does not; with 0 the other
  * fields keep the values last published. The host passes the same struct to every step, zeroed
  * before the first, so a unit that writes only what it publishes does the right thing.
+ *
+ * Topics: a unit publishes vehicle_rates_setpoint and actuator_controls_0 only after its first
+ * sample of vehicle_status, which selects the topics for the life of the instance. If is_vtol is
+ * set in that sample, they are the virtual topics mc_virtual_rates_setpoint and
+ * actuator_controls_virtual_mc; the outputs below are the same fields for both. mc_att_ctrl_status
+ * needs no vehicle_status.
+ *
+ * Own publications: the unit has one copy of vehicle_rates_setpoint. What it computes overwrites
+ * that copy. Its publication also supersedes an external sample that is still pending, because both
+ * are on one topic. A VTOL publishes on the virtual topic: there the external sample stays pending
+ * until offboard rates mode takes it.
  */
 typedef struct attest_outputs {
   struct {        /* topic vehicle_rates_setpoint: result of the attitude loop */
@@ -174,22 +196,28 @@ typedef struct attest_unit {
   const char* version;  /* of the port */
 
   /* A new instance in its power-on state with default parameters. `profile` names the version of
-   * the law, such as "px4-v1.5.5". NULL: profile not supported, its cases are skipped. */
+   * the law, such as "px4-v1.5.5". NULL: profile not supported, its cases are skipped. Legal at any
+   * time, also while other instances exist. May allocate. */
   void* (*create)(const char* profile);
 
-  /* Frees an instance. Called once per successful create(). */
+  /* Frees an instance. Called once per successful create(), after the last call with it. */
   void (*destroy)(void* self);
 
   /* Sets one parameter by its PX4 name. Integer parameters arrive as the float of the same value.
-   * Legal before the first step, and before a step that has ATTEST_UPDATED_PARAMETER_UPDATE set;
-   * takes effect in that step. Parameters never set have the default of the law. */
+   * Legal before the first step, and before a step that has ATTEST_UPDATED_PARAMETER_UPDATE set.
+   * What is set before the first step holds from creation: it also decides what the law decides
+   * once, such as tailsitter recovery. Later it takes effect in the step that follows. Parameters
+   * never set have the default of the law: `attest list --parameters` prints them all. In
+   * px4-v1.3.4 MC_TPA_BREAK, MC_TPA_SLOPE and MC_BAT_SCALE_EN do not exist: the host does not set
+   * them there, and a port may answer ATTEST_INVALID. Same thread as step(). */
   int (*set_parameter)(void* self, const char* name, float value);
 
-  /* One control step. Must work for every input, NaN and infinities included. */
+  /* One control step. Must work for every input, NaN and infinities included. `in` and `out` are
+   * valid during the call only; `in` must not be written. */
   int (*step)(void* self, const attest_inputs* in, attest_outputs* out);
 
-  /* Growth without breaking the ABI: a pointer to the interface named `id`, or NULL. May itself be
-   * NULL when a port has no extensions. */
+  /* Growth without breaking the ABI: a pointer to the interface named `id`, or NULL. Must answer
+   * the same each time, before create() too. May itself be NULL when a port has no extensions. */
   const void* (*extension)(const char* id);
 } attest_unit;
 
@@ -202,7 +230,23 @@ typedef struct attest_unit {
  * for floats, some multiples of that last bit (LSB), and every report says so. */
 #define ATTEST_EXTENSION_ARITHMETIC "attest.arithmetic"
 
-/* The one exported symbol. The table is static: it outlives every instance. */
+/* Extension: const attest_timestamp_sample*, for a port that wants to know when the sample in
+ * control_state was taken. `timestamp` cannot say it: under an estimator delay it is later. */
+#define ATTEST_EXTENSION_TIMESTAMP_SAMPLE "attest.timestamp_sample.v1"
+
+typedef struct attest_timestamp_sample {
+  /* The host calls it exactly once before each step(), after the set_parameter() calls of that step
+   * and on the thread of that step. `timestamp_sample` is the time in us, on the clock of
+   * `timestamp`, at which the sample that the step will see in control_state was taken. It is not
+   * later than the step's `timestamp` and never decreases. It repeats when a step sees the sample
+   * of the step before. It equals `timestamp` where no delay is modelled, as in scripted cases. In
+   * a flight a unit that runs before the first sample has arrived sees the state at the begin of
+   * the flight, and is given the time of that. Returns ATTEST_OK or another of the results. */
+  int (*set_timestamp_sample)(void* self, uint64_t timestamp_sample);
+} attest_timestamp_sample;
+
+/* The one exported symbol. Called once, after the library was loaded. The table is static: it
+ * outlives every instance. */
 ATTEST_EXPORT const attest_unit* attest_unit_v1(void);
 
 /* ---- layout, fixed for ever ------------------------------------------------------------------*/

@@ -225,9 +225,13 @@ Stimulus::Stimulus(const Case& the_case, const Rate& rate)
 Stimulus::Stimulus(Stimulus&&) noexcept = default;
 Stimulus::~Stimulus() = default;
 
+std::uint64_t Stimulus::timestamp_us(Nanoseconds time) const {
+  return attest::timestamp_us(impl_->start + time);
+}
+
 void Stimulus::tick(std::size_t tick, Nanoseconds now, Sample& sample,
                     std::vector<ParameterChange>& changes) {
-  sample.in.timestamp = timestamp_us(impl_->start + now);
+  sample.in.timestamp = timestamp_us(now);
   sample.in.updated = 0;
   for (Publisher& publisher : impl_->publishers) publisher.tick(now, sample);
   impl_->parameters.tick(tick, now, sample, changes);

@@ -1,6 +1,7 @@
 // From a case and a loop rate to everything the unit is given, tick by tick.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -28,6 +29,9 @@ class Stimulus {
   // appends the parameters that change at it. REQUIRES: times increase; `tick` counts from 0.
   void tick(std::size_t tick, Nanoseconds now, Sample& sample,
             std::vector<ParameterChange>& changes);
+
+  // A time of the case on the clock of attest_inputs::timestamp.
+  std::uint64_t timestamp_us(Nanoseconds time) const;
 
  private:
   struct Impl;

@@ -13,7 +13,7 @@ namespace attest {
 
 // Table is attest_unit, attest_mixer or attest_battery_status.
 template <typename Table, typename Interface>
-class AbiUnit final : public Interface {
+class AbiUnit : public Interface {
  public:
   using typename Interface::Inputs;
   using typename Interface::Outputs;
@@ -31,9 +31,25 @@ class AbiUnit final : public Interface {
   }
   int step(const Inputs& in, Outputs& out) override { return table_.step(self_, &in, &out); }
 
- private:
+ protected:
   const Table& table_;
   void* self_;
+};
+
+// The controller, which may want to know the time of the sample.
+class AbiController final : public AbiUnit<attest_unit, Unit> {
+ public:
+  AbiController(const attest_unit& table, const attest_timestamp_sample* timestamp_sample,
+                void* self)
+      : AbiUnit(table, self), timestamp_sample_(timestamp_sample) {}
+
+  int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
+    if (timestamp_sample_ == nullptr) return ATTEST_OK;
+    return timestamp_sample_->set_timestamp_sample(self_, timestamp_sample_us);
+  }
+
+ private:
+  const attest_timestamp_sample* timestamp_sample_;
 };
 
 // `owner` keeps what the table lives in (a loaded library) alive.
@@ -61,7 +77,10 @@ class AbiPort final : public Port {
     return bits ? std::optional(*bits) : std::nullopt;
   }
   std::unique_ptr<Unit> create(const std::string& profile) override {
-    return wrapped<Unit>(table_, table_.create(profile.c_str()));
+    void* const self = table_.create(profile.c_str());
+    if (self == nullptr) return nullptr;
+    const auto* times = extension<attest_timestamp_sample>(ATTEST_EXTENSION_TIMESTAMP_SAMPLE);
+    return std::make_unique<AbiController>(table_, times, self);
   }
   bool has_mixer() const override { return mixer() != nullptr; }
   bool has_battery_status() const override { return battery_status() != nullptr; }

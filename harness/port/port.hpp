@@ -4,6 +4,7 @@
 // of attest_unit.h), `fault:ID` (the reference with a mistake of the catalogue).
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,7 +32,13 @@ class Steppable {
   virtual int step(const Inputs& in, Outputs& out) = 0;
 };
 
-using Unit = Steppable<attest_inputs, attest_outputs>;
+class Unit : public Steppable<attest_inputs, attest_outputs> {
+ public:
+  // As of attest_timestamp_sample, once before each step; ATTEST_OK from a unit that does not want
+  // to know.
+  virtual int set_timestamp_sample(std::uint64_t /*timestamp_sample_us*/) { return ATTEST_OK; }
+};
+
 using MixerUnit = Steppable<attest_mixer_inputs, attest_mixer_outputs>;
 using BatteryUnit = Steppable<attest_battery_inputs, attest_battery_outputs>;
 

@@ -45,6 +45,11 @@ Result<void> check_extensions(const attest_unit& unit, const std::string& path) 
       !(battery->create && battery->destroy && battery->set_parameter && battery->step)) {
     return incomplete(ATTEST_EXTENSION_BATTERY_STATUS);
   }
+  const auto* times = static_cast<const attest_timestamp_sample*>(
+      unit.extension(ATTEST_EXTENSION_TIMESTAMP_SAMPLE));
+  if (times && !times->set_timestamp_sample) {
+    return incomplete(ATTEST_EXTENSION_TIMESTAMP_SAMPLE);
+  }
   if (const void* arithmetic = unit.extension(ATTEST_EXTENSION_ARITHMETIC)) {
     const auto bits = parse_fraction_bits(static_cast<const char*>(arithmetic));
     if (!bits) return fail_at(path, bits.error().message);

@@ -60,7 +60,7 @@ Nanoseconds LiveUnit::tick(Nanoseconds deadline) {
   // Not before the sample was read, which then cannot be of the future.
   const Nanoseconds begins = clock_.now();
   Arrivals arrivals;
-  if (sampled_) arrivals.state = estimator_.sample(latest_.state);
+  if (sampled_) arrivals.estimate = Estimate{latest_.time, estimator_.sample(latest_.state)};
   arrivals.limits = limits_at(begins);
   task_.prepare(ticks_, begins, arrivals);
 

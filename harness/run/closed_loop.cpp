@@ -102,7 +102,7 @@ void ClosedLoop::happens(const Agenda::Event& event, Trace* trace) {
       return;
     case estimator:
       return estimates_.send_for(timing_[first_sampled_ + event.index].begins,
-                                 estimator_.sample(plant_.state()));
+                                 {now, estimator_.sample(plant_.state())});
     case battery: {
       const float throttle = unit_.sample().out.actuator_controls_0.control[3];
       return battery_scales_.send(now, plant_.battery_scale(now, throttle, unit_.is_armed()));

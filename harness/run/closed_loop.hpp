@@ -60,7 +60,7 @@ class ClosedLoop {
   NoisyEstimator estimator_;
   Agenda agenda_;
 
-  DelayLine<ControlState> estimates_;
+  DelayLine<Estimate> estimates_;
   DelayLine<float> battery_scales_;
   DelayLine<MotorLimits> limits_;
   DelayLine<MotorCommands> commands_;

@@ -3,12 +3,19 @@
 
 #include "controller/attest_unit.h"
 #include "harness/casefile/flight.hpp"
+#include "harness/core/time.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/schedule/random.hpp"
 
 namespace attest {
 
 using ControlState = decltype(attest_inputs::control_state);
+
+// A sample of the plant, and of which time since the begin of the case.
+struct Estimate {
+  Nanoseconds sampled{0};
+  ControlState state{};
+};
 
 // Without noise.
 ControlState control_state_of(const PlantState& state);

@@ -1,6 +1,7 @@
 #include "harness/run/unit_driver.hpp"
 
 #include <cstring>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -61,9 +62,9 @@ PartDriver<PartUnit>::PartDriver(PartUnit& unit) : unit_(unit) {
 }
 
 template <typename PartUnit>
-std::optional<PortFault> PartDriver<PartUnit>::step(std::size_t tick,
-                                                    std::span<const ParameterChange> changes,
-                                                    Sample& sample) {
+std::optional<PortFault> PartDriver<PartUnit>::step(
+    std::size_t tick, std::span<const ParameterChange> changes, Sample& sample,
+    std::optional<std::uint64_t> timestamp_sample_us) {
   for (const ParameterChange& change : changes) {
     const int code = unit_.set_parameter(change.name, change.value);
     if (code == ATTEST_OK) continue;
@@ -71,12 +72,24 @@ std::optional<PortFault> PartDriver<PartUnit>::step(std::size_t tick,
   }
   const Inputs& given = sample.*Place<PartUnit>::in;
   exchange_.in = given;
+  if (const int code = tell_time(given, timestamp_sample_us); code != ATTEST_OK) {
+    return fault_of(code, tick, fmt::format("set_timestamp_sample at tick {}", tick));
+  }
   if (const int code = unit_.step(exchange_.in, exchange_.out); code != ATTEST_OK) {
     return fault_of(code, tick, fmt::format("step at tick {}", tick));
   }
   if (auto fault = broken_rule(given, tick)) return fault;
   sample.*Place<PartUnit>::out = exchange_.out;
   return std::nullopt;
+}
+
+template <typename PartUnit>
+int PartDriver<PartUnit>::tell_time(const Inputs& given,
+                                    std::optional<std::uint64_t> timestamp_sample_us) {
+  if constexpr (std::is_same_v<PartUnit, Unit>) {
+    return unit_.set_timestamp_sample(timestamp_sample_us.value_or(given.timestamp));
+  }
+  return ATTEST_OK;
 }
 
 template <typename PartUnit>

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -36,12 +37,15 @@ class PartDriver {
   // One tick:
   //
   //     parameters that change at this tick -> set_parameter
+  //     the time of the control_state       -> set_timestamp_sample, of a Unit
   //     inputs of the sample                -> step
   //     outputs                             -> the sample; kept as the next step's starting point
   //
+  // `timestamp_sample_us` is when control_state was taken; empty: at the sample's timestamp.
   // On a fault the sample's outputs are not written.
   std::optional<PortFault> step(std::size_t tick, std::span<const ParameterChange> changes,
-                                Sample& sample);
+                                Sample& sample,
+                                std::optional<std::uint64_t> timestamp_sample_us = std::nullopt);
 
  private:
   using Inputs = typename PartUnit::Inputs;
@@ -56,6 +60,7 @@ class PartDriver {
     std::array<unsigned char, 64> behind_out;
   };
 
+  int tell_time(const Inputs& given, std::optional<std::uint64_t> timestamp_sample_us);
   std::optional<PortFault> broken_rule(const Inputs& given, std::size_t tick) const;
 
   PartUnit& unit_;

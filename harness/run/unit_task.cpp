@@ -18,7 +18,11 @@ void UnitTask::prepare(std::size_t tick, Nanoseconds now, const Arrivals& arriva
   changes_.clear();
   stimulus_.tick(tick, now, sample_, changes_);
   attest_inputs& in = sample_.in;
-  if (arrivals.state) in.control_state = *arrivals.state;
+  if (arrivals.estimate) {
+    in.control_state = arrivals.estimate->state;
+    sampled_ = arrivals.estimate->sampled;
+  }
+  timestamp_sample_us_ = stimulus_.timestamp_us(sampled_);
   if (arrivals.battery_scale) {
     in.battery_status.scale = *arrivals.battery_scale;
     in.updated |= ATTEST_UPDATED_BATTERY_STATUS;
@@ -30,7 +34,8 @@ void UnitTask::prepare(std::size_t tick, Nanoseconds now, const Arrivals& arriva
 }
 
 std::optional<PortFault> UnitTask::step(std::size_t tick) {
-  auto fault = ports_.run([&] { return driver_.step(tick, changes_, sample_); });
+  auto fault = ports_.run(
+      [&] { return driver_.step(tick, changes_, sample_, timestamp_sample_us_); });
   if (!fault) actuators_.mix(sample_.out, is_armed());
   return fault;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -20,14 +21,15 @@ namespace attest {
 
 // What has arrived since the last tick.
 struct Arrivals {
-  std::optional<ControlState> state;
+  std::optional<Estimate> estimate;
   std::optional<float> battery_scale;
   std::optional<MotorLimits> limits;
 };
 
 class UnitTask {
  public:
-  // `start` is what a unit that has been told nothing is told. REQUIRES: as of ClosedLoop.
+  // `start` is the state used before the first estimate arrives, that of time 0. REQUIRES: as of
+  // ClosedLoop.
   UnitTask(const Case& the_case, const Rate& rate, const Vehicle& vehicle, Unit& unit,
            const ControlState& start);
 
@@ -52,6 +54,8 @@ class UnitTask {
   UnitDriver driver_;
   PortFloatEnvironment ports_;
   Sample sample_{};
+  std::uint64_t timestamp_sample_us_ = 0;  // of the sample's control_state
+  Nanoseconds sampled_{0};
   std::vector<ParameterChange> changes_;
 };
 

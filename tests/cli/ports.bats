@@ -140,6 +140,17 @@ TASKS
   [ "$status" -eq 0 ]
 }
 
+@test "a port is given the time of its sample" {
+  judged timestamp_sample
+  [ "$status" -eq 0 ]
+  flight=(--filter '*/estimator_delay@250hz-iris-mujoco' --port "lib:$PORTS/port_timestamp_sample.so")
+  SAMPLE_DELAY_US=6000 run "$ATTEST" run "${flight[@]}"
+  [ "$status" -eq 0 ]
+  SAMPLE_DELAY_US=6001 run "$ATTEST" run "${flight[@]}"
+  [ "$status" -eq 1 ]
+  has "step at tick 2 returned ATTEST_FAILED"
+}
+
 @test "a library that is none" {
   run "$ATTEST" run --port lib:./missing.so
   [ "$status" -eq 2 ]

@@ -64,6 +64,8 @@ TEST(SharedLibrary, OneThatIsNoPortIsAnError) {
   EXPECT_THAT(error_of(test_port("wrong_arithmetic")), HasSubstr("its arithmetic is `decimal`"));
   EXPECT_THAT(error_of(test_port("incomplete_mixer")),
               HasSubstr("a member of its extension attest.mixer.v1 is NULL"));
+  EXPECT_THAT(error_of(test_port("incomplete_timestamp_sample")),
+              HasSubstr("a member of its extension attest.timestamp_sample.v1 is NULL"));
 }
 
 TEST(SharedLibrary, AnotherAbiVersionIsAnErrorThatNamesBoth) {

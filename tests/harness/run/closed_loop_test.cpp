@@ -62,6 +62,10 @@ class NotingUnit final : public Unit {
   explicit NotingUnit(Notes& notes) : notes_(notes) {}
 
   int set_parameter(const std::string&, float) override { return ATTEST_OK; }
+  int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
+    timestamps_sample.push_back(timestamp_sample_us - 5'000'000);
+    return ATTEST_OK;
+  }
   int step(const attest_inputs& in, attest_outputs& out) override {
     const double time = static_cast<double>(in.timestamp - 5'000'000) / 1e3;
     std::string note = fmt::format("{:g} unit sees {:g}", time, in.control_state.roll_rate);
@@ -78,6 +82,7 @@ class NotingUnit final : public Unit {
 
   float roll = 0, thrust = 0.5f;
   int result = ATTEST_OK;
+  std::vector<std::uint64_t> timestamps_sample;  // [us] since the begin
 
  private:
   Notes& notes_;
@@ -125,6 +130,22 @@ class ClosedLoopTest : public testing::Test {
   NotingPlant plant_{notes_};
   NotingUnit unit_{notes_};
 };
+
+TEST_F(ClosedLoopTest, TheUnitIsGivenTheTimeOfItsSample) {
+  fly();
+  EXPECT_THAT(unit_.timestamps_sample, ElementsAre(0, 4000, 8000));
+  // The first sample arrives at 6 ms: until then the unit sees the state of the begin.
+  case_.flight->estimator.delay = seconds(0.006);
+  unit_.timestamps_sample.clear();
+  fly();
+  EXPECT_THAT(unit_.timestamps_sample, ElementsAre(0, 0, 2000));
+  // An estimator that is slower than the loop repeats a sample.
+  case_.flight->estimator.delay = seconds(0);
+  case_.flight->estimator.drift = -0.25;
+  unit_.timestamps_sample.clear();
+  fly();
+  EXPECT_THAT(unit_.timestamps_sample, ElementsAre(0, 0, 5333));
+}
 
 TEST_F(ClosedLoopTest, AtOneInstantTheSensorComesBeforeTheUnitAndTheMotorsAfter) {
   unit_.thrust = 1;  // with roll on top of it, the mixer runs into the upper limit
