@@ -230,6 +230,14 @@ typedef struct attest_unit {
  * for floats, some multiples of that last bit (LSB), and every report says so. */
 #define ATTEST_EXTENSION_ARITHMETIC "attest.arithmetic"
 
+/* Extension: const char*, the rate in Hz of a port that knows only its own sample time and ignores
+ * `timestamp`, as code generated for a fixed step does: "250", or "1000/3" for a step of 3 ms. Such
+ * a port is given the cases at that rate whose ticks are all one period apart. They begin one
+ * period after zero, so that the first dt is the period too (with other ports they begin at 5 s,
+ * and the first dt is the longest, 20 ms). The others are counted as unsupported, and every report
+ * names the fixed step. A port computes with the law's dt: its period, but from 2 to 20 ms. */
+#define ATTEST_EXTENSION_FIXED_STEP "attest.fixed_step"
+
 /* Extension: const attest_timestamp_sample*, for a port that wants to know when the sample in
  * control_state was taken. `timestamp` cannot say it: under an estimator delay it is later. */
 #define ATTEST_EXTENSION_TIMESTAMP_SAMPLE "attest.timestamp_sample.v1"

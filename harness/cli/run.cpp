@@ -118,6 +118,7 @@ Result<Plan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
   plan.run.port_name = port->name;
   plan.run.port_version = port->version;
   plan.run.fraction_bits = port->fraction_bits;
+  plan.run.fixed_step = port->fixed_step;
   plan.run.level = *level;
   const auto planned =
       options.timing.empty() ? plan_cases(options, suite, plan) : plan_timed(options, suite, plan);

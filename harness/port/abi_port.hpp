@@ -76,6 +76,12 @@ class AbiPort final : public Port {
     const auto bits = parse_fraction_bits(arithmetic);
     return bits ? std::optional(*bits) : std::nullopt;
   }
+  std::optional<Rate> fixed_step() const override {
+    const auto* hertz = extension<char>(ATTEST_EXTENSION_FIXED_STEP);
+    if (hertz == nullptr) return std::nullopt;
+    const auto rate = Rate::parse(hertz);
+    return rate ? std::optional(*rate) : std::nullopt;
+  }
   std::unique_ptr<Unit> create(const std::string& profile) override {
     void* const self = table_.create(profile.c_str());
     if (self == nullptr) return nullptr;

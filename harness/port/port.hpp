@@ -14,6 +14,7 @@
 #include "controller/attest_actuation.h"
 #include "controller/attest_unit.h"
 #include "harness/core/result.hpp"
+#include "harness/schedule/rate.hpp"
 
 namespace attest {
 
@@ -54,6 +55,9 @@ class Port {
 
   // Bits behind the point of a port in fixed point.
   virtual std::optional<int> fraction_bits() const { return std::nullopt; }
+
+  // The rate of a port that knows only its own sample time.
+  virtual std::optional<Rate> fixed_step() const { return std::nullopt; }
 
   // A unit in its power-on state; null when the port does not support the profile.
   // The port must outlive the unit.

@@ -54,6 +54,10 @@ Result<void> check_extensions(const attest_unit& unit, const std::string& path) 
     const auto bits = parse_fraction_bits(static_cast<const char*>(arithmetic));
     if (!bits) return fail_at(path, bits.error().message);
   }
+  if (const void* hertz = unit.extension(ATTEST_EXTENSION_FIXED_STEP)) {
+    const auto rate = Rate::parse(static_cast<const char*>(hertz));
+    if (!rate) return fail_at(path, "its fixed step: " + rate.error().message);
+  }
   return {};
 }
 

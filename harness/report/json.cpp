@@ -79,6 +79,7 @@ std::string json_report(const RunResult& run) {
   ordered_json port = {
       {"specification", run.port}, {"name", run.port_name}, {"version", run.port_version}};
   if (run.fraction_bits) port["fraction_bits"] = *run.fraction_bits;
+  if (run.fixed_step) port["fixed_step"] = run.fixed_step->to_string();
   ordered_json report = {
       {"schema", "attest-report-1"},
       {"attest_version", run.attest_version},

@@ -92,6 +92,7 @@ void add_properties(pugi::xml_node suite, const RunResult& run) {
       {"port.name", run.port_name},
       {"port.version", run.port_version},
       {"port.fraction_bits", run.fraction_bits ? fmt::to_string(*run.fraction_bits) : "none"},
+      {"port.fixed_step", run.fixed_step ? run.fixed_step->to_string() : "none"},
       {"level", std::string(name_of(run.level))},
       {"cases.version", run.cases_version},
       {"golden.version", run.golden_version},

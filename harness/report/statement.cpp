@@ -34,8 +34,10 @@ std::map<std::string, Groups> groups_of(const RunResult& run) {
     GroupState& state = profiles[result.profile][result.group];
     state.passes = state.passes || result.verdict == Verdict::pass;
     state.fails = state.fails || fails_a_run(result.verdict);
-    state.lacks =
-        state.lacks || result.verdict == Verdict::unsupported || result.verdict == Verdict::xfail;
+    // A port with a fixed step conforms at that rate, and the statement says so.
+    const bool is_of_another_step = run.fixed_step && result.rate != *run.fixed_step;
+    state.lacks = state.lacks || result.verdict == Verdict::xfail ||
+                  (result.verdict == Verdict::unsupported && !is_of_another_step);
   }
   return profiles;
 }
@@ -76,6 +78,12 @@ std::string arithmetic_of(const RunResult& run) {
   return fmt::format(" for fixed point with {} fraction bits", *run.fraction_bits);
 }
 
+// "11 rates", or the one that the port has.
+std::string rates_of(const RunResult& run) {
+  if (run.fixed_step) return fmt::format("fixed step of {} Hz", run.fixed_step->to_string());
+  return counted(run.rates.size(), "rate");
+}
+
 // Of the profiles in which some group conforms.
 std::vector<std::string> statements_of(const RunResult& run) {
   std::vector<std::string> statements;
@@ -84,8 +92,7 @@ std::vector<std::string> statements_of(const RunResult& run) {
                                   [](const auto& group) { return group.second.conforms(); });
     if (!some) continue;
     statements.push_back(fmt::format("{}, {}{}, {}, {}", one_line(profile), name_of(run.level),
-                                     arithmetic_of(run), counted(run.rates.size(), "rate"),
-                                     which_groups(groups)));
+                                     arithmetic_of(run), rates_of(run), which_groups(groups)));
   }
   return statements;
 }

@@ -147,6 +147,7 @@ RunResult run_of(const StressRun& run) {
   all.port_name = run.description.name;
   all.port_version = run.description.version;
   all.fraction_bits = run.description.fraction_bits;
+  all.fixed_step = run.description.fixed_step;
   all.command = "stress";
   for (const StressResult& stress : run.results) {
     all.results.push_back(stress.result);

@@ -41,9 +41,16 @@ std::vector<Together> grouped(const RunResult& run, Wanted wanted, Alike alike) 
 }
 
 std::string header(const RunResult& run) {
-  return fmt::format("{} {} ({}) at the {} level, attest {}\n\n", one_line(run.port_name),
-                     one_line(run.port_version), one_line(run.port), name_of(run.level),
-                     run.attest_version);
+  std::string out = fmt::format("{} {} ({}) at the {} level, attest {}\n", one_line(run.port_name),
+                                one_line(run.port_version), one_line(run.port), name_of(run.level),
+                                run.attest_version);
+  if (run.fixed_step) {
+    out += fmt::format(
+        "fixed step of {} Hz: cases begin one period after zero, and their goldens "
+        "are shifted by the reference\n",
+        run.fixed_step->to_string());
+  }
+  return out + "\n";
 }
 
 // Where else a case fails alike: rates, or how many more flights.

@@ -10,6 +10,7 @@
 #include "harness/run/open_loop.hpp"
 #include "harness/run/other_side.hpp"
 #include "harness/suite/evaluate.hpp"
+#include "harness/suite/fixed_step.hpp"
 #include "harness/suite/judge.hpp"
 
 namespace attest {
@@ -62,9 +63,10 @@ CaseResult DiagnosisBatch::identity(std::size_t) const {
 
 Result<CaseResult> DiagnosisBatch::evaluate(std::size_t i, Port& port) {
   CaseResult result = identity(i);
+  const Case& given = has_fixed_step(port, case_) ? from_one_period_on(case_) : case_;
   Trace law = [&] {
     const DefaultFloatEnvironment environment;
-    return stimulate(case_, rate_);
+    return stimulate(given, rate_);
   }();
   Trace got = law;
   const Subject subject = subject_of(case_);

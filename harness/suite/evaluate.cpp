@@ -7,9 +7,11 @@
 #include "harness/casefile/stimulus.hpp"
 #include "harness/compare/events.hpp"
 #include "harness/core/float_environment.hpp"
+#include "harness/port/builtin.hpp"
 #include "harness/run/keyframes.hpp"
 #include "harness/run/open_loop.hpp"
 #include "harness/run/other_side.hpp"
+#include "harness/suite/fixed_step.hpp"
 #include "harness/suite/judge.hpp"
 #include "harness/suite/stopwatch.hpp"
 #include "harness/trace/provenance.hpp"
@@ -66,6 +68,32 @@ Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& g
   return Prepared{std::move(made), std::move(*want), std::move(*others)};
 }
 
+// The same for a port with a fixed step (fixed_step.hpp): the reference's answers from one period
+// after zero on. Errors: the reference does not agree with the golden.
+Result<Prepared> prepare_from_one_period_on(const Case& the_case, const Rate& rate,
+                                            const Golden& golden) {
+  const auto reference = open_builtin();
+  const auto checked = evaluate_case(the_case, rate, golden, *reference, Level::exact);
+  if (!checked) return tl::unexpected(checked.error());
+  if (checked->verdict != Verdict::pass) {
+    return fail_at(the_case.file.string(),
+                   fmt::format("at {}, the reference of this attest does not agree with the "
+                               "golden, which therefore cannot be shifted",
+                               rate.label()));
+  }
+  const DefaultFloatEnvironment environment;
+  const Case begun = from_one_period_on(the_case);
+  Prepared prepared{stimulate(begun, rate), stimulate(begun, rate), {}};
+  if (const auto fault = drive(*reference, subject_of(begun), prepared.want)) {
+    return fail_at(the_case.file.string(), "the reference: " + fault->what);
+  }
+  if (!begun.either_side.any()) return prepared;
+  auto others = other_sides(begun, prepared.want);
+  if (!others) return tl::unexpected(others.error());
+  prepared.other_sides = std::move(*others);
+  return prepared;
+}
+
 }  // namespace
 
 CaseResult unjudged(const Case& the_case, const Setup& setup) {
@@ -94,7 +122,10 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
     result.reason = "on a threshold of the law: compared at the exact level only";
     return result;
   }
-  auto prepared = prepare(the_case, rate, golden);
+  if (has_other_steps(port, the_case, rate, result)) return result;
+  auto prepared = has_fixed_step(port, the_case)
+                      ? prepare_from_one_period_on(the_case, rate, golden)
+                      : prepare(the_case, rate, golden);
   if (!prepared) return tl::unexpected(prepared.error());
   const bool numeric_for_exact = level == Level::exact && the_case.numeric_only;
   const bool numeric_for_events = level == Level::events && !has_events(the_case.part);
@@ -111,6 +142,9 @@ CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, Port& p
                           const Tolerances& tolerances) {
   const Stopwatch stopwatch;
   CaseResult result = unjudged(recorded, subject.profile);
+  if (subject.part == Part::mc_att_control && has_other_steps(port, recorded, result)) {
+    return result;
+  }
   Trace answered = recorded;
   for (Sample& sample : answered.samples) {
     sample.out = {};

@@ -4,6 +4,7 @@
 #include "harness/process/child.hpp"
 #include "harness/run/flight.hpp"
 #include "harness/suite/evaluate.hpp"
+#include "harness/suite/fixed_step.hpp"
 #include "harness/suite/judge.hpp"
 #include "harness/trace/csv.hpp"
 
@@ -26,9 +27,11 @@ CaseResult SimBatch::identity(std::size_t) const { return unjudged(case_, setup_
 
 Result<CaseResult> SimBatch::evaluate(std::size_t, Port& port) {
   CaseResult result = unjudged(case_, setup_);
+  if (has_other_steps(port, case_, setup_.rate, timing_, result)) return result;
   const auto unit = create_unit(port, case_.profile, result);
   if (!unit) return result;
-  const auto flown = fly(case_, setup_, *airframe_, *unit, timing_);
+  const Case& flies = has_fixed_step(port, case_) ? from_one_period_on(case_) : case_;
+  const auto flown = fly(flies, setup_, *airframe_, *unit, timing_);
   if (!flown) return tl::unexpected(flown.error());
   if (flown->fault) {
     judge(*flown->fault, result);

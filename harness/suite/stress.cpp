@@ -151,6 +151,12 @@ Result<StressResult> stress_here(const StressTask& task, Port& port,
                                  const std::function<void(const StressProgress&)>& progress) {
   StressResult stress;
   CaseResult& result = stress.result = unjudged(task.the_case, task.setup);
+  if (port.fixed_step() && *port.fixed_step() != task.setup.rate) {
+    result.verdict = Verdict::unsupported;
+    result.reason =
+        fmt::format("the port has a fixed step of {} Hz", port.fixed_step()->to_string());
+    return stress;
+  }
   const auto unit = create_unit(port, task.the_case.profile, result);
   if (!unit) return stress;
   progress({{}, true});
@@ -177,7 +183,11 @@ Result<StressResult> stress_here(const StressTask& task, Port& port,
     judge(*flight->unit.fault, result);
     return stress;
   }
-  check_outputs(task.the_case, flight->unit, port.fraction_bits(), result);
+  if (port.fixed_step()) {
+    result.reason = "outputs not judged: a fixed step does not follow the times of a real clock";
+  } else {
+    check_outputs(task.the_case, flight->unit, port.fraction_bits(), result);
+  }
   if (const auto& lost = flight->plant.divergence; lost && result.verdict == Verdict::pass) {
     result.verdict = Verdict::fail;
     result.reason = fmt::format("the flight ended at {:.3f} s: {}",

@@ -9,6 +9,7 @@
 #include "harness/run/case_timing.hpp"
 #include "harness/run/flight.hpp"
 #include "harness/suite/evaluate.hpp"
+#include "harness/suite/fixed_step.hpp"
 #include "harness/suite/judge.hpp"
 
 namespace attest {
@@ -36,11 +37,13 @@ class Trial {
   bool holds(const Setup& setup, Nanoseconds delay) {
     if (result_.verdict != Verdict::pass || error_) return false;
     begins_();
+    LoopTiming timing = case_timing(case_, setup.rate);
+    if (has_other_steps(port_, case_, setup.rate, timing, result_)) return false;
     const auto unit = create_unit(port_, case_.profile, result_);
     if (!unit) return false;
-    LoopTiming timing = case_timing(case_, setup.rate);
     for (LoopTick& tick : timing) *tick.commanded += delay;
-    const auto flown = fly(case_, setup, airframe_, *unit, std::move(timing));
+    const Case& flies = has_fixed_step(port_, case_) ? from_one_period_on(case_) : case_;
+    const auto flown = fly(flies, setup, airframe_, *unit, std::move(timing));
     if (!flown) {
       error_ = flown.error();
     } else if (flown->fault) {

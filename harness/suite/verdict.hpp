@@ -82,6 +82,7 @@ struct RunResult {
   std::string port_name;        // as the port says
   std::string port_version;
   std::optional<int> fraction_bits;  // of a port in fixed point
+  std::optional<Rate> fixed_step;    // of a port that knows only its own sample time
   Level level = Level::numeric;
   std::vector<Rate> rates;              // selected, ascending
   bool all_setups = false;              // of each case that was selected, all were

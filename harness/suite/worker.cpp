@@ -70,6 +70,7 @@ void send_description(const std::string& specification, const std::vector<std::s
   json description = {
       {"name", (*port)->name()}, {"version", (*port)->version()}, {"profiles", supported}};
   if (const auto bits = (*port)->fraction_bits()) description["fraction_bits"] = *bits;
+  if (const auto step = (*port)->fixed_step()) description["fixed_step"] = step->to_string();
   send(repaired(description));
 }
 
@@ -99,10 +100,17 @@ Result<PortDescription> describe_port(const std::string& port,
     return tl::unexpected(error ? *error : error.error());
   }
   if (!answer.is_object()) return fail_at(port, "gave no sensible description of itself");
-  PortDescription description{"", answer.value("name", ""), answer.value("version", ""),
-                              answer.value("profiles", std::vector<std::string>{}), std::nullopt};
+  PortDescription description{"",
+                              answer.value("name", ""),
+                              answer.value("version", ""),
+                              answer.value("profiles", std::vector<std::string>{}),
+                              {},
+                              {}};
   if (answer.contains("fraction_bits")) {
     description.fraction_bits = answer.value("fraction_bits", 0);
+  }
+  if (const auto step = Rate::parse(answer.value("fixed_step", ""))) {
+    description.fixed_step = *step;
   }
   return description;
 }

@@ -47,6 +47,7 @@ struct PortDescription {
   std::string version;
   std::vector<std::string> profiles;  // of those asked for, the ones it supports
   std::optional<int> fraction_bits;
+  std::optional<Rate> fixed_step;
 };
 // A port that hangs is described as such, so that its cases can have their verdicts. Errors: it
 // cannot be loaded, or its process ends.

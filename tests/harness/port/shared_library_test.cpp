@@ -62,6 +62,7 @@ TEST(SharedLibrary, OneThatIsNoPortIsAnError) {
   EXPECT_THAT(error_of(path), AllOf(HasSubstr(path), HasSubstr("exports no attest_unit_v1()")));
   EXPECT_THAT(error_of(test_port("null_unit")), HasSubstr("attest_unit_v1() returned NULL"));
   EXPECT_THAT(error_of(test_port("wrong_arithmetic")), HasSubstr("its arithmetic is `decimal`"));
+  EXPECT_THAT(error_of(test_port("wrong_fixed_step")), HasSubstr("its fixed step: "));
   EXPECT_THAT(error_of(test_port("incomplete_mixer")),
               HasSubstr("a member of its extension attest.mixer.v1 is NULL"));
   EXPECT_THAT(error_of(test_port("incomplete_timestamp_sample")),

@@ -42,6 +42,19 @@ TEST(Statement, SaysWhatWasAllowedToFixedPoint) {
   EXPECT_THAT(conformance_statement(run), HasSubstr("px4-v1.5.5, exact, 2 rates"));
 }
 
+// At other rates it is not judged, and the statement claims nothing of them.
+TEST(Statement, SaysTheFixedStepOfAPort) {
+  RunResult run = run_of({"attitude", "tpa"}, {"attitude", "tpa"});
+  run.fixed_step = Rate::hz(250);
+  run.results.push_back(passed("tpa", "a", Rate::hz(100)));
+  run.results.back().verdict = Verdict::unsupported;
+  EXPECT_THAT(conformance_statement(run),
+              HasSubstr("px4-v1.5.5, numeric, fixed step of 250 Hz, all groups;"));
+  run.results.push_back(passed("tpa", "jitter", Rate::hz(250)));
+  run.results.back().verdict = Verdict::unsupported;
+  EXPECT_THAT(conformance_statement(run), HasSubstr("fixed step of 250 Hz, group attitude;"));
+}
+
 // Neither what is unsupported nor what is expected to fail is conformant.
 TEST(Statement, WhatIsCountedApartIsLeftOut) {
   for (const Verdict verdict : {Verdict::unsupported, Verdict::xfail}) {

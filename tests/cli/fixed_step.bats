@@ -1,0 +1,68 @@
+load common
+
+right() { echo "lib:$PORTS/port_fixed_step.so"; }
+
+groups=(--group attitude --group rates --group timing --group mixer)
+
+@test "a port with a fixed step conforms at its rate, and the statement names the step" {
+  run "$ATTEST" run "${groups[@]}" --port "$(right)" --json report.json --junit junit.xml
+  [ "$status" -eq 0 ]
+  has "fixed step of 250 Hz: cases begin one period after zero"
+  has "the port has a fixed step of 250 Hz, and this runs at another rate"
+  has "the port has a fixed step of 250 Hz, and this has late or missing ticks"
+  has "the port has a fixed step of 250 Hz, and this has a start_s of its own"
+  has "conformance: px4-v1.5.5, numeric, fixed step of 250 Hz, groups attitude, rates;"
+  grep -q '"fixed_step": "250"' report.json
+  grep -q 'name="port.fixed_step" value="250"' junit.xml
+}
+
+@test "its period being whole microseconds, it conforms to the bit" {
+  run "$ATTEST" run --level exact --group attitude --group rates --rate 250 --port "$(right)"
+  [ "$status" -eq 0 ]
+  lacks "unsupported"
+}
+
+@test "a port with a fixed step flies" {
+  run "$ATTEST" run --filter '*/hover@*-iris-mujoco' --filter '*/jitter_uniform@*-iris-mujoco' \
+    --port "$(right)"
+  [ "$status" -eq 0 ]
+  has "1 of"
+  has "has late or missing ticks"
+}
+
+@test "a fixed step does not hide a gain that is off" {
+  wrong="lib:$PORTS/port_fixed_step_gain_off.so"
+  run "$ATTEST" run --group rates --rate 250 --port "$wrong"
+  [ "$status" -eq 1 ]
+  has "out/actuator_controls_0.control[0]"
+  run "$ATTEST" run --filter '*/flip_150_level@250hz-iris-mujoco' --port "$wrong"
+  [ "$status" -eq 1 ]
+}
+
+@test "a golden that the reference does not agree with is not shifted" {
+  blessed_suite
+  golden=suite/golden/px4-v1.5.5/attitude/roll
+  python3 - "$golden" <<'CHANGE'
+import hashlib, pathlib, sys
+folder = pathlib.Path(sys.argv[1])
+trace = folder / "250hz.csv"
+lines = trace.read_text().splitlines()
+column = lines[0].split(",").index("out/actuator_controls_0.control[0]")
+cells = lines[20].split(",")
+cells[column] = "0.25"
+lines[20] = ",".join(cells)
+before = hashlib.sha256(trace.read_bytes()).hexdigest()
+trace.write_text("\n".join(lines) + "\n")
+after = hashlib.sha256(trace.read_bytes()).hexdigest()
+provenance = folder / "provenance.toml"
+provenance.write_text(provenance.read_text().replace(before, after))
+CHANGE
+  run "$ATTEST" --suite suite run --rate 250 --port "$(right)"
+  [ "$status" -eq 2 ]
+  has "the reference of this attest does not agree with the golden, which therefore cannot be shifted"
+}
+
+@test "a trace that was recorded at other times is not given to it" {
+  run "$ATTEST" replay --port "$(right)" "$SOURCE/golden/recorded/px4-v1.5.5/fuzz_250hz.csv"
+  has "was not recorded at its steps"
+}
