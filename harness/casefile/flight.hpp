@@ -33,10 +33,10 @@ inline TaskTiming task_at(const Rate& rate) {
 }
 
 struct FlightStart {
-  double tilt_deg = 0, azimuth_deg = 0, yaw_deg = 0;  // as of AttitudeSignal
-  Vector3 rate_rad_s{};                               // of the body
-  double height_m = 0;                                // above z = 0, where a floor would be
-  bool rotors_stopped = false;                        // else they turn as in hover
+  Quaternion attitude{1, 0, 0, 0};  // body FRD to world NED
+  Vector3 rate_rad_s{};             // of the body
+  double height_m = 0;              // above z = 0, where a floor would be
+  bool rotors_stopped = false;      // else they turn as in hover
 };
 
 // What the unit is told of the attitude and the rates: late and noisy.

@@ -123,9 +123,9 @@ FlightStart parse_start(const TomlTable& flight) {
   FlightStart start;
   if (!flight.has("start")) return start;
   const TomlTable table = flight.table("start");
-  start.tilt_deg = table.number("tilt_deg", 0);
-  start.azimuth_deg = table.number("azimuth_deg", 0);
-  start.yaw_deg = table.number("yaw_deg", 0);
+  const auto [by, keys] = angle_keys(table);
+  start.attitude = attitude_from(
+      by, {table.number(keys[0], 0), table.number(keys[1], 0), table.number(keys[2], 0)});
   start.rate_rad_s = parse_vector(table, "rate_rad_s");
   start.height_m = table.number("height_m", 0);
   start.rotors_stopped = table.boolean("rotors_stopped", false);

@@ -174,12 +174,27 @@ Signal parse_signal(const TomlTable& table, const std::string& key) {
   }
 }
 
+AngleKeys angle_keys(const TomlTable& table) {
+  constexpr AngleKeys tilt{Angles::tilt_azimuth_yaw, {"tilt_deg", "azimuth_deg", "yaw_deg"}};
+  constexpr AngleKeys euler{Angles::roll_pitch_yaw, {"roll_deg", "pitch_deg", "yaw_deg"}};
+  if (!table.has(euler.keys[0]) && !table.has(euler.keys[1])) return tilt;
+  for (const std::string other : {tilt.keys[0], tilt.keys[1]}) {
+    if (!table.has(other)) continue;
+    table.error(
+        other, fmt::format("`{}` is given too: an attitude has roll and pitch, or tilt and azimuth",
+                           euler.keys[table.has(euler.keys[0]) ? 0 : 1]));
+  }
+  return euler;
+}
+
 AttitudeSignal parse_attitude(const TomlTable& table, const std::string& key) {
   const TomlTable angles = table.table(key);
+  const auto [by, keys] = angle_keys(angles);
   AttitudeSignal attitude;
-  if (angles.has("tilt_deg")) attitude.tilt_deg = parse_signal(angles, "tilt_deg");
-  if (angles.has("azimuth_deg")) attitude.azimuth_deg = parse_signal(angles, "azimuth_deg");
-  if (angles.has("yaw_deg")) attitude.yaw_deg = parse_signal(angles, "yaw_deg");
+  attitude.by = by;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (angles.has(keys[i])) attitude.angles_deg[i] = parse_signal(angles, keys[i]);
+  }
   attitude.sign = angles.number("sign", 1);
   attitude.norm = angles.number("norm", 1);
   if (attitude.sign != 1 && attitude.sign != -1) angles.error("sign", "must be 1 or -1");

@@ -21,7 +21,15 @@ std::vector<Span> parse_spans(const TomlTable& table, const std::string& stem);
 // `key = 1.5`, `key = true`, or `key = { signal = "sine", ... }`.
 Signal parse_signal(const TomlTable& table, const std::string& key);
 
-// `key = { tilt_deg = 30, azimuth_deg = 90, yaw_deg = 0 }`, each a signal.
+// Which angles a table gives, and their keys. Errors: some of both kinds.
+struct AngleKeys {
+  Angles by;
+  std::array<const char*, 3> keys;
+};
+AngleKeys angle_keys(const TomlTable& table);
+
+// `key = { tilt_deg = 30, azimuth_deg = 90, yaw_deg = 0 }` or `key = { roll_deg = 30, pitch_deg =
+// 0, yaw_deg = 0 }`, each a signal.
 AttitudeSignal parse_attitude(const TomlTable& table, const std::string& key);
 
 }  // namespace attest

@@ -84,6 +84,28 @@ struct SampleAt {
   }
 };
 
+Quaternion from_tilt(double tilt_deg, double azimuth_deg, double yaw_deg) {
+  const double half_tilt = tilt_deg * radians / 2;
+  const double half_yaw = yaw_deg * radians / 2;
+  const double azimuth = azimuth_deg * radians;
+  const double c = std::cos(half_tilt);
+  const double x = std::sin(half_tilt) * std::cos(azimuth);
+  const double y = std::sin(half_tilt) * std::sin(azimuth);
+  const double cy = std::cos(half_yaw);
+  const double sy = std::sin(half_yaw);
+  // (c, x, y, 0) * (cy, 0, 0, sy)
+  return {c * cy, x * cy + y * sy, y * cy - x * sy, c * sy};
+}
+
+Quaternion from_euler(double roll_deg, double pitch_deg, double yaw_deg) {
+  const double cr = std::cos(roll_deg * radians / 2), sr = std::sin(roll_deg * radians / 2);
+  const double cp = std::cos(pitch_deg * radians / 2), sp = std::sin(pitch_deg * radians / 2);
+  const double cy = std::cos(yaw_deg * radians / 2), sy = std::sin(yaw_deg * radians / 2);
+  // (cy, 0, 0, sy) * (cp, 0, sp, 0) * (cr, sr, 0, 0)
+  return {cy * cp * cr + sy * sp * sr, cy * cp * sr - sy * sp * cr, cy * sp * cr + sy * cp * sr,
+          sy * cp * cr - cy * sp * sr};
+}
+
 }  // namespace
 
 Nanoseconds Span::on(const Rate& unit_rate) const {
@@ -114,17 +136,10 @@ double Sampler::at(Nanoseconds time) const {
 
 bool varies(const Signal& signal) { return !std::holds_alternative<Constant>(signal); }
 
-Quaternion attitude_from(double tilt_deg, double azimuth_deg, double yaw_deg) {
-  const double half_tilt = tilt_deg * radians / 2;
-  const double half_yaw = yaw_deg * radians / 2;
-  const double azimuth = azimuth_deg * radians;
-  const double c = std::cos(half_tilt);
-  const double x = std::sin(half_tilt) * std::cos(azimuth);
-  const double y = std::sin(half_tilt) * std::sin(azimuth);
-  const double cy = std::cos(half_yaw);
-  const double sy = std::sin(half_yaw);
-  // (c, x, y, 0) * (cy, 0, 0, sy)
-  return {c * cy, x * cy + y * sy, y * cy - x * sy, c * sy};
+Quaternion attitude_from(Angles by, const std::array<double, 3>& angles_deg) {
+  const auto& [first, second, yaw] = angles_deg;
+  return by == Angles::tilt_azimuth_yaw ? from_tilt(first, second, yaw)
+                                        : from_euler(first, second, yaw);
 }
 
 }  // namespace attest

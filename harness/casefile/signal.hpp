@@ -5,6 +5,7 @@
 // exercises the same steps at every loop rate, or in seconds.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <variant>
 #include <vector>
@@ -72,13 +73,22 @@ struct Samples {  // values[i] from times[i] on; before the first time the first
 
 using Signal = std::variant<Constant, Step, Ramp, Sine, Chirp, RandomWalk, Samples>;
 
-// Attitude by tilt of the thrust axis, as angles a person can picture, each a signal of its own:
-// q = norm * sign * q_tilt * q_yaw, where q_yaw turns by `yaw_deg` about world down and then q_tilt
-// by `tilt_deg` about the horizontal world axis at `azimuth_deg` from north (0: roll right of a
-// vehicle that heads north, 90: pitch up).
+// The three angles [deg] that an attitude q, body FRD to world NED, is given by.
+enum class Angles {
+  // q_tilt * q_yaw: q_yaw turns by the yaw about world down, and then q_tilt by the tilt about the
+  // horizontal world axis at the azimuth from north (0: roll right of a vehicle that heads north,
+  // 90: pitch up).
+  tilt_azimuth_yaw,
+  // q_yaw * q_pitch * q_roll, the aerospace sequence: the body turns by the yaw about its z, then
+  // by the pitch about its new y, then by the roll about its new x.
+  roll_pitch_yaw,
+};
+
+// An attitude by its angles, each a signal of its own, times sign and norm.
 struct AttitudeSignal {
-  Signal tilt_deg = Constant{}, azimuth_deg = Constant{}, yaw_deg = Constant{};
-  double sign = 1;  // -1: the antipodal quaternion, the same attitude
+  Angles by = Angles::tilt_azimuth_yaw;
+  std::array<Signal, 3> angles_deg{};  // in the order of the name
+  double sign = 1;                     // -1: the antipodal quaternion, the same attitude
   double norm = 1;
 };
 
@@ -95,8 +105,8 @@ class Sampler {
   std::vector<double> walk_;  // of a RandomWalk, one value a step
 };
 
-// The attitude with these angles [deg].
-Quaternion attitude_from(double tilt_deg, double azimuth_deg, double yaw_deg);
+// The attitude with these angles [deg], in the order of the name.
+Quaternion attitude_from(Angles by, const std::array<double, 3>& angles_deg);
 
 // A signal that may have another value at another time.
 bool varies(const Signal& signal);

@@ -1,6 +1,7 @@
 #include "harness/casefile/stimulus.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <optional>
@@ -33,11 +34,12 @@ class Publisher {
       varies_ = varies_ || varies(field.signal);
     }
     for (const auto& [channel, attitude] : topic.attitudes) {
-      attitudes_.push_back({channel, attitude, Sampler(attitude.tilt_deg, timeline),
-                            Sampler(attitude.azimuth_deg, timeline),
-                            Sampler(attitude.yaw_deg, timeline)});
-      varies_ = varies_ || varies(attitude.tilt_deg) || varies(attitude.azimuth_deg) ||
-                varies(attitude.yaw_deg);
+      const auto& angles = attitude.angles_deg;
+      attitudes_.push_back({channel,
+                            attitude,
+                            {Sampler(angles[0], timeline), Sampler(angles[1], timeline),
+                             Sampler(angles[2], timeline)}});
+      varies_ = varies_ || std::any_of(angles.begin(), angles.end(), varies);
     }
     plan_releases(topic.publication);
   }
@@ -65,10 +67,11 @@ class Publisher {
   struct Attitude {
     std::size_t channel;
     AttitudeSignal signal;
-    Sampler tilt, azimuth, yaw;
+    std::array<Sampler, 3> angles;
 
     void write(Nanoseconds time, Sample& sample) const {
-      const auto [w, x, y, z] = attitude_from(tilt.at(time), azimuth.at(time), yaw.at(time));
+      const auto [w, x, y, z] =
+          attitude_from(signal.by, {angles[0].at(time), angles[1].at(time), angles[2].at(time)});
       const double scale = signal.sign * signal.norm;
       std::size_t i = channel;
       for (const double component : {w, x, y, z}) {

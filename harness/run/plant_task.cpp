@@ -11,7 +11,7 @@ namespace {
 PlantState start_of(const FlightStart& start, const Vehicle& vehicle) {
   PlantState state;
   state.position_m[2] = -start.height_m;
-  state.attitude = attitude_from(start.tilt_deg, start.azimuth_deg, start.yaw_deg);
+  state.attitude = start.attitude;
   state.rate_rad_s = start.rate_rad_s;
   const double speed = start.rotors_stopped ? 0 : vehicle.hover_rotor_rad_s();
   std::fill_n(state.rotor_rad_s.begin(), vehicle.rotors.size(), speed);

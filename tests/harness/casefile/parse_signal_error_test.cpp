@@ -91,5 +91,17 @@ TEST(SignalErrors, Samples) {
               HasSubstr("`linear` must be true or false"));
 }
 
+TEST(SignalErrors, AnAttitudeHasAnglesOfOneKind) {
+  const auto error_of_q = [](const std::string& angles) {
+    return errors_of("[control_state]\nq = { " + angles + " }\n");
+  };
+  EXPECT_EQ(error_of_q("roll_deg = 10, pitch_deg = 20, yaw_deg = 30, sign = -1, norm = 2"), "");
+  EXPECT_EQ(error_of_q("tilt_deg = 10, azimuth_deg = 20, yaw_deg = 30"), "");
+  EXPECT_EQ(error_of_q("roll_deg = 10, tilt_deg = 20"),
+            "7:22: `roll_deg` is given too: an attitude has roll and pitch, or tilt and azimuth");
+  EXPECT_THAT(error_of_q("azimuth_deg = 10, pitch_deg = 20"),
+              HasSubstr("7:7: `pitch_deg` is given too: an attitude has roll and pitch"));
+}
+
 }  // namespace
 }  // namespace attest

@@ -118,6 +118,10 @@ TEST(Signal, ARandomWalkMovesAtTheSameTicksAtEveryRate) {
   for (const Rate& rate : standard_rates()) EXPECT_EQ(values(rate), values(Rate::hz(250)));
 }
 
+Quaternion by_tilt(double tilt_deg, double azimuth_deg, double yaw_deg) {
+  return attitude_from(Angles::tilt_azimuth_yaw, {tilt_deg, azimuth_deg, yaw_deg});
+}
+
 TEST(Attitude, ComponentsOfPicturedAngles) {
   const double half = std::sqrt(0.5);
   const auto expect = [](const Quaternion& q, double w, double x, double y, double z) {
@@ -126,19 +130,37 @@ TEST(Attitude, ComponentsOfPicturedAngles) {
     EXPECT_NEAR(q.y, y, 1e-15);
     EXPECT_NEAR(q.z, z, 1e-15);
   };
-  expect(attitude_from(0, 0, 0), 1, 0, 0, 0);
-  expect(attitude_from(90, 0, 0), half, half, 0, 0);   // roll right
-  expect(attitude_from(90, 90, 0), half, 0, half, 0);  // pitch up
-  expect(attitude_from(0, 33, 90), half, 0, 0, half);  // yaw clockwise
+  expect(by_tilt(0, 0, 0), 1, 0, 0, 0);
+  expect(by_tilt(90, 0, 0), half, half, 0, 0);   // roll right
+  expect(by_tilt(90, 90, 0), half, 0, half, 0);  // pitch up
+  expect(by_tilt(0, 33, 90), half, 0, 0, half);  // yaw clockwise
   // First the yaw, then the tilt about an axis of the world: the nose to the east, then the
   // vehicle over to the east about north, which the nose follows down.
-  expect(attitude_from(90, 0, 90), 0.5, 0.5, -0.5, 0.5);
+  expect(by_tilt(90, 0, 90), 0.5, 0.5, -0.5, 0.5);
+}
+
+// The rotation matrix of the aerospace sequence, as textbooks print it (B. Stevens and F. Lewis,
+// Aircraft Control and Simulation, the transpose of their eq. 1.4-9).
+RC_GTEST_PROP(Attitude, EulerAnglesAreTheAerospaceSequence, ()) {
+  const auto degrees = [] { return *rc::gen::inRange(-1800, 1800) / 10.0; };
+  const double roll_deg = degrees(), pitch_deg = degrees(), yaw_deg = degrees();
+  const Quaternion q = attitude_from(Angles::roll_pitch_yaw, {roll_deg, pitch_deg, yaw_deg});
+  const double r = roll_deg * std::numbers::pi / 180, p = pitch_deg * std::numbers::pi / 180,
+               y = yaw_deg * std::numbers::pi / 180;
+  const auto near = [](double a, double b) { return std::abs(a - b) < 1e-12; };
+  RC_ASSERT(near(q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z, std::cos(p) * std::cos(y)));
+  RC_ASSERT(near(2 * (q.x * q.y + q.w * q.z), std::cos(p) * std::sin(y)));
+  RC_ASSERT(near(2 * (q.x * q.z - q.w * q.y), -std::sin(p)));
+  RC_ASSERT(near(2 * (q.y * q.z + q.w * q.x), std::sin(r) * std::cos(p)));
+  RC_ASSERT(near(q.w * q.w - q.x * q.x - q.y * q.y + q.z * q.z, std::cos(r) * std::cos(p)));
+  RC_ASSERT(near(2 * (q.x * q.y - q.w * q.z),
+                 std::sin(r) * std::sin(p) * std::cos(y) - std::cos(r) * std::sin(y)));
 }
 
 // The tilt is that of the thrust axis, whatever the yaw: cos(tilt) is the lower right of R(q).
 RC_GTEST_PROP(Attitude, TiltIsTheAngleOfTheThrustAxis, ()) {
   const double tilt = *rc::gen::inRange(0, 1800) / 10.0;
-  const Quaternion q = attitude_from(tilt, *rc::gen::inRange(0, 360), *rc::gen::inRange(-180, 180));
+  const Quaternion q = by_tilt(tilt, *rc::gen::inRange(0, 360), *rc::gen::inRange(-180, 180));
   const double down_down = q.w * q.w - q.x * q.x - q.y * q.y + q.z * q.z;
   RC_ASSERT(std::abs(down_down - std::cos(tilt * std::numbers::pi / 180)) < 1e-12);
 }

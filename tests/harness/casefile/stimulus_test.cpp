@@ -136,6 +136,23 @@ TEST(Stimulate, QuaternionsAsNumbersOrAngles) {
   EXPECT_EQ(in.vehicle_attitude_setpoint.q_d[2], 0);
 }
 
+TEST(Stimulate, AnglesMayBeRollPitchAndYawEachASignal) {
+  const Trace trace = stimulated(
+      "[control_state]\nq = { pitch_deg = 90, sign = -1 }\n"
+      "[vehicle_attitude_setpoint]\nq_d = { yaw_deg = 90, roll_deg = { signal = \"step\", "
+      "from = 0, to = 180, at_ticks = 3 } }\n");
+  const float half = std::sqrt(0.5f);
+  const auto is = [](const float* q, float w, float x, float y, float z) {
+    EXPECT_NEAR(q[0], w, 1e-6f);
+    EXPECT_NEAR(q[1], x, 1e-6f);
+    EXPECT_NEAR(q[2], y, 1e-6f);
+    EXPECT_NEAR(q[3], z, 1e-6f);
+  };
+  is(trace.samples[0].in.control_state.q, -half, 0, -half, 0);
+  is(trace.samples[2].in.vehicle_attitude_setpoint.q_d, half, 0, 0, half);
+  is(trace.samples[3].in.vehicle_attitude_setpoint.q_d, 0, half, half, 0);
+}
+
 TEST(Stimulate, NanAndInfinityAreNumbers) {
   const Trace trace = stimulated(
       "[control_state]\nroll_rate = nan\n"
