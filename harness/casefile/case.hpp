@@ -41,11 +41,18 @@ struct Publication {
   std::vector<std::int64_t> drops;
 };
 
+// What a field is in place of its signal while another signal is not 0.
+struct Replacement {
+  Signal when;
+  Signal signal;
+};
+
 struct FieldStimulus {
   std::size_t channel;  // index into channels(), an input
   Signal signal;
   bool of_hover = false;  // a flight's: in units of the vehicle's hover thrust
   double scale = 1;       // what the signal is multiplied with
+  std::optional<Replacement> replacement = std::nullopt;
 };
 
 struct AttitudeStimulus {

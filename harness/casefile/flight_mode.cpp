@@ -3,7 +3,6 @@
 namespace attest {
 
 std::span<const FlightMode> flight_modes() {
-  // velocity is 0 in AUTO_* while a VTOL is in transition: such a case sets the flags themselves.
   static constexpr FlightMode modes[] = {
       {"STABILIZED", {1, 0, 1, 1, 1, 0}},
       {"RATTITUDE", {1, 0, 1, 1, 1, 0}},
@@ -15,6 +14,9 @@ std::span<const FlightMode> flight_modes() {
       {"AUTO_RTL", {0, 1, 1, 1, 0, 1}},
       {"AUTO_TAKEOFF", {0, 1, 1, 1, 0, 1}},
       {"AUTO_LAND", {0, 1, 1, 1, 0, 1}},
+      {"AUTO_FOLLOW_TARGET", {0, 1, 1, 1, 0, 1}},
+      {"AUTO_RTGS", {0, 1, 1, 1, 0, 1}},
+      {"AUTO_LANDENGFAIL", {0, 1, 1, 1, 0, 1}},
       {"AUTO_LANDGPSFAIL", {0, 0, 1, 1, 0, 0}},
       {"DESCEND", {0, 1, 1, 1, 0, 0}},
       {"TERMINATION", {0, 0, 0, 0, 0, 0}},
@@ -22,6 +24,12 @@ std::span<const FlightMode> flight_modes() {
       {"OFFBOARD_RATES", {0, 0, 1, 0, 0, 0}},
   };
   return modes;
+}
+
+std::array<std::uint8_t, 6> FlightMode::flags_in_transition() const {
+  auto result = flags;
+  if (name.starts_with("AUTO_")) result.back() = 0;  // velocity
+  return result;
 }
 
 const FlightMode* find_flight_mode(std::string_view name) {

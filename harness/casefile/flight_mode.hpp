@@ -12,6 +12,9 @@ struct FlightMode {
   std::string_view name;
   // manual, auto, rates, attitude, rattitude, velocity: in the order of the channel table.
   std::array<std::uint8_t, 6> flags;
+
+  // The same while a VTOL is in transition: AUTO_* then does not control the velocity.
+  std::array<std::uint8_t, 6> flags_in_transition() const;
 };
 
 // The modes of PX4 v1.5.5's commander, with the flags it sets for a multicopter.

@@ -48,6 +48,9 @@ double baseline(std::string_view name) {
   return found == values.end() ? 0 : found->second;
 }
 
+constexpr const char* not_a_flag =
+    "is a flag: a constant, a step or samples of whole numbers from 0 to 255";
+
 // Flags are bytes: a signal that passes through other values has no meaning for them.
 bool is_byte_signal(const Signal& signal) {
   const auto is_byte = [](double v) { return v >= 0 && v <= 255 && v == std::floor(v); };
@@ -68,9 +71,10 @@ void parse_field(const TomlTable& table, const std::string& key, FieldStimulus& 
   }
   if (!table.has(key)) return;
   field.of_hover = false;
+  field.replacement.reset();
   field.signal = parse_signal(table, key);
   if (channels()[field.channel].type == ChannelType::u8 && !is_byte_signal(field.signal)) {
-    table.error(key, "is a flag: a constant, a step or samples of whole numbers from 0 to 255");
+    table.error(key, not_a_flag);
   }
 }
 
@@ -107,10 +111,22 @@ std::vector<std::string> mode_names() {
   return names;
 }
 
+// Beside the mode: whether a VTOL is in transition.
+std::optional<Signal> parse_in_transition(const TomlTable& table) {
+  constexpr const char* key = "in_transition";
+  if (!table.has(key)) return std::nullopt;
+  Signal signal = parse_signal(table, key);
+  if (!is_byte_signal(signal)) table.error(key, not_a_flag);
+  return signal;
+}
+
 // `flight_mode = "ACRO"`, or `{ times_ticks = [0, 20], modes = ["ACRO", "POSCTL"] }`.
 void parse_flight_mode(const TomlTable& table, TopicStimulus& topic) {
   constexpr const char* key = "flight_mode";
-  if (!table.has(key)) return;
+  if (!table.has(key)) {
+    if (table.has("in_transition")) table.error("in_transition", "needs a `flight_mode` beside it");
+    return;
+  }
   std::vector<Span> times{Span{}};
   std::vector<std::string> names;
   if (table.kind(key) == TomlKind::table) {
@@ -123,21 +139,27 @@ void parse_flight_mode(const TomlTable& table, TopicStimulus& topic) {
   if (names.size() != times.size() || names.empty()) {
     return table.error(key, "needs one mode a time, at least one");
   }
-  for (std::size_t flag = 0; flag < topic.fields.size(); ++flag) {
+  std::vector<const FlightMode*> modes;
+  for (const std::string& name : names) {
+    modes.push_back(find_flight_mode(name));
+    if (modes.back()) continue;
+    return table.error(
+        key, fmt::format("unknown flight mode `{}`{}", name, suggestion(name, mode_names())));
+  }
+  const auto signal_of = [&](auto&& value) -> Signal {
+    if (modes.size() == 1) return Constant{static_cast<double>(value(*modes[0]))};
     Samples samples{times, {}, false};
-    for (const std::string& name : names) {
-      const FlightMode* mode = find_flight_mode(name);
-      if (!mode) {
-        return table.error(
-            key, fmt::format("unknown flight mode `{}`{}", name, suggestion(name, mode_names())));
-      }
-      samples.values.push_back(mode->flags[flag]);
-    }
-    if (names.size() == 1) {
-      topic.fields[flag].signal = Constant{samples.values[0]};
-    } else {
-      topic.fields[flag].signal = samples;
-    }
+    for (const FlightMode* mode : modes) samples.values.push_back(value(*mode));
+    return samples;
+  };
+  const auto transition = parse_in_transition(table);
+  for (std::size_t flag = 0; flag < topic.fields.size(); ++flag) {
+    FieldStimulus& field = topic.fields[flag];
+    field.signal = signal_of([&](const FlightMode& mode) { return mode.flags[flag]; });
+    if (!transition) continue;
+    field.replacement = {*transition, signal_of([&](const FlightMode& mode) {
+                           return mode.flags_in_transition()[flag];
+                         })};
   }
 }
 

@@ -30,8 +30,11 @@ class Publisher {
   Publisher(const TopicStimulus& topic, const Timeline& timeline)
       : topic_(topic), timeline_(timeline), delay_(topic.publication.delay.on(timeline.rate)) {
     for (const FieldStimulus& field : topic.fields) {
-      fields_.push_back({field.channel, field.scale, Sampler(field.signal, timeline)});
+      fields_.emplace_back(field, timeline);
       varies_ = varies_ || varies(field.signal);
+      if (const auto& replaced = field.replacement) {
+        varies_ = varies_ || varies(replaced->when) || varies(replaced->signal);
+      }
     }
     for (const auto& [channel, attitude] : topic.attitudes) {
       const auto& angles = attitude.angles_deg;
@@ -52,17 +55,28 @@ class Publisher {
     if (!release || (published_ && *release <= *published_)) return;
     published_ = release;
     sample.in.updated |= topic_.updated_bit;
-    for (const auto& [channel, scale, sampler] : fields_) {
-      set_value(channels()[channel], sample, scale * sampler.at(*release));
-    }
+    for (const Field& field : fields_) field.write(*release, sample);
     for (const Attitude& attitude : attitudes_) attitude.write(*release, sample);
   }
 
  private:
   struct Field {
+    Field(const FieldStimulus& field, const Timeline& timeline)
+        : channel(field.channel), scale(field.scale), sampler(field.signal, timeline) {
+      if (!field.replacement) return;
+      when.emplace(field.replacement->when, timeline);
+      instead.emplace(field.replacement->signal, timeline);
+    }
+
+    void write(Nanoseconds time, Sample& sample) const {
+      const bool replaced = when && when->at(time) != 0;
+      set_value(channels()[channel], sample, scale * (replaced ? *instead : sampler).at(time));
+    }
+
     std::size_t channel;
     double scale;
     Sampler sampler;
+    std::optional<Sampler> when, instead;
   };
   struct Attitude {
     std::size_t channel;

@@ -56,5 +56,42 @@ TEST(FlightMode, ChangesAtItsTimes) {
   EXPECT_THAT(flags_at(trace, 4), ElementsAre(0, 0, 1, 0, 0, 0));
 }
 
+TEST(FlightMode, AVtolInTransitionDoesNotControlTheVelocityInAutoModes) {
+  for (const FlightMode& mode : flight_modes()) {
+    const std::string named = "flight_mode = \"" + std::string(mode.name) + "\"\n";
+    const auto flags = flags_at(with_mode(named + "in_transition = 1\n"), 0);
+    auto expected = mode.flags;
+    if (mode.name.starts_with("AUTO_")) expected[5] = 0;
+    EXPECT_TRUE(std::equal(flags.begin(), flags.end(), expected.begin())) << mode.name;
+  }
+}
+
+TEST(FlightMode, ModeAndTransitionChangeEachAtItsOwnTimes) {
+  const Trace trace = with_mode(
+      "flight_mode = { times_ticks = [0, 4, 8], modes = [\"AUTO_RTGS\", \"POSCTL\", "
+      "\"AUTO_FOLLOW_TARGET\"] }\n"
+      "in_transition = { signal = \"samples\", times_s = [0, 0.008, 0.036], values = [0, 1, 0] "
+      "}\n");
+  std::vector<int> velocity;
+  for (std::size_t tick = 0; tick < 10; ++tick) velocity.push_back(flags_at(trace, tick)[5]);
+  EXPECT_THAT(velocity, ElementsAre(1, 1, 0, 0, 1, 1, 1, 1, 0, 1));
+}
+
+TEST(FlightMode, AFlagBesideATransitionReplacesThatToo) {
+  const Trace trace = with_mode(
+      "flight_mode = \"AUTO_LANDENGFAIL\"\nin_transition = true\n"
+      "flag_control_velocity_enabled = 1\n");
+  EXPECT_THAT(flags_at(trace, 0), ElementsAre(0, 1, 1, 1, 0, 1));
+}
+
+TEST(FlightMode, ATransitionIsAFlagBesideAMode) {
+  const auto errors = [](const std::string& lines) {
+    return errors_of("[vehicle_control_mode]\n" + lines);
+  };
+  EXPECT_EQ(errors("in_transition = 1\n"), "7:1: needs a `flight_mode` beside it");
+  EXPECT_THAT(errors("flight_mode = \"AUTO_RTL\"\nin_transition = 0.5\n"),
+              testing::HasSubstr("8:1: is a flag"));
+}
+
 }  // namespace
 }  // namespace attest
