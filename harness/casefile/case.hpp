@@ -90,6 +90,9 @@ struct UnitTiming {
   std::vector<std::int64_t> drop_ticks;
   std::int64_t drop_every = 0;
   std::optional<UnitStall> stall;
+  // Of a flight: these times are those of the estimator's samples, and a tick begins when its
+  // sample arrives.
+  bool on_estimate = false;
 };
 
 struct ToleranceOverride {

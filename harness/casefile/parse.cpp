@@ -99,6 +99,11 @@ UnitTiming parse_unit(const TomlTable& root) {
     table.error("drop_every", "must be 2 or more: one in so many ticks does not happen");
   }
   if (table.has("stall")) unit.stall = parse_stall(table.table("stall"));
+  if (table.has("trigger")) {
+    unit.on_estimate = table.text("trigger") == "estimator";
+    if (!unit.on_estimate) table.error("trigger", "must be \"estimator\"");
+    if (!root.has("flight")) table.error("trigger", "needs a [flight], which has an estimator");
+  }
   return unit;
 }
 

@@ -206,7 +206,7 @@ Timeline timeline_of(const Case& the_case, const Rate& rate) {
   return {rate, rate.tick(tick_count(the_case.duration, rate))};
 }
 
-std::vector<Nanoseconds> unit_ticks(const Case& the_case, const Rate& rate) {
+std::vector<Nanoseconds> unit_ticks(const Case& the_case, const Rate& rate, double faster) {
   const UnitTiming& unit = the_case.unit;
   TickSchedule schedule;
   schedule.rate = rate;
@@ -219,7 +219,16 @@ std::vector<Nanoseconds> unit_ticks(const Case& the_case, const Rate& rate) {
     const auto& [every, length, catches_up] = *unit.stall;
     schedule.stall = {every.on(rate), length.on(rate), catches_up};
   }
-  return ticks(schedule, tick_count(the_case.duration, rate));
+  const std::int64_t periods = tick_count(the_case.duration, rate);
+  if (faster == 0) return ticks(schedule, periods);
+  const double most = std::ceil(static_cast<double>(periods) * (1 + faster));
+  std::vector<Nanoseconds> times = ticks(schedule, static_cast<std::int64_t>(most));
+  for (Nanoseconds& time : times) {
+    time = Nanoseconds(static_cast<std::int64_t>(static_cast<double>(time.count()) / (1 + faster)));
+  }
+  const Nanoseconds end = timeline_of(the_case, rate).duration;
+  std::erase_if(times, [&](Nanoseconds time) { return time >= end; });
+  return times;
 }
 
 struct Stimulus::Impl {

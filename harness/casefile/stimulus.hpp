@@ -12,8 +12,10 @@ namespace attest {
 
 Timeline timeline_of(const Case& the_case, const Rate& rate);
 
-// When the unit's ticks begin, jittered and dropped as the case says, since the begin of the case.
-std::vector<Nanoseconds> unit_ticks(const Case& the_case, const Rate& rate);
+// When the unit's ticks begin, jittered and dropped as the case says, since the begin of the case;
+// of Case::unit.on_estimate, when their samples are taken. On a clock that is `faster` by this part
+// each is at floor(t / (1 + faster)) ns, up to the end of the case.
+std::vector<Nanoseconds> unit_ticks(const Case& the_case, const Rate& rate, double faster = 0);
 
 // Everything a case scripts, tick by tick. Every sample shows the last published values of each
 // topic, as the ABI promises, and has the updated bits of those published since the tick before.

@@ -31,19 +31,24 @@ std::vector<Nanoseconds> parse_execution(const TomlTable& table) {
   return execution;
 }
 
-ScheduledTask parse_task(const TomlTable& table, const std::string& name) {
-  ScheduledTask task;
-  task.name = name;
+// When it is released. `released_by` is not set here.
+void parse_release(const TomlTable& table, ScheduledTask& task) {
   const auto rate = Rate::parse(fmt::format("{}", table.number("rate_hz")));
   if (!rate && table.has("rate_hz")) table.error("rate_hz", rate.error().message);
   if (rate) task.rate = *rate;
+  const double phase_us = table.number("phase_us", 0);
+  if (!(phase_us >= 0 && phase_us <= 1e9)) table.error("phase_us", "must be from 0 to 1e9");
+  task.phase = micros(phase_us);
+}
+
+ScheduledTask parse_task(const TomlTable& table, const std::string& name) {
+  ScheduledTask task;
+  task.name = name;
+  if (!table.has("trigger")) parse_release(table, task);
   task.execution = parse_execution(table);
   task.priority = static_cast<int>(table.integer("priority"));
   task.cpu = static_cast<int>(table.integer("cpu", 0));
   if (task.cpu < 0 || task.cpu > 1) table.error("cpu", "must be 0 or 1");
-  const double phase_us = table.number("phase_us", 0);
-  if (!(phase_us >= 0 && phase_us <= 1e9)) table.error("phase_us", "must be from 0 to 1e9");
-  task.phase = micros(phase_us);
   return task;
 }
 
@@ -53,6 +58,21 @@ std::optional<std::size_t> find_task(const std::vector<ScheduledTask>& tasks,
                                   [&](const ScheduledTask& task) { return task.name == name; });
   if (found == tasks.end()) return std::nullopt;
   return static_cast<std::size_t>(found - tasks.begin());
+}
+
+// `trigger = "estimator"` of the unit, in place of a rate.
+void parse_trigger(const TomlTable& table, const std::string& name, TaskSet& set) {
+  constexpr const char* key = "trigger";
+  if (!table.has(key)) return;
+  if (name != "unit") return table.error(key, "is for [task.unit] only; give `rate_hz`");
+  for (const char* const other : {"rate_hz", "phase_us"}) {
+    if (table.has(other)) table.error(other, "`trigger` is given too; keep one");
+  }
+  if (table.text(key) != "estimator") return table.error(key, "must be \"estimator\"");
+  if (!set.estimator) return table.error(key, "needs [task.estimator]");
+  ScheduledTask& unit = set.tasks[set.unit];
+  unit.released_by = set.estimator;
+  unit.rate = set.tasks[*set.estimator].rate;
 }
 
 }  // namespace
@@ -70,6 +90,7 @@ Result<TaskSet> read_task_set(const std::filesystem::path& path) {
   if (!unit && root.has("task")) root.error("task", "needs [task.unit], the controller");
   set.unit = unit.value_or(0);
   set.estimator = find_task(set.tasks, "estimator");
+  for (const std::string& name : tasks.keys()) parse_trigger(tasks.table(name), name, set);
   if (auto done = file->finish(); !done) return tl::unexpected(done.error());
   return set;
 }

@@ -16,9 +16,24 @@ Nanoseconds drifted(Nanoseconds time, const Rate& rate, double drift) {
   return std::min(time, Nanoseconds(static_cast<std::int64_t>(samples * period_ns)));
 }
 
+// The estimator samples on its clock, and the unit runs when that arrives.
+LoopTiming timing_on_estimate(const Case& the_case, const Rate& rate) {
+  const Flight& flight = *the_case.flight;
+  const Nanoseconds before = flight.estimator.delay.on(rate);
+  const Nanoseconds after = flight.actuator_delay.on(rate);
+  const Nanoseconds end = timeline_of(the_case, rate).duration;
+  LoopTiming timing;
+  for (const Nanoseconds sampled : unit_ticks(the_case, rate, flight.estimator.drift.value_or(0))) {
+    const Nanoseconds begins = sampled + before;
+    if (begins < end) timing.push_back({sampled, begins, begins + after});
+  }
+  return timing;
+}
+
 }  // namespace
 
 LoopTiming case_timing(const Case& the_case, const Rate& rate) {
+  if (the_case.unit.on_estimate) return timing_on_estimate(the_case, rate);
   const Flight& flight = *the_case.flight;
   const Nanoseconds before = flight.estimator.delay.on(rate);
   const Nanoseconds after = flight.actuator_delay.on(rate);

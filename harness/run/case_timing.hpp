@@ -9,7 +9,11 @@
 namespace attest {
 
 // Of the unit's ticks, the estimator's samples for them and the motor commands that they make.
-// REQUIRES: a flight.
+//
+//     begins = the unit's tick; sampled = begins - delay, or the estimator's last by then
+//     trigger = "estimator": sampled = the estimator's tick; begins = sampled + delay
+//
+// In both, commanded = begins + actuator delay. REQUIRES: a flight.
 LoopTiming case_timing(const Case& the_case, const Rate& rate);
 
 // When a task beside the unit's runs.

@@ -16,13 +16,21 @@ constexpr Nanoseconds never = Nanoseconds::max();
 struct Queue {
   const ScheduledTask* task;
   std::vector<Job>* jobs;
-  std::int64_t released = 0;  // jobs so far
+  const std::vector<Job>* releasing;  // the jobs that release it; null: its rate does
+  std::int64_t released = 0;          // jobs so far
   std::size_t finished = 0;
   Nanoseconds remaining{0};  // of the job that runs, or runs next; 0: it has not begun
 
   Nanoseconds next_release(Nanoseconds duration) const {
-    const Nanoseconds time = task->phase + task->rate.tick(released);
+    const Nanoseconds time = releasing ? next_finish() : task->phase + task->rate.tick(released);
     return time < duration ? time : never;
+  }
+  // A job that is not over has none yet.
+  Nanoseconds next_finish() const {
+    const auto next = static_cast<std::size_t>(released);
+    if (next >= releasing->size()) return never;
+    const Nanoseconds finish = (*releasing)[next].finish;
+    return finish > Nanoseconds(0) ? finish : never;
   }
   bool is_ready() const { return finished < jobs->size(); }
 };
@@ -91,6 +99,18 @@ std::set<int> cpus_of(const std::vector<ScheduledTask>& tasks) {
   return cpus;
 }
 
+// One whose jobs release those of another before that.
+std::vector<int> cpus_in_order(const std::vector<ScheduledTask>& tasks) {
+  const std::set<int> cpus = cpus_of(tasks);
+  std::vector<int> order(cpus.begin(), cpus.end());
+  for (const ScheduledTask& task : tasks) {
+    if (!task.released_by) continue;
+    const int first = tasks[*task.released_by].cpu;
+    std::stable_partition(order.begin(), order.end(), [=](int cpu) { return cpu == first; });
+  }
+  return order;
+}
+
 Result<void> check(const std::vector<ScheduledTask>& tasks) {
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -129,10 +149,11 @@ Result<std::vector<std::vector<Job>>> simulate(const std::vector<ScheduledTask>&
                                                Nanoseconds duration) {
   if (auto checked = check(tasks); !checked) return tl::unexpected(checked.error());
   std::vector<std::vector<Job>> jobs(tasks.size());
-  for (const int cpu : cpus_of(tasks)) {
+  for (const int cpu : cpus_in_order(tasks)) {
     std::vector<Queue> queues;
     for (std::size_t i = 0; i < tasks.size(); ++i) {
-      if (tasks[i].cpu == cpu) queues.push_back({&tasks[i], &jobs[i]});
+      const auto& by = tasks[i].released_by;
+      if (tasks[i].cpu == cpu) queues.push_back({&tasks[i], &jobs[i], by ? &jobs[*by] : nullptr});
     }
     Cpu(std::move(queues), duration).run();
   }

@@ -3,10 +3,15 @@
 //
 // Each task stays on its CPU. Of the jobs that are ready on a CPU the one of the highest priority
 // runs, and is preempted at once by one of a higher; switching costs nothing (give it to the
-// execution times). Jobs of one task run in the order of their releases.
+// execution times). Jobs of one task run in the order of their releases, each of them: a release
+// while one waits or runs waits too.
+//
+// A task is released at phase + k / rate, or by another: at the instant at which job k of that task
+// finishes, job k of this one is released. What is ready at that instant competes by priority.
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +27,9 @@ struct ScheduledTask {
   std::vector<Nanoseconds> execution;  // of its jobs by turns; not empty, positive
   int priority = 0;                    // higher runs first; no two alike on a CPU
   int cpu = 0;
+  // Index of the task that releases it, if not its rate, which is then that task's. At most one
+  // task of a set is released so, and not the one that releases.
+  std::optional<std::size_t> released_by = std::nullopt;
 
   Nanoseconds worst_execution() const;
 };

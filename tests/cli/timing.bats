@@ -26,6 +26,38 @@ TASKS
   [ "$status" -eq 0 ]
 }
 
+@test "the estimator releases the unit when it finishes" {
+  tasks
+  sed -i '/task.unit/,/^$/s/rate_hz = 250/trigger = "estimator"/' tasks.toml
+  run "$ATTEST" schedule tasks.toml --record-timing t.json
+  [ "$status" -eq 0 ]
+  [[ $output =~ unit\ .*\ 76\ us\ +76\ us\ +76\ us ]]
+  [[ $output =~ begins\ after\ its\ release\ +0\ ns ]]
+  [[ $output =~ age\ of\ the\ sample\ behind\ it\ +476\ us ]]
+  python3 - <<'CHECK'
+import json
+ticks = json.load(open("t.json"))["ticks_ns"]
+assert ticks[0] == [0, 400000, 476000] and ticks[1] == [4000000, 4400000, 4476000], ticks[:2]
+CHECK
+}
+
+@test "in a flight the unit runs when a sample of the estimator arrives" {
+  mkdir -p suite/cases/px4-v1.5.5/flight suite/golden
+  cp -r "$SOURCE/models" suite/
+  cp -r "$SOURCE/golden/recorded" suite/golden/
+  printf '\n[unit]\ntrigger = "estimator"\n' >unit.toml
+  cat "$SOURCE/cases/px4-v1.5.5/flight/estimator_delay.toml" unit.toml \
+    >suite/cases/px4-v1.5.5/flight/estimator_delay.toml
+  run "$ATTEST" --suite suite sim estimator_delay --rate 250 --out flown.csv
+  [ "$status" -eq 0 ]
+  python3 - <<'CHECK'
+import csv
+rows = list(csv.DictReader(open("flown.csv")))
+times = [int(row["timestamp"]) for row in rows[:3]]
+assert times == [5006000, 5010000, 5014000], times
+CHECK
+}
+
 @test "a schedule that cannot be kept is refused, with the file" {
   tasks
   sed -i 's/execution_us = 400/execution_us = 4000/' tasks.toml

@@ -159,6 +159,25 @@ TEST_F(ParseFlight, ThrustIsInHoversOrAsItIs) {
               HasSubstr("unknown key `thrust_of_hover`"));
 }
 
+TEST_F(ParseFlight, AStartHasTheAnglesOfAttitudes) {
+  const Quaternion tilted =
+      flight_of("start = { tilt_deg = 180, azimuth_deg = 90 }\n").start.attitude;
+  EXPECT_NEAR(tilted.y, 1, 1e-12);
+  const Quaternion rolled = flight_of("start = { roll_deg = 180, yaw_deg = 180 }\n").start.attitude;
+  EXPECT_NEAR(rolled.y, 1, 1e-12);
+  EXPECT_THAT(flight_error("start = { roll_deg = 1, tilt_deg = 2 }\n"),
+              HasSubstr("`roll_deg` is given too"));
+}
+
+TEST_F(ParseFlight, TheEstimatorMayTriggerTheUnit) {
+  const std::string trigger = "[unit]\ntrigger = \"estimator\"\n";
+  EXPECT_TRUE(case_of(trigger + "[flight]\n" + metrics).unit.on_estimate);
+  EXPECT_FALSE(case_of(std::string("[flight]\n") + metrics).unit.on_estimate);
+  EXPECT_THAT(error_of(trigger), HasSubstr("7:1: needs a [flight], which has an estimator"));
+  EXPECT_THAT(error_of(std::string("[unit]\ntrigger = \"gps\"\n[flight]\n") + metrics),
+              HasSubstr("7:1: must be \"estimator\""));
+}
+
 TEST_F(ParseFlight, GroundContactNeedsMujoco) {
   EXPECT_THAT(flight_error("floor = true\n"), HasSubstr("needs `plants = [\"mujoco\"]`"));
   EXPECT_EQ(flight_error("floor = true\nplants = [\"mujoco\"]\nplants_why = \"contact\"\n"), "");

@@ -60,5 +60,31 @@ TEST(TaskSet, MistakesHaveTheirLine) {
               HasSubstr("3: is empty"));
 }
 
+constexpr const char* estimator =
+    "[task.estimator]\nrate_hz = 333\nexecution_us = 400\npriority = 3\n";
+constexpr const char* triggered =
+    "[task.unit]\nexecution_us = 76\npriority = 2\ntrigger = \"estimator\"\n";
+
+TEST(TaskSet, TheUnitMayBeReleasedByTheEstimator) {
+  const auto set = read(std::string(triggered) + estimator);
+  ASSERT_TRUE(set) << set.error().to_string();
+  EXPECT_EQ(set->tasks[set->unit].released_by, set->estimator);
+  EXPECT_EQ(set->tasks[set->unit].rate, Rate::hz(333));
+  EXPECT_FALSE(set->tasks[*set->estimator].released_by);
+}
+
+TEST(TaskSet, ATriggerIsTheUnitsAndInPlaceOfARate) {
+  EXPECT_THAT(error_of(triggered), HasSubstr("4: needs [task.estimator]"));
+  EXPECT_THAT(error_of(std::string(triggered) + "rate_hz = 250\n" + estimator),
+              HasSubstr("5: `trigger` is given too"));
+  EXPECT_THAT(error_of(std::string(triggered) + "phase_us = 250\n" + estimator),
+              HasSubstr("5: `trigger` is given too"));
+  EXPECT_THAT(error_of(std::string(unit) + "[task.estimator]\nexecution_us = 1\npriority = 1\n"
+                                           "trigger = \"unit\"\n"),
+              HasSubstr("8: is for [task.unit] only"));
+  EXPECT_THAT(error_of("[task.unit]\nexecution_us = 76\npriority = 2\ntrigger = \"gps\"\n"),
+              HasSubstr("4: must be \"estimator\""));
+}
+
 }  // namespace
 }  // namespace attest

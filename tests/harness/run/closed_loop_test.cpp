@@ -147,6 +147,20 @@ TEST_F(ClosedLoopTest, TheUnitIsGivenTheTimeOfItsSample) {
   EXPECT_THAT(unit_.timestamps_sample, ElementsAre(0, 0, 5333));
 }
 
+// The estimator's clock is faster by a quarter: it samples every 3.2 ms, and publishes 1 ms later.
+TEST_F(ClosedLoopTest, AUnitThatTheEstimatorTriggersRunsWhenASampleArrives) {
+  case_.unit.on_estimate = true;
+  case_.flight->estimator.delay = seconds(0.001);
+  case_.flight->estimator.drift = 0.25;
+  case_.flight->motor_limits.rate = Rate::hz(1);
+  fly();
+  EXPECT_THAT(unit_.timestamps_sample, ElementsAre(0, 3200, 6400, 9600));
+  std::erase_if(notes_,
+                [](const std::string& note) { return note.find("sees") == std::string::npos; });
+  EXPECT_THAT(notes_, ElementsAre("1 unit sees 0 limits 0", "4.2 unit sees 3.2",
+                                  "7.4 unit sees 6.4", "10.6 unit sees 9.6"));
+}
+
 TEST_F(ClosedLoopTest, AtOneInstantTheSensorComesBeforeTheUnitAndTheMotorsAfter) {
   unit_.thrust = 1;  // with roll on top of it, the mixer runs into the upper limit
   unit_.roll = 0.2f;
