@@ -20,11 +20,20 @@ struct LiveCommand {
   std::size_t tick = 0;
   Nanoseconds made{0};
   MotorCommands commands{};
+  float throttle = 0;  // as commanded by the unit: what the battery estimate takes into account
+  bool armed = false;
+};
+
+// battery_status, of a flight with a battery.
+struct LiveBattery {
+  Nanoseconds time{0};  // of the battery's sample
+  float scale = 1;
 };
 
 struct Links {
   LatestValue<LiveState> states;
   LatestValue<LiveCommand> commands;
+  LatestValue<LiveBattery> batteries;
   std::atomic<bool> stop{false};  // anyone may say so
 };
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/core/float_environment.hpp"
+#include "harness/run/case_timing.hpp"
 #include "harness/run/flight.hpp"
 
 namespace attest {
@@ -55,15 +57,15 @@ Result<LiveFlight> fly_live(const Case& the_case, const Setup& setup, const Airf
                             Unit& unit, const LiveOptions& options, std::size_t samples,
                             const std::function<bool()>& stop,
                             const std::function<void(const LiveProgress&)>& progress) {
-  if (the_case.flight->battery) {
-    return fail_at(the_case.file.string(),
-                   "has a [flight.battery], which cannot be flown in real time; choose another");
-  }
   auto plant = plant_for(the_case, setup, airframe);
   if (!plant) return tl::unexpected(plant.error());
   const Case scripted = adapted(the_case, airframe.vehicle());
   const Nanoseconds duration = timeline_of(scripted, setup.rate).duration;
   const Rate physics = physics_of(scripted, setup.rate);
+  std::vector<Nanoseconds> battery_times;
+  if (const auto& battery = scripted.flight->battery) {
+    battery_times = task_times(battery->timing, timeline_of(scripted, setup.rate));
+  }
 
   ProcessRights process;
   Links links;
@@ -73,7 +75,8 @@ Result<LiveFlight> fly_live(const Case& the_case, const Setup& setup, const Airf
   const Nanoseconds origin = Pacer::now_monotonic() + settle_in;
   Pacer unit_clock(origin, options.wait), plant_clock(origin, Wait{});
   LiveUnit live_unit(scripted, setup.rate, unit_task, unit_clock, links, samples);
-  LivePlant live_plant(plant_task, physics, duration, live_unit.deadlines(), plant_clock, links);
+  LivePlant live_plant(plant_task, physics, duration, live_unit.deadlines(),
+                       std::move(battery_times), plant_clock, links);
 
   std::vector<Right> unit_rights, plant_rights;
   std::thread plant_thread(

@@ -1,12 +1,25 @@
 #include "harness/realtime/live_plant.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace attest {
+namespace {
+
+Nanoseconds due(const std::vector<Nanoseconds>& times, std::size_t done) {
+  return done < times.size() ? times[done] : Nanoseconds::max();
+}
+
+}  // namespace
 
 LivePlant::LivePlant(PlantTask& task, const Rate& physics, Nanoseconds duration, std::size_t ticks,
-                     Clock& clock, Links& links)
-    : task_(task), physics_(physics), duration_(duration), clock_(clock), links_(links) {
+                     std::vector<Nanoseconds> battery_times, Clock& clock, Links& links)
+    : task_(task),
+      physics_(physics),
+      duration_(duration),
+      clock_(clock),
+      links_(links),
+      battery_times_(std::move(battery_times)) {
   record_.commanded.resize(ticks);
   record_.divergence = advance(Nanoseconds(0));
   links_.states.write({Nanoseconds(0), task_.state()});
@@ -34,12 +47,26 @@ void LivePlant::run() {
 }
 
 std::optional<Divergence> LivePlant::advance(Nanoseconds to) {
-  const auto& times = task_.disturbance_times();
-  for (; disturbed_ < times.size() && times[disturbed_] <= to; ++disturbed_) {
-    if (auto lost = task_.advance(times[disturbed_])) return lost;
-    if (auto lost = task_.disturb(times[disturbed_])) return lost;
+  const auto& disturbances = task_.disturbance_times();
+  while (true) {
+    const Nanoseconds disturbance = due(disturbances, disturbed_);
+    const Nanoseconds battery = due(battery_times_, batteries_);
+    const Nanoseconds next = std::min(disturbance, battery);
+    if (next > to) break;
+    if (auto lost = task_.advance(next)) return lost;
+    // At one instant in the order of closed_loop.hpp.
+    if (disturbance == next) {
+      ++disturbed_;
+      if (auto lost = task_.disturb(next)) return lost;
+    }
+    if (battery == next) sample_battery(next);
   }
   return task_.advance(to);
+}
+
+void LivePlant::sample_battery(Nanoseconds now) {
+  ++batteries_;
+  links_.batteries.write({now, task_.battery_scale(now, throttle_, armed_)});
 }
 
 // A step that was late may find a command that was made after its time, which it must not follow
@@ -59,6 +86,8 @@ std::optional<Divergence> LivePlant::take_commands(Nanoseconds now) {
 
 std::optional<Divergence> LivePlant::command(Nanoseconds now, const LiveCommand& command) {
   record_.commanded[command.tick] = now;
+  throttle_ = command.throttle;
+  armed_ = command.armed;
   return task_.command(now, command.commands);
 }
 

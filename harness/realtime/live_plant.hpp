@@ -27,9 +27,10 @@ struct LivePlantRecord {
 
 class LivePlant {
  public:
-  // `ticks` of the unit at most. Publishes the state at time 0. Allocates here and never later.
+  // `ticks` of the unit at most; `battery_times` are when the battery is sampled, of a flight that
+  // has one. Publishes the state at time 0. Allocates here and never later.
   LivePlant(PlantTask& task, const Rate& physics, Nanoseconds duration, std::size_t ticks,
-            Clock& clock, Links& links);
+            std::vector<Nanoseconds> battery_times, Clock& clock, Links& links);
 
   // Until `duration`, the links say stop, or the vehicle is lost. Once.
   void run();
@@ -39,6 +40,7 @@ class LivePlant {
 
  private:
   std::optional<Divergence> advance(Nanoseconds to);
+  void sample_battery(Nanoseconds now);
   std::optional<Divergence> take_commands(Nanoseconds now);
   std::optional<Divergence> command(Nanoseconds now, const LiveCommand& command);
 
@@ -48,6 +50,10 @@ class LivePlant {
   Clock& clock_;
   Links& links_;
   std::size_t disturbed_ = 0;
+  std::vector<Nanoseconds> battery_times_;
+  std::size_t batteries_ = 0;  // samples taken
+  float throttle_ = 0;         // of the command that the motors follow
+  bool armed_ = false;
   std::optional<LiveCommand> pending_;  // made after the step that it reached
   LivePlantRecord record_;
 };

@@ -8,7 +8,8 @@
 namespace attest {
 namespace {
 
-DelayLine<MotorLimits> limits_line(const TaskTiming& timing, const Rate& rate) {
+template <typename T>
+DelayLine<T> line(const TaskTiming& timing, const Rate& rate) {
   const Nanoseconds delay = timing.delay.on(rate);
   return {delay, static_cast<std::size_t>(timing.rate.ticks_in(delay)) + 2};
 }
@@ -24,7 +25,9 @@ LiveUnit::LiveUnit(const Case& the_case, const Rate& rate, UnitTask& task, Clock
       deadlines_(tick_count(the_case.duration, rate)),
       estimator_(the_case.flight->estimator),
       limit_times_(task_times(the_case.flight->motor_limits, timeline_of(the_case, rate))),
-      limits_(limits_line(the_case.flight->motor_limits, rate)) {
+      limits_(line<MotorLimits>(the_case.flight->motor_limits, rate)),
+      battery_scales_(
+          line<float>(the_case.flight->battery.value_or(BatteryFlight{}).timing, rate)) {
   const auto most = static_cast<std::size_t>(deadlines_);
   samples_max_ = std::min(samples, most);
   record_.ticks.resize(most);
@@ -57,18 +60,21 @@ void LiveUnit::run() {
 Nanoseconds LiveUnit::tick(Nanoseconds deadline) {
   const Nanoseconds woke = clock_.wait_until(deadline);
   take_sample();
-  // Not before the sample was read, which then cannot be of the future.
+  take_battery();
+  // Not before the samples were read, which then cannot be of the future.
   const Nanoseconds begins = clock_.now();
   Arrivals arrivals;
   if (sampled_) arrivals.estimate = Estimate{latest_.time, estimator_.sample(latest_.state)};
   arrivals.limits = limits_at(begins);
+  arrivals.battery_scale = battery_scales_.receive(begins);
   task_.prepare(ticks_, begins, arrivals);
 
   const Nanoseconds cpu_before = thread_cpu_time(), before = clock_.now();
   record_.fault = task_.step(ticks_);
   const Nanoseconds after = clock_.now(), cpu_after = thread_cpu_time();
   if (record_.fault) return after;
-  links_.commands.write({ticks_, after, task_.commands()});
+  const float throttle = task_.sample().out.actuator_controls_0.control[3];
+  links_.commands.write({ticks_, after, task_.commands(), throttle, task_.is_armed()});
 
   record_.lateness.add(woke - deadline);
   record_.execution.add(after - before);
@@ -82,6 +88,13 @@ void LiveUnit::take_sample() {
   if (const LiveState* state = links_.states.read()) {
     latest_ = *state;
     sampled_ = true;
+  }
+}
+
+// One that was overtaken is missed, as of a topic of queue length 1.
+void LiveUnit::take_battery() {
+  if (const LiveBattery* battery = links_.batteries.read()) {
+    battery_scales_.send(battery->time, battery->scale);
   }
 }
 

@@ -44,7 +44,7 @@ struct LiveUnitRecord {
 class LiveUnit {
  public:
   // Records all ticks, and the samples of the first `samples`; allocates and touches the memory for
-  // it here, and none later. REQUIRES: a flight without a battery; all outlive this.
+  // it here, and none later. REQUIRES: a flight; all outlive this.
   LiveUnit(const Case& the_case, const Rate& rate, UnitTask& task, Clock& clock, Links& links,
            std::size_t samples);
 
@@ -65,6 +65,7 @@ class LiveUnit {
   // Returns when the step was over.
   Nanoseconds tick(Nanoseconds deadline);
   void take_sample();
+  void take_battery();
   std::optional<MotorLimits> limits_at(Nanoseconds now);
   void write_down(const LiveTick& tick);
 
@@ -79,6 +80,7 @@ class LiveUnit {
   std::vector<Nanoseconds> limit_times_;
   std::size_t limits_done_ = 0;
   DelayLine<MotorLimits> limits_;
+  DelayLine<float> battery_scales_;
   std::size_t ticks_ = 0, samples_max_;
   std::atomic<std::uint64_t> passed_{0}, missed_{0};
   LiveUnitRecord record_;

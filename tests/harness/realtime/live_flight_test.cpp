@@ -93,16 +93,30 @@ TEST(LiveFlight, EndsWhenItIsAsked) {
   EXPECT_LT(flight.unit.ticks.size(), 20'000u);
 }
 
-TEST(LiveFlight, RefusesABattery) {
-  Case the_case = tilt_case(0.1);
-  the_case.flight->battery.emplace();
+// What battery_status told the unit last: empty battery, more scale.
+float last_scale(const std::vector<Sample>& samples) {
+  return samples.back().in.battery_status.scale;
+}
+
+TEST(LiveFlight, ABatteryEmptiesAndItsScaleReachesTheUnit) {
+  Case the_case = *parse_case(source / "cases/px4-v1.5.5/flight/battery_scaled.toml");
+  the_case.duration = {0.5, Span::In::seconds};
+  const LiveFlight live = flown(the_case, [] { return false; });
+  EXPECT_FALSE(live.plant.divergence);
+  ASSERT_FALSE(live.unit.samples.empty());
+  std::size_t published = 0;
+  for (const Sample& sample : live.unit.samples) {
+    published += (sample.in.updated & ATTEST_UPDATED_BATTERY_STATUS) != 0 ? 1 : 0;
+  }
+  // 100 Hz; on a machine that is late some are overtaken.
+  EXPECT_GE(published, 2u);
+  EXPECT_LE(published, 51u);
   const auto iris = *Airframe::load(source / "models", "iris");
   const auto unit = open_builtin()->create("px4-v1.5.5");
-  const auto flight = fly_live(
-      the_case, setup, *iris, *unit, options(), 0, [] { return false; },
-      [](const LiveProgress&) {});
-  ASSERT_FALSE(flight);
-  EXPECT_EQ(flight.error().file, the_case.file);
+  const Flown again = *fly(the_case, setup, *iris, *unit, live.timing());
+  ASSERT_EQ(again.trace.samples.size(), live.unit.samples.size());
+  EXPECT_NEAR(last_scale(live.unit.samples), last_scale(again.trace.samples), 2e-3);
+  EXPECT_GT(last_scale(again.trace.samples), 1.005f);
 }
 
 TEST(IdleLateness, IsOfEveryDeadlineThatItWaitedFor) {
