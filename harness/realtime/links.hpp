@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <semaphore>
 
 #include "harness/core/time.hpp"
 #include "harness/plant/plant.hpp"
@@ -14,6 +15,7 @@ namespace attest {
 struct LiveState {
   Nanoseconds time{0};  // of the plant
   PlantState state;
+  Nanoseconds published{0};  // when this was written
 };
 
 struct LiveCommand {
@@ -35,6 +37,10 @@ struct Links {
   LatestValue<LiveCommand> commands;
   LatestValue<LiveBattery> batteries;
   std::atomic<bool> stop{false};  // anyone may say so
+  // Of a unit that the estimator triggers: released with each sample of the estimator that is in
+  // `states`; the plant's thread has published its last when `all_published` is set.
+  std::counting_semaphore<> published{0};
+  std::atomic<bool> all_published{false};
 };
 
 }  // namespace attest

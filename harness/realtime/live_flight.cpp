@@ -60,12 +60,7 @@ Result<LiveFlight> fly_live(const Case& the_case, const Setup& setup, const Airf
   auto plant = plant_for(the_case, setup, airframe);
   if (!plant) return tl::unexpected(plant.error());
   const Case scripted = adapted(the_case, airframe.vehicle());
-  const Nanoseconds duration = timeline_of(scripted, setup.rate).duration;
-  const Rate physics = physics_of(scripted, setup.rate);
-  std::vector<Nanoseconds> battery_times;
-  if (const auto& battery = scripted.flight->battery) {
-    battery_times = task_times(battery->timing, timeline_of(scripted, setup.rate));
-  }
+  const Timeline timeline = timeline_of(scripted, setup.rate);
 
   ProcessRights process;
   Links links;
@@ -75,8 +70,13 @@ Result<LiveFlight> fly_live(const Case& the_case, const Setup& setup, const Airf
   const Nanoseconds origin = Pacer::now_monotonic() + settle_in;
   Pacer unit_clock(origin, options.wait), plant_clock(origin, Wait{});
   LiveUnit live_unit(scripted, setup.rate, unit_task, unit_clock, links, samples);
-  LivePlant live_plant(plant_task, physics, duration, live_unit.deadlines(),
-                       std::move(battery_times), plant_clock, links);
+  LivePlantPlan plan{
+      physics_of(scripted, setup.rate), timeline.duration, live_unit.deadlines(), {}, {}};
+  if (const auto& battery = scripted.flight->battery) {
+    plan.battery_times = task_times(battery->timing, timeline);
+  }
+  if (scripted.unit.on_estimate) plan.estimator = setup.rate;
+  LivePlant live_plant(plant_task, std::move(plan), plant_clock, links);
 
   std::vector<Right> unit_rights, plant_rights;
   std::thread plant_thread(

@@ -40,10 +40,11 @@ struct LiveFlight {
 };
 
 // Flies the case for its whole duration, or until `stop` is true. Its own timing of the unit is not
-// used: the clock is what makes ticks late. Keeps the samples of the first `samples` ticks.
-// `progress` is called every tenth of a second. A battery is sampled by the plant's thread, and
-// takes into account the command that the motors follow. REQUIRES: a flight; a fresh unit. Errors:
-// as of fly().
+// used: the clock is what makes ticks late. A unit that the estimator triggers waits for the
+// plant's thread, which publishes a sample at each tick of the rate. Keeps the samples of the first
+// `samples` ticks. `progress` is called every tenth of a second. A battery is sampled by the
+// plant's thread, and takes into account the command that the motors follow. REQUIRES: a flight; a
+// fresh unit. Errors: as of fly().
 Result<LiveFlight> fly_live(const Case& the_case, const Setup& setup, const Airframe& airframe,
                             Unit& unit, const LiveOptions& options, std::size_t samples,
                             const std::function<bool()>& stop,

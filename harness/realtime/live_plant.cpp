@@ -6,51 +6,63 @@
 namespace attest {
 namespace {
 
-Nanoseconds due(const std::vector<Nanoseconds>& times, std::size_t done) {
+Nanoseconds next_of(const std::vector<Nanoseconds>& times, std::size_t done) {
   return done < times.size() ? times[done] : Nanoseconds::max();
 }
 
 }  // namespace
 
-LivePlant::LivePlant(PlantTask& task, const Rate& physics, Nanoseconds duration, std::size_t ticks,
-                     std::vector<Nanoseconds> battery_times, Clock& clock, Links& links)
-    : task_(task),
-      physics_(physics),
-      duration_(duration),
-      clock_(clock),
-      links_(links),
-      battery_times_(std::move(battery_times)) {
-  record_.commanded.resize(ticks);
+LivePlant::LivePlant(PlantTask& task, LivePlantPlan plan, Clock& clock, Links& links)
+    : task_(task), plan_(std::move(plan)), clock_(clock), links_(links) {
+  record_.commanded.resize(plan_.ticks);
   record_.divergence = advance(Nanoseconds(0));
-  links_.states.write({Nanoseconds(0), task_.state()});
+  links_.states.write({Nanoseconds(0), task_.state(), Nanoseconds(0)});
 }
 
 void LivePlant::run() {
   const Usage begin = thread_usage();
   std::int64_t step = 1;
-  while (!links_.stop.load(std::memory_order_relaxed) && physics_.tick(step) <= duration_) {
-    const Nanoseconds due = physics_.tick(step);
+  if (plan_.estimator) {
+    clock_.wait_until(Nanoseconds(0));
+    publish(Nanoseconds(0));
+  }
+  while (!links_.stop.load(std::memory_order_relaxed) &&
+         plan_.physics.tick(step) <= plan_.duration) {
+    const Nanoseconds due = plan_.physics.tick(step);
     const Nanoseconds woke = clock_.wait_until(due);
-    const std::int64_t last_due = physics_.ticks_in(woke + Nanoseconds(1)) - 1;
+    const std::int64_t last_due = plan_.physics.ticks_in(woke + Nanoseconds(1)) - 1;
     const std::int64_t reached = std::max(step, last_due);
     record_.late_steps += static_cast<std::uint64_t>(reached - step);
     record_.steps += static_cast<std::uint64_t>(reached - step + 1);
     record_.lateness.add(woke - due);
-    const Nanoseconds now = physics_.tick(reached);
+    const Nanoseconds now = plan_.physics.tick(reached);
     if ((record_.divergence = advance(now))) break;
-    links_.states.write({now, task_.state()});
+    publish(now);
     if ((record_.divergence = take_commands(now))) break;
     step = reached + 1;
   }
   record_.usage = thread_usage() - begin;
+  links_.all_published.store(true, std::memory_order_relaxed);
+  links_.published.release();
   if (record_.divergence) links_.stop.store(true, std::memory_order_relaxed);
+}
+
+// A unit that waits for the estimator is woken when its sample is in the state, and once when
+// several came due.
+void LivePlant::publish(Nanoseconds now) {
+  links_.states.write({now, task_.state(), clock_.now()});
+  if (!plan_.estimator) return;
+  const std::int64_t due = plan_.estimator->ticks_in(now + Nanoseconds(1));
+  if (due == estimates_) return;
+  estimates_ = due;
+  links_.published.release();
 }
 
 std::optional<Divergence> LivePlant::advance(Nanoseconds to) {
   const auto& disturbances = task_.disturbance_times();
   while (true) {
-    const Nanoseconds disturbance = due(disturbances, disturbed_);
-    const Nanoseconds battery = due(battery_times_, batteries_);
+    const Nanoseconds disturbance = next_of(disturbances, disturbed_);
+    const Nanoseconds battery = next_of(plan_.battery_times, batteries_);
     const Nanoseconds next = std::min(disturbance, battery);
     if (next > to) break;
     if (auto lost = task_.advance(next)) return lost;

@@ -25,14 +25,21 @@ struct LivePlantRecord {
   Usage usage;
 };
 
+struct LivePlantPlan {
+  Rate physics;
+  Nanoseconds duration{0};
+  std::size_t ticks = 0;                   // of the unit, at most
+  std::vector<Nanoseconds> battery_times;  // when the battery is sampled, of a flight with one
+  std::optional<Rate> estimator;           // whose samples trigger the unit
+};
+
 class LivePlant {
  public:
-  // `ticks` of the unit at most; `battery_times` are when the battery is sampled, of a flight that
-  // has one. Publishes the state at time 0. Allocates here and never later.
-  LivePlant(PlantTask& task, const Rate& physics, Nanoseconds duration, std::size_t ticks,
-            std::vector<Nanoseconds> battery_times, Clock& clock, Links& links);
+  // Publishes the state at time 0. Allocates here and never later.
+  LivePlant(PlantTask& task, LivePlantPlan plan, Clock& clock, Links& links);
 
-  // Until `duration`, the links say stop, or the vehicle is lost. Once.
+  // Until `duration`, the links say stop, or the vehicle is lost. Once. The estimator's sample k is
+  // published with the first state of its time, rate.tick(k), or later.
   void run();
 
   // After run().
@@ -41,18 +48,18 @@ class LivePlant {
  private:
   std::optional<Divergence> advance(Nanoseconds to);
   void sample_battery(Nanoseconds now);
+  void publish(Nanoseconds now);
   std::optional<Divergence> take_commands(Nanoseconds now);
   std::optional<Divergence> command(Nanoseconds now, const LiveCommand& command);
 
   PlantTask& task_;
-  Rate physics_;
-  Nanoseconds duration_;
+  LivePlantPlan plan_;
   Clock& clock_;
   Links& links_;
   std::size_t disturbed_ = 0;
-  std::vector<Nanoseconds> battery_times_;
-  std::size_t batteries_ = 0;  // samples taken
-  float throttle_ = 0;         // of the command that the motors follow
+  std::size_t batteries_ = 0;   // samples taken
+  std::int64_t estimates_ = 0;  // samples published
+  float throttle_ = 0;          // of the command that the motors follow
   bool armed_ = false;
   std::optional<LiveCommand> pending_;  // made after the step that it reached
   LivePlantRecord record_;

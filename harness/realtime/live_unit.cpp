@@ -22,6 +22,7 @@ LiveUnit::LiveUnit(const Case& the_case, const Rate& rate, UnitTask& task, Clock
       clock_(clock),
       links_(links),
       rate_(rate),
+      on_estimate_(the_case.unit.on_estimate),
       deadlines_(tick_count(the_case.duration, rate)),
       estimator_(the_case.flight->estimator),
       limit_times_(task_times(the_case.flight->motor_limits, timeline_of(the_case, rate))),
@@ -35,31 +36,65 @@ LiveUnit::LiveUnit(const Case& the_case, const Rate& rate, UnitTask& task, Clock
 }
 
 void LiveUnit::run() {
-  Usage warm = thread_usage();
-  for (std::int64_t k = 0; k < deadlines_ && !links_.stop.load(std::memory_order_relaxed);) {
-    const Nanoseconds finished = tick(rate_.tick(k));
-    if (record_.fault) break;
-    // Of the deadlines that have passed meanwhile the last is due now.
-    const std::int64_t last_passed = rate_.ticks_in(finished + Nanoseconds(1)) - 1;
-    const std::int64_t next = std::max(k + 1, std::min(last_passed, deadlines_));
-    if (finished > rate_.tick(k + 1)) ++record_.overruns;
-    const auto missed = static_cast<std::uint32_t>(next - k - 1);
-    record_.ticks[ticks_ - 1].missed = missed;
-    record_.missed += missed;
-    k = next;
-    if (ticks_ == 1) warm = thread_usage();
-    passed_.store(static_cast<std::uint64_t>(k), std::memory_order_relaxed);
-    missed_.store(record_.missed, std::memory_order_relaxed);
+  warm_ = thread_usage();
+  if (on_estimate_) {
+    run_on_estimates();
+  } else {
+    run_on_deadlines();
   }
-  record_.usage = thread_usage() - warm;
+  record_.usage = thread_usage() - warm_;
   links_.stop.store(true, std::memory_order_relaxed);
   record_.ticks.resize(ticks_);
   record_.samples.resize(std::min(ticks_, samples_max_));
 }
 
-Nanoseconds LiveUnit::tick(Nanoseconds deadline) {
-  const Nanoseconds woke = clock_.wait_until(deadline);
-  take_sample();
+void LiveUnit::run_on_deadlines() {
+  for (std::int64_t k = 0; k < deadlines_ && !links_.stop.load(std::memory_order_relaxed);) {
+    const Nanoseconds woke = clock_.wait_until(rate_.tick(k));
+    take_sample();
+    const Nanoseconds finished = tick(rate_.tick(k), woke);
+    if (record_.fault) return;
+    // Of the deadlines that have passed meanwhile the last is due now.
+    const std::int64_t last_passed = rate_.ticks_in(finished + Nanoseconds(1)) - 1;
+    const std::int64_t next = std::max(k + 1, std::min(last_passed, deadlines_));
+    if (finished > rate_.tick(k + 1)) ++record_.overruns;
+    count_missed(k, next);
+    k = next;
+  }
+}
+
+void LiveUnit::run_on_estimates() {
+  constexpr auto look_for_the_end_every = std::chrono::milliseconds(10);
+  std::int64_t last = -1;  // sample that was used
+  while (last + 1 < deadlines_ && !links_.stop.load(std::memory_order_relaxed)) {
+    const bool published = links_.published.try_acquire_for(look_for_the_end_every);
+    const Nanoseconds woke = clock_.now();
+    const bool is_new = published && take_sample();
+    const std::int64_t sample = is_new ? rate_.ticks_in(latest_.time + Nanoseconds(1)) - 1 : last;
+    if (sample > last && sample < deadlines_) {
+      count_missed(last, sample);
+      last = sample;
+      const Nanoseconds finished = tick(latest_.published, woke);
+      if (record_.fault) return;
+      if (finished > rate_.tick(sample + 1)) ++record_.overruns;
+      count_missed(sample, sample + 1);
+    } else if (links_.all_published.load(std::memory_order_relaxed)) {
+      count_missed(last, deadlines_);
+      return;
+    }
+  }
+}
+
+void LiveUnit::count_missed(std::int64_t k, std::int64_t next) {
+  const auto missed = static_cast<std::uint32_t>(next - k - 1);
+  if (ticks_ > 0) record_.ticks[ticks_ - 1].missed = missed;
+  record_.missed += missed;
+  if (ticks_ == 1) warm_ = thread_usage();
+  passed_.store(static_cast<std::uint64_t>(next), std::memory_order_relaxed);
+  missed_.store(record_.missed, std::memory_order_relaxed);
+}
+
+Nanoseconds LiveUnit::tick(Nanoseconds deadline, Nanoseconds woke) {
   take_battery();
   // Not before the samples were read, which then cannot be of the future.
   const Nanoseconds begins = clock_.now();
@@ -84,11 +119,11 @@ Nanoseconds LiveUnit::tick(Nanoseconds deadline) {
   return clock_.now();
 }
 
-void LiveUnit::take_sample() {
-  if (const LiveState* state = links_.states.read()) {
-    latest_ = *state;
-    sampled_ = true;
-  }
+bool LiveUnit::take_sample() {
+  const LiveState* state = links_.states.read();
+  if (state == nullptr) return false;
+  latest_ = *state;
+  return sampled_ = true;
 }
 
 // One that was overtaken is missed, as of a topic of queue length 1.

@@ -41,6 +41,9 @@ struct LiveUnitRecord {
 
 // One deadline a period. A tick whose deadline passed while the one before ran begins at once; of
 // several such deadlines only the last is kept, the others are missed.
+//
+// A unit that the estimator triggers waits for a sample instead. Its deadline is the publication,
+// and of several that came while a step ran only the newest is used, the others are missed.
 class LiveUnit {
  public:
   // Records all ticks, and the samples of the first `samples`; allocates and touches the memory for
@@ -62,9 +65,13 @@ class LiveUnit {
   LiveUnitRecord take_record() { return std::move(record_); }
 
  private:
-  // Returns when the step was over.
-  Nanoseconds tick(Nanoseconds deadline);
-  void take_sample();
+  void run_on_deadlines();
+  void run_on_estimates();
+  // The tick of `deadline`, for which it woke up at `woke`. Returns when the step was over.
+  Nanoseconds tick(Nanoseconds deadline, Nanoseconds woke);
+  // After tick k, when tick `next` is the next.
+  void count_missed(std::int64_t k, std::int64_t next);
+  bool take_sample();
   void take_battery();
   std::optional<MotorLimits> limits_at(Nanoseconds now);
   void write_down(const LiveTick& tick);
@@ -73,6 +80,7 @@ class LiveUnit {
   Clock& clock_;
   Links& links_;
   Rate rate_;
+  bool on_estimate_;
   std::int64_t deadlines_;
   NoisyEstimator estimator_;
   LiveState latest_;
@@ -83,6 +91,7 @@ class LiveUnit {
   DelayLine<float> battery_scales_;
   std::size_t ticks_ = 0, samples_max_;
   std::atomic<std::uint64_t> passed_{0}, missed_{0};
+  Usage warm_;
   LiveUnitRecord record_;
 };
 

@@ -34,8 +34,8 @@ void UnitTask::prepare(std::size_t tick, Nanoseconds now, const Arrivals& arriva
 }
 
 std::optional<PortFault> UnitTask::step(std::size_t tick) {
-  auto fault = ports_.run(
-      [&] { return driver_.step(tick, changes_, sample_, timestamp_sample_us_); });
+  auto fault =
+      ports_.run([&] { return driver_.step(tick, changes_, sample_, timestamp_sample_us_); });
   if (!fault) actuators_.mix(sample_.out, is_armed());
   return fault;
 }

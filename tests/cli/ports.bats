@@ -143,7 +143,8 @@ TASKS
 @test "a port is given the time of its sample" {
   judged timestamp_sample
   [ "$status" -eq 0 ]
-  flight=(--filter '*/estimator_delay@250hz-iris-mujoco' --port "lib:$PORTS/port_timestamp_sample.so")
+  flight=(--filter '*/estimator_delay@250hz-iris-mujoco')
+  flight+=(--port "lib:$PORTS/port_timestamp_sample.so")
   SAMPLE_DELAY_US=6000 run "$ATTEST" run "${flight[@]}"
   [ "$status" -eq 0 ]
   SAMPLE_DELAY_US=6001 run "$ATTEST" run "${flight[@]}"

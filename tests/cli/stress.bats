@@ -206,12 +206,33 @@ assert report["interrupted"] and report["results"][0]["ticks"] > 0
 CHECK
 }
 
+@test "the estimator triggers the unit where the case says so" {
+  mkdir -p suite/cases/px4-v1.5.5/flight suite/golden
+  cp -r "$SOURCE/models" suite/
+  cp -r "$SOURCE/golden/recorded" suite/golden/
+  printf '\n[unit]\ntrigger = "estimator"\n' |
+    cat "$SOURCE/cases/px4-v1.5.5/flight/hover.toml" - >suite/cases/px4-v1.5.5/flight/hover.toml
+  run "$ATTEST" --suite suite stress --rates 250 --duration 0.5 "${open[@]}" --json s.json
+  has "flight/hover@250hz-iris-mujoco"
+  python3 - <<'CHECK'
+import json
+result = json.load(open("s.json"))["results"][0]
+assert result["deadlines"] == result["ticks"] + result["missed"] == 125, result
+CHECK
+}
+
+@test "a flight with a battery is flown" {
+  run "$ATTEST" stress --case battery_scaled --rates 250 --duration 0.5 --record-timing b.json \
+    "${open[@]}"
+  [ "$status" -eq 0 ] || [[ $output == *"does not step the plant"* ]]
+  has "execution of a step"
+  run "$ATTEST" sim --timing b.json --out b.csv
+  [ "$status" -eq 0 ]
+}
+
 @test "what cannot be stressed is refused" {
   run "$ATTEST" stress --case attitude/roll_30
   [ "$status" -eq 2 ]
-  run "$ATTEST" stress --case battery_scaled --rates 250 --duration 0.2 "${open[@]}"
-  [ "$status" -eq 2 ]
-  has "has a [flight.battery], which cannot be flown in real time"
   run "$ATTEST" stress --policy best
   [ "$status" -eq 2 ]
   has 'no such policy: `best`; there are fifo and other'

@@ -76,6 +76,20 @@ TEST(LiveFlight, ItsTimesCanBeFlownAgain) {
   }
 }
 
+TEST(LiveFlight, TheEstimatorMayTriggerTheUnit) {
+  Case the_case = tilt_case(0.4);
+  the_case.unit.on_estimate = true;
+  const LiveFlight flight = flown(the_case, [] { return false; });
+  EXPECT_FALSE(flight.unit.fault);
+  EXPECT_FALSE(flight.plant.divergence);
+  EXPECT_EQ(flight.unit.ticks.size() + flight.unit.missed, 200u);
+  for (std::size_t i = 0; i < flight.unit.ticks.size(); ++i) {
+    const LiveTick& tick = flight.unit.ticks[i];
+    EXPECT_LE(tick.sampled, tick.begins);
+    if (i > 0) EXPECT_LT(flight.unit.ticks[i - 1].sampled, tick.sampled);  // used once
+  }
+}
+
 TEST(LiveFlight, WhatItComputesDoesNotDependOnTheThreads) {
   LiveFlight flight = flown(tilt_case(0.2), [] { return false; });
   Trace trace;

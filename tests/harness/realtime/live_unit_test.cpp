@@ -63,13 +63,21 @@ class LiveUnitTest : public testing::Test {
   // At 1 kHz, for 8 deadlines.
   LiveUnitRecord run() {
     const auto vehicle = test::quad_vehicle();
-    const Case the_case = test::hover_case(0.008);
+    Case the_case = test::hover_case(0.008);
+    the_case.unit.on_estimate = on_estimate_;
     UnitTask task(the_case, rate_, vehicle, unit_, {});
     LiveUnit live(the_case, rate_, task, clock_, links_, 4);
     live.run();
     return live.take_record();
   }
 
+  // The estimator's sample of that time arrives.
+  void publish(Nanoseconds time) {
+    links_.states.write({time, {}, clock_.now()});
+    links_.published.release();
+  }
+
+  bool on_estimate_ = false;
   Rate rate_ = Rate::hz(1000);
   ScriptedClock clock_;
   SlowUnit unit_{clock_};
@@ -143,6 +151,44 @@ TEST_F(LiveUnitTest, TheSampleIsTheLastThatThereIs) {
   EXPECT_EQ(record.ticks[1].sampled, us(0));
   EXPECT_EQ(record.ticks[2].sampled, us(900));
   EXPECT_EQ(record.age.max(), us(7010 - 900));
+}
+
+TEST_F(LiveUnitTest, OnEstimatesItRunsOnceForEachSample) {
+  on_estimate_ = true;
+  publish(us(0));
+  unit_.takes = [&](std::size_t step) {
+    clock_.pass(us(1000));
+    if (step < 7) publish(us(1000) * static_cast<std::int64_t>(step + 1));
+    return us(10);
+  };
+  const LiveUnitRecord record = run();
+  ASSERT_EQ(record.ticks.size(), 8u);
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_EQ(record.ticks[i].sampled, us(1000) * static_cast<std::int64_t>(i));
+  }
+  EXPECT_EQ(record.missed, 0u);
+  EXPECT_EQ(record.lateness.max(), us(10));  // from the publication, in the middle of a step
+  EXPECT_THAT(clock_.deadlines, testing::IsEmpty());
+}
+
+TEST_F(LiveUnitTest, OfSeveralEstimatesThatCameOnlyTheNewestIsUsed) {
+  on_estimate_ = true;
+  publish(us(0));
+  unit_.takes = [&](std::size_t step) {
+    if (step == 0) {
+      for (const int time : {1000, 2000, 3000}) publish(us(time));
+    } else {
+      links_.all_published = true;
+      links_.published.release();
+    }
+    return us(10);
+  };
+  const LiveUnitRecord record = run();
+  ASSERT_EQ(record.ticks.size(), 2u);
+  EXPECT_EQ(record.ticks[0].missed, 2u);
+  EXPECT_EQ(record.ticks[1].sampled, us(3000));
+  EXPECT_EQ(record.ticks[1].missed, 4u);  // that never came
+  EXPECT_EQ(record.missed, 6u);
 }
 
 TEST_F(LiveUnitTest, EndsWhenAPortGoesWrong) {
