@@ -36,14 +36,14 @@ broken() {
 @test "every case is flown by every vehicle on both plants" {
   run "$ATTEST" run --group flight --rate 100 --filter '*tilt_step_30' --filter '*motor_failure'
   [ "$status" -eq 0 ]
-  has "PASS 20 of 20"
+  has "PASS 40 of 40"
 }
 
 @test "vehicle and plant select flights" {
   run "$ATTEST" run --vehicle hexa --plant ode --filter 'flight/hover' --rate 100,1000
   [ "$status" -eq 0 ]
-  has "PASS 2 of 2"
-  run "$ATTEST" run --filter 'flight/hover@250hz-iris-mujoco'
+  has "PASS 4 of 4"
+  run "$ATTEST" run --filter 'px4-v1.5.5/flight/hover@250hz-iris-mujoco'
   has "PASS 1 of 1"
   run "$ATTEST" run --vehicle hxea --filter 'flight/*'
   [ "$status" -eq 2 ]
@@ -51,7 +51,8 @@ broken() {
 }
 
 @test "a port with a wrong sign loses its vehicle, and the verdict says when" {
-  run "$ATTEST" run --port "$flip" --filter 'flight/hover@250hz-iris-*' --json r.json
+  run "$ATTEST" run --port "$flip" --filter 'px4-v1.5.5/flight/hover@250hz-iris-*' \
+    --json r.json
   [ "$status" -eq 1 ]
   has "fail: the flight ended at"
   has "the body rate is"

@@ -116,7 +116,7 @@ float last_scale(const std::vector<Sample>& samples) {
 TEST(LiveFlight, ABatteryEmptiesAndItsScaleReachesTheUnit) {
   Case the_case = *parse_case(source / "cases/px4-v1.5.5/flight/battery_scaled.toml");
   the_case.duration = {0.5, Span::In::seconds};
-  the_case.flight->battery->charge = 0.3;
+  the_case.flight->battery->charge = 0.05;
   const LiveFlight live = flown(the_case, [] { return false; });
   EXPECT_FALSE(live.plant.divergence);
   ASSERT_FALSE(live.unit.samples.empty());
