@@ -3,6 +3,7 @@
 // at the numeric level: with 32 bits behind the point as any port, with 22, as a processor of 32
 // bits has room for, as the fixed-point port that it then says it is.
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "controller/actuation/unit_table.hpp"
@@ -72,7 +73,25 @@ struct Law {
   NoRecovery recovery;
 };
 
+// A sample that is not finite cannot be converted, and is left out: the scale stays what it was.
+int step_battery(void* self, const attest_battery_inputs* in, attest_battery_outputs* out) {
+  const auto& [voltage_v, current_a, throttle, armed] = in->battery;
+  const bool is_finite =
+      std::isfinite(voltage_v) && std::isfinite(current_a) && std::isfinite(throttle);
+  return is_finite ? attest::actuation::BatteryTable<Fixed>::table.step(self, in, out) : ATTEST_OK;
+}
+
+const attest_battery_status* battery_status() {
+  static const attest_battery_status table = [] {
+    attest_battery_status copy = attest::actuation::BatteryTable<Fixed>::table;
+    copy.step = step_battery;
+    return copy;
+  }();
+  return &table;
+}
+
 const void* extension(const char* id) {
+  if (std::strcmp(id, ATTEST_EXTENSION_BATTERY_STATUS) == 0) return battery_status();
   if (std::strcmp(id, ATTEST_EXTENSION_UNSUPPORTED_GROUPS) == 0) return "tailsitter,robustness";
   if (const void* part = attest::actuation::extension<Fixed>(id)) return part;
   const bool asked = std::strcmp(id, ATTEST_EXTENSION_ARITHMETIC) == 0;
