@@ -27,8 +27,9 @@
  * Threads: attest_unit_v1() and extension() are called on one thread at a time, any. The host calls
  * one instance from one thread at a time. That thread may change between calls: `attest stress`
  * calls create() and destroy() on one thread and the rest on a real-time thread. Several instances
- * may exist at once; two instances may be called from two threads at the same time. (attest itself
- * has one instance of a port at a time in each process, so a port with global state passes.)
+ * may exist at once; two instances may be called from two threads at the same time. A port that can
+ * have one only returns NULL from create() while it has one: the cases of the group `instances`
+ * that need two are then unsupported.
  *
  * Memory: the host owns both structs, and they are valid during the call only. The unit owns what
  * create() returned until destroy(). Strings that the host passes are valid during the call only.

@@ -75,8 +75,8 @@ class BasicMixer {
   MixerScales<Scalar> scales_;
   [[no_unique_address]] Stages stages_;
   std::array<Scalar, rotors_max> commands_{};
-  bool
-      has_previous_;  // `commands_` are those of a previous call, or what the first is limited from
+  // `commands_` are those of a previous call, or what the first is limited from.
+  bool has_previous_;
 };
 
 using Mixer = BasicMixer<float>;

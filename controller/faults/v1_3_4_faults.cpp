@@ -62,9 +62,9 @@ void attenuate_by_thrust(FaultyLaw& law) {
     if (mode.flag_control_manual_enabled != 0) *thrust = in.manual_control_setpoint.z;
     if (mode.flag_control_attitude_enabled != 0) *thrust = in.vehicle_attitude_setpoint.thrust;
   });
-  law.rate.proportional = [thrust](V error, float, const RateGains& gains) {
-    const float attenuation =
-        RateStages::Law::throttle_attenuation(*thrust, RateGains{.tpa_break = 1, .tpa_slope = 1});
+  law.rate.proportional = [thrust](V error, float, RateGains gains) {
+    gains.tpa_break = gains.tpa_slope = 1;
+    const float attenuation = RateStages::Law::throttle_attenuation(*thrust, gains);
     return RateStages::Law::proportional(error, attenuation, gains);
   };
 }

@@ -223,6 +223,9 @@ void parse_body(const TomlTable& root, Case& parsed) {
     if (level != "numeric" && level != "exact") root.error("level", "must be numeric or exact");
   }
   parsed.either_side = parse_either_side(root);
+  if (parsed.either_side.any() && tick_count(parsed.duration, parsed.rates.back()) > 1000) {
+    root.error("either_side", "is for cases of at most 1000 ticks, whose goldens keep every tick");
+  }
   parsed.instances = parse_instances(root);
   parsed.unit = parse_unit(root);
   check_unit(root, parsed);

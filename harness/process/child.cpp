@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -134,9 +135,15 @@ std::vector<std::string> Child::read_lines(bool& ended) {
 }
 
 std::optional<std::string> Child::wait_for_line(double timeout_s) {
+  using Clock = std::chrono::steady_clock;
+  const auto deadline = Clock::now() + std::chrono::duration<double>(timeout_s);
   pollfd readable{pipe_, POLLIN, 0};
   bool ended = false;
-  while (!ended && ::poll(&readable, 1, static_cast<int>(timeout_s * 1000)) > 0) {
+  while (!ended) {
+    const std::chrono::duration<double, std::milli> left = deadline - Clock::now();
+    const int ready = ::poll(&readable, 1, std::max(0, static_cast<int>(left.count())));
+    if (ready < 0 && errno == EINTR) continue;
+    if (ready <= 0) break;
     const auto lines = read_lines(ended);
     if (!lines.empty()) return lines.front();
   }

@@ -42,7 +42,7 @@ void LivePlant::run() {
     step = reached + 1;
   }
   record_.usage = thread_usage() - begin;
-  links_.all_published.store(true, std::memory_order_relaxed);
+  links_.all_published.store(true, std::memory_order_release);
   links_.published.release();
   if (record_.divergence) links_.stop.store(true, std::memory_order_relaxed);
 }

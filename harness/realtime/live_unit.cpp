@@ -68,8 +68,10 @@ void LiveUnit::run_on_estimates() {
   std::int64_t last = -1;  // sample that was used
   while (last + 1 < deadlines_ && !links_.stop.load(std::memory_order_relaxed)) {
     const bool published = links_.published.try_acquire_for(look_for_the_end_every);
-    const Nanoseconds woke = clock_.now();
+    // Read before the sample, so that none published before it is overlooked.
+    const bool is_over = links_.all_published.load(std::memory_order_acquire);
     const bool is_new = published && take_sample();
+    const Nanoseconds woke = clock_.now();
     const std::int64_t sample = is_new ? rate_.ticks_in(latest_.time + Nanoseconds(1)) - 1 : last;
     if (sample > last && sample < deadlines_) {
       count_missed(last, sample);
@@ -78,7 +80,7 @@ void LiveUnit::run_on_estimates() {
       if (record_.fault) return;
       if (finished > rate_.tick(sample + 1)) ++record_.overruns;
       count_missed(sample, sample + 1);
-    } else if (links_.all_published.load(std::memory_order_relaxed)) {
+    } else if (is_over && !published) {
       count_missed(last, deadlines_);
       return;
     }

@@ -116,6 +116,11 @@ bool keeps_every_tick(std::size_t ticks) {
   return ticks <= most;
 }
 
+bool is_long(const Case& the_case) {
+  const std::int64_t ticks = tick_count(the_case.duration, the_case.rates.back());
+  return !the_case.flight && !keeps_every_tick(static_cast<std::size_t>(ticks));
+}
+
 fs::path golden_folder(const fs::path& golden_root, const Case& the_case) {
   return golden_root / the_case.profile / the_case.group / the_case.name;
 }

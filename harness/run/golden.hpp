@@ -55,6 +55,9 @@ std::filesystem::path golden_folder(const std::filesystem::path& golden_root, co
 // Of a longer case the golden keeps some ticks, so that it fits into a repository.
 bool keeps_every_tick(std::size_t ticks);
 
+// An open-loop case whose golden keeps some ticks.
+bool is_long(const Case& the_case);
+
 // One trace of a golden to be.
 struct GoldenTrace {
   Setup setup;

@@ -34,6 +34,12 @@ Result<Trace> filled_in(Trace made, const Trace& kept, const Subject& subject, b
   if (const auto fault = drive(*open_builtin(), subject, made)) {
     return fail_at(kept.source, fmt::format("the reference: {}", fault->what));
   }
+  const ChannelSet missing = channels_of(subject.part, "out/") & ~kept.present;
+  if (missing.any()) {
+    return fail_at(kept.source, fmt::format("has no {}; bless it anew, or restore it from version "
+                                            "control",
+                                            channels()[missing._Find_first()].name));
+  }
   const Trace chosen = at_ticks_of(kept, made);
   const auto other_input = first_input_difference(chosen, kept);
   if (chosen.samples.size() != kept.samples.size() || other_input) {

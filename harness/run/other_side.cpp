@@ -1,10 +1,12 @@
 #include "harness/run/other_side.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <numbers>
 #include <span>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -44,14 +46,16 @@ struct LawOnOtherSide {
   reference::RecoveryStages<float> recovery;
 };
 
-bool same_outputs(const Sample& a, const Sample& b) {
-  return std::memcmp(&a.out, &b.out, sizeof a.out) == 0;
-}
-
-bool same_integrals(const Sample& a, const Sample& b) {
-  const auto& x = a.out.mc_att_ctrl_status;
-  const auto& y = b.out.mc_att_ctrl_status;
-  return std::memcmp(&x, &y, sizeof x) == 0;
+// By value and by bits: the bytes between the members of a topic say nothing.
+bool is_same(std::string_view prefix, const Sample& a, const Sample& b) {
+  const ChannelSet chosen = channels_of(Part::mc_att_control, prefix);
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    const Channel& channel = channels()[i];
+    if (!chosen[i] || !channel.is_output()) continue;
+    const double x = value_of(channel, a), y = value_of(channel, b);
+    if (std::bit_cast<std::uint64_t>(x) != std::bit_cast<std::uint64_t>(y)) return false;
+  }
+  return true;
 }
 
 // One tick by itself, with the parameters in force at it.
@@ -91,8 +95,8 @@ Result<Trace> answers_of(const EitherSide& sides, const Case& the_case, const Tr
     Sample& sample = other.samples[tick];
     control.step(sample.in, out);
     sample.out = out;
-    any = any || !same_outputs(sample, law.samples[tick]);
-    if (!same_integrals(sample, law.samples[tick])) {
+    any = any || !is_same("out/", sample, law.samples[tick]);
+    if (!is_same("out/mc_att_ctrl_status.", sample, law.samples[tick])) {
       return fail_at(the_case.file.string(),
                      fmt::format("either_side: at tick {} the integrals are not those of the other "
                                  "side; keep them from moving, for example by a thrust of 0.15",

@@ -4,6 +4,7 @@
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/port/builtin.hpp"
+#include "harness/run/golden.hpp"
 #include "harness/run/open_loop.hpp"
 
 namespace attest {
@@ -51,7 +52,9 @@ std::vector<SelfDiagnosis> diagnose_catalogue(const std::vector<SelectedCase>& c
                                               faults::Profile profile) {
   const auto catalogue = faults::catalogue();
   std::vector<Answered> vectors;
-  for (const SelectedCase& selected : cases) vectors.push_back(answered(selected));
+  for (const SelectedCase& selected : cases) {
+    if (!is_long(selected.the_case)) vectors.push_back(answered(selected));
+  }
   std::vector<SelfDiagnosis> results;
   for (std::size_t i = 0; i < catalogue.size(); ++i) {
     if (!catalogue[i]->is_killable(profile)) continue;

@@ -41,7 +41,8 @@ std::vector<Vector> vectors_of(const std::vector<SelectedCase>& cases,
   std::vector<Vector> vectors;
   for (const SelectedCase& selected : cases) {
     const auto found = nearest.find(selected.the_case.id());
-    if (found != nearest.end()) vectors.push_back({&selected.the_case, found->second});
+    if (found == nearest.end() || is_long(selected.the_case)) continue;
+    vectors.push_back({&selected.the_case, found->second});
   }
   return vectors;
 }

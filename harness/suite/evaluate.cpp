@@ -72,6 +72,7 @@ Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& g
 // after zero on. Errors: the reference does not agree with the golden.
 Result<Prepared> prepare_from_one_period_on(const Case& the_case, const Rate& rate,
                                             const Golden& golden) {
+  const DefaultFloatEnvironment environment;
   const auto reference = open_builtin();
   const auto checked = evaluate_case(the_case, rate, golden, *reference, Level::exact);
   if (!checked) return tl::unexpected(checked.error());
@@ -81,7 +82,6 @@ Result<Prepared> prepare_from_one_period_on(const Case& the_case, const Rate& ra
                                "golden, which therefore cannot be shifted",
                                rate.label()));
   }
-  const DefaultFloatEnvironment environment;
   const Case begun = from_one_period_on(the_case);
   Prepared prepared{stimulate(begun, rate), stimulate(begun, rate), {}};
   if (const auto fault = drive(*reference, subject_of(begun), prepared.want)) {

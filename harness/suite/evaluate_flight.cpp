@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -139,6 +141,7 @@ Result<CaseResult> evaluate_beside(const Case& the_case, const Setup& setup,
 Result<CaseResult> evaluate_from_one_period_on(const Case& the_case, const Setup& setup,
                                                const Airframe& airframe, const LoopTiming& timing,
                                                const ReferenceFlight& golden, Port& port) {
+  std::optional<DefaultFloatEnvironment> environment(std::in_place);  // of the reference
   const auto checked = evaluate_beside(the_case, setup, airframe, timing, golden, *open_builtin());
   if (!checked) return tl::unexpected(checked.error());
   if (checked->verdict != Verdict::pass) {
@@ -150,6 +153,7 @@ Result<CaseResult> evaluate_from_one_period_on(const Case& the_case, const Setup
   const Case begun = from_one_period_on(the_case);
   const auto reference = reference_flight(begun, setup, airframe, timing);
   if (!reference) return tl::unexpected(reference.error());
+  environment.reset();
   return evaluate_beside(begun, setup, airframe, timing, *reference, port);
 }
 
@@ -174,7 +178,10 @@ Result<CaseResult> evaluate_timed_flight(const Case& the_case, const Setup& setu
   CaseResult result = unjudged(the_case, setup);
   if (has_other_steps(port, the_case, setup.rate, timing, result)) return result;
   Case relaxed = has_fixed_step(port, the_case) ? from_one_period_on(the_case) : the_case;
-  const auto reference = reference_flight(relaxed, setup, airframe, timing);
+  const auto reference = [&] {
+    const DefaultFloatEnvironment environment;
+    return reference_flight(relaxed, setup, airframe, timing);
+  }();
   if (!reference) return tl::unexpected(reference.error());
   for (Metric& metric : relaxed.flight->metrics) {
     const double value = reference->metrics.at(metric.name);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <set>
 #include <utility>
 
@@ -171,6 +172,15 @@ Result<std::vector<SelectedCase>> select_cases(const fs::path& folder, const Sel
   std::sort(selected.begin(), selected.end(), [](const SelectedCase& a, const SelectedCase& b) {
     return a.the_case.id() < b.the_case.id();
   });
+  const auto twin = std::adjacent_find(selected.begin(), selected.end(),
+                                       [](const SelectedCase& a, const SelectedCase& b) {
+                                         return a.the_case.id() == b.the_case.id();
+                                       });
+  if (twin != selected.end()) {
+    return fail_at(twin->the_case.file.string(),
+                   fmt::format("is {}, and so is {}; give one of them another name",
+                               twin->the_case.id(), std::next(twin)->the_case.file.string()));
+  }
   selected = part_of(std::move(selected), selection.shard);
   if (selected.empty()) return fail("this shard is empty: there are more shards than cases");
   return selected;

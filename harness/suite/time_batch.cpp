@@ -55,6 +55,9 @@ class UnitOnStack final : public Unit {
   int set_parameter(const std::string& name, float value) override {
     return unit_.set_parameter(name, value);
   }
+  int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
+    return unit_.set_timestamp_sample(timestamp_sample_us);
+  }
   int step(const attest_inputs& in, attest_outputs& out) override {
     int code = ATTEST_FAILED;
     stack_.run([&] { code = unit_.step(in, out); });
