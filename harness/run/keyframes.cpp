@@ -34,7 +34,7 @@ Result<Trace> filled_in(Trace made, const Trace& kept, const Subject& subject, b
   if (const auto fault = drive(*open_builtin(), subject, made)) {
     return fail_at(kept.source, fmt::format("the reference: {}", fault->what));
   }
-  const ChannelSet missing = channels_of(subject.part, "out/") & ~kept.present;
+  const ChannelSet missing = made.present & channels_of(subject.part, "out/") & ~kept.present;
   if (missing.any()) {
     return fail_at(kept.source, fmt::format("has no {}; bless it anew, or restore it from version "
                                             "control",
