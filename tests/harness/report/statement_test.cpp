@@ -48,6 +48,7 @@ TEST(Statement, SaysTheFixedStepOfAPort) {
   run.fixed_step = Rate::hz(250);
   run.results.push_back(passed("tpa", "a", Rate::hz(100)));
   run.results.back().verdict = Verdict::unsupported;
+  run.results.back().reason = "the port has a fixed step of 250 Hz, and this runs at another rate";
   EXPECT_THAT(conformance_statement(run),
               HasSubstr("px4-v1.5.5, numeric, fixed step of 250 Hz, all groups;"));
   run.results.push_back(passed("tpa", "jitter", Rate::hz(250)));
