@@ -111,7 +111,7 @@ std::vector<std::string> mode_names() {
   return names;
 }
 
-// Beside the mode: whether a VTOL is in transition.
+// In addition to the mode: whether a VTOL is in transition.
 std::optional<Signal> parse_in_transition(const TomlTable& table) {
   constexpr const char* key = "in_transition";
   if (!table.has(key)) return std::nullopt;
