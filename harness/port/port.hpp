@@ -35,8 +35,8 @@ class Steppable {
 
 class Unit : public Steppable<attest_inputs, attest_outputs> {
  public:
-  // Same as attest_timestamp_sample, once before each step; ATTEST_OK from a unit that does not want
-  // to know.
+  // Same as attest_timestamp_sample, once before each step; ATTEST_OK from a unit that does not
+  // want to know.
   virtual int set_timestamp_sample(std::uint64_t /*timestamp_sample_us*/) { return ATTEST_OK; }
 };
 
