@@ -16,29 +16,13 @@ target_compile_options(
                             # False alarms of gcc 12 about std::string (gcc bug 105651).
                             $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 
-# What nearly every source reads takes longer to read than the source takes to compile. Tests
-# always share it precompiled; the harness in builds from nothing, not in daily work, where a source
-# that forgets an include is to be told.
-option(ATTEST_PRECOMPILE "Precompile common headers for the harness: quicker from nothing" OFF)
-# About std::string in precompiled headers gcc 12 raises these, which are false alarms.
-if(ATTEST_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  target_compile_options(attest_warnings INTERFACE -Wno-array-bounds -Wno-stringop-overflow)
+# The presets ci and asan build from nothing, and compile several sources of a folder as one (a unity
+# build), because most sources take less time to compile than the headers that they include. The
+# preset dev compiles each by itself, so that a missing include shows.
+# In a unity build gcc takes sources for headers, in which this would be a mistake.
+if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  target_compile_options(attest_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
 endif()
-
-# attest_headers(TARGET header ...): a target whose precompiled headers others reuse, which have its
-# flags at least, and no source in C.
-function(attest_headers name)
-  set(headers <algorithm> <array> <filesystem> <functional> <map> <memory> <optional> <string>
-              <string_view> <variant> <vector> <tl/expected.hpp> ${ARGN})
-  target_precompile_headers(${name} PRIVATE ${headers})
-endfunction()
-
-function(attest_reuse_headers name from)
-  get_target_property(sources ${name} SOURCES)
-  if(NOT sources MATCHES "\\.c(;|$)")
-    target_precompile_headers(${name} REUSE_FROM ${from})
-  endif()
-endfunction()
 
 # attest_library(NAME SOURCES a.cpp ... [PUBLIC target ...] [PRIVATE target ...])
 function(attest_library name)
@@ -46,9 +30,6 @@ function(attest_library name)
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC attest_flags ${ARG_PUBLIC} PRIVATE attest_warnings
                                                                           ${ARG_PRIVATE})
-  if(ATTEST_PRECOMPILE AND fmt::fmt IN_LIST ARG_PRIVATE)
-    attest_reuse_headers(${name} attest_library_headers)
-  endif()
 endfunction()
 
 # In seconds: tens of times what the slowest takes with sanitizers on two cores that do other things
@@ -67,7 +48,10 @@ function(attest_test name)
   target_compile_definitions(${name} PRIVATE ATTEST_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   # Tests run once for each time that they are compiled.
   target_compile_options(${name} PRIVATE -O0)
-  attest_reuse_headers(${name} attest_test_headers)
+  get_target_property(sources ${name} SOURCES)
+  if(NOT sources MATCHES "\\.c(;|$)") # the precompiled headers are of C++
+    target_precompile_headers(${name} REUSE_FROM attest_test_headers)
+  endif()
   set(properties TIMEOUT ${ATTEST_UNIT_TEST_TIMEOUT})
   if(ARG_LABEL)
     list(APPEND properties LABELS ${ARG_LABEL})

@@ -47,7 +47,7 @@ void change_flags(FaultyLaw& law, Change change) {
   also_before(law, [change](attest_inputs& in) mutable { change(in.multirotor_motor_limits, in); });
 }
 
-const Fault faults[] = {
+const Fault anti_windup_list[] = {
     {"gate-takeoff-dropped", "anti_windup", Stage::gate, "integrates at any thrust",
      "thrust below 0.2", "a condition dropped",
      [](FaultyLaw& law) {
@@ -287,6 +287,6 @@ const Fault faults[] = {
 
 }  // namespace
 
-std::span<const Fault> anti_windup_faults() { return faults; }
+std::span<const Fault> anti_windup_faults() { return anti_windup_list; }
 
 }  // namespace attest::faults

@@ -7,7 +7,7 @@
 namespace attest::faults {
 namespace {
 
-const Fault faults[] = {
+const Fault arming_list[] = {
     {"disarm-keeps-integral", "arming", Stage::arming, "does not reset the integrals on disarm",
      "disarmed after something was integrated", "a missing reset",
      [](FaultyLaw& law) {
@@ -188,6 +188,6 @@ const Fault faults[] = {
 
 }  // namespace
 
-std::span<const Fault> arming_faults() { return faults; }
+std::span<const Fault> arming_faults() { return arming_list; }
 
 }  // namespace attest::faults

@@ -59,7 +59,7 @@ void change_tilt_axis(FaultyLaw& law, Axis axis) {
   };
 }
 
-const Fault faults[] = {
+const Fault attitude_list[] = {
     {"quat-order-xyzw", "attitude", Stage::input, "takes quaternions as x, y, z, w",
      "any attitude but level", "quaternion order",
      [](FaultyLaw& law) { change_attitudes(law, [](Q& q) { rotate_order(q); }); }},
@@ -272,6 +272,6 @@ const Fault faults[] = {
 
 }  // namespace
 
-std::span<const Fault> attitude_faults() { return faults; }
+std::span<const Fault> attitude_faults() { return attitude_list; }
 
 }  // namespace attest::faults

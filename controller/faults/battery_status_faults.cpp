@@ -19,7 +19,7 @@ void change_drop(FaultyLaw& law, Drop drop) {
   };
 }
 
-const Fault faults[] = {
+const Fault battery_status_list[] = {
     {"battery-status-pack", "battery_status", Stage::battery_status,
      "takes the pack's voltage for a cell's", "always", "a missing factor",
      [](FaultyLaw& law) {
@@ -260,6 +260,6 @@ const Fault faults[] = {
 
 }  // namespace
 
-std::span<const Fault> battery_status_faults() { return faults; }
+std::span<const Fault> battery_status_faults() { return battery_status_list; }
 
 }  // namespace attest::faults

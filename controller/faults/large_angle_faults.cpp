@@ -29,7 +29,7 @@ Vector imaginary(const Quaternion& q) { return reference::imaginary_part(q); }
 
 Vector shorter(const Quaternion& q) { return imaginary(q) * (q.w() >= 0 ? 2.0f : -2.0f); }
 
-const Fault faults[] = {
+const Fault large_angle_list[] = {
     {"blend-missing", "large_angle", Stage::blend, "never blends with the shortest rotation",
      "a tilt error beyond 90 deg", "a missing step",
      [](FaultyLaw& law) { law.attitude.is_upset = [](float) { return false; }; }},
@@ -185,6 +185,6 @@ const Fault faults[] = {
 
 }  // namespace
 
-std::span<const Fault> large_angle_faults() { return faults; }
+std::span<const Fault> large_angle_faults() { return large_angle_list; }
 
 }  // namespace attest::faults

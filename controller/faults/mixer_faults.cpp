@@ -56,7 +56,7 @@ void change_thrust_given_up(FaultyLaw& law, Thrust given_up) {
   });
 }
 
-const Fault faults[] = {
+const Fault mixer_list[] = {
     {"mixer-unclamped", "mixer", Stage::mixer_scaling, "takes roll, pitch and yaw beyond 1",
      "controls beyond 1", "missing clamp",
      [](FaultyLaw& law) {
@@ -233,6 +233,6 @@ const Fault faults[] = {
 
 }  // namespace
 
-std::span<const Fault> mixer_faults() { return faults; }
+std::span<const Fault> mixer_faults() { return mixer_list; }
 
 }  // namespace attest::faults

@@ -19,7 +19,7 @@ void change_fit(FaultyLaw& law, Change change) {
   };
 }
 
-const Fault faults[] = {
+const Fault mixer_fit_list[] = {
     {"mixer-no-fit", "mixer", Stage::mixer_fit, "clips what is beyond the limits",
      "roll or pitch that saturate", "a missing step",
      [](FaultyLaw& law) { law.mixer.fit = [](float, float, float) { return Fit{}; }; }},
@@ -142,6 +142,6 @@ const Fault faults[] = {
 
 }  // namespace
 
-std::span<const Fault> mixer_fit_faults() { return faults; }
+std::span<const Fault> mixer_fit_faults() { return mixer_fit_list; }
 
 }  // namespace attest::faults

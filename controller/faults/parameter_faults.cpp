@@ -45,7 +45,7 @@ void change_gains(FaultyLaw& law, Change change) {
 constexpr const char* wrong_name = "a wrong parameter";
 constexpr const char* not_read = "a missing parameter";
 
-const Fault faults[] = {
+const Fault parameter_list[] = {
     {"param-at-start-only", "parameters", Stage::parameters, "reads parameters once",
      "a parameter that changes in flight", "a latch",
      [](FaultyLaw& law) {
@@ -228,6 +228,6 @@ const Fault faults[] = {
 
 }  // namespace
 
-std::span<const Fault> parameter_faults() { return faults; }
+std::span<const Fault> parameter_faults() { return parameter_list; }
 
 }  // namespace attest::faults

@@ -19,7 +19,7 @@ void change_controls(FaultyLaw& law, Change change) {
 
 using V = const Vector&;
 
-const Fault faults[] = {
+const Fault rate_list[] = {
     {"p-missing", "rates", Stage::p, "has no P term", "a rate error", "a missing term",
      [](FaultyLaw& law) { change_control(law, [](V, V d, V i, V ff) { return d + i + ff; }); }},
     {"d-missing", "rates", Stage::d, "has no D term", "rates that change", "a missing term",
@@ -230,6 +230,6 @@ const Fault faults[] = {
 
 }  // namespace
 
-std::span<const Fault> rate_faults() { return faults; }
+std::span<const Fault> rate_faults() { return rate_list; }
 
 }  // namespace attest::faults

@@ -8,7 +8,7 @@
 namespace attest::faults {
 namespace {
 
-const Fault faults[] = {
+const Fault robustness_list[] = {
     {"guard-missing", "robustness", Stage::guard, "publishes NaN and infinity", "a NaN rate",
      "NaN handling", [](FaultyLaw& law) { law.step.guarded = [](float value) { return value; }; }},
     {"guard-zero-only", "robustness", Stage::guard, "tests `x ? x : 0` for isfinite(x)",
@@ -131,6 +131,6 @@ const Fault faults[] = {
 
 }  // namespace
 
-std::span<const Fault> robustness_faults() { return faults; }
+std::span<const Fault> robustness_faults() { return robustness_list; }
 
 }  // namespace attest::faults

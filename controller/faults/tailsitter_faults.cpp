@@ -27,7 +27,7 @@ void change_optimal(FaultyLaw& law, Change change) {
   };
 }
 
-const Fault faults[] = {
+const Fault tailsitter_list[] = {
     {"recovery-never", "tailsitter", Stage::recovery, "flies the quaternion law at every tilt",
      "a tilt beyond 30 deg", "a missing step",
      [](FaultyLaw& law) { law.recovery.latch = [](bool, float) { return false; }; }},
@@ -141,6 +141,6 @@ const Fault faults[] = {
 
 }  // namespace
 
-std::span<const Fault> tailsitter_faults() { return faults; }
+std::span<const Fault> tailsitter_faults() { return tailsitter_list; }
 
 }  // namespace attest::faults

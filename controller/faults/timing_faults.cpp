@@ -17,7 +17,7 @@ void change_step(FaultyLaw& law, Step step) {
   law.step.step_time = step;
 }
 
-const Fault faults[] = {
+const Fault timing_list[] = {
     {"dt-no-minimum", "timing", Stage::timing, "does not bound dt from below", "rates above 500 Hz",
      "missing clamp",
      [](FaultyLaw& law) {
@@ -146,6 +146,6 @@ const Fault faults[] = {
 
 }  // namespace
 
-std::span<const Fault> timing_faults() { return faults; }
+std::span<const Fault> timing_faults() { return timing_list; }
 
 }  // namespace attest::faults

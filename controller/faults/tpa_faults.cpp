@@ -21,7 +21,7 @@ void change_attenuation(FaultyLaw& law, Factor factor) {
 
 float unit(float value) { return std::clamp(value, 0.0f, 1.0f); }
 
-const Fault faults[] = {
+const Fault tpa_list[] = {
     {"tpa-missing", "tpa", Stage::tpa, "does not attenuate P", "thrust above the break",
      "a missing factor",
      [](FaultyLaw& law) { change_attenuation(law, [](float, float, float) { return 1.0f; }); }},
@@ -123,6 +123,6 @@ const Fault faults[] = {
 
 }  // namespace
 
-std::span<const Fault> tpa_faults() { return faults; }
+std::span<const Fault> tpa_faults() { return tpa_list; }
 
 }  // namespace attest::faults

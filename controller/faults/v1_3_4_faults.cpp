@@ -77,7 +77,7 @@ void scale_by_battery(FaultyLaw& law) {
   });
 }
 
-const Fault faults[] = {
+const Fault v1_3_4_list[] = {
     {"v1.3.4-ff-of-setpoint",
      "rates",
      Stage::ff,
@@ -184,6 +184,6 @@ const Fault faults[] = {
 
 }  // namespace
 
-std::span<const Fault> v1_3_4_faults() { return faults; }
+std::span<const Fault> v1_3_4_faults() { return v1_3_4_list; }
 
 }  // namespace attest::faults

@@ -31,7 +31,7 @@ void limit_to(FaultyLaw& law, float (*bound)(const AttitudeGains&)) {
   };
 }
 
-const Fault faults[] = {
+const Fault weathervane_list[] = {
     {"vane-missing", "weathervane", Stage::weathervane, "has no weather-vane",
      "weather-vaning with a yaw error", "missing weather-vane",
      [](FaultyLaw& law) { change_weathervane(law, [](bool, const Setpoint&) { return false; }); }},
@@ -132,6 +132,6 @@ const Fault faults[] = {
 
 }  // namespace
 
-std::span<const Fault> weathervane_faults() { return faults; }
+std::span<const Fault> weathervane_faults() { return weathervane_list; }
 
 }  // namespace attest::faults

@@ -32,7 +32,7 @@ void change_yaw_error(FaultyLaw& law, Change change) {
   };
 }
 
-const Fault faults[] = {
+const Fault yaw_list[] = {
     {"yaw-dropped", "attitude", Stage::yaw, "leaves the yaw error out", "any yaw error",
      "a missing term",
      [](FaultyLaw& law) { change_yaw_error(law, [](float, float) { return 0.0f; }); }},
@@ -160,6 +160,6 @@ const Fault faults[] = {
 
 }  // namespace
 
-std::span<const Fault> yaw_faults() { return faults; }
+std::span<const Fault> yaw_faults() { return yaw_list; }
 
 }  // namespace attest::faults

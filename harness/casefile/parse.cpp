@@ -171,6 +171,13 @@ void parse_profiles(const TomlTable& root, const std::string& folder, Case& pars
   }
   const std::set<std::string> distinct(parsed.profiles.begin(), parsed.profiles.end());
   if (distinct.size() != parsed.profiles.size()) root.error(key, "names a profile twice");
+  // Of a case in a folder of a suite's own, the ports say whether they support its profile.
+  for (auto profile = parsed.profiles.begin() + 1; profile != parsed.profiles.end(); ++profile) {
+    if (reference::profile_from_name(*profile)) continue;
+    const auto names = reference::profile_names();
+    root.error(key, fmt::format("`{}` is no profile{}", *profile,
+                                suggestion(*profile, {names.begin(), names.end()})));
+  }
 }
 
 // The place of a case is its name: cases/<profile>/<group>/<name>.toml.

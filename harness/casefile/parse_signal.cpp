@@ -29,11 +29,11 @@ std::optional<Spelled> spelled(const TomlTable& table, const std::string& first,
 
 // As many ticks as the longest case has, and as many seconds as they last at the slowest rate: all
 // times stay inside 64 bits of nanoseconds.
-constexpr double max_ticks = 1e6;
-constexpr double max_seconds = 1e9;
+constexpr double longest_in_ticks = 1e6;
+constexpr double longest_in_seconds = 1e9;
 
 Span checked_span(const TomlTable& table, const Spelled& key, double amount) {
-  const double limit = key.first ? max_ticks : max_seconds;
+  const double limit = key.first ? longest_in_ticks : longest_in_seconds;
   if (!(amount >= 0 && amount <= limit)) {
     table.error(key.key, fmt::format("must be a time from 0 up to {:.0f}", limit));
     amount = amount > limit ? limit : 0;

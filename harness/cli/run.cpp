@@ -58,7 +58,7 @@ Result<void> write_reports(std::vector<ReportFile>& reports, const RunResult& ru
 }
 
 // What is to be run, complete and checked, before the first case runs.
-struct Plan {
+struct RunPlan {
   RunResult run;
   std::optional<ExpectedFailures> expected;
   std::vector<SelectedCase> cases;
@@ -67,7 +67,7 @@ struct Plan {
 };
 
 // The cases that are selected, each at its own times.
-Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Plan& plan) {
+Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, RunPlan& plan) {
   auto cases = options.select.cases_in(suite.cases());
   if (!cases) return tl::unexpected(cases.error());
   std::set<Rate> rates;
@@ -86,7 +86,7 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Pla
 }
 
 // The one flight of a recorded timing.
-Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, Plan& plan) {
+Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, RunPlan& plan) {
   if (!options.select.selects_all()) return fail("--timing says what to run; select nothing else");
   auto flight = find_timed_flight(options.timing, suite);
   if (!flight) return tl::unexpected(flight.error());
@@ -98,13 +98,13 @@ Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, Pla
   return {};
 }
 
-Result<Plan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
+Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
   auto level = parse_level(options.level);
   if (!level) return tl::unexpected(level.error());
   auto port = describe_port(options.worker.port, {}, options.worker.timeout_s);
   if (!port) return tl::unexpected(port.error());
 
-  Plan plan;
+  RunPlan plan;
   if (!options.expected_failures.empty()) {
     auto expected = ExpectedFailures::read(options.expected_failures);
     if (!expected) return tl::unexpected(expected.error());
@@ -127,7 +127,7 @@ Result<Plan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
 }
 
 // What the failures look like; nothing that goes wrong here spoils the verdicts that are there.
-std::optional<Diagnosis> diagnosed(const Plan& plan, const WorkerOptions& options) {
+std::optional<Diagnosis> diagnosed(const RunPlan& plan, const WorkerOptions& options) {
   WorkerOptions worker = options;
   worker.on_result = [](const CaseResult&) {};
   worker.fail_fast = false;

@@ -12,7 +12,7 @@
 namespace attest::cli {
 namespace {
 
-struct Plan {
+struct SchedulePlan {
   TaskSet set;
   std::vector<std::vector<Job>> jobs;
   Batches batches;  // the flight in time, and as scheduled
@@ -21,7 +21,7 @@ struct Plan {
   const std::vector<Job>& unit() const { return jobs[set.unit]; }
 };
 
-Result<Plan> make_plan(const ScheduleOptions& options, const SuiteFolder& suite) {
+Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder& suite) {
   auto set = read_task_set(options.tasks);
   if (!set) return tl::unexpected(set.error());
   const auto chosen = choose_flight(options.case_name, options.vehicle, options.plant, suite);
@@ -36,9 +36,8 @@ Result<Plan> make_plan(const ScheduleOptions& options, const SuiteFolder& suite)
   if (!jobs) return fail_at(options.tasks, jobs.error().message);
   const std::vector<Job>* estimator = set->estimator ? &(*jobs)[*set->estimator] : nullptr;
 
-  Plan plan;
-  plan.scheduled = {the_case.id(), the_case.sha256, setup,
-                    static_cast<double>(duration.count()) * 1e-9,
+  SchedulePlan plan;
+  plan.scheduled = {the_case.id(), the_case.sha256, setup, in_seconds(duration),
                     scheduled_timing((*jobs)[set->unit], estimator)};
   TimingFile in_time = plan.scheduled;
   in_time.ticks = case_timing(the_case, setup.rate);

@@ -39,7 +39,7 @@ Result<LiveOptions> live_options(const StressOptions& options) {
   return live;
 }
 
-struct Plan {
+struct StressPlan {
   std::vector<StressTask> tasks;
   LoadKind load = LoadKind::cpu;
   PortDescription port;
@@ -51,7 +51,7 @@ void set_budget(const StressOptions& options, RealtimeBudget& budget) {
   if (options.execution_us) budget.execution_us = *options.execution_us;
 }
 
-Result<Plan> make_plan(const StressOptions& options, const SuiteFolder& suite) {
+Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& suite) {
   auto distinct = check_distinct({options.json, options.junit, options.record_timing});
   if (!distinct) return tl::unexpected(distinct.error());
   auto chosen = choose_flight(options.case_name, options.vehicle, options.plant, suite);
@@ -69,7 +69,7 @@ Result<Plan> make_plan(const StressOptions& options, const SuiteFolder& suite) {
   Case& the_case = chosen->the_case;
   the_case.duration = {options.duration_s, Span::In::seconds};
   set_budget(options, the_case.flight->realtime);
-  Plan plan;
+  StressPlan plan;
   plan.load = *load;
   plan.port = std::move(*port);
   for (const std::string& text : options.rates) {
@@ -91,10 +91,10 @@ class StressProgressLine {
   void show(const StressTask& task, const StressProgress& now) {
     if (!visible_) return;
     const std::string what =
-        now.idle ? "the machine alone"
-                 : fmt::format("{:.0f} of {:g} s, {} deadlines, {} missed",
-                               static_cast<double>(now.live.time.count()) * 1e-9,
-                               task.the_case.duration.amount, now.live.deadlines, now.live.missed);
+        now.idle
+            ? "the machine alone"
+            : fmt::format("{:.0f} of {:g} s, {} deadlines, {} missed", in_seconds(now.live.time),
+                          task.the_case.duration.amount, now.live.deadlines, now.live.missed);
     const bool terminal = style_.width > 0;
     fmt::print(stderr, "{}{} Hz: {}{}", terminal ? "\r\x1b[K" : "", task.setup.rate.to_string(),
                what, terminal ? "" : "\n");
@@ -135,7 +135,7 @@ std::optional<Cyclictest> idle_by_cyclictest(const StressTask& task) {
 }
 
 // Each rate in turn: cyclictest, the idle machine, the flight.
-Result<void> run_all(const Plan& plan, const StressOptions& options, const Globals& globals,
+Result<void> run_all(const StressPlan& plan, const StressOptions& options, const Globals& globals,
                      StressRun& run) {
   const TerminalStyle style = terminal_style(stdout);
   StressProgressLine line(!globals.quiet, terminal_style(stderr));

@@ -15,7 +15,7 @@
 namespace attest::cli {
 namespace {
 
-struct Plan {
+struct SweepPlan {
   Case the_case;
   std::vector<Rate> rates;
   Batches batches;
@@ -38,10 +38,10 @@ Result<std::vector<Flyer>> flyers_of(const Case& the_case, const SweepOptions& o
                   the_case.id()));
 }
 
-Result<Plan> make_plan(const SweepOptions& options, const SuiteFolder& suite) {
+Result<SweepPlan> make_plan(const SweepOptions& options, const SuiteFolder& suite) {
   auto the_case = find_flight(options.case_name, suite);
   if (!the_case) return tl::unexpected(the_case.error());
-  Plan plan;
+  SweepPlan plan;
   for (const std::string& text : options.rates) {
     const auto rate = Rate::parse(text);
     if (!rate) return tl::unexpected(rate.error());

@@ -9,6 +9,9 @@ namespace attest {
 // int64 on every platform we build for: +-292 years.
 using Nanoseconds = std::chrono::nanoseconds;
 
+// For printing, and for what computes in seconds.
+constexpr double in_seconds(Nanoseconds time) { return static_cast<double>(time.count()) * 1e-9; }
+
 // The `timestamp` of a sample: microseconds, rounded down, as the firmware's clock gives them.
 constexpr std::uint64_t timestamp_us(Nanoseconds time) {
   return static_cast<std::uint64_t>(time.count() / 1000);

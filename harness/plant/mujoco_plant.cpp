@@ -15,7 +15,6 @@ namespace attest {
 namespace {
 
 constexpr int body = 1;  // 0 is the world
-constexpr double ns_to_s = 1e-9;
 
 Vector3 vector_at(const mjtNum* numbers) { return {numbers[0], numbers[1], numbers[2]}; }
 
@@ -210,7 +209,7 @@ class MujocoPlant final : public Plant {
     Nanoseconds next = physics_.tick(steps_ + 1);
     if (next <= to) ++steps_;
     next = std::min(next, to);
-    const double h = static_cast<double>((next - now_).count()) * ns_to_s;
+    const double h = in_seconds(next - now_);
     model_->opt.timestep = h;
     const double power_before = power_ratio();
     try {

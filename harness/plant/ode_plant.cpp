@@ -13,8 +13,6 @@
 namespace attest {
 namespace {
 
-constexpr double ns_to_s = 1e-9;
-
 // Where each part of the state begins.
 enum Part : int { position = 0, velocity = 3, attitude = 6, rate = 10, used = 13, rotors = 14 };
 
@@ -184,9 +182,9 @@ class ErkPlant final : public OdePlant {
 
   std::optional<Divergence> advance(Nanoseconds to) override {
     if (lost_ || to <= now_) return lost_;
-    const double end = static_cast<double>(to.count()) * ns_to_s;
+    const double end = in_seconds(to);
     // The method's first stage is kept from the last step, where the inputs were others.
-    if (stale_) ERKStepReset(integrator_, static_cast<double>(now_.count()) * ns_to_s, y_);
+    if (stale_) ERKStepReset(integrator_, in_seconds(now_), y_);
     stale_ = false;
     ERKStepSetStopTime(integrator_, end);
     double reached = 0;

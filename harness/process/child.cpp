@@ -24,7 +24,7 @@ namespace attest {
 namespace {
 
 // A port that prints at every step must not fill the machine's memory.
-constexpr rlim_t max_output_bytes = 16u << 20;
+constexpr rlim_t max_file_bytes = 16u << 20;
 
 void write_all(int descriptor, std::string_view bytes) {
   while (!bytes.empty()) {
@@ -39,7 +39,7 @@ void write_all(int descriptor, std::string_view bytes) {
 void isolate(int output) {
   rlimit files{};
   ::getrlimit(RLIMIT_FSIZE, &files);
-  files.rlim_cur = std::min(files.rlim_max, max_output_bytes);
+  files.rlim_cur = std::min(files.rlim_max, max_file_bytes);
   ::setrlimit(RLIMIT_FSIZE, &files);
   ::signal(SIGXFSZ, SIG_IGN);  // writing past the limit fails, it does not kill
   if (const int nothing = ::open("/dev/null", O_RDONLY); nothing >= 0) {

@@ -90,7 +90,7 @@ std::optional<Cyclictest> run_cyclictest(const Rate& rate, Nanoseconds duration,
   } else {
     command.insert(command.end(), {"--policy=other"});
   }
-  const double duration_s = static_cast<double>(duration.count()) * 1e-9;
+  const double duration_s = in_seconds(duration);
   const auto json = output_of(command, {duration_s + patience_s, stop});
   return json ? parse_cyclictest(*json) : std::nullopt;
 }

@@ -11,6 +11,7 @@
 #include "harness/report/diagnosis_text.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/text.hpp"
+#include "harness/report/xml.hpp"
 
 namespace attest {
 namespace {
@@ -67,10 +68,6 @@ struct Counts {
   }
 };
 
-void set(pugi::xml_node node, const char* name, const std::string& value) {
-  node.append_attribute(name).set_value(value.c_str());
-}
-
 // Readers take digits and a point only, no exponent.
 std::string seconds(double time_s) {
   return fmt::format("{:.6f}", std::isfinite(time_s) && time_s > 0 ? time_s : 0.0);
@@ -79,9 +76,9 @@ std::string seconds(double time_s) {
 double usable(double elapsed_s) { return std::isfinite(elapsed_s) ? std::max(elapsed_s, 0.0) : 0; }
 
 void set_counts(pugi::xml_node node, const Counts& counts) {
-  set(node, "tests", fmt::to_string(counts.tests));
-  set(node, "failures", fmt::to_string(counts.failures));
-  set(node, "errors", fmt::to_string(counts.errors));
+  set_attribute(node, "tests", fmt::to_string(counts.tests));
+  set_attribute(node, "failures", fmt::to_string(counts.failures));
+  set_attribute(node, "errors", fmt::to_string(counts.errors));
 }
 
 void add_properties(pugi::xml_node suite, const RunResult& run) {
@@ -100,8 +97,8 @@ void add_properties(pugi::xml_node suite, const RunResult& run) {
   };
   for (const auto& [name, value] : all) {
     pugi::xml_node property = properties.append_child("property");
-    set(property, "name", name);
-    set(property, "value", one_line(value));
+    set_attribute(property, "name", name);
+    set_attribute(property, "value", one_line(value));
   }
 }
 
@@ -109,17 +106,17 @@ void add_properties(pugi::xml_node suite, const RunResult& run) {
 void add_outcome(pugi::xml_node test, Outcome outcome, std::string_view type,
                  const std::string& message, const std::string& content) {
   pugi::xml_node node = test.append_child(element_of(outcome));
-  set(node, "type", std::string(type));
-  set(node, "message", message);
+  set_attribute(node, "type", std::string(type));
+  set_attribute(node, "message", message);
   node.text().set(content.c_str());
 }
 
 pugi::xml_node add_test(pugi::xml_node suite, const std::string& classname, const std::string& name,
                         double elapsed_s) {
   pugi::xml_node test = suite.append_child("testcase");
-  set(test, "classname", classname);
-  set(test, "name", name);
-  set(test, "time", seconds(elapsed_s));
+  set_attribute(test, "classname", classname);
+  set_attribute(test, "name", name);
+  set_attribute(test, "time", seconds(elapsed_s));
   return test;
 }
 
@@ -147,10 +144,10 @@ void add_result(pugi::xml_node suite, const CaseResult& result, const RunResult&
 pugi::xml_node add_suite(pugi::xml_node root, const std::string& name, const Counts& counts,
                          const RunResult& run) {
   pugi::xml_node suite = root.append_child("testsuite");
-  set(suite, "name", name);
+  set_attribute(suite, "name", name);
   set_counts(suite, counts);
-  set(suite, "skipped", fmt::to_string(counts.skipped));
-  set(suite, "time", seconds(counts.time_s));
+  set_attribute(suite, "skipped", fmt::to_string(counts.skipped));
+  set_attribute(suite, "time", seconds(counts.time_s));
   add_properties(suite, run);
   return suite;
 }
@@ -206,13 +203,13 @@ std::string junit_report(const RunResult& run) {
 
   pugi::xml_document document;
   pugi::xml_node declaration = document.append_child(pugi::node_declaration);
-  set(declaration, "version", "1.0");
-  set(declaration, "encoding", "UTF-8");
+  set_attribute(declaration, "version", "1.0");
+  set_attribute(declaration, "encoding", "UTF-8");
   pugi::xml_node root = document.append_child("testsuites");
-  set(root, "name", "attest");
+  set_attribute(root, "name", "attest");
   // No `skipped` here: the schema of Jenkins' xUnit plugin has none and rejects the file.
   set_counts(root, all);
-  set(root, "time", seconds(all.time_s));
+  set_attribute(root, "time", seconds(all.time_s));
   for (const Suite& suite : suites) {
     const pugi::xml_node node = add_suite(root, suite.name, suite.counts, run);
     for (const CaseResult* result : suite.results) add_result(node, *result, run);

@@ -9,6 +9,7 @@
 #include <pugixml.hpp>
 
 #include "harness/report/text.hpp"
+#include "harness/report/xml.hpp"
 
 namespace attest {
 namespace {
@@ -109,23 +110,19 @@ std::string profile_of(const RunResult& run) {
   return last;
 }
 
-void set(pugi::xml_node node, const char* name, const std::string& value) {
-  node.append_attribute(name).set_value(value.c_str());
-}
-
 void add_box(pugi::xml_node svg, int x, int width, const char* colour, const std::string& text) {
   pugi::xml_node box = svg.append_child("rect");
-  set(box, "x", fmt::to_string(x));
-  set(box, "width", fmt::to_string(width));
-  set(box, "height", "20");
-  set(box, "fill", colour);
+  set_attribute(box, "x", fmt::to_string(x));
+  set_attribute(box, "width", fmt::to_string(width));
+  set_attribute(box, "height", "20");
+  set_attribute(box, "fill", colour);
   pugi::xml_node words = svg.append_child("text");
-  set(words, "x", fmt::to_string(x + width / 2));
-  set(words, "y", "14");
-  set(words, "fill", "#fff");
-  set(words, "text-anchor", "middle");
-  set(words, "font-family", "Verdana,DejaVu Sans,sans-serif");
-  set(words, "font-size", "11");
+  set_attribute(words, "x", fmt::to_string(x + width / 2));
+  set_attribute(words, "y", "14");
+  set_attribute(words, "fill", "#fff");
+  set_attribute(words, "text-anchor", "middle");
+  set_attribute(words, "font-family", "Verdana,DejaVu Sans,sans-serif");
+  set_attribute(words, "font-size", "11");
   words.text().set(text.c_str());
 }
 
@@ -153,11 +150,11 @@ std::string badge(const RunResult& run) {
   const auto width = [](const std::string& text) { return 7 * static_cast<int>(text.size()) + 10; };
   pugi::xml_document document;
   pugi::xml_node svg = document.append_child("svg");
-  set(svg, "xmlns", "http://www.w3.org/2000/svg");
-  set(svg, "width", fmt::to_string(width(left) + width(right)));
-  set(svg, "height", "20");
-  set(svg, "role", "img");
-  set(svg, "aria-label", left + ": " + right);
+  set_attribute(svg, "xmlns", "http://www.w3.org/2000/svg");
+  set_attribute(svg, "width", fmt::to_string(width(left) + width(right)));
+  set_attribute(svg, "height", "20");
+  set_attribute(svg, "role", "img");
+  set_attribute(svg, "aria-label", left + ": " + right);
   svg.append_child("title").text().set((left + ": " + conformance_statement(run)).c_str());
   add_box(svg, 0, width(left), "#555", left);
   add_box(svg, width(left), width(right), good ? "#3a7d34" : "#b3372f", right);

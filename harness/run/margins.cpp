@@ -13,11 +13,10 @@ namespace {
 
 using reference::AttitudeGains;
 using reference::Matrix3;
-using reference::MotorLimits;
 using reference::Quaternion;
 using reference::Topics;
-using Vector = reference::Vector3<double>;
-using Matrix = Matrix3<double>;
+using Vector3d = reference::Vector3<double>;
+using Matrix3d = Matrix3<double>;
 using Tilt = reference::TiltError<double>;
 
 // What the stages note at the current tick.
@@ -54,7 +53,7 @@ struct Attitude : reference::AttitudeStages<double> {
   using Law = reference::AttitudeStages<double>;
   Notes* notes;
 
-  Tilt tilt_error(const Matrix& R_WB, const Matrix& R_WD) const {
+  Tilt tilt_error(const Matrix3d& R_WB, const Matrix3d& R_WD) const {
     const Tilt tilt = Law::tilt_error(R_WB, R_WD);
     if (tilt.sine > 0) {
       notes->note(Decision::tilt_axis, std::numbers::pi - std::atan2(tilt.sine, tilt.cosine));
@@ -63,7 +62,7 @@ struct Attitude : reference::AttitudeStages<double> {
     }
     return tilt;
   }
-  double yaw_error(const Vector& nose, const Matrix& R_WD, double weight) const {
+  double yaw_error(const Vector3d& nose, const Matrix3d& R_WD, double weight) const {
     const double error = Law::yaw_error(nose, R_WD, weight);
     // Where yaw has next to no weight a whole turn of it is within tolerance.
     constexpr double some = 1e-6;
@@ -72,7 +71,7 @@ struct Attitude : reference::AttitudeStages<double> {
     }
     return error;
   }
-  Vector direct_error(const Matrix& R_WB, const Matrix& R_WD) const {
+  Vector3d direct_error(const Matrix3d& R_WB, const Matrix3d& R_WD) const {
     const auto q = reference::quaternion_of(reference::ordered::transpose_product(R_WB, R_WD));
     notes->note(Decision::shorter_rotation, std::abs(q.w()));
     return Law::direct_error(R_WB, R_WD);
@@ -82,11 +81,11 @@ struct Attitude : reference::AttitudeStages<double> {
 // How far `value` is inside (-bound, bound): negative when it is outside.
 double inside(double value, double bound) { return bound - std::abs(value); }
 
-struct Rate : reference::RateStages<double> {
+struct RateMargins : reference::RateStages<double> {
   using Law = reference::RateStages<double>;
   Notes* notes;
 
-  bool may_integrate(double thrust_sp, const MotorLimits& limits) const {
+  bool may_integrate(double thrust_sp, const reference::MotorLimits& limits) const {
     if (!limits.lower && !limits.upper) {
       notes->note(Decision::thrust_gate, std::abs(thrust_sp - double(reference::takeoff_thrust)));
     }
@@ -117,8 +116,8 @@ struct Recovery : reference::RecoveryStages<double> {
     notes->note(Decision::recovery_latch, std::abs(tilt_rad - threshold));
     return Law::latch(recovering, tilt_rad);
   }
-  Vector quaternion_rates(const Quaternion<double>& q_WB, const Quaternion<double>& q_WD,
-                          const AttitudeGains<double>& gains) const {
+  Vector3d quaternion_rates(const Quaternion<double>& q_WB, const Quaternion<double>& q_WD,
+                            const AttitudeGains<double>& gains) const {
     const Quaternion<double> q = reference::product(reference::conjugate(q_WD), q_WB);
     notes->note(Decision::recovery_rotation, std::abs(q.w()));
     return Law::quaternion_rates(q_WB, q_WD, gains);
@@ -128,7 +127,7 @@ struct Recovery : reference::RecoveryStages<double> {
 struct NotingLaw {
   Step step;
   Attitude attitude;
-  Rate rate;
+  RateMargins rate;
   Recovery recovery;
 
   explicit NotingLaw(Notes* notes)

@@ -17,25 +17,25 @@
 namespace attest {
 namespace {
 
-using Vector = reference::Vector3<float>;
-using Matrix = reference::Matrix3<float>;
+using Vector3f = reference::Vector3<float>;
+using Matrix3f = reference::Matrix3<float>;
 
 struct OtherSide : reference::AttitudeStages<float> {
   using Law = reference::AttitudeStages<float>;
   EitherSide sides;
 
-  float yaw_error(const Vector& nose, const Matrix& R_WD, float weight) const {
+  float yaw_error(const Vector3f& nose, const Matrix3f& R_WD, float weight) const {
     const float error = Law::yaw_error(nose, R_WD, weight);
     const auto margin = static_cast<float>(least_margin(Decision::yaw_wrap));
     const float from_wrap = std::numbers::pi_v<float> - std::abs(error / weight);
     return sides.yaw_wrap && from_wrap < margin ? -error : error;
   }
-  Vector direct_error(const Matrix& R_WB, const Matrix& R_WD) const {
-    const Vector error = Law::direct_error(R_WB, R_WD);
+  Vector3f direct_error(const Matrix3f& R_WB, const Matrix3f& R_WD) const {
+    const Vector3f error = Law::direct_error(R_WB, R_WD);
     const auto q = reference::quaternion_of(reference::ordered::transpose_product(R_WB, R_WD));
     const auto margin = static_cast<float>(least_margin(Decision::shorter_rotation));
     const bool is_near = sides.shorter_rotation && std::abs(q.w()) < margin;
-    return is_near ? Vector(-error) : error;
+    return is_near ? Vector3f(-error) : error;
   }
 };
 

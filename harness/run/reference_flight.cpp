@@ -26,8 +26,7 @@ Result<Trace> flown_by(Port& port, const Case& the_case, const Setup& setup,
   if (flown->fault) return wrong("the reference: " + flown->fault->what);
   if (flown->divergence) {
     return wrong(fmt::format("the reference loses the vehicle at {:.3f} s: {}",
-                             static_cast<double>(flown->divergence->at.count()) * 1e-9,
-                             flown->divergence->what));
+                             in_seconds(flown->divergence->at), flown->divergence->what));
   }
   return std::move(flown->trace);
 }

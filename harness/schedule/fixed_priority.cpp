@@ -140,7 +140,7 @@ double utilisation(const std::vector<ScheduledTask>& tasks, int cpu) {
   double sum = 0;
   for (const ScheduledTask& task : tasks) {
     if (task.cpu != cpu) continue;
-    sum += static_cast<double>(task.worst_execution().count()) * 1e-9 * task.rate.hertz();
+    sum += in_seconds(task.worst_execution()) * task.rate.hertz();
   }
   return sum;
 }

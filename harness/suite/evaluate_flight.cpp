@@ -109,8 +109,7 @@ void judge_flight(const Case& the_case, const Flown& flown, const ReferenceFligh
 }  // namespace
 
 std::string how_it_ended(const Flown& flown) {
-  return fmt::format("the flight ended at {:.3f} s (tick {}): {}",
-                     static_cast<double>(flown.divergence->at.count()) * 1e-9,
+  return fmt::format("the flight ended at {:.3f} s (tick {}): {}", in_seconds(flown.divergence->at),
                      flown.trace.samples.size(), flown.divergence->what);
 }
 

@@ -178,7 +178,7 @@ Result<StressResult> stress_here(const StressTask& task, Port& port,
     }
   }
   result.ticks = stress.ticks;
-  result.elapsed_s = static_cast<double>(stress.wall.count()) * 1e-9;
+  result.elapsed_s = in_seconds(stress.wall);
   if (flight->unit.fault) {
     judge(*flight->unit.fault, result);
     return stress;
@@ -190,8 +190,8 @@ Result<StressResult> stress_here(const StressTask& task, Port& port,
   }
   if (const auto& lost = flight->plant.divergence; lost && result.verdict == Verdict::pass) {
     result.verdict = Verdict::fail;
-    result.reason = fmt::format("the flight ended at {:.3f} s: {}",
-                                static_cast<double>(lost->at.count()) * 1e-9, lost->what);
+    result.reason =
+        fmt::format("the flight ended at {:.3f} s: {}", in_seconds(lost->at), lost->what);
   }
   judge_timing(budget, stress);
   return stress;

@@ -109,8 +109,8 @@ class Listener {
   }
 
   std::string how_it_hangs() const {
-    const double limit_s = static_cast<double>(task_.timeout.count()) * 1e-9;
-    const double flown_s = static_cast<double>(flown_.count()) * 1e-9;
+    const double limit_s = in_seconds(task_.timeout);
+    const double flown_s = in_seconds(flown_);
     return is_made_
                ? fmt::format("the port did not come back {:.3f} s into the flight, within {:g} s",
                              flown_s, limit_s)

@@ -17,7 +17,7 @@ struct Named {
   std::string_view channel;
 };
 
-constexpr std::array<Named, 16> table = {{
+constexpr std::array<Named, 16> mixer_columns = {{
     {"roll", "in/actuator_controls_0.control[0]"},
     {"pitch", "in/actuator_controls_0.control[1]"},
     {"yaw", "in/actuator_controls_0.control[2]"},
@@ -42,16 +42,16 @@ bool is_out(std::string_view name) { return name.starts_with("out["); }
 std::vector<Named> columns_for(std::size_t rotors) {
   std::vector<Named> columns;
   std::size_t outs = 0;
-  for (const Named& named : table) {
+  for (const Named& named : mixer_columns) {
     if (!is_out(named.name) || outs++ < rotors) columns.push_back(named);
   }
   return columns;
 }
 
 const Named* find(std::string_view name) {
-  const auto found = std::find_if(table.begin(), table.end(),
+  const auto found = std::find_if(mixer_columns.begin(), mixer_columns.end(),
                                   [&](const Named& named) { return named.name == name; });
-  return found == table.end() ? nullptr : &*found;
+  return found == mixer_columns.end() ? nullptr : &*found;
 }
 
 Result<std::vector<CsvColumn>> columns_of(const CsvRows& rows, ChannelSet& present) {
@@ -61,7 +61,7 @@ Result<std::vector<CsvColumn>> columns_of(const CsvRows& rows, ChannelSet& prese
     const Named* named = find(name);
     if (named == nullptr) {
       std::vector<std::string> names;
-      for (const Named& known : table) names.emplace_back(known.name);
+      for (const Named& known : mixer_columns) names.emplace_back(known.name);
       return rows.fail_at_name(i, fmt::format("unknown column {} in a mixer trace{}",
                                               in_backquotes(name), suggestion(name, names)));
     }

@@ -8,10 +8,11 @@
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
+#include "tests/harness/times.hpp"
+
 namespace attest {
 namespace {
 
-constexpr Nanoseconds ms(std::int64_t count) { return std::chrono::milliseconds(count); }
 constexpr Span in_ticks(double amount) { return {amount, Span::In::ticks}; }
 constexpr Span in_seconds(double amount) { return {amount, Span::In::seconds}; }
 

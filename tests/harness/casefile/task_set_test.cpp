@@ -6,14 +6,13 @@
 
 #include "harness/core/file.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
+#include "tests/harness/times.hpp"
 
 namespace attest {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-constexpr Nanoseconds us(std::int64_t count) { return std::chrono::microseconds(count); }
 
 constexpr const char* unit = "[task.unit]\nrate_hz = 250\nexecution_us = 76\npriority = 2\n";
 

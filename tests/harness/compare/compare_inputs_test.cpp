@@ -1,4 +1,3 @@
-#include <limits>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -11,8 +10,6 @@ namespace attest {
 namespace {
 
 using testing::Optional;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(FirstInputDifference, ThereIsNoneBetweenTheSame) {
   const Trace trace = sample_trace(3);

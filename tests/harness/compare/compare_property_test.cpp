@@ -10,11 +10,11 @@
 namespace attest {
 namespace {
 
-constexpr std::size_t ticks = 8;
+constexpr std::size_t trace_ticks = 8;
 
 // Any bits in any output, NaN and infinities included.
 Trace any_trace() {
-  Trace trace = sample_trace(ticks);
+  Trace trace = sample_trace(trace_ticks);
   for (Sample& sample : trace.samples) {
     for (const Channel& what : channels()) {
       if (!what.is_output()) continue;
@@ -39,7 +39,7 @@ Place any_float_output() {
     if (what.part != Part::mc_att_control) continue;
     if (what.is_output() && what.type == ChannelType::f32) outputs.push_back(i);
   }
-  return {*rc::gen::inRange<std::size_t>(0, ticks), *rc::gen::elementOf(outputs)};
+  return {*rc::gen::inRange<std::size_t>(0, trace_ticks), *rc::gen::elementOf(outputs)};
 }
 
 // `want` with one value moved by `amount` of the tolerance that it has.
@@ -58,13 +58,13 @@ RC_GTEST_PROP(Compare, ATraceAgreesWithItself, ()) {
   for (const Level level : {Level::exact, Level::numeric}) {
     const Comparison comparison = compare(trace, trace, Tolerances(level));
     RC_ASSERT(comparison.agrees());
-    RC_ASSERT(comparison.ticks == ticks);
+    RC_ASSERT(comparison.ticks == trace_ticks);
     RC_ASSERT(comparison.deviating_ticks == 0u);
   }
 }
 
 RC_GTEST_PROP(Compare, OneValueBeyondItsToleranceIsFoundWhereItIs, (bool up)) {
-  const Trace want = sample_trace(ticks);
+  const Trace want = sample_trace(trace_ticks);
   const Place place = any_float_output();
   const Comparison comparison =
       compare(moved(want, place, up ? 1.1 : -1.1, Tolerances()), want, Tolerances());
@@ -75,7 +75,7 @@ RC_GTEST_PROP(Compare, OneValueBeyondItsToleranceIsFoundWhereItIs, (bool up)) {
 }
 
 RC_GTEST_PROP(Compare, OneValueWithinItsToleranceAgreesAndIsTheTightest, (bool up)) {
-  const Trace want = sample_trace(ticks);
+  const Trace want = sample_trace(trace_ticks);
   const Place place = any_float_output();
   const Comparison comparison =
       compare(moved(want, place, up ? 0.9 : -0.9, Tolerances()), want, Tolerances());
@@ -87,7 +87,7 @@ RC_GTEST_PROP(Compare, OneValueWithinItsToleranceAgreesAndIsTheTightest, (bool u
 }
 
 RC_GTEST_PROP(Compare, OfTwoDeviationsTheEarlierIsReported, ()) {
-  const Trace want = sample_trace(ticks);
+  const Trace want = sample_trace(trace_ticks);
   const Place a = any_float_output(), b = any_float_output();
   const Trace got = moved(moved(want, a, 50, Tolerances()), b, 50, Tolerances());
   const auto order = [](const Place& place) { return std::pair(place.tick, place.channel); };

@@ -16,7 +16,6 @@ using testing::HasSubstr;
 
 constexpr const char* roll = "out/vehicle_rates_setpoint.roll";
 constexpr const char* published = "out/actuator_controls_0.published";
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double inf = std::numeric_limits<double>::infinity();
 
 // One tick whose roll rate setpoint is `got` where it should be `want`.

@@ -1,7 +1,5 @@
 #include "harness/compare/events.hpp"
 
-#include <limits>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,7 +9,7 @@ namespace attest {
 namespace {
 
 const char* const integral = "out/mc_att_ctrl_status.yaw_rate_integ";
-const char* const published = "out/vehicle_rates_setpoint.published";
+const char* const rates_published = "out/vehicle_rates_setpoint.published";
 
 // Integrals move by 1e-4 a tick between ticks `from` and `to`.
 Trace moving(std::size_t from, std::size_t to) {
@@ -41,8 +39,8 @@ TEST(Events, AreTheSameATickLater) {
 // A port that answers one tick late has said nothing at the first.
 TEST(Events, TheFirstAndTheLastTickMayBeEither) {
   Trace got = moving(5, 12);
-  set(got, 0, published, 0);
-  set(got, 19, published, 0);
+  set(got, 0, rates_published, 0);
+  set(got, 19, rates_published, 0);
   EXPECT_FALSE(first_event_difference(got, moving(5, 12)));
 }
 
@@ -73,7 +71,7 @@ TEST(Events, ValuesDoNotMatter) {
 TEST(Events, PublicationSaturationAndFiniteness) {
   const Trace want = moving(5, 12);
   Trace got = want;
-  set(got, 3, published, 0);
+  set(got, 3, rates_published, 0);
   EXPECT_TRUE(first_event_difference(got, want));
   got = want;
   for (std::size_t tick = 8; tick < 20; ++tick) {
@@ -82,7 +80,7 @@ TEST(Events, PublicationSaturationAndFiniteness) {
   ASSERT_TRUE(first_event_difference(got, want));
   EXPECT_THAT(first_event_difference(got, want)->what, testing::HasSubstr("beyond the thrust"));
   got = want;
-  set(got, 3, "out/vehicle_rates_setpoint.yaw", std::numeric_limits<double>::quiet_NaN());
+  set(got, 3, "out/vehicle_rates_setpoint.yaw", nan);
   EXPECT_TRUE(first_event_difference(got, want));
 }
 

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string_view>
 
 #include "harness/trace/trace.hpp"
 
 namespace attest {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // 4 ms apart, level, in an attitude mode, every output published with a value of its own.
 Trace sample_trace(std::size_t ticks);

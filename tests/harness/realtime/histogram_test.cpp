@@ -7,10 +7,10 @@
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
+#include "tests/harness/times.hpp"
+
 namespace attest {
 namespace {
-
-constexpr Nanoseconds ns(std::int64_t count) { return Nanoseconds(count); }
 
 TEST(Histogram, OfNothingIsZero) {
   const Histogram histogram;

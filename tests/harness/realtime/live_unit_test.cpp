@@ -11,13 +11,12 @@
 
 #include "harness/realtime/allocations.hpp"
 #include "tests/harness/realtime/flights.hpp"
+#include "tests/harness/times.hpp"
 
 namespace attest {
 namespace {
 
 using testing::ElementsAre;
-
-constexpr Nanoseconds us(std::int64_t count) { return std::chrono::microseconds(count); }
 
 // Wakes up late by `lateness` of its next deadline; time passes nowhere else by itself.
 class ScriptedClock final : public Clock {

@@ -13,11 +13,10 @@
 #include "harness/realtime/pacer.hpp"
 #include "harness/realtime/rights.hpp"
 #include "harness/realtime/usage.hpp"
+#include "tests/harness/times.hpp"
 
 namespace attest {
 namespace {
-
-constexpr Nanoseconds us(std::int64_t count) { return std::chrono::microseconds(count); }
 
 TEST(Pacer, ReturnsAtItsDeadlineOrLater) {
   for (const Nanoseconds spin : {us(0), us(500)}) {

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/harness/times.hpp"
+
 namespace attest {
 namespace {
-
-constexpr Nanoseconds us(std::int64_t count) { return std::chrono::microseconds(count); }
 
 std::vector<LiveTick> quick(std::size_t count) {
   return std::vector<LiveTick>(count, LiveTick{{}, {}, us(1), us(1), 0});

@@ -3,12 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/harness/times.hpp"
+
 namespace attest {
 namespace {
 
 using testing::ElementsAre;
-
-constexpr Nanoseconds ms(std::int64_t count) { return std::chrono::milliseconds(count); }
 
 TEST(ScheduledTiming, IsWhenTheUnitRunsAndIsOver) {
   const std::vector<Job> unit = {{ms(0), ms(1), ms(3)}, {ms(4), ms(4), ms(5)}};

@@ -5,14 +5,13 @@
 
 #include "harness/core/file.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
+#include "tests/harness/times.hpp"
 
 namespace attest {
 namespace {
 
 using testing::EndsWith;
 using testing::HasSubstr;
-
-constexpr Nanoseconds us(std::int64_t count) { return std::chrono::microseconds(count); }
 
 TimingFile sample() {
   return {"px4-v1.5.5/flight/hover",

@@ -7,11 +7,10 @@
 #include <rapidcheck/gtest.h>
 
 #include "harness/schedule/delay_line.hpp"
+#include "tests/harness/times.hpp"
 
 namespace attest {
 namespace {
-
-Nanoseconds ns(std::int64_t count) { return Nanoseconds(count); }
 
 TEST(Agenda, AtOneInstantTheLowerTaskComesFirst) {
   Agenda agenda({{ns(5)}, {ns(0), ns(5)}, {ns(5)}});

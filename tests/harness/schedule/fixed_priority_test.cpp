@@ -8,14 +8,13 @@
 #include <rapidcheck/gtest.h>
 
 #include "harness/schedule/response_time.hpp"
+#include "tests/harness/times.hpp"
 
 namespace attest {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-constexpr Nanoseconds ms(std::int64_t count) { return std::chrono::milliseconds(count); }
 
 // Periods and executions in ms, as textbooks have them without a unit; the first is the highest.
 std::vector<ScheduledTask> rate_monotonic(const std::vector<std::pair<int, int>>& periods) {

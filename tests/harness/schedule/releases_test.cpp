@@ -5,14 +5,12 @@
 #include <rapidcheck/gtest.h>
 
 #include "harness/schedule/ticks.hpp"
+#include "tests/harness/times.hpp"
 
 namespace attest {
 namespace {
 
 using testing::Optional;
-
-constexpr Nanoseconds ms(std::int64_t count) { return std::chrono::milliseconds(count); }
-constexpr Nanoseconds ns(std::int64_t count) { return Nanoseconds(count); }
 
 ReleaseSchedule periodic(const Rate& rate, Nanoseconds phase) {
   ReleaseSchedule schedule;

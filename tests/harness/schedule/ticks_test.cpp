@@ -6,13 +6,13 @@
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
+#include "tests/harness/times.hpp"
+
 namespace attest {
 namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
-
-constexpr Nanoseconds ms(std::int64_t count) { return std::chrono::milliseconds(count); }
 
 TickSchedule any_schedule() {
   TickSchedule schedule;

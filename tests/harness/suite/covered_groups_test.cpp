@@ -13,11 +13,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path recorded = fs::path(ATTEST_SOURCE_DIR) / "golden" / "recorded";
+const fs::path recorded_folder = fs::path(ATTEST_SOURCE_DIR) / "golden" / "recorded";
 
 std::vector<Recorded> all_recordings() {
   std::vector<Recorded> all;
-  for (const auto& entry : fs::recursive_directory_iterator(recorded)) {
+  for (const auto& entry : fs::recursive_directory_iterator(recorded_folder)) {
     if (entry.path().extension() != ".csv") continue;
     auto one = read_recorded(entry.path());
     EXPECT_TRUE(one) << entry.path();
@@ -44,7 +44,7 @@ bool tells_a_mistake_of(const std::string& group, const std::string& profile,
 }
 
 TEST(CoveredGroups, EveryGroupThatTheyClaimToCoverHasAMistakeThatTheyTell) {
-  const auto covered = covered_groups(recorded);
+  const auto covered = covered_groups(recorded_folder);
   ASSERT_TRUE(covered) << covered.error().to_string();
   EXPECT_EQ(covered->size(), 34u);
   const auto recordings = all_recordings();
@@ -56,7 +56,7 @@ TEST(CoveredGroups, EveryGroupThatTheyClaimToCoverHasAMistakeThatTheyTell) {
 }
 
 TEST(CoveredGroups, AGroupThatTheyDoNotShowIsNotCovered) {
-  const auto covered = covered_groups(recorded);
+  const auto covered = covered_groups(recorded_folder);
   ASSERT_TRUE(covered);
   EXPECT_FALSE(covered->contains("px4-v1.5.5/flight"));
   EXPECT_FALSE(covered->contains("px4-v1.3.4/mixer"));
