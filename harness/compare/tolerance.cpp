@@ -89,14 +89,17 @@ bool Tolerances::set(std::string_view prefix, Tolerance tolerance) {
   return any;
 }
 
-void Tolerances::allow_lsb(int fraction_bits) {
+void Tolerances::allow_lsb(int fraction_bits, std::size_t ticks) {
   if (level_ != Level::numeric) return;
   const auto table = channels();
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (!table[i].is_output()) continue;
     auto& [absolute, relative] = of_channel_[i];
-    absolute = std::max(absolute, std::ldexp(lsb_of(table[i].quantity), -fraction_bits));
-    if (table[i].quantity != Quantity::control) continue;
+    const Quantity quantity = table[i].quantity;
+    const bool integrates = quantity == Quantity::integral || quantity == Quantity::control;
+    const double lsb = lsb_of(quantity) + (integrates ? static_cast<double>(ticks) : 0);
+    absolute = std::max(absolute, std::ldexp(lsb, -fraction_bits));
+    if (quantity != Quantity::control) continue;
     relative = std::max(relative, std::ldexp(control_relative_lsb, -fraction_bits));
   }
 }

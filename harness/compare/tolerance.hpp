@@ -53,10 +53,14 @@ class Tolerances {
   // which D is most by part of themselves, as 1 / dt is up to 500 and dt has an error of half an
   // LSB; 13 in the motors, where roll and pitch are fitted. A battery's filter gathers a hundred
   // roundings, each up to one LSB where a port truncates. At the numeric level only.
+  //
+  // In flight the integrals move slowly, and what they gain at a tick may be less than an LSB, so
+  // that all roundings go the same way: an LSB for each of `ticks`. Measured: 255 LSB after 4,000
+  // ticks at 22 bits.
   static constexpr double rate_lsb = 2560, control_lsb = 2560, integral_lsb = 256;
   static constexpr double motor_lsb = 64, scale_lsb = 512;
   static constexpr double control_relative_lsb = 1024;
-  void allow_lsb(int fraction_bits);
+  void allow_lsb(int fraction_bits, std::size_t ticks = 0);
 
   // All of them times `factor`, widening included.
   Tolerances scaled(double factor) const;

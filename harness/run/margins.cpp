@@ -233,27 +233,68 @@ bool Margins::is_safe(Decision decision) const {
   return distance >= least_margin(decision);
 }
 
+double least_margin(Decision decision, int fraction_bits) {
+  return std::max(least_margin(decision), std::ldexp(decision_lsb, -fraction_bits));
+}
+
+struct MarginMeter::Impl {
+  explicit Impl(reference::Profile profile) : control(profile, NotingLaw(&notes)) {}
+
+  Notes notes;
+  reference::McAttControl<double, NotingLaw> control;
+  attest_outputs out{};
+};
+
+MarginMeter::MarginMeter(std::string_view profile)
+    : impl_(std::make_unique<Impl>(*reference::profile_from_name(profile))) {}
+MarginMeter::~MarginMeter() = default;
+
+const Margins& MarginMeter::step(std::span<const ParameterChange> changes,
+                                 const attest_inputs& in) {
+  Notes& notes = impl_->notes;
+  notes.margins = {};
+  for (const ParameterChange& change : changes) {
+    impl_->control.set_parameter(change.name, change.value);
+  }
+  note_norm(in.control_state.q, notes);
+  if (in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) {
+    note_norm(in.vehicle_attitude_setpoint.q_d, notes);
+  }
+  impl_->control.step(in, impl_->out);
+  ++notes.tick;
+  return notes.margins;
+}
+
+namespace {
+
+// The least of each; of the norm, for which far is near, the most.
+void gather(const Margins& at_tick, Margins& all) {
+  for (std::size_t i = 0; i < decision_count; ++i) {
+    const Margin& one = at_tick.of[i];
+    Margin& kept = all.of[i];
+    if (std::isinf(one.distance)) continue;
+    const bool is_norm = static_cast<Decision>(i) == Decision::quaternion_norm;
+    const bool is_nearer = is_norm ? one.distance > kept.distance : one.distance < kept.distance;
+    if (std::isinf(kept.distance) || is_nearer) kept = one;
+  }
+}
+
+}  // namespace
+
 Margins margins(const Trace& given, const Subject& subject) {
   if (subject.part == Part::mixer) return mixer_margins(given, subject.mixer);
   if (subject.part == Part::battery_status) return {};
-  Notes notes;
-  const auto known = reference::profile_from_name(subject.profile);
-  if (!known) return {};
-  reference::McAttControl<double, NotingLaw> control(*known, NotingLaw(&notes));
+  if (!reference::profile_from_name(subject.profile)) return {};
+  MarginMeter meter(subject.profile);
   std::span<const ParameterChange> changes = given.parameters;
-  attest_outputs out{};
-  for (notes.tick = 0; notes.tick < given.samples.size(); ++notes.tick) {
-    for (; !changes.empty() && changes.front().tick <= notes.tick; changes = changes.subspan(1)) {
-      control.set_parameter(changes.front().name, changes.front().value);
-    }
-    const attest_inputs& in = given.samples[notes.tick].in;
-    note_norm(in.control_state.q, notes);
-    if (in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) {
-      note_norm(in.vehicle_attitude_setpoint.q_d, notes);
-    }
-    control.step(in, out);
+  Margins all;
+  for (std::size_t tick = 0; tick < given.samples.size(); ++tick) {
+    std::size_t now = 0;
+    while (now < changes.size() && changes[now].tick <= tick) ++now;
+    gather(meter.step(changes.first(now), given.samples[tick].in), all);
+    changes = changes.subspan(now);
   }
-  return notes.margins;
+  return all;
 }
 
 }  // namespace attest

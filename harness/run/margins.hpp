@@ -10,6 +10,8 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -42,6 +44,11 @@ std::string_view name_of(Decision decision);  // "integrator gate"
 // some 1e-6 rad on angles over 10 s of open loop). For the norm: the most.
 double least_margin(Decision decision);
 
+// The same with a port in fixed point: as many of its last bits as its controls were measured to
+// differ by (Tolerances::control_lsb has what is allowed).
+inline constexpr double decision_lsb = 750;
+double least_margin(Decision decision, int fraction_bits);
+
 struct Margin {
   double distance = std::numeric_limits<double>::infinity();
   std::size_t tick = 0;
@@ -56,7 +63,22 @@ struct Margins {
   bool is_safe(Decision decision) const;
 };
 
-// Of the inputs of `given`. A battery estimate decides nothing: it is continuous.
+// How near a unit comes at each tick, one after the other.
+class MarginMeter {
+ public:
+  // In the power-on state. REQUIRES: the reference has the profile.
+  explicit MarginMeter(std::string_view profile);
+  ~MarginMeter();
+
+  // Of the next tick alone; valid until the one after it.
+  const Margins& step(std::span<const ParameterChange> changes, const attest_inputs& in);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// Of all inputs of `given`. A battery estimate decides nothing: it is continuous.
 Margins margins(const Trace& given, const Subject& subject);
 
 }  // namespace attest

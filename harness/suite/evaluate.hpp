@@ -25,9 +25,10 @@ CaseResult unjudged(const Trace& recorded, const std::string& profile);
 Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const Golden& golden,
                                  Port& port, Level level);
 
-// A fresh unit flies, and what it did is compared with the golden up to the golden's horizon, then
-// by the metrics. The level is the same for every run: what a plant computes differs in the last
-// bits between processors, so no flight is compared to the bit. Errors: as above.
+// A fresh unit flies. Each answer is compared with that of the reference to the same inputs, the
+// flight with the golden up to the golden's horizon, and its metrics with their bounds. The level
+// is the same for every run: what a plant computes differs in the last bits between processors, so
+// no flight is compared to the bit. Errors: as above.
 Result<CaseResult> evaluate_flight(const Case& the_case, const Setup& setup,
                                    const Airframe& airframe, const Golden& golden, Port& port);
 

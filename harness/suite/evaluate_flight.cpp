@@ -10,6 +10,7 @@
 #include "harness/compare/compare_rows.hpp"
 #include "harness/core/float_environment.hpp"
 #include "harness/port/builtin.hpp"
+#include "harness/run/answers.hpp"
 #include "harness/run/case_timing.hpp"
 #include "harness/run/flight.hpp"
 #include "harness/run/reference_flight.hpp"
@@ -81,20 +82,35 @@ void judge_metrics(const Case& the_case, const Trace& flown, const ReferenceFlig
   }
 }
 
+// Of a flight whose every answer is right: the loop beside the golden's.
+Comparison with_tightest(Comparison loop, const Comparison& answers) {
+  loop.ticks = answers.ticks;
+  if (!loop.tightest || (answers.tightest && answers.tightest->ratio < loop.tightest->ratio)) {
+    loop.tightest = answers.tightest;
+  }
+  return loop;
+}
+
 void judge_flight(const Case& the_case, const Flown& flown, const ReferenceFlight& reference,
                   std::optional<int> fraction_bits, CaseResult& result) {
   // The horizon is of floats. In flight, where what it rounds comes back to it, a port with 22 bits
-  // behind the point was measured to leave the reference by seven times what its LSBs are allowed,
-  // and by a tick at the yaw wrap of a spinning vehicle. With 30 bits that is a tenth of what
-  // floats are allowed; with fewer, flights are judged by their metrics.
+  // behind the point was measured to leave the golden by seven times what its LSBs are allowed.
+  // With 30 bits that is a tenth of what floats are allowed; with fewer, the loop as a whole is
+  // judged by its metrics.
   constexpr int as_near_as_floats_bits = 30;
   const double horizon_s = fraction_bits.value_or(as_near_as_floats_bits) < as_near_as_floats_bits
                                ? 0
                                : reference.horizon_s;
-  const Comparison comparison =
-      compare_rows(flown.trace, reference.rows, horizon_s,
-                   tolerances_of(the_case, Level::numeric, fraction_bits));
-  judge(comparison, result);
+  const Tolerances tolerances = tolerances_of(the_case, Level::numeric, fraction_bits);
+  Tolerances of_answers = tolerances;
+  if (fraction_bits) of_answers.allow_lsb(*fraction_bits, flown.trace.samples.size());
+  const Comparison answers =
+      compare_answers(flown.trace, the_case.profile, of_answers, fraction_bits);
+  judge(answers, result);
+  if (answers.agrees()) {
+    judge(with_tightest(compare_rows(flown.trace, reference.rows, horizon_s, tolerances), answers),
+          result);
+  }
   std::vector<std::string> reasons;
   if (!result.reason.empty()) reasons.push_back(result.reason);
   if (flown.divergence) {

@@ -66,6 +66,18 @@ assert all(r["vehicle"] == "iris" and r["verdict"] == "fail" for r in results)
 CHECK
 }
 
+@test "a port that is wrong later in a flight is found at the tick at which it errs" {
+  run "$ATTEST" run --port "lib:$PORTS/port_wrong_after_100.so" --filter '*/yaw_178_manual@250hz-iris-ode' \
+    --filter '*/yaw_90*@250hz-iris-ode' --filter '*/hover*@250hz-iris-ode' --json report.json
+  [ "$status" -eq 1 ]
+  python3 - <<'CHECK'
+import json
+failed = [one for one in json.load(open("report.json"))["results"] if one["verdict"] == "fail"]
+assert failed and all(one["first"]["tick"] >= 100 for one in failed), failed
+assert {one["first"]["channel"] for one in failed} == {"out/actuator_controls_0.control[2]"}, failed
+CHECK
+}
+
 @test "the same flight is the same bytes, whatever flew beside it" {
   for plant in mujoco ode; do
     "$ATTEST" sim hover --rate 333 --plant $plant --out one.csv

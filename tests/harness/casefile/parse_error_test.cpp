@@ -31,7 +31,7 @@ TEST(CaseErrors, IdentityIsThePlaceOfTheFile) {
   EXPECT_EQ(errors_of_text(with_line(2, "profiles = [\"px4-v1.3.4\"]")),
             "2:1: begins with `px4-v1.3.4`, but the folder is `px4-v1.5.5`");
   EXPECT_EQ(errors_of_text(with_line(2, "profiles = [\"px4-v1.5.5\", \"px4-v1.3.5\"]")),
-            "2:1: `px4-v1.3.5` is no profile (did you mean `px4-v1.3.4`?)");
+            "2:1: `px4-v1.3.5` is no profile; did you mean `px4-v1.5.5`?");
   EXPECT_EQ(errors_of_text(with_line(2, "profiles = []")), "2:1: names no profile");
   EXPECT_EQ(errors_of_text(with_line(2, "profiles = [\"px4-v1.5.5\", \"px4-v1.5.5\"]")),
             "2:1: names a profile twice");

@@ -77,6 +77,13 @@ TEST(Tolerances, OfFixedPointAreAtLeastItsLsbs) {
   EXPECT_DOUBLE_EQ(coarse.of(yaw).absolute, Tolerances::rate_lsb / (1 << 22));
   EXPECT_DOUBLE_EQ(coarse.of(integral).absolute, Tolerances::integral_lsb / (1 << 22));
   EXPECT_EQ(coarse.of(channel("out/actuator_controls_0.published")).absolute, 0);
+  // What integrates has an LSB more for each tick of a flight.
+  Tolerances of_flight;
+  of_flight.allow_lsb(22, 1000);
+  EXPECT_EQ(of_flight.of(yaw).absolute, coarse.of(yaw).absolute);
+  EXPECT_DOUBLE_EQ(of_flight.of(integral).absolute, (Tolerances::integral_lsb + 1000) / (1 << 22));
+  EXPECT_DOUBLE_EQ(of_flight.of(channel("out/actuator_controls_0.control[1]")).absolute,
+                   (Tolerances::control_lsb + 1000) / (1 << 22));
   Tolerances fine;
   fine.allow_lsb(32);
   EXPECT_EQ(fine.of(yaw).absolute, Tolerances::rate.absolute);
