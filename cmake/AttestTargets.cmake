@@ -16,12 +16,13 @@ target_compile_options(
                             # False alarms of gcc 12 about std::string (gcc bug 105651).
                             $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 
-# The presets ci and asan build from nothing, and compile several sources of a folder as one (a unity
-# build), because most sources take less time to compile than the headers that they include. The
-# preset dev compiles each by itself, so that a missing include shows.
+# The presets ci and asan build from nothing, and compile several sources of a folder as one (a
+# unity build), because most sources take less time to compile than the headers that they include.
+# The preset dev compiles each by itself, so that a missing include shows.
 # In a unity build gcc takes sources for headers, in which this would be a mistake.
 if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  target_compile_options(attest_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
+  target_compile_options(attest_warnings
+                         INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
 endif()
 
 # attest_library(NAME SOURCES a.cpp ... [PUBLIC target ...] [PRIVATE target ...])

@@ -67,8 +67,8 @@ CHECK
 }
 
 @test "a port that is wrong later in a flight is found at the tick at which it errs" {
-  run "$ATTEST" run --port "lib:$PORTS/port_wrong_after_100.so" --filter '*/yaw_178_manual@250hz-iris-ode' \
-    --filter '*/yaw_90*@250hz-iris-ode' --filter '*/hover*@250hz-iris-ode' --json report.json
+  run "$ATTEST" run --port "lib:$PORTS/port_wrong_after_100.so" --json report.json \
+    --filter '*/yaw_178_manual@250hz-iris-ode' --filter '*/motor_failure@250hz-iris-ode'
   [ "$status" -eq 1 ]
   python3 - <<'CHECK'
 import json
