@@ -11,6 +11,7 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/version.hpp"
+#include "harness/process/child.hpp"
 #include "harness/run/golden.hpp"
 #include "harness/suite/recorded_check.hpp"
 #include "harness/suite/select.hpp"
@@ -87,6 +88,15 @@ void examine_reference(const SuiteFolder& suite, Examination& examination) {
   examination.bad("reference", fmt::format("{}; first: {}", finding, check->first_difference));
 }
 
+// What a port cannot do to the machine, whatever it does.
+void examine_limits(const DoctorOptions& options, Examination& examination) {
+  const std::string memory = memory_is_limited() ? fmt::format("{} GiB of memory", max_memory_gib)
+                                                 : "memory without limit (sanitizers)";
+  examination.good("limits", fmt::format("of a port's process: {:g} s a case, {}, {} MiB a file; "
+                                         "it ends with all that it started",
+                                         options.timeout_s, memory, max_file_mib));
+}
+
 void examine_port(const DoctorOptions& options, Examination& examination) {
   const auto known = reference::profile_names();
   const std::string& specification = options.port;
@@ -115,6 +125,7 @@ int doctor_command(const DoctorOptions& options, const Globals& globals) {
   } else {
     examination.bad("suite", suite.error().to_string());
   }
+  examine_limits(options, examination);
   examine_port(options, examination);
   return examination.all_good() ? exit_ok : exit_usage;
 }

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cerrno>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -24,7 +25,8 @@ namespace attest {
 namespace {
 
 // A port that prints at every step must not fill the machine's memory.
-constexpr rlim_t max_file_bytes = 16u << 20;
+constexpr rlim_t max_file_bytes = std::uint64_t{max_file_mib} << 20;
+constexpr rlim_t max_memory_bytes = std::uint64_t{max_memory_gib} << 30;
 
 void write_all(int descriptor, std::string_view bytes) {
   while (!bytes.empty()) {
@@ -35,8 +37,19 @@ void write_all(int descriptor, std::string_view bytes) {
   }
 }
 
+// Of what a process writes to, all that it allocates: a port that goes on allocating must not take
+// the machine's memory. Sanitizers reserve terabytes.
+void limit_memory() {
+  if (memory_is_limited()) {
+    rlimit memory{};
+    ::getrlimit(RLIMIT_DATA, &memory);
+    memory.rlim_cur = std::min<rlim_t>(memory.rlim_max, max_memory_bytes);
+    ::setrlimit(RLIMIT_DATA, &memory);
+  }
+}
+
 // What a child must have arranged, beyond what a Process has, before it runs code of others.
-void isolate(int output) {
+void isolate(int output, int pipe) {
   rlimit files{};
   ::getrlimit(RLIMIT_FSIZE, &files);
   files.rlim_cur = std::min(files.rlim_max, max_file_bytes);
@@ -48,6 +61,12 @@ void isolate(int output) {
   }
   ::dup2(output, STDOUT_FILENO);
   ::dup2(output, STDERR_FILENO);
+  // The reports and pipes that the parent has open are not the child's.
+  constexpr unsigned first_other = 3;
+  const auto kept = static_cast<unsigned>(pipe);
+  if (kept > first_other) ::close_range(first_other, kept - 1, 0);
+  ::close_range(kept + 1, ~0u, 0);
+  limit_memory();
 }
 
 // Neither returns nor throws: what the parent has on its stack (files to be renamed, other
@@ -71,6 +90,20 @@ void isolate(int output) {
 
 }  // namespace
 
+bool memory_is_limited() {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  return false;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+  return false;
+#else
+  return true;
+#endif
+#else
+  return true;
+#endif
+}
+
 void allow_large_files() {
   rlimit files{};
   ::getrlimit(RLIMIT_FSIZE, &files);
@@ -88,7 +121,7 @@ Result<Child> Child::spawn(const std::function<void(const SendLine&)>& work) {
   }
   auto process = Process::start([&] {
     ::close(ends[0]);
-    isolate(output);
+    isolate(output, ends[1]);
     work_and_end(work, ends[1]);
   });
   ::close(ends[1]);

@@ -13,6 +13,10 @@
 
 namespace attest {
 
+// What a child may use. A build with sanitizers does not limit the memory.
+inline constexpr int max_memory_gib = 4, max_file_mib = 16;
+bool memory_is_limited();
+
 // Sends one line (without its end) to the parent. In the child only.
 using SendLine = std::function<void(const std::string& line)>;
 
@@ -23,7 +27,7 @@ void allow_large_files();
 class Child {
  public:
   // Forks; `work` runs in the child, a Process, which then ends. Its stdout and stderr are kept
-  // apart (last_words), its stdin is empty.
+  // apart (last_words), its stdin is empty, and of the parent's descriptors it has none.
   static Result<Child> spawn(const std::function<void(const SendLine&)>& work);
 
   Child(Child&& other) noexcept;

@@ -7,8 +7,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <set>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <sys/prctl.h>
@@ -68,7 +73,26 @@ void reset_signals() {
   ::pthread_sigmask(SIG_SETMASK, &none, nullptr);
 }
 
+// The processes that have an owner here, so that all other children are orphans: started by one of
+// them, and left behind. Locked while a child exists that is not in it yet.
+struct Owned {
+  std::mutex mutex;
+  std::set<pid_t> processes;
+};
+
+Owned& owned() {
+  static Owned all;
+  return all;
+}
+
+// In a child, which owns none of them, and was forked under the lock.
+void own_nothing() {
+  owned().processes.clear();
+  owned().mutex.unlock();
+}
+
 [[noreturn]] void lead_group(pid_t parent, const std::function<void()>& work) {
+  own_nothing();
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(EXIT_FAILURE);  // it died before the line above
@@ -101,6 +125,32 @@ void reap(pid_t process, Ending& ending) {
   if (has_ended) ending.wait_status = status;
 }
 
+std::vector<pid_t> children() {
+  std::vector<pid_t> found;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::ifstream list(task.path() / "children");
+    for (pid_t child = 0; list >> child;) found.push_back(child);
+  }
+  return found;
+}
+
+void end_orphans() {
+  Owned& all = owned();
+  const std::lock_guard lock(all.mutex);
+  // When one ends, what it started becomes an orphan.
+  constexpr int generations = 100;
+  for (int i = 0; i < generations; ++i) {
+    std::vector<pid_t> orphans = children();
+    std::erase_if(orphans, [&](pid_t child) { return all.processes.contains(child); });
+    if (orphans.empty()) return;
+    for (const pid_t orphan : orphans) {
+      ::kill(orphan, SIGKILL);
+      Ending ignored;
+      reap(orphan, ignored);
+    }
+  }
+}
+
 }  // namespace
 
 bool Ending::is_success() const {
@@ -120,15 +170,24 @@ Result<Process> Process::start(const std::function<void()>& work) {
   const pid_t parent = ::getpid();
   // A child that calls exit() would print what the parent has not printed yet.
   std::fflush(nullptr);
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   const SignalsBlocked blocked;
+  const std::lock_guard lock(owned().mutex);
   const pid_t leader = ::fork();
   if (leader == 0) lead_group(parent, work);
   if (leader > 0) ::setpgid(leader, leader);  // here too: the first of the two calls decides
   const pid_t guard = leader > 0 ? ::fork() : -1;
   if (guard == 0) guard_group(parent, leader);
+  if (leader > 0) owned().processes.insert(leader);
+  if (guard > 0) owned().processes.insert(guard);
   if (guard > 0) return Process(leader, guard);
   const int reason = errno;
-  if (leader > 0) Process(leader, -1).kill();
+  if (leader > 0) {
+    ::kill(leader, SIGKILL);
+    Ending ignored;
+    reap(leader, ignored);
+    owned().processes.erase(leader);
+  }
   return fail(fmt::format("cannot start a process: {}", std::strerror(reason)));
 }
 
@@ -175,12 +234,18 @@ Ending Process::end(double patience_s) {
   ending.was_killed = was_killed_;
   // What it started, while its number cannot be another's yet.
   ::kill(-pid_, SIGKILL);
-  reap(std::exchange(pid_, -1), ending);
+  reap(pid_, ending);
   if (guard_ > 0) {
     ::kill(guard_, SIGKILL);  // it may not have joined the group yet
     Ending ignored;
-    reap(std::exchange(guard_, -1), ignored);
+    reap(guard_, ignored);
   }
+  {
+    const std::lock_guard lock(owned().mutex);
+    owned().processes.erase(std::exchange(pid_, -1));
+    owned().processes.erase(std::exchange(guard_, -1));
+  }
+  end_orphans();
   return ending;
 }
 

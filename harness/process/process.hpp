@@ -23,8 +23,10 @@ struct Ending {
 };
 
 // The process leads a process group of its own, and everything that it starts in that group ends
-// with it. A second process of the group, the guard, ends all of them when this process dies, even
-// by SIGKILL. No member function waits longer than its argument and a few seconds.
+// with it. What it starts in a group or session of its own becomes a child of this process when
+// its parent has ended, and is killed by the next end() of any Process. A second process of the
+// group, the guard, ends the group when this process dies, even by SIGKILL. No member function
+// waits longer than its argument and a few seconds.
 //
 // One thread at a time. The thread that calls start() must live as long as the Process: Linux takes
 // the end of that thread for the death of the parent.

@@ -35,6 +35,10 @@ class Batch {
   // REQUIRES: open() went well.
   virtual Result<CaseResult> evaluate(std::size_t i, Port& port) = 0;
 
+  // Of a task that has parts, how many at most: what the process says cannot give a task more time
+  // than a limit for each of them. 0: a task has one limit.
+  virtual std::size_t most_parts() const { return 0; }
+
   // Calls `begins` before each part of a task; the time limit then starts anew.
   void when_part_begins(std::function<void()> begins) { part_begins_ = std::move(begins); }
 

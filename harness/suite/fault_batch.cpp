@@ -1,6 +1,7 @@
 #include "harness/suite/fault_batch.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
 #include <string>
 
@@ -31,6 +32,13 @@ std::vector<Attempt> attempts(const std::vector<SelectedCase>& cases, std::strin
 }
 
 }  // namespace
+
+// One for each vector.
+std::size_t FaultBatch::most_parts() const {
+  return std::accumulate(
+      cases_.begin(), cases_.end(), std::size_t{0},
+      [](std::size_t sum, const SelectedCase& one) { return sum + one.setups.size(); });
+}
 
 CaseResult FaultBatch::identity(std::size_t) const {
   CaseResult result;

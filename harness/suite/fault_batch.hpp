@@ -26,6 +26,8 @@ class FaultBatch final : public Batch {
 
   std::size_t size() const override { return 1; }
 
+  std::size_t most_parts() const override;
+
   // Profile, and the fault's group and name.
   CaseResult identity(std::size_t i) const override;
 

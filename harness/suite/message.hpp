@@ -1,6 +1,7 @@
 // What a worker process says to its parent: one JSON object a line.
 //
-//     {"begin": 3}                 task 3 begins, or a part of it: the time limit starts anew
+//     {"begin": 3}                 task 3 begins, or a part of it: the time limit starts anew, at
+//                                  most as often as the task has parts
 //     {"result": {...}}            the verdict on it, or
 //     {"error": {...}}             why there is none
 //     {"done": true}               after the last task
@@ -25,8 +26,8 @@ using Message = std::variant<TaskBegins, CaseResult, Error, BatchDone>;
 
 std::string encode(const Message& message);
 
-// Empty when the line is none of the above: the worker shares its process with a port, so nothing
-// is taken on trust.
+// Empty when the line is none of the above. The worker shares its process with a port, so nothing
+// is taken on trust: the pool accepts a message only in its turn.
 std::optional<Message> decode(const std::string& line);
 
 }  // namespace attest

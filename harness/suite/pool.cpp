@@ -10,6 +10,8 @@
 namespace attest {
 namespace {
 
+constexpr const char* forgery = "the port wrote on the pipe on which attest's worker answers";
+
 // In the child.
 void work_through(Batch& batch, std::size_t first, const std::string& specification,
                   const SendLine& send) {
@@ -69,7 +71,9 @@ void Pool::start(std::size_t batch, std::size_t first_task) {
     outcomes_[batch].errors.push_back(child.error());
     return;
   }
-  workers_.push_back({batch, std::move(*child), first_task, deadline()});
+  Worker worker{batch, std::move(*child), first_task, deadline()};
+  worker.first_result = outcomes_[batch].results.size();
+  workers_.push_back(std::move(worker));
 }
 
 // Until a worker says something or runs out of time.
@@ -91,7 +95,10 @@ void Pool::serve(Worker& worker) {
   if (worker.readable) {
     bool ended = false;
     for (const std::string& line : worker.child.read_lines(ended)) {
-      if (const auto message = decode(line)) take(worker, *message);
+      const auto message = decode(line);
+      worker.forged = !message || !is_in_turn(worker, *message);
+      if (worker.forged) return conclude(worker, false);
+      take(worker, *message);
     }
     // Not when the pipe ends: a process that the port started may hold it open.
     if (ended || worker.finished) return conclude(worker, false);
@@ -99,18 +106,43 @@ void Pool::serve(Worker& worker) {
   if (Clock::now() >= worker.deadline) conclude(worker, true);
 }
 
+// What the port could have written is a message like those of the worker. One is accepted only of
+// the task that runs, once, and after it began.
+bool Pool::is_in_turn(const Worker& worker, const Message& message) const {
+  const Batch& batch = *batches_[worker.batch];
+  if (std::holds_alternative<BatchDone>(message)) {
+    return worker.task == batch.size() || worker.has_no_tasks;
+  }
+  if (worker.task == batch.size() || worker.has_no_tasks) return false;
+  if (const auto* begins = std::get_if<TaskBegins>(&message)) {
+    return begins->task == worker.task && worker.begins <= batch.most_parts();
+  }
+  if (const auto* result = std::get_if<CaseResult>(&message)) {
+    const CaseResult task = batch.identity(worker.task);
+    // A fault is judged by cases of any rate.
+    const bool has_rate = batch.most_parts() == 0;
+    return worker.begins > 0 && result->case_id() == task.case_id() &&
+           (!has_rate || result->id() == task.id());
+  }
+  return true;
+}
+
 void Pool::take(Worker& worker, const Message& message) {
   if (std::holds_alternative<TaskBegins>(message)) {
     worker.deadline = deadline();
     worker.is_loaded = true;
+    ++worker.begins;
   }
   if (const auto* result = std::get_if<CaseResult>(&message)) {
     add(worker.batch, *result);
     ++worker.task;
+    worker.begins = 0;
   }
   if (const auto* error = std::get_if<Error>(&message)) {
     outcomes_[worker.batch].errors.push_back(*error);
+    worker.has_no_tasks = worker.begins == 0;
     ++worker.task;
+    worker.begins = 0;
   }
   if (std::holds_alternative<BatchDone>(message)) worker.finished = true;
 }
@@ -118,6 +150,17 @@ void Pool::take(Worker& worker, const Message& message) {
 void Pool::add(std::size_t batch, const CaseResult& result) {
   outcomes_[batch].results.push_back(result);
   options_.on_result(result);
+}
+
+// Which of its answers were the port's is not known.
+void Pool::distrust(const Worker& worker) {
+  std::vector<CaseResult>& results = outcomes_[worker.batch].results;
+  for (std::size_t i = worker.first_result; i < results.size(); ++i) {
+    const std::size_t task = worker.task - (results.size() - i);
+    results[i] = batches_[worker.batch]->identity(task);
+    results[i].verdict = Verdict::protocol;
+    results[i].reason = forgery;
+  }
 }
 
 // The tasks of a batch from this one on are not run.
@@ -135,6 +178,9 @@ void Pool::conclude(Worker& worker, bool timed_out) {
   const std::size_t batch = worker.batch;
   const std::size_t size = batches_[batch]->size();
   worker.over = true;
+  // A worker that has answered all its tasks says that it is done.
+  worker.forged = worker.forged || (!worker.finished && worker.task == size);
+  if (worker.forged) distrust(worker);
   if (!worker.finished && worker.task < size) {
     add(batch, verdict_on_the_dead(worker, timed_out));
     ++worker.task;
@@ -151,13 +197,18 @@ void Pool::conclude(Worker& worker, bool timed_out) {
 }
 
 CaseResult Pool::verdict_on_the_dead(Worker& worker, bool timed_out) {
-  if (timed_out) worker.child.kill();
+  if (timed_out || worker.forged) worker.child.kill();
   const std::string how = worker.child.end();
   CaseResult result = batches_[worker.batch]->identity(worker.task);
   result.verdict = timed_out ? Verdict::timeout : Verdict::crash;
   result.reason = timed_out ? fmt::format("no answer within {} s{}", options_.timeout_s,
                                           worker.is_loaded ? "" : ", when it was loaded")
                             : fmt::format("the port's process {}", how);
+  if (worker.forged) {
+    result.verdict = Verdict::protocol;
+    result.reason = forgery;
+    return result;
+  }
   const std::string words = worker.child.last_words();
   if (!words.empty()) result.reason += fmt::format("; it last printed: {}", words);
   return result;

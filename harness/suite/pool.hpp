@@ -28,9 +28,13 @@ class Pool {
     Child child;
     std::size_t task;  // that runs, or will
     Clock::time_point deadline;
-    bool is_loaded = false;  // the port: a task has begun
+    std::size_t begins = 0;        // of this task: its own and those of its parts
+    std::size_t first_result = 0;  // of this worker, in the outcome of its batch
+    bool is_loaded = false;        // the port: a task has begun
     bool readable = false;
-    bool finished = false;  // said so
+    bool has_no_tasks = false;  // an error of the whole batch was its answer
+    bool finished = false;      // said so
+    bool forged = false;        // something else than the worker wrote on its pipe
     bool over = false;
   };
   struct Outcome {
@@ -42,8 +46,10 @@ class Pool {
   void start(std::size_t batch, std::size_t first_task);
   void wait();
   void serve(Worker& worker);
+  bool is_in_turn(const Worker& worker, const Message& message) const;
   void take(Worker& worker, const Message& message);
   void add(std::size_t batch, const CaseResult& result);
+  void distrust(const Worker& worker);
   void give_up(std::size_t batch, std::size_t first_task, const std::string& reason);
   void conclude(Worker& worker, bool timed_out);
   CaseResult verdict_on_the_dead(Worker& worker, bool timed_out);

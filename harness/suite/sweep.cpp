@@ -114,6 +114,11 @@ CaseResult SweepBatch::identity(std::size_t i) const {
   return unjudged(case_, {rates_[i == 0 ? 0 : i - 1], flyer_});
 }
 
+std::size_t SweepBatch::most_parts() const {
+  constexpr int halvings = 8;
+  return longest_delay / delay_step + 1 + halvings;
+}
+
 Result<CaseResult> SweepBatch::evaluate(std::size_t i, Port& port) {
   CaseResult result = identity(i);
   Trial trial(case_, *airframe_, port, result, [this] { begin_part(); });

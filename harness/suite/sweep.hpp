@@ -29,6 +29,7 @@ class SweepBatch final : public Batch {
 
   std::size_t size() const override { return rates_.size() + 1; }
   CaseResult identity(std::size_t i) const override;
+  std::size_t most_parts() const override;  // flights that a search takes
 
   // A verdict other than pass where the port went wrong, and else one of the figures above.
   Result<CaseResult> evaluate(std::size_t i, Port& port) override;

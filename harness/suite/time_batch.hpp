@@ -44,6 +44,8 @@ class TimeBatch final : public Batch {
 
   std::size_t size() const override { return vectors_.size() + 1; }
   CaseResult identity(std::size_t i) const override;
+  // Repeats, and one for the stack.
+  std::size_t most_parts() const override { return static_cast<std::size_t>(options_.repeats) + 1; }
   Result<void> open() override;
   Result<CaseResult> evaluate(std::size_t i, Port& port) override;
 

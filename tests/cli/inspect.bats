@@ -41,6 +41,7 @@ load common
 
 @test "doctor finds this tree in good health" {
   run "$ATTEST" doctor
+  has "of a port's process: 10 s a case"
   [ "$status" -eq 0 ]
   has "agrees with 43 of 43 traces recorded from the firmware"
   lacks "BAD"

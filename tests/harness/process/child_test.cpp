@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -134,6 +136,32 @@ TEST(Child, HasNoInputAndLeavesNoCore) {
     send(::read(0, &byte, 1) == 0 && core.rlim_cur == 0 ? "so it is" : "no");
   });
   EXPECT_THAT(child.wait_for_line(patience_s), Optional(std::string("so it is")));
+}
+
+// A report that is being written, the pipe of another worker.
+TEST(Child, HasNoDescriptorOfItsParent) {
+  const int opened = ::open("/dev/null", O_WRONLY);
+  ASSERT_GE(opened, 0);
+  Child other = spawned([](const SendLine&) { ::pause(); });
+  Child child = spawned([](const SendLine& send) {
+    int open = 0;
+    for (int descriptor = 3; descriptor < 1024; ++descriptor) {
+      open += ::fcntl(descriptor, F_GETFD) >= 0 ? 1 : 0;
+    }
+    send(fmt::format("{} but its pipe", open - 1));
+  });
+  EXPECT_THAT(child.wait_for_line(patience_s), Optional(std::string("0 but its pipe")));
+  ::close(opened);
+}
+
+TEST(Child, CannotTakeAllMemory) {
+  if (!memory_is_limited()) GTEST_SKIP() << "sanitizers reserve more than there is";
+  Child child = spawned([](const SendLine& send) {
+    const void* enough = std::malloc(std::size_t{1} << 30);
+    const void* too_much = std::malloc(std::size_t{max_memory_gib} << 30);
+    send(enough && !too_much ? "limited" : "not limited");
+  });
+  EXPECT_THAT(child.wait_for_line(patience_s), Optional(std::string("limited")));
 }
 
 TEST(Child, IsMovedWithItsProcess) {

@@ -148,6 +148,24 @@ TEST(Process, WhatItLeftBehindEndsWhenItHasEnded) {
   EXPECT_TRUE(alive.are_gone());
 }
 
+// As a library does that makes itself a daemon.
+TEST(Process, WhatItStartedInASessionOfItsOwnEndsToo) {
+  Process other = started(stay);
+  Alive alive;
+  Process process = started([&] {
+    if (::fork() == 0) {
+      ::setsid();
+      if (::fork() == 0) stay_whatever_comes(alive);
+      stay_whatever_comes(alive);
+    }
+    stay();
+  });
+  ASSERT_TRUE(alive.are_alive(2));
+  process.stop(0);
+  EXPECT_TRUE(alive.are_gone());
+  EXPECT_FALSE(other.ends_within(0.05));
+}
+
 // As the processes of an attest that is killed itself.
 TEST(Process, ItAndWhatItStartedEndWithItsParent) {
   Alive alive;

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "harness/suite/message.hpp"
 #include "harness/suite/worker.hpp"
 #include "tests/harness/suite/small_suite.hpp"
 
@@ -52,6 +53,7 @@ class PartsBatch final : public Batch {
 
   std::size_t size() const override { return 1; }
   CaseResult identity(std::size_t) const override { return {}; }
+  std::size_t most_parts() const override { return static_cast<std::size_t>(parts_); }
   Result<CaseResult> evaluate(std::size_t i, Port&) override {
     for (int part = 0; part < parts_; ++part) {
       begin_part();
@@ -87,6 +89,22 @@ Verdict hangs() {
 Verdict closes_everything_and_hangs() {
   for (int descriptor = 3; descriptor < 1024; ++descriptor) ::close(descriptor);
   return hangs();
+}
+
+// As a port does that looks for the pipe of its worker.
+Task forges(const std::string& lines) {
+  return [lines] {
+    for (int descriptor = 3; descriptor < 1024; ++descriptor) {
+      if (::write(descriptor, lines.data(), lines.size()) < 0) continue;
+    }
+    return Verdict::fail;
+  };
+}
+
+// The answer of task i of case_0.
+std::string forged_pass(std::size_t i) {
+  CaseResult result = FakeBatch("case_0", {}).identity(i);
+  return encode(result) + "\n";
 }
 
 Batches batches_of(const std::vector<std::vector<Task>>& all) {
@@ -151,6 +169,56 @@ TEST(Pool, AfterATimeoutTheRestOfTheBatchIsNotTried) {
 TEST(Pool, AProcessThatClosesItsPipeAndLivesOnIsACrash) {
   const auto outcome = run_batches(batches_of({{closes_everything_and_hangs, pass}}), with_jobs(1));
   EXPECT_THAT(verdicts(outcome), ElementsAre("case_0@1 crash", "case_0@2 pass"));
+}
+
+TEST(Pool, WhatIsNoAnswerToTheTaskIsAForgery) {
+  const std::string lines[] = {
+      "{\"begin\": 0}\n",  // again
+      "{\"begin\": 1}\n",  // of another task
+      "{\"done\": true}\n",
+      "no message\n",
+      forged_pass(1),
+      forged_pass(0),  // and then comes the worker's own
+      FakeBatch("case_1", {}).identity(0).name + "\n",
+  };
+  for (const std::string& line : lines) {
+    const auto outcome = run_batches(batches_of({{forges(line)}, {pass}}), with_jobs(1));
+    EXPECT_THAT(verdicts(outcome), ElementsAre("case_0@1 protocol", "case_1@1 pass")) << line;
+    EXPECT_EQ(outcome.results[0].reason,
+              "the port wrote on the pipe on which attest's worker answers");
+  }
+}
+
+TEST(Pool, AForgeryCastsDoubtOnWhatTheProcessAnsweredBefore) {
+  const auto outcome =
+      run_batches(batches_of({{pass, forges("{\"begin\": 7}\n"), pass}}), with_jobs(1));
+  EXPECT_THAT(verdicts(outcome),
+              ElementsAre("case_0@1 protocol", "case_0@2 protocol", "case_0@3 pass"));
+}
+
+TEST(Pool, APortThatAnswersItselfAndEndsIsNotBelieved) {
+  const Task answers_and_ends = [] {
+    forges(forged_pass(0))();
+    ::_exit(0);
+    return Verdict::pass;
+  };
+  const auto outcome = run_batches(batches_of({{answers_and_ends}}), with_jobs(1));
+  EXPECT_THAT(verdicts(outcome), ElementsAre("case_0@1 protocol"));
+}
+
+// A task without parts has one limit, whatever the port writes.
+TEST(Pool, AMessageDoesNotRenewTheTimeLimit) {
+  WorkerOptions options = with_jobs(1);
+  options.timeout_s = 0.3;
+  const Task goes_on_beginning = [] {
+    while (true) {
+      forges("{\"begin\": 0}\n")();
+      ::usleep(50'000);
+    }
+    return Verdict::pass;
+  };
+  const auto outcome = run_batches(batches_of({{goes_on_beginning}}), options);
+  EXPECT_THAT(verdicts(outcome), ElementsAre("case_0@1 protocol"));
 }
 
 TEST(Pool, EachTaskHasTheWholeTimeLimit) {
