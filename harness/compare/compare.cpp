@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "harness/compare/events.hpp"
+#include "harness/compare/gross.hpp"
 #include "harness/compare/tilt.hpp"
 
 namespace attest {
@@ -118,7 +119,7 @@ bool TickComparer::channel_agrees(std::size_t channel, const Sample& got, const 
     note_headroom(channel, difference, tolerance);
     return true;
   }
-  if (!result_.first) result_.got_non_finite = !std::isfinite(g) && std::isfinite(w);
+  if (!std::isfinite(g) && std::isfinite(w)) result_.got_non_finite = true;
   note(channel, got, want, ulp_distance(g, w), tolerance);
   return false;
 }
@@ -156,6 +157,18 @@ void TickComparer::note_headroom(std::size_t channel, double difference, double 
 
 namespace {
 
+Deviation deviation_at(std::size_t tick, std::size_t channel, const Trace& got,
+                       const Sample& want) {
+  const Channel& signal = channels()[channel];
+  return {tick,
+          got.samples[tick].in.timestamp,
+          channel,
+          value_of(signal, got.samples[tick]),
+          value_of(signal, want),
+          0,
+          0};
+}
+
 // At the events level, where what happens at one tick is looked for at others.
 void compare_events(const Trace& got, const Trace& want, Comparison& result) {
   if (!tells_events(want.present)) {
@@ -163,19 +176,16 @@ void compare_events(const Trace& got, const Trace& want, Comparison& result) {
     result.mismatch = "these outputs tell no events; compare at the numeric level";
     return;
   }
-  const auto difference = first_event_difference(got, want);
-  if (!difference) return;
-  const auto& [tick, channel, what] = *difference;
-  const Channel& signal = channels()[channel];
-  result.first = Deviation{tick,
-                           want.samples[tick].in.timestamp,
-                           channel,
-                           value_of(signal, got.samples[tick]),
-                           value_of(signal, want.samples[tick]),
-                           0,
-                           0};
-  result.event = what;
+  const auto non_finite = first_non_finite_event(got, want);
+  std::optional<EventDifference> first = non_finite;
+  for (const auto& other : {first_event_difference(got, want), first_gross_difference(got, want)}) {
+    if (other && (!first || other->tick < first->tick)) first = other;
+  }
+  if (!first) return;
+  result.first = deviation_at(first->tick, first->channel, got, want.samples[first->tick]);
+  result.event = first->what;
   result.deviating_ticks = 1;
+  result.got_non_finite = non_finite.has_value();
 }
 
 }  // namespace
@@ -194,6 +204,30 @@ Comparison compare(const Trace& got, const Trace& want, const Tolerances& tolera
   const bool of_events = tolerances.level() == Level::events && result.mismatch.empty();
   if (of_events) compare_events(got, want, result);
   return result;
+}
+
+std::optional<Deviation> first_non_finite(const Trace& got, const Trace& want) {
+  ChannelSet judged;
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    const Channel& channel = channels()[i];
+    const bool is_float = channel.is_output() && channel.type == ChannelType::f32;
+    judged[i] = is_float && got.present[i] && want.present[i] &&
+                std::all_of(want.samples.begin(), want.samples.end(), [&](const Sample& sample) {
+                  return std::isfinite(float_of(channel, sample));
+                });
+  }
+  for (std::size_t tick = 0; tick < got.samples.size(); ++tick) {
+    for (std::size_t i = judged._Find_first(); i < judged.size(); i = judged._Find_next(i)) {
+      if (std::isfinite(float_of(channels()[i], got.samples[tick]))) continue;
+      // The last row up to then.
+      const auto after = std::upper_bound(
+          want.samples.begin(), want.samples.end(), got.samples[tick].in.timestamp,
+          [](std::uint64_t time, const Sample& sample) { return time < sample.in.timestamp; });
+      const Sample none{};
+      return deviation_at(tick, i, got, after == want.samples.begin() ? none : *(after - 1));
+    }
+  }
+  return std::nullopt;
 }
 
 namespace {

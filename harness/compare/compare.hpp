@@ -44,12 +44,16 @@ struct Comparison {
   std::optional<Headroom> tightest;  // numeric level, among the values within tolerance
   std::string mismatch;              // what makes the traces incomparable; empty if nothing
   std::string event;  // at the events level: what happens otherwise, at the first deviation
-  bool got_non_finite = false;  // the first deviation is a NaN or Inf where none belongs
+  bool got_non_finite = false;  // a NaN or Inf where none belongs, at any tick
 
   bool agrees() const { return !first && mismatch.empty(); }
 };
 
 Comparison compare(const Trace& got, const Trace& want, const Tolerances& tolerances);
+
+// The first NaN or Inf of `got` in a channel in which `want` has neither, at none of its ticks. For
+// a flight, of whose ticks the golden has some.
+std::optional<Deviation> first_non_finite(const Trace& got, const Trace& want);
 
 // The same tick by tick, for traces that are not in memory. At the events level only whether the
 // traces can be compared at all.

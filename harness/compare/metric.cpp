@@ -29,6 +29,9 @@ constexpr std::array<std::pair<Measure, std::string_view>, 8> names = {{
 
 double square(double value) { return value * value; }
 
+// std::max drops a NaN that comes second; here a NaN stays.
+double larger(double a, double b) { return std::isnan(b) || b > a ? b : a; }
+
 // The angle between two attitudes, whatever the signs and norms of their quaternions. By atan2,
 // because acos has no resolution where the angle is small.
 double angle_deg(const std::array<float, 4>& q, const float (&q_d)[4]) {
@@ -84,7 +87,7 @@ class Flown {
     std::size_t tick = begin_;
     while (tick < end_ && error_deg(tick) > band_deg) ++tick;
     double largest = tick == end_ ? infinity : 0;
-    for (; tick < end_; ++tick) largest = std::max(largest, error_deg(tick));
+    for (; tick < end_; ++tick) largest = larger(largest, error_deg(tick));
     return largest;
   }
 
@@ -98,7 +101,7 @@ class Flown {
   }
   double peak(const std::function<double(std::size_t)>& value) const {
     double largest = 0;
-    for (std::size_t tick = begin_; tick < end_; ++tick) largest = std::max(largest, value(tick));
+    for (std::size_t tick = begin_; tick < end_; ++tick) largest = larger(largest, value(tick));
     return largest;
   }
 
@@ -134,9 +137,12 @@ double peak_rate(const Flown& flown, const Trace& trace) {
 double peak_integral(const Flown& flown, const Trace& trace) {
   return flown.peak([&](std::size_t tick) {
     const auto& status = trace.samples[tick].out.mc_att_ctrl_status;
-    return static_cast<double>(
-        std::max({std::abs(status.roll_rate_integ), std::abs(status.pitch_rate_integ),
-                  std::abs(status.yaw_rate_integ)}));
+    double largest = 0;
+    for (const float integral :
+         {status.roll_rate_integ, status.pitch_rate_integ, status.yaw_rate_integ}) {
+      largest = larger(largest, std::abs(static_cast<double>(integral)));
+    }
+    return largest;
   });
 }
 

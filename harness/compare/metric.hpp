@@ -45,7 +45,8 @@ struct Metric {
   double max = std::numeric_limits<double>::infinity();
 };
 
-// Infinite when it never settles; NaN when the window has no tick. REQUIRES: a flown trace.
+// Infinite when it never settles; NaN when the window has no tick, or one with a NaN in what is
+// measured. REQUIRES: a flown trace.
 double measured(const Metric& metric, const Trace& flown);
 
 }  // namespace attest

@@ -92,16 +92,6 @@ TEST(Compare, NonFiniteValuesAreNeverWithinATolerance) {
   }
 }
 
-TEST(Compare, NonFiniteIsSaidOfTheFirstDeviationOnly) {
-  const Trace want = sample_trace(3);
-  Trace got = want;
-  set(got, 1, roll, 9);
-  set(got, 2, roll, nan);
-  EXPECT_FALSE(compare(got, want, Tolerances()).got_non_finite);
-  set(got, 0, roll, nan);
-  EXPECT_TRUE(compare(got, want, Tolerances()).got_non_finite);
-}
-
 TEST(Compare, PublicationIsComparedAsTruth) {
   const Trace want = sample_trace(2);
   Trace got = want;
@@ -165,6 +155,34 @@ TEST(Compare, HeadroomIsOfTheValueNearestToItsTolerance) {
   EXPECT_NEAR(comparison.tightest->ratio, 2, 1e-6);
   EXPECT_EQ(comparison.tightest->tick, 1u);
   EXPECT_EQ(comparison.tightest->channel, channel(roll));
+}
+
+TEST(Compare, NonFiniteAfterAnotherDeviationIsSaid) {
+  const Trace want = sample_trace(5);
+  Trace got = want;
+  set(got, 1, "out/vehicle_rates_setpoint.roll", 7);
+  EXPECT_FALSE(compare(got, want, Tolerances()).got_non_finite);
+  set(got, 3, "out/mc_att_ctrl_status.roll_rate_integ", nan);
+  const Comparison comparison = compare(got, want, Tolerances());
+  EXPECT_TRUE(comparison.got_non_finite);
+  EXPECT_EQ(comparison.first->tick, 1u);
+}
+
+// A golden of a flight has rows of some ticks.
+TEST(FirstNonFinite, IsFoundBetweenTheRows) {
+  const Trace flown = sample_trace(9);
+  Trace rows = flown;
+  rows.samples = {flown.samples[0], flown.samples[4], flown.samples[8]};
+  EXPECT_FALSE(first_non_finite(flown, rows));
+  Trace got = flown;
+  set(got, 6, "out/mc_att_ctrl_status.roll_rate_integ", nan);
+  const auto found = first_non_finite(got, rows);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->tick, 6u);
+  EXPECT_EQ(found->channel, channel("out/mc_att_ctrl_status.roll_rate_integ"));
+  EXPECT_DOUBLE_EQ(found->want, value_of(channels()[found->channel], flown.samples[4]));
+  set(rows, 1, "out/mc_att_ctrl_status.roll_rate_integ", nan);
+  EXPECT_FALSE(first_non_finite(got, rows)) << "the reference is not finite in this channel";
 }
 
 }  // namespace

@@ -86,7 +86,9 @@ TEST(Events, PublicationSaturationAndFiniteness) {
 
 TEST(Events, AreALevelOfCompare) {
   Trace got = moving(6, 12);
-  set(got, 15, "out/vehicle_rates_setpoint.roll", 3);
+  const char* const rate = "out/vehicle_rates_setpoint.roll";
+  const Channel& of_roll = channels()[channel(rate)];
+  set(got, 15, rate, value_of(of_roll, got.samples[15]) + 0.05);
   EXPECT_TRUE(compare(got, moving(5, 12), Tolerances(Level::events)).agrees());
   const Comparison late = compare(moving(8, 12), moving(5, 12), Tolerances(Level::events));
   ASSERT_TRUE(late.first);

@@ -119,5 +119,22 @@ TEST(Metric, VersusAnotherWindowIsARatio) {
   EXPECT_NEAR(measured(ratio, rolled_by({10, 10, 5, 5})), 0.5, 1e-6);
 }
 
+// std::max drops a NaN that comes second: a peak is then that of the numbers.
+TEST(Metric, OfSomethingThatIsNoNumberIsNone) {
+  const char* const integrals[] = {"out/mc_att_ctrl_status.roll_rate_integ",
+                                   "out/mc_att_ctrl_status.pitch_rate_integ",
+                                   "out/mc_att_ctrl_status.yaw_rate_integ"};
+  for (const char* name : integrals) {
+    Trace trace = rolled_by({1, 1, 1});
+    set(trace, 1, name, nan);
+    EXPECT_TRUE(std::isnan(measured(metric(Measure::peak_integral), trace))) << name;
+  }
+  Trace trace = rolled_by({1, 1, 1});
+  trace.plant[1].rate_rad_s[2] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(measured(metric(Measure::peak_rate_rad_s), trace)));
+  trace.plant[1].q[0] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(measured(metric(Measure::overshoot_deg), trace)));
+}
+
 }  // namespace
 }  // namespace attest

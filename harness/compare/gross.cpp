@@ -1,0 +1,133 @@
+#include "harness/compare/gross.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace attest {
+namespace {
+
+// Of the slack. Integrals are limited to 0.3 by default, controls and thrust to 1.
+double floor_of(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::rate:
+      return 0.1;  // rad/s
+    case Quantity::integral:
+      return 0.02;
+    default:
+      return 0.05;
+  }
+}
+
+bool is_float_output(const Channel& channel) {
+  return channel.is_output() && channel.type == ChannelType::f32;
+}
+
+// Channels that both traces have, in the order of the table.
+std::vector<std::size_t> float_outputs_of(const Trace& got, const Trace& want) {
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    if (is_float_output(channels()[i]) && got.present[i] && want.present[i]) chosen.push_back(i);
+  }
+  return chosen;
+}
+
+bool is_published(const Channel& channel, const Sample& sample) {
+  if (channel.name.starts_with("out/vehicle_rates_setpoint.")) {
+    return sample.out.vehicle_rates_setpoint.published != 0;
+  }
+  if (channel.name.starts_with("out/actuator_controls_0.")) {
+    return sample.out.actuator_controls_0.published != 0;
+  }
+  return sample.out.mc_att_ctrl_status.published != 0;
+}
+
+// |w| of the rotation from one attitude to the other: cos(angle / 2).
+double likeness_of(const float (&q)[4], const float (&q_d)[4]) {
+  double product = 0, of_q = 0, of_q_d = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    product += static_cast<double>(q[i]) * static_cast<double>(q_d[i]);
+    of_q += static_cast<double>(q[i]) * static_cast<double>(q[i]);
+    of_q_d += static_cast<double>(q_d[i]) * static_cast<double>(q_d[i]);
+  }
+  return std::abs(product) / std::sqrt(of_q * of_q_d);
+}
+
+// The ticks at which the law is about to turn the other way, or has no attitude to go by.
+std::vector<bool> half_turns_in(const Trace& want) {
+  constexpr double near = 0.1;  // cos of half an angle that is 11 deg short of a half turn
+  std::vector<bool> is_half_turn;
+  attest_inputs setpoint{};
+  for (const Sample& sample : want.samples) {
+    const bool has_setpoint = (sample.in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;
+    if (is_half_turn.empty() || has_setpoint) setpoint = sample.in;
+    const double likeness =
+        likeness_of(sample.in.control_state.q, setpoint.vehicle_attitude_setpoint.q_d);
+    const bool goes_by_it = sample.in.vehicle_control_mode.flag_control_attitude_enabled != 0;
+    is_half_turn.push_back(goes_by_it && !(likeness >= near));
+  }
+  return is_half_turn;
+}
+
+struct Bounds {
+  double low = 0, high = 0;
+  bool hold(double value) const { return value >= low && value <= high; }
+};
+
+// Empty where a value of the three is not finite, or not published.
+std::optional<Bounds> bounds_at(const Trace& want, std::size_t tick, const Channel& channel) {
+  std::array<double, 3> values{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Sample& sample = want.samples[tick - 1 + i];
+    values[i] = static_cast<double>(float_of(channel, sample));
+    if (!std::isfinite(values[i]) || !is_published(channel, sample)) return std::nullopt;
+  }
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const double size = std::max(std::abs(*low), std::abs(*high));
+  const double slack = floor_of(channel.quantity) + (*high - *low) + size / 2;
+  return Bounds{*low - slack, *high + slack};
+}
+
+}  // namespace
+
+std::optional<EventDifference> first_gross_difference(const Trace& got, const Trace& want) {
+  const auto half_turn = half_turns_in(want);
+  const auto chosen = float_outputs_of(got, want);
+  for (std::size_t tick = 1; tick + 1 < want.samples.size(); ++tick) {
+    if (half_turn[tick - 1] || half_turn[tick] || half_turn[tick + 1]) continue;
+    for (const std::size_t index : chosen) {
+      const Channel& channel = channels()[index];
+      if (!is_published(channel, got.samples[tick])) continue;
+      const auto bounds = bounds_at(want, tick, channel);
+      const auto value = static_cast<double>(float_of(channel, got.samples[tick]));
+      if (!bounds || !std::isfinite(value) || bounds->hold(value)) continue;
+      return EventDifference{tick, index,
+                             fmt::format("{} is {:.3g}, expected {:.3g} to {:.3g} at this level",
+                                         channel.name.substr(4), value, bounds->low, bounds->high)};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<EventDifference> first_non_finite_event(const Trace& got, const Trace& want) {
+  const auto chosen = float_outputs_of(got, want);
+  const std::size_t ticks = want.samples.size();
+  for (std::size_t tick = 0; tick < ticks; ++tick) {
+    for (const std::size_t index : chosen) {
+      const Channel& channel = channels()[index];
+      if (std::isfinite(float_of(channel, got.samples[tick]))) continue;
+      bool is_expected = false;
+      for (std::size_t at = tick == 0 ? 0 : tick - 1; at <= std::min(tick + 1, ticks - 1); ++at) {
+        is_expected = is_expected || !std::isfinite(float_of(channel, want.samples[at]));
+      }
+      if (is_expected) continue;
+      return EventDifference{tick, index, fmt::format("{} is not finite", channel.name.substr(4))};
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace attest
