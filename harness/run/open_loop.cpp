@@ -74,20 +74,32 @@ PortFault makes_only_one() {
           "the port makes no second instance while it has one: create() returned NULL"};
 }
 
+PortFault makes_no_other() {
+  return {
+      PortFault::Kind::protocol, 0,
+      "create() returned NULL after the instance before was destroyed; it is legal at any time"};
+}
+
 // `create` makes a fresh instance.
 template <typename PartUnit, typename Create>
 std::optional<PortFault> drive_in_company(std::unique_ptr<PartUnit> first, Create create,
                                           Instances instances, Trace& trace) {
   Trace of_first = mirrored(trace);
+  // A fault of the first leaves the judged trace without an answer.
+  const auto drive_first = [&] {
+    auto fault = drive_part(*first, of_first);
+    if (fault) fault->tick = 0;
+    return fault;
+  };
   if (instances == Instances::again) {
-    if (auto fault = drive_part(*first, of_first)) return fault;
+    if (auto fault = drive_first()) return fault;
     first.reset();
   }
   const std::unique_ptr<PartUnit> judged = create();
-  if (!judged) return makes_only_one();
+  if (!judged) return instances == Instances::again ? makes_no_other() : makes_only_one();
   if (instances == Instances::together) return drive_by_turns(*judged, trace, *first, of_first);
   if (instances == Instances::crossed) {
-    if (auto fault = drive_part(*first, of_first)) return fault;
+    if (auto fault = drive_first()) return fault;
     first.reset();
   }
   return drive_part(*judged, trace);

@@ -23,8 +23,8 @@ struct PortFault {
     protocol,     // broke the rules of the ABI
   };
   Kind kind = Kind::failed;
-  std::size_t tick = 0;
-  std::string what;  // one line
+  std::size_t tick = 0;  // of the judged trace: those before it were answered
+  std::string what;      // one line
 };
 
 // PartUnit is Unit, MixerUnit or BatteryUnit.

@@ -25,13 +25,17 @@ void run_and_judge(Trace& answered, const Trace& want, const OtherSides& others,
                    const Subject& subject, Port& port, const Tolerances& tolerances,
                    const Tolerances& of_sides, CaseResult& result) {
   if (declines(port, result)) return;
-  if (const auto fault = drive(port, subject, answered)) return judge(*fault, result);
+  const auto fault = drive(port, subject, answered);
+  if (fault && !leaves_ticks_to_judge(*fault)) return judge(*fault, result);
   const DefaultFloatEnvironment environment;
+  if (fault) leave_out_from(fault->tick, want, answered);
   if (others.empty() || tolerances.level() == Level::exact) {
-    return judge(compare(answered, want, tolerances), result);
+    judge(compare(answered, want, tolerances), result);
+  } else {
+    const Trace allowed = on_the_side_of(answered, want, others, of_sides);
+    judge(compare(answered, allowed, tolerances), result);
   }
-  const Trace allowed = on_the_side_of(answered, want, others, of_sides);
-  judge(compare(answered, allowed, tolerances), result);
+  if (fault) judge_after(*fault, result);
 }
 
 // What the case gives the unit, and what the reference answered to just that.

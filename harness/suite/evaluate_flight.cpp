@@ -91,8 +91,10 @@ Comparison with_tightest(Comparison loop, const Comparison& answers) {
   return loop;
 }
 
-void judge_flight(const Case& the_case, const Flown& flown, const ReferenceFlight& reference,
-                  std::optional<int> fraction_bits, CaseResult& result) {
+// Each answer by the reference, the loop by the golden's rows to the horizon, and no NaN and no
+// infinity at any tick.
+void judge_ticks(const Case& the_case, const Flown& flown, const ReferenceFlight& reference,
+                 std::optional<int> fraction_bits, CaseResult& result) {
   // The horizon is of floats. In flight, where what it rounds comes back to it, a port with 22 bits
   // behind the point was measured to leave the golden by seven times what its LSBs are allowed.
   // With 30 bits that is a tenth of what floats are allowed; with fewer, the loop as a whole is
@@ -104,13 +106,22 @@ void judge_flight(const Case& the_case, const Flown& flown, const ReferenceFligh
   const Tolerances tolerances = tolerances_of(the_case, Level::numeric, fraction_bits);
   Tolerances of_answers = tolerances;
   if (fraction_bits) of_answers.allow_lsb(*fraction_bits, flown.trace.samples.size());
-  const Comparison answers =
+  Comparison comparison =
       compare_answers(flown.trace, the_case.profile, of_answers, fraction_bits);
-  judge(answers, result);
-  if (answers.agrees()) {
-    judge(with_tightest(compare_rows(flown.trace, reference.rows, horizon_s, tolerances), answers),
-          result);
+  if (comparison.agrees()) {
+    comparison = with_tightest(compare_rows(flown.trace, reference.rows, horizon_s, tolerances),
+                               comparison);
   }
+  if (const auto non_finite = first_non_finite(flown.trace, reference.rows)) {
+    if (!comparison.first) comparison.first = non_finite;
+    comparison.got_non_finite = true;
+  }
+  judge(comparison, result);
+}
+
+void judge_flight(const Case& the_case, const Flown& flown, const ReferenceFlight& reference,
+                  std::optional<int> fraction_bits, CaseResult& result) {
+  judge_ticks(the_case, flown, reference, fraction_bits, result);
   std::vector<std::string> reasons;
   if (!result.reason.empty()) reasons.push_back(result.reason);
   if (flown.divergence) {
@@ -141,10 +152,13 @@ Result<CaseResult> evaluate_beside(const Case& the_case, const Setup& setup,
   if (!unit) return result;
   const auto flown = fly(the_case, setup, airframe, *unit, timing);
   if (!flown) return tl::unexpected(flown.error());
-  if (flown->fault) {
+  const DefaultFloatEnvironment environment;
+  if (flown->fault && leaves_ticks_to_judge(*flown->fault)) {
+    judge_ticks(the_case, *flown, reference, port.fraction_bits(), result);
+    judge_after(*flown->fault, result);
+  } else if (flown->fault) {
     judge(*flown->fault, result);
   } else {
-    const DefaultFloatEnvironment environment;
     judge_flight(the_case, *flown, reference, port.fraction_bits(), result);
   }
   result.elapsed_s = stopwatch.elapsed_s();

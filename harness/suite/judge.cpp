@@ -1,6 +1,7 @@
 #include "harness/suite/judge.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -48,6 +49,28 @@ void judge(const PortFault& fault, CaseResult& result) {
   }
 }
 
+bool leaves_ticks_to_judge(const PortFault& fault) {
+  return fault.kind == PortFault::Kind::unsupported && fault.tick > 0;
+}
+
+void leave_out_from(std::size_t tick, const Trace& want, Trace& answered) {
+  for (std::size_t i = tick; i < answered.samples.size(); ++i) {
+    answered.samples[i].out = want.samples[i].out;
+    answered.samples[i].mixer_out = want.samples[i].mixer_out;
+    answered.samples[i].battery_out = want.samples[i].battery_out;
+  }
+}
+
+void judge_after(const PortFault& fault, CaseResult& result) {
+  if (result.verdict != Verdict::pass) {
+    result.reason += fmt::format("{}before {}", result.reason.empty() ? "" : "; ", fault.what);
+    return;
+  }
+  result.tightest.reset();
+  result.ticks = std::min(result.ticks, fault.tick);
+  judge(fault, result);
+}
+
 void judge(const Comparison& comparison, CaseResult& result) {
   result.ticks = comparison.ticks;
   result.deviating_ticks = comparison.deviating_ticks;
@@ -56,6 +79,11 @@ void judge(const Comparison& comparison, CaseResult& result) {
   result.reason = comparison.mismatch.empty() ? comparison.event : comparison.mismatch;
   if (comparison.agrees()) return;
   result.verdict = comparison.got_non_finite ? Verdict::non_finite : Verdict::fail;
+  const bool is_told =
+      !comparison.got_non_finite || !comparison.first || !std::isfinite(comparison.first->got);
+  if (is_told) return;
+  result.reason = fmt::format("{}{}an output is NaN or infinite where the golden has a number",
+                              result.reason, result.reason.empty() ? "" : "; ");
 }
 
 }  // namespace attest

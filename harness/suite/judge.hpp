@@ -22,6 +22,17 @@ bool declines(const Port& port, CaseResult& result);
 std::unique_ptr<Unit> create_unit(Port& port, const std::string& profile, CaseResult& result);
 
 void judge(const PortFault& fault, CaseResult& result);
+
+// What was answered before the port said that it does not do this is judged all the same: wrong
+// outputs are not excused by a later ATTEST_UNSUPPORTED.
+bool leaves_ticks_to_judge(const PortFault& fault);
+
+// From `tick` on `answered` gets the outputs of `want`, so that only the ticks before decide.
+void leave_out_from(std::size_t tick, const Trace& want, Trace& answered);
+
+// After the ticks before the fault have been judged: a failure stays one, and the reason says both.
+void judge_after(const PortFault& fault, CaseResult& result);
+
 void judge(const Comparison& comparison, CaseResult& result);
 
 }  // namespace attest
