@@ -43,7 +43,8 @@ void add_run(CLI::App& app, const Globals& globals, Action& action) {
   command
       ->add_option("--level", options->level,
                    "How strictly: `exact` (float32 bits), `numeric` (a tolerance a channel) or "
-                   "`events` (what happens, within a tick); flights are judged alike at all")
+                   "`events` (what happens, within a tick, and no value of another sign or size); "
+                   "flights are judged the same way at each")
       ->capture_default_str();
   CLI::Option* const expected =
       command
@@ -75,7 +76,11 @@ void add_run(CLI::App& app, const Globals& globals, Action& action) {
                     "No worker processes: for a debugger, or a sanitizer in the port");
   command->add_option("--junit", options->junit, "Write a JUnit XML report")->type_name("FILE");
   command->add_option("--json", options->json, "Write a JSON report")->type_name("FILE");
-  command->add_option("--badge", options->badge, "Write a badge (SVG)")->type_name("FILE");
+  command
+      ->add_option("--badge", options->badge,
+                   "Write a badge (SVG): green when the port conforms to a profile, amber "
+                   "when the result is partial, red when something fails")
+      ->type_name("FILE");
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return run_command(*options, globals); };
   });

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace attest::cli {
 
@@ -23,6 +25,20 @@ Result<void> check_distinct(const std::vector<std::string>& paths) {
     }
   }
   return {};
+}
+
+std::string SelectionOptions::narrowing() const {
+  std::vector<std::string> options;
+  const std::pair<const char*, const std::vector<std::string>&> lists[] = {{"--filter", filters},
+                                                                           {"--group", groups},
+                                                                           {"--rate", rates},
+                                                                           {"--vehicle", vehicles},
+                                                                           {"--plant", plants}};
+  for (const auto& [option, values] : lists) {
+    if (!values.empty()) options.push_back(fmt::format("{} {}", option, fmt::join(values, ",")));
+  }
+  if (shard != "1/1") options.push_back("--shard " + shard);
+  return fmt::format("{}", fmt::join(options, " "));
 }
 
 bool SelectionOptions::selects_all_setups() const {

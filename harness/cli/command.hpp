@@ -44,6 +44,9 @@ struct SelectionOptions {
            vehicles.empty() && plants.empty() && shard == "1/1";
   }
 
+  // What of these selects less than all of the cases of a profile: "--group tpa --rate 250".
+  std::string narrowing() const;
+
   // Each selected case at all its rates, on all its vehicles and plants?
   bool selects_all_setups() const;
 

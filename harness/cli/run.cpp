@@ -1,8 +1,12 @@
+#include <charconv>
 #include <chrono>
+#include <cstdlib>
+#include <ctime>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "harness/cli/command.hpp"
@@ -64,6 +68,7 @@ struct RunPlan {
   std::vector<SelectedCase> cases;
   Batches batches;
   std::size_t results = 0;
+  std::optional<PortSays> said;
 };
 
 // The cases that are selected, each at its own times.
@@ -79,6 +84,7 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
   auto batches = make_batches(*cases, suite.golden(), fleet, plan.run.level);
   if (!batches) return tl::unexpected(batches.error());
   plan.batches = std::move(*batches);
+  plan.run.selection = options.select.narrowing();
   plan.run.all_setups = options.select.selects_all_setups();
   plan.run.rates.assign(rates.begin(), rates.end());
   plan.cases = std::move(*cases);
@@ -98,6 +104,54 @@ Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, Run
   return {};
 }
 
+// Of the day, in UTC; SOURCE_DATE_EPOCH makes reports the same on every day.
+Result<std::string> date_of_run() {
+  std::time_t now = std::time(nullptr);
+  if (const char* given = std::getenv("SOURCE_DATE_EPOCH"); given && *given) {
+    const std::string_view text(given);
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), now);
+    if (error != std::errc() || end != text.data() + text.size() || now < 0) {
+      return fail(fmt::format("SOURCE_DATE_EPOCH is `{}`; it is a count of seconds", text));
+    }
+  }
+  return fmt::format("{:%Y-%m-%d}", fmt::gmtime(now));
+}
+
+// What a statement of conformance is about: which suite, which port, when.
+Result<void> identify(const RunOptions& options, const SuiteFolder& suite, RunResult& run) {
+  constexpr std::string_view library = "lib:";
+  run.suite = suite.cases_by_group();
+  run.cases_version = suite.version_of(suite.cases());
+  run.golden_version = suite.version_of(suite.golden());
+  run.attest_version = version;
+  run.port = options.worker.port;
+  auto hash = suite.sha256();
+  if (!hash) return tl::unexpected(hash.error());
+  run.suite_sha256 = *hash;
+  run.suite_is_released = run.suite_sha256 == released_suite_sha256();
+  if (run.port.starts_with(library)) {
+    auto of_port = sha256_of_file(run.port.substr(library.size()));
+    if (!of_port) return tl::unexpected(of_port.error());
+    run.port_sha256 = *of_port;
+  }
+  auto date = date_of_run();
+  if (!date) return tl::unexpected(date.error());
+  run.date = *date;
+  return {};
+}
+
+// What the port is held to during the run; empty for one that gave no answer.
+std::optional<PortSays> said_by(const PortDescription& port, const RunPlan& plan,
+                                const WorkerOptions& worker) {
+  if (!port.hangs.empty()) return std::nullopt;
+  std::set<std::string> profiles;
+  for (const SelectedCase& selected : plan.cases) profiles.insert(selected.the_case.profile);
+  PortSays said = port;
+  said.profiles =
+      supported_profiles(worker.port, {profiles.begin(), profiles.end()}, worker.timeout_s);
+  return said;
+}
+
 Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
   auto level = parse_level(options.level);
   if (!level) return tl::unexpected(level.error());
@@ -110,11 +164,9 @@ Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
     if (!expected) return tl::unexpected(expected.error());
     plan.expected = std::move(*expected);
   }
-  plan.run.all_groups = suite.groups();
-  plan.run.cases_version = suite.version_of(suite.cases());
-  plan.run.golden_version = suite.version_of(suite.golden());
-  plan.run.attest_version = version;
-  plan.run.port = options.worker.port;
+  if (auto known = identify(options, suite, plan.run); !known) {
+    return tl::unexpected(known.error());
+  }
   plan.run.port_name = port->name;
   plan.run.port_version = port->version;
   plan.run.fraction_bits = port->fraction_bits;
@@ -123,6 +175,7 @@ Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
   const auto planned =
       options.timing.empty() ? plan_cases(options, suite, plan) : plan_timed(options, suite, plan);
   if (!planned) return tl::unexpected(planned.error());
+  plan.said = said_by(*port, plan, options.worker);
   return plan;
 }
 
@@ -171,6 +224,7 @@ int run_command(const RunOptions& options, const Globals& globals) {
   note_interrupts();
   Progress progress(plan->results, Progress::on_stderr(globals.quiet));
   WorkerOptions worker = options.worker;
+  worker.said = plan->said;
   worker.on_result = [&](const CaseResult& result) { progress.add(result); };
   worker.fails = [&](const CaseResult& result) {
     return fails_a_run(result.verdict) && !(plan->expected && plan->expected->expects(result));

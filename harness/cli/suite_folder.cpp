@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/core/file.hpp"
 #include "harness/suite/select.hpp"
 
 namespace attest::cli {
@@ -35,13 +36,44 @@ std::string SuiteFolder::version_of(const fs::path& folder) const {
 }
 
 std::vector<std::string> SuiteFolder::groups() const {
-  std::set<std::string> names;
+  std::vector<std::string> names;
+  for (const auto& group : cases_by_group()) names.push_back(group.first);
+  return names;
+}
+
+std::map<std::string, std::map<Rate, std::size_t>> SuiteFolder::cases_by_group() const {
+  std::map<std::string, std::map<Rate, std::size_t>> groups;
   const auto all = select_cases(cases(), {});
   if (!all) return {};
-  for (const SelectedCase& one : *all)
-    names.insert(one.the_case.profile + "/" + one.the_case.group);
-  return {names.begin(), names.end()};
+  for (const auto& [the_case, setups] : *all) {
+    auto& rates = groups[the_case.profile + "/" + the_case.group];
+    for (const Setup& setup : setups) ++rates[setup.rate];
+  }
+  return groups;
 }
+
+Result<std::string> SuiteFolder::sha256() const {
+  std::set<std::string> paths;
+  for (const fs::path& folder : {cases(), golden()}) {
+    std::error_code error;
+    if (!fs::is_directory(folder, error)) continue;  // a run says what is missing
+    for (auto at = fs::recursive_directory_iterator(folder, error);
+         at != fs::recursive_directory_iterator(); at.increment(error)) {
+      if (at->path() == recorded()) at.disable_recursion_pending();
+      if (at->path().extension() == ".toml") paths.insert(at->path().lexically_relative(root));
+    }
+    if (error) return fail_at(folder.string(), error.message());
+  }
+  std::string lines;
+  for (const std::string& path : paths) {
+    auto hash = sha256_of_file(root / path);
+    if (!hash) return tl::unexpected(hash.error());
+    lines += fmt::format("{}  {}\n", *hash, path);
+  }
+  return attest::sha256(lines);
+}
+
+std::string released_suite_sha256() { return ATTEST_SUITE_SHA256; }
 
 Result<SuiteFolder> find_suite(const std::string& given) {
   if (!given.empty()) return named(given, "--suite");

@@ -10,7 +10,9 @@
 // - (high - low) once more: one input may reach the port a tick later than another.
 // - Half the size: a gain, a filter or a table may be that coarse. An inverted sign and twice the
 //   value are outside.
-// - floor: what numbers with some six bits behind the point add up to. See gross.cpp.
+// - floor: 0.1 rad/s for rates setpoints, 0.05 for controls and thrust, 0.02 for integrals. Of a
+//   right controller in fixed point these let pass every case that its events let pass with 14 bits
+//   behind the point, and all but 2 of 451 with 11 bits.
 //
 // No value is compared where the port need not be at the same point yet: at the first and the last
 // tick, where the topic is not published at one of the three ticks, and within 11 deg of a half

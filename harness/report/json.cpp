@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/report/statement.hpp"
+#include "harness/suite/claim.hpp"
 #include "harness/suite/verdict_json.hpp"
 
 namespace attest {
@@ -73,11 +74,25 @@ ordered_json diagnosis(const Diagnosis& found) {
           {"nearest", {{"fault", found.nearest->id}, {"alikeness", found.alikeness}}}};
 }
 
+ordered_json claims(const RunResult& run) {
+  ordered_json out = ordered_json::array();
+  for (const Claim& claim : claims_of(run)) {
+    out.push_back({{"profile", claim.profile},
+                   {"conformant", claim.conforms()},
+                   {"groups", claim.whole},
+                   {"modules", claim.modules},
+                   {"failing", claim.failing},
+                   {"missing", claim.missing}});
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string json_report(const RunResult& run) {
   ordered_json port = {
       {"specification", run.port}, {"name", run.port_name}, {"version", run.port_version}};
+  if (!run.port_sha256.empty()) port["sha256"] = run.port_sha256;
   if (run.fraction_bits) port["fraction_bits"] = *run.fraction_bits;
   if (run.fixed_step) port["fixed_step"] = run.fixed_step->to_string();
   ordered_json report = {
@@ -87,9 +102,15 @@ std::string json_report(const RunResult& run) {
       {"level", name_of(run.level)},
       {"rates", rates(run)},
       {"totals", totals(run)},
-      {"conformant", run.conformant()},
+      {"conformant", standing_of(run) == Standing::conformant},
       {"conformance", conformance_statement(run)},
-      {"suite", {{"cases", run.cases_version}, {"golden", run.golden_version}}},
+      {"claims", claims(run)},
+      {"suite",
+       {{"cases", run.cases_version},
+        {"golden", run.golden_version},
+        {"sha256", run.suite_sha256},
+        {"released", run.suite_is_released}}},
+      {"date", run.date},
       {"stopped_early", run.stopped_early},
       {"errors", errors(run)},
       {"results", results(run)},

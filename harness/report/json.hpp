@@ -1,6 +1,6 @@
 // The machine-readable report. Its format is report.schema.json, beside this file; a change that
-// readers can notice changes `schema`. Deterministic: the same run gives the same bytes, so it
-// holds no times.
+// readers can notice changes `schema`. Deterministic: the same run on the same day gives the same
+// bytes, so it holds a date and no times.
 #pragma once
 
 #include <string>

@@ -10,6 +10,7 @@
 
 #include "harness/report/diagnosis_text.hpp"
 #include "harness/report/failure_text.hpp"
+#include "harness/report/statement.hpp"
 #include "harness/report/text.hpp"
 #include "harness/report/xml.hpp"
 
@@ -93,6 +94,11 @@ void add_properties(pugi::xml_node suite, const RunResult& run) {
       {"level", std::string(name_of(run.level))},
       {"cases.version", run.cases_version},
       {"golden.version", run.golden_version},
+      {"suite.sha256", run.suite_sha256.empty() ? "none" : run.suite_sha256},
+      {"suite.released", run.suite_is_released ? "true" : "false"},
+      {"port.sha256", run.port_sha256.empty() ? "none" : run.port_sha256},
+      {"date", run.date.empty() ? "none" : run.date},
+      {"conformance", run.command == "run" ? conformance_statement(run) : "not judged"},
       {"stopped_early", run.stopped_early ? "true" : "false"},
   };
   for (const auto& [name, value] : all) {

@@ -1,7 +1,6 @@
 #include "harness/report/statement.hpp"
 
 #include <algorithm>
-#include <map>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -10,66 +9,31 @@
 
 #include "harness/report/text.hpp"
 #include "harness/report/xml.hpp"
+#include "harness/suite/claim.hpp"
 
 namespace attest {
 namespace {
 
-struct GroupState {
-  bool passes = false;  // something did
-  bool fails = false;
-  bool lacks = false;  // something is unsupported, or expected to fail
-
-  bool conforms() const { return passes && !fails && !lacks; }
-};
-
-using Groups = std::map<std::string, GroupState>;
-
-// By profile, then group.
-std::map<std::string, Groups> groups_of(const RunResult& run) {
-  std::map<std::string, Groups> profiles;
-  for (const std::string& name : run.all_groups) {
-    const std::size_t slash = name.find('/');
-    profiles[name.substr(0, slash)][name.substr(slash + 1)];
-  }
-  for (const CaseResult& result : run.results) {
-    GroupState& state = profiles[result.profile][result.group];
-    state.passes = state.passes || result.verdict == Verdict::pass;
-    state.fails = state.fails || fails_a_run(result.verdict);
-    // A port with a fixed step conforms at that rate, and the statement says so.
-    const bool is_of_another_step = run.fixed_step && result.rate != *run.fixed_step &&
-                                    result.reason.find("fixed step") != std::string::npos;
-    state.lacks = state.lacks || result.verdict == Verdict::xfail ||
-                  (result.verdict == Verdict::unsupported && !is_of_another_step);
-  }
-  return profiles;
-}
-
-template <typename Wanted>
-std::vector<std::string> named(const Groups& groups, Wanted wanted) {
+std::string names_of(const std::vector<std::string>& groups) {
   std::vector<std::string> names;
-  for (const auto& [name, state] : groups) {
-    if (wanted(state)) names.push_back(one_line(name));
-  }
-  return names;
+  for (const std::string& group : groups) names.push_back(one_line(group));
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::vector<std::string> failing_groups(const RunResult& run) {
-  std::vector<std::string> all;
-  for (const auto& [profile, groups] : groups_of(run)) {
-    for (const std::string& name :
-         named(groups, [](const GroupState& state) { return state.fails; })) {
-      if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
-    }
+// "all groups, with mixer", "groups attitude, tpa and parts of modes".
+std::string which_groups(const Claim& claim) {
+  std::string out = "no group";
+  if (claim.has_all_groups) {
+    out = "all groups";
+  } else if (!claim.whole.empty()) {
+    out = fmt::format("group{} {}", claim.whole.size() == 1 ? "" : "s", names_of(claim.whole));
   }
-  return all;
-}
-
-std::string which_groups(const Groups& groups) {
-  const auto in = named(groups, [](const GroupState& state) { return state.conforms(); });
-  const auto out = named(groups, [](const GroupState& state) { return !state.conforms(); });
-  if (out.empty()) return "all groups";
-  if (out.size() <= in.size()) return fmt::format("all groups but {}", fmt::join(out, ", "));
-  return fmt::format("group{} {}", in.size() == 1 ? "" : "s", fmt::join(in, ", "));
+  if (!claim.in_part.empty()) {
+    const std::string parts = "parts of " + names_of(claim.in_part);
+    out = claim.whole.empty() ? parts : out + " and " + parts;
+  }
+  if (!claim.modules.empty()) out += ", with " + names_of(claim.modules);
+  return out;
 }
 
 // Where allowances were made for it: at the numeric level, and for flights at all.
@@ -86,28 +50,61 @@ std::string rates_of(const RunResult& run) {
   return counted(run.rates.size(), "rate");
 }
 
-// Of the profiles in which some group conforms.
-std::vector<std::string> statements_of(const RunResult& run) {
-  std::vector<std::string> statements;
-  for (const auto& [profile, groups] : groups_of(run)) {
-    const bool some = std::any_of(groups.begin(), groups.end(),
-                                  [](const auto& group) { return group.second.conforms(); });
-    if (!some) continue;
-    statements.push_back(fmt::format("{}, {}{}, {}, {}", one_line(profile), name_of(run.level),
-                                     arithmetic_of(run), rates_of(run), which_groups(groups)));
+std::string text_of(const Claim& claim, const RunResult& run) {
+  const std::string profile = one_line(claim.profile);
+  if (claim.failing.size() == 1) {
+    return fmt::format("none: {}, a group fails ({})", profile, names_of(claim.failing));
   }
-  return statements;
+  if (!claim.failing.empty()) {
+    return fmt::format("none: {}, {} groups fail ({})", profile, claim.failing.size(),
+                       names_of(claim.failing));
+  }
+  const std::string what = fmt::format("{}, {}{}, {}, {}", profile, name_of(run.level),
+                                       arithmetic_of(run), rates_of(run), which_groups(claim));
+  if (claim.conforms()) return "conformant: " + what;
+  return fmt::format("partial: {} (missing: {})", what,
+                     one_line(fmt::format("{}", fmt::join(claim.missing, "; "))));
 }
 
-// Of the law that most ports are of, when it is among them.
-std::string profile_of(const RunResult& run) {
-  std::string last;
-  for (const auto& [profile, groups] : groups_of(run)) {
-    if (!named(groups, [](const GroupState& state) { return state.passes; }).empty()) {
-      last = one_line(profile);
-    }
+// Enough of a hash to tell two files apart; the JSON report has all of it.
+std::string short_hash(const std::string& sha256) { return sha256.substr(0, 12); }
+
+// Which suite, which port, when.
+std::string subject_of(const RunResult& run) {
+  std::string out = fmt::format("cases {}, golden {}", run.cases_version, run.golden_version);
+  if (!run.suite_sha256.empty()) {
+    out += fmt::format(" ({} suite {})", run.suite_is_released ? "released" : "custom",
+                       short_hash(run.suite_sha256));
   }
-  return last;
+  if (!run.port.empty()) {
+    out += ", port " + (run.port_sha256.empty() ? one_line(run.port) : short_hash(run.port_sha256));
+  }
+  if (!run.date.empty()) out += ", " + run.date;
+  return out;
+}
+
+// "px4-v1.5.5 numeric, fixed point": of the last profile to which the port conforms, or that it
+// passes in part.
+std::string on_the_badge(const RunResult& run, Standing standing) {
+  std::string profile;
+  for (const Claim& claim : claims_of(run)) {
+    if (claim.conforms() || standing == Standing::partial) profile = one_line(claim.profile);
+  }
+  return fmt::format("{} {}{}{}", profile, name_of(run.level),
+                     arithmetic_of(run).empty() ? "" : ", fixed point",
+                     standing == Standing::partial ? ", partial" : "");
+}
+
+const char* colour_of(Standing standing) {
+  switch (standing) {
+    case Standing::conformant:
+      return "#3a7d34";
+    case Standing::partial:
+      return "#8a6500";
+    case Standing::none:
+      break;
+  }
+  return "#b3372f";
 }
 
 void add_box(pugi::xml_node svg, int x, int width, const char* colour, const std::string& text) {
@@ -129,24 +126,21 @@ void add_box(pugi::xml_node svg, int x, int width, const char* colour, const std
 }  // namespace
 
 std::string conformance_statement(const RunResult& run) {
-  const auto failing = failing_groups(run);
-  if (failing.size() == 1) return fmt::format("none: a group fails ({})", failing.front());
-  if (!failing.empty()) {
-    return fmt::format("none: {} groups fail ({})", failing.size(), fmt::join(failing, ", "));
-  }
-  if (!run.errors.empty() || run.stopped_early) return "none: the run is not complete";
-  const auto statements = statements_of(run);
-  if (statements.empty()) return "none: no group passes as a whole";
-  return fmt::format("{}; cases {}, golden {}", fmt::join(statements, "; "), run.cases_version,
-                     run.golden_version);
+  const auto claims = claims_of(run);
+  const bool fails = std::any_of(claims.begin(), claims.end(),
+                                 [](const Claim& claim) { return !claim.failing.empty(); });
+  if (!fails && (!run.errors.empty() || run.stopped_early)) return "none: the run is not complete";
+  if (claims.empty()) return "none: nothing passed";
+  std::vector<std::string> texts;
+  for (const Claim& claim : claims) texts.push_back(text_of(claim, run));
+  return fmt::format("{}; {}", fmt::join(texts, "; "), subject_of(run));
 }
 
 std::string badge(const RunResult& run) {
-  const bool good = run.conformant();
+  const Standing standing = standing_of(run);
   const std::string left = "attest";
-  const std::string right = good ? fmt::format("{} {}{}", profile_of(run), name_of(run.level),
-                                               arithmetic_of(run).empty() ? "" : ", fixed point")
-                                 : "does not conform";
+  const std::string right =
+      standing == Standing::none ? "does not conform" : on_the_badge(run, standing);
   const auto width = [](const std::string& text) { return 7 * static_cast<int>(text.size()) + 10; };
   pugi::xml_document document;
   pugi::xml_node svg = document.append_child("svg");
@@ -157,7 +151,7 @@ std::string badge(const RunResult& run) {
   set_attribute(svg, "aria-label", left + ": " + right);
   svg.append_child("title").text().set((left + ": " + conformance_statement(run)).c_str());
   add_box(svg, 0, width(left), "#555", left);
-  add_box(svg, width(left), width(right), good ? "#3a7d34" : "#b3372f", right);
+  add_box(svg, width(left), width(right), colour_of(standing), right);
   std::ostringstream out;
   document.save(out, "  ", pugi::format_indent | pugi::format_no_declaration);
   return out.str();

@@ -7,11 +7,16 @@
 
 namespace attest {
 
-// "px4-v1.5.5, numeric, 11 rates, all groups but tailsitter; cases 1.0, golden 1.0", or why there
-// is none: "none: 3 groups fail (attitude, modes, tpa)".
+// A profile after the other, then which suite and port it was, and when:
+//
+//     conformant: px4-v1.5.5, numeric, 11 rates, all groups; cases 1.4, golden 1.4 (released suite
+//     a8370e8fe0dc), port 5f1d2c3b4a59, 2026-03-31
+//     partial: px4-v1.5.5, numeric, 1 rate, group tpa (missing: only --rate 250; ...); ...
+//     none: px4-v1.5.5, 3 groups fail (attitude, modes, tpa); ...
 std::string conformance_statement(const RunResult& run);
 
-// A badge as an SVG file.
+// A badge as an SVG file: green for a profile to which the port conforms, amber with the word
+// "partial", red.
 std::string badge(const RunResult& run);
 
 }  // namespace attest

@@ -123,7 +123,7 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
   CaseResult result = unjudged(the_case, {rate, std::nullopt});
   if (the_case.exact_only && level != Level::exact) {
     result.verdict = Verdict::skip;
-    result.reason = "on a threshold of the law: compared at the exact level only";
+    result.reason = exact_level_only;
     return result;
   }
   if (has_other_steps(port, the_case, rate, result)) return result;

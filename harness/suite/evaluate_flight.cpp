@@ -106,11 +106,10 @@ void judge_ticks(const Case& the_case, const Flown& flown, const ReferenceFlight
   const Tolerances tolerances = tolerances_of(the_case, Level::numeric, fraction_bits);
   Tolerances of_answers = tolerances;
   if (fraction_bits) of_answers.allow_lsb(*fraction_bits, flown.trace.samples.size());
-  Comparison comparison =
-      compare_answers(flown.trace, the_case.profile, of_answers, fraction_bits);
+  Comparison comparison = compare_answers(flown.trace, the_case.profile, of_answers, fraction_bits);
   if (comparison.agrees()) {
-    comparison = with_tightest(compare_rows(flown.trace, reference.rows, horizon_s, tolerances),
-                               comparison);
+    comparison =
+        with_tightest(compare_rows(flown.trace, reference.rows, horizon_s, tolerances), comparison);
   }
   if (const auto non_finite = first_non_finite(flown.trace, reference.rows)) {
     if (!comparison.first) comparison.first = non_finite;

@@ -13,18 +13,20 @@ namespace {
 constexpr const char* forgery = "the port wrote on the pipe on which attest's worker answers";
 
 // In the child.
-void work_through(Batch& batch, std::size_t first, const std::string& specification,
+void work_through(Batch& batch, std::size_t first, const WorkerOptions& options,
                   const SendLine& send) {
   const auto opened = batch.open();
-  auto port = open_port(specification);
+  auto port = open_port(options.port);
   if (!opened || !port) {
     send(encode(opened ? port.error() : opened.error()));
     return send(encode(BatchDone{}));
   }
+  HeldPort held(std::move(*port), options.said);
   for (std::size_t i = first; i < batch.size(); ++i) {
     batch.when_part_begins([&send, i] { send(encode(TaskBegins{i})); });
     send(encode(TaskBegins{i}));
-    auto result = batch.evaluate(i, **port);
+    auto result = batch.evaluate(i, held);
+    if (result) held.hold(*result);
     send(result ? encode(std::move(*result)) : encode(result.error()));
   }
   send(encode(BatchDone{}));
@@ -64,9 +66,8 @@ void Pool::start_workers() {
 }
 
 void Pool::start(std::size_t batch, std::size_t first_task) {
-  auto child = Child::spawn([&](const SendLine& send) {
-    work_through(*batches_[batch], first_task, options_.port, send);
-  });
+  auto child = Child::spawn(
+      [&](const SendLine& send) { work_through(*batches_[batch], first_task, options_, send); });
   if (!child) {
     outcomes_[batch].errors.push_back(child.error());
     return;

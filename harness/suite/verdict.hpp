@@ -32,6 +32,10 @@ enum class Verdict {
 
 inline constexpr int verdict_count = 10;
 
+// The reason of the one skip that a conformant run may have.
+inline constexpr std::string_view exact_level_only =
+    "on a threshold of the law: compared at the exact level only";
+
 std::string_view name_of(Verdict verdict);  // "non-finite"
 std::optional<Verdict> parse_verdict(std::string_view name);
 bool fails_a_run(Verdict verdict);
@@ -84,10 +88,16 @@ struct RunResult {
   std::optional<int> fraction_bits;  // of a port in fixed point
   std::optional<Rate> fixed_step;    // of a port that knows only its own sample time
   Level level = Level::numeric;
-  std::vector<Rate> rates;              // selected, ascending
-  bool all_setups = false;              // of each case that was selected, all were
-  std::vector<std::string> all_groups;  // "profile/group" that the suite has, selected or not
+  std::vector<Rate> rates;  // selected, ascending
+  std::string selection;    // the options that selected less than all: "--group tpa"; or empty
+  bool all_setups = false;  // of each case that was selected, all were
+  // "profile/group" -> how many cases the suite has at each rate, selected or not.
+  std::map<std::string, std::map<Rate, std::size_t>> suite;
   std::string cases_version = "unversioned", golden_version = "unversioned";  // of the suite
+  std::string suite_sha256;                                                   // of its content
+  bool suite_is_released = false;  // that content is the one this attest was released with
+  std::string port_sha256;         // of its library; empty: the port is part of attest
+  std::string date;                // of the run, UTC: "2026-03-31"
   std::vector<CaseResult> results;
   std::vector<Error> errors;           // of the environment: a golden that cannot be read, ...
   bool stopped_early = false;          // --fail-fast
@@ -95,11 +105,6 @@ struct RunResult {
 
   std::size_t count(Verdict verdict) const;
   bool failed() const;  // any verdict that fails a run
-
-  // What the reports call conformant: a complete run without errors in which something passed,
-  // nothing failed and no failure was expected. What was skipped or is unsupported stands beside
-  // it in the totals.
-  bool conformant() const;
 };
 
 }  // namespace attest

@@ -21,7 +21,7 @@ bool any_failed(const WorkerOutcome& outcome, const WorkerOptions& options) {
          std::any_of(outcome.results.begin(), outcome.results.end(), options.fails);
 }
 
-void run_batch_here(Batch& batch, Port& port, const WorkerOptions& options,
+void run_batch_here(Batch& batch, HeldPort& port, const WorkerOptions& options,
                     WorkerOutcome& outcome) {
   if (const auto opened = batch.open(); !opened) {
     outcome.errors.push_back(opened.error());
@@ -30,6 +30,7 @@ void run_batch_here(Batch& batch, Port& port, const WorkerOptions& options,
   for (std::size_t i = 0; i < batch.size(); ++i) {
     auto result = batch.evaluate(i, port);
     if (result) {
+      port.hold(*result);
       options.on_result(*result);
       outcome.results.push_back(std::move(*result));
     } else {
@@ -42,10 +43,11 @@ WorkerOutcome run_here(const Batches& batches, const WorkerOptions& options) {
   // A port that changes the environment when it is loaded changes that of the caller here.
   const DefaultFloatEnvironment callers;
   WorkerOutcome outcome;
-  auto port = open_port(options.port);
-  if (!port) return {{}, {port.error()}, false};
+  auto opened = open_port(options.port);
+  if (!opened) return {{}, {opened.error()}, false};
+  HeldPort port(std::move(*opened), options.said);
   for (std::size_t index = 0; index < batches.size() && !options.stop(); ++index) {
-    run_batch_here(*batches[index], **port, options, outcome);
+    run_batch_here(*batches[index], port, options, outcome);
     if (options.fail_fast && any_failed(outcome, options)) {
       outcome.stopped_early = index + 1 < batches.size();
       break;
@@ -63,14 +65,17 @@ void send_description(const std::string& specification, const std::vector<std::s
                       const SendLine& send) {
   auto port = open_port(specification);
   if (!port) return send(repaired({{"error", to_json(port.error())}}));
+  const PortSays says = PortSays::asked(**port);
   json supported = json::array();
   for (const std::string& profile : profiles) {
     if ((*port)->create(profile)) supported.push_back(profile);
   }
   json description = {
-      {"name", (*port)->name()}, {"version", (*port)->version()}, {"profiles", supported}};
-  if (const auto bits = (*port)->fraction_bits()) description["fraction_bits"] = *bits;
-  if (const auto step = (*port)->fixed_step()) description["fixed_step"] = step->to_string();
+      {"name", says.name},           {"version", says.version},
+      {"profiles", supported},       {"unsupported_groups", says.unsupported_groups},
+      {"has_mixer", says.has_mixer}, {"has_battery_status", says.has_battery_status}};
+  if (says.fraction_bits) description["fraction_bits"] = *says.fraction_bits;
+  if (says.fixed_step) description["fixed_step"] = says.fixed_step->to_string();
   send(repaired(description));
 }
 
@@ -100,12 +105,13 @@ Result<PortDescription> describe_port(const std::string& port,
     return tl::unexpected(error ? *error : error.error());
   }
   if (!answer.is_object()) return fail_at(port, "gave no sensible description of itself");
-  PortDescription description{"",
-                              answer.value("name", ""),
-                              answer.value("version", ""),
-                              answer.value("profiles", std::vector<std::string>{}),
-                              {},
-                              {}};
+  PortDescription description;
+  description.name = answer.value("name", "");
+  description.version = answer.value("version", "");
+  description.profiles = answer.value("profiles", std::vector<std::string>{});
+  description.unsupported_groups = answer.value("unsupported_groups", std::vector<std::string>{});
+  description.has_mixer = answer.value("has_mixer", false);
+  description.has_battery_status = answer.value("has_battery_status", false);
   if (answer.contains("fraction_bits")) {
     description.fraction_bits = answer.value("fraction_bits", 0);
   }
@@ -113,6 +119,18 @@ Result<PortDescription> describe_port(const std::string& port,
     description.fixed_step = *step;
   }
   return description;
+}
+
+std::vector<std::string> supported_profiles(const std::string& port,
+                                            const std::vector<std::string>& profiles,
+                                            double timeout_s) {
+  std::vector<std::string> supported;
+  for (const std::string& profile : profiles) {
+    const auto description = describe_port(port, {profile}, timeout_s);
+    if (!description || !description->hangs.empty()) break;
+    if (!description->profiles.empty()) supported.push_back(profile);
+  }
+  return supported;
 }
 
 }  // namespace attest

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/suite/batch.hpp"
+#include "harness/suite/held_port.hpp"
 #include "harness/suite/verdict.hpp"
 
 namespace attest {
@@ -18,7 +19,9 @@ inline constexpr double default_timeout_s = 10;
 
 struct WorkerOptions {
   std::string port = "builtin";  // as for open_port
-  int jobs = 1;                  // worker processes at a time
+  // What the port said of itself, which it is held to; empty: it is asked each time.
+  std::optional<PortSays> said = std::nullopt;
+  int jobs = 1;  // worker processes at a time
   double timeout_s = default_timeout_s;
   bool fail_fast = false;   // nothing after the first batch, in their order, that `fails`
   bool in_process = false;  // for a debugger: no children, no protection, one after the other
@@ -41,17 +44,20 @@ using Batches = std::vector<std::unique_ptr<Batch>>;
 WorkerOutcome run_batches(const Batches& batches, const WorkerOptions& options);
 
 // What a port says of itself, asked in a child process.
-struct PortDescription {
+struct PortDescription : PortSays {
   std::string hangs;  // why it says nothing: it gave no answer in time; empty: it answered
-  std::string name;
-  std::string version;
-  std::vector<std::string> profiles;  // of those asked for, the ones it supports
-  std::optional<int> fraction_bits;
-  std::optional<Rate> fixed_step;
 };
 // A port that hangs is described as such, so that its cases can have their verdicts. Errors: it
 // cannot be loaded, or its process ends.
 Result<PortDescription> describe_port(const std::string& port,
                                       const std::vector<std::string>& profiles, double timeout_s);
+
+// Which of the profiles the port makes a unit of, each asked in a process of its own: one that
+// makes a single unit is told from one that does not support the second profile. A port that
+// crashes or hangs here supports none of those that were not asked yet; its cases have their
+// verdicts.
+std::vector<std::string> supported_profiles(const std::string& port,
+                                            const std::vector<std::string>& profiles,
+                                            double timeout_s);
 
 }  // namespace attest

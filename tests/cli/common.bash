@@ -3,6 +3,7 @@
 setup() {
   cd "$BATS_TEST_TMPDIR"
   unset NO_COLOR ATTEST_SUITE
+  export SOURCE_DATE_EPOCH=1774915200 # a report of yesterday is the same
 }
 
 # A suite of one quick case, without golden, in ./suite.

@@ -4,14 +4,15 @@ right() { echo "lib:$PORTS/port_fixed_step.so"; }
 
 groups=(--group attitude --group rates --group timing --group mixer)
 
-@test "a port with a fixed step conforms at its rate, and the statement names the step" {
+@test "a port with a fixed step passes at its rate, and the statement names the step" {
   run "$ATTEST" run "${groups[@]}" --port "$(right)" --json report.json --junit junit.xml
   [ "$status" -eq 0 ]
   has "fixed step of 250 Hz: cases begin one period after zero"
   has "the port has a fixed step of 250 Hz, and this runs at another rate"
   has "the port has a fixed step of 250 Hz, and this has late or missing ticks"
   has "the port has a fixed step of 250 Hz, and this has a start_s of its own"
-  has "px4-v1.5.5, numeric, fixed step of 250 Hz, groups attitude, rates;"
+  has "partial: px4-v1.5.5, numeric, fixed step of 250 Hz, groups attitude, rates"
+  has "(missing: fixed step of 250 Hz;"
   grep -q '"fixed_step": "250"' report.json
   grep -q 'name="port.fixed_step" value="250"' junit.xml
 }

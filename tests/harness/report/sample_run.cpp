@@ -143,8 +143,12 @@ RunResult sample_run() {
   run.port_version = "1.2-\"rc\"";
   run.level = Level::numeric;
   run.rates = {Rate::hz(100), Rate::hz(250), Rate::hz(1000, 3), Rate::hz(3000)};
-  run.all_groups = {"px4-v1.5.5/attitude", "px4-v1.5.5/flight", "px4-v1.5.5/mixed",
-                    "px4-v1.5.5/robustness", "px4-v1.5.5/tpa"};
+  for (const char* group : {"attitude", "flight", "mixed", "robustness", "tpa"}) {
+    run.suite[std::string("px4-v1.5.5/") + group][Rate::hz(250)] = 2;
+  }
+  run.suite_sha256 = std::string(64, 'a');
+  run.port_sha256 = std::string(64, 'b');
+  run.date = "2026-03-31";
   run.cases_version = "1.0";
   run.golden_version = "1.1";
   add_attitude(run.results);
@@ -167,8 +171,14 @@ RunResult passing_run() {
   run.level = Level::exact;
   run.rates = {Rate::hz(50), Rate::hz(250)};
   for (const char* name : {"pitch_5", "roll_30", "yaw_step"}) {
-    for (const Rate& rate : run.rates) run.results.push_back(passed("attitude", name, rate));
+    for (const Rate& rate : run.rates) {
+      run.results.push_back(passed("attitude", name, rate));
+      ++run.suite["px4-v1.5.5/attitude"][rate];
+    }
   }
+  run.suite_sha256 = std::string(64, 'a');
+  run.suite_is_released = true;
+  run.date = "2026-03-31";
   return run;
 }
 

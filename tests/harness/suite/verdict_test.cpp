@@ -65,23 +65,6 @@ TEST(RunResult, Counts) {
   EXPECT_EQ(run.count(Verdict::crash), 0U);
 }
 
-TEST(RunResult, ConformantIsMoreThanNotFailed) {
-  RunResult run;
-  EXPECT_FALSE(run.conformant()) << "nothing passed";
-  run.results = {with(Verdict::pass), with(Verdict::skip), with(Verdict::unsupported)};
-  EXPECT_TRUE(run.conformant());
-  RunResult other = run;
-  other.stopped_early = true;
-  EXPECT_FALSE(other.conformant());
-  other = run;
-  other.errors.push_back(Error{"cannot read", "", 0, 0});
-  EXPECT_FALSE(other.conformant());
-  other = run;
-  other.results.push_back(with(Verdict::xfail));
-  EXPECT_FALSE(other.failed());
-  EXPECT_FALSE(other.conformant());
-}
-
 // --- verdict_json ---
 
 CaseResult through_a_pipe(const CaseResult& result) {

@@ -1,0 +1,66 @@
+load common
+
+# value EXPRESSION: of the report `r`.
+value() { python3 -c "import json; r = json.load(open('report.json')); print($1)"; }
+
+@test "attest knows the suite of this tree as the released one" {
+  hash=$("$SOURCE/ci/suite-hash")
+  [ "$hash" = "$(cat "$SOURCE/golden/SUITE.sha256")" ] || {
+    echo "cases or goldens have changed: ci/suite-hash --write, and build"
+    return 1
+  }
+  "$ATTEST" run --group tpa --rate 250 --json report.json >/dev/null
+  [ "$(value 'r["suite"]["sha256"]')" = "$hash" ]
+  [ "$(value 'r["suite"]["released"]')" = True ]
+}
+
+@test "a case of one's own is a custom suite, and never conformant" {
+  blessed_suite
+  run "$ATTEST" --suite suite run --json report.json --badge badge.svg
+  [ "$status" -eq 0 ]
+  has "conformance: partial: px4-v1.5.5, numeric, 11 rates, all groups (missing: custom suite)"
+  [ "$(value 'r["conformant"]')" = False ]
+  grep -q "px4-v1.5.5 numeric, partial" badge.svg
+  cp -r "$SOURCE/golden/SUITE.sha256" suite/golden/ # says nothing
+  run "$ATTEST" --suite suite run --json report.json
+  has "custom suite"
+}
+
+@test "a filter gives a partial result that says so, in every report" {
+  run "$ATTEST" run --group tpa --rate 250 --json report.json --junit junit.xml --badge badge.svg
+  [ "$status" -eq 0 ]
+  has "partial: px4-v1.5.5, numeric, 1 rate, group tpa (missing: only --group tpa --rate 250;"
+  has "no case at 50, 100, "
+  [ "$(value 'r["conformant"]')" = False ]
+  [ "$(value '[c["profile"] for c in r["claims"]]')" = "['px4-v1.3.4', 'px4-v1.5.5']" ]
+  grep -q 'name="conformance" value="partial: ' junit.xml
+  grep -q "numeric, partial" badge.svg
+  ! grep -q "#3a7d34" badge.svg
+}
+
+@test "the reports name the port's file, the suite and the day" {
+  run "$ATTEST" run --group tpa --rate 250 --port "lib:$STARTER" --json report.json \
+    --junit junit.xml
+  [ "$status" -eq 0 ]
+  port=$(sha256sum "$STARTER" | cut -d ' ' -f 1)
+  has "port ${port:0:12}, 2026-03-31"
+  has "(released suite $(cut -c 1-12 "$SOURCE/golden/SUITE.sha256"))"
+  [ "$(value 'r["port"]["sha256"]')" = "$port" ]
+  [ "$(value 'r["date"]')" = 2026-03-31 ]
+  grep -q "name=\"port.sha256\" value=\"$port\"" junit.xml
+  SOURCE_DATE_EPOCH=today run "$ATTEST" run --group tpa --rate 250
+  [ "$status" -eq 2 ]
+  has 'SOURCE_DATE_EPOCH is `today`'
+}
+
+@test "unsupported groups and expected failures make a result partial" {
+  run "$ATTEST" run --group tpa --group tailsitter --rate 250 \
+    --port "lib:$PORTS/port_no_tailsitter.so"
+  [ "$status" -eq 0 ]
+  has "cases unsupported (tailsitter)"
+  "$ATTEST" run --group tpa --rate 250 --port fault:tpa-missing --no-diagnose \
+    --write-expected known.toml >/dev/null || true
+  run "$ATTEST" run --group tpa --rate 250 --port fault:tpa-missing --expected-failures known.toml
+  has "expected failure"
+  has "px4-v1.5.5, numeric, 1 rate"
+}

@@ -1,0 +1,72 @@
+load common
+
+# judged PORT: runs it on a few quick cases.
+judged() {
+  run "$ATTEST" run --port "lib:$PORTS/hostile_$1.so" --filter 'rates/*@250hz' \
+    --filter 'rates/*@100hz' --json report.json --badge badge.svg --no-diagnose "${@:2}"
+}
+
+@test "create() that returns NULL later breaks the protocol: the profile was supported" {
+  judged one_unit
+  [ "$status" -eq 1 ]
+  has 'protocol: create("px4-v1.5.5") returned NULL; it made a unit when the port was asked first'
+  lacks "does not support profile"
+  grep -q "does not conform" badge.svg
+  judged one_unit --in-process
+  [ "$status" -eq 1 ]
+  has "protocol"
+  run "$ATTEST" run --port "lib:$PORTS/hostile_one_unit.so" --filter 'instances/*again*@250hz' \
+    --no-diagnose
+  [ "$status" -eq 1 ]
+  has "protocol: create() returned NULL after the instance before was destroyed"
+}
+
+@test "what a port says of itself is asked once, and a change breaks the protocol" {
+  judged arithmetic_later
+  [ "$status" -eq 1 ]
+  has 'its attest.arithmetic is `fixed:20`, it was `none`'
+  lacks "fraction bits"
+  judged arithmetic_changes
+  [ "$status" -eq 1 ]
+  has 'its attest.arithmetic is `fixed:20`, it was `fixed:30`'
+  judged fixed_step_later
+  [ "$status" -eq 1 ]
+  has 'its attest.fixed_step is `50`, it was `none`'
+  judged groups_later
+  [ "$status" -eq 1 ]
+  has 'its attest.unsupported_groups is `rates`, it was ``'
+  [ "$(grep -c '"verdict": "protocol"' report.json)" -eq "$(grep -c '"verdict"' report.json)" ]
+}
+
+@test "outputs before ATTEST_UNSUPPORTED are judged" {
+  judged wrong_unsupported
+  [ "$status" -eq 1 ]
+  has "before step at tick 20 returned ATTEST_UNSUPPORTED"
+  has "out/actuator_controls_0.control"
+  run "$ATTEST" run --port "lib:$PORTS/hostile_wrong_unsupported.so" \
+    --filter '*/hover@250hz-iris-mujoco' --no-diagnose
+  [ "$status" -eq 1 ]
+  judged right_unsupported
+  [ "$status" -eq 2 ]
+  has "unsupported: step at tick 20 returned ATTEST_UNSUPPORTED"
+}
+
+@test "the other sign, a hundred times as much and NaN do not pass at the events level" {
+  for port in negated_torque rates_times_100; do
+    judged $port --level events
+    [ "$status" -eq 1 ]
+    has "at this level"
+  done
+  judged nan_integrals --level events
+  [ "$status" -eq 1 ]
+  has "non-finite"
+  has "rate_integ is not finite"
+}
+
+@test "NaN at a tick of a flight of which the golden has no row" {
+  run "$ATTEST" run --port "lib:$PORTS/hostile_nan_once.so" --filter '*/hover@250hz-iris-mujoco' \
+    --no-diagnose
+  [ "$status" -eq 1 ]
+  has "non-finite"
+  has "first at tick 332"
+}
