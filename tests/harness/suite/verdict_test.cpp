@@ -169,6 +169,7 @@ TEST(MetricResult, IsWithinItsBoundsAndNearTheReference) {
   EXPECT_FALSE(within(std::nan(""), 1));
   EXPECT_FALSE(within(1, std::nan("")));
   EXPECT_TRUE((MetricResult{"m", Measure::sink_m, inf, inf, 0.1, 0, inf}.within()));
+  EXPECT_FALSE((MetricResult{"m", Measure::sink_m, 1, inf, inf, 0, inf}.within()));  // of a ratio
 }
 
 TEST(VerdictJson, RoundTripsEveryChannel) {
