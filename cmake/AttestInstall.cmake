@@ -1,5 +1,5 @@
 # What `cmake --install` gives a port author: the attest binary, the ABI headers, the cases with
-# their goldens, the starters, and the CMake package `attest` with
+# their goldens, the starters, the schemas of the reports, and the CMake package `attest` with
 #
 #     attest::unit     the ABI headers, for the port to link (C or C++)
 #     attest::attest   the binary, for add_test(COMMAND attest::attest run --port lib:...)
@@ -18,6 +18,9 @@ install(
   DIRECTORY controller/starters
   DESTINATION ${ATTEST_INSTALL_DATADIR}
   REGEX "/(build|target|__pycache__)$" EXCLUDE)
+# What the JSON reports are described by.
+install(FILES harness/report/report.schema.json harness/report/stress.schema.json
+        DESTINATION ${ATTEST_INSTALL_DATADIR}/schemas)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 install(EXPORT attestTargets NAMESPACE attest:: DESTINATION ${ATTEST_INSTALL_CMAKEDIR})

@@ -64,12 +64,12 @@ struct MotorFailure {
   Span at;
 };
 
-// What a run in real time is judged by: counts and percentiles, never one maximum, which is the
-// machine's.
+// What a run in real time is judged by: counts, never one maximum, which is the machine's. The
+// terms are those of the glossary in README.md, Timing.
 struct RealtimeBudget {
-  double misses_per_million = 500;     // deadlines passed over
-  double p99_lateness_us = 100;        // of the wake-ups
-  std::optional<double> execution_us;  // steps longer than this count like misses; empty: any
+  double misses_per_million = 500;     // deadlines missed; overruns too
+  double p99_latency_us = 100;         // wake-up latency that 1% may exceed
+  std::optional<double> execution_us;  // execution time; empty: any
 };
 
 struct Flight {

@@ -232,9 +232,9 @@ RealtimeBudget parse_realtime(const TomlTable& flight) {
   if (!flight.has("realtime")) return budget;
   const TomlTable table = flight.table("realtime");
   budget.misses_per_million = table.number("misses_per_million", budget.misses_per_million);
-  budget.p99_lateness_us = table.number("p99_lateness_us", budget.p99_lateness_us);
+  budget.p99_latency_us = table.number("p99_latency_us", budget.p99_latency_us);
   if (!(budget.misses_per_million >= 0)) table.error("misses_per_million", "is negative");
-  if (!(budget.p99_lateness_us > 0)) table.error("p99_lateness_us", "must be positive");
+  if (!(budget.p99_latency_us > 0)) table.error("p99_latency_us", "must be positive");
   if (table.has("execution_us")) {
     budget.execution_us = table.number("execution_us");
     if (!(*budget.execution_us > 0)) table.error("execution_us", "must be positive");

@@ -111,7 +111,7 @@ struct StressOptions {
   int cpus = 2;
   double spin_us = 0;
   // Empty: the case's.
-  std::optional<double> misses_per_million, p99_lateness_us, execution_us;
+  std::optional<double> misses_per_million, p99_latency_us, execution_us;
   std::string json, junit, record_timing;
   bool cyclictest = true;
   double timeout_s = default_timeout_s;

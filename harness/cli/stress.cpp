@@ -4,6 +4,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/cli/command.hpp"
 #include "harness/cli/find_case.hpp"
@@ -47,7 +48,7 @@ struct StressPlan {
 
 void set_budget(const StressOptions& options, RealtimeBudget& budget) {
   if (options.misses_per_million) budget.misses_per_million = *options.misses_per_million;
-  if (options.p99_lateness_us) budget.p99_lateness_us = *options.p99_lateness_us;
+  if (options.p99_latency_us) budget.p99_latency_us = *options.p99_latency_us;
   if (options.execution_us) budget.execution_us = *options.execution_us;
 }
 
@@ -150,7 +151,7 @@ Result<void> run_all(const StressPlan& plan, const StressOptions& options, const
     stress->cyclictest = judge;
     line.erase();
     if (run.results.empty() && !globals.quiet) fmt::print("{}", render_rights(stress->rights));
-    const bool told = !globals.quiet || fails_a_run(stress->result.verdict);
+    const bool told = !globals.quiet || stress->result.verdict != Verdict::pass;
     if (told) fmt::print("{}", render_stress(*stress, style));
     std::fflush(stdout);
     run.results.push_back(std::move(*stress));
@@ -185,8 +186,11 @@ int stress_command(const StressOptions& options, const Globals& globals) {
   if (!globals.quiet) fmt::print("{}", render_stress_end(run, terminal_style(stdout)));
   if (run.interrupted) return exit_interrupted;
   if (all.failed()) return exit_failed;
-  if (all.count(Verdict::pass) > 0) return exit_ok;
-  return report_error({"nothing was judged: see the reasons above"});
+  if (const auto rates = rates_not_judged(run); !rates.empty()) {
+    return report_error(
+        {fmt::format("not judged: {} Hz; see the reasons above", fmt::join(rates, " Hz, "))});
+  }
+  return exit_ok;
 }
 
 }  // namespace attest::cli

@@ -52,8 +52,9 @@ namespace {
 
 void add_stress(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<StressOptions>();
-  CLI::App* command = app.add_subcommand(
-      "stress", "Let a port fly in real time, at each loop rate: lateness, execution time, misses");
+  CLI::App* command = app.add_subcommand("stress",
+                                         "Let a port fly in real time, at each loop rate: latency, "
+                                         "execution time, response time, misses");
   add_port(*command, options->port);
   command->add_option("--rates", options->rates, "Loop rates [Hz], separated by commas")
       ->type_name("HZ,...")
@@ -84,20 +85,21 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
       ->check(CLI::Range(1, 2))
       ->capture_default_str();
   command
-      ->add_option("--spin", options->spin_us, "Wake up so long before the deadline and spin [us]")
+      ->add_option("--spin", options->spin_us, "Wake up so long before the release and spin [us]")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
   command
-      ->add_option("--misses-per-million", options->misses_per_million,
-                   "Budget of missed deadlines, instead of the case's")
+      ->add_option(
+          "--misses-per-million", options->misses_per_million,
+          "Deadlines that may be missed, and steps that may overrun, instead of the case's")
       ->check(CLI::NonNegativeNumber);
   command
-      ->add_option("--p99-lateness", options->p99_lateness_us,
-                   "Budget of the wake-ups [us], instead of the case's")
+      ->add_option("--p99-latency", options->p99_latency_us,
+                   "Wake-up latency that 1% of the steps may exceed [us], instead of the case's")
       ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--budget", options->execution_us,
-                   "Steps longer than this [us] count like misses")
+                   "Execution time [us]; a longer step is an overrun, and counts like a miss")
       ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--record-timing", options->record_timing,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include <boost/histogram.hpp>
 
@@ -17,7 +16,17 @@ constexpr double lowest_ns = 1, highest_ns = 1e12;
 
 using Axis = bh::axis::regular<double, bh::axis::transform::log>;
 
+// The first whole nanosecond at or after a bin's edge.
+Nanoseconds whole(double edge_ns) {
+  return Nanoseconds(static_cast<std::int64_t>(std::ceil(edge_ns)));
+}
+
 }  // namespace
+
+bool supports_percentile(std::uint64_t count, double part) {
+  constexpr double beyond = 10, rounding = 1e-9;
+  return static_cast<double>(count) * (1 - part) >= beyond * (1 - rounding);
+}
 
 struct Histogram::Bins {
   decltype(bh::make_histogram_with(std::vector<std::uint64_t>(), std::declval<Axis>())) counts =
@@ -52,6 +61,18 @@ Nanoseconds Histogram::percentile(double part) const {
     return std::clamp(edge, min(), max_);
   }
   return max_;
+}
+
+std::vector<Histogram::Bucket> Histogram::buckets() const {
+  std::vector<Bucket> filled;
+  for (auto&& bin : bh::indexed(bins_->counts, bh::coverage::all)) {
+    if (*bin == 0) continue;
+    const bool is_beyond = bin.index() == static_cast<int>(bins);
+    filled.push_back({whole(is_beyond ? highest_ns : bin.bin().lower()),
+                      is_beyond ? max_ + Nanoseconds(1) : whole(bin.bin().upper()), *bin});
+  }
+  if (!filled.empty()) filled.front().from = std::min(filled.front().from, min());
+  return filled;
 }
 
 }  // namespace attest

@@ -3,16 +3,32 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "harness/core/time.hpp"
 
 namespace attest {
+
+// Whether `count` samples support the percentile `part` (0..1): at least ten of them have to lie
+// beyond it, so count >= 10 / (1 - part). The number beyond a percentile is binomial: with ten its
+// standard deviation is a third of it, and with one the percentile is the maximum, which is a
+// property of the run and not of the distribution. p50 needs 20 samples, p90 100, p99 1,000 and
+// p99.9 10,000.
+bool supports_percentile(std::uint64_t count, double part);
 
 // Percentiles are right to 1%, the width of a bin; count, min, max, mean and the count over the
 // limit are exact. Times below 1 ns count as 1 ns, those beyond 1000 s only in what is exact. No
 // allocation after construction.
 class Histogram {
  public:
+  // Times t with from <= t < to, in whole nanoseconds.
+  struct Bucket {
+    Nanoseconds from{0}, to{0};
+    std::uint64_t count = 0;
+
+    friend bool operator==(const Bucket&, const Bucket&) = default;
+  };
+
   // Counts apart what is above `limit`.
   explicit Histogram(Nanoseconds limit = Nanoseconds::max());
   Histogram(Histogram&&) noexcept;
@@ -29,8 +45,12 @@ class Histogram {
   Nanoseconds max() const { return max_; }
   Nanoseconds mean() const;
 
-  // The time that `part` (0..1) of all do not exceed.
+  // The time that `part` (0..1) of all do not exceed, for any number of them.
   Nanoseconds percentile(double part) const;
+
+  // Those that are not empty, ascending. Times below 1 ns are in the first bucket, which begins at
+  // the minimum then; times beyond 1000 s are in the last, which ends after the maximum.
+  std::vector<Bucket> buckets() const;
 
  private:
   struct Bins;

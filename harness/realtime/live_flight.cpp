@@ -87,7 +87,7 @@ Result<LiveFlight> fly_live(const Case& the_case, const Setup& setup, const Airf
   here.wait_until(Nanoseconds(0));
   while (!links.stop.load()) {
     if (stop()) links.stop.store(true);
-    progress({here.now(), live_unit.deadlines_passed(), live_unit.missed()});
+    progress({here.now(), live_unit.releases_passed(), live_unit.missed()});
     std::this_thread::sleep_for(progress_every);
   }
   unit_thread.join();
@@ -101,9 +101,9 @@ Result<LiveFlight> fly_live(const Case& the_case, const Setup& setup, const Airf
   return flight;
 }
 
-Histogram idle_lateness(const Rate& rate, Nanoseconds duration, const LiveOptions& options,
-                        const std::function<bool()>& stop) {
-  Histogram lateness;
+Histogram idle_latency(const Rate& rate, Nanoseconds duration, const LiveOptions& options,
+                       const std::function<bool()>& stop) {
+  Histogram latency;
   std::vector<Right> rights;
   std::thread thread([&] {
     ProcessRights process;
@@ -111,14 +111,14 @@ Histogram idle_lateness(const Rate& rate, Nanoseconds duration, const LiveOption
       Pacer clock(Pacer::now_monotonic() + settle_in, options.wait);
       for (std::int64_t k = 0; rate.tick(k) < duration && !stop(); ++k) {
         const Nanoseconds woke = clock.wait_until(rate.tick(k));
-        lateness.add(woke - rate.tick(k));
-        // A deadline that was passed over has no wake-up of its own.
+        latency.add(woke - rate.tick(k));
+        // A release that was passed over has no wake-up of its own.
         k = std::max(k, rate.ticks_in(woke + Nanoseconds(1)) - 1);
       }
     });
   });
   thread.join();
-  return lateness;
+  return latency;
 }
 
 }  // namespace attest

@@ -50,9 +50,9 @@ Result<LiveFlight> fly_live(const Case& the_case, const Setup& setup, const Airf
                             const std::function<bool()>& stop,
                             const std::function<void(const LiveProgress&)>& progress);
 
-// Deadlines of that rate and nothing to do in them: how late the machine itself is, on the unit's
-// CPU and with its rights.
-Histogram idle_lateness(const Rate& rate, Nanoseconds duration, const LiveOptions& options,
-                        const std::function<bool()>& stop);
+// Wake-ups at that rate with nothing to do: the latency of the machine itself, on the unit's CPU
+// and with its rights.
+Histogram idle_latency(const Rate& rate, Nanoseconds duration, const LiveOptions& options,
+                       const std::function<bool()>& stop);
 
 }  // namespace attest

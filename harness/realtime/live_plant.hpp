@@ -16,7 +16,7 @@
 namespace attest {
 
 struct LivePlantRecord {
-  Histogram lateness;
+  Histogram latency;
   std::uint64_t steps = 0;
   std::uint64_t late_steps = 0;  // whose time had passed; made up in one go with the next
   // By the unit's ticks: when the motors began to follow what it said; empty: overtaken.

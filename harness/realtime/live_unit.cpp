@@ -40,7 +40,7 @@ void LiveUnit::run() {
   if (on_estimate_) {
     run_on_estimates();
   } else {
-    run_on_deadlines();
+    run_on_releases();
   }
   record_.usage = thread_usage() - warm_;
   links_.stop.store(true, std::memory_order_relaxed);
@@ -48,17 +48,16 @@ void LiveUnit::run() {
   record_.samples.resize(std::min(ticks_, samples_max_));
 }
 
-void LiveUnit::run_on_deadlines() {
+void LiveUnit::run_on_releases() {
   for (std::int64_t k = 0; k < deadlines_ && !links_.stop.load(std::memory_order_relaxed);) {
     const Nanoseconds woke = clock_.wait_until(rate_.tick(k));
     take_sample();
-    const Nanoseconds finished = tick(rate_.tick(k), woke);
+    const Nanoseconds finish = tick({k, rate_.tick(k), rate_.tick(k + 1), woke});
     if (record_.fault) return;
-    // Of the deadlines that have passed meanwhile the last is due now.
-    const std::int64_t last_passed = rate_.ticks_in(finished + Nanoseconds(1)) - 1;
+    // Of the releases that have passed meanwhile the last is due now.
+    const std::int64_t last_passed = rate_.ticks_in(finish + Nanoseconds(1)) - 1;
     const std::int64_t next = std::max(k + 1, std::min(last_passed, deadlines_));
-    if (finished > rate_.tick(k + 1)) ++record_.overruns;
-    count_missed(k, next);
+    count_skipped(k, next);
     k = next;
   }
 }
@@ -74,51 +73,51 @@ void LiveUnit::run_on_estimates() {
     const Nanoseconds woke = clock_.now();
     const std::int64_t sample = is_new ? rate_.ticks_in(latest_.time + Nanoseconds(1)) - 1 : last;
     if (sample > last && sample < deadlines_) {
-      count_missed(last, sample);
+      count_skipped(last, sample);
       last = sample;
-      const Nanoseconds finished = tick(latest_.published, woke);
+      tick({sample, latest_.published, latest_.published + rate_.tick(1), woke});
       if (record_.fault) return;
-      if (finished > rate_.tick(sample + 1)) ++record_.overruns;
-      count_missed(sample, sample + 1);
+      count_skipped(sample, sample + 1);
     } else if (is_over && !published) {
-      count_missed(last, deadlines_);
+      count_skipped(last, deadlines_);
       return;
     }
   }
 }
 
-void LiveUnit::count_missed(std::int64_t k, std::int64_t next) {
-  const auto missed = static_cast<std::uint32_t>(next - k - 1);
-  if (ticks_ > 0) record_.ticks[ticks_ - 1].missed = missed;
-  record_.missed += missed;
+void LiveUnit::count_skipped(std::int64_t k, std::int64_t next) {
+  const auto skipped = static_cast<std::uint32_t>(next - k - 1);
+  if (ticks_ > 0) record_.ticks[ticks_ - 1].skipped += skipped;
+  record_.skipped += skipped;
   if (ticks_ == 1) warm_ = thread_usage();
   passed_.store(static_cast<std::uint64_t>(next), std::memory_order_relaxed);
-  missed_.store(record_.missed, std::memory_order_relaxed);
+  missed_.store(record_.late + record_.skipped, std::memory_order_relaxed);
 }
 
-Nanoseconds LiveUnit::tick(Nanoseconds deadline, Nanoseconds woke) {
+Nanoseconds LiveUnit::tick(LiveTick due) {
   take_battery();
   // Not before the samples were read, which then cannot be of the future.
-  const Nanoseconds begins = clock_.now();
+  due.begins = clock_.now();
+  due.sampled = sampled_ ? latest_.time : Nanoseconds(-1);
   Arrivals arrivals;
   if (sampled_) arrivals.estimate = Estimate{latest_.time, estimator_.sample(latest_.state)};
-  arrivals.limits = limits_at(begins);
-  arrivals.battery_scale = battery_scales_.receive(begins);
-  task_.prepare(ticks_, begins, arrivals);
+  arrivals.limits = limits_at(due.begins);
+  arrivals.battery_scale = battery_scales_.receive(due.begins);
+  task_.prepare(ticks_, due.begins, arrivals);
 
+  const std::int64_t yields_before = thread_yields();
   const Nanoseconds cpu_before = thread_cpu_time(), before = clock_.now();
   record_.fault = task_.step(ticks_);
   const Nanoseconds after = clock_.now(), cpu_after = thread_cpu_time();
   if (record_.fault) return after;
   const float throttle = task_.sample().out.actuator_controls_0.control[3];
   links_.commands.write({ticks_, after, task_.commands(), throttle, task_.is_armed()});
-
-  record_.lateness.add(woke - deadline);
-  record_.execution.add(after - before);
-  record_.age.add(after - latest_.time);
-  const Nanoseconds sampled = sampled_ ? latest_.time : Nanoseconds(-1);
-  write_down({sampled, begins, after - before, cpu_after - cpu_before, 0});
-  return clock_.now();
+  due.finish = clock_.now();
+  due.elapsed = after - before;
+  due.cpu = cpu_after - cpu_before;
+  due.waited = thread_yields() != yields_before;
+  write_down(due);
+  return due.finish;
 }
 
 bool LiveUnit::take_sample() {
@@ -143,6 +142,11 @@ std::optional<MotorLimits> LiveUnit::limits_at(Nanoseconds now) {
 }
 
 void LiveUnit::write_down(const LiveTick& tick) {
+  record_.latency.add(tick.latency());
+  record_.execution.add(tick.execution());
+  record_.response.add(tick.response());
+  record_.age.add(tick.finish - latest_.time);
+  record_.late += tick.finish > tick.deadline ? 1 : 0;
   if (ticks_ > 0) {
     const Nanoseconds gap = tick.begins - record_.ticks[ticks_ - 1].begins;
     record_.longest_gap = std::max(record_.longest_gap, gap);

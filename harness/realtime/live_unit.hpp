@@ -1,4 +1,4 @@
-// The unit's task on a clock: it waits for its deadlines, and writes down how it went.
+// The unit's task on a clock: it waits for its releases, and writes down how it went.
 #pragma once
 
 #include <atomic>
@@ -10,6 +10,7 @@
 #include "harness/casefile/case.hpp"
 #include "harness/realtime/histogram.hpp"
 #include "harness/realtime/links.hpp"
+#include "harness/realtime/live_tick.hpp"
 #include "harness/realtime/usage.hpp"
 #include "harness/run/unit_task.hpp"
 #include "harness/schedule/clock.hpp"
@@ -17,20 +18,13 @@
 
 namespace attest {
 
-struct LiveTick {
-  Nanoseconds sampled{0};    // time of the plant's state that it was told
-  Nanoseconds begins{0};     // its timestamp
-  Nanoseconds execution{0};  // of the unit's step and the mixer
-  Nanoseconds cpu{0};        // of that, time on the CPU: less when it was preempted, or waited
-  std::uint32_t missed = 0;  // deadlines that had passed when it was over, beside the next
-};
-
 struct LiveUnitRecord {
-  Histogram lateness;          // from the deadline until it woke up
+  Histogram latency;           // of the wake-ups
   Histogram execution;         // as of LiveTick
+  Histogram response;          // as of LiveTick
   Histogram age;               // of the sample used, when the step ended: what the loop feels
-  std::uint64_t overruns = 0;  // steps that were not over at the next deadline
-  std::uint64_t missed = 0;    // deadlines that were passed over
+  std::uint64_t late = 0;      // responses longer than the period
+  std::uint64_t skipped = 0;   // releases passed over; with the late responses all the misses
   Nanoseconds longest_gap{0};  // between the begins of two ticks
   Usage usage;                 // after the first tick, which sets the parameters
   std::vector<LiveTick> ticks;
@@ -39,11 +33,11 @@ struct LiveUnitRecord {
   std::optional<PortFault> fault;
 };
 
-// One deadline a period. A tick whose deadline passed while the one before ran begins at once; of
-// several such deadlines only the last is kept, the others are missed.
+// One release a period. A tick whose release passed while the one before ran starts at once; of
+// several such releases only the last is used, the others are skipped.
 //
-// A unit that the estimator triggers waits for a sample instead. Its deadline is the publication,
-// and of several that came while a step ran only the newest is used, the others are missed.
+// A unit that the estimator triggers waits for a sample instead. Its release is the publication,
+// and of several that came while a step ran only the newest is used, the others are skipped.
 class LiveUnit {
  public:
   // Records all ticks, and the samples of the first `samples`; allocates and touches the memory for
@@ -55,7 +49,7 @@ class LiveUnit {
   void run();
 
   // For other threads, while it runs.
-  std::uint64_t deadlines_passed() const { return passed_.load(std::memory_order_relaxed); }
+  std::uint64_t releases_passed() const { return passed_.load(std::memory_order_relaxed); }
   std::uint64_t missed() const { return missed_.load(std::memory_order_relaxed); }
 
   // How many there are in the case: the most ticks there can be.
@@ -65,12 +59,12 @@ class LiveUnit {
   LiveUnitRecord take_record() { return std::move(record_); }
 
  private:
-  void run_on_deadlines();
+  void run_on_releases();
   void run_on_estimates();
-  // The tick of `deadline`, for which it woke up at `woke`. Returns when the step was over.
-  Nanoseconds tick(Nanoseconds deadline, Nanoseconds woke);
-  // After tick k, when tick `next` is the next.
-  void count_missed(std::int64_t k, std::int64_t next);
+  // The tick of a release, with all of it that is known before the step. Returns its finish.
+  Nanoseconds tick(LiveTick due);
+  // After release k, when release `next` is the next that is used.
+  void count_skipped(std::int64_t k, std::int64_t next);
   bool take_sample();
   void take_battery();
   std::optional<MotorLimits> limits_at(Nanoseconds now);

@@ -1,4 +1,4 @@
-// The clock of a real-time loop: sleeps to absolute deadlines, so that lateness does not add up.
+// The clock of a real-time loop: sleeps to absolute times, so that latencies do not add up.
 #pragma once
 
 #include "harness/schedule/clock.hpp"
@@ -6,7 +6,7 @@
 namespace attest {
 
 struct Wait {
-  // Sleeps to so long before the deadline and spins for the rest: trades CPU time for lateness.
+  // Sleeps to so long before the release and spins for the rest: trades CPU time for latency.
   Nanoseconds spin{0};
 };
 

@@ -1,5 +1,5 @@
-// Steps that took much longer than the others, and whether they come regularly: a port that does
-// something now and then looks like a machine that does, until one sees the distance between them.
+// Steps that took much longer than the others, and whether they come in a rhythm: a port that does
+// its housekeeping in every hundredth step looks like a busy machine otherwise.
 #pragma once
 
 #include <cstddef>
@@ -7,23 +7,25 @@
 #include <vector>
 
 #include "harness/core/time.hpp"
-#include "harness/realtime/live_unit.hpp"
+#include "harness/realtime/live_tick.hpp"
+#include "harness/realtime/rhythm.hpp"
 
 namespace attest {
 
 struct SlowTick {
   std::size_t tick = 0;
-  Nanoseconds execution{0}, cpu{0};  // as of LiveTick
+  Nanoseconds execution{0}, elapsed{0};  // as of LiveTick
 };
 
+// Slow by execution time: a step that was preempted is not slow.
 struct SlowTicks {
-  Nanoseconds threshold{0};          // eight times the median, and 20 us more than it
-  std::size_t count = 0;             // slower than that
-  std::vector<SlowTick> worst;       // the slowest eight, by time
-  std::optional<std::size_t> every;  // three or more are this many ticks apart, with hardly a gap
-  std::size_t first_regular = 0;     // the first of those
+  Nanoseconds threshold{0};      // eight times the median, and 20 us more than it
+  std::size_t count = 0;         // slower than that
+  std::vector<SlowTick> worst;   // the slowest eight, by execution time
+  std::optional<Rhythm> rhythm;  // in numbers of steps
 };
 
+// `median` of the execution times.
 SlowTicks slow_ticks(const std::vector<LiveTick>& ticks, Nanoseconds median);
 
 }  // namespace attest

@@ -21,6 +21,12 @@ Nanoseconds thread_cpu_time() {
   return std::chrono::seconds(time.tv_sec) + Nanoseconds(time.tv_nsec);
 }
 
+std::int64_t thread_yields() {
+  rusage usage{};
+  ::getrusage(RUSAGE_THREAD, &usage);
+  return usage.ru_nvcsw;
+}
+
 Usage thread_usage() {
   rusage usage{};
   ::getrusage(RUSAGE_THREAD, &usage);

@@ -24,5 +24,6 @@ struct Usage {
 // Of the calling thread so far.
 Usage thread_usage();
 Nanoseconds thread_cpu_time();  // to the nanosecond, as the former is not
+std::int64_t thread_yields();   // Usage::yields alone
 
 }  // namespace attest

@@ -1,7 +1,7 @@
 #include "harness/report/stress_text.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <cctype>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,20 +15,29 @@
 namespace attest {
 namespace {
 
+// A percentile for which there are too few samples is left out; the maximum is always there.
+std::string percentile(const std::optional<Nanoseconds>& time) {
+  return time ? human_time(*time) : "-";
+}
+
 std::string row(std::string_view name, const Spread& spread) {
   if (spread.count == 0) return "";
-  return fmt::format("  {:<22}{:>10}{:>10}{:>10}{:>10}{:>10}\n", name, human_time(spread.median),
-                     human_time(spread.p90), human_time(spread.p99), human_time(spread.p999),
+  return fmt::format("  {:<22}{:>10}{:>10}{:>10}{:>10}{:>10}\n", name, percentile(spread.median),
+                     percentile(spread.p90), percentile(spread.p99), percentile(spread.p999),
                      human_time(spread.max));
 }
 
 std::string cyclictest_row(const StressResult& stress) {
   if (!stress.cyclictest) return "";
-  const auto ours = static_cast<double>(stress.idle.median.count());
   const auto theirs = static_cast<double>(stress.cyclictest->median.count());
-  return fmt::format("  {:<22}{:>10}{:>40}   idle median {:.2f}x its\n", "cyclictest, idle",
-                     human_time(stress.cyclictest->median), human_time(stress.cyclictest->max),
-                     ours / theirs);
+  std::string out =
+      fmt::format("  {:<22}{:>10}{:>40}", "cyclictest, idle", human_time(stress.cyclictest->median),
+                  human_time(stress.cyclictest->max));
+  if (const auto& ours = stress.idle.median) {
+    const double ratio = static_cast<double>(ours->count()) / theirs;
+    out += fmt::format("   idle median {:.2f}x its", ratio);
+  }
+  return out + "\n";
 }
 
 double share(Nanoseconds part, Nanoseconds whole) {
@@ -38,11 +47,12 @@ double share(Nanoseconds part, Nanoseconds whole) {
 }
 
 std::string counts(const StressResult& stress) {
+  const DeadlineMisses& misses = stress.misses;
   std::string out = fmt::format(
-      "  {} of {} deadlines kept, {} missed ({:.0f} per million), {} of them by long steps; {} "
-      "overruns; longest gap {}\n",
-      stress.ticks, stress.deadlines, stress.missed, stress.per_million(stress.missed),
-      stress.missed_by_steps, stress.overruns, human_time(stress.longest_gap));
+      "  {} deadlines, {} missed ({:.0f} per million): {} late responses, {} skipped releases; {} "
+      "of them by the port's execution time; {} overruns; longest gap {}\n",
+      stress.deadlines, misses.total(), stress.per_million(misses.total()), misses.late,
+      misses.skipped, misses.by_port, stress.overruns, human_time(stress.longest_gap));
   const Usage& unit = stress.unit_usage;
   out += fmt::format(
       "  unit: {:.1f}% CPU, {} waits, {} preemptions, {} page faults, {} allocations; plant: "
@@ -57,15 +67,14 @@ std::string counts(const StressResult& stress) {
 std::string slow_steps(const SlowTicks& slow) {
   if (slow.count == 0) return "";
   std::vector<std::string> worst;
-  for (const auto& [tick, execution, cpu] : slow.worst) {
-    const std::string of = cpu < execution / 2 ? ", CPU " + human_time(cpu) : "";
-    worst.push_back(fmt::format("tick {} ({}{})", tick, human_time(execution), of));
+  for (const auto& [tick, execution, elapsed] : slow.worst) {
+    worst.push_back(fmt::format("tick {} ({})", tick, human_time(execution)));
   }
-  std::string out = fmt::format("  slow steps: {} over {}: {}\n", slow.count,
+  std::string out = fmt::format("  slow steps: {} over {} of execution time: {}\n", slow.count,
                                 human_time(slow.threshold), fmt::join(worst, ", "));
-  if (slow.every) {
-    out += fmt::format("  they come every {} ticks, from tick {} on: that is the port's\n",
-                       *slow.every, slow.first_regular);
+  if (const auto& rhythm = slow.rhythm) {
+    out += fmt::format("  they come every {} steps, from tick {} on (chance: below {:.1g})\n",
+                       rhythm->every, rhythm->first, std::max(rhythm->chance, 1e-12));
   }
   return out;
 }
@@ -99,10 +108,11 @@ std::string render_stress(const StressResult& stress, TerminalStyle style) {
                        "p99.9", "max");
     out += cyclictest_row(stress);
     out += row("idle machine", stress.idle);
-    out += row("wake-up lateness", stress.lateness);
-    out += row("execution of a step", stress.execution);
-    out += row("age of the sample", stress.age);
-    out += row("plant's lateness", stress.plant);
+    out += row("wake-up latency", stress.latency);
+    out += row("execution time", stress.execution);
+    out += row("response time", stress.response);
+    out += row("sample age", stress.age);
+    out += row("plant's wake-up", stress.plant);
     out += counts(stress) + slow_steps(stress.slow) + outputs(result);
   }
   const bool failed = fails_a_run(result.verdict);
@@ -125,17 +135,37 @@ std::string render_rights(const std::vector<Right>& rights) {
   return out;
 }
 
-std::string render_stress_end(const StressRun& run, TerminalStyle style) {
+std::vector<std::string> rates_not_judged(const StressRun& run) {
+  std::vector<std::string> rates;
+  for (const StressResult& stress : run.results) {
+    const Verdict verdict = stress.result.verdict;
+    const bool is_judged = verdict == Verdict::pass || fails_a_run(verdict);
+    if (!is_judged) rates.push_back(stress.result.rate.to_string());
+  }
+  return rates;
+}
+
+std::string_view verdict_of(const StressRun& run) {
   const RunResult all = run_of(run);
-  const std::size_t passed = all.count(Verdict::pass);
-  const std::size_t apart = all.count(Verdict::skip) + all.count(Verdict::unsupported);
-  const std::size_t judged = all.results.size() - apart;
-  const bool good = !all.failed() && passed > 0;
-  const Colour colour = good ? Colour::green : all.failed() ? Colour::red : Colour::yellow;
-  std::string out = painted(good ? "PASS" : all.failed() ? "FAIL" : "NONE", colour, style);
-  out += fmt::format(" {} of {} hold in real time (load: {})", passed, counted(judged, "rate"),
-                     run.load);
-  if (apart > 0) out += fmt::format("; {} not judged", apart);
+  if (all.failed()) return "fail";
+  if (all.count(Verdict::pass) == 0) return "none";
+  const bool complete = all.count(Verdict::pass) == all.results.size() && !run.interrupted;
+  return complete ? "pass" : "partial";
+}
+
+std::string render_stress_end(const StressRun& run, TerminalStyle style) {
+  const std::string_view verdict = verdict_of(run);
+  const Colour colour = verdict == "pass"   ? Colour::green
+                        : verdict == "fail" ? Colour::red
+                                            : Colour::yellow;
+  std::string word(verdict);
+  for (char& letter : word) letter = static_cast<char>(std::toupper(letter));
+  std::string out = painted(word, colour, style);
+  out += fmt::format(" {} of {} hold in real time (load: {})", run_of(run).count(Verdict::pass),
+                     counted(run.results.size(), "rate"), run.load);
+  if (const auto rates = rates_not_judged(run); !rates.empty()) {
+    out += fmt::format("; not judged: {} Hz", fmt::join(rates, " Hz, "));
+  }
   if (run.interrupted) out += "; interrupted";
   return out + "\n";
 }
@@ -167,6 +197,8 @@ std::string stress_json(const StressRun& run) {
                                 {"policy", run.live.fifo ? "fifo" : "other"},
                                 {"spin_ns", run.live.wait.spin.count()},
                                 {"interrupted", run.interrupted},
+                                {"verdict", verdict_of(run)},
+                                {"rates_not_judged", rates_not_judged(run)},
                                 {"results", nlohmann::json::array()}};
   for (const StressResult& stress : run.results) {
     out["results"].push_back(nlohmann::ordered_json(to_json(stress)));

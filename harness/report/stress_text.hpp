@@ -2,6 +2,8 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "harness/report/terminal.hpp"
 #include "harness/suite/stress.hpp"
@@ -18,6 +20,12 @@ struct StressRun {
   bool interrupted = false;
 };
 
+// "pass" when every rate passed; "fail" when one failed; "partial" when some passed and the others
+// could not be judged, or the run was interrupted; "none" when no rate could be judged.
+std::string_view verdict_of(const StressRun& run);
+// The rates whose result is neither a pass nor a failure: "1000".
+std::vector<std::string> rates_not_judged(const StressRun& run);
+
 // One result as it is there, several lines.
 std::string render_stress(const StressResult& stress, TerminalStyle style);
 
@@ -28,8 +36,7 @@ std::string render_stress_end(const StressRun& run, TerminalStyle style);
 // The same for the common reports: what JUnit is made of.
 RunResult run_of(const StressRun& run);
 
-// {"schema": "attest-stress-1", "attest_version": ..., "port": ..., "load": ..., "unit_cpu": 1,
-//  "plant_cpu": 0, "policy": "fifo", "spin_ns": 0, "interrupted": false, "results": [...]}
+// As stress.schema.json describes it.
 std::string stress_json(const StressRun& run);
 
 // "8.13 us", "1.02 ms", "312 ns".

@@ -1,5 +1,5 @@
-// A port that flies in real time: what was measured, beside what the machine does alone, and the
-// verdict on it.
+// A port that flies in real time: what was measured, what the machine does alone, and the verdict.
+// The terms are those of the glossary in README.md, Timing.
 #pragma once
 
 #include <functional>
@@ -11,30 +11,34 @@
 #include "harness/casefile/case.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/realtime/cyclictest.hpp"
+#include "harness/realtime/deadline_misses.hpp"
 #include "harness/realtime/live_flight.hpp"
 #include "harness/realtime/slow_ticks.hpp"
 #include "harness/suite/verdict.hpp"
 
 namespace attest {
 
-// A histogram in a line.
+// What a report says of a histogram. A percentile is empty where there are too few samples for it
+// (supports_percentile()); min and max are always there.
 struct Spread {
   std::uint64_t count = 0;
-  Nanoseconds min{0}, median{0}, p90{0}, p99{0}, p999{0}, max{0};
+  Nanoseconds min{0}, max{0};
+  std::optional<Nanoseconds> median, p90, p99, p999;
+  std::vector<Histogram::Bucket> buckets;
 };
 Spread spread_of(const Histogram& histogram);
 
 struct StressResult {
-  CaseResult
-      result;   // verdict; ticks, first and tightest are of the outputs beside the reference's
-  Spread idle;  // wake-ups of a thread with nothing to do: the machine's own floor
-  Spread lateness, execution, age, plant;  // as of LiveUnitRecord; wake-ups of the plant
-  std::uint64_t deadlines = 0, ticks = 0, overruns = 0, missed = 0;
-  // The port's own, not the machine's: missed after a step that itself took half a period or more,
-  // and steps longer than RealtimeBudget::execution_us. A step's own time is that on the CPU; if
-  // the port waits for something in its steps, all of it.
-  std::uint64_t missed_by_steps = 0, over_budget = 0;
-  bool waits = false;
+  // Verdict; ticks, first and tightest are of the outputs, compared with the reference's.
+  CaseResult result;
+  Spread idle;  // wake-up latency of a thread with nothing to do: the machine's own floor
+  Spread latency, execution, response, age;  // as of LiveUnitRecord
+  Spread plant;                              // wake-up latency of the plant
+  std::uint64_t deadlines = 0;               // releases: steps that ran, and skipped ones
+  std::uint64_t ticks = 0;                   // steps that ran
+  DeadlineMisses misses;                     // late starts: above RealtimeBudget::p99_latency_us
+  std::uint64_t overruns = 0;                // steps above RealtimeBudget::execution_us
+  std::uint64_t waiting_steps = 0;           // LiveTick::waited
   std::uint64_t plant_steps = 0, plant_late_steps = 0;
   Nanoseconds longest_gap{0}, wall{0};
   Usage unit_usage, plant_usage;

@@ -20,6 +20,7 @@ void members_of_spread(SpreadT& spread, Visit&& visit) {
   visit("p99_ns", spread.p99);
   visit("p99_9_ns", spread.p999);
   visit("max_ns", spread.max);
+  visit("buckets", spread.buckets);
 }
 
 template <typename UsageT, typename Visit>
@@ -35,11 +36,13 @@ template <typename StressT, typename Visit>
 void numbers_of(StressT& stress, Visit&& visit) {
   visit("deadlines", stress.deadlines);
   visit("ticks", stress.ticks);
+  visit("late_responses", stress.misses.late);
+  visit("skipped_releases", stress.misses.skipped);
+  visit("deadline_misses_by_port", stress.misses.by_port);
+  visit("late_starts", stress.misses.late_starts);
+  visit("late_starts_by_port", stress.misses.late_starts_by_port);
   visit("overruns", stress.overruns);
-  visit("missed", stress.missed);
-  visit("over_budget", stress.over_budget);
-  visit("missed_by_steps", stress.missed_by_steps);
-  visit("waits_in_steps", stress.waits);
+  visit("waiting_steps", stress.waiting_steps);
   visit("plant_steps", stress.plant_steps);
   visit("plant_late_steps", stress.plant_late_steps);
   visit("longest_gap_ns", stress.longest_gap);
@@ -48,15 +51,27 @@ void numbers_of(StressT& stress, Visit&& visit) {
 
 template <typename StressT, typename Visit>
 void spreads_of(StressT& stress, Visit&& visit) {
-  visit("idle_lateness", stress.idle);
-  visit("lateness", stress.lateness);
-  visit("execution", stress.execution);
-  visit("age", stress.age);
-  visit("plant_lateness", stress.plant);
+  visit("idle_wake_up_latency", stress.idle);
+  visit("wake_up_latency", stress.latency);
+  visit("execution_time", stress.execution);
+  visit("response_time", stress.response);
+  visit("sample_age", stress.age);
+  visit("plant_wake_up_latency", stress.plant);
 }
+
+using Buckets = std::vector<Histogram::Bucket>;
 
 struct Put {
   json& out;
+  void operator()(const char* key, const Buckets& buckets) const {
+    out[key] = json::array();
+    for (const auto& [from, to, count] : buckets) {
+      out[key].push_back({{"from_ns", from.count()}, {"below_ns", to.count()}, {"count", count}});
+    }
+  }
+  void operator()(const char* key, const std::optional<Nanoseconds>& time) const {
+    if (time) out[key] = time->count();
+  }
   void operator()(const char* key, Nanoseconds time) const { out[key] = time.count(); }
   template <typename Number>
   void operator()(const char* key, const Number& number) const {
@@ -67,6 +82,16 @@ struct Put {
 // Throws json::exception on what is missing or of another type.
 struct Get {
   const json& in;
+  void operator()(const char* key, Buckets& buckets) const {
+    for (const json& bucket : in.at(key)) {
+      buckets.push_back({Nanoseconds(bucket.at("from_ns").get<std::int64_t>()),
+                         Nanoseconds(bucket.at("below_ns").get<std::int64_t>()),
+                         bucket.at("count").get<std::uint64_t>()});
+    }
+  }
+  void operator()(const char* key, std::optional<Nanoseconds>& time) const {
+    if (in.contains(key)) time = Nanoseconds(in.at(key).get<std::int64_t>());
+  }
   void operator()(const char* key, Nanoseconds& time) const {
     time = Nanoseconds(in.at(key).get<std::int64_t>());
   }
@@ -78,13 +103,16 @@ struct Get {
 
 json slow_to_json(const SlowTicks& slow) {
   json worst = json::array();
-  for (const auto& [tick, execution, cpu] : slow.worst) {
-    worst.push_back({{"tick", tick}, {"execution_ns", execution.count()}, {"cpu_ns", cpu.count()}});
+  for (const auto& [tick, execution, elapsed] : slow.worst) {
+    worst.push_back({{"tick", tick},
+                     {"execution_time_ns", execution.count()},
+                     {"elapsed_ns", elapsed.count()}});
   }
   json out = {{"threshold_ns", slow.threshold.count()}, {"count", slow.count}, {"worst", worst}};
-  if (slow.every) {
-    out["every_ticks"] = *slow.every;
-    out["first_regular_tick"] = slow.first_regular;
+  if (const auto& rhythm = slow.rhythm) {
+    out["rhythm"] = {{"every_steps", rhythm->every},
+                     {"first_tick", rhythm->first},
+                     {"chance_at_most", rhythm->chance}};
   }
   return out;
 }
@@ -95,12 +123,13 @@ SlowTicks slow_from_json(const json& in) {
   in.at("count").get_to(slow.count);
   for (const json& tick : in.at("worst")) {
     slow.worst.push_back({tick.at("tick").get<std::size_t>(),
-                          Nanoseconds(tick.at("execution_ns").get<std::int64_t>()),
-                          Nanoseconds(tick.at("cpu_ns").get<std::int64_t>())});
+                          Nanoseconds(tick.at("execution_time_ns").get<std::int64_t>()),
+                          Nanoseconds(tick.at("elapsed_ns").get<std::int64_t>())});
   }
-  if (in.contains("every_ticks")) {
-    slow.every = in.at("every_ticks").get<std::size_t>();
-    in.at("first_regular_tick").get_to(slow.first_regular);
+  if (in.contains("rhythm")) {
+    const json& rhythm = in["rhythm"];
+    slow.rhythm =
+        Rhythm{rhythm.at("every_steps"), rhythm.at("first_tick"), rhythm.at("chance_at_most")};
   }
   return slow;
 }
@@ -124,6 +153,7 @@ StressResult read(const json& in) {
 json to_json(const StressResult& stress) {
   json out = {{"result", to_json(stress.result)}, {"slow_steps", slow_to_json(stress.slow)}};
   numbers_of(stress, Put{out});
+  out["deadline_misses"] = stress.misses.total();
   spreads_of(stress, [&](const char* key, const Spread& spread) {
     members_of_spread(spread, Put{out[key]});
   });

@@ -53,5 +53,44 @@ RC_GTEST_PROP(Histogram, PercentilesAreRightToABin, (std::vector<std::uint32_t> 
   RC_ASSERT(found <= exact * 1.0101 + 1);
 }
 
+TEST(Histogram, APercentileNeedsTenSamplesBeyondIt) {
+  const std::vector<std::pair<double, std::uint64_t>> least = {
+      {0.5, 20}, {0.9, 100}, {0.99, 1000}, {0.999, 10'000}};
+  for (const auto& [part, count] : least) {
+    EXPECT_TRUE(supports_percentile(count, part)) << part;
+    EXPECT_FALSE(supports_percentile(count - 1, part)) << part;
+  }
+}
+
+RC_GTEST_PROP(Histogram, EveryTimeIsInOneBucket, (std::vector<std::uint32_t> values)) {
+  Histogram histogram;
+  for (const std::uint32_t value : values) histogram.add(ns(value));
+  std::uint64_t count = 0;
+  Nanoseconds last{0};
+  for (const auto& [from, to, times] : histogram.buckets()) {
+    RC_ASSERT(last <= from);
+    RC_ASSERT(from < to);
+    const auto inside = [from = from, to = to](std::uint32_t v) {
+      return from <= ns(v) && ns(v) < to;
+    };
+    RC_ASSERT(static_cast<std::uint64_t>(std::count_if(values.begin(), values.end(), inside)) ==
+              times);
+    last = to;
+    count += times;
+  }
+  RC_ASSERT(count == values.size());
+}
+
+TEST(Histogram, BucketsHoldWhatIsBeyondTheBins) {
+  Histogram histogram;
+  EXPECT_TRUE(histogram.buckets().empty());
+  histogram.add(ns(-5));
+  histogram.add(std::chrono::hours(1));
+  const auto buckets = histogram.buckets();
+  ASSERT_EQ(buckets.size(), 2u);
+  EXPECT_EQ(buckets[0].from, ns(-5));
+  EXPECT_EQ(buckets[1].to, Nanoseconds(std::chrono::hours(1)) + ns(1));
+}
+
 }  // namespace
 }  // namespace attest

@@ -41,13 +41,13 @@ LiveFlight flown(const Case& the_case, const std::function<bool()>& stop) {
   return std::move(*flight);
 }
 
-TEST(LiveFlight, EveryDeadlineIsKeptOrMissed) {
+TEST(LiveFlight, EveryReleaseIsUsedOrSkipped) {
   const LiveFlight flight = flown(tilt_case(0.4), [] { return false; });
   EXPECT_FALSE(flight.unit.fault);
   EXPECT_FALSE(flight.plant.divergence);
-  EXPECT_EQ(flight.unit.ticks.size() + flight.unit.missed, 200u);
-  EXPECT_EQ(flight.unit.lateness.count(), flight.unit.ticks.size());
-  EXPECT_GE(flight.unit.lateness.min(), Nanoseconds(0));
+  EXPECT_EQ(flight.unit.ticks.size() + flight.unit.skipped, 200u);
+  EXPECT_EQ(flight.unit.latency.count(), flight.unit.ticks.size());
+  EXPECT_GE(flight.unit.latency.min(), Nanoseconds(0));
   EXPECT_EQ(flight.unit.samples.size(), flight.unit.ticks.size());
 }
 
@@ -82,7 +82,7 @@ TEST(LiveFlight, TheEstimatorMayTriggerTheUnit) {
   const LiveFlight flight = flown(the_case, [] { return false; });
   EXPECT_FALSE(flight.unit.fault);
   EXPECT_FALSE(flight.plant.divergence);
-  EXPECT_EQ(flight.unit.ticks.size() + flight.unit.missed, 200u);
+  EXPECT_EQ(flight.unit.ticks.size() + flight.unit.skipped, 200u);
   for (std::size_t i = 0; i < flight.unit.ticks.size(); ++i) {
     const LiveTick& tick = flight.unit.ticks[i];
     EXPECT_LE(tick.sampled, tick.begins);
@@ -135,9 +135,9 @@ TEST(LiveFlight, ABatteryEmptiesAndItsScaleReachesTheUnit) {
   EXPECT_GT(last_scale(again.trace.samples), 1.005f);
 }
 
-TEST(IdleLateness, IsOfEveryDeadlineThatItWaitedFor) {
+TEST(IdleLatency, IsOfEveryReleaseThatItWaitedFor) {
   const Histogram idle =
-      idle_lateness(Rate::hz(1000), std::chrono::milliseconds(50), options(), [] { return false; });
+      idle_latency(Rate::hz(1000), std::chrono::milliseconds(50), options(), [] { return false; });
   EXPECT_GE(idle.count(), 1u);
   EXPECT_LE(idle.count(), 50u);
   EXPECT_GE(idle.min(), Nanoseconds(0));

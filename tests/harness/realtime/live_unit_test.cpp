@@ -1,9 +1,10 @@
-// The unit's loop on a clock that is late as the test says: which deadlines are kept, missed and
-// passed over.
+// The unit's loop on a clock that is late as the test says: which releases are used and passed
+// over, and which deadlines are missed.
 #include "harness/realtime/live_unit.hpp"
 
 #include <functional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -18,18 +19,18 @@ namespace {
 
 using testing::ElementsAre;
 
-// Wakes up late by `lateness` of its next deadline; time passes nowhere else by itself.
+// Wakes up late by `latency` of its next release; time passes nowhere else by itself.
 class ScriptedClock final : public Clock {
  public:
   Nanoseconds now() override { return now_; }
   Nanoseconds wait_until(Nanoseconds deadline) override {
     deadlines.push_back(deadline);
-    now_ = std::max(now_, deadline + lateness(deadline));
+    now_ = std::max(now_, deadline + latency(deadline));
     return now_;
   }
   void pass(Nanoseconds time) { now_ += time; }
 
-  std::function<Nanoseconds(Nanoseconds)> lateness = [](Nanoseconds) { return Nanoseconds(0); };
+  std::function<Nanoseconds(Nanoseconds)> latency = [](Nanoseconds) { return Nanoseconds(0); };
   std::vector<Nanoseconds> deadlines;
 
  private:
@@ -59,7 +60,7 @@ class LiveUnitTest : public testing::Test {
  protected:
   LiveUnitTest() { timestamps_.reserve(64); }
 
-  // At 1 kHz, for 8 deadlines.
+  // At 1 kHz, for 8 releases.
   LiveUnitRecord run() {
     const auto vehicle = test::quad_vehicle();
     Case the_case = test::hover_case(0.008);
@@ -84,58 +85,82 @@ class LiveUnitTest : public testing::Test {
   std::vector<std::uint64_t> timestamps_;
 };
 
-TEST_F(LiveUnitTest, KeepsEveryDeadlineWhenItIsQuick) {
+TEST_F(LiveUnitTest, MeetsEveryDeadlineWhenItIsQuick) {
   const LiveUnitRecord record = run();
   EXPECT_EQ(record.ticks.size(), 8u);
   EXPECT_EQ(record.samples.size(), 4u);
-  EXPECT_EQ(record.missed, 0u);
-  EXPECT_EQ(record.overruns, 0u);
+  EXPECT_EQ(record.skipped, 0u);
+  EXPECT_EQ(record.late, 0u);
   EXPECT_EQ(record.longest_gap, us(1000));
-  EXPECT_EQ(record.execution.max(), us(10));
-  EXPECT_EQ(record.lateness.max(), us(0));
+  EXPECT_EQ(record.response.max(), us(10));
+  EXPECT_EQ(record.latency.max(), us(0));
   EXPECT_TRUE(links_.stop);
 }
 
-TEST_F(LiveUnitTest, AStepThatPassesADeadlineIsFollowedAtOnce) {
+TEST_F(LiveUnitTest, AStepThatPassesAReleaseIsFollowedAtOnce) {
   unit_.takes = [](std::size_t step) { return us(step == 2 ? 1300 : 10); };
   const LiveUnitRecord record = run();
   EXPECT_EQ(record.ticks.size(), 8u);
-  EXPECT_EQ(record.overruns, 1u);
-  EXPECT_EQ(record.missed, 0u);
+  EXPECT_EQ(record.late, 1u);
+  EXPECT_EQ(record.skipped, 0u);
   EXPECT_EQ(record.ticks[3].begins, us(3300));
   EXPECT_EQ(record.ticks[4].begins, us(4000));
-  EXPECT_EQ(record.lateness.max(), us(300));
+  EXPECT_EQ(record.latency.max(), us(300));
 }
 
-TEST_F(LiveUnitTest, OfSeveralDeadlinesThatPassOnlyTheLastIsKept) {
+TEST_F(LiveUnitTest, OfSeveralReleasesThatPassOnlyTheLastIsUsed) {
   unit_.takes = [](std::size_t step) { return us(step == 2 ? 3300 : 10); };
   const LiveUnitRecord record = run();
   EXPECT_EQ(record.ticks.size(), 6u);
-  EXPECT_EQ(record.missed, 2u);
-  EXPECT_EQ(record.ticks[2].missed, 2u);
-  EXPECT_EQ(record.overruns, 1u);
+  EXPECT_EQ(record.skipped, 2u);
+  EXPECT_EQ(record.ticks[2].skipped, 2u);
+  EXPECT_EQ(record.late, 1u);
   EXPECT_EQ(record.longest_gap, us(3300));
   EXPECT_THAT(clock_.deadlines,
               ElementsAre(us(0), us(1000), us(2000), us(5000), us(6000), us(7000)));
 }
 
-TEST_F(LiveUnitTest, DeadlinesThatPassAtTheEndAreMissedToo) {
+TEST_F(LiveUnitTest, ReleasesThatPassAtTheEndAreSkippedToo) {
   unit_.takes = [](std::size_t step) { return us(step == 5 ? 9000 : 10); };
   const LiveUnitRecord record = run();
   EXPECT_EQ(record.ticks.size(), 6u);
-  EXPECT_EQ(record.missed, 2u);
+  EXPECT_EQ(record.skipped, 2u);
 }
 
 TEST_F(LiveUnitTest, AWakeUpThatIsLateIsNotTheSteps) {
-  clock_.lateness = [](Nanoseconds deadline) { return us(deadline == us(3000) ? 2500 : 0); };
+  clock_.latency = [](Nanoseconds deadline) { return us(deadline == us(3000) ? 2500 : 0); };
   const LiveUnitRecord record = run();
-  EXPECT_EQ(record.missed, 1u);
-  EXPECT_EQ(record.execution.max(), us(10));
-  EXPECT_EQ(record.lateness.max(), us(2500));
+  EXPECT_EQ(record.skipped, 1u);
+  EXPECT_EQ(record.late, 1u);
+  EXPECT_EQ(record.response.max(), us(2510));
+  EXPECT_EQ(record.latency.max(), us(2500));
+}
+
+TEST_F(LiveUnitTest, ATickKnowsItsReleaseAndItsDeadline) {
+  clock_.latency = [](Nanoseconds) { return us(70); };
+  const LiveUnitRecord record = run();
+  const LiveTick& tick = record.ticks[3];
+  EXPECT_EQ(tick.release_number, 3);
+  EXPECT_EQ(tick.release, us(3000));
+  EXPECT_EQ(tick.deadline, us(4000));
+  EXPECT_EQ(tick.start, us(3070));
+  EXPECT_EQ(tick.finish, us(3080));
+  EXPECT_EQ(tick.elapsed, us(10));
+  EXPECT_LT(tick.cpu, ms(1));  // of the real CPU, whatever the clock says
+}
+
+TEST_F(LiveUnitTest, AStepThatSleepsHasWaited) {
+  unit_.takes = [](std::size_t step) {
+    if (step == 2) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return us(10);
+  };
+  const LiveUnitRecord record = run();
+  EXPECT_TRUE(record.ticks[2].waited);
+  EXPECT_EQ(record.ticks[2].execution(), us(10));
 }
 
 TEST_F(LiveUnitTest, TimestampsAreWhenItReallyRan) {
-  clock_.lateness = [](Nanoseconds) { return us(70); };
+  clock_.latency = [](Nanoseconds) { return us(70); };
   run();
   EXPECT_THAT(unit_.timestamps, testing::Contains(5'002'070u));
 }
@@ -165,8 +190,8 @@ TEST_F(LiveUnitTest, OnEstimatesItRunsOnceForEachSample) {
   for (std::size_t i = 0; i < 8; ++i) {
     EXPECT_EQ(record.ticks[i].sampled, us(1000) * static_cast<std::int64_t>(i));
   }
-  EXPECT_EQ(record.missed, 0u);
-  EXPECT_EQ(record.lateness.max(), us(10));  // from the publication, in the middle of a step
+  EXPECT_EQ(record.skipped, 0u);
+  EXPECT_EQ(record.latency.max(), us(10));  // from the publication, in the middle of a step
   EXPECT_THAT(clock_.deadlines, testing::IsEmpty());
 }
 
@@ -184,10 +209,10 @@ TEST_F(LiveUnitTest, OfSeveralEstimatesThatCameOnlyTheNewestIsUsed) {
   };
   const LiveUnitRecord record = run();
   ASSERT_EQ(record.ticks.size(), 2u);
-  EXPECT_EQ(record.ticks[0].missed, 2u);
+  EXPECT_EQ(record.ticks[0].skipped, 2u);
   EXPECT_EQ(record.ticks[1].sampled, us(3000));
-  EXPECT_EQ(record.ticks[1].missed, 4u);  // that never came
-  EXPECT_EQ(record.missed, 6u);
+  EXPECT_EQ(record.ticks[1].skipped, 4u);  // that never came
+  EXPECT_EQ(record.skipped, 6u);
 }
 
 TEST_F(LiveUnitTest, EndsWhenAPortGoesWrong) {

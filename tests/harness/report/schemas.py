@@ -16,10 +16,10 @@ SOURCE = pathlib.Path(sys.argv[1])
 XMLLINT = sys.argv[2]
 BASELINES = SOURCE / "tests/baselines"
 XSD = SOURCE / "tests/harness/report/junit.xsd"
-SCHEMA = SOURCE / "harness/report/report.schema.json"
+SCHEMAS = SOURCE / "harness/report"
 
 # What each does to a report that is right: one step away from it.
-WRONG_JSON = {
+WRONG_REPORT = {
     "another schema": lambda r: r.update(schema="attest-report-2"),
     "an unknown member": lambda r: r.update(elapsed_s=1.0),
     "a missing member": lambda r: r.pop("conformant"),
@@ -48,6 +48,43 @@ WRONG_JSON = {
     "an unknown measure": lambda r: r["results"][-1]["metrics"][0].update(measure="grace"),
     "an error without a place": lambda r: r["errors"][0].pop("line"),
 }
+
+WRONG_STRESS = {
+    "another schema": lambda r: r.update(schema="attest-stress-2"),
+    "an unknown member": lambda r: r.update(misses=1),
+    "another word for the whole": lambda r: r.update(verdict="ok"),
+    "a run without a verdict": lambda r: r.pop("verdict"),
+    "a rate as a number": lambda r: r.update(rates_not_judged=[1000]),
+    "an expected failure": lambda r: r["results"][0]["result"].update(verdict="xfail"),
+    "a term of its own": lambda r: r["results"][0].update(lateness={}),
+    "no response time": lambda r: r["results"][0].pop("response_time"),
+    "a time with a fraction": lambda r: r["results"][0].update(wall_ns=1.5),
+    "negative misses": lambda r: r["results"][0].update(deadline_misses=-1),
+    "p99 of 499 samples": lambda r: r["results"][0]["response_time"].update(p99_ns=1),
+    "p99.9 of 499 samples": lambda r: r["results"][0]["execution_time"].update(p99_9_ns=1),
+    "no median of 499 samples": lambda r: r["results"][0]["sample_age"].pop("median_ns"),
+    "no p99.9 of 20,000 samples": lambda r: r["results"][0]["plant_wake_up_latency"].pop(
+        "p99_9_ns"
+    ),
+    "no histogram": lambda r: r["results"][0]["wake_up_latency"].pop("buckets"),
+    "an empty bucket": lambda r: r["results"][0]["wake_up_latency"]["buckets"][0].update(count=0),
+    "a bucket without an end": lambda r: r["results"][0]["execution_time"]["buckets"][0].pop(
+        "below_ns"
+    ),
+    "a rhythm by chance": lambda r: r["results"][1]["slow_steps"]["rhythm"].update(
+        chance_at_most=0.05
+    ),
+    "a rhythm of every step": lambda r: r["results"][1]["slow_steps"]["rhythm"].update(
+        every_steps=1
+    ),
+    "a refusal without a reason": lambda r: r["results"][1]["rights"][1].pop("why"),
+}
+
+# (schema, the baselines of its reports, the one that is made wrong, how)
+JSON_REPORTS = [
+    ("report.schema.json", "report*.json", "report.json", WRONG_REPORT),
+    ("stress.schema.json", "stress*.json", "stress.json", WRONG_STRESS),
+]
 
 # (what to replace, by what) in a JUnit file that is right; each must occur in it.
 WRONG_XML = {
@@ -84,20 +121,30 @@ def json_complaint(validator, report) -> str:
 
 
 def check_json() -> list[str]:
-    schema = json.loads(SCHEMA.read_text())
-    jsonschema.Draft7Validator.check_schema(schema)
-    validator = jsonschema.Draft7Validator(schema)
     problems = []
-    for path in sorted(BASELINES.glob("report*.json")):
-        if complaint := json_complaint(validator, json.loads(path.read_text())):
-            problems.append(f"{path.name} is not valid: {complaint}")
-    right = json.loads((BASELINES / "report.json").read_text())
-    for what, spoil in WRONG_JSON.items():
-        wrong = copy.deepcopy(right)
-        spoil(wrong)
-        if not json_complaint(validator, wrong):
-            problems.append(f"report.schema.json lets {what} pass")
+    for name, pattern, sample, wrongs in JSON_REPORTS:
+        schema = json.loads((SCHEMAS / name).read_text())
+        jsonschema.Draft7Validator.check_schema(schema)
+        validator = jsonschema.Draft7Validator(schema)
+        for path in sorted(BASELINES.glob(pattern)):
+            if complaint := json_complaint(validator, json.loads(path.read_text())):
+                problems.append(f"{path.name} is not valid: {complaint}")
+        right = json.loads((BASELINES / sample).read_text())
+        for what, spoil in wrongs.items():
+            wrong = copy.deepcopy(right)
+            spoil(wrong)
+            if not json_complaint(validator, wrong):
+                problems.append(f"{name} lets {what} pass")
     return problems
+
+
+def check_definitions() -> list[str]:
+    """What both schemas define is the same in both."""
+    one, other = (
+        json.loads((SCHEMAS / name).read_text())["definitions"] for name, *_ in JSON_REPORTS
+    )
+    shared = ("count", "rate", "real", "bits", "channel", "deviation", "headroom")
+    return [f"the schemas differ in `{name}`" for name in shared if one[name] != other[name]]
 
 
 def check_xml() -> list[str]:
@@ -115,8 +162,9 @@ def check_xml() -> list[str]:
 
 
 def main() -> int:
-    problems = check_json() + check_xml()
-    print("\n".join(problems) or f"{len(WRONG_JSON) + len(WRONG_XML)} wrong reports rejected")
+    problems = check_json() + check_definitions() + check_xml()
+    wrongs = len(WRONG_REPORT) + len(WRONG_STRESS) + len(WRONG_XML)
+    print("\n".join(problems) or f"{wrongs} wrong reports rejected")
     return 1 if problems else 0
 
 

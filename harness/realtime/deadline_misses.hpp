@@ -1,0 +1,56 @@
+// Which deadlines a flight missed, and which of the misses the port's execution time explains.
+//
+// The rule. The ticks are the record of one timeline. Two more are computed from it, with the same
+// releases and the same steps:
+//
+//     delay_i = (start_i - max(release_i, finish_(i-1))) + (finish_i - start_i - execution_i)
+//
+//     machine's: finish_i = max(release_i, finish_(i-1)) + delay_i
+//     port's:    finish_i = max(release_i, finish_(i-1)) + min(delay_i, usual) + execution_i
+//
+// delay_i is what the machine adds: wake-up latency, preemption within the step, and what attest
+// does around it. It carries over to later ticks as backlog does. `usual` is the median of the
+// delays, and at most a tenth of the period. A miss is the port's if both hold:
+//
+//  1. In the machine's timeline the deadline is kept. A miss that also happens to a port whose
+//     steps take no time is the machine's.
+//  2. In the port's timeline it is missed. A miss may need both causes, as a wake-up that is late
+//     by nearly a period, and then a short step. A right port would collect such misses on a bad
+//     machine. A port has to live with the usual delay only, and a machine whose usual delay is
+//     above a tenth of the period says little about a port. So a port whose steps all take less
+//     than nine tenths of a period never has a miss of its own.
+//
+// All other misses are the machine's.
+//
+// A release that is passed over is a miss too: its deadline passes before it can start. It belongs
+// to the step that ran meanwhile. The same two conditions hold, with the deadline of the release
+// and the finish of that step.
+//
+// Limit: CPU time is what the kernel accounts. Cold caches, interrupts and, on a virtual machine
+// without steal accounting, time of the hypervisor count as execution time.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "harness/realtime/live_tick.hpp"
+#include "harness/schedule/rate.hpp"
+
+namespace attest {
+
+struct DeadlineMisses {
+  std::uint64_t late = 0;                 // responses longer than the period
+  std::uint64_t skipped = 0;              // releases passed over after the first tick
+  std::uint64_t by_port = 0;              // of both together
+  std::uint64_t late_starts = 0;          // wake-up latencies above the limit
+  std::uint64_t late_starts_by_port = 0;  // of those, by the same rule, with starts
+
+  std::uint64_t total() const { return late + skipped; }
+
+  friend bool operator==(const DeadlineMisses&, const DeadlineMisses&) = default;
+};
+
+DeadlineMisses deadline_misses(const std::vector<LiveTick>& ticks, const Rate& rate,
+                               Nanoseconds latency_limit = Nanoseconds::max());
+
+}  // namespace attest
