@@ -141,6 +141,31 @@ TEST(DeadlineMisses, WithoutAStepAreTheMachines) {
   EXPECT_EQ(found.by_port, 0u);
 }
 
+// A port that is too slow, on a machine that is late: from 5 ms on, 2.5 ms of the machine and 3.3
+// of the port. The response would be late anyway, and the release with the deadline at 7 ms passed
+// over. The one with the deadline at 8 ms is passed over by the port alone, so it is the port's.
+// Those at 9 and 10 ms need both.
+TEST(DeadlineMisses, ThatHappenWithoutAnyStepToo) {
+  const DeadlineMisses found = misses([](std::int64_t k) {
+    return k == 5 ? Delays{us(3300), us(2500)} : short_step();
+  });
+  EXPECT_EQ(found.late, 1u);
+  EXPECT_EQ(found.skipped, 4u);
+  EXPECT_EQ(found.by_port, 1u);
+  const DeadlineMisses later = misses([](std::int64_t k) {
+    return k == 5 ? Delays{us(1500), us(5700)} : short_step();
+  });
+  EXPECT_EQ(later.by_port, 0u);
+}
+
+TEST(DeadlineMisses, AStartThatIsLateWithoutTheStepBeforeIsTheMachines) {
+  const DeadlineMisses found = misses([](std::int64_t k) {
+    return k == 5 ? Delays{us(1300)} : Delays{us(20), us(k == 6 ? 500 : 0)};
+  });
+  EXPECT_EQ(found.late_starts, 1u);
+  EXPECT_EQ(found.late_starts_by_port, 0u);
+}
+
 // One that the machine delays at times more than usual, which turns single misses into its own.
 TEST(DeadlineMisses, OfATooSlowPortAreNearlyAllThePortsOnARestlessMachine) {
   Random random(2);
