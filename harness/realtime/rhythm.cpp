@@ -10,12 +10,12 @@
 namespace attest {
 namespace {
 
-constexpr std::size_t ticks_max = 1u << 18, events_max = 1u << 12;
+constexpr std::size_t ticks_max = 1u << 17, events_max = 1u << 11;
 constexpr std::size_t fewest_blocks = 5;
 constexpr double complete = 0.8;  // the part of the blocks that have their event
 constexpr double false_alarms = 1e-4;
 
-// What is looked at, cut so that it takes below a second.
+// What is looked at, cut so that it takes a quarter of a second at most.
 struct Examined {
   std::vector<std::size_t> events;
   std::size_t ticks = 0;

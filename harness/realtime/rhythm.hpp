@@ -31,7 +31,7 @@ struct Rhythm {
   double chance = 1;      // bound of the probability that chance does it, with all pairs tried
 };
 
-// The one with the shortest period. Looks at the first 262,144 ticks and 4,096 events, for the sake
+// The one with the shortest period. Looks at the first 131,072 ticks and 2,048 events, for the sake
 // of time. REQUIRES: `events` ascending, below `ticks`.
 std::optional<Rhythm> find_rhythm(const std::vector<std::size_t>& events, std::size_t ticks);
 
