@@ -13,7 +13,11 @@ namespace {
 
 Result<Case> find_case(const std::string& name, const SuiteFolder& suite) {
   std::error_code ignored;
-  if (std::filesystem::is_regular_file(name, ignored)) return parse_case(name);
+  // A folder may have the name of a case by chance. A pipe or device is refused when it is read.
+  const auto status = std::filesystem::status(name, ignored);
+  if (std::filesystem::exists(status) && !std::filesystem::is_directory(status)) {
+    return parse_case(name);
+  }
   Selection selection;
   selection.filters = {name};
   const auto found = select_cases(suite.cases(), selection);

@@ -1,8 +1,8 @@
 #include "harness/cli/suite_folder.hpp"
 
 #include <cstdlib>
-#include <fstream>
 #include <set>
+#include <sstream>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -30,9 +30,9 @@ Result<SuiteFolder> named(const fs::path& folder, const char* by) {
 }  // namespace
 
 std::string SuiteFolder::version_of(const fs::path& folder) const {
-  std::ifstream file(folder / "VERSION");
+  std::istringstream text(read_file(folder / "VERSION").value_or(""));
   std::string version;
-  return file >> version ? version : "unversioned";
+  return text >> version ? version : "unversioned";
 }
 
 std::vector<std::string> SuiteFolder::groups() const {

@@ -21,10 +21,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// A limit of the environment, which the text of errno does not name.
+std::string_view limit_of(int error) {
+  if (error == EFBIG) return " (`ulimit -f` limits the size of files)";
+  if (error == EMFILE) return " (`ulimit -n` limits how many are open)";
+  return "";
+}
+
 // REQUIRES: a system call has just failed.
 tl::unexpected<Error> system_failure(const fs::path& path, std::string_view what) {
-  const std::string reason = std::generic_category().message(errno);
-  return fail_at(path.string(), fmt::format("{}: {}", what, reason));
+  const int error = errno;
+  const std::string reason = std::generic_category().message(error);
+  return fail_at(path.string(), fmt::format("{}: {}{}", what, reason, limit_of(error)));
+}
+
+std::string_view kind_of(mode_t mode) {
+  if (S_ISDIR(mode)) return "a directory";
+  if (S_ISFIFO(mode)) return "a pipe; write its content to a file first";
+  if (S_ISSOCK(mode)) return "a socket";
+  return "a device";
 }
 
 class Descriptor {
@@ -41,16 +56,20 @@ class Descriptor {
   int descriptor_;
 };
 
-// Calls use(block) for each block of the file.
+// Calls use(block) for each block of the file, until it says no more.
 template <typename Use>
 Result<void> for_each_block(const fs::path& path, Use use) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.get() < 0) return system_failure(path, "cannot open the file");
+  const auto opened = open_regular_file(path);
+  if (!opened) return tl::unexpected(opened.error());
+  const Descriptor file(*opened);
   std::array<char, std::size_t{64} * 1024> block;
   while (true) {
     const ssize_t count = ::read(file.get(), block.data(), block.size());
     if (count == 0) return {};
-    if (count > 0) use(std::string_view(block.data(), static_cast<std::size_t>(count)));
+    if (count > 0) {
+      auto used = use(std::string_view(block.data(), static_cast<std::size_t>(count)));
+      if (!used) return used;
+    }
     if (count < 0 && errno != EINTR) return system_failure(path, "cannot read the file");
   }
 }
@@ -85,9 +104,32 @@ class Sha256 {
 
 }  // namespace
 
-Result<std::string> read_file(const fs::path& path) {
+Result<int> open_regular_file(const fs::path& path) {
+  // A pipe that is opened without O_NONBLOCK waits for somebody who writes.
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  if (file < 0) return system_failure(path, "cannot open the file");
+  struct stat status;
+  if (::fstat(file, &status) == 0 && S_ISREG(status.st_mode)) return file;
+  ::close(file);
+  return fail_at(path.string(), fmt::format("not a regular file but {}", kind_of(status.st_mode)));
+}
+
+Result<std::string> read_file(const fs::path& path, std::uintmax_t most_bytes) {
+  std::error_code unknown;
+  const std::uintmax_t size = fs::file_size(path, unknown);
   std::string text;
-  const auto done = for_each_block(path, [&](std::string_view block) { text += block; });
+  const auto too_large = [&] {
+    return fail_at(path.string(), fmt::format("is larger than {} MiB, the most that such a file "
+                                              "may have",
+                                              most_bytes >> 20));
+  };
+  if (!unknown && size > most_bytes) return too_large();
+  if (!unknown) text.reserve(size);
+  const auto done = for_each_block(path, [&](std::string_view block) -> Result<void> {
+    if (text.size() + block.size() > most_bytes) return too_large();
+    text += block;
+    return {};
+  });
   if (!done) return tl::unexpected(done.error());
   return text;
 }
@@ -100,7 +142,10 @@ std::string sha256(std::string_view bytes) {
 
 Result<std::string> sha256_of_file(const fs::path& path) {
   Sha256 hash;
-  const auto done = for_each_block(path, [&](std::string_view block) { hash.add(block); });
+  const auto done = for_each_block(path, [&](std::string_view block) -> Result<void> {
+    hash.add(block);
+    return {};
+  });
   if (!done) return tl::unexpected(done.error());
   return hash.hex();
 }

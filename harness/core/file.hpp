@@ -1,6 +1,7 @@
 // Whole files: read, hashed, and written so that a reader never sees half of one.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -9,7 +10,17 @@
 
 namespace attest {
 
-Result<std::string> read_file(const std::filesystem::path& path);
+// Opens a regular file for reading; the caller closes the descriptor. Everything that attest reads
+// is opened here. Errors: anything else, which may have no end (a device), nobody who writes (a
+// pipe) or no bytes (a directory). Opening never waits.
+Result<int> open_regular_file(const std::filesystem::path& path);
+
+// More than any text that a person writes. What a program wrote may need more.
+inline constexpr std::uintmax_t most_text_bytes = std::uintmax_t{64} << 20;
+
+// The whole file. Errors: as of open_regular_file(), unreadable, more than `most_bytes`.
+Result<std::string> read_file(const std::filesystem::path& path,
+                              std::uintmax_t most_bytes = most_text_bytes);
 
 // SHA-256 as 64 lower-case hex digits, as `sha256sum` prints it.
 std::string sha256(std::string_view bytes);

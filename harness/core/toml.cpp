@@ -13,6 +13,7 @@
 
 #include "harness/core/file.hpp"
 #include "harness/core/nearest.hpp"
+#include "harness/core/toml_depth.hpp"
 
 namespace attest {
 namespace {
@@ -282,14 +283,13 @@ Result<TomlFile> TomlFile::read(const std::filesystem::path& path) {
 }
 
 Result<TomlFile> TomlFile::parse(std::string_view text, const std::string& name) {
-  auto document = std::make_shared<Document>();
-  document->name = name;
+  if (auto checked = check_depth(text, name); !checked) return tl::unexpected(checked.error());
+  auto document = std::make_shared<Document>(Document{name, {}, {}, {}});
   try {
     document->table = toml::parse(text, std::string_view(name));
   } catch (const toml::parse_error& error) {
-    const Place place = place_of(error.source());
-    return fail_at(name, fmt::format("not valid TOML: {}", error.description()), place.line,
-                   place.column);
+    const auto [line, column] = place_of(error.source());
+    return fail_at(name, fmt::format("not valid TOML: {}", error.description()), line, column);
   }
   return TomlFile(std::move(document));
 }

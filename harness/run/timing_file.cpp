@@ -16,6 +16,9 @@ using nlohmann::json;
 
 constexpr int format = 1;
 
+// Three times of an hour's ticks at 8 kHz.
+constexpr std::uintmax_t most_bytes = std::uintmax_t{2} << 30;
+
 std::optional<LoopTick> tick_of(const json& value) {
   if (!value.is_array() || value.size() != 3) return std::nullopt;
   if (!value[0].is_number_integer() || !value[1].is_number_integer()) return std::nullopt;
@@ -66,7 +69,7 @@ Result<Setup> setup_of(const json& root) {
 
 Result<TimingFile> read_timing(const std::filesystem::path& path) {
   const std::string file = path.string();
-  const auto text = read_file(path);
+  const auto text = read_file(path, most_bytes);
   if (!text) return tl::unexpected(text.error());
   const json root = json::parse(*text, nullptr, false);
   const auto texts = {"case", "case_sha256", "rate", "vehicle", "plant"};

@@ -6,6 +6,9 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <unistd.h>
+
+#include "harness/core/file.hpp"
 
 namespace attest {
 namespace {
@@ -35,8 +38,11 @@ int place_of(std::string_view line, std::string_view cell) {
 Result<CsvRows> CsvRows::open(const std::filesystem::path& path) {
   CsvRows rows;
   rows.file_ = path.string();
-  rows.stream_.reset(std::fopen(path.c_str(), "rbe"));
+  const auto opened = open_regular_file(path);
+  if (!opened) return tl::unexpected(opened.error());
+  rows.stream_.reset(::fdopen(*opened, "rb"));
   if (!rows.stream_) {
+    ::close(*opened);
     return fail_at(rows.file_,
                    fmt::format("cannot open the file: {}", std::generic_category().message(errno)));
   }

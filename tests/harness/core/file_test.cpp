@@ -1,5 +1,6 @@
 #include "harness/core/file.hpp"
 
+#include <fstream>
 #include <thread>
 #include <utility>
 
@@ -40,7 +41,28 @@ TEST(ReadFile, SaysWhyItCannot) {
   EXPECT_EQ(read_file(missing).error().to_string(),
             missing + ": cannot open the file: No such file or directory");
   EXPECT_EQ(read_file(directory.path()).error().to_string(),
-            directory.path().string() + ": cannot read the file: Is a directory");
+            directory.path().string() + ": not a regular file but a directory");
+}
+
+TEST(ReadFile, RefusesWhatMayHaveNoEnd) {
+  const TemporaryDirectory directory;
+  const std::string pipe = (directory.path() / "pipe").string();
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(read_file(pipe).error().to_string(),
+            pipe + ": not a regular file but a pipe; write its content to a file first");
+  EXPECT_EQ(read_file("/dev/zero").error().to_string(),
+            "/dev/zero: not a regular file but a device");
+  EXPECT_FALSE(sha256_of_file(pipe));
+}
+
+TEST(ReadFile, RefusesWhatIsTooLarge) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.write("sparse", "");
+  fs::resize_file(path, std::uintmax_t{10} << 30);
+  EXPECT_EQ(read_file(path).error().to_string(),
+            path.string() + ": is larger than 64 MiB, the most that such a file may have");
+  EXPECT_EQ(read_file(directory.write("four", "1234"), 4), "1234");
+  EXPECT_FALSE(read_file(directory.write("five", "12345"), 4));
 }
 
 TEST(Sha256, IsThatOfTheStandard) {
@@ -152,8 +174,8 @@ TEST(AtomicFile, WritesDirectlyToWhatIsNoOrdinaryFile) {
   const TemporaryDirectory directory;
   const fs::path pipe = directory.path() / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  Result<std::string> received;
-  std::thread reader([&] { received = read_file(pipe); });
+  std::string received;
+  std::thread reader([&] { std::getline(std::ifstream(pipe), received); });
   auto file = AtomicFile::open(pipe);
   EXPECT_TRUE(file->write("through"));
   EXPECT_TRUE(file->commit());

@@ -109,6 +109,44 @@ TEST(TomlErrors, GarbageIsAnErrorNotACrash) {
   EXPECT_FALSE(TomlFile::parse("a = " + std::string(10000, '['), "x"));
 }
 
+// `count` times `part`, separated by dots.
+std::string dotted(int count, const std::string& part) {
+  std::string key = part;
+  for (int i = 1; i < count; ++i) key += "." + part;
+  return key;
+}
+
+TEST(TomlErrors, DeepTablesAreAnErrorNotACrash) {
+  constexpr int levels = 50000;
+  const std::string key = dotted(levels, "a"), quoted = dotted(levels, "\"a.b\"");
+  std::string opening, closing;
+  for (int i = 0; i < levels; ++i) {
+    opening += "{ a = ";
+    closing += " }";
+  }
+  for (const std::string& text :
+       {key + " = 1", quoted + " = 1", "[" + key + "]", "[[" + key + "]]",
+        "x = { " + key + " = 1 }", "x = " + opening + "1" + closing,
+        "x = \"\"\"a\\\"\"\"\"\n" + key + " = 1", "x = '''a'''''\n" + key + " = 1"}) {
+    EXPECT_FALSE(TomlFile::parse(text, "x")) << text.substr(0, 40);
+  }
+  EXPECT_EQ(TomlFile::parse("# \"\nü = 1.5\n\"ü\"." + key, "x").error().to_string(),
+            "x:3:66: tables or arrays are nested more than 32 deep; no file of attest needs that");
+}
+
+TEST(Toml, DotsThatSeparateNoPartsOfAKeyAreNotCounted) {
+  const std::string dots(100, '.');
+  EXPECT_TRUE(TomlFile::parse(dotted(32, "a") + " = 1", "x"));
+  std::string numbers = "n = [";
+  for (int i = 0; i < 100; ++i) numbers += "1.5, ";
+  EXPECT_TRUE(TomlFile::parse(numbers + "]", "x"));
+  for (const std::string& text :
+       {"# " + dots, "a = \"" + dots + "\"", "a = '" + dots + "'", "a = \"\\\"" + dots + "\"",
+        "a = \"\"\"\n" + dots + "\\\"\"\"\"", "a = '''\n" + dots + "'''", "a = \"\" # " + dots}) {
+    EXPECT_TRUE(TomlFile::parse(text, "x")) << text.substr(0, 40);
+  }
+}
+
 TEST(TomlErrors, MissingKeyIsAtItsTable) {
   const TomlFile file = parsed("a = 1\n[unit]\nb = 2\n");
   EXPECT_EQ(file.root().integer("a"), 1);
