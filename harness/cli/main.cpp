@@ -1,4 +1,8 @@
 // attest: is this port the same attitude controller as the reference?
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 
@@ -20,6 +24,18 @@ void open_standard_streams() {
   if (descriptor > STDERR_FILENO) ::close(descriptor);
 }
 
+// Whether a run of one worker can open its files, pipes and processes. With fewer the error would
+// come where nobody expects it, in a port too, whose fault it is not.
+bool enough_descriptors() {
+  std::array<int, 24> opened{};
+  std::generate(opened.begin(), opened.end(), [] { return ::open("/dev/null", O_RDONLY); });
+  const bool exhausted = opened.back() < 0 && (errno == EMFILE || errno == ENFILE);
+  for (const int descriptor : opened) {
+    if (descriptor >= 0) ::close(descriptor);
+  }
+  return !exhausted;
+}
+
 // A summary that nobody received is not a success.
 int flushed(int code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
@@ -31,6 +47,13 @@ int flushed(int code) {
 
 int main(int argc, char** argv) {
   open_standard_streams();
+  // A write beyond `ulimit -f` fails then, and the error names the file.
+  std::signal(SIGXFSZ, SIG_IGN);
+  if (!enough_descriptors()) {
+    std::fputs("attest: error: too few files can be opened; raise the limit (`ulimit -n`)\n",
+               stderr);
+    return attest::cli::exit_usage;
+  }
   try {
     return flushed(attest::cli::run_command_line(argc, argv));
   } catch (const std::exception& error) {

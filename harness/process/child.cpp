@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <initializer_list>
 #include <string_view>
 #include <utility>
 
@@ -37,6 +38,12 @@ void write_all(int descriptor, std::string_view bytes) {
   }
 }
 
+void close_all(std::initializer_list<int> files) {
+  for (const int file : files) {
+    if (file >= 0) ::close(file);
+  }
+}
+
 // Of what a process writes to, all that it allocates: a port that goes on allocating must not take
 // the machine's memory. Sanitizers reserve terabytes.
 void limit_memory() {
@@ -49,16 +56,14 @@ void limit_memory() {
 }
 
 // What a child must have arranged, beyond what a Process has, before it runs code of others.
-void isolate(int output, int pipe) {
+void isolate(int nothing, int output, int pipe) {
   rlimit files{};
   ::getrlimit(RLIMIT_FSIZE, &files);
   files.rlim_cur = std::min(files.rlim_max, max_file_bytes);
   ::setrlimit(RLIMIT_FSIZE, &files);
   ::signal(SIGXFSZ, SIG_IGN);  // writing past the limit fails, it does not kill
-  if (const int nothing = ::open("/dev/null", O_RDONLY); nothing >= 0) {
-    ::dup2(nothing, STDIN_FILENO);
-    ::close(nothing);
-  }
+  ::dup2(nothing, STDIN_FILENO);
+  ::close(nothing);
   ::dup2(output, STDOUT_FILENO);
   ::dup2(output, STDERR_FILENO);
   // The reports and pipes that the parent has open are not the child's.
@@ -112,22 +117,24 @@ void allow_large_files() {
 }
 
 Result<Child> Child::spawn(const std::function<void(const SendLine&)>& work) {
+  // All of it before the fork: what cannot be opened is no fault of the work.
   std::array<int, 2> ends{-1, -1};
+  const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
   const int output = ::memfd_create("attest-port-output", MFD_CLOEXEC);
-  if (output < 0 || ::pipe2(ends.data(), O_CLOEXEC) != 0) {
+  if (nothing < 0 || output < 0 || ::pipe2(ends.data(), O_CLOEXEC) != 0) {
     const int reason = errno;
-    if (output >= 0) ::close(output);
-    return fail(fmt::format("cannot make the pipe of a worker: {}", std::strerror(reason)));
+    close_all({nothing, output});
+    return fail(fmt::format("cannot open the files of a worker: {}{}", std::strerror(reason),
+                            reason == EMFILE ? " (`ulimit -n` limits how many are open)" : ""));
   }
   auto process = Process::start([&] {
     ::close(ends[0]);
-    isolate(output, ends[1]);
+    isolate(nothing, output, ends[1]);
     work_and_end(work, ends[1]);
   });
-  ::close(ends[1]);
+  close_all({nothing, ends[1]});
   if (process) return Child(*std::move(process), ends[0], output);
-  ::close(ends[0]);
-  ::close(output);
+  close_all({ends[0], output});
   return tl::unexpected(process.error());
 }
 
@@ -149,10 +156,7 @@ Child& Child::operator=(Child&& other) noexcept {
 
 Child::~Child() { close_files(); }
 
-void Child::close_files() {
-  if (pipe_ >= 0) ::close(pipe_);
-  if (output_ >= 0) ::close(output_);
-}
+void Child::close_files() { close_all({pipe_, output_}); }
 
 std::vector<std::string> Child::read_lines(bool& ended) {
   std::array<char, 65536> buffer;

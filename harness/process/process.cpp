@@ -188,7 +188,8 @@ Result<Process> Process::start(const std::function<void()>& work) {
     reap(leader, ignored);
     owned().processes.erase(leader);
   }
-  return fail(fmt::format("cannot start a process: {}", std::strerror(reason)));
+  return fail(fmt::format("cannot start a process: {}{}", std::strerror(reason),
+                          reason == EAGAIN ? " (`ulimit -u` limits how many there are)" : ""));
 }
 
 Process::Process(Process&& other) noexcept

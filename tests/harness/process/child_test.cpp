@@ -55,6 +55,27 @@ TEST(Child, SeveralLinesArriveInOrder) {
   EXPECT_THAT(lines, testing::ElementsAre("one", "", "three"));
 }
 
+int lowest_free_descriptor() {
+  const int descriptor = ::dup(STDERR_FILENO);
+  ::close(descriptor);
+  return descriptor;
+}
+
+TEST(Child, OneWithoutDescriptorsIsNotStarted) {
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  const int free = lowest_free_descriptor();
+  for (int spare = 0; spare < 4; ++spare) {
+    const rlimit few{static_cast<rlim_t>(free + spare), before.rlim_max};
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
+    const auto child = Child::spawn([](const SendLine&) {});
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+    ASSERT_FALSE(child) << spare;
+    EXPECT_THAT(child.error().message, HasSubstr("`ulimit -n`"));
+    EXPECT_EQ(lowest_free_descriptor(), free);
+  }
+}
+
 TEST(Child, OneThatEndsWithoutAWordSaysNothing) {
   Child child = spawned([](const SendLine&) { ::_exit(3); });
   EXPECT_EQ(child.wait_for_line(patience_s), std::nullopt);

@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -93,6 +94,26 @@ TEST(Process, SaysHowItEnded) {
   const Ending crash = started([] { ::raise(SIGTERM); }).end(60);
   EXPECT_EQ(crash.to_string(), "was killed by signal 15 (Terminated)");
   EXPECT_FALSE(crash.was_killed);
+}
+
+TEST(Process, ThatCannotBeStartedIsAnErrorWithTheLimit) {
+  constexpr uid_t nobody = 65534;
+  constexpr int other_user_refused = 2;
+  const pid_t limited = ::fork();
+  if (limited == 0) {
+    // The limit does not hold for root.
+    if (::getuid() == 0 && ::setuid(nobody) != 0) ::_exit(other_user_refused);
+    const rlimit none{0, 0};
+    ::setrlimit(RLIMIT_NPROC, &none);
+    const auto process = Process::start([] {});
+    const bool said = !process && process.error().message.find("`ulimit -u`") != std::string::npos;
+    ::_exit(said ? EXIT_SUCCESS : EXIT_FAILURE);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(limited, &status, 0), limited);
+  ASSERT_TRUE(WIFEXITED(status));
+  if (WEXITSTATUS(status) == other_user_refused) GTEST_SKIP() << "root cannot be another user";
+  EXPECT_EQ(WEXITSTATUS(status), EXIT_SUCCESS);
 }
 
 TEST(Process, IsNotWaitedForBeyondTheLimit) {
