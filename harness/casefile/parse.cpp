@@ -185,6 +185,11 @@ void parse_identity(const TomlTable& root, const fs::path& file, Case& parsed) {
   // Normal, because the folder of "./roll.toml" is not called ".".
   const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
   parsed.name = file.stem().string();
+  if (parsed.name.ends_with(".new") || parsed.name.ends_with(".old")) {
+    root.error("group", fmt::format("a case must not be named `{}`: `attest bless` uses such names "
+                                    "for goldens in the making; rename the file",
+                                    parsed.name));
+  }
   parse_profiles(root, folder.parent_path().filename().string(), parsed);
   parsed.group = root.text("group");
   parsed.why = root.text("why");

@@ -9,15 +9,18 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/cli/command.hpp"
+#include "harness/cli/interrupt.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/plant/fleet.hpp"
 #include "harness/port/port.hpp"
 #include "harness/run/decimate.hpp"
 #include "harness/run/golden.hpp"
+#include "harness/run/golden_lock.hpp"
 #include "harness/run/open_loop.hpp"
 #include "harness/run/other_side.hpp"
 #include "harness/run/reference_flight.hpp"
@@ -25,6 +28,12 @@
 
 namespace attest::cli {
 namespace {
+
+// What was written so far is removed on the way out.
+Result<void> check_not_interrupted() {
+  if (interrupted()) return fail("interrupted; no golden was changed");
+  return {};
+}
 
 // A golden that only our own code has seen proves nothing: the reference must first agree with what
 // the firmware computed.
@@ -77,6 +86,7 @@ Result<Reference> reference_of(const Case& the_case, Port& port, Fleet& fleet) {
   Reference reference;
   std::set<std::filesystem::path> files;
   for (const Setup& setup : the_case.setups()) {  // a provenance speaks of all of them
+    if (auto go_on = check_not_interrupted(); !go_on) return tl::unexpected(go_on.error());
     if (!setup.flyer) {
       auto trace = open_loop_trace(the_case, setup, port);
       if (!trace) return tl::unexpected(trace.error());
@@ -256,6 +266,11 @@ bool confirmed(const BlessOptions& options, std::size_t count) {
   if (options.yes) return true;
   fmt::print("replace the golden of {} case{}? [y/N] ", count, count == 1 ? "" : "s");
   std::fflush(stdout);
+  constexpr int look_every_ms = 100;  // at whether Ctrl-C was pressed, which does not end getline()
+  pollfd terminal{STDIN_FILENO, POLLIN, 0};
+  while (!interrupted() && ::poll(&terminal, 1, look_every_ms) <= 0) {
+  }
+  if (interrupted()) return false;
   std::string answer;
   std::getline(std::cin, answer);
   return answer == "y" || answer == "yes";
@@ -266,6 +281,9 @@ Result<int> bless_selected(const BlessOptions& options, const Globals& globals) 
   if (!suite) return tl::unexpected(suite.error());
   const auto cases = options.select.cases_in(suite->cases());
   if (!cases) return tl::unexpected(cases.error());
+  note_interrupts();
+  const auto lock = GoldenLock::take(suite->golden());
+  if (!lock) return tl::unexpected(lock.error());
   if (auto checked = check_reference(*suite); !checked) return tl::unexpected(checked.error());
   if (auto noted = note_uncovered(*cases, *suite); !noted) return tl::unexpected(noted.error());
   auto pending = write_beside(*cases, *suite, options.reason);
@@ -273,7 +291,9 @@ Result<int> bless_selected(const BlessOptions& options, const Globals& globals) 
 
   if (pending->unchanged > 0) fmt::print("{} unchanged\n", pending->unchanged);
   if (pending->goldens.empty()) return exit_ok;
-  if (!confirmed(options, pending->goldens.size())) {
+  const bool wanted = confirmed(options, pending->goldens.size());
+  if (auto go_on = check_not_interrupted(); !go_on) return tl::unexpected(go_on.error());
+  if (!wanted) {
     fmt::print("nothing was changed\n");
     return exit_failed;
   }
@@ -294,7 +314,9 @@ int bless_command(const BlessOptions& options, const Globals& globals) {
     return report_error({"nobody is there to ask; pass --yes to replace goldens unasked"});
   }
   const auto code = bless_selected(options, globals);
-  return code ? *code : report_error(code.error());
+  if (code) return *code;
+  report_error(code.error());
+  return interrupted() ? exit_interrupted : exit_usage;
 }
 
 }  // namespace attest::cli

@@ -1,8 +1,10 @@
 #include "harness/run/golden.hpp"
 
+#include <cstdio>
 #include <system_error>
 #include <utility>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 
 #include "harness/core/file.hpp"
@@ -226,8 +228,12 @@ NewGolden::NewGolden(NewGolden&& other) noexcept
     : folder_(std::move(other.folder_)), written_(std::exchange(other.written_, {})) {}
 
 NewGolden::~NewGolden() {
+  if (written_.empty()) return;
   std::error_code ignored;
-  if (!written_.empty()) fs::remove_all(written_, ignored);
+  fs::remove_all(written_, ignored);
+  // The folders of its group and profile, if they were made for it. Others are not empty.
+  fs::remove(written_.parent_path(), ignored);
+  fs::remove(written_.parent_path().parent_path(), ignored);
 }
 
 Result<NewGolden> NewGolden::write(const fs::path& golden_root, const Case& the_case,
@@ -248,11 +254,12 @@ Result<NewGolden> NewGolden::write(const fs::path& golden_root, const Case& the_
 }
 
 Result<void> NewGolden::put_in_place() {
-  // The old golden steps aside first, so that at each moment a complete one is there.
+  const bool exchanged =
+      ::renameat2(AT_FDCWD, written_.c_str(), AT_FDCWD, folder_.c_str(), RENAME_EXCHANGE) == 0;
+  if (exchanged) return {};  // the old one is in `written_` now, and is removed with this
+  // There is no old one, or the file system cannot exchange: the old golden steps aside first.
   const fs::path old = fs::path(folder_).concat(".old");
   std::error_code error;
-  fs::remove_all(old, error);
-  error.clear();
   if (fs::exists(folder_)) fs::rename(folder_, old, error);
   if (!error) fs::rename(written_, folder_, error);
   if (error) {

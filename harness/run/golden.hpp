@@ -74,7 +74,8 @@ struct GoldenBase {
   std::filesystem::path folder;  // where its files are now, perhaps not yet in place
 };
 
-// A golden that has been written beside its place, complete, and not yet put there.
+// A golden that has been written beside its place, complete, and not yet put there. For who holds
+// the GoldenLock.
 class NewGolden {
  public:
   // Writes `traces` (one for each of the case's setups, in that order). `vehicle_files` are those
@@ -86,8 +87,10 @@ class NewGolden {
                                  const std::string& reason, const GoldenBase* base = nullptr);
   NewGolden(NewGolden&& other) noexcept;
   NewGolden& operator=(NewGolden&&) = delete;
-  ~NewGolden();  // removes what was not put in place
+  ~NewGolden();  // removes what does not stand in its place: this one, or the one it replaced
 
+  // At each moment, a kill included, a complete golden is there: where the file system can exchange
+  // two folders in its place, else there or in `*.old`.
   Result<void> put_in_place();
 
   const std::filesystem::path& written() const { return written_; }

@@ -129,3 +129,74 @@ golden=suite/golden/px4-v1.5.5/attitude/roll
   [ "$status" -eq 1 ]
   has "of 1200"
 }
+
+# A suite of several cases, so that blessing takes a while.
+make_large_suite() {
+  make_suite
+  for i in 1 2 3 4 5 6; do
+    cp suite/cases/px4-v1.5.5/attitude/roll.toml suite/cases/px4-v1.5.5/attitude/roll$i.toml
+  done
+  sed -i 's/duration_ticks = 30/duration_ticks = 1200/' suite/cases/px4-v1.5.5/attitude/*.toml
+}
+
+# being_written: waits until a golden is.
+being_written() {
+  for _ in $(seq 500); do
+    [ -z "$(find suite/golden -name '*.new')" ] || return 0
+    sleep 0.01
+  done
+  return 1
+}
+
+nothing_half_done() {
+  [ -z "$(find suite/golden -name '*.new' -o -name '*.old' -o -name '.bless.lock')" ]
+}
+
+@test "two at once: the second is refused with the name of the lock" {
+  make_large_suite
+  "$ATTEST" --suite suite bless --yes --reason "first" >/dev/null &
+  first=$!
+  being_written
+  run "$ATTEST" --suite suite bless --yes --reason "second"
+  [ "$status" -eq 2 ]
+  has "suite/golden/.bless.lock: another \`attest bless\` holds this lock"
+  wait $first
+  nothing_half_done
+  run "$ATTEST" --suite suite run
+  [ "$status" -eq 0 ]
+}
+
+@test "an interrupt removes what is half done and changes no golden" {
+  make_large_suite
+  for signal in INT TERM; do
+    # A job of a script ignores SIGINT.
+    env --default-signal=INT "$ATTEST" --suite suite bless --yes --reason r >out.txt 2>&1 &
+    being_written
+    kill -$signal $!
+    code=0
+    wait $! || code=$?
+    [ "$code" -eq 130 ]
+    grep -q "interrupted; no golden was changed" out.txt
+    [ -z "$(find suite/golden -mindepth 1 -not -path '*/recorded*')" ]
+  done
+}
+
+@test "after a kill every golden is whole, and the next bless cleans up" {
+  make_large_suite
+  "$ATTEST" --suite suite bless --yes --reason "first" >/dev/null
+  sed -i 's/to = 20/to = 25/' suite/cases/px4-v1.5.5/attitude/*.toml
+  "$ATTEST" --suite suite bless --yes --reason "second" >/dev/null &
+  being_written
+  kill -KILL $!
+  wait $! || true
+  [ -n "$(find suite/golden -name '*.new')" ]
+  for folder in suite/golden/px4-v1.5.5/attitude/*/; do
+    [[ $folder == *.new/ ]] || grep -q "first" "$folder/provenance.toml"
+  done
+  run "$ATTEST" --suite suite bless --yes --reason "third"
+  [ "$status" -eq 0 ]
+  has "blessed 7"
+  nothing_half_done
+  run "$ATTEST" --suite suite run
+  [ "$status" -eq 0 ]
+}
