@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/core/nearest.hpp"
 #include "harness/core/toml.hpp"
 
 namespace attest {
@@ -75,6 +76,21 @@ void parse_trigger(const TomlTable& table, const std::string& name, TaskSet& set
   unit.rate = set.tasks[*set.estimator].rate;
 }
 
+// Any name may be that of a task. When one of those that mean something is missing, one that is
+// nearly the same is taken for a misspelling, and the answer is true.
+bool is_misspelt(const TomlTable& tasks, const std::string& meant) {
+  const std::vector<std::string> names = tasks.keys();
+  if (std::find(names.begin(), names.end(), meant) != names.end()) return false;
+  bool misspelt = false;
+  for (const std::string& name : names) {
+    const std::string said = suggestion(name, {meant});
+    if (said.empty()) continue;
+    tasks.error(name, fmt::format("there is no [task.{}]{}", meant, said));
+    misspelt = true;
+  }
+  return misspelt;
+}
+
 }  // namespace
 
 Result<TaskSet> read_task_set(const std::filesystem::path& path) {
@@ -86,8 +102,11 @@ Result<TaskSet> read_task_set(const std::filesystem::path& path) {
   for (const std::string& name : tasks.keys()) {
     set.tasks.push_back(parse_task(tasks.table(name), name));
   }
+  is_misspelt(tasks, "estimator");
+  const bool unit_misspelt = is_misspelt(tasks, "unit");
   const auto unit = find_task(set.tasks, "unit");
-  if (!unit && root.has("task")) root.error("task", "needs [task.unit], the controller");
+  if (!unit && !unit_misspelt && root.has("task"))
+    root.error("task", "needs [task.unit], the controller");
   set.unit = unit.value_or(0);
   set.estimator = find_task(set.tasks, "estimator");
   for (const std::string& name : tasks.keys()) parse_trigger(tasks.table(name), name, set);

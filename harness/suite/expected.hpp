@@ -21,7 +21,8 @@ struct ExpectedFailure {
 
 class ExpectedFailures {
  public:
-  // Errors: unreadable, not TOML, an unknown key, an entry without a reason.
+  // Errors: unreadable, not TOML, an unknown key, an entry without a reason, one that names neither
+  // a group nor a case.
   static Result<ExpectedFailures> read(const std::filesystem::path& file);
 
   bool expects(const CaseResult& result) const;

@@ -21,8 +21,10 @@ bool matches(const std::string& pattern, const std::string& text) {
   return ::fnmatch(pattern.c_str(), text.c_str(), 0) == 0;
 }
 
-bool matches_any(const std::vector<std::string>& filters, const Case& the_case,
-                 const Setup& setup) {
+// Which of the patterns match a case with a setup. None is passed over: one that matches no case at
+// all is an error.
+bool matches_any(const std::vector<std::string>& filters, const Case& the_case, const Setup& setup,
+                 std::set<std::string>& matching) {
   if (filters.empty()) return true;
   const std::string in_group = the_case.group + "/" + the_case.name;
   std::vector<std::string> names = {the_case.name};
@@ -31,10 +33,16 @@ bool matches_any(const std::vector<std::string>& filters, const Case& the_case,
       names.push_back(name + end);
     }
   }
-  return std::any_of(filters.begin(), filters.end(), [&](const std::string& pattern) {
-    return std::any_of(names.begin(), names.end(),
-                       [&](const std::string& name) { return matches(pattern, name); });
-  });
+  bool any = false;
+  for (const std::string& pattern : filters) {
+    if (!std::any_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return matches(pattern, name); })) {
+      continue;
+    }
+    any = true;
+    matching.insert(pattern);
+  }
+  return any;
 }
 
 template <typename T>
@@ -70,10 +78,12 @@ bool is_selected(const Setup& setup, const Selection& selection) {
          contains(selection.plants, std::string(name_of(setup.flyer->plant)));
 }
 
-std::vector<Setup> selected_setups(const Case& the_case, const Selection& selection) {
+std::vector<Setup> selected_setups(const Case& the_case, const Selection& selection,
+                                   std::set<std::string>& matching) {
   std::vector<Setup> setups = the_case.setups();
   std::erase_if(setups, [&](const Setup& setup) {
-    return !is_selected(setup, selection) || !matches_any(selection.filters, the_case, setup);
+    return !is_selected(setup, selection) ||
+           !matches_any(selection.filters, the_case, setup, matching);
   });
   return setups;
 }
@@ -123,14 +133,27 @@ std::vector<SelectedCase> part_of(std::vector<SelectedCase> all, const Shard& sh
 }
 
 // A file is a case of each of its profiles.
-void add_selected(const Case& parsed, const Selection& selection,
+void add_selected(const Case& parsed, const Selection& selection, std::set<std::string>& matching,
                   std::vector<SelectedCase>& selected) {
   for (const std::string& profile : parsed.profiles) {
     if (!contains(selection.profiles, profile)) continue;
     Case the_case = parsed.in_profile(profile);
-    auto setups = selected_setups(the_case, selection);
+    auto setups = selected_setups(the_case, selection, matching);
     if (!setups.empty()) selected.push_back({std::move(the_case), std::move(setups)});
   }
+}
+
+// Each filter must select something: a misspelt one would otherwise leave out, silently, what its
+// author wants to run.
+Result<void> check_filters(const Selection& selection, const std::set<std::string>& matching) {
+  std::vector<std::string> idle;
+  for (const std::string& filter : selection.filters) {
+    if (!matching.contains(filter)) idle.push_back(filter);
+  }
+  if (idle.empty() && !selection.filters.empty()) return {};
+  if (idle.empty()) return fail("no case matches the selection; `attest list` shows them all");
+  return fail(
+      fmt::format("no case matches `{}`; `attest list` shows them all", fmt::join(idle, "` or `")));
 }
 
 }  // namespace
@@ -153,21 +176,21 @@ Result<std::vector<SelectedCase>> select_cases(const fs::path& folder, const Sel
   if (auto known = check_groups(*files, selection); !known) return tl::unexpected(known.error());
   std::vector<SelectedCase> selected;
   Known known;
+  std::set<std::string> matching;  // of the filters
   for (const fs::path& file : *files) {
     if (!contains(selection.groups, group_of(file))) continue;
     auto parsed = parse_case(file);
     if (!parsed) return tl::unexpected(parsed.error());
     known.add(*parsed);
-    add_selected(*parsed, selection, selected);
+    add_selected(*parsed, selection, matching, selected);
   }
   if (auto checked = check_known(selection, known); !checked) {
     return tl::unexpected(checked.error());
   }
-  if (selected.empty()) {
-    return fail(fmt::format("no case matches {}; `attest list` shows them all",
-                            selection.filters.empty()
-                                ? std::string("the selection")
-                                : fmt::format("`{}`", fmt::join(selection.filters, "` or `"))));
+  if (selected.empty() || !selection.filters.empty()) {
+    if (auto checked = check_filters(selection, matching); !checked) {
+      return tl::unexpected(checked.error());
+    }
   }
   std::sort(selected.begin(), selected.end(), [](const SelectedCase& a, const SelectedCase& b) {
     return a.the_case.id() < b.the_case.id();

@@ -40,7 +40,7 @@ struct SelectedCase {
 
 // Reads the case files below `folder` that can match and keeps what is selected, in the order of
 // their ids. Errors: a malformed case file, an unknown group, profile, rate, vehicle or plant,
-// nothing selected; each says what there is.
+// a filter that selects nothing, nothing selected; each says what there is.
 Result<std::vector<SelectedCase>> select_cases(const std::filesystem::path& folder,
                                                const Selection& selection);
 

@@ -44,6 +44,15 @@ TEST(TaskSet, IsRead) {
   EXPECT_FALSE(read(unit)->estimator);
 }
 
+TEST(TaskSet, AMisspeltNameIsSuggested) {
+  const std::string rest = "rate_hz = 9\nexecution_us = 1\npriority = 1\n";
+  EXPECT_THAT(error_of("[task.io]\n" + rest + "[task.uint]\n" + rest),
+              HasSubstr("5: there is no [task.unit]; did you mean `unit`?"));
+  EXPECT_THAT(error_of(unit + ("[task.estimater]\n" + rest)),
+              HasSubstr("5: there is no [task.estimator]; did you mean `estimator`?"));
+  EXPECT_TRUE(read(unit + ("[task.units]\n" + rest)));
+}
+
 TEST(TaskSet, MistakesHaveTheirLine) {
   EXPECT_THAT(error_of(""), HasSubstr("`task`"));
   EXPECT_THAT(error_of("[task.io]\nrate_hz = 1\nexecution_us = 1\npriority = 1\n"),

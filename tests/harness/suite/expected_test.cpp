@@ -77,6 +77,17 @@ TEST_F(Expected, BadFilesAreRefusedWithTheirLine) {
   EXPECT_THAT(error_of("[expcted]\n"), HasSubstr("expcted"));
 }
 
+TEST_F(Expected, APatternThatExcusesEverythingIsRefused) {
+  for (const std::string pattern :
+       {"*", "?*", "**", "*/*", "*@*", "[!x]*", "px4-*", "px4-v1.3.4/*", "px4-v1.5.5/*@*"}) {
+    EXPECT_THAT(error_of("[expected]\n\"" + pattern + "\" = \"known\"\n"),
+                HasSubstr(":2:1: `" + pattern + "` would excuse every case"));
+  }
+  for (const std::string pattern : {"px4-v1.5.5/tpa/*", "*/tpa/*", "*latch*", "*/slow@50hz"}) {
+    EXPECT_EQ(error_of("[expected]\n\"" + pattern + "\" = \"known\"\n"), "");
+  }
+}
+
 TEST_F(Expected, WhatIsWrittenIsReadAndExcusesTheRun) {
   EXPECT_THAT(expected_failures_of(run_), HasSubstr("'px4-v1.5.5/tpa/b@50hz'"));
   run_.all_setups = true;

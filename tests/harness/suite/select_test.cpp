@@ -128,6 +128,9 @@ TEST_F(SelectTest, NamesThatAreNotThereAreErrorsThatSayWhatIs) {
   selection.rates = {Rate::hz(251)};
   EXPECT_THAT(select(selection)[0], HasSubstr("no selected case runs at 251 Hz; there are 10, 50"));
   EXPECT_THAT(filter("rol")[0], HasSubstr("no case matches `rol`"));
+  selection = {};
+  selection.filters = {"roll", "pich", "slow"};
+  EXPECT_THAT(select(selection)[0], HasSubstr("no case matches `pich`;"));
 }
 
 TEST_F(SelectTest, AMalformedCaseIsAnErrorUnlessItCannotMatch) {
