@@ -48,9 +48,10 @@ void add_run(CLI::App& app, const Globals& globals, Action& action) {
       ->capture_default_str();
   CLI::Option* const expected =
       command
-          ->add_option("--expected-failures", options->expected_failures,
-                       "Failures that are accepted, with reasons (TOML); one that passes fails the "
-                       "run")
+          ->add_option(
+              "--expected-failures", options->expected_failures,
+              "Failures that are accepted, with reasons (TOML), by group or case; one that "
+              "passes fails the run")
           ->type_name("F");
   command
       ->add_option("--write-expected", options->write_expected,
@@ -225,7 +226,8 @@ void add_bless(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<BlessOptions>();
   CLI::App* command = app.add_subcommand(
       "bless",
-      "Make the golden traces of cases anew from the reference, after showing what changes");
+      "Make the golden traces of cases anew from the reference, after showing what changes; one at "
+      "a time (golden/.bless.lock)");
   add_selection(*command, options->select);
   command->add_option("--reason", options->reason, "Why, for provenance.toml (required)")
       ->type_name("TEXT");

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,17 +13,6 @@ int report_error(const Error& error) {
   // Not through fmt::print: it throws when nobody can be told.
   std::fputs(fmt::format("attest: error: {}\n", error.to_string()).c_str(), stderr);
   return exit_usage;
-}
-
-Result<void> check_distinct(const std::vector<std::string>& paths) {
-  std::set<std::filesystem::path> known;
-  for (const std::string& path : paths) {
-    if (path.empty()) continue;
-    if (!known.insert(std::filesystem::absolute(path).lexically_normal()).second) {
-      return fail_at(path, "is asked for twice; each report needs a file of its own");
-    }
-  }
-  return {};
 }
 
 std::string SelectionOptions::narrowing() const {

@@ -30,9 +30,6 @@ struct Globals {
 // "attest: error: <file:line: message>" on stderr; the exit code for it.
 int report_error(const Error& error);
 
-// No two of these files that are to be written may be the same; an empty path is none.
-Result<void> check_distinct(const std::vector<std::string>& paths);
-
 // --filter, --group, --profile, --rate, --vehicle, --plant and --shard, as text until they are
 // used.
 struct SelectionOptions {

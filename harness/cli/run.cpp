@@ -12,6 +12,7 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/find_case.hpp"
 #include "harness/cli/interrupt.hpp"
+#include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/version.hpp"
@@ -34,9 +35,6 @@ struct ReportFile {
 };
 
 Result<std::vector<ReportFile>> open_reports(const RunOptions& options) {
-  auto distinct =
-      check_distinct({options.junit, options.json, options.badge, options.write_expected});
-  if (!distinct) return tl::unexpected(distinct.error());
   std::vector<ReportFile> reports;
   using Render = std::string (*)(const RunResult&);
   const std::pair<const std::string&, Render> wanted[] = {
@@ -216,6 +214,10 @@ int run_command(const RunOptions& options, const Globals& globals) {
   const auto begin = std::chrono::steady_clock::now();
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
+  const auto checked =
+      check_outputs({options.junit, options.json, options.badge, options.write_expected},
+                    {options.worker.port, {options.expected_failures, options.timing}}, *suite);
+  if (!checked) return report_error(checked.error());
   auto plan = make_plan(options, *suite);
   if (!plan) return report_error(plan.error());
   auto reports = open_reports(options);

@@ -4,6 +4,7 @@
 #include "harness/casefile/task_set.hpp"
 #include "harness/cli/command.hpp"
 #include "harness/cli/find_case.hpp"
+#include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/report/schedule_text.hpp"
 #include "harness/run/case_timing.hpp"
@@ -54,6 +55,9 @@ Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder
 int schedule_command(const ScheduleOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
+  const auto checked = check_outputs({options.record_timing},
+                                     {options.port, {options.tasks, options.case_name}}, *suite);
+  if (!checked) return report_error(checked.error());
   const auto plan = make_plan(options, *suite);
   if (!plan) return report_error(plan.error());
   if (!globals.quiet) {

@@ -6,6 +6,7 @@
 
 #include "harness/cli/command.hpp"
 #include "harness/cli/find_case.hpp"
+#include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/run/case_timing.hpp"
@@ -35,6 +36,9 @@ Result<Sim> prepare_timed(const SimOptions& options, const SuiteFolder& suite) {
 Result<Sim> prepare(const SimOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return tl::unexpected(suite.error());
+  const auto checked =
+      check_outputs({options.out}, {options.port, {options.timing, options.case_name}}, *suite);
+  if (!checked) return tl::unexpected(checked.error());
   if (!options.timing.empty()) return prepare_timed(options, *suite);
   if (options.case_name.empty() || options.rate.empty()) {
     return fail("needs a case and --rate, or --timing");

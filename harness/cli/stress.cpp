@@ -9,6 +9,7 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/find_case.hpp"
 #include "harness/cli/interrupt.hpp"
+#include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/process/program.hpp"
@@ -53,8 +54,9 @@ void set_budget(const StressOptions& options, RealtimeBudget& budget) {
 }
 
 Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& suite) {
-  auto distinct = check_distinct({options.json, options.junit, options.record_timing});
-  if (!distinct) return tl::unexpected(distinct.error());
+  const auto checked = check_outputs({options.json, options.junit, options.record_timing},
+                                     {options.port, {options.case_name}}, suite);
+  if (!checked) return tl::unexpected(checked.error());
   auto chosen = choose_flight(options.case_name, options.vehicle, options.plant, suite);
   if (!chosen) return tl::unexpected(chosen.error());
   const auto live = live_options(options);

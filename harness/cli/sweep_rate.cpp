@@ -6,6 +6,7 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/find_case.hpp"
 #include "harness/cli/interrupt.hpp"
+#include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/report/progress.hpp"
@@ -67,6 +68,9 @@ Result<SweepPlan> make_plan(const SweepOptions& options, const SuiteFolder& suit
 int sweep_rate_command(const SweepOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
+  const auto checked =
+      check_outputs({options.csv}, {options.worker.port, {options.case_name}}, *suite);
+  if (!checked) return report_error(checked.error());
   const auto plan = make_plan(options, *suite);
   if (!plan) return report_error(plan.error());
   note_interrupts();

@@ -6,6 +6,7 @@
 
 #include "harness/cli/command.hpp"
 #include "harness/cli/interrupt.hpp"
+#include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/realtime/instructions.hpp"
@@ -48,14 +49,14 @@ std::vector<std::uint64_t> counted(const TimeCommandOptions& options, const Suit
 int time_command(const TimeCommandOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
+  const auto checked =
+      check_outputs({options.json, options.measure.worst}, {options.worker.port, {}}, *suite);
+  if (!checked) return report_error(checked.error());
   auto cases = open_loop_cases(options, *suite);
   if (!cases) return report_error(cases.error());
   const auto port = describe_port(options.worker.port, {}, options.worker.timeout_s);
   if (!port) return report_error(port.error());
 
-  if (auto distinct = check_distinct({options.json, options.measure.worst}); !distinct) {
-    return report_error(distinct.error());
-  }
   note_interrupts();
   TimeRun run{options.worker.port, options.measure.repeats, options.measure.budget_us, {}, {}};
   Batches batches;

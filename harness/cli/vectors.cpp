@@ -6,6 +6,7 @@
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/cli/command.hpp"
+#include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/trace/csv.hpp"
 #include "harness/trace/provenance.hpp"
@@ -39,6 +40,9 @@ Result<void> write_origin(const Case& the_case, const std::vector<Setup>& setups
 Result<std::size_t> write_vectors(const VectorOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return tl::unexpected(suite.error());
+  if (auto checked = check_output_folder(options.folder, *suite); !checked) {
+    return tl::unexpected(checked.error());
+  }
   const auto cases = options.select.cases_in(suite->cases());
   if (!cases) return tl::unexpected(cases.error());
   std::size_t count = 0;

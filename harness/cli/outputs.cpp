@@ -1,0 +1,73 @@
+#include "harness/cli/outputs.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <string_view>
+#include <system_error>
+
+namespace attest::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The same for each way to name a file; it need not exist.
+fs::path identity(const fs::path& path) {
+  std::error_code failed;
+  const fs::path absolute = fs::absolute(path, failed);
+  const fs::path canonical = fs::weakly_canonical(absolute, failed);
+  return failed ? absolute.lexically_normal() : canonical;
+}
+
+bool lies_in(const fs::path& path, const fs::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first ==
+         folder.end();
+}
+
+bool is_of_suite(const fs::path& path, const SuiteFolder& suite) {
+  return lies_in(path, identity(suite.cases())) || lies_in(path, identity(suite.golden())) ||
+         lies_in(path, identity(suite.models()));
+}
+
+std::set<fs::path> identities_of(const Inputs& inputs) {
+  std::set<fs::path> files;
+  constexpr std::string_view library = "lib:";
+  if (inputs.port.starts_with(library)) {
+    files.insert(identity(inputs.port.substr(library.size())));
+  }
+  for (const std::string& file : inputs.files) {
+    if (!file.empty()) files.insert(identity(file));
+  }
+  return files;
+}
+
+}  // namespace
+
+Result<void> check_outputs(const std::vector<std::string>& outputs, const Inputs& inputs,
+                           const SuiteFolder& suite) {
+  const std::set<fs::path> read = identities_of(inputs);
+  std::set<fs::path> written;
+  for (const std::string& output : outputs) {
+    if (output.empty()) continue;
+    const fs::path file = identity(output);
+    if (!written.insert(file).second) {
+      return fail_at(output, "is asked for twice; each report needs a file of its own");
+    }
+    std::error_code ignored;
+    if (read.contains(file)) {
+      return fail_at(output, "is read by this command and would be overwritten; name another file");
+    }
+    if (is_of_suite(file, suite) && fs::exists(file, ignored)) {
+      return fail_at(output, "is a file of the suite and would be overwritten; name another file");
+    }
+  }
+  return {};
+}
+
+Result<void> check_output_folder(const std::string& folder, const SuiteFolder& suite) {
+  if (!is_of_suite(identity(folder), suite)) return {};
+  return fail_at(folder,
+                 "is a folder of the suite, whose files would be overwritten; name another folder");
+}
+
+}  // namespace attest::cli
