@@ -153,7 +153,7 @@ std::optional<PortSays> said_by(const PortDescription& port, const RunPlan& plan
 Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
   auto level = parse_level(options.level);
   if (!level) return tl::unexpected(level.error());
-  auto port = describe_port(options.worker.port, {}, options.worker.timeout_s);
+  auto port = describe_port(options.worker.port, {}, options.worker.timeout_s, interrupted);
   if (!port) return tl::unexpected(port.error());
 
   RunPlan plan;
@@ -212,6 +212,7 @@ int exit_code(const RunResult& run) {
 
 int run_command(const RunOptions& options, const Globals& globals) {
   const auto begin = std::chrono::steady_clock::now();
+  note_interrupts();  // before the port is asked anything, which may hang
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
   const auto checked =
@@ -223,7 +224,6 @@ int run_command(const RunOptions& options, const Globals& globals) {
   auto reports = open_reports(options);
   if (!reports) return report_error(reports.error());
 
-  note_interrupts();
   Progress progress(plan->results, Progress::on_stderr(globals.quiet));
   WorkerOptions worker = options.worker;
   worker.said = plan->said;

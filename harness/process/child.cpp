@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -171,16 +172,20 @@ std::vector<std::string> Child::read_lines(bool& ended) {
   return lines;
 }
 
-std::optional<std::string> Child::wait_for_line(double timeout_s) {
+std::optional<std::string> Child::wait_for_line(double timeout_s,
+                                                const std::function<bool()>& stop) {
   using Clock = std::chrono::steady_clock;
   const auto deadline = Clock::now() + std::chrono::duration<double>(timeout_s);
   pollfd readable{pipe_, POLLIN, 0};
   bool ended = false;
+  constexpr double look_every_ms = 100;  // whether to stop
   while (!ended) {
     const std::chrono::duration<double, std::milli> left = deadline - Clock::now();
-    const int ready = ::poll(&readable, 1, std::max(0, static_cast<int>(left.count())));
-    if (ready < 0 && errno == EINTR) continue;
-    if (ready <= 0) break;
+    if (left.count() <= 0 || stop()) break;
+    const int ready =
+        ::poll(&readable, 1, static_cast<int>(std::ceil(std::min(left.count(), look_every_ms))));
+    if (ready == 0 || (ready < 0 && errno == EINTR)) continue;
+    if (ready < 0) break;
     const auto lines = read_lines(ended);
     if (!lines.empty()) return lines.front();
   }

@@ -40,8 +40,10 @@ class Child {
   // The complete lines that have arrived; sets `ended` when the child closed its end.
   std::vector<std::string> read_lines(bool& ended);
 
-  // The first line it sends; empty when it ended, or said nothing in time (then it is killed).
-  std::optional<std::string> wait_for_line(double timeout_s);
+  // The first line it sends; empty when it ended, or said nothing until the time is over or
+  // `stop` says so (then it is killed).
+  std::optional<std::string> wait_for_line(
+      double timeout_s, const std::function<bool()>& stop = [] { return false; });
 
   void kill() { process_.kill(); }  // with all that it started
   bool was_killed() const { return process_.was_killed(); }

@@ -86,10 +86,11 @@ WorkerOutcome run_batches(const Batches& batches, const WorkerOptions& options) 
 }
 
 Result<PortDescription> describe_port(const std::string& port,
-                                      const std::vector<std::string>& profiles, double timeout_s) {
+                                      const std::vector<std::string>& profiles, double timeout_s,
+                                      const std::function<bool()>& stop) {
   auto child = Child::spawn([&](const SendLine& send) { send_description(port, profiles, send); });
   if (!child) return tl::unexpected(child.error());
-  const auto line = child->wait_for_line(timeout_s);
+  const auto line = child->wait_for_line(timeout_s, stop);
   if (!line) {
     constexpr const char* asked = "when it was loaded and asked for its name and profiles";
     if (child->was_killed()) {

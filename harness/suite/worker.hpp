@@ -49,8 +49,9 @@ struct PortDescription : PortSays {
 };
 // A port that hangs is described as such, so that its cases can have their verdicts. Errors: it
 // cannot be loaded, or its process ends.
-Result<PortDescription> describe_port(const std::string& port,
-                                      const std::vector<std::string>& profiles, double timeout_s);
+Result<PortDescription> describe_port(
+    const std::string& port, const std::vector<std::string>& profiles, double timeout_s,
+    const std::function<bool()>& stop = [] { return false; });
 
 // Which of the profiles the port makes a unit of, each asked in a process of its own: one that
 // makes a single unit is told from one that does not support the second profile. A port that
