@@ -1,6 +1,7 @@
 #include "harness/process/process.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -15,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -91,11 +93,19 @@ void own_nothing() {
   owned().mutex.unlock();
 }
 
-[[noreturn]] void lead_group(pid_t parent, const std::function<void()>& work) {
+// Both ends of a pipe, by which the guard says that it is in place.
+using Ready = std::array<int, 2>;
+
+[[noreturn]] void lead_group(pid_t parent, const Ready& ready, const std::function<void()>& work) {
   own_nothing();
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(EXIT_FAILURE);  // it died before the line above
+  // What it starts before there is a guard would live on if the parent died just now.
+  ::close(ready[1]);
+  char byte = 0;
+  if (::read(ready[0], &byte, 1) != 1) ::_exit(EXIT_FAILURE);
+  ::close(ready[0]);
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
   reset_signals();
@@ -105,11 +115,11 @@ void own_nothing() {
 
 // The leader itself gets PR_SET_PDEATHSIG, but what it starts does not. The guard is in the group,
 // with all signals blocked, so that only SIGKILL to the group or the death of the parent ends it.
-[[noreturn]] void guard_group(pid_t parent, pid_t leader) {
+[[noreturn]] void guard_group(pid_t parent, const Ready& ready, pid_t leader) {
+  ::prctl(PR_SET_PDEATHSIG, SIGHUP);
+  if (::setpgid(0, leader) != 0 || ::write(ready[1], "", 1) != 1) ::_exit(EXIT_FAILURE);
   // It must not hold a pipe open whose end somebody waits for.
   ::close_range(0, ~0u, 0);
-  ::prctl(PR_SET_PDEATHSIG, SIGHUP);
-  if (::setpgid(0, leader) != 0) ::_exit(EXIT_FAILURE);
   sigset_t death_of_parent;
   ::sigemptyset(&death_of_parent);
   ::sigaddset(&death_of_parent, SIGHUP);
@@ -173,15 +183,20 @@ Result<Process> Process::start(const std::function<void()>& work) {
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   const SignalsBlocked blocked;
   const std::lock_guard lock(owned().mutex);
-  const pid_t leader = ::fork();
-  if (leader == 0) lead_group(parent, work);
+  Ready ready{-1, -1};
+  const bool has_pipe = ::pipe2(ready.data(), O_CLOEXEC) == 0;
+  const pid_t leader = has_pipe ? ::fork() : -1;
+  if (leader == 0) lead_group(parent, ready, work);
   if (leader > 0) ::setpgid(leader, leader);  // here too: the first of the two calls decides
   const pid_t guard = leader > 0 ? ::fork() : -1;
-  if (guard == 0) guard_group(parent, leader);
+  if (guard == 0) guard_group(parent, ready, leader);
+  const int reason = errno;
+  for (const int end : ready) {
+    if (end >= 0) ::close(end);
+  }
   if (leader > 0) owned().processes.insert(leader);
   if (guard > 0) owned().processes.insert(guard);
   if (guard > 0) return Process(leader, guard);
-  const int reason = errno;
   if (leader > 0) {
     ::kill(leader, SIGKILL);
     Ending ignored;
