@@ -54,9 +54,9 @@ class Tolerances {
   // LSB; 13 in the motors, where roll and pitch are fitted. A battery's filter gathers a hundred
   // roundings, each up to one LSB where a port truncates. At the numeric level only.
   //
-  // In flight the integrals move slowly, and what they gain at a tick may be less than an LSB, so
-  // that all roundings go the same way: an LSB for each of `ticks`. Measured: 255 LSB after 4,000
-  // ticks at 22 bits.
+  // Where the integrals move slowly, what they gain at a tick may be less than an LSB, so that all
+  // roundings go the same way: an LSB for each of `ticks`. Measured at 22 bits: 255 LSB after 4,000
+  // ticks of a flight.
   static constexpr double rate_lsb = 2560, control_lsb = 2560, integral_lsb = 256;
   static constexpr double motor_lsb = 64, scale_lsb = 512;
   static constexpr double control_relative_lsb = 1024;

@@ -78,8 +78,9 @@ Result<CaseResult> DiagnosisBatch::evaluate(std::size_t i, Port& port) {
   if (case_.either_side.any()) {
     const auto others = other_sides(case_, law);
     if (!others) return tl::unexpected(others.error());
-    law = on_the_side_of(got, law, *others,
-                         tolerances_of(case_, Level::numeric, port.fraction_bits()));
+    law = on_the_side_of(
+        got, law, *others,
+        tolerances_of(case_, Level::numeric, port.fraction_bits(), law.samples.size()));
   }
   result.likeness =
       likeness(outputs_of(got), outputs_of(law), answers_of_faults(law, subject, partner_));

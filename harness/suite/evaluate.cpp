@@ -135,9 +135,10 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
   const bool numeric_for_events = level == Level::events && !has_events(the_case.part);
   if (numeric_for_exact || numeric_for_events) level = Level::numeric;
   const auto bits = port.fraction_bits();
+  const std::size_t ticks = prepared->answered.samples.size();
   run_and_judge(prepared->answered, prepared->want, prepared->other_sides, subject_of(the_case),
-                port, tolerances_of(the_case, level, bits),
-                tolerances_of(the_case, Level::numeric, bits), result);
+                port, tolerances_of(the_case, level, bits, ticks),
+                tolerances_of(the_case, Level::numeric, bits, ticks), result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }
@@ -157,7 +158,7 @@ CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, Port& p
   }
   const bool numeric_for_events = tolerances.level() == Level::events && !has_events(subject.part);
   Tolerances allowed = numeric_for_events ? Tolerances(Level::numeric) : tolerances;
-  if (const auto bits = port.fraction_bits()) allowed.allow_lsb(*bits);
+  if (const auto bits = port.fraction_bits()) allowed.allow_lsb(*bits, recorded.samples.size());
   run_and_judge(answered, recorded, {}, subject, port, allowed, allowed, result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;

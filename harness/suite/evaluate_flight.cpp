@@ -103,10 +103,9 @@ void judge_ticks(const Case& the_case, const Flown& flown, const ReferenceFlight
   const double horizon_s = fraction_bits.value_or(as_near_as_floats_bits) < as_near_as_floats_bits
                                ? 0
                                : reference.horizon_s;
-  const Tolerances tolerances = tolerances_of(the_case, Level::numeric, fraction_bits);
-  Tolerances of_answers = tolerances;
-  if (fraction_bits) of_answers.allow_lsb(*fraction_bits, flown.trace.samples.size());
-  Comparison comparison = compare_answers(flown.trace, the_case.profile, of_answers, fraction_bits);
+  const Tolerances tolerances =
+      tolerances_of(the_case, Level::numeric, fraction_bits, flown.trace.samples.size());
+  Comparison comparison = compare_answers(flown.trace, the_case.profile, tolerances, fraction_bits);
   if (comparison.agrees()) {
     comparison =
         with_tightest(compare_rows(flown.trace, reference.rows, horizon_s, tolerances), comparison);

@@ -12,8 +12,10 @@
 
 namespace attest {
 
-// The case's own tolerances where it has some; of a port in fixed point at least its LSBs.
-Tolerances tolerances_of(const Case& the_case, Level level, std::optional<int> fraction_bits);
+// The case's own tolerances where it has some; of a port in fixed point at least its LSBs, of a run
+// of so many ticks.
+Tolerances tolerances_of(const Case& the_case, Level level, std::optional<int> fraction_bits,
+                         std::size_t ticks);
 
 // The port declares that it does not do the result's group: the verdict is unsupported.
 bool declines(const Port& port, CaseResult& result);

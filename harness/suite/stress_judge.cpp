@@ -114,8 +114,9 @@ void judge_outputs(const Case& the_case, LiveUnitRecord& unit, std::optional<int
     return add_skip(result, "outputs not judged: the reference: " + fault->what);
   }
   const DefaultFloatEnvironment environment;
-  judge(compare(got, want, tolerances_of(the_case, Level::numeric, fraction_bits)), result);
   const std::size_t compared = got.samples.size();
+  judge(compare(got, want, tolerances_of(the_case, Level::numeric, fraction_bits, compared)),
+        result);
   if (result.verdict == Verdict::pass && compared < unit.ticks.size()) {
     add_skip(result, fmt::format("outputs judged for the first {} of {} ticks only: choose a "
                                  "shorter --duration",
