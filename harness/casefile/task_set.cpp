@@ -105,8 +105,9 @@ Result<TaskSet> read_task_set(const std::filesystem::path& path) {
   is_misspelt(tasks, "estimator");
   const bool unit_misspelt = is_misspelt(tasks, "unit");
   const auto unit = find_task(set.tasks, "unit");
-  if (!unit && !unit_misspelt && root.has("task"))
+  if (!unit && !unit_misspelt && root.has("task")) {
     root.error("task", "needs [task.unit], the controller");
+  }
   set.unit = unit.value_or(0);
   set.estimator = find_task(set.tasks, "estimator");
   for (const std::string& name : tasks.keys()) parse_trigger(tasks.table(name), name, set);

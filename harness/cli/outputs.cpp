@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
-#include <string_view>
 #include <system_error>
+
+#include "harness/port/port.hpp"
 
 namespace attest::cli {
 namespace {
@@ -31,10 +32,7 @@ bool is_of_suite(const fs::path& path, const SuiteFolder& suite) {
 
 std::set<fs::path> identities_of(const Inputs& inputs) {
   std::set<fs::path> files;
-  constexpr std::string_view library = "lib:";
-  if (inputs.port.starts_with(library)) {
-    files.insert(identity(inputs.port.substr(library.size())));
-  }
+  if (const auto library = library_of(inputs.port)) files.insert(identity(*library));
   for (const std::string& file : inputs.files) {
     if (!file.empty()) files.insert(identity(file));
   }

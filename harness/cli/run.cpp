@@ -16,6 +16,7 @@
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/version.hpp"
+#include "harness/port/port.hpp"
 #include "harness/report/json.hpp"
 #include "harness/report/junit.hpp"
 #include "harness/report/progress.hpp"
@@ -117,7 +118,6 @@ Result<std::string> date_of_run() {
 
 // What a statement of conformance is about: which suite, which port, when.
 Result<void> identify(const RunOptions& options, const SuiteFolder& suite, RunResult& run) {
-  constexpr std::string_view library = "lib:";
   run.suite = suite.cases_by_group();
   run.cases_version = suite.version_of(suite.cases());
   run.golden_version = suite.version_of(suite.golden());
@@ -127,8 +127,8 @@ Result<void> identify(const RunOptions& options, const SuiteFolder& suite, RunRe
   if (!hash) return tl::unexpected(hash.error());
   run.suite_sha256 = *hash;
   run.suite_is_released = run.suite_sha256 == released_suite_sha256();
-  if (run.port.starts_with(library)) {
-    auto of_port = sha256_of_file(run.port.substr(library.size()));
+  if (const auto library = library_of(run.port)) {
+    auto of_port = sha256_of_file(*library);
     if (!of_port) return tl::unexpected(of_port.error());
     run.port_sha256 = *of_port;
   }
@@ -145,8 +145,8 @@ std::optional<PortSays> said_by(const PortDescription& port, const RunPlan& plan
   std::set<std::string> profiles;
   for (const SelectedCase& selected : plan.cases) profiles.insert(selected.the_case.profile);
   PortSays said = port;
-  said.profiles =
-      supported_profiles(worker.port, {profiles.begin(), profiles.end()}, worker.timeout_s);
+  said.profiles = supported_profiles(worker.port, {profiles.begin(), profiles.end()},
+                                     worker.timeout_s, interrupted);
   return said;
 }
 

@@ -29,16 +29,19 @@ Result<int> parse_fraction_bits(std::string_view arithmetic) {
   return bits;
 }
 
+std::optional<std::string> library_of(const std::string& specification) {
+  constexpr std::string_view prefix = "lib:";
+  if (!specification.starts_with(prefix)) return std::nullopt;
+  return specification.substr(prefix.size());
+}
+
 Result<std::unique_ptr<Port>> open_port(const std::string& specification) {
-  constexpr std::string_view library_prefix = "lib:";
   constexpr std::string_view fault_prefix = "fault:";
   if (specification == "builtin") return open_builtin();
   if (specification.starts_with(fault_prefix)) {
     return open_fault(std::string_view(specification).substr(fault_prefix.size()));
   }
-  if (specification.starts_with(library_prefix)) {
-    return open_shared_library(specification.substr(library_prefix.size()));
-  }
+  if (const auto library = library_of(specification)) return open_shared_library(*library);
   return fail(
       fmt::format("unknown port `{}`; use `builtin`, `lib:PATH` or `fault:ID`", specification));
 }

@@ -80,6 +80,9 @@ class Port {
 // "fixed:22" -> 22, of ATTEST_EXTENSION_ARITHMETIC. Errors: anything else, and bits out of range.
 Result<int> parse_fraction_bits(std::string_view arithmetic);
 
+// The file of "lib:PATH"; empty for a port of another kind.
+std::optional<std::string> library_of(const std::string& specification);
+
 // Opens "builtin", "lib:PATH" or "fault:ID". Loading a library runs its code: a program that must
 // survive a bad port does this in a child process. Errors: unknown kind, missing library, missing
 // symbol, wrong ABI version, incomplete function table.

@@ -233,8 +233,9 @@ bool Margins::is_safe(Decision decision) const {
   return distance >= least_margin(decision);
 }
 
-double least_margin(Decision decision, int fraction_bits) {
-  return std::max(least_margin(decision), std::ldexp(decision_lsb, -fraction_bits));
+double least_margin(Decision decision, std::optional<int> fraction_bits) {
+  const double of_floats = least_margin(decision);
+  return fraction_bits ? std::max(of_floats, std::ldexp(decision_lsb, -*fraction_bits)) : of_floats;
 }
 
 struct MarginMeter::Impl {

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -44,10 +45,10 @@ std::string_view name_of(Decision decision);  // "integrator gate"
 // some 1e-6 rad on angles over 10 s of open loop). For the norm: the most.
 double least_margin(Decision decision);
 
-// The same with a port in fixed point: as many of its last bits as its controls were measured to
-// differ by (Tolerances::control_lsb has what is allowed).
+// The same with a port in fixed point, if it says its bits: at least as many of the last as its
+// controls were measured to differ by (Tolerances::control_lsb has what is allowed).
 inline constexpr double decision_lsb = 750;
-double least_margin(Decision decision, int fraction_bits);
+double least_margin(Decision decision, std::optional<int> fraction_bits);
 
 struct Margin {
   double distance = std::numeric_limits<double>::infinity();

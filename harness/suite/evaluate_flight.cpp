@@ -93,8 +93,8 @@ Comparison with_tightest(Comparison loop, const Comparison& answers) {
 
 // Each answer by the reference, the loop by the golden's rows to the horizon, and no NaN and no
 // infinity at any tick.
-void judge_ticks(const Case& the_case, const Flown& flown, const ReferenceFlight& reference,
-                 std::optional<int> fraction_bits, CaseResult& result) {
+Result<void> judge_ticks(const Case& the_case, const Flown& flown, const ReferenceFlight& reference,
+                         std::optional<int> fraction_bits, CaseResult& result) {
   // The horizon is of floats. In flight, where what it rounds comes back to it, a port with 22 bits
   // behind the point was measured to leave the golden by seven times what its LSBs are allowed.
   // With 30 bits that is a tenth of what floats are allowed; with fewer, the loop as a whole is
@@ -105,7 +105,9 @@ void judge_ticks(const Case& the_case, const Flown& flown, const ReferenceFlight
                                : reference.horizon_s;
   const Tolerances tolerances =
       tolerances_of(the_case, Level::numeric, fraction_bits, flown.trace.samples.size());
-  Comparison comparison = compare_answers(flown.trace, the_case.profile, tolerances, fraction_bits);
+  auto answers = compare_answers(flown.trace, the_case.profile, tolerances, fraction_bits);
+  if (!answers) return tl::unexpected(answers.error());
+  Comparison& comparison = answers->comparison;
   if (comparison.agrees()) {
     comparison =
         with_tightest(compare_rows(flown.trace, reference.rows, horizon_s, tolerances), comparison);
@@ -115,11 +117,14 @@ void judge_ticks(const Case& the_case, const Flown& flown, const ReferenceFlight
     comparison.got_non_finite = true;
   }
   judge(comparison, result);
+  return {};
 }
 
-void judge_flight(const Case& the_case, const Flown& flown, const ReferenceFlight& reference,
-                  std::optional<int> fraction_bits, CaseResult& result) {
-  judge_ticks(the_case, flown, reference, fraction_bits, result);
+Result<void> judge_flight(const Case& the_case, const Flown& flown,
+                          const ReferenceFlight& reference, std::optional<int> fraction_bits,
+                          CaseResult& result) {
+  auto judged = judge_ticks(the_case, flown, reference, fraction_bits, result);
+  if (!judged) return judged;
   std::vector<std::string> reasons;
   if (!result.reason.empty()) reasons.push_back(result.reason);
   if (flown.divergence) {
@@ -129,6 +134,7 @@ void judge_flight(const Case& the_case, const Flown& flown, const ReferenceFligh
   }
   if (result.verdict == Verdict::pass && !reasons.empty()) result.verdict = Verdict::fail;
   result.reason = fmt::format("{}", fmt::join(reasons, "; "));
+  return {};
 }
 
 }  // namespace
@@ -151,14 +157,16 @@ Result<CaseResult> evaluate_beside(const Case& the_case, const Setup& setup,
   const auto flown = fly(the_case, setup, airframe, *unit, timing);
   if (!flown) return tl::unexpected(flown.error());
   const DefaultFloatEnvironment environment;
-  if (flown->fault && leaves_ticks_to_judge(*flown->fault)) {
-    judge_ticks(the_case, *flown, reference, port.fraction_bits(), result);
+  Result<void> judged;
+  if (!flown->fault) {
+    judged = judge_flight(the_case, *flown, reference, port.fraction_bits(), result);
+  } else if (leaves_ticks_to_judge(*flown->fault)) {
+    judged = judge_ticks(the_case, *flown, reference, port.fraction_bits(), result);
     judge_after(*flown->fault, result);
-  } else if (flown->fault) {
-    judge(*flown->fault, result);
   } else {
-    judge_flight(the_case, *flown, reference, port.fraction_bits(), result);
+    judge(*flown->fault, result);
   }
+  if (!judged) return tl::unexpected(judged.error());
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }

@@ -157,10 +157,15 @@ void Pool::add(std::size_t batch, const CaseResult& result) {
 void Pool::distrust(const Worker& worker) {
   std::vector<CaseResult>& results = outcomes_[worker.batch].results;
   for (std::size_t i = worker.first_result; i < results.size(); ++i) {
-    const std::size_t task = worker.task - (results.size() - i);
-    results[i] = batches_[worker.batch]->identity(task);
-    results[i].verdict = Verdict::protocol;
-    results[i].reason = forgery;
+    CaseResult doubtful;
+    doubtful.profile = results[i].profile;
+    doubtful.group = results[i].group;
+    doubtful.name = results[i].name;
+    doubtful.rate = results[i].rate;
+    doubtful.flyer = results[i].flyer;
+    doubtful.verdict = Verdict::protocol;
+    doubtful.reason = forgery;
+    results[i] = std::move(doubtful);
   }
 }
 

@@ -5,9 +5,8 @@
 #include <fmt/format.h>
 
 #include "harness/port/builtin.hpp"
+#include "harness/run/answers.hpp"
 #include "harness/run/flight.hpp"
-#include "harness/run/margins.hpp"
-#include "harness/run/open_loop.hpp"
 #include "harness/suite/judge.hpp"
 
 namespace attest {
@@ -31,21 +30,6 @@ void add(CaseResult& result, Verdict verdict, std::string reason) {
   } else {
     result.reason += "; " + reason;
   }
-}
-
-// The first decision of the law that the inputs up to the first deviation come too near to.
-std::optional<std::string> decision_before(Trace got, const Case& the_case,
-                                           const std::optional<Deviation>& first) {
-  if (!first) return std::nullopt;
-  got.samples.resize(first->tick + 1);
-  const Margins near = margins(got, subject_of(the_case));
-  for (std::size_t i = 0; i < decision_count; ++i) {
-    const auto decision = static_cast<Decision>(i);
-    if (near.is_safe(decision)) continue;
-    return fmt::format("tick {} comes too near to a decision ({}), and tick {} deviates",
-                       near[decision].tick, name_of(decision), first->tick);
-  }
-  return std::nullopt;
 }
 
 double share_of(std::uint64_t count, std::uint64_t all) {
@@ -106,27 +90,23 @@ void judge_outputs(const Case& the_case, LiveUnitRecord& unit, std::optional<int
   got.samples = std::move(unit.samples);
   got.parameters = std::move(unit.changes);
   if (got.samples.empty()) return add_skip(result, "outputs not judged: no step was over");
-  Trace want = got;
-  const auto reference_port = open_builtin();
-  const auto reference = reference_port->create(the_case.profile);
-  if (!reference) return add_skip(result, "outputs not judged: no reference for the profile");
-  if (const auto fault = drive(*reference, want)) {
-    return add_skip(result, "outputs not judged: the reference: " + fault->what);
-  }
   const DefaultFloatEnvironment environment;
   const std::size_t compared = got.samples.size();
-  judge(compare(got, want, tolerances_of(the_case, Level::numeric, fraction_bits, compared)),
-        result);
+  const auto answers = compare_answers(
+      got, the_case.profile, tolerances_of(the_case, Level::numeric, fraction_bits, compared),
+      fraction_bits);
+  if (!answers) return add_skip(result, "outputs not judged: " + answers.error().to_string());
+  judge(answers->comparison, result);
+  if (const auto& undecided = answers->undecided) {
+    add_skip(result,
+             fmt::format("outputs not judged from tick {} on, which comes too near to a "
+                         "decision ({}): tick {} deviates",
+                         undecided->tick, name_of(undecided->decision), undecided->deviating_tick));
+  }
   if (result.verdict == Verdict::pass && compared < unit.ticks.size()) {
     add_skip(result, fmt::format("outputs judged for the first {} of {} ticks only: choose a "
                                  "shorter --duration",
                                  compared, unit.ticks.size()));
-  }
-  if (result.verdict == Verdict::fail) {
-    if (const auto near = decision_before(std::move(got), the_case, result.first)) {
-      result.verdict = Verdict::skip;
-      result.reason = "outputs not judged from there on: " + *near;
-    }
   }
   if (fails_a_run(result.verdict) && result.reason.empty()) {
     result.reason = "outputs differ from the reference's";

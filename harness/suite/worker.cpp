@@ -124,10 +124,10 @@ Result<PortDescription> describe_port(const std::string& port,
 
 std::vector<std::string> supported_profiles(const std::string& port,
                                             const std::vector<std::string>& profiles,
-                                            double timeout_s) {
+                                            double timeout_s, const std::function<bool()>& stop) {
   std::vector<std::string> supported;
   for (const std::string& profile : profiles) {
-    const auto description = describe_port(port, {profile}, timeout_s);
+    const auto description = describe_port(port, {profile}, timeout_s, stop);
     if (!description || !description->hangs.empty()) break;
     if (!description->profiles.empty()) supported.push_back(profile);
   }

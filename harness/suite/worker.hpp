@@ -59,6 +59,6 @@ Result<PortDescription> describe_port(
 // verdicts.
 std::vector<std::string> supported_profiles(const std::string& port,
                                             const std::vector<std::string>& profiles,
-                                            double timeout_s);
+                                            double timeout_s, const std::function<bool()>& stop);
 
 }  // namespace attest

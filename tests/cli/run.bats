@@ -155,7 +155,7 @@ quick=(--group attitude --group battery --group rates)
 
 # In a step, and already when the port is asked for its name.
 @test "Ctrl-C ends a run at once and leaves no report behind" {
-  for port in hang hangs_in_load; do
+  for port in hang hangs_in_load hangs_in_create; do
     timeout 50 "$ATTEST" run --port "lib:$PORTS/port_$port.so" --timeout 60 --junit r.xml \
       >out 2>err &
     limited=$!
