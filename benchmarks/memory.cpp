@@ -11,8 +11,8 @@
 #include <unistd.h>
 
 #include "harness/compare/compare_files.hpp"
+#include "harness/suite/case_job.hpp"
 #include "harness/suite/select.hpp"
-#include "harness/suite/worker.hpp"
 #include "harness/trace/csv.hpp"
 
 namespace attest::bench {
@@ -31,11 +31,11 @@ long proportional_kb(const std::string& process) {
   return 0;  // it has ended
 }
 
-long with_children_kb(pid_t process) {
-  const std::string name = fmt::to_string(process);
-  long sum = proportional_kb(name);
-  std::ifstream children(fmt::format("/proc/{}/task/{}/children", name, name));
-  for (std::string child; children >> child;) sum += proportional_kb(child);
+// With the processes that it started, and those that they started.
+long with_children_kb(const std::string& process) {
+  long sum = proportional_kb(process);
+  std::ifstream children(fmt::format("/proc/{}/task/{}/children", process, process));
+  for (std::string child; children >> child;) sum += with_children_kb(child);
   return sum;
 }
 
@@ -48,7 +48,7 @@ double peak_mb(const std::function<void()>& work) {
   }
   long peak = 0;
   while (::waitpid(process, nullptr, WNOHANG) == 0) {
-    peak = std::max(peak, with_children_kb(process));
+    peak = std::max(peak, with_children_kb(fmt::to_string(process)));
     ::usleep(1'000);  // the shortest of them takes a twentieth of a second
   }
   return static_cast<double>(peak) / 1024;
@@ -57,10 +57,11 @@ double peak_mb(const std::function<void()>& work) {
 void whole_suite() {
   const auto cases = select_cases(ATTEST_SOURCE_DIR "/cases", {});
   Fleet fleet(ATTEST_SOURCE_DIR "/models");
-  const auto batches = make_batches(*cases, ATTEST_SOURCE_DIR "/golden", fleet, Level::numeric);
-  WorkerOptions options;
-  options.jobs = jobs;
-  run_batches(*batches, options);
+  const auto suite_jobs =
+      case_jobs(*cases, ATTEST_SOURCE_DIR "/golden", fleet, Level::numeric, HostOptions());
+  JobOptions<CaseResult> options;
+  options.processes = jobs;
+  run_jobs(*suite_jobs, options);
 }
 
 // Outputs only, which is what a long comparison is about.

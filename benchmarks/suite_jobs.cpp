@@ -4,21 +4,22 @@
 
 #include <benchmark/benchmark.h>
 
+#include "harness/plant/fleet.hpp"
+#include "harness/suite/case_job.hpp"
 #include "harness/suite/select.hpp"
-#include "harness/suite/worker.hpp"
 
 namespace attest::bench {
 namespace {
 
-void suite(benchmark::State& state, int jobs) {
+void suite(benchmark::State& state, int processes) {
   for (auto _ : state) {
     const auto cases = select_cases(ATTEST_SOURCE_DIR "/cases", {});
     Fleet fleet(ATTEST_SOURCE_DIR "/models");
-    const auto batches = make_batches(*cases, ATTEST_SOURCE_DIR "/golden", fleet, Level::numeric);
-    WorkerOptions options;
-    options.port = "builtin";
-    options.jobs = jobs;
-    const WorkerOutcome outcome = run_batches(*batches, options);
+    const auto jobs =
+        case_jobs(*cases, ATTEST_SOURCE_DIR "/golden", fleet, Level::numeric, HostOptions());
+    JobOptions<CaseResult> options;
+    options.processes = processes;
+    const auto outcome = run_jobs(*jobs, options);
     if (!outcome.errors.empty()) state.SkipWithError(outcome.errors[0].message.c_str());
   }
 }

@@ -1,11 +1,12 @@
-#include "controller/faults/fault.hpp"
+#include "controller/faults/faulty_controller.hpp"
+
 #include "controller/reference/mc_att_control_definition.hpp"
 
 namespace attest::faults {
 
 FaultyLaw law_with(std::span<const Fault* const> faults) {
   FaultyLaw law;
-  for (const Fault* fault : faults) fault->put_in(law);
+  for (const Fault* fault : faults) fault->inject(law);
   return law;
 }
 

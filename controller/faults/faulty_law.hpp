@@ -11,6 +11,7 @@
 
 #include "controller/actuation/battery_status.hpp"
 #include "controller/actuation/mixer.hpp"
+#include "controller/faults/fault.hpp"
 #include "controller/reference/mc_att_control.hpp"
 
 namespace attest::faults {
@@ -27,7 +28,6 @@ using RateCommand = reference::RateCommand<Scalar>;
 using RecoveryTilt = reference::RecoveryTilt<Scalar>;
 using reference::MotorLimits;
 using reference::Parameters;
-using reference::Profile;
 using reference::Topics;
 
 // Members are named and called as those of reference::AttitudeStages.

@@ -4,7 +4,7 @@
 #include <memory>
 #include <span>
 
-#include "controller/faults/fault.hpp"
+#include "controller/faults/faulty_controller.hpp"
 
 namespace attest::faults {
 

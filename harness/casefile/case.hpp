@@ -153,6 +153,10 @@ struct Case {
 
   // The same case of another profile of its file.
   Case in_profile(const std::string& other) const;
+
+  // The same case with its first timestamp at one period: for a port with a fixed step, so that
+  // each dt is the period.
+  Case from_one_period_on() const;
 };
 
 }  // namespace attest

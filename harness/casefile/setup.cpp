@@ -30,6 +30,12 @@ Case Case::in_profile(const std::string& other) const {
   return same;
 }
 
+Case Case::from_one_period_on() const {
+  Case same = *this;
+  same.unit.start = {1, Span::In::ticks};
+  return same;
+}
+
 std::vector<Setup> Case::setups() const {
   std::vector<Setup> all;
   if (!flight) {

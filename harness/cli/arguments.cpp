@@ -35,10 +35,10 @@ constexpr const char* footer =
 
 void add_run(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<RunOptions>();
-  options->worker.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  options->jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   CLI::App* command = app.add_subcommand(
       "run", "Run a port through the cases and compare it with the golden traces");
-  add_port(*command, options->worker.port);
+  add_port(*command, options->host.port);
   add_selection(*command, options->select);
   command
       ->add_option("--level", options->level,
@@ -65,15 +65,15 @@ void add_run(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("F");
   command->add_flag("--diagnose,!--no-diagnose", options->diagnose,
                     "When something fails, name the mistakes it looks like (on by default)");
-  command->add_option("--jobs,-j", options->worker.jobs, "Cases at a time")
+  command->add_option("--jobs,-j", options->jobs, "Cases at a time")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   command->add_option("--shard", options->select.shard, "Only part I of N of the cases")
       ->type_name("I/N")
       ->capture_default_str();
-  command->add_flag("--fail-fast", options->worker.fail_fast, "Stop after the first failing case");
-  add_timeout(*command, options->worker.timeout_s);
-  command->add_flag("--in-process", options->worker.in_process,
+  command->add_flag("--fail-fast", options->fail_fast, "Stop after the first failing case");
+  add_timeout(*command, options->host.timeout_s);
+  command->add_flag("--in-process", options->host.in_process,
                     "No worker processes: for a debugger, or a sanitizer in the port");
   command->add_option("--junit", options->junit, "Write a JUnit XML report")->type_name("FILE");
   command->add_option("--json", options->json, "Write a JSON report")->type_name("FILE");
@@ -94,7 +94,7 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("files", options->files, "Traces (CSV) of a controller, or of a mixer")
       ->type_name("TRACE")
       ->required();
-  add_port(*command, options->port);
+  add_port(*command, options->host.port);
   command
       ->add_option("--profile", options->profile,
                    "Version of the law; default: what the provenance.toml beside the trace says, "
@@ -109,7 +109,7 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
       ->add_option("--mixer", options->mixer,
                    "Definition of the mixer of a mixer trace; default: from its name")
       ->type_name("TEXT");
-  add_timeout(*command, options->timeout_s);
+  add_timeout(*command, options->host.timeout_s);
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return replay_command(*options, globals); };
   });
@@ -130,11 +130,11 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("--vehicle", options->vehicle, "One of `attest list --vehicles`")
       ->type_name("VEHICLE");
   command->add_option("--plant", options->plant, "`mujoco` or `ode`")->type_name("PLANT");
-  add_port(*command, options->port);
+  add_port(*command, options->host.port);
   command->add_option("--out", options->out, "The flown trace (CSV)")
       ->type_name("F.csv")
       ->required();
-  add_timeout(*command, options->timeout_s);
+  add_timeout(*command, options->host.timeout_s);
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return sim_command(*options, globals); };
   });
@@ -165,7 +165,6 @@ void add_faults(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("--jobs,-j", options->jobs, "Faults at a time")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
-  add_timeout(*command, options->timeout_s);
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return faults_command(*options, globals); };
   });
@@ -241,8 +240,8 @@ void add_doctor(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<DoctorOptions>();
   CLI::App* command = app.add_subcommand(
       "doctor", "Check the machine, the suite, the reference and a port, and say what is wrong");
-  add_port(*command, options->port);
-  add_timeout(*command, options->timeout_s);
+  add_port(*command, options->host.port);
+  add_timeout(*command, options->host.timeout_s);
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return doctor_command(*options, globals); };
   });

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "harness/core/result.hpp"
+#include "harness/host/port_process.hpp"
 #include "harness/suite/select.hpp"
-#include "harness/suite/time_batch.hpp"
-#include "harness/suite/worker.hpp"
+#include "harness/suite/vector_times.hpp"
 
 namespace attest::cli {
 
@@ -56,7 +56,9 @@ struct SelectionOptions {
 
 struct RunOptions {
   SelectionOptions select;
-  WorkerOptions worker;
+  HostOptions host;
+  int jobs = 1;
+  bool fail_fast = false;
   std::string level = "numeric";
   std::string junit;
   std::string json;
@@ -70,12 +72,11 @@ int run_command(const RunOptions& options, const Globals& globals);
 
 struct ReplayOptions {
   std::vector<std::string> files;
-  std::string port = "builtin";
+  HostOptions host;
   std::string profile;
   std::string level = "numeric";
   std::string mixer;
   std::vector<std::string> parameters;
-  double timeout_s = default_timeout_s;
 };
 int replay_command(const ReplayOptions& options, const Globals& globals);
 
@@ -90,14 +91,13 @@ struct SimOptions {
   std::string rate;
   std::string vehicle, plant;  // empty: what the case flies first
   std::string timing;
-  std::string port = "builtin";
+  HostOptions host;
   std::string out;
-  double timeout_s = default_timeout_s;
 };
 int sim_command(const SimOptions& options, const Globals& globals);
 
 struct StressOptions {
-  std::string port = "builtin";
+  HostOptions host;
   std::vector<std::string> rates = {"250", "500", "1000", "2000", "4000", "8000"};
   double duration_s = 10;
   std::string case_name = "flight/hover";
@@ -111,7 +111,6 @@ struct StressOptions {
   std::optional<double> misses_per_million, p99_latency_us, execution_us;
   std::string json, junit, record_timing;
   bool cyclictest = true;
-  double timeout_s = default_timeout_s;
 };
 int stress_command(const StressOptions& options, const Globals& globals);
 
@@ -119,7 +118,8 @@ struct SweepOptions {
   std::string case_name = "flight/tilt_step_30";
   std::vector<std::string> rates = {"50", "100", "250", "500", "1000"};
   std::vector<std::string> vehicles, plants;  // empty: all that the case flies
-  WorkerOptions worker;
+  HostOptions host;
+  int jobs = 1;
   std::string csv;
 };
 int sweep_rate_command(const SweepOptions& options, const Globals& globals);
@@ -128,15 +128,14 @@ struct ScheduleOptions {
   std::string tasks;  // file
   std::string case_name = "flight/tilt_step_30";
   std::string vehicle, plant;
-  std::string port = "builtin";
+  HostOptions host;
   std::string record_timing;
-  double timeout_s = default_timeout_s;
 };
 int schedule_command(const ScheduleOptions& options, const Globals& globals);
 
 struct TimeCommandOptions {
   SelectionOptions select;
-  WorkerOptions worker;
+  HostOptions host;
   TimeOptions measure;
   int allowed = 0;  // steps over the budget
   bool instructions = false;
@@ -151,7 +150,6 @@ struct FaultOptions {
   bool diagnose = false;
   std::optional<int> fraction_bits;
   int jobs = 1;
-  double timeout_s = default_timeout_s;
 };
 int faults_command(const FaultOptions& options, const Globals& globals);
 
@@ -177,8 +175,7 @@ struct BlessOptions {
 int bless_command(const BlessOptions& options, const Globals& globals);
 
 struct DoctorOptions {
-  std::string port = "builtin";
-  double timeout_s = default_timeout_s;
+  HostOptions host;
 };
 int doctor_command(const DoctorOptions& options, const Globals& globals);
 

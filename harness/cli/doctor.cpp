@@ -11,11 +11,11 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/version.hpp"
+#include "harness/host/port_process.hpp"
 #include "harness/process/child.hpp"
 #include "harness/run/golden.hpp"
 #include "harness/suite/recorded_check.hpp"
 #include "harness/suite/select.hpp"
-#include "harness/suite/worker.hpp"
 
 namespace attest::cli {
 namespace {
@@ -94,15 +94,17 @@ void examine_limits(const DoctorOptions& options, Examination& examination) {
                                                  : "memory without limit (sanitizers)";
   examination.good("limits", fmt::format("of a port's process: {:g} s a case, {}, {} MiB a file; "
                                          "it ends with all that it started",
-                                         options.timeout_s, memory, max_file_mib));
+                                         options.host.timeout_s, memory, max_file_mib));
 }
 
 void examine_port(const DoctorOptions& options, Examination& examination) {
   const auto known = reference::profile_names();
-  const std::string& specification = options.port;
-  const auto port = describe_port(specification, {known.begin(), known.end()}, options.timeout_s);
+  const std::string& specification = options.host.port;
+  const auto port = describe_port(options.host, {known.begin(), known.end()});
   if (!port) return examination.bad("port", port.error().to_string());
-  if (!port->hangs.empty()) return examination.bad("port", specification + ": " + port->hangs);
+  for (const std::string& trouble : {port->hangs, port->goes_wrong}) {
+    if (!trouble.empty()) return examination.bad("port", specification + ": " + trouble);
+  }
   const std::string who = fmt::format("{}: {} {}", specification, port->name, port->version);
   if (port->profiles.empty()) {
     return examination.bad("port", fmt::format("{}; create() returned NULL for each of {}", who,

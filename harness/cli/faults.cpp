@@ -11,7 +11,7 @@
 #include "harness/report/diagnosis_text.hpp"
 #include "harness/report/fault_table.hpp"
 #include "harness/suite/diagnose_catalogue.hpp"
-#include "harness/suite/fault_batch.hpp"
+#include "harness/suite/fault_job.hpp"
 #include "harness/suite/naive_suite.hpp"
 
 namespace attest::cli {
@@ -57,6 +57,7 @@ std::vector<FaultFinding> find_naively(const std::vector<const Fault*>& faults,
     const auto port = open_fault(fault->id);
     FaultFinding finding;
     finding.fault = fault;
+    finding.profile = profile;
     finding.by_hover = caught_by_hover(**port, profile);
     finding.by_random_attitudes = caught_by_random_attitudes(**port, profile);
     findings.push_back(std::move(finding));
@@ -75,7 +76,7 @@ int verdict(const std::vector<FaultFinding>& findings) {
   }
   for (const FaultFinding* finding : summary.false_alarms) {
     fmt::print(stderr, "attest: said to be equivalent, and caught: {} by {}\n", finding->fault->id,
-               finding->result.reason);
+               finding->found.by);
   }
   const bool good =
       summary.survivors.empty() && summary.not_by_own.empty() && summary.false_alarms.empty();
@@ -108,20 +109,19 @@ Result<int> measure(const FaultOptions& options, const SuiteFolder& suite, fault
   const auto cases = open_loop_cases(suite, name);
   if (!cases) return tl::unexpected(cases.error());
   if (options.diagnose) return diagnose_all(*cases, profile);
-  Batches batches;
+  Jobs<FaultCatch> jobs;
   for (const Fault* fault : faults) {
-    batches.push_back(std::make_unique<FaultBatch>(*fault, profile, *cases, suite.golden(),
-                                                   options.fraction_bits));
+    jobs.push_back(
+        std::make_unique<FaultJob>(*fault, profile, *cases, suite.golden(), options.fraction_bits));
   }
-  WorkerOptions worker;
-  worker.jobs = options.jobs;
-  worker.timeout_s = options.timeout_s;
-  worker.stop = interrupted;
-  const WorkerOutcome outcome = run_batches(batches, worker);
+  JobOptions<FaultCatch> workers;
+  workers.processes = options.jobs;
+  workers.stop = interrupted;
+  const JobResults<FaultCatch> outcome = run_jobs(jobs, workers);
   if (interrupted()) return exit_interrupted;
   if (!outcome.errors.empty()) return tl::unexpected(outcome.errors.front());
   std::vector<FaultFinding> findings = find_naively(faults, name);
-  for (std::size_t i = 0; i < findings.size(); ++i) findings[i].result = outcome.results[i];
+  for (std::size_t i = 0; i < findings.size(); ++i) findings[i].found = outcome.results[i];
   fmt::print("{}", render_fault_table(findings));
   return verdict(findings);
 }

@@ -12,7 +12,7 @@
 #include "harness/report/failure_text.hpp"
 #include "harness/report/text.hpp"
 #include "harness/run/recorded.hpp"
-#include "harness/suite/worker.hpp"
+#include "harness/suite/evaluate.hpp"
 
 namespace attest::cli {
 namespace {
@@ -36,17 +36,17 @@ Result<void> override_parameter(Trace& trace, const Subject& subject, const std:
   return {};
 }
 
-Result<std::unique_ptr<Batch>> trace_batch(const std::string& file, const ReplayOptions& options,
-                                           Level level) {
+Result<Recorded> recorded_in(const std::string& file, const ReplayOptions& options) {
   auto recorded = read_recorded(file, options.profile, options.mixer);
-  if (!recorded) return tl::unexpected(recorded.error());
-  auto& [trace, subject, notes] = *recorded;
+  if (!recorded) return recorded;
   for (const std::string& parameter : options.parameters) {
-    auto set = override_parameter(trace, subject, parameter);
+    auto set = override_parameter(recorded->trace, recorded->subject, parameter);
     if (!set) return tl::unexpected(set.error());
   }
-  for (const std::string& note : notes) fmt::print(stderr, "attest: note: {}: {}\n", file, note);
-  return std::make_unique<TraceBatch>(std::move(trace), std::move(subject), Tolerances(level));
+  for (const std::string& note : recorded->notes) {
+    fmt::print(stderr, "attest: note: {}: {}\n", file, note);
+  }
+  return recorded;
 }
 
 // One line a trace, more for one that differs.
@@ -77,7 +77,7 @@ class Replay {
     if (!globals_.quiet || failed_ > 0) {
       fmt::print("{} {} of {} traces conform{} ({}, {}{})\n", failed_ == 0 ? "PASS" : "FAIL",
                  passed_, options_.files.size(),
-                 apart > 0 ? fmt::format(", {} not compared", apart) : "", options_.port,
+                 apart > 0 ? fmt::format(", {} not compared", apart) : "", options_.host.port,
                  name_of(level_), arithmetic_);
     }
     if (failed_ > 0) return exit_failed;
@@ -87,16 +87,12 @@ class Replay {
 
  private:
   Result<void> replay(const std::string& file) {
-    auto batch = trace_batch(file, options_, level_);
-    if (!batch) return tl::unexpected(batch.error());
-    Batches batches;
-    batches.push_back(std::move(*batch));
-    WorkerOptions worker;
-    worker.port = options_.port;
-    worker.timeout_s = options_.timeout_s;
-    const WorkerOutcome outcome = run_batches(batches, worker);
-    if (!outcome.errors.empty()) return tl::unexpected(outcome.errors.front());
-    const CaseResult& result = outcome.results.front();
+    const auto host = start_host(options_.host);  // before the recorded answers are read
+    if (!host) return tl::unexpected(host.error());
+    const auto recorded = recorded_in(file, options_);
+    if (!recorded) return tl::unexpected(recorded.error());
+    const CaseResult result =
+        evaluate_trace(recorded->trace, recorded->subject, **host, Tolerances(level_));
     const bool passed = result.verdict == Verdict::pass;
     passed_ += passed ? 1 : 0;
     failed_ += fails_a_run(result.verdict) ? 1 : 0;
@@ -117,7 +113,7 @@ class Replay {
 int replay_command(const ReplayOptions& options, const Globals& globals) {
   const auto level = parse_level(options.level);
   if (!level) return report_error(level.error());
-  const auto port = describe_port(options.port, {}, options.timeout_s);
+  const auto port = describe_port(options.host);
   if (!port) return report_error(port.error());
   std::string arithmetic;
   if (port->fraction_bits && *level == Level::numeric) {

@@ -22,9 +22,9 @@
 #include "harness/report/progress.hpp"
 #include "harness/report/statement.hpp"
 #include "harness/report/terminal.hpp"
-#include "harness/suite/diagnosis_batch.hpp"
+#include "harness/suite/case_job.hpp"
+#include "harness/suite/diagnosis_job.hpp"
 #include "harness/suite/expected.hpp"
-#include "harness/suite/worker.hpp"
 
 namespace attest::cli {
 namespace {
@@ -65,10 +65,24 @@ struct RunPlan {
   RunResult run;
   std::optional<ExpectedFailures> expected;
   std::vector<SelectedCase> cases;
-  Batches batches;
+  HostOptions host;
+  Jobs<CaseResult> jobs;
   std::size_t results = 0;
-  std::optional<PortSays> said;
 };
+
+// What the port says of itself, and which of the profiles it makes a unit of: it is held to that
+// during the run. One that hangs says nothing, and is not asked again.
+Result<void> ask_port(const std::vector<std::string>& profiles, RunPlan& plan) {
+  const auto port = describe_port(plan.host, profiles);
+  if (!port) return tl::unexpected(port.error());
+  plan.run.port_name = port->name;
+  plan.run.port_version = port->version;
+  plan.run.fraction_bits = port->fraction_bits;
+  plan.run.fixed_step = port->fixed_step;
+  plan.host.hangs = port->hangs;
+  if (port->hangs.empty()) plan.host.said = *port;
+  return {};
+}
 
 // The cases that are selected, each at its own times.
 Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, RunPlan& plan) {
@@ -79,10 +93,13 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
     for (const Setup& setup : selected.setups) rates.insert(setup.rate);
     plan.results += selected.setups.size();
   }
+  std::set<std::string> profiles;
+  for (const SelectedCase& selected : *cases) profiles.insert(selected.the_case.profile);
+  if (auto asked = ask_port({profiles.begin(), profiles.end()}, plan); !asked) return asked;
   Fleet fleet(suite.models());
-  auto batches = make_batches(*cases, suite.golden(), fleet, plan.run.level);
-  if (!batches) return tl::unexpected(batches.error());
-  plan.batches = std::move(*batches);
+  auto jobs = case_jobs(*cases, suite.golden(), fleet, plan.run.level, plan.host);
+  if (!jobs) return tl::unexpected(jobs.error());
+  plan.jobs = *std::move(jobs);
   plan.run.selection = options.select.narrowing();
   plan.run.all_setups = options.select.selects_all_setups();
   plan.run.rates.assign(rates.begin(), rates.end());
@@ -95,11 +112,13 @@ Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, Run
   if (!options.select.selects_all()) return fail("--timing says what to run; select nothing else");
   auto flight = find_timed_flight(options.timing, suite);
   if (!flight) return tl::unexpected(flight.error());
+  if (auto asked = ask_port({flight->the_case.profile}, plan); !asked) return asked;
   plan.results = 1;
   plan.run.timing = options.timing;
   plan.run.rates = {flight->timing.setup.rate};
-  plan.batches.push_back(std::make_unique<TimedBatch>(
-      std::move(flight->the_case), std::move(flight->timing), std::move(flight->airframe)));
+  plan.jobs.push_back(std::make_unique<TimedJob>(std::move(flight->the_case),
+                                                 std::move(flight->timing),
+                                                 std::move(flight->airframe), plan.host));
   return {};
 }
 
@@ -122,7 +141,7 @@ Result<void> identify(const RunOptions& options, const SuiteFolder& suite, RunRe
   run.cases_version = suite.version_of(suite.cases());
   run.golden_version = suite.version_of(suite.golden());
   run.attest_version = version;
-  run.port = options.worker.port;
+  run.port = options.host.port;
   auto hash = suite.sha256();
   if (!hash) return tl::unexpected(hash.error());
   run.suite_sha256 = *hash;
@@ -138,55 +157,39 @@ Result<void> identify(const RunOptions& options, const SuiteFolder& suite, RunRe
   return {};
 }
 
-// What the port is held to during the run; empty for one that gave no answer.
-std::optional<PortSays> said_by(const PortDescription& port, const RunPlan& plan,
-                                const WorkerOptions& worker) {
-  if (!port.hangs.empty()) return std::nullopt;
-  std::set<std::string> profiles;
-  for (const SelectedCase& selected : plan.cases) profiles.insert(selected.the_case.profile);
-  PortSays said = port;
-  said.profiles = supported_profiles(worker.port, {profiles.begin(), profiles.end()},
-                                     worker.timeout_s, interrupted);
-  return said;
-}
-
 Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
   auto level = parse_level(options.level);
   if (!level) return tl::unexpected(level.error());
-  auto port = describe_port(options.worker.port, {}, options.worker.timeout_s, interrupted);
-  if (!port) return tl::unexpected(port.error());
-
   RunPlan plan;
+  plan.host = options.host;
+  plan.host.stop = interrupted;
+  plan.run.level = *level;
   if (!options.expected_failures.empty()) {
     auto expected = ExpectedFailures::read(options.expected_failures);
     if (!expected) return tl::unexpected(expected.error());
     plan.expected = std::move(*expected);
   }
-  if (auto known = identify(options, suite, plan.run); !known) {
-    return tl::unexpected(known.error());
-  }
-  plan.run.port_name = port->name;
-  plan.run.port_version = port->version;
-  plan.run.fraction_bits = port->fraction_bits;
-  plan.run.fixed_step = port->fixed_step;
-  plan.run.level = *level;
   const auto planned =
       options.timing.empty() ? plan_cases(options, suite, plan) : plan_timed(options, suite, plan);
   if (!planned) return tl::unexpected(planned.error());
-  plan.said = said_by(*port, plan, options.worker);
+  // After the port was loaded: what is no library is said to be none.
+  if (auto known = identify(options, suite, plan.run); !known) {
+    return tl::unexpected(known.error());
+  }
   return plan;
 }
 
 // What the failures look like; nothing that goes wrong here spoils the verdicts that are there.
-std::optional<Diagnosis> diagnosed(const RunPlan& plan, const WorkerOptions& options) {
-  WorkerOptions worker = options;
-  worker.on_result = [](const CaseResult&) {};
-  worker.fail_fast = false;
+std::optional<Diagnosis> diagnosed(const RunPlan& plan, int processes) {
+  JobOptions<VectorDiagnosis> options;
+  options.processes = processes;
+  options.in_process = plan.host.in_process;
+  options.stop = interrupted;
   const auto vectors = [&](const faults::Fault* partner) {
     std::vector<VectorLikeness> likenesses;
-    const Batches batches = diagnosis_batches(plan.cases, plan.run.results, partner);
-    for (CaseResult& result : run_batches(batches, worker).results) {
-      if (result.likeness) likenesses.push_back(std::move(*result.likeness));
+    const auto jobs = diagnosis_jobs(plan.cases, plan.run.results, plan.host, partner);
+    for (VectorDiagnosis& vector : run_jobs(jobs, options).results) {
+      if (vector) likenesses.push_back(*std::move(vector));
     }
     return likenesses;
   };
@@ -217,7 +220,7 @@ int run_command(const RunOptions& options, const Globals& globals) {
   if (!suite) return report_error(suite.error());
   const auto checked =
       check_outputs({options.junit, options.json, options.badge, options.write_expected},
-                    {options.worker.port, {options.expected_failures, options.timing}}, *suite);
+                    {options.host.port, {options.expected_failures, options.timing}}, *suite);
   if (!checked) return report_error(checked.error());
   auto plan = make_plan(options, *suite);
   if (!plan) return report_error(plan.error());
@@ -225,14 +228,16 @@ int run_command(const RunOptions& options, const Globals& globals) {
   if (!reports) return report_error(reports.error());
 
   Progress progress(plan->results, Progress::on_stderr(globals.quiet));
-  WorkerOptions worker = options.worker;
-  worker.said = plan->said;
-  worker.on_result = [&](const CaseResult& result) { progress.add(result); };
-  worker.fails = [&](const CaseResult& result) {
+  JobOptions<CaseResult> jobs;
+  jobs.processes = options.jobs;
+  jobs.in_process = options.host.in_process;
+  jobs.fail_fast = options.fail_fast;
+  jobs.on_result = [&](const CaseResult& result) { progress.add(result); };
+  jobs.fails = [&](const CaseResult& result) {
     return fails_a_run(result.verdict) && !(plan->expected && plan->expected->expects(result));
   };
-  worker.stop = interrupted;
-  WorkerOutcome outcome = run_batches(plan->batches, worker);
+  jobs.stop = interrupted;
+  JobResults<CaseResult> outcome = run_jobs(plan->jobs, jobs);
   progress.finish();
   if (interrupted()) {
     fmt::print(stderr, "attest: interrupted; no report was written\n");
@@ -244,7 +249,7 @@ int run_command(const RunOptions& options, const Globals& globals) {
   run.errors = std::move(outcome.errors);
   run.stopped_early = outcome.stopped_early;
   if (plan->expected) plan->expected->apply(options.select.selects_all(), run);
-  if (options.diagnose && run.failed()) run.diagnosis = diagnosed(*plan, worker);
+  if (options.diagnose && run.failed()) run.diagnosis = diagnosed(*plan, options.jobs);
   // Before the summary: whoever reads that may stop reading, and end the program.
   const auto written = write_reports(*reports, run);
   const int code = exit_code(run);

@@ -9,17 +9,18 @@
 #include "harness/report/schedule_text.hpp"
 #include "harness/run/case_timing.hpp"
 #include "harness/run/scheduled_timing.hpp"
+#include "harness/suite/case_job.hpp"
 
 namespace attest::cli {
 namespace {
 
 struct SchedulePlan {
   TaskSet set;
-  std::vector<std::vector<Job>> jobs;
-  Batches batches;  // the flight in time, and as scheduled
+  std::vector<std::vector<TaskJob>> jobs;
+  Jobs<CaseResult> flights;  // in time, and as scheduled
   TimingFile scheduled;
 
-  const std::vector<Job>& unit() const { return jobs[set.unit]; }
+  const std::vector<TaskJob>& unit() const { return jobs[set.unit]; }
 };
 
 Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder& suite) {
@@ -27,7 +28,7 @@ Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder
   if (!set) return tl::unexpected(set.error());
   const auto chosen = choose_flight(options.case_name, options.vehicle, options.plant, suite);
   if (!chosen) return tl::unexpected(chosen.error());
-  const auto port = describe_port(options.port, {}, options.timeout_s);
+  const auto port = describe_port(options.host);
   if (!port) return tl::unexpected(port.error());
 
   const Case& the_case = chosen->the_case;
@@ -35,7 +36,7 @@ Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder
   const Nanoseconds duration = timeline_of(the_case, setup.rate).duration;
   auto jobs = simulate(set->tasks, duration);
   if (!jobs) return fail_at(options.tasks, jobs.error().message);
-  const std::vector<Job>* estimator = set->estimator ? &(*jobs)[*set->estimator] : nullptr;
+  const std::vector<TaskJob>* estimator = set->estimator ? &(*jobs)[*set->estimator] : nullptr;
 
   SchedulePlan plan;
   plan.scheduled = {the_case.id(), the_case.sha256, setup, in_seconds(duration),
@@ -43,7 +44,8 @@ Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder
   TimingFile in_time = plan.scheduled;
   in_time.ticks = case_timing(the_case, setup.rate);
   for (const TimingFile& timing : {in_time, plan.scheduled}) {
-    plan.batches.push_back(std::make_unique<TimedBatch>(the_case, timing, chosen->airframe));
+    plan.flights.push_back(
+        std::make_unique<TimedJob>(the_case, timing, chosen->airframe, options.host));
   }
   plan.set = std::move(*set);
   plan.jobs = std::move(*jobs);
@@ -55,8 +57,8 @@ Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder
 int schedule_command(const ScheduleOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
-  const auto checked = check_outputs({options.record_timing},
-                                     {options.port, {options.tasks, options.case_name}}, *suite);
+  const auto checked = check_outputs(
+      {options.record_timing}, {options.host.port, {options.tasks, options.case_name}}, *suite);
   if (!checked) return report_error(checked.error());
   const auto plan = make_plan(options, *suite);
   if (!plan) return report_error(plan.error());
@@ -69,10 +71,7 @@ int schedule_command(const ScheduleOptions& options, const Globals& globals) {
       return report_error(written.error());
     }
   }
-  WorkerOptions worker;
-  worker.port = options.port;
-  worker.timeout_s = options.timeout_s;
-  const WorkerOutcome outcome = run_batches(plan->batches, worker);
+  const JobResults<CaseResult> outcome = run_jobs(plan->flights, JobOptions<CaseResult>());
   if (!outcome.errors.empty()) return report_error(outcome.errors.front());
   const CaseResult& scheduled = outcome.results[1];
   if (!globals.quiet) fmt::print("{}", render_flights(outcome.results[0], scheduled));

@@ -10,7 +10,7 @@
 #include "harness/cli/suite_folder.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/run/case_timing.hpp"
-#include "harness/suite/sim_batch.hpp"
+#include "harness/suite/simulate.hpp"
 
 namespace attest::cli {
 namespace {
@@ -36,8 +36,8 @@ Result<Sim> prepare_timed(const SimOptions& options, const SuiteFolder& suite) {
 Result<Sim> prepare(const SimOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return tl::unexpected(suite.error());
-  const auto checked =
-      check_outputs({options.out}, {options.port, {options.timing, options.case_name}}, *suite);
+  const auto checked = check_outputs(
+      {options.out}, {options.host.port, {options.timing, options.case_name}}, *suite);
   if (!checked) return tl::unexpected(checked.error());
   if (!options.timing.empty()) return prepare_timed(options, *suite);
   if (options.case_name.empty() || options.rate.empty()) {
@@ -70,16 +70,11 @@ void print(const CaseResult& result, const std::string& out) {
 int sim_command(const SimOptions& options, const Globals& globals) {
   auto sim = prepare(options, globals);
   if (!sim) return report_error(sim.error());
-  Batches batches;
-  batches.push_back(std::make_unique<SimBatch>(std::move(sim->the_case), std::move(sim->setup),
-                                               std::move(sim->timing), std::move(sim->airframe),
-                                               options.out));
-  WorkerOptions worker;
-  worker.port = options.port;
-  worker.timeout_s = options.timeout_s;
-  const WorkerOutcome outcome = run_batches(batches, worker);
-  if (!outcome.errors.empty()) return report_error(outcome.errors.front());
-  const CaseResult& result = outcome.results.front();
+  const auto host = start_host(options.host, {&sim->the_case, sim->airframe.get()});
+  if (!host) return report_error(host.error());
+  const auto flown = simulate_flight(sim->the_case, {sim->setup, sim->timing}, **host, options.out);
+  if (!flown) return report_error(flown.error());
+  const CaseResult& result = *flown;
   if (!globals.quiet || result.verdict != Verdict::pass) print(result, options.out);
   return result.verdict == Verdict::pass ? exit_ok : exit_failed;
 }

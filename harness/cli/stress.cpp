@@ -55,7 +55,7 @@ void set_budget(const StressOptions& options, RealtimeBudget& budget) {
 
 Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& suite) {
   const auto checked = check_outputs({options.json, options.junit, options.record_timing},
-                                     {options.port, {options.case_name}}, suite);
+                                     {options.host.port, {options.case_name}}, suite);
   if (!checked) return tl::unexpected(checked.error());
   auto chosen = choose_flight(options.case_name, options.vehicle, options.plant, suite);
   if (!chosen) return tl::unexpected(chosen.error());
@@ -66,7 +66,7 @@ Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& su
   if (!options.record_timing.empty() && options.rates.size() != 1) {
     return fail("--record-timing records one rate; name it with --rates");
   }
-  auto port = describe_port(options.port, {}, options.timeout_s);
+  auto port = describe_port(options.host);
   if (!port) return tl::unexpected(port.error());
 
   Case& the_case = chosen->the_case;
@@ -78,9 +78,9 @@ Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& su
   for (const std::string& text : options.rates) {
     const auto rate = Rate::parse(text);
     if (!rate) return tl::unexpected(rate.error());
-    plan.tasks.push_back({the_case, Setup{*rate, chosen->flyer}, chosen->airframe, *live,
+    plan.tasks.push_back({the_case, Setup{*rate, chosen->flyer}, chosen->airframe, plan.port, *live,
                           nanoseconds(std::min(options.duration_s, idle_s_max)),
-                          options.record_timing, nanoseconds(options.timeout_s)});
+                          options.record_timing, nanoseconds(options.host.timeout_s)});
   }
   return plan;
 }
@@ -148,7 +148,7 @@ Result<void> run_all(const StressPlan& plan, const StressOptions& options, const
     if (interrupted()) break;
     const auto progress = [&](const StressProgress& now) { line.show(task, now); };
     const auto judge = options.cyclictest ? idle_by_cyclictest(task) : std::nullopt;
-    auto stress = run_stress(task, options.port, interrupted, progress);
+    auto stress = run_stress(task, options.host.port, interrupted, progress);
     if (!stress) return tl::unexpected(stress.error());
     stress->cyclictest = judge;
     line.erase();
@@ -176,7 +176,7 @@ int stress_command(const StressOptions& options, const Globals& globals) {
 
   note_interrupts();
   StressRun run;
-  run.port = options.port;
+  run.port = options.host.port;
   run.description = plan->port;
   run.live = plan->tasks.front().live;
   if (auto done = run_all(*plan, options, globals, run); !done) return report_error(done.error());

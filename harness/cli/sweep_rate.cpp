@@ -9,6 +9,7 @@
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
+#include "harness/plant/fleet.hpp"
 #include "harness/report/progress.hpp"
 #include "harness/report/sweep_text.hpp"
 #include "harness/suite/sweep.hpp"
@@ -19,7 +20,7 @@ namespace {
 struct SweepPlan {
   Case the_case;
   std::vector<Rate> rates;
-  Batches batches;
+  Jobs<SweepResult> jobs;
 };
 
 Result<std::vector<Flyer>> flyers_of(const Case& the_case, const SweepOptions& options) {
@@ -50,14 +51,18 @@ Result<SweepPlan> make_plan(const SweepOptions& options, const SuiteFolder& suit
   }
   const auto flyers = flyers_of(*the_case, options);
   if (!flyers) return tl::unexpected(flyers.error());
-  const auto port = describe_port(options.worker.port, {}, options.worker.timeout_s);
+  const auto port = describe_port(options.host);
   if (!port) return tl::unexpected(port.error());
+  HostOptions host = options.host;
+  host.hangs = port->hangs;
+  host.stop = interrupted;
+  if (port->hangs.empty()) host.said = *port;
   Fleet fleet(suite.models());
   for (const Flyer& flyer : *flyers) {
     auto airframe = fleet.get(flyer.vehicle);
     if (!airframe) return tl::unexpected(airframe.error());
-    plan.batches.push_back(
-        std::make_unique<SweepBatch>(*the_case, flyer, plan.rates, std::move(*airframe)));
+    plan.jobs.push_back(
+        std::make_unique<SweepJob>(*the_case, flyer, plan.rates, *std::move(airframe), host));
   }
   plan.the_case = std::move(*the_case);
   return plan;
@@ -69,17 +74,18 @@ int sweep_rate_command(const SweepOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
   const auto checked =
-      check_outputs({options.csv}, {options.worker.port, {options.case_name}}, *suite);
+      check_outputs({options.csv}, {options.host.port, {options.case_name}}, *suite);
   if (!checked) return report_error(checked.error());
   const auto plan = make_plan(options, *suite);
   if (!plan) return report_error(plan.error());
   note_interrupts();
-  Progress progress(plan->batches.size() * (plan->rates.size() + 1),
+  Progress progress(plan->jobs.size() * (plan->rates.size() + 1),
                     Progress::on_stderr(globals.quiet));
-  WorkerOptions worker = options.worker;
-  worker.on_result = [&](const CaseResult& result) { progress.add(result); };
-  worker.stop = interrupted;
-  const WorkerOutcome outcome = run_batches(plan->batches, worker);
+  JobOptions<SweepResult> jobs;
+  jobs.processes = options.jobs;
+  jobs.on_result = [&](const SweepResult& found) { progress.add(found.result); };
+  jobs.stop = interrupted;
+  const JobResults<SweepResult> outcome = run_jobs(plan->jobs, jobs);
   progress.finish();
   if (interrupted()) return exit_interrupted;
   for (const Error& error : outcome.errors) report_error(error);

@@ -9,10 +9,11 @@
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
+#include "harness/host/step_timer.hpp"
 #include "harness/realtime/instructions.hpp"
 #include "harness/report/progress.hpp"
 #include "harness/report/time_text.hpp"
-#include "harness/suite/time_batch.hpp"
+#include "harness/suite/vector_times.hpp"
 
 namespace attest::cli {
 namespace {
@@ -40,8 +41,8 @@ std::vector<std::uint64_t> counted(const TimeCommandOptions& options, const Suit
   const auto self = std::filesystem::read_symlink("/proc/self/exe", ignored);
   return instructions_of_calls(
       {self.string(), "--suite", suite.root.string(), "--quiet", "time", "--port",
-       options.worker.port, "--filter", id, "--repeat", "1", "--no-stack", "--in-process"},
-      counted_step_symbol, {options.worker.timeout_s * counting_is_slower_by, interrupted});
+       options.host.port, "--filter", id, "--repeat", "1", "--no-stack", "--in-process"},
+      counted_step_symbol, {options.host.timeout_s * counting_is_slower_by, interrupted});
 }
 
 }  // namespace
@@ -50,44 +51,51 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
   const auto checked =
-      check_outputs({options.json, options.measure.worst}, {options.worker.port, {}}, *suite);
+      check_outputs({options.json, options.measure.worst}, {options.host.port, {}}, *suite);
   if (!checked) return report_error(checked.error());
   auto cases = open_loop_cases(options, *suite);
   if (!cases) return report_error(cases.error());
-  const auto port = describe_port(options.worker.port, {}, options.worker.timeout_s);
+  const auto port = describe_port(options.host);
   if (!port) return report_error(port.error());
 
   note_interrupts();
-  TimeRun run{options.worker.port, options.measure.repeats, options.measure.budget_us, {}, {}};
-  Batches batches;
-  batches.push_back(std::make_unique<TimeBatch>(std::move(*cases), options.measure));
-  Progress progress(batches.front()->size(), Progress::on_stderr(globals.quiet));
-  WorkerOptions worker = options.worker;
-  worker.on_result = [&](const CaseResult& result) { progress.add(result); };
-  worker.stop = interrupted;
-  WorkerOutcome outcome = run_batches(batches, worker);
+  std::size_t vectors = 0;
+  for (const SelectedCase& selected : *cases) vectors += selected.setups.size();
+  Progress progress(vectors, Progress::on_stderr(globals.quiet));
+  HostOptions host = options.host;
+  host.stop = interrupted;
+  host.hangs = port->hangs;
+  auto times = time_corpus(*cases, options.measure, host,
+                           [&](const CaseResult& result) { progress.add(result); });
   progress.finish();
   if (interrupted()) return exit_interrupted;
-  if (!outcome.errors.empty()) return report_error(outcome.errors.front());
-  run.results = std::move(outcome.results);
-  const bool wrong = std::any_of(run.results.begin(), run.results.end(),
-                                 [](const auto& one) { return fails_a_run(one.verdict); });
-  if (run.all().figures.empty() || run.all().figures.at(figure::steps) == 0) {
+  if (!times) return report_error(times.error());
+  TimeRun run{
+      options.host.port, options.measure.repeats, options.measure.budget_us, *std::move(times), {}};
+  const auto& timed = run.times.vectors;
+  const bool wrong = std::any_of(timed.begin(), timed.end(),
+                                 [](const auto& one) { return fails_a_run(one.result.verdict); });
+  const VectorTimes* slowest = run.times.with_slowest_step();
+  if (!slowest) {
     if (wrong) {
       fmt::print("{}", what_went_wrong(run));
       return exit_failed;
     }
     return report_error({"nothing was timed: every selected case was skipped or unsupported"});
   }
+  if (!options.measure.worst.empty()) {
+    const auto written = write_slowest(run.times, *cases, host, options.measure.worst);
+    if (!written) return report_error(written.error());
+  }
   if (options.instructions) {
-    run.instructions = counted(options, *suite, run.all().reason);
+    run.instructions = counted(options, *suite, slowest->result.id());
     if (run.instructions.empty()) {
       fmt::print(stderr, "attest: no instructions were counted: valgrind is missing, or failed\n");
     }
   }
   if (auto written = write_file(options.json, time_json(run)); !written)
     return report_error(written.error());
-  const bool over = run.all().figures.at(figure::over_budget) > options.allowed;
+  const bool over = run.times.steps.over_limit() > static_cast<std::uint64_t>(options.allowed);
   const bool failed = over || wrong;
   if (!globals.quiet || failed) fmt::print("{}", render_times(run));
   return failed ? exit_failed : exit_ok;

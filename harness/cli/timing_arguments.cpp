@@ -55,7 +55,7 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
   CLI::App* command = app.add_subcommand("stress",
                                          "Let a port fly in real time, at each loop rate: latency, "
                                          "execution time, response time, misses");
-  add_port(*command, options->port);
+  add_port(*command, options->host.port);
   command->add_option("--rates", options->rates, "Loop rates [Hz], separated by commas")
       ->type_name("HZ,...")
       ->delimiter(',')
@@ -109,7 +109,7 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("--junit", options->junit, "Write a report for CI servers")->type_name("F");
   command->add_flag("--cyclictest,!--no-cyclictest", options->cyclictest,
                     "Let cyclictest measure the idle machine too, where it is installed");
-  add_timeout(*command, options->timeout_s);
+  add_timeout(*command, options->host.timeout_s);
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return stress_command(*options, globals); };
   });
@@ -117,7 +117,7 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
 
 void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<SweepOptions>();
-  options->worker.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  options->jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   CLI::App* command = app.add_subcommand(
       "sweep-rate",
       "Where each vehicle stops holding: lowest loop rate, largest delay of the motor commands");
@@ -135,10 +135,10 @@ void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("--plant", options->plants, "Only on this plant: `mujoco` or `ode`")
       ->type_name("PLANT")
       ->allow_extra_args(false);
-  add_port(*command, options->worker.port);
+  add_port(*command, options->host.port);
   command->add_option("--csv", options->csv, "Write the table")->type_name("F.csv");
-  add_timeout(*command, options->worker.timeout_s);
-  command->add_option("--jobs,-j", options->worker.jobs, "Vehicles at a time")
+  add_timeout(*command, options->host.timeout_s);
+  command->add_option("--jobs,-j", options->jobs, "Vehicles at a time")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   command->callback([options, &globals, &action] {
@@ -160,12 +160,12 @@ void add_schedule(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("--vehicle", options->vehicle, "One of `attest list --vehicles`")
       ->type_name("VEHICLE");
   command->add_option("--plant", options->plant, "`mujoco` or `ode`")->type_name("PLANT");
-  add_port(*command, options->port);
+  add_port(*command, options->host.port);
   command
       ->add_option("--record-timing", options->record_timing,
                    "Write when everything happens, for `run --timing` and `sim --timing`")
       ->type_name("F");
-  add_timeout(*command, options->timeout_s);
+  add_timeout(*command, options->host.timeout_s);
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return schedule_command(*options, globals); };
   });
@@ -177,7 +177,7 @@ void add_time(CLI::App& app, const Globals& globals, Action& action) {
       "time",
       "How long a port's steps take over the corpus, which input takes longest, and how "
       "much stack they use");
-  add_port(*command, options->worker.port);
+  add_port(*command, options->host.port);
   add_selection(*command, options->select);
   command
       ->add_option("--repeat", options->measure.repeats,
@@ -205,8 +205,8 @@ void add_time(CLI::App& app, const Globals& globals, Action& action) {
       "default)");
   command->add_option("--json", options->json, "Write all times and stack use, by vector")
       ->type_name("F");
-  add_timeout(*command, options->worker.timeout_s);
-  command->add_flag("--in-process", options->worker.in_process,
+  add_timeout(*command, options->host.timeout_s);
+  command->add_flag("--in-process", options->host.in_process,
                     "No worker process: for valgrind, perf or a debugger");
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return time_command(*options, globals); };

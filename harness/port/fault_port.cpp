@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "controller/actuation/unit_table.hpp"
-#include "controller/faults/fault.hpp"
+#include "controller/faults/faulty_controller.hpp"
 #include "controller/reference/profile.hpp"
 #include "harness/core/nearest.hpp"
 

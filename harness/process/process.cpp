@@ -176,7 +176,7 @@ std::string Ending::to_string() const {
   return fmt::format("exited with status {}", WEXITSTATUS(*wait_status));
 }
 
-Result<Process> Process::start(const std::function<void()>& work) {
+Result<Process> Process::start(const std::function<void()>& work, bool with_guard) {
   const pid_t parent = ::getpid();
   // A child that calls exit() would print what the parent has not printed yet.
   std::fflush(nullptr);
@@ -188,15 +188,16 @@ Result<Process> Process::start(const std::function<void()>& work) {
   const pid_t leader = has_pipe ? ::fork() : -1;
   if (leader == 0) lead_group(parent, ready, work);
   if (leader > 0) ::setpgid(leader, leader);  // here too: the first of the two calls decides
-  const pid_t guard = leader > 0 ? ::fork() : -1;
+  const pid_t guard = leader > 0 && with_guard ? ::fork() : -1;
   if (guard == 0) guard_group(parent, ready, leader);
   const int reason = errno;
+  const bool is_told = !with_guard && leader > 0 && ::write(ready[1], "", 1) == 1;
   for (const int end : ready) {
     if (end >= 0) ::close(end);
   }
   if (leader > 0) owned().processes.insert(leader);
   if (guard > 0) owned().processes.insert(guard);
-  if (guard > 0) return Process(leader, guard);
+  if (guard > 0 || is_told) return Process(leader, guard);
   if (leader > 0) {
     ::kill(leader, SIGKILL);
     Ending ignored;

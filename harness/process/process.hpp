@@ -24,9 +24,12 @@ struct Ending {
 
 // The process leads a process group of its own, and everything that it starts in that group ends
 // with it. What it starts in a group or session of its own becomes a child of this process when
-// its parent has ended, and is killed by the next end() of any Process. A second process of the
-// group, the guard, ends the group when this process dies, even by SIGKILL. No member function
-// waits longer than its argument and a few seconds.
+// its parent has ended, and is killed by the next end() of any Process. No member function waits
+// longer than its argument and a few seconds.
+//
+// When this process dies, even by SIGKILL, the process ends too. What it started ends then if there
+// is a second process in the group, the guard: code of others needs one. Code of ours starts
+// Processes only, which see to that themselves.
 //
 // One thread at a time. The thread that calls start() must live as long as the Process: Linux takes
 // the end of that thread for the death of the parent.
@@ -34,7 +37,7 @@ class Process {
  public:
   // Forks. `work` runs in the child, which then exits with status 0. The child starts with default
   // signal handlers and an empty signal mask, and leaves no core file. `work` must not throw.
-  static Result<Process> start(const std::function<void()>& work);
+  static Result<Process> start(const std::function<void()>& work, bool with_guard = true);
 
   Process(Process&& other) noexcept;
   Process& operator=(Process&& other) noexcept;

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "harness/suite/verdict.hpp"
+#include "harness/suite/run_result.hpp"
 
 namespace attest {
 

@@ -11,7 +11,7 @@ namespace attest {
 namespace {
 
 struct GroupCount {
-  std::size_t killable = 0, by_own = 0, by_any = 0, by_naive = 0;
+  std::size_t detectable = 0, by_own = 0, by_any = 0, by_naive = 0;
 };
 
 std::vector<std::pair<std::string, GroupCount>> by_group(
@@ -22,9 +22,9 @@ std::vector<std::pair<std::string, GroupCount>> by_group(
     auto found = std::find_if(groups.begin(), groups.end(),
                               [&](const auto& known) { return known.first == group; });
     if (found == groups.end()) found = groups.insert(groups.end(), {group, {}});
-    if (!finding.is_killable()) continue;
+    if (!finding.is_detectable()) continue;
     GroupCount& count = found->second;
-    ++count.killable;
+    ++count.detectable;
     count.by_own += finding.is_caught_by_own_group() ? 1 : 0;
     count.by_any += finding.is_caught() ? 1 : 0;
     count.by_naive += finding.by_hover || finding.by_random_attitudes ? 1 : 0;
@@ -33,19 +33,19 @@ std::vector<std::pair<std::string, GroupCount>> by_group(
 }
 
 std::string caught_by(const FaultFinding& finding) {
-  if (!finding.is_killable()) {
+  if (!finding.is_detectable()) {
     if (finding.fault->equivalent.empty()) return "the profile does not have this";
     return fmt::format("equivalent: {}", finding.fault->equivalent);
   }
   if (!finding.is_caught()) return "**survives**";
-  std::string id = finding.result.reason;
-  const std::string profile = finding.result.profile + "/";
+  std::string id = finding.found.by;
+  const std::string profile = finding.profile + "/";
   if (id.starts_with(profile)) id.erase(0, profile.size());
   return id;
 }
 
 std::string tick_of(const FaultFinding& finding) {
-  return finding.result.first ? fmt::format("{}", finding.result.first->tick) : "";
+  return finding.found.tick ? fmt::format("{}", *finding.found.tick) : "";
 }
 
 std::string naive(const FaultFinding& finding) {
@@ -60,23 +60,23 @@ double percent(std::size_t part, std::size_t whole) {
 
 }  // namespace
 
-bool FaultFinding::is_killable() const {
-  return fault->is_killable(*reference::profile_from_name(result.profile));
+bool FaultFinding::is_detectable() const {
+  return fault->is_detectable(*reference::profile_from_name(profile));
 }
 
 bool FaultFinding::is_caught_by_own_group() const {
-  const std::string own = result.profile + "/" + std::string(fault->group) + "/";
-  return is_caught() && result.reason.starts_with(own);
+  const std::string own = profile + "/" + std::string(fault->group) + "/";
+  return is_caught() && found.by.starts_with(own);
 }
 
 FaultSummary summary_of(const std::vector<FaultFinding>& findings) {
   FaultSummary summary;
   for (const FaultFinding& finding : findings) {
-    if (!finding.is_killable()) {
+    if (!finding.is_detectable()) {
       if (finding.is_caught()) summary.false_alarms.push_back(&finding);
       continue;
     }
-    ++summary.killable;
+    ++summary.detectable;
     summary.caught += finding.is_caught() ? 1 : 0;
     summary.by_hover += finding.by_hover ? 1 : 0;
     summary.by_random_attitudes += finding.by_random_attitudes ? 1 : 0;
@@ -93,7 +93,7 @@ std::string render_fault_table(const std::vector<FaultFinding>& findings) {
   std::string out =
       "| group | faults | caught by it | by any | by a naive suite |\n|---|---|---|---|---|\n";
   for (const auto& [group, count] : by_group(findings)) {
-    out += fmt::format("| {} | {} | {} | {} | {} |\n", group, count.killable, count.by_own,
+    out += fmt::format("| {} | {} | {} | {} | {} |\n", group, count.detectable, count.by_own,
                        count.by_any, count.by_naive);
   }
   out +=
@@ -109,12 +109,12 @@ std::string render_fault_table(const std::vector<FaultFinding>& findings) {
       "\n{}: {} faults; {} of {} that can be told from the law are caught ({:.1f}%), {} by their "
       "own group; {} are equivalent to it. A hover trace catches {} ({:.0f}%), random attitude "
       "pairs {} ({:.0f}%), both together {} ({:.0f}%).\n",
-      findings.empty() ? "" : findings.front().result.profile, findings.size(), summary.caught,
-      summary.killable, percent(summary.caught, summary.killable),
-      summary.caught - summary.not_by_own.size(), findings.size() - summary.killable,
-      summary.by_hover, percent(summary.by_hover, summary.killable), summary.by_random_attitudes,
-      percent(summary.by_random_attitudes, summary.killable), summary.by_naive,
-      percent(summary.by_naive, summary.killable));
+      findings.empty() ? "" : findings.front().profile, findings.size(), summary.caught,
+      summary.detectable, percent(summary.caught, summary.detectable),
+      summary.caught - summary.not_by_own.size(), findings.size() - summary.detectable,
+      summary.by_hover, percent(summary.by_hover, summary.detectable), summary.by_random_attitudes,
+      percent(summary.by_random_attitudes, summary.detectable), summary.by_naive,
+      percent(summary.by_naive, summary.detectable));
   return out;
 }
 
@@ -123,7 +123,7 @@ std::string render_fault_list() {
   for (const faults::Fault* fault : faults::catalogue()) {
     std::string profiles;
     for (const std::string_view name : reference::profile_names()) {
-      if (!fault->is_killable(*reference::profile_from_name(name))) continue;
+      if (!fault->is_detectable(*reference::profile_from_name(name))) continue;
       profiles += fmt::format("{}{}", profiles.empty() ? "" : " ", name);
     }
     out += fmt::format("{:<36} {:<17} {:<16} {:<22} {}\n", fault->id, fault->group,

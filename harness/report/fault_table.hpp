@@ -5,24 +5,25 @@
 #include <vector>
 
 #include "controller/faults/fault.hpp"
-#include "harness/suite/verdict.hpp"
+#include "harness/suite/fault_job.hpp"
 
 namespace attest {
 
 struct FaultFinding {
   const faults::Fault* fault = nullptr;
-  CaseResult result;  // of a FaultBatch
+  std::string profile;
+  FaultCatch found;
   bool by_hover = false, by_random_attitudes = false;
 
-  // In the profile of the result, is there an input that tells it from the law?
-  bool is_killable() const;
-  bool is_caught() const { return fails_a_run(result.verdict); }
+  // In the profile, is there an input that tells it from the law?
+  bool is_detectable() const;
+  bool is_caught() const { return found.is_caught(); }
   bool is_caught_by_own_group() const;
 };
 
 struct FaultSummary {
-  std::size_t killable = 0, caught = 0, by_hover = 0, by_random_attitudes = 0, by_naive = 0;
-  std::vector<const FaultFinding*> survivors;     // killable, caught by nothing
+  std::size_t detectable = 0, caught = 0, by_hover = 0, by_random_attitudes = 0, by_naive = 0;
+  std::vector<const FaultFinding*> survivors;     // detectable, caught by nothing
   std::vector<const FaultFinding*> not_by_own;    // caught, but not by a case of their group
   std::vector<const FaultFinding*> false_alarms;  // equivalent to the law, and yet caught
 };

@@ -22,14 +22,14 @@ std::string spread(std::string_view name, std::vector<Nanoseconds> times) {
 
 }  // namespace
 
-std::string render_tasks(const TaskSet& set, const std::vector<std::vector<Job>>& jobs) {
+std::string render_tasks(const TaskSet& set, const std::vector<std::vector<TaskJob>>& jobs) {
   std::string out = fmt::format("{:<16}{:>4}{:>10}{:>10}{:>12}{:>14}{:>14}\n", "task", "CPU",
                                 "priority", "rate", "execution", "response:", "");
   out += fmt::format("{:<52}{:>14}{:>14}\n", "", "analysed", "simulated");
   for (std::size_t i = 0; i < set.tasks.size(); ++i) {
     const ScheduledTask& task = set.tasks[i];
     Nanoseconds longest{0};
-    for (const Job& job : jobs[i]) longest = std::max(longest, job.response());
+    for (const TaskJob& job : jobs[i]) longest = std::max(longest, job.response());
     const auto analysed = response_time(set.tasks, i);
     out += fmt::format("{:<16}{:>4}{:>10}{:>10}{:>12}{:>14}{:>14}{}\n", one_line(task.name),
                        task.cpu, task.priority, task.rate.to_string() + " Hz",
@@ -40,7 +40,7 @@ std::string render_tasks(const TaskSet& set, const std::vector<std::vector<Job>>
   return out;
 }
 
-std::string render_delays(const std::vector<Job>& unit, const LoopTiming& timing) {
+std::string render_delays(const std::vector<TaskJob>& unit, const LoopTiming& timing) {
   std::vector<Nanoseconds> begins, commands, ages;
   for (std::size_t i = 0; i < unit.size(); ++i) {
     begins.push_back(unit[i].start - unit[i].release);

@@ -11,10 +11,10 @@ namespace attest {
 
 // One row a task: analysed and simulated longest response. A response longer than the period is
 // marked.
-std::string render_tasks(const TaskSet& set, const std::vector<std::vector<Job>>& jobs);
+std::string render_tasks(const TaskSet& set, const std::vector<std::vector<TaskJob>>& jobs);
 
 // How late ticks begin and commands come, and how old the samples are that they rest on.
-std::string render_delays(const std::vector<Job>& unit, const LoopTiming& timing);
+std::string render_delays(const std::vector<TaskJob>& unit, const LoopTiming& timing);
 
 // The metrics of a flight with that timing beside the same flight with every tick in time.
 std::string render_flights(const CaseResult& in_time, const CaseResult& scheduled);

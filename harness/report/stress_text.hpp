@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
+#include "harness/host/port_process.hpp"
 #include "harness/report/terminal.hpp"
 #include "harness/suite/stress.hpp"
-#include "harness/suite/worker.hpp"
 
 namespace attest {
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "harness/report/text.hpp"
-#include "harness/suite/sweep.hpp"
 
 namespace attest {
 namespace {
@@ -16,19 +15,18 @@ std::string csv_cell(double value) { return value < 0 ? "" : fmt::format("{:g}",
 
 }  // namespace
 
-std::vector<SweepRow> sweep_rows(const std::vector<CaseResult>& results) {
+std::vector<SweepRow> sweep_rows(const std::vector<SweepResult>& results) {
   std::vector<SweepRow> rows;
-  for (const CaseResult& result : results) {
-    if (rows.empty() || rows.back().flyer != *result.flyer)
+  for (const auto& [result, lowest_rate_hz, largest_delay_ms] : results) {
+    if (rows.empty() || rows.back().flyer != *result.flyer) {
       rows.push_back({*result.flyer, -1, {}, {}});
+    }
     SweepRow& row = rows.back();
     if (result.verdict != Verdict::pass && row.failure.empty()) {
       row.failure = fmt::format("{}: {}", name_of(result.verdict), one_line(result.reason));
     }
-    const auto rate = result.figures.find(lowest_rate_figure);
-    const auto delay = result.figures.find(largest_delay_figure);
-    if (rate != result.figures.end()) row.lowest_rate_hz = rate->second;
-    if (delay != result.figures.end()) row.largest_delay_ms.push_back(delay->second);
+    if (lowest_rate_hz) row.lowest_rate_hz = *lowest_rate_hz;
+    if (largest_delay_ms) row.largest_delay_ms.push_back(*largest_delay_ms);
   }
   return rows;
 }

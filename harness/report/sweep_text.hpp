@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/suite/verdict.hpp"
+#include "harness/suite/sweep.hpp"
 
 namespace attest {
 
@@ -15,8 +15,8 @@ struct SweepRow {
   std::string failure;                   // of the port; empty: none
 };
 
-// Of the results of SweepBatches, in their order.
-std::vector<SweepRow> sweep_rows(const std::vector<CaseResult>& results);
+// Of the results of SweepJobs, in their order.
+std::vector<SweepRow> sweep_rows(const std::vector<SweepResult>& results);
 
 std::string render_sweep(const std::vector<SweepRow>& rows, const std::vector<Rate>& rates);
 

@@ -8,48 +8,38 @@
 #include "harness/core/version.hpp"
 #include "harness/report/stress_text.hpp"
 #include "harness/report/text.hpp"
-#include "harness/suite/time_batch.hpp"
 
 namespace attest {
 namespace {
 
 constexpr std::size_t slowest_told = 5;
 
-double figure_of(const CaseResult& result, const char* name) {
-  const auto found = result.figures.find(name);
-  return found == result.figures.end() ? 0 : found->second;
-}
-
-std::string time_of(const CaseResult& result, const char* name) {
-  return human_time(Nanoseconds(static_cast<std::int64_t>(figure_of(result, name))));
-}
-
-std::string slowest(const TimeRun& run) {
-  std::vector<const CaseResult*> order;
-  for (const CaseResult& result : run.results) {
-    if (&result != &run.all() && result.figures.contains(figure::max)) order.push_back(&result);
+std::vector<const VectorTimes*> timed(const CorpusTimes& times) {
+  std::vector<const VectorTimes*> vectors;
+  for (const VectorTimes& vector : times.vectors) {
+    if (vector.is_timed()) vectors.push_back(&vector);
   }
-  std::stable_sort(order.begin(), order.end(), [](const CaseResult* a, const CaseResult* b) {
-    return figure_of(*a, figure::max) > figure_of(*b, figure::max);
+  return vectors;
+}
+
+std::string slowest(const CorpusTimes& times) {
+  std::vector<const VectorTimes*> order = timed(times);
+  std::stable_sort(order.begin(), order.end(), [](const VectorTimes* a, const VectorTimes* b) {
+    return a->slowest() > b->slowest();
   });
   std::string out;
   for (std::size_t i = 0; i < std::min(order.size(), slowest_told); ++i) {
-    out += fmt::format("  {:>9}  {} tick {:.0f}\n", time_of(*order[i], figure::max),
-                       one_line(order[i]->id()), figure_of(*order[i], figure::worst_tick));
+    out += fmt::format("  {:>9}  {} tick {}\n", human_time(order[i]->slowest()),
+                       one_line(order[i]->result.id()), order[i]->slowest_tick());
   }
   return out;
 }
 
-// Of all vectors, also of those before a crash.
-std::string stack(const TimeRun& run) {
-  const CaseResult* most = nullptr;
-  for (const CaseResult& result : run.results) {
-    if (&result == &run.all() || !result.figures.contains(figure::stack)) continue;
-    if (!most || figure_of(result, figure::stack) > figure_of(*most, figure::stack)) most = &result;
-  }
+std::string stack(const CorpusTimes& times) {
+  const VectorTimes* most = times.with_most_stack();
   if (!most) return "";
-  return fmt::format("stack of a step: at most {:.0f} bytes ({})\n",
-                     figure_of(*most, figure::stack), one_line(most->id()));
+  return fmt::format("stack of a step: at most {} bytes ({})\n", *most->stack_bytes,
+                     one_line(most->result.id()));
 }
 
 std::string instructions(std::vector<std::uint64_t> calls) {
@@ -63,19 +53,36 @@ std::string instructions(std::vector<std::uint64_t> calls) {
       calls.front(), calls[calls.size() / 2], most, worst);
 }
 
-nlohmann::ordered_json figures_json(const CaseResult& result) {
-  auto out = nlohmann::ordered_json::object();  // of what went wrong: none
-  for (const auto& [name, value] : result.figures) out[name] = value;
+using nlohmann::ordered_json;
+
+ordered_json json_of(const VectorTimes& vector) {
+  ordered_json out = {{"id", vector.result.id()}, {"verdict", name_of(vector.result.verdict)}};
+  if (!vector.is_timed()) return out;
+  out["max_ns"] = vector.slowest().count();
+  out["median_ns"] = vector.median().count();
+  if (vector.stack_bytes) out["stack_bytes"] = *vector.stack_bytes;
+  out["steps"] = vector.steps.size();
+  out["worst_tick"] = vector.slowest_tick();
+  return out;
+}
+
+ordered_json json_of(const CorpusTimes& times) {
+  const Histogram& steps = times.steps;
+  ordered_json out = {{"clock_ns", times.clock.count()},
+                      {"max_ns", steps.max().count()},
+                      {"median_ns", steps.percentile(0.5).count()},
+                      {"min_ns", steps.min().count()},
+                      {"over_budget", steps.over_limit()},
+                      {"p90_ns", steps.percentile(0.9).count()},
+                      {"p99_ns", steps.percentile(0.99).count()},
+                      {"p99_9_ns", steps.percentile(0.999).count()}};
+  if (const auto* most = times.with_most_stack()) out["stack_bytes"] = *most->stack_bytes;
+  out["steps"] = steps.count();
+  out["worst_tick"] = times.with_slowest_step()->slowest_tick();
   return out;
 }
 
 }  // namespace
-
-bool TimeRun::crashed() const {
-  return std::any_of(results.begin(), results.end(), [](const CaseResult& result) {
-    return result.verdict == Verdict::crash || result.verdict == Verdict::timeout;
-  });
-}
 
 std::string what_went_wrong(const TimeRun& run) {
   std::string out, last_reason;
@@ -84,7 +91,8 @@ std::string what_went_wrong(const TimeRun& run) {
     if (repeated > 0) out += fmt::format("  and {} more with the same reason\n", repeated);
     repeated = 0;
   };
-  for (const CaseResult& result : run.results) {
+  for (const VectorTimes& vector : run.times.vectors) {
+    const CaseResult& result = vector.result;
     if (!fails_a_run(result.verdict)) continue;
     if (result.reason == last_reason) {
       ++repeated;
@@ -100,48 +108,39 @@ std::string what_went_wrong(const TimeRun& run) {
 }
 
 std::string render_times(const TimeRun& run) {
-  const CaseResult& all = run.all();
-  const std::size_t vectors = run.results.size() - 1;
+  const CorpusTimes& times = run.times;
+  const Histogram& steps = times.steps;
   std::string out = fmt::format(
-      "{}: {:.0f} steps of {}, each the quickest of {}; reading the clock "
-      "({}) is taken off\n",
-      one_line(run.port), figure_of(all, figure::steps), counted(vectors, "vector"), run.repeats,
-      time_of(all, figure::clock));
-  const char* const columns[] = {figure::min, figure::median, figure::p90,
-                                 figure::p99, figure::p999,   figure::max};
+      "{}: {} steps of {}, each the quickest of {}; reading the clock ({}) is taken off\n",
+      one_line(run.port), steps.count(), counted(timed(times).size(), "vector"), run.repeats,
+      human_time(times.clock));
   out += fmt::format("  {:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n  ", "min", "median", "p90", "p99",
                      "p99.9", "max");
-  for (const char* column : columns) out += fmt::format("{:>10}", time_of(all, column));
-  out += "\nslowest steps:\n" + slowest(run) + stack(run) + instructions(run.instructions);
-  out += what_went_wrong(run);
-  if (run.crashed()) {
-    out += "a crash takes the figures with it: those above are of what ran after the last one\n";
+  for (const Nanoseconds time : {steps.min(), steps.percentile(0.5), steps.percentile(0.9),
+                                 steps.percentile(0.99), steps.percentile(0.999), steps.max()}) {
+    out += fmt::format("{:>10}", human_time(time));
   }
+  out += "\nslowest steps:\n" + slowest(times) + stack(times) + instructions(run.instructions);
+  out += what_went_wrong(run);
   if (run.budget_us) {
-    out += fmt::format("{:.0f} of {:.0f} steps took longer than {:g} us\n",
-                       figure_of(all, figure::over_budget), figure_of(all, figure::steps),
-                       *run.budget_us);
+    out += fmt::format("{} of {} steps took longer than {:g} us\n", steps.over_limit(),
+                       steps.count(), *run.budget_us);
   }
   return out;
 }
 
 std::string time_json(const TimeRun& run) {
-  nlohmann::ordered_json out = {{"schema", "attest-time-1"},
-                                {"attest_version", version},
-                                {"port", run.port},
-                                {"repeats", run.repeats},
-                                {"budget_us", nullptr},
-                                {"all", figures_json(run.all())},
-                                {"slowest", run.all().reason},
-                                {"instructions", run.instructions},
-                                {"vectors", nlohmann::json::array()}};
+  ordered_json out = {{"schema", "attest-time-1"},
+                      {"attest_version", version},
+                      {"port", run.port},
+                      {"repeats", run.repeats},
+                      {"budget_us", nullptr},
+                      {"all", json_of(run.times)},
+                      {"slowest", run.times.with_slowest_step()->result.id()},
+                      {"instructions", run.instructions},
+                      {"vectors", ordered_json::array()}};
   if (run.budget_us) out["budget_us"] = *run.budget_us;
-  for (const CaseResult& result : run.results) {
-    if (&result == &run.all()) continue;
-    nlohmann::ordered_json vector = {{"id", result.id()}, {"verdict", name_of(result.verdict)}};
-    vector.update(figures_json(result));
-    out["vectors"].push_back(std::move(vector));
-  }
+  for (const VectorTimes& vector : run.times.vectors) out["vectors"].push_back(json_of(vector));
   return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/suite/verdict.hpp"
+#include "harness/suite/vector_times.hpp"
 
 namespace attest {
 
@@ -14,15 +14,11 @@ struct TimeRun {
   std::string port;
   int repeats = 1;
   std::optional<double> budget_us;
-  std::vector<CaseResult> results;          // of a TimeBatch: the last is of all together
+  CorpusTimes times;
   std::vector<std::uint64_t> instructions;  // of the slowest vector's steps; empty: not counted
-
-  const CaseResult& all() const { return results.back(); }
-
-  // A worker that died, or was given up, took what it had measured with it.
-  bool crashed() const;
 };
 
+// REQUIRES: something was timed.
 std::string render_times(const TimeRun& run);
 
 // A line for each vector that fails a run; those in a row that have the same reason are counted.

@@ -2,10 +2,11 @@
 
 namespace attest {
 
-LoopTiming scheduled_timing(const std::vector<Job>& unit, const std::vector<Job>* estimator) {
+LoopTiming scheduled_timing(const std::vector<TaskJob>& unit,
+                            const std::vector<TaskJob>* estimator) {
   LoopTiming timing;
   std::size_t estimated = 0;  // jobs of the estimator that are over
-  for (const Job& job : unit) {
+  for (const TaskJob& job : unit) {
     Nanoseconds sampled = job.start;
     if (estimator != nullptr) {
       const auto& jobs = *estimator;

@@ -21,6 +21,8 @@ struct PortFault {
     unsupported,  // ATTEST_UNSUPPORTED, or a part that the port does not have
     failed,       // ATTEST_FAILED, ATTEST_INVALID
     protocol,     // broke the rules of the ABI
+    crash,        // its process died
+    timeout,      // no answer in time
   };
   Kind kind = Kind::failed;
   std::size_t tick = 0;  // of the judged trace: those before it were answered

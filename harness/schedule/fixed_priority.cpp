@@ -15,9 +15,9 @@ constexpr Nanoseconds never = Nanoseconds::max();
 // A task while it is simulated.
 struct Queue {
   const ScheduledTask* task;
-  std::vector<Job>* jobs;
-  const std::vector<Job>* releasing;  // the jobs that release it; null: its rate does
-  std::int64_t released = 0;          // jobs so far
+  std::vector<TaskJob>* jobs;
+  const std::vector<TaskJob>* releasing;  // the jobs that release it; null: its rate does
+  std::int64_t released = 0;              // jobs so far
   std::size_t finished = 0;
   Nanoseconds remaining{0};  // of the job that runs, or runs next; 0: it has not begun
 
@@ -75,7 +75,7 @@ class Cpu {
 
   // Runs until the job is over or something is released; returns when that is.
   static Nanoseconds work(Queue& queue, Nanoseconds now, Nanoseconds release) {
-    Job& job = (*queue.jobs)[queue.finished];
+    TaskJob& job = (*queue.jobs)[queue.finished];
     if (queue.remaining == Nanoseconds(0)) {
       job.start = now;
       queue.remaining = queue.task->execution[queue.finished % queue.task->execution.size()];
@@ -145,10 +145,10 @@ double utilisation(const std::vector<ScheduledTask>& tasks, int cpu) {
   return sum;
 }
 
-Result<std::vector<std::vector<Job>>> simulate(const std::vector<ScheduledTask>& tasks,
-                                               Nanoseconds duration) {
+Result<std::vector<std::vector<TaskJob>>> simulate(const std::vector<ScheduledTask>& tasks,
+                                                   Nanoseconds duration) {
   if (auto checked = check(tasks); !checked) return tl::unexpected(checked.error());
-  std::vector<std::vector<Job>> jobs(tasks.size());
+  std::vector<std::vector<TaskJob>> jobs(tasks.size());
   for (const int cpu : cpus_in_order(tasks)) {
     std::vector<Queue> queues;
     for (std::size_t i = 0; i < tasks.size(); ++i) {

@@ -35,7 +35,7 @@ struct ScheduledTask {
 };
 
 // As of the begin of the simulation.
-struct Job {
+struct TaskJob {
   Nanoseconds release{0};
   Nanoseconds start{0};  // it first ran
   Nanoseconds finish{0};
@@ -46,8 +46,8 @@ struct Job {
 // The jobs of each task that are released in [0, duration), in the order of `tasks`, each to its
 // end. Errors: two tasks of one priority on a CPU; a CPU that is asked for more than it has, on
 // which ever more work would wait.
-Result<std::vector<std::vector<Job>>> simulate(const std::vector<ScheduledTask>& tasks,
-                                               Nanoseconds duration);
+Result<std::vector<std::vector<TaskJob>>> simulate(const std::vector<ScheduledTask>& tasks,
+                                                   Nanoseconds duration);
 
 // The part of its CPU that a set asks for, with its worst executions: 1 is all of it.
 double utilisation(const std::vector<ScheduledTask>& tasks, int cpu);

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/suite/verdict.hpp"
+#include "harness/suite/run_result.hpp"
 
 namespace attest {
 

@@ -57,7 +57,7 @@ std::vector<SelfDiagnosis> diagnose_catalogue(const std::vector<SelectedCase>& c
   }
   std::vector<SelfDiagnosis> results;
   for (std::size_t i = 0; i < catalogue.size(); ++i) {
-    if (!catalogue[i]->is_killable(profile)) continue;
+    if (!catalogue[i]->is_detectable(profile)) continue;
     std::vector<VectorLikeness> of_fault;
     for (const Answered& vector : vectors) {
       const std::size_t index = vector.faults.of_fault[i];

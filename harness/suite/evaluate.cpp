@@ -6,7 +6,7 @@
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/compare/events.hpp"
-#include "harness/core/float_environment.hpp"
+#include "harness/host/host_here.hpp"
 #include "harness/port/builtin.hpp"
 #include "harness/run/keyframes.hpp"
 #include "harness/run/open_loop.hpp"
@@ -22,12 +22,11 @@ namespace {
 // Drives a fresh unit through `answered`, whose inputs are those of `want`, and compares. Where
 // there are other sides they are as right; the exact level is the law's.
 void run_and_judge(Trace& answered, const Trace& want, const OtherSides& others,
-                   const Subject& subject, Port& port, const Tolerances& tolerances,
+                   const Subject& subject, PortHost& host, const Tolerances& tolerances,
                    const Tolerances& of_sides, CaseResult& result) {
-  if (declines(port, result)) return;
-  const auto fault = drive(port, subject, answered);
+  if (declines(host.says(), result)) return;
+  const auto fault = host.drive(subject, answered);
   if (fault && !leaves_ticks_to_judge(*fault)) return judge(*fault, result);
-  const DefaultFloatEnvironment environment;
   if (fault) leave_out_from(fault->tick, want, answered);
   if (others.empty() || tolerances.level() == Level::exact) {
     judge(compare(answered, want, tolerances), result);
@@ -46,7 +45,6 @@ struct Prepared {
 };
 
 Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& golden) {
-  const DefaultFloatEnvironment environment;
   auto want = golden.read({rate, std::nullopt});
   if (!want) return tl::unexpected(want.error());
   Trace made = stimulate(the_case, rate);
@@ -76,9 +74,8 @@ Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& g
 // after zero on. Errors: the reference does not agree with the golden.
 Result<Prepared> prepare_from_one_period_on(const Case& the_case, const Rate& rate,
                                             const Golden& golden) {
-  const DefaultFloatEnvironment environment;
-  const auto reference = open_builtin();
-  const auto checked = evaluate_case(the_case, rate, golden, *reference, Level::exact);
+  HostHere reference(open_builtin());
+  const auto checked = evaluate_case(the_case, rate, golden, reference, Level::exact);
   if (!checked) return tl::unexpected(checked.error());
   if (checked->verdict != Verdict::pass) {
     return fail_at(the_case.file.string(),
@@ -86,9 +83,9 @@ Result<Prepared> prepare_from_one_period_on(const Case& the_case, const Rate& ra
                                "golden, which therefore cannot be shifted",
                                rate.label()));
   }
-  const Case begun = from_one_period_on(the_case);
+  const Case begun = the_case.from_one_period_on();
   Prepared prepared{stimulate(begun, rate), stimulate(begun, rate), {}};
-  if (const auto fault = drive(*reference, subject_of(begun), prepared.want)) {
+  if (const auto fault = reference.drive(subject_of(begun), prepared.want)) {
     return fail_at(the_case.file.string(), "the reference: " + fault->what);
   }
   if (!begun.either_side.any()) return prepared;
@@ -118,7 +115,7 @@ CaseResult unjudged(const Trace& recorded, const std::string& profile) {
 }
 
 Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const Golden& golden,
-                                 Port& port, Level level) {
+                                 PortHost& host, Level level) {
   const Stopwatch stopwatch;
   CaseResult result = unjudged(the_case, {rate, std::nullopt});
   if (the_case.exact_only && level != Level::exact) {
@@ -126,28 +123,28 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
     result.reason = exact_level_only;
     return result;
   }
-  if (has_other_steps(port, the_case, rate, result)) return result;
-  auto prepared = has_fixed_step(port, the_case)
+  if (has_other_steps(host.says(), the_case, rate, result)) return result;
+  auto prepared = has_fixed_step(host.says(), the_case)
                       ? prepare_from_one_period_on(the_case, rate, golden)
                       : prepare(the_case, rate, golden);
   if (!prepared) return tl::unexpected(prepared.error());
   const bool numeric_for_exact = level == Level::exact && the_case.numeric_only;
   const bool numeric_for_events = level == Level::events && !has_events(the_case.part);
   if (numeric_for_exact || numeric_for_events) level = Level::numeric;
-  const auto bits = port.fraction_bits();
+  const auto bits = host.says().fraction_bits;
   const std::size_t ticks = prepared->answered.samples.size();
   run_and_judge(prepared->answered, prepared->want, prepared->other_sides, subject_of(the_case),
-                port, tolerances_of(the_case, level, bits, ticks),
+                host, tolerances_of(the_case, level, bits, ticks),
                 tolerances_of(the_case, Level::numeric, bits, ticks), result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }
 
-CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, Port& port,
+CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHost& host,
                           const Tolerances& tolerances) {
   const Stopwatch stopwatch;
   CaseResult result = unjudged(recorded, subject.profile);
-  if (subject.part == Part::mc_att_control && has_other_steps(port, recorded, result)) {
+  if (subject.part == Part::mc_att_control && has_other_steps(host.says(), recorded, result)) {
     return result;
   }
   Trace answered = recorded;
@@ -158,8 +155,9 @@ CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, Port& p
   }
   const bool numeric_for_events = tolerances.level() == Level::events && !has_events(subject.part);
   Tolerances allowed = numeric_for_events ? Tolerances(Level::numeric) : tolerances;
-  if (const auto bits = port.fraction_bits()) allowed.allow_lsb(*bits, recorded.samples.size());
-  run_and_judge(answered, recorded, {}, subject, port, allowed, allowed, result);
+  if (const auto bits = host.says().fraction_bits)
+    allowed.allow_lsb(*bits, recorded.samples.size());
+  run_and_judge(answered, recorded, {}, subject, host, allowed, allowed, result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }

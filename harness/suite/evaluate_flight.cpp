@@ -8,7 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "harness/compare/compare_rows.hpp"
-#include "harness/core/float_environment.hpp"
+#include "harness/host/host_here.hpp"
 #include "harness/port/builtin.hpp"
 #include "harness/run/answers.hpp"
 #include "harness/run/case_timing.hpp"
@@ -147,21 +147,19 @@ std::string how_it_ended(const Flown& flown) {
 namespace {
 
 // A fresh unit flies at those times, and is judged by the reference.
-Result<CaseResult> evaluate_beside(const Case& the_case, const Setup& setup,
-                                   const Airframe& airframe, const LoopTiming& timing,
-                                   const ReferenceFlight& reference, Port& port) {
+Result<CaseResult> evaluate_with(const Case& the_case, const FlightPlan& plan,
+                                 const ReferenceFlight& reference, PortHost& host) {
   const Stopwatch stopwatch;
-  CaseResult result = unjudged(the_case, setup);
-  const std::unique_ptr<Unit> unit = create_unit(port, the_case.profile, result);
-  if (!unit) return result;
-  const auto flown = fly(the_case, setup, airframe, *unit, timing);
+  CaseResult result = unjudged(the_case, plan.setup);
+  if (declines(host.says(), result)) return result;
+  const auto flown = host.fly(plan);
   if (!flown) return tl::unexpected(flown.error());
-  const DefaultFloatEnvironment environment;
+  const auto bits = host.says().fraction_bits;
   Result<void> judged;
   if (!flown->fault) {
-    judged = judge_flight(the_case, *flown, reference, port.fraction_bits(), result);
+    judged = judge_flight(the_case, *flown, reference, bits, result);
   } else if (leaves_ticks_to_judge(*flown->fault)) {
-    judged = judge_ticks(the_case, *flown, reference, port.fraction_bits(), result);
+    judged = judge_ticks(the_case, *flown, reference, bits, result);
     judge_after(*flown->fault, result);
   } else {
     judge(*flown->fault, result);
@@ -171,59 +169,57 @@ Result<CaseResult> evaluate_beside(const Case& the_case, const Setup& setup,
   return result;
 }
 
-// Of a port with a fixed step (fixed_step.hpp): next to the reference from one period after zero
-// on. Errors: the reference does not agree with the golden.
-Result<CaseResult> evaluate_from_one_period_on(const Case& the_case, const Setup& setup,
-                                               const Airframe& airframe, const LoopTiming& timing,
-                                               const ReferenceFlight& golden, Port& port) {
-  std::optional<DefaultFloatEnvironment> environment(std::in_place);  // of the reference
-  const auto checked = evaluate_beside(the_case, setup, airframe, timing, golden, *open_builtin());
+// Of a port with a fixed step (fixed_step.hpp): compared with the reference from one period after
+// zero on. Errors: the reference does not agree with the golden.
+Result<CaseResult> evaluate_from_one_period_on(const Case& the_case, FlightPlan plan,
+                                               const Airframe& airframe,
+                                               const ReferenceFlight& golden, PortHost& host) {
+  HostHere builtin(open_builtin(), {}, {&the_case, &airframe});
+  const auto checked = evaluate_with(the_case, plan, golden, builtin);
   if (!checked) return tl::unexpected(checked.error());
   if (checked->verdict != Verdict::pass) {
     return fail_at(the_case.file.string(),
                    fmt::format("at {}, the reference of this attest does not agree with the "
                                "golden, which therefore cannot be shifted: {}",
-                               setup.label(), checked->reason));
+                               plan.setup.label(), checked->reason));
   }
-  const Case begun = from_one_period_on(the_case);
-  const auto reference = reference_flight(begun, setup, airframe, timing);
+  const Case begun = the_case.from_one_period_on();
+  const auto reference = reference_flight(begun, plan.setup, airframe, plan.timing);
   if (!reference) return tl::unexpected(reference.error());
-  environment.reset();
-  return evaluate_beside(begun, setup, airframe, timing, *reference, port);
+  plan.from_one_period_on = true;
+  return evaluate_with(begun, plan, *reference, host);
 }
 
 }  // namespace
 
 Result<CaseResult> evaluate_flight(const Case& the_case, const Setup& setup,
-                                   const Airframe& airframe, const Golden& golden, Port& port) {
+                                   const Airframe& airframe, const Golden& golden, PortHost& host) {
   const auto reference = golden.read_flight(setup, airframe.vehicle());
   if (!reference) return tl::unexpected(reference.error());
-  const LoopTiming timing = case_timing(the_case, setup.rate);
-  if (has_fixed_step(port, the_case)) {
-    CaseResult result = unjudged(the_case, setup);
-    if (has_other_steps(port, the_case, setup.rate, timing, result)) return result;
-    return evaluate_from_one_period_on(the_case, setup, airframe, timing, *reference, port);
+  const FlightPlan plan{setup, case_timing(the_case, setup.rate)};
+  if (!has_fixed_step(host.says(), the_case)) {
+    return evaluate_with(the_case, plan, *reference, host);
   }
-  return evaluate_beside(the_case, setup, airframe, timing, *reference, port);
+  CaseResult result = unjudged(the_case, setup);
+  if (has_other_steps(host.says(), the_case, setup.rate, plan.timing, result)) return result;
+  return evaluate_from_one_period_on(the_case, plan, airframe, *reference, host);
 }
 
 Result<CaseResult> evaluate_timed_flight(const Case& the_case, const Setup& setup,
                                          const Airframe& airframe, const LoopTiming& timing,
-                                         Port& port) {
+                                         PortHost& host) {
   CaseResult result = unjudged(the_case, setup);
-  if (has_other_steps(port, the_case, setup.rate, timing, result)) return result;
-  Case relaxed = has_fixed_step(port, the_case) ? from_one_period_on(the_case) : the_case;
-  const auto reference = [&] {
-    const DefaultFloatEnvironment environment;
-    return reference_flight(relaxed, setup, airframe, timing);
-  }();
+  if (has_other_steps(host.says(), the_case, setup.rate, timing, result)) return result;
+  const FlightPlan plan{setup, timing, has_fixed_step(host.says(), the_case)};
+  Case relaxed = plan.from_one_period_on ? the_case.from_one_period_on() : the_case;
+  const auto reference = reference_flight(relaxed, setup, airframe, timing);
   if (!reference) return tl::unexpected(reference.error());
   for (Metric& metric : relaxed.flight->metrics) {
     const double value = reference->metrics.at(metric.name);
     if (value < metric.min) metric.min = -std::numeric_limits<double>::infinity();
     if (value > metric.max) metric.max = std::numeric_limits<double>::infinity();
   }
-  return evaluate_beside(relaxed, setup, airframe, timing, *reference, port);
+  return evaluate_with(relaxed, plan, *reference, host);
 }
 
 }  // namespace attest

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "harness/core/result.hpp"
-#include "harness/suite/verdict.hpp"
+#include "harness/suite/run_result.hpp"
 
 namespace attest {
 

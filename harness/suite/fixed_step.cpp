@@ -10,8 +10,6 @@
 namespace attest {
 namespace {
 
-constexpr Span one_period{1, Span::In::ticks};
-
 bool is_unsupported(const Rate& step, const std::string& what, CaseResult& result) {
   result.verdict = Verdict::unsupported;
   result.reason =
@@ -19,10 +17,10 @@ bool is_unsupported(const Rate& step, const std::string& what, CaseResult& resul
   return true;
 }
 
-bool has_other_steps(const Port& port, const Case& the_case, const Rate& rate,
+bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
                      const std::vector<Nanoseconds>& begins, CaseResult& result) {
   if (!has_fixed_step(port, the_case)) return false;
-  const Rate step = *port.fixed_step();
+  const Rate step = *port.fixed_step;
   if (rate != step) return is_unsupported(step, "runs at another rate", result);
   const UnitTiming usual;
   const bool starts_as_usual =
@@ -37,28 +35,24 @@ bool has_other_steps(const Port& port, const Case& the_case, const Rate& rate,
 
 }  // namespace
 
-bool has_fixed_step(const Port& port, const Case& the_case) {
-  return the_case.part == Part::mc_att_control && port.fixed_step().has_value();
+bool has_fixed_step(const PortSays& port, const Case& the_case) {
+  return the_case.part == Part::mc_att_control && port.fixed_step.has_value();
 }
 
-Case from_one_period_on(Case the_case) {
-  the_case.unit.start = one_period;
-  return the_case;
-}
-
-bool has_other_steps(const Port& port, const Case& the_case, const Rate& rate, CaseResult& result) {
+bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
+                     CaseResult& result) {
   return has_other_steps(port, the_case, rate, unit_ticks(the_case, rate), result);
 }
 
-bool has_other_steps(const Port& port, const Case& the_case, const Rate& rate,
+bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
                      const LoopTiming& timing, CaseResult& result) {
   std::vector<Nanoseconds> begins;
   for (const LoopTick& tick : timing) begins.push_back(tick.begins);
   return has_other_steps(port, the_case, rate, begins, result);
 }
 
-bool has_other_steps(const Port& port, const Trace& recorded, CaseResult& result) {
-  const auto step = port.fixed_step();
+bool has_other_steps(const PortSays& port, const Trace& recorded, CaseResult& result) {
+  const auto step = port.fixed_step;
   if (!step) return false;
   for (std::size_t k = 0; k < recorded.samples.size(); ++k) {
     const Nanoseconds due = step->tick(static_cast<std::int64_t>(k) + 1);

@@ -8,26 +8,24 @@
 #pragma once
 
 #include "harness/casefile/case.hpp"
-#include "harness/port/port.hpp"
+#include "harness/host/port_says.hpp"
 #include "harness/schedule/loop_timing.hpp"
 #include "harness/suite/verdict.hpp"
 
 namespace attest {
 
-// Whether the port is given `the_case` from one period after zero on. Mixers and battery estimates
-// have no clock, so theirs are left as they are.
-bool has_fixed_step(const Port& port, const Case& the_case);
-
-// `the_case` with its first timestamp at one period. Nothing else changes.
-Case from_one_period_on(Case the_case);
+// Whether the port is given `the_case` from one period after zero on (Case). Mixers and battery
+// estimates have no clock, so theirs are left as they are.
+bool has_fixed_step(const PortSays& port, const Case& the_case);
 
 // The port has a fixed step, and the case has another somewhere: the verdict is unsupported, with
 // the reason. Another rate, ticks that are not exactly periodic, a `start_s` of the case's own.
-bool has_other_steps(const Port& port, const Case& the_case, const Rate& rate, CaseResult& result);
-bool has_other_steps(const Port& port, const Case& the_case, const Rate& rate,
+bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
+                     CaseResult& result);
+bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
                      const LoopTiming& timing, CaseResult& result);
 
 // The same for a recorded trace, whose timestamps are what they are.
-bool has_other_steps(const Port& port, const Trace& recorded, CaseResult& result);
+bool has_other_steps(const PortSays& port, const Trace& recorded, CaseResult& result);
 
 }  // namespace attest

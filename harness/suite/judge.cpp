@@ -15,22 +15,12 @@ Tolerances tolerances_of(const Case& the_case, Level level, std::optional<int> f
   return tolerances;
 }
 
-bool declines(const Port& port, CaseResult& result) {
-  const std::vector<std::string> declined = port.unsupported_groups();
+bool declines(const PortSays& port, CaseResult& result) {
+  const auto& declined = port.unsupported_groups;
   if (std::find(declined.begin(), declined.end(), result.group) == declined.end()) return false;
   result.verdict = Verdict::unsupported;
   result.reason = fmt::format("the port declares that it does not do {}", result.group);
   return true;
-}
-
-std::unique_ptr<Unit> create_unit(Port& port, const std::string& profile, CaseResult& result) {
-  if (declines(port, result)) return nullptr;
-  std::unique_ptr<Unit> unit = port.create(profile);
-  if (!unit) {
-    result.verdict = Verdict::skip;
-    result.reason = fmt::format("the port does not support profile {}", profile);
-  }
-  return unit;
 }
 
 void judge(const PortFault& fault, CaseResult& result) {
@@ -44,6 +34,12 @@ void judge(const PortFault& fault, CaseResult& result) {
       return;
     case PortFault::Kind::protocol:
       result.verdict = Verdict::protocol;
+      return;
+    case PortFault::Kind::crash:
+      result.verdict = Verdict::crash;
+      return;
+    case PortFault::Kind::timeout:
+      result.verdict = Verdict::timeout;
       return;
     default:
       result.verdict = Verdict::fail;

@@ -1,12 +1,11 @@
 // From what a port did to a verdict: shared by open loop and flight.
 #pragma once
 
-#include <memory>
-#include <string>
+#include <optional>
 
 #include "harness/casefile/case.hpp"
 #include "harness/compare/compare.hpp"
-#include "harness/port/port.hpp"
+#include "harness/host/port_says.hpp"
 #include "harness/run/unit_driver.hpp"
 #include "harness/suite/verdict.hpp"
 
@@ -18,10 +17,7 @@ Tolerances tolerances_of(const Case& the_case, Level level, std::optional<int> f
                          std::size_t ticks);
 
 // The port declares that it does not do the result's group: the verdict is unsupported.
-bool declines(const Port& port, CaseResult& result);
-
-// Null when the port declines, or does not support the profile (verdict skip).
-std::unique_ptr<Unit> create_unit(Port& port, const std::string& profile, CaseResult& result);
+bool declines(const PortSays& port, CaseResult& result);
 
 void judge(const PortFault& fault, CaseResult& result);
 

@@ -6,7 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "harness/port/port.hpp"
+#include "harness/host/host_here.hpp"
+#include "harness/port/builtin.hpp"
 #include "harness/run/recorded.hpp"
 #include "harness/suite/evaluate.hpp"
 #include "harness/trace/provenance.hpp"
@@ -53,10 +54,9 @@ Tolerances tolerances_for(const fs::path& file, const Provenance& provenance) {
 Result<std::string> trace_difference(const fs::path& file, const Provenance& provenance) {
   const auto recorded = read_recorded(file);
   if (!recorded) return tl::unexpected(recorded.error());
-  const auto port = open_port("builtin");
-  if (!port) return tl::unexpected(port.error());
-  const CaseResult result =
-      evaluate_trace(recorded->trace, recorded->subject, **port, tolerances_for(file, provenance));
+  HostHere reference(open_builtin());
+  const CaseResult result = evaluate_trace(recorded->trace, recorded->subject, reference,
+                                           tolerances_for(file, provenance));
   if (result.verdict == Verdict::pass) return std::string();
   if (!result.first) return result.reason;
   return fmt::format("{} at tick {}", channels()[result.first->channel].name, result.first->tick);

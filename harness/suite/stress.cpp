@@ -64,19 +64,24 @@ double StressResult::per_million(std::uint64_t count) const {
   return deadlines == 0 ? 0 : 1e6 * static_cast<double>(count) / static_cast<double>(deadlines);
 }
 
-Result<StressResult> stress_here(const StressTask& task, Port& port,
-                                 const std::function<bool()>& stop,
-                                 const std::function<void(const StressProgress&)>& progress) {
-  StressResult stress;
-  CaseResult& result = stress.result = unjudged(task.the_case, task.setup);
-  if (port.fixed_step() && *port.fixed_step() != task.setup.rate) {
+Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
+                                       const std::function<bool()>& stop,
+                                       const std::function<void(const StressProgress&)>& progress) {
+  StressMeasurement measured;
+  CaseResult& result = measured.stress.result = unjudged(task.the_case, task.setup);
+  const PortSays& says = task.port;
+  if (says.fixed_step && *says.fixed_step != task.setup.rate) {
     result.verdict = Verdict::unsupported;
-    result.reason =
-        fmt::format("the port has a fixed step of {} Hz", port.fixed_step()->to_string());
-    return stress;
+    result.reason = fmt::format("the port has a fixed step of {} Hz", says.fixed_step->to_string());
+    return measured;
   }
-  const auto unit = create_unit(port, task.the_case.profile, result);
-  if (!unit) return stress;
+  if (declines(says, result)) return measured;
+  const auto unit = port.create(task.the_case.profile);
+  if (!unit) {
+    result.verdict = Verdict::skip;
+    result.reason = fmt::format("the port does not support profile {}", task.the_case.profile);
+    return measured;
+  }
   progress({{}, true});
   const Histogram idle = idle_latency(task.setup.rate, task.idle_duration, task.live, stop);
   auto flight = fly_live(task.the_case, task.setup, *task.airframe, *unit, task.live, checked_ticks,
@@ -84,31 +89,38 @@ Result<StressResult> stress_here(const StressTask& task, Port& port,
                            progress({live, false});
                          });
   if (!flight) return tl::unexpected(flight.error());
+  measured.stress.idle = spread_of(idle);
+  summarise(*flight, task.setup.rate, task.the_case.flight->realtime, measured.stress);
+  measured.flight = *std::move(flight);
+  return measured;
+}
 
-  const RealtimeBudget& budget = task.the_case.flight->realtime;
-  stress.idle = spread_of(idle);
-  summarise(*flight, task.setup.rate, budget, stress);
+Result<StressResult> judge_live(const StressTask& task, StressMeasurement measurement) {
+  StressResult& stress = measurement.stress;
+  if (!measurement.flight) return std::move(stress);
+  LiveFlight& flight = *measurement.flight;
   if (!task.record_timing.empty()) {
     const TimingFile timing{task.the_case.id(), task.the_case.sha256, task.setup,
-                            task.the_case.duration.amount, flight->timing()};
+                            task.the_case.duration.amount, flight.timing()};
     if (auto written = write_timing(timing, task.record_timing); !written) {
       return tl::unexpected(written.error());
     }
   }
+  CaseResult& result = stress.result;
   result.ticks = stress.ticks;
   result.elapsed_s = in_seconds(stress.wall);
-  if (flight->unit.fault) {
-    judge(*flight->unit.fault, result);
-    return stress;
+  if (flight.unit.fault) {
+    judge(*flight.unit.fault, result);
+    return std::move(stress);
   }
-  if (port.fixed_step()) {
+  if (task.port.fixed_step) {
     add_skip(result, "outputs not judged: a fixed step does not follow the times of a real clock");
   } else {
-    judge_outputs(task.the_case, flight->unit, port.fraction_bits(), result);
+    judge_outputs(task.the_case, flight.unit, task.port.fraction_bits, result);
   }
-  judge_flight_end(task, *flight, result);
-  judge_timing(budget, stress);
-  return stress;
+  judge_flight_end(task, flight, result);
+  judge_timing(task.the_case.flight->realtime, stress);
+  return std::move(stress);
 }
 
 }  // namespace attest

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/casefile/case.hpp"
+#include "harness/host/port_says.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/realtime/cyclictest.hpp"
 #include "harness/realtime/deadline_misses.hpp"
@@ -54,6 +55,7 @@ struct StressTask {
   Case the_case;  // its duration is that of the run
   Setup setup;
   std::shared_ptr<const Airframe> airframe;
+  PortSays port;  // what the port said before
   LiveOptions live;
   Nanoseconds idle_duration{0};
   std::string record_timing;                       // file; empty: none
@@ -65,15 +67,26 @@ struct StressProgress {
   bool idle = false;  // measuring the machine alone
 };
 
-// Flies it in a child process; a port that crashes or hangs gets a verdict. `stop` ends it early
-// with what was measured. Errors: the port cannot be opened; the case cannot be flown in real time.
+// What was measured, and what a judge needs besides: of `flight` the outputs, the ticks, and how it
+// ended.
+struct StressMeasurement {
+  StressResult stress;               // without a verdict, but for a port that did not fly
+  std::optional<LiveFlight> flight;  // empty: it did not
+};
+
+// Flies it in a child process, and judges it in this one; a port that crashes or hangs gets a
+// verdict. `stop` ends it early with what was measured. Errors: the port cannot be opened; the case
+// cannot be flown in real time.
 Result<StressResult> run_stress(const StressTask& task, const std::string& port,
                                 const std::function<bool()>& stop,
                                 const std::function<void(const StressProgress&)>& progress);
 
-// The same in this process: no protection. For the child, and for tests.
-Result<StressResult> stress_here(const StressTask& task, Port& port,
-                                 const std::function<bool()>& stop,
-                                 const std::function<void(const StressProgress&)>& progress);
+// In the port's process.
+Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
+                                       const std::function<bool()>& stop,
+                                       const std::function<void(const StressProgress&)>& progress);
+
+// Writes the timing of the flight, too, where the task says so. Errors: it cannot be written.
+Result<StressResult> judge_live(const StressTask& task, StressMeasurement measurement);
 
 }  // namespace attest

@@ -1,17 +1,20 @@
 // The child process of a stress run, and the parent that listens to it.
 //
 //     {"progress": {"time_ns": ..., "deadlines": ..., "missed": ..., "idle": false}}
-//     {"stress": {...}} or {"error": {...}}
+//     {"stress": {...}} of a port that did not fly, or
+//     {"stress": {...}, "fault", "divergence", "parameters"}     inputs, outputs, ticks, times at
+//                                                                which the motors followed
+//     {"error": {...}}
 #include <atomic>
 #include <chrono>
 #include <csignal>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <poll.h>
 
+#include "harness/core/error_json.hpp"
+#include "harness/host/trace_message.hpp"
 #include "harness/process/child.hpp"
-#include "harness/suite/error_json.hpp"
 #include "harness/suite/evaluate.hpp"
 #include "harness/suite/stress.hpp"
 #include "harness/suite/stress_json.hpp"
@@ -27,38 +30,67 @@ constexpr auto report_every = std::chrono::seconds(1);
 std::atomic<bool> asked_to_stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // written by a signal handler
 
-std::string repaired(const json& message) {
-  return message.dump(-1, ' ', false, json::error_handler_t::replace);
+void send_measured(const StressMeasurement& measured, MessageSocket& parent) {
+  json head = {{"stress", to_json(measured.stress)}};
+  if (!measured.flight) {
+    parent.send(text_of(head));
+    return;
+  }
+  const auto& [unit, plant, rights, wall] = *measured.flight;
+  head["ticks"] = unit.ticks.size();
+  head["samples"] = unit.samples.size();
+  head["commanded"] = plant.commanded.size();
+  head["parameters"] = changes_json(unit.changes);
+  set_end(unit.fault, plant.divergence, head);
+  parent.send(text_of(head),
+              {blob_of(unit.samples), blob_of(unit.ticks), blob_of(plant.commanded)});
 }
 
-void work(const StressTask& task, const std::string& specification, const SendLine& send) {
+// Empty: nothing that the child of a stress run sends. Throws json::exception, too.
+std::optional<StressMeasurement> measurement_from(const json& head, BlobReader& blobs) {
+  auto stress = stress_from_json(head.at("stress"));
+  if (!stress) return std::nullopt;
+  StressMeasurement measured{*std::move(stress), {}};
+  if (blobs.left() == 0) return measured;
+  auto samples = blobs.read<Sample>(head.at("samples").get<std::size_t>());
+  auto ticks = samples ? blobs.read<LiveTick>(head.at("ticks").get<std::size_t>()) : std::nullopt;
+  using Time = std::optional<Nanoseconds>;
+  auto commanded = ticks ? blobs.read<Time>(head.at("commanded").get<std::size_t>()) : std::nullopt;
+  if (!commanded || commanded->size() < ticks->size()) return std::nullopt;
+  LiveFlight& flight = measured.flight.emplace();
+  flight.unit.samples = *std::move(samples);
+  flight.unit.ticks = *std::move(ticks);
+  flight.plant.commanded = *std::move(commanded);
+  flight.unit.changes = changes_from(head.at("parameters"));
+  flight.unit.fault = fault_from(head);
+  flight.plant.divergence = divergence_from(head);
+  return measured;
+}
+
+void work(const StressTask& task, const std::string& specification, MessageSocket& parent) {
   std::signal(SIGTERM, [](int) { asked_to_stop.store(true); });
   auto port = open_port(specification);
-  if (!port) return send(repaired({{"error", to_json(port.error())}}));
+  if (!port) {
+    parent.send(text_of({{"error", to_json(port.error())}}));
+    return;
+  }
   Clock::time_point reported{};
   const auto progress = [&](const StressProgress& now) {
     if (!now.idle && Clock::now() - reported < report_every) return;
     reported = Clock::now();
-    send(repaired({{"progress",
-                    {{"time_ns", now.live.time.count()},
-                     {"deadlines", now.live.deadlines},
-                     {"missed", now.live.missed},
-                     {"idle", now.idle}}}}));
+    parent.send(text_of({{"progress",
+                          {{"time_ns", now.live.time.count()},
+                           {"deadlines", now.live.deadlines},
+                           {"missed", now.live.missed},
+                           {"idle", now.idle}}}}));
   };
-  const auto stress = stress_here(
+  const auto measured = measure_live(
       task, **port, [] { return asked_to_stop.load(); }, progress);
-  send(repaired(stress ? json{{"stress", to_json(*stress)}}
-                       : json{{"error", to_json(stress.error())}}));
-}
-
-std::optional<StressProgress> progress_from(const json& line) {
-  const json& in = line["progress"];
-  const bool complete = in.is_object() && in.contains("time_ns") && in["time_ns"].is_number();
-  if (!complete) return std::nullopt;
-  return StressProgress{
-      {Nanoseconds(in["time_ns"].get<std::int64_t>()), in.value("deadlines", std::uint64_t{0}),
-       in.value("missed", std::uint64_t{0})},
-      in.value("idle", false)};
+  if (measured) {
+    send_measured(*measured, parent);
+  } else {
+    parent.send(text_of({{"error", to_json(measured.error())}}));
+  }
 }
 
 StressResult gone_wrong(const StressTask& task, Verdict verdict, std::string reason) {
@@ -77,21 +109,27 @@ class Listener {
       : task_(task), child_(child), progress_(progress) {}
 
   Result<StressResult> listen(const std::function<bool()>& stop) {
-    bool ended = false, stopping = false;
-    while (!ended && !hangs()) {
+    bool stopping = false;
+    Patience patience;
+    patience.given_up = [&] {
       if (!stopping && stop()) {
         child_.ask_to_stop();
         stopping = true;
       }
-      pollfd readable{child_.descriptor(), POLLIN, 0};
-      if (::poll(&readable, 1, 100) <= 0) continue;
-      for (const std::string& line : child_.read_lines(ended)) {
-        if (auto answer = answer_of(line)) return std::move(*answer);
+      return hangs();
+    };
+    while (true) {
+      const Received received = child_.receive(patience);
+      if (received.kind == Received::Kind::message) {
+        if (auto answer = answer_of(received)) return *std::move(answer);
+      } else if (received.kind == Received::Kind::given_up) {
+        child_.kill();
+        return gone_wrong(task_, Verdict::timeout, how_it_hangs());
+      } else if (received.kind == Received::Kind::no_message) {
+        return forged();
+      } else {
+        break;
       }
-    }
-    if (!ended) {
-      child_.kill();
-      return gone_wrong(task_, Verdict::timeout, how_it_hangs());
     }
     const std::string how = child_.end(), words = child_.last_words();
     return gone_wrong(
@@ -100,6 +138,12 @@ class Listener {
   }
 
  private:
+  StressResult forged() {
+    child_.kill();
+    return gone_wrong(task_, Verdict::protocol,
+                      "the port wrote on the socket on which its process answers");
+  }
+
   bool hangs() const {
     const Nanoseconds duration(static_cast<std::int64_t>(task_.the_case.duration.amount * 1e9));
     // A child that says nothing for so long, or flies on so long after the end, hangs.
@@ -117,23 +161,41 @@ class Listener {
                : fmt::format("no answer within {:g} s, when it was loaded and created", limit_s);
   }
 
-  std::optional<Result<StressResult>> answer_of(const std::string& line) {
+  // Empty: it is not the last message. The port shares the process, so nothing is taken on trust.
+  std::optional<Result<StressResult>> answer_of(const Received& received) {
     heard_ = Clock::now();
-    const json message = json::parse(line, nullptr, false);
-    if (!message.is_object()) return std::nullopt;
-    if (message.contains("stress")) return stress_from_json(message["stress"]);
-    if (message.contains("error")) {
-      auto error = error_from_json(message["error"]);
+    const json head = json::parse(received.head, nullptr, false);
+    if (!head.is_object()) return forged();
+    if (head.contains("error")) {
+      auto error = error_from_json(head["error"]);
       return Result<StressResult>(tl::unexpected(error ? *error : error.error()));
     }
-    if (!message.contains("progress")) return std::nullopt;
-    if (const auto progress = progress_from(message)) {
-      is_made_ = true;
-      idle_ = progress->idle;
-      flown_ = progress->live.time;
-      progress_(*progress);
+    try {
+      if (head.contains("stress")) {
+        BlobReader blobs(received.blobs, [&](void* place, std::size_t size) {
+          const Patience patience = Patience::seconds(in_seconds(task_.timeout));
+          return child_.receive_blob(place, size, patience) == Received::Kind::message;
+        });
+        auto measured = measurement_from(head, blobs);
+        if (!measured) return forged();
+        return judge_live(task_, *std::move(measured));
+      }
+      take_progress(head.at("progress"));
+    } catch (const json::exception&) {
+      return forged();
     }
     return std::nullopt;
+  }
+
+  void take_progress(const json& now) {
+    const StressProgress progress{
+        {Nanoseconds(now.at("time_ns").get<std::int64_t>()),
+         now.at("deadlines").get<std::uint64_t>(), now.at("missed").get<std::uint64_t>()},
+        now.at("idle").get<bool>()};
+    is_made_ = true;
+    idle_ = progress.idle;
+    flown_ = progress.live.time;
+    progress_(progress);
   }
 
   const StressTask& task_;
@@ -150,7 +212,8 @@ class Listener {
 Result<StressResult> run_stress(const StressTask& task, const std::string& port,
                                 const std::function<bool()>& stop,
                                 const std::function<void(const StressProgress&)>& progress) {
-  auto child = Child::spawn([&](const SendLine& send) { work(task, port, send); });
+  auto child = Child::spawn(Child::Runs::code_of_others,
+                            [&](MessageSocket& parent) { work(task, port, parent); });
   if (!child) return tl::unexpected(child.error());
   return Listener(task, *child, progress).listen(stop);
 }

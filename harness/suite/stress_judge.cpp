@@ -90,7 +90,6 @@ void judge_outputs(const Case& the_case, LiveUnitRecord& unit, std::optional<int
   got.samples = std::move(unit.samples);
   got.parameters = std::move(unit.changes);
   if (got.samples.empty()) return add_skip(result, "outputs not judged: no step was over");
-  const DefaultFloatEnvironment environment;
   const std::size_t compared = got.samples.size();
   const auto answers = compare_answers(
       got, the_case.profile, tolerances_of(the_case, Level::numeric, fraction_bits, compared),

@@ -1,16 +1,17 @@
 #include "harness/suite/sweep.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <optional>
 #include <utility>
 
-#include "harness/core/float_environment.hpp"
+#include <nlohmann/json.hpp>
+
+#include "harness/core/error_json.hpp"
 #include "harness/run/case_timing.hpp"
-#include "harness/run/flight.hpp"
 #include "harness/suite/evaluate.hpp"
 #include "harness/suite/fixed_step.hpp"
 #include "harness/suite/judge.hpp"
+#include "harness/suite/verdict_json.hpp"
 
 namespace attest {
 namespace {
@@ -25,25 +26,18 @@ constexpr int longest_delay = 5000, delay_step = 20;
 // Flies a case again and again, each time in another way.
 class Trial {
  public:
-  // Calls `begins` before each flight.
-  Trial(const Case& the_case, const Airframe& airframe, Port& port, CaseResult& result,
-        std::function<void()> begins)
-      : case_(the_case),
-        airframe_(airframe),
-        port_(port),
-        result_(result),
-        begins_(std::move(begins)) {}
+  Trial(const Case& the_case, PortHost& host, CaseResult& result)
+      : case_(the_case), host_(host), result_(result) {}
 
   bool holds(const Setup& setup, Nanoseconds delay) {
     if (result_.verdict != Verdict::pass || error_) return false;
-    begins_();
-    LoopTiming timing = case_timing(case_, setup.rate);
-    if (has_other_steps(port_, case_, setup.rate, timing, result_)) return false;
-    const auto unit = create_unit(port_, case_.profile, result_);
-    if (!unit) return false;
-    for (LoopTick& tick : timing) *tick.commanded += delay;
-    const Case& flies = has_fixed_step(port_, case_) ? from_one_period_on(case_) : case_;
-    const auto flown = fly(flies, setup, airframe_, *unit, std::move(timing));
+    FlightPlan plan{setup, case_timing(case_, setup.rate)};
+    const PortSays& port = host_.says();
+    if (has_other_steps(port, case_, setup.rate, plan.timing, result_)) return false;
+    if (declines(port, result_)) return false;
+    for (LoopTick& tick : plan.timing) *tick.commanded += delay;
+    plan.from_one_period_on = has_fixed_step(port, case_);
+    const auto flown = host_.fly(plan);
     if (!flown) {
       error_ = flown.error();
     } else if (flown->fault) {
@@ -58,7 +52,6 @@ class Trial {
 
  private:
   bool within_bounds(const Trace& trace) const {
-    const DefaultFloatEnvironment environment;
     const auto& metrics = case_.flight->metrics;
     return std::all_of(metrics.begin(), metrics.end(), [&](const Metric& metric) {
       const double value = measured(metric, trace);
@@ -67,10 +60,8 @@ class Trial {
   }
 
   const Case& case_;
-  const Airframe& airframe_;
-  Port& port_;
+  PortHost& host_;
   CaseResult& result_;
-  std::function<void()> begins_;
   std::optional<Error> error_;
 };
 
@@ -110,31 +101,48 @@ double largest_delay(Holds&& holds) {
 
 }  // namespace
 
-CaseResult SweepBatch::identity(std::size_t i) const {
-  return unjudged(case_, {rates_[i == 0 ? 0 : i - 1], flyer_});
+std::string Codec<SweepResult>::encode(const Result<SweepResult>& result) {
+  return attest::encode(result.map([](const SweepResult& one) {
+    nlohmann::json out = {{"result", to_json(one.result)}};
+    if (one.lowest_rate_hz) out["lowest_rate_hz"] = *one.lowest_rate_hz;
+    if (one.largest_delay_ms) out["largest_delay_ms"] = *one.largest_delay_ms;
+    return out;
+  }));
 }
 
-std::size_t SweepBatch::most_parts() const {
-  constexpr int halvings = 8;
-  return longest_delay / delay_step + 1 + halvings;
+Result<SweepResult> Codec<SweepResult>::decode(const std::string& text) {
+  const auto in = attest::decode(text);
+  if (!in) return tl::unexpected(in.error());
+  const auto figure = [&](const char* name) {
+    return in->contains(name) ? std::optional(in->at(name).get<double>()) : std::nullopt;
+  };
+  return case_result_from_json(in->at("result")).map([&](CaseResult result) {
+    return SweepResult{std::move(result), figure("lowest_rate_hz"), figure("largest_delay_ms")};
+  });
 }
 
-Result<CaseResult> SweepBatch::evaluate(std::size_t i, Port& port) {
-  CaseResult result = identity(i);
-  Trial trial(case_, *airframe_, port, result, [this] { begin_part(); });
-  if (i == 0) {
-    result.figures[lowest_rate_figure] = lowest_rate([&](int hertz) {
+Result<void> SweepJob::open() {
+  auto host = start_host(options_, {&case_, airframe_.get()});
+  if (!host) return tl::unexpected(host.error());
+  host_ = *std::move(host);
+  return {};
+}
+
+Result<SweepResult> SweepJob::run(std::size_t task) {
+  const Setup setup{rates_[task == 0 ? 0 : task - 1], flyer_};
+  SweepResult found{unjudged(case_, setup), {}, {}};
+  Trial trial(case_, *host_, found.result);
+  if (task == 0) {
+    found.lowest_rate_hz = lowest_rate([&](int hertz) {
       return trial.holds({Rate::hz(hertz), flyer_}, Nanoseconds(0));
     });
   } else {
-    const Setup setup{rates_[i - 1], flyer_};
-    result.figures[largest_delay_figure] =
-        0.1 * largest_delay([&](int delay) {
-          return trial.holds(setup, delay * std::chrono::microseconds(100));
-        });
+    found.largest_delay_ms = 0.1 * largest_delay([&](int delay) {
+                               return trial.holds(setup, delay * std::chrono::microseconds(100));
+                             });
   }
   if (trial.error()) return tl::unexpected(*trial.error());
-  return result;
+  return found;
 }
 
 }  // namespace attest

@@ -1,8 +1,8 @@
-#include "harness/suite/verdict.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "harness/suite/run_result.hpp"
 
 namespace attest {
 namespace {

@@ -1,7 +1,6 @@
-// The verdict on one case at one rate.
+// The verdict on one case at one rate. It knows nothing of the catalogue of wrong controllers.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,8 +10,6 @@
 #include "harness/compare/compare.hpp"
 #include "harness/compare/metric.hpp"
 #include "harness/schedule/rate.hpp"
-#include "harness/suite/diagnose.hpp"
-#include "harness/suite/likeness.hpp"
 
 namespace attest {
 
@@ -65,9 +62,7 @@ struct CaseResult {
   std::size_t deviating_ticks = 0;
   std::optional<Deviation> first;
   std::optional<Headroom> tightest;
-  std::vector<MetricResult> metrics;       // of a flight that ended well
-  std::optional<VectorLikeness> likeness;  // of a diagnosis
-  std::map<std::string, double> figures;   // of a task that measures, by name
+  std::vector<MetricResult> metrics;  // of a flight that ended well
   double elapsed_s = 0;  // of wall time, for JUnit only: everything else is deterministic
 
   std::string case_id() const { return profile + "/" + group + "/" + name; }
@@ -75,36 +70,6 @@ struct CaseResult {
   // "px4-v1.5.5/attitude/roll_30@250hz", "px4-v1.5.5/flight/hover@250hz-iris-ode": what --filter
   // matches and what a report names.
   std::string id() const { return case_id() + "@" + setup().label(); }
-};
-
-// Everything the reports say, in the order of the cases, for any number of jobs.
-struct RunResult {
-  std::string attest_version;
-  std::string command = "run";  // of attest, that made it: run or stress
-  std::string timing;           // the file that was replayed; empty: the cases' own times
-  std::string port;             // as given: "lib:./libmine.so"
-  std::string port_name;        // as the port says
-  std::string port_version;
-  std::optional<int> fraction_bits;  // of a port in fixed point
-  std::optional<Rate> fixed_step;    // of a port that knows only its own sample time
-  Level level = Level::numeric;
-  std::vector<Rate> rates;  // selected, ascending
-  std::string selection;    // the options that selected less than all: "--group tpa"; or empty
-  bool all_setups = false;  // of each case that was selected, all were
-  // "profile/group" -> how many cases the suite has at each rate, selected or not.
-  std::map<std::string, std::map<Rate, std::size_t>> suite;
-  std::string cases_version = "unversioned", golden_version = "unversioned";  // of the suite
-  std::string suite_sha256;                                                   // of its content
-  bool suite_is_released = false;  // that content is the one this attest was released with
-  std::string port_sha256;         // of its library; empty: the port is part of attest
-  std::string date;                // of the run, UTC: "2026-03-31"
-  std::vector<CaseResult> results;
-  std::vector<Error> errors;           // of the environment: a golden that cannot be read, ...
-  bool stopped_early = false;          // --fail-fast
-  std::optional<Diagnosis> diagnosis;  // of what failed
-
-  std::size_t count(Verdict verdict) const;
-  bool failed() const;  // any verdict that fails a run
 };
 
 }  // namespace attest

@@ -171,34 +171,6 @@ Flyer flyer_from(Reader reader) {
   return flyer;
 }
 
-// Rows of numbers: there are hundreds.
-json likeness_to_json(const VectorLikeness& likeness) {
-  json rows = json::array();
-  for (const Likeness& one : likeness.likenesses) {
-    rows.push_back({one.matched, one.both, one.either});
-  }
-  return {{"ticks", likeness.ticks}, {"deviates", likeness.deviates}, {"faults", rows}};
-}
-
-VectorLikeness likeness_from(Reader reader) {
-  VectorLikeness out;
-  out.ticks = reader.count("ticks");
-  out.deviates = reader.member("deviates") == true;
-  for (const auto& row : reader.member("faults")) {
-    const bool counts = row.is_array() && row.size() == 3 && row[0].is_number_unsigned() &&
-                        row[1].is_number_unsigned() && row[2].is_number_unsigned();
-    if (!counts) {
-      reader.wrong("`faults` are not rows of three counts");
-      break;
-    }
-    out.likenesses.push_back({row[0], row[1], row[2]});
-  }
-  if (out.likenesses.size() != faults::catalogue().size()) {
-    reader.wrong("`faults` are not those of the catalogue");
-  }
-  return out;
-}
-
 Headroom headroom_from(Reader reader) {
   return {reader.real("ratio"), reader.count("tick"), reader.channel("channel")};
 }
@@ -224,8 +196,6 @@ nlohmann::json to_json(const CaseResult& result) {
     out["vehicle"] = valid_utf8(result.flyer->vehicle);
     out["plant"] = name_of(result.flyer->plant);
   }
-  if (result.likeness) out["likeness"] = likeness_to_json(*result.likeness);
-  for (const auto& [name, value] : result.figures) out["figures"][name] = number(value);
   for (const MetricResult& metric : result.metrics) {
     out["metrics"].push_back(metric_to_json(metric));
   }
@@ -255,13 +225,6 @@ Result<CaseResult> case_result_from_json(const nlohmann::json& json) {
   if (reader.has("first")) out.first = deviation_from({reader.member("first"), error});
   if (reader.has("tightest")) out.tightest = headroom_from({reader.member("tightest"), error});
   if (reader.has("vehicle")) out.flyer = flyer_from({json, error});
-  if (reader.has("likeness")) out.likeness = likeness_from({reader.member("likeness"), error});
-  if (reader.has("figures")) {
-    Reader figures(reader.member("figures"), error);
-    for (const auto& [name, value] : reader.member("figures").items()) {
-      out.figures[name] = figures.real(name.c_str());
-    }
-  }
   if (reader.has("metrics")) {
     for (const auto& metric : reader.member("metrics")) {
       out.metrics.push_back(metric_from({metric, error}));

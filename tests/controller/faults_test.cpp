@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "controller/faults/fault.hpp"
+#include "controller/faults/faulty_controller.hpp"
 #include "controller/reference/unit.hpp"
 
 namespace attest::faults {

@@ -44,7 +44,7 @@ std::vector<Nanoseconds> simulated(const std::vector<ScheduledTask>& tasks, Nano
   const auto all = *simulate(tasks, duration);
   for (const auto& jobs : all) {
     Nanoseconds longest{0};
-    for (const Job& job : jobs) longest = std::max(longest, job.response());
+    for (const TaskJob& job : jobs) longest = std::max(longest, job.response());
     times.push_back(longest);
   }
   return times;
@@ -111,7 +111,7 @@ RC_GTEST_PROP(FixedPriority, NoJobRunsBeforeItsReleaseNorLessThanItsExecution, (
   const auto jobs = *simulate(tasks, ms(500));
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     for (std::size_t j = 0; j < jobs[i].size(); ++j) {
-      const Job& job = jobs[i][j];
+      const TaskJob& job = jobs[i][j];
       RC_ASSERT(job.start >= job.release);
       RC_ASSERT(job.finish - job.start >= tasks[i].execution[j % tasks[i].execution.size()]);
       if (j > 0) RC_ASSERT(job.start >= jobs[i][j - 1].finish);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "harness/host/host_here.hpp"
 #include "harness/port/fault_port.hpp"
 #include "harness/run/recorded.hpp"
 #include "harness/suite/evaluate.hpp"
@@ -31,12 +32,12 @@ bool tells_a_mistake_of(const std::string& group, const std::string& profile,
                         const std::vector<Recorded>& recordings) {
   const auto known = *reference::profile_from_name(profile);
   for (const faults::Fault* fault : faults::catalogue()) {
-    if (fault->group != group || !fault->is_killable(known)) continue;
-    const auto port = open_fault(fault->id);
+    if (fault->group != group || !fault->is_detectable(known)) continue;
+    HostHere host(*open_fault(fault->id));
     for (const Recorded& one : recordings) {
       if (one.subject.profile != profile) continue;
       const CaseResult result =
-          evaluate_trace(one.trace, one.subject, **port, Tolerances(Level::numeric));
+          evaluate_trace(one.trace, one.subject, host, Tolerances(Level::numeric));
       if (fails_a_run(result.verdict)) return true;
     }
   }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/core/file.hpp"
+#include "harness/host/host_here.hpp"
 #include "harness/trace/csv.hpp"
 #include "tests/harness/run/blessed.hpp"
 #include "tests/harness/suite/small_suite.hpp"
@@ -15,10 +16,10 @@ namespace {
 
 using testing::HasSubstr;
 
-std::unique_ptr<Port> opened(const std::string& specification) {
-  auto port = open_port(specification);
-  if (!port) throw std::invalid_argument(port.error().to_string());
-  return *std::move(port);
+std::unique_ptr<PortHost> opened(const std::string& specification) {
+  auto host = open_host_here(specification);
+  if (!host) throw std::invalid_argument(host.error().to_string());
+  return *std::move(host);
 }
 
 class EvaluateTest : public testing::Test {
@@ -27,8 +28,8 @@ class EvaluateTest : public testing::Test {
   Result<CaseResult> evaluate(const std::string& port, Level level = Level::numeric) {
     const auto golden = Golden::open(suite_.golden(), suite_[0]);
     if (!golden) return tl::unexpected(golden.error());
-    const auto library = opened(port);
-    return evaluate_case(suite_[0], Rate::hz(100), *golden, *library, level);
+    const auto host = opened(port);
+    return evaluate_case(suite_[0], Rate::hz(100), *golden, *host, level);
   }
 
   Verdict verdict_of(const std::string& port, Level level = Level::numeric) {
@@ -74,9 +75,7 @@ TEST_F(EvaluateTest, ACaseOnAThresholdIsForTheExactLevel) {
 
 TEST_F(EvaluateTest, AMissingGoldenIsOneErrorForAllRates) {
   suite_.add_unblessed("pitch", pitching);
-  WorkerOptions options;
-  options.port = "builtin";
-  const auto outcome = suite_.run(options);
+  const auto outcome = suite_.run(host_of("builtin"));
   EXPECT_THAT(outcome.results, testing::IsEmpty());
   ASSERT_EQ(outcome.errors.size(), 1u);
   EXPECT_THAT(outcome.errors[0].message, HasSubstr("no golden for px4-v1.5.5/tests/pitch"));

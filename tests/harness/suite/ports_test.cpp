@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
-#include "harness/suite/worker.hpp"
 #include "tests/harness/suite/small_suite.hpp"
 
 namespace attest {
@@ -22,15 +21,13 @@ class PortsTest : public testing::Test {
  protected:
   void SetUp() override { suite_.add_three(); }
 
-  WorkerOutcome run(const std::string& port) {
-    WorkerOptions options;
-    options.port = port == "builtin" ? port : test_port(port);
-    return suite_.run(options);
+  JobResults<CaseResult> run(const std::string& port) {
+    return suite_.run(host_of(port == "builtin" ? port : test_port(port)));
   }
 
   // The results of the six tasks, all of one verdict.
   std::vector<CaseResult> all_are(const std::string& port, Verdict verdict) {
-    const WorkerOutcome outcome = run(port);
+    const auto outcome = run(port);
     EXPECT_THAT(outcome.errors, IsEmpty());
     EXPECT_EQ(outcome.results.size(), 6u);
     for (const CaseResult& result : outcome.results) {
@@ -75,17 +72,14 @@ TEST_F(PortsTest, AnExitIsACrash) {
 }
 
 TEST_F(PortsTest, AHangIsATimeoutOnceACase) {
-  WorkerOptions options;
-  options.port = test_port("hang");
-  options.timeout_s = 0.3;
-  options.jobs = 3;
-  const auto outcome = suite_.run(options);
+  HostOptions host = host_of(test_port("hang"));
+  host.timeout_s = 0.3;
+  const auto outcome = suite_.run(host, 3);
   ASSERT_EQ(outcome.results.size(), 6u);
   for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_EQ(outcome.results[i].verdict, Verdict::timeout);
-    EXPECT_EQ(outcome.results[i].reason, i % 2 == 0
-                                             ? "no answer within 0.3 s"
-                                             : "not run: the port had timed out in this case");
+    EXPECT_EQ(outcome.results[i].reason,
+              i % 2 == 0 ? "no answer within 0.3 s" : "not run: the port had timed out before");
   }
 }
 
@@ -93,10 +87,9 @@ TEST_F(PortsTest, AHangInAnyFunctionIsATimeout) {
   suite_.add("rolls", "[parameters]\nMC_ROLL_P = 7.0\n");
   for (const char* port :
        {"hangs_in_load", "hangs_in_create", "hangs_in_set_parameter", "hangs_in_destroy"}) {
-    WorkerOptions options;
-    options.port = test_port(port);
-    options.timeout_s = 0.3;
-    const auto outcome = suite_.run(options);
+    HostOptions host = host_of(test_port(port));
+    host.timeout_s = 0.3;
+    const auto outcome = suite_.run(host);
     EXPECT_THAT(outcome.errors, IsEmpty());
     ASSERT_EQ(outcome.results.size(), 8u);
     EXPECT_EQ(outcome.results[6].verdict, Verdict::timeout) << port;
@@ -160,10 +153,7 @@ TEST_F(PortsTest, AnyNumberOfJobsGivesTheSame) {
   for (const char* port : {"crash", "sign_flip", "non_finite", "prints", "unsupported_step"}) {
     std::set<std::vector<std::string>> outcomes;
     for (const int jobs : {1, 2, 4, 50}) {
-      WorkerOptions options;
-      options.port = test_port(port);
-      options.jobs = jobs;
-      auto lines = lines_of(suite_.run(options));
+      auto lines = lines_of(suite_.run(host_of(test_port(port)), jobs));
       // With a sanitizer in it the last words have a process id.
       for (std::string& line : lines) line = line.substr(0, line.find("; it last printed"));
       outcomes.insert(lines);
@@ -174,11 +164,10 @@ TEST_F(PortsTest, AnyNumberOfJobsGivesTheSame) {
 
 TEST_F(PortsTest, InProcessGivesTheSame) {
   for (const char* port : {"sign_flip", "non_finite", "step_fails", "global_state"}) {
-    WorkerOptions options;
-    options.port = test_port(port);
-    const auto apart = lines_of(suite_.run(options));
-    options.in_process = true;
-    EXPECT_EQ(lines_of(suite_.run(options)), apart) << port;
+    HostOptions host = host_of(test_port(port));
+    const auto apart = lines_of(suite_.run(host));
+    host.in_process = true;
+    EXPECT_EQ(lines_of(suite_.run(host)), apart) << port;
   }
 }
 
@@ -193,10 +182,9 @@ TEST_F(PortsTest, AFloatingPointModeOfThePortStaysItsOwn) {
   // Made anew for the port, and compared with the golden to the bit: inputs that would be flushed.
   suite_.add("tiny", "[control_state]\nroll_rate = 1e-40\n");
   for (const bool in_process : {false, true}) {
-    WorkerOptions options;
-    options.port = test_port("sets_ftz");
-    options.in_process = in_process;
-    const auto outcome = suite_.run(options);
+    HostOptions host = host_of(test_port("sets_ftz"));
+    host.in_process = in_process;
+    const auto outcome = suite_.run(host);
     EXPECT_THAT(outcome.errors, IsEmpty());
     EXPECT_EQ(outcome.results.size(), 8u);
     for (const CaseResult& result : outcome.results) {

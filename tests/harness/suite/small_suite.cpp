@@ -34,16 +34,25 @@ void SmallSuite::add_three() {
   add("roll", "[vehicle_attitude_setpoint]\nq_d = { tilt_deg = 20 }\n");
 }
 
-Batches SmallSuite::batches(Level level) const {
-  Batches all;
-  for (const Case& the_case : cases_) {
-    all.push_back(
-        std::make_unique<CaseBatch>(the_case, the_case.setups(), nullptr, golden(), level));
-  }
-  return all;
+HostOptions host_of(const std::string& port) {
+  HostOptions host;
+  host.port = port;
+  return host;
 }
 
-std::vector<std::string> lines_of(const WorkerOutcome& outcome) {
+JobResults<CaseResult> SmallSuite::run(const HostOptions& host, int processes) const {
+  Jobs<CaseResult> jobs;
+  for (const Case& the_case : cases_) {
+    jobs.push_back(std::make_unique<CaseJob>(the_case, the_case.setups(), nullptr, golden(),
+                                             Level::numeric, host));
+  }
+  JobOptions<CaseResult> options;
+  options.processes = processes;
+  options.in_process = host.in_process;
+  return run_jobs(jobs, options);
+}
+
+std::vector<std::string> lines_of(const JobResults<CaseResult>& outcome) {
   std::vector<std::string> lines;
   for (const CaseResult& result : outcome.results) {
     std::string line = fmt::format("{} {} {}", result.id(), name_of(result.verdict), result.reason);

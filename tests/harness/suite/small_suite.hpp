@@ -5,13 +5,14 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/suite/worker.hpp"
+#include "harness/suite/case_job.hpp"
 #include "tests/harness/casefile/case_files.hpp"
 
 namespace attest {
 
 // "lib:.../port_<name>.so" of tests/ports.
 std::string test_port(const std::string& name);
+HostOptions host_of(const std::string& port);  // as for open_port
 
 class SmallSuite {
  public:
@@ -26,8 +27,7 @@ class SmallSuite {
   std::filesystem::path golden() const { return files_.folder().parent_path() / "golden"; }
   const Case& operator[](std::size_t i) const { return cases_[i]; }
 
-  Batches batches(Level level = Level::numeric) const;
-  WorkerOutcome run(const WorkerOptions& options) const { return run_batches(batches(), options); }
+  JobResults<CaseResult> run(const HostOptions& host, int processes = 1) const;
 
  private:
   CaseFiles files_;
@@ -35,6 +35,6 @@ class SmallSuite {
 };
 
 // One line a result: id, verdict, reason, first deviation; and one an error.
-std::vector<std::string> lines_of(const WorkerOutcome& outcome);
+std::vector<std::string> lines_of(const JobResults<CaseResult>& outcome);
 
 }  // namespace attest

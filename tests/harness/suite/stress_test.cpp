@@ -58,7 +58,9 @@ TEST(Stress, AWrongPortFailsWhateverItsTiming) {
 
 TEST(Stress, APortWithAFixedStepIsNotPassed) {
   for (const char* port : {"fixed_step", "fixed_step_gain_off"}) {
-    const auto stress = stressed(test_port(port));
+    StressTask task = hover_task();
+    task.port = *describe_port(host_of(test_port(port)));
+    const auto stress = stressed(test_port(port), task);
     ASSERT_TRUE(stress) << stress.error().to_string();
     EXPECT_EQ(stress->result.verdict, Verdict::skip) << stress->result.reason;
     EXPECT_THAT(stress->result.reason, HasSubstr("outputs not judged: a fixed step"));

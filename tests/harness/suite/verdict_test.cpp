@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "harness/suite/run_result.hpp"
 #include "harness/suite/verdict_json.hpp"
 
 namespace attest {

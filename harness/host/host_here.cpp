@@ -1,0 +1,110 @@
+#include "harness/host/host_here.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "harness/host/step_timer.hpp"
+
+namespace attest {
+namespace {
+
+PortFault no_unit_of(const std::string& profile) {
+  return {PortFault::Kind::profile, 0,
+          fmt::format("the port does not support profile {}", profile)};
+}
+
+}  // namespace
+
+HostHere::HostHere(std::unique_ptr<Port> port, std::optional<PortSays> said, Course course)
+    : port_(std::move(port)),
+      says_(said ? *std::move(said) : PortSays::asked(*port_)),
+      course_(course) {}
+
+std::optional<PortFault> HostHere::held(std::optional<PortFault> fault,
+                                        const std::string& profile) const {
+  if (const std::string told = change(says_, PortSays::asked(*port_)); !told.empty()) {
+    return PortFault{PortFault::Kind::protocol, 0, told};
+  }
+  const bool is_refused = fault && fault->kind == PortFault::Kind::profile;
+  const auto& made = says_.profiles;
+  if (is_refused && std::find(made.begin(), made.end(), profile) != made.end()) {
+    return PortFault{
+        PortFault::Kind::protocol, 0,
+        fmt::format("create(\"{}\") returned NULL; it made a unit when the port was asked first",
+                    profile)};
+  }
+  return fault;
+}
+
+std::optional<PortFault> HostHere::drive(const Subject& subject, Trace& trace) {
+  return ports_.run([&] { return held(attest::drive(*port_, subject, trace), subject.profile); });
+}
+
+Result<Flown> HostHere::fly(const FlightPlan& plan) {
+  const Case& whole = *course_.the_case;
+  return ports_.run([&]() -> Result<Flown> {
+    const auto unit = port_->create(whole.profile);
+    if (!unit) {
+      Flown none;
+      none.fault = held(no_unit_of(whole.profile), whole.profile);
+      return none;
+    }
+    auto flown = attest::fly(plan.from_one_period_on ? whole.from_one_period_on() : whole,
+                             plan.setup, *course_.airframe, *unit, plan.timing);
+    if (flown) flown->fault = held(std::move(flown->fault), whole.profile);
+    return flown;
+  });
+}
+
+Result<StepTimes> HostHere::time_steps(const std::string& profile, const Trace& inputs,
+                                       bool with_stack) {
+  if (!clock_) clock_ = time_of_clock();
+  StepTimes times;
+  times.clock = *clock_;
+  times.steps.reserve(inputs.samples.size());
+  Trace trace = inputs;
+  times.fault = ports_.run([&]() -> std::optional<PortFault> {
+    const auto unit = port_->create(profile);
+    if (!unit) return held(no_unit_of(profile), profile);
+    TimedUnit timed(*unit, *clock_, times.steps);
+    return held(attest::drive(timed, trace), profile);
+  });
+  if (!with_stack || times.fault) return times;
+  if (auto measured = measure_stack(profile, std::move(trace), times); !measured) {
+    return tl::unexpected(measured.error());
+  }
+  return times;
+}
+
+Result<void> HostHere::measure_stack(const std::string& profile, Trace trace, StepTimes& times) {
+  if (!stack_) {
+    auto made = PaintedStack::make();
+    if (!made) return tl::unexpected(made.error());
+    stack_.emplace(*std::move(made));
+  }
+  times.fault = ports_.run([&]() -> std::optional<PortFault> {
+    const auto unit = port_->create(profile);
+    if (!unit) return held(no_unit_of(profile), profile);
+    stack_->repaint();
+    UnitOnStack on_stack(*unit, *stack_);
+    return held(attest::drive(on_stack, trace), profile);
+  });
+  if (!times.fault) times.stack_bytes = stack_->used();
+  return {};
+}
+
+bool HostHere::supports(const std::string& profile) {
+  return ports_.run([&] { return port_->create(profile) != nullptr; });
+}
+
+Result<std::unique_ptr<PortHost>> open_host_here(const std::string& port,
+                                                 std::optional<PortSays> said, Course course) {
+  const DefaultFloatEnvironment callers;  // which a library may change when it is loaded
+  auto opened = open_port(port);
+  if (!opened) return tl::unexpected(opened.error());
+  return std::make_unique<HostHere>(*std::move(opened), std::move(said), course);
+}
+
+}  // namespace attest

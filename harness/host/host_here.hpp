@@ -1,0 +1,43 @@
+// A host in this process: no protection against a port that crashes or hangs, and full speed.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "harness/core/float_environment.hpp"
+#include "harness/host/port_host.hpp"
+#include "harness/realtime/painted_stack.hpp"
+
+namespace attest {
+
+class HostHere final : public PortHost {
+ public:
+  // `said`: what the port is held to; empty: what it says now.
+  HostHere(std::unique_ptr<Port> port, std::optional<PortSays> said = {}, Course course = {});
+
+  const PortSays& says() const override { return says_; }
+  std::optional<PortFault> drive(const Subject& subject, Trace& trace) override;
+  Result<Flown> fly(const FlightPlan& plan) override;
+  Result<StepTimes> time_steps(const std::string& profile, const Trace& inputs,
+                               bool with_stack) override;
+  bool supports(const std::string& profile) override;
+
+ private:
+  // The fault of a request, or else that the port is no more what it said.
+  std::optional<PortFault> held(std::optional<PortFault> fault, const std::string& profile) const;
+  Result<void> measure_stack(const std::string& profile, Trace trace, StepTimes& times);
+
+  std::unique_ptr<Port> port_;
+  PortFloatEnvironment ports_;
+  PortSays says_;
+  Course course_;
+  std::optional<Nanoseconds> clock_;
+  std::optional<PaintedStack> stack_;
+};
+
+// Opens the port (open_port), in its own floating point environment. Errors: as of open_port().
+Result<std::unique_ptr<PortHost>> open_host_here(const std::string& port,
+                                                 std::optional<PortSays> said = {},
+                                                 Course course = {});
+
+}  // namespace attest

@@ -1,0 +1,64 @@
+// What a judge and the process of a port say to each other (message_socket.hpp): a head in JSON,
+// and structs as they are in memory, because the one process is a fork of the other.
+//
+//     process -> {"says": {...}}                            once, when the port is loaded, or
+//                {"error": {...}}                           why it cannot be
+//     judge   -> {"do": "drive", "subject": ..., ...}       samples, with inputs only
+//     process -> {"request": 1, "fault": {...}}             the same samples with outputs
+//     judge   -> {"do": "fly", "rate": "250", ...}          LoopTicks
+//     process -> {"request": 2, "fault", "divergence", "parameters"}
+//                                                           samples, plant samples
+//     judge   -> {"do": "time", "profile": ..., ...}        samples, with inputs only
+//     process -> {"request": 3, "fault", "clock_ns"}        nanoseconds of each step
+//     judge   -> {"do": "supports", "profile": ...}
+//     process -> {"request": 4, "supports": true}
+//
+// Instead of an answer may come {"request": n, "error": {...}}. The port shares the process, so the
+// judge takes nothing on trust: what is not an answer to its request, complete and of the right
+// size, is no answer.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "harness/host/port_host.hpp"
+#include "harness/host/trace_message.hpp"
+#include "harness/process/message_socket.hpp"
+
+namespace attest {
+
+// Of the judge: the heads of its requests.
+std::string drive_request(const Subject& subject, const Trace& trace);
+std::string fly_request(const FlightPlan& plan);
+std::string time_request(const std::string& profile, const Trace& inputs, bool with_stack);
+std::string supports_request(const std::string& profile);
+
+// What has arrived, and the number of the request that it is to answer.
+struct Arrived {
+  const std::string& head;
+  BlobReader& blobs;
+  std::uint64_t request;
+};
+
+// Empty: no answer to that request. Each is whole: of a trace that was driven or timed there are
+// all ticks, of a flight of so many ticks all, or it says why they end.
+struct Driven {
+  std::vector<Sample> samples;
+  std::optional<PortFault> fault;
+};
+std::optional<Driven> read_driven(const Arrived& arrived, std::size_t ticks);
+std::optional<Result<Flown>> read_flown(const Arrived& arrived, std::size_t ticks);
+std::optional<Result<StepTimes>> read_times(const Arrived& arrived, std::size_t ticks);
+std::optional<bool> read_supports(const Arrived& arrived);
+std::optional<Result<PortSays>> read_greeting(const Arrived& arrived);
+
+// Of the port's process.
+bool greet(const PortSays& says, MessageSocket& judge);
+bool refuse(const Error& error, std::uint64_t request, MessageSocket& judge);
+
+// Does what is asked, and answers. False when the judge has gone.
+bool answer(const Arrived& question, PortHost& host, MessageSocket& judge);
+
+}  // namespace attest

@@ -1,0 +1,230 @@
+#include "harness/host/port_process.hpp"
+
+#include <type_traits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "harness/host/host_here.hpp"
+#include "harness/host/host_protocol.hpp"
+#include "harness/process/child.hpp"
+
+namespace attest {
+namespace {
+
+using Kind = Received::Kind;
+
+// In the child.
+void serve(const HostOptions& options, const Course& course, MessageSocket& judge) {
+  auto host = open_host_here(options.port, options.said, course);
+  if (!host) {
+    refuse(host.error(), 0, judge);
+    return;
+  }
+  bool goes_on = greet((*host)->says(), judge);
+  for (std::uint64_t request = 1; goes_on; ++request) {
+    const Received question = judge.receive();
+    if (question.kind != Kind::message) return;
+    BlobReader blobs(question.blobs, [&](void* place, std::size_t size) {
+      return judge.receive_blob(place, size) == Kind::message;
+    });
+    goes_on = answer({question.head, blobs, request}, **host, judge);
+  }
+}
+
+// What a port is to answer is not sent to it.
+std::vector<Sample> inputs_of(const Trace& trace) {
+  std::vector<Sample> inputs = trace.samples;
+  for (Sample& sample : inputs) {
+    sample.out = {};
+    sample.mixer_out = {};
+    sample.battery_out = {};
+  }
+  return inputs;
+}
+
+void set_outputs(const std::vector<Sample>& answered, Trace& trace) {
+  for (std::size_t i = 0; i < trace.samples.size(); ++i) {
+    trace.samples[i].out = answered[i].out;
+    trace.samples[i].mixer_out = answered[i].mixer_out;
+    trace.samples[i].battery_out = answered[i].battery_out;
+  }
+}
+
+class PortProcess final : public PortHost {
+ public:
+  // `child` is empty for a port that is not asked at all.
+  PortProcess(const HostOptions& options, std::optional<Child> child)
+      : options_(options), child_(std::move(child)) {
+    if (options.said) says_ = *options.said;
+    if (!child_) {
+      fault_ = PortFault{PortFault::Kind::timeout, 0, options.hangs};
+    }
+  }
+
+  // Waits until the port is loaded. Errors: it cannot be.
+  Result<void> greet() {
+    if (!child_) return {};
+    const auto greeted = answer_from("when it was loaded", read_greeting);
+    if (greeted && !*greeted) return tl::unexpected(greeted->error());
+    if (greeted && !options_.said) says_ = **greeted;
+    return {};
+  }
+
+  const PortSays& says() const override { return says_; }
+
+  std::optional<PortFault> drive(const Subject& subject, Trace& trace) override {
+    const std::vector<Sample> inputs = inputs_of(trace);
+    const auto driven =
+        ask(drive_request(subject, trace), {blob_of(inputs)},
+            [&](const Arrived& arrived) { return read_driven(arrived, inputs.size()); });
+    if (!driven) return fault_;
+    set_outputs(driven->samples, trace);
+    return driven->fault;
+  }
+
+  Result<Flown> fly(const FlightPlan& plan) override {
+    auto flown = ask(fly_request(plan), {blob_of(plan.timing)}, [&](const Arrived& arrived) {
+      return read_flown(arrived, plan.timing.size());
+    });
+    if (flown) return *std::move(flown);
+    Flown none;
+    none.fault = fault_;
+    return none;
+  }
+
+  Result<StepTimes> time_steps(const std::string& profile, const Trace& inputs,
+                               bool with_stack) override {
+    auto times =
+        ask(time_request(profile, inputs, with_stack), {blob_of(inputs.samples)},
+            [&](const Arrived& arrived) { return read_times(arrived, inputs.samples.size()); });
+    if (times) return *std::move(times);
+    StepTimes none;
+    none.fault = fault_;
+    return none;
+  }
+
+  bool supports(const std::string& profile) override {
+    const auto supports = ask(supports_request(profile), {}, read_supports);
+    return supports && *supports;
+  }
+
+  bool is_spent() const override { return fault_ && fault_->kind != PortFault::Kind::timeout; }
+
+  const std::optional<PortFault>& fault() const { return fault_; }
+
+ private:
+  // Empty, and fault_ says why, when the port went wrong: now, or in a request before.
+  template <typename Read>
+  auto ask(const std::string& question, const std::vector<Blob>& blobs, Read read)
+      -> std::invoke_result_t<Read, const Arrived&> {
+    const bool is_told = std::exchange(is_told_, true);
+    if (fault_) {
+      if (is_told) fault_->what = "not run: the port had timed out before";
+      return std::nullopt;
+    }
+    ++request_;
+    // A process that does not listen any more says why when it is listened to.
+    child_->socket().send(question, blobs, Patience::seconds(options_.timeout_s));
+    return answer_from("", std::move(read));
+  }
+
+  template <typename Read>
+  auto answer_from(const std::string& when, Read read)
+      -> std::invoke_result_t<Read, const Arrived&> {
+    Patience patience = Patience::seconds(options_.timeout_s);
+    patience.given_up = options_.stop;
+    const Received received = child_->receive(patience);
+    Kind kind = received.kind;
+    if (kind == Kind::message) {
+      BlobReader blobs(received.blobs, [&](void* place, std::size_t size) {
+        const Kind came = child_->receive_blob(place, size, patience);
+        if (came != Kind::message) kind = came;
+        return came == Kind::message;
+      });
+      if (auto answer = read(Arrived{received.head, blobs, request_})) return answer;
+    }
+    give_up(kind, when);
+    return std::nullopt;
+  }
+
+  void give_up(Kind why, const std::string& when) {
+    if (why != Kind::ended) child_->kill();
+    const std::string how = child_->end();
+    const std::string comma = when.empty() ? "" : ", " + when;
+    const std::string words = child_->last_words();
+    const std::string printed = words.empty() ? "" : fmt::format("; it last printed: {}", words);
+    switch (why) {
+      case Kind::ended:
+        fault_ = PortFault{PortFault::Kind::crash, 0,
+                           fmt::format("the port's process {}{}{}", how, comma, printed)};
+        return;
+      case Kind::too_late:
+      case Kind::given_up:
+        fault_ =
+            PortFault{PortFault::Kind::timeout, 0,
+                      fmt::format("no answer within {} s{}{}", options_.timeout_s, comma, printed)};
+        return;
+      default:
+        fault_ = PortFault{PortFault::Kind::protocol, 0,
+                           "the port wrote on the socket on which its process answers"};
+    }
+  }
+
+  HostOptions options_;
+  std::optional<Child> child_;
+  PortSays says_;
+  std::uint64_t request_ = 0;
+  bool is_told_ = false;            // a request has ended with the fault of loading, or went well
+  std::optional<PortFault> fault_;  // for good
+};
+
+Result<std::unique_ptr<PortProcess>> start_process(const HostOptions& options,
+                                                   const Course& course) {
+  std::optional<Child> child;
+  if (options.hangs.empty()) {
+    auto spawned = Child::spawn(Child::Runs::code_of_others,
+                                [&](MessageSocket& judge) { serve(options, course, judge); });
+    if (!spawned) return tl::unexpected(spawned.error());
+    child = *std::move(spawned);
+  }
+  auto host = std::make_unique<PortProcess>(options, std::move(child));
+  if (auto greeted = host->greet(); !greeted) return tl::unexpected(greeted.error());
+  return host;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<PortHost>> start_host(const HostOptions& options, const Course& course) {
+  if (options.in_process) return open_host_here(options.port, options.said, course);
+  auto process = start_process(options, course);
+  if (!process) return tl::unexpected(process.error());
+  return *std::move(process);
+}
+
+Result<PortDescription> describe_port(const HostOptions& options,
+                                      const std::vector<std::string>& profiles) {
+  const auto first = start_process(options, {});
+  if (!first) return tl::unexpected(first.error());
+  PortDescription description;
+  if (const auto& fault = (*first)->fault()) {
+    if (fault->kind != PortFault::Kind::timeout) return fail_at(options.port, fault->what);
+    description.hangs = fault->what;
+    return description;
+  }
+  static_cast<PortSays&>(description) = (*first)->says();
+  for (const std::string& profile : profiles) {
+    const auto host = start_process(options, {});
+    if (!host) return tl::unexpected(host.error());
+    const bool supports = (*host)->supports(profile);
+    if (const auto& fault = (*host)->fault()) {
+      description.goes_wrong =
+          fmt::format("{}, when it was to make a unit of {}", fault->what, profile);
+      break;
+    }
+    if (supports) description.profiles.push_back(profile);
+  }
+  return description;
+}
+
+}  // namespace attest

@@ -1,0 +1,45 @@
+#include "harness/host/port_says.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace attest {
+namespace {
+
+std::string text_of(const std::optional<int>& bits) {
+  return bits ? fmt::format("fixed:{}", *bits) : "none";
+}
+
+std::string text_of(const std::optional<Rate>& rate) { return rate ? rate->to_string() : "none"; }
+
+}  // namespace
+
+std::string change(const PortSays& said, const PortSays& now) {
+  const auto changed = [](const char* what, const std::string& before, const std::string& after) {
+    if (before == after) return std::string();
+    return fmt::format(
+        "its {} is `{}`, it was `{}` when the port was asked first; it must answer "
+        "the same each time",
+        what, after, before);
+  };
+  const auto yes = [](bool is) { return std::string(is ? "there" : "not there"); };
+  const std::string groups = fmt::format("{}", fmt::join(said.unsupported_groups, ","));
+  const std::string groups_now = fmt::format("{}", fmt::join(now.unsupported_groups, ","));
+  for (const std::string& told :
+       {changed("name", said.name, now.name), changed("version", said.version, now.version),
+        changed("attest.unsupported_groups", groups, groups_now),
+        changed("attest.arithmetic", text_of(said.fraction_bits), text_of(now.fraction_bits)),
+        changed("attest.fixed_step", text_of(said.fixed_step), text_of(now.fixed_step)),
+        changed("mixer", yes(said.has_mixer), yes(now.has_mixer)),
+        changed("battery estimate", yes(said.has_battery_status), yes(now.has_battery_status))}) {
+    if (!told.empty()) return told;
+  }
+  return "";
+}
+
+PortSays PortSays::asked(const Port& port) {
+  return {port.name(),       port.version(),   port.unsupported_groups(), port.fraction_bits(),
+          port.fixed_step(), port.has_mixer(), port.has_battery_status(), {}};
+}
+
+}  // namespace attest

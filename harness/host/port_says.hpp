@@ -1,0 +1,29 @@
+// What a port says of itself. Which cases it gets and the tolerances they have follow from that, so
+// that a port that says something else later has broken the rules of the ABI.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/port/port.hpp"
+
+namespace attest {
+
+struct PortSays {
+  std::string name, version;
+  std::vector<std::string> unsupported_groups;
+  std::optional<int> fraction_bits;  // of a port in fixed point
+  std::optional<Rate> fixed_step;    // of a port that knows only its own sample time
+  bool has_mixer = false, has_battery_status = false;
+  std::vector<std::string> profiles;  // that it made a unit of, where that was asked
+
+  // Of a port that is loaded; the profiles stay empty.
+  static PortSays asked(const Port& port);
+};
+
+// "its attest.arithmetic is `fixed:20`, it was `none` when the port was asked first; ..."; empty
+// when both say the same. The profiles are not compared.
+std::string change(const PortSays& said, const PortSays& now);
+
+}  // namespace attest

@@ -1,0 +1,58 @@
+// Units that say how long each step of another takes, and how much stack it uses.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/core/time.hpp"
+#include "harness/port/port.hpp"
+#include "harness/realtime/painted_stack.hpp"
+
+namespace attest {
+
+// The least that lies between two readings of the clock.
+Nanoseconds time_of_clock();
+
+// A step that other programs can find: valgrind counts what happens in it.
+inline constexpr const char* counted_step_symbol = "attest_counted_step";
+
+class TimedUnit final : public Unit {
+ public:
+  // Appends the time of each step to `times`, less that of the clock. All outlive this.
+  TimedUnit(Unit& unit, Nanoseconds clock, std::vector<Nanoseconds>& times)
+      : unit_(unit), clock_(clock), times_(times) {}
+
+  int set_parameter(const std::string& name, float value) override {
+    return unit_.set_parameter(name, value);
+  }
+  int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
+    return unit_.set_timestamp_sample(timestamp_sample_us);
+  }
+  int step(const attest_inputs& in, attest_outputs& out) override;
+
+ private:
+  Unit& unit_;
+  Nanoseconds clock_;
+  std::vector<Nanoseconds>& times_;
+};
+
+// Steps on a stack of its own.
+class UnitOnStack final : public Unit {
+ public:
+  UnitOnStack(Unit& unit, PaintedStack& stack) : unit_(unit), stack_(stack) {}
+
+  int set_parameter(const std::string& name, float value) override {
+    return unit_.set_parameter(name, value);
+  }
+  int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
+    return unit_.set_timestamp_sample(timestamp_sample_us);
+  }
+  int step(const attest_inputs& in, attest_outputs& out) override;
+
+ private:
+  Unit& unit_;
+  PaintedStack& stack_;
+};
+
+}  // namespace attest

@@ -1,0 +1,64 @@
+// Traces in messages between a fork and its parent (host_protocol.hpp): structs as they are in
+// memory, and what is no such struct in the JSON of the head. What reads a head throws
+// nlohmann::json::exception where a member is missing or of another type.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "harness/plant/plant.hpp"
+#include "harness/run/unit_driver.hpp"
+#include "harness/trace/trace.hpp"
+
+namespace attest {
+
+// A port chooses its words, which may not be UTF-8: they are repaired.
+std::string text_of(const nlohmann::json& head);
+
+// Values as bits: JSON has no NaN.
+nlohmann::json changes_json(const std::vector<ParameterChange>& changes);
+std::vector<ParameterChange> changes_from(const nlohmann::json& list);
+
+// How a port's answers, or its flight, ended. A process does not announce its own crash, nor that
+// it is late: such a fault is read as one of kind protocol.
+void set_end(const std::optional<PortFault>& fault, const std::optional<Divergence>& lost,
+             nlohmann::json& head);
+std::optional<PortFault> fault_from(const nlohmann::json& head);
+std::optional<Divergence> divergence_from(const nlohmann::json& head);
+
+// What comes behind a head, one blob after the other.
+class BlobReader {
+ public:
+  // `read` fills a place; false: it could not.
+  BlobReader(std::vector<std::size_t> sizes, std::function<bool(void*, std::size_t)> read)
+      : sizes_(std::move(sizes)), read_(std::move(read)) {}
+
+  std::size_t left() const { return sizes_.size() - next_; }
+
+  // The next blob. Empty when it does not come, or has not `count` objects.
+  template <typename T>
+  std::optional<std::vector<T>> read(std::size_t count) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    // No trace of ours is as long; a length that a port made up is not worth the memory.
+    constexpr std::size_t most = (std::size_t{1} << 30) / sizeof(T);
+    if (left() == 0 || count > most || sizes_[next_] != count * sizeof(T)) return std::nullopt;
+    ++next_;
+    std::vector<T> objects(count);
+    if (!read_(objects.data(), count * sizeof(T))) return std::nullopt;
+    return objects;
+  }
+
+ private:
+  std::vector<std::size_t> sizes_;
+  std::size_t next_ = 0;
+  std::function<bool(void*, std::size_t)> read_;
+};
+
+}  // namespace attest

@@ -1,0 +1,81 @@
+// Messages between two processes of attest, over a pair of sockets: a head, which is text, and
+// blobs of bytes behind it. What is in them is their senders' affair.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace attest {
+
+// Bytes to be sent, which stay where they are.
+struct Blob {
+  const void* data = nullptr;
+  std::size_t size = 0;
+};
+
+// Objects that lie one after the other, as a blob. They must outlive its use.
+template <typename T>
+Blob blob_of(const std::vector<T>& objects) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  return {objects.data(), objects.size() * sizeof(T)};
+}
+
+// How long to wait, and what ends the waiting early.
+struct Patience {
+  std::chrono::steady_clock::time_point until = std::chrono::steady_clock::time_point::max();
+  // Looked at several times a second.
+  std::function<bool()> given_up = [] { return false; };
+
+  static Patience seconds(double seconds);
+};
+
+// What came of waiting for a message.
+struct Received {
+  enum class Kind {
+    message,
+    ended,      // the other process closed its end, or died, perhaps in the middle of a message
+    too_late,   // nothing complete in time
+    given_up,   // as the patience said
+    no_message  // bytes that are none: the other process is not to be listened to any more
+  };
+  Kind kind = Kind::ended;
+  std::string head = {};
+  std::vector<std::size_t> blobs = {};  // the size of each, which is to be read next
+};
+
+// One end. A process that this one starts has no part in it: what it sends is not sent.
+class MessageSocket {
+ public:
+  explicit MessageSocket(int descriptor);  // owned
+  MessageSocket(MessageSocket&& other) noexcept;
+  MessageSocket& operator=(MessageSocket&& other) noexcept;
+  ~MessageSocket();
+
+  // Readable when something arrived, or the other end was closed. For poll().
+  int descriptor() const { return descriptor_; }
+
+  // At most 8 blobs. False: the other end is gone, or did not take it in time.
+  bool send(std::string_view head, const std::vector<Blob>& blobs = {},
+            const Patience& patience = {});
+
+  // The head. REQUIRES: the blobs of the message before were read.
+  Received receive(const Patience& patience = {});
+
+  // The next blob of that message, which has `size` bytes, into the place for them.
+  Received::Kind receive_blob(void* place, std::size_t size, const Patience& patience = {});
+
+ private:
+  bool write_all(std::string_view bytes, const Patience& patience);
+
+  int descriptor_ = -1;
+  pid_t owner_;
+};
+
+}  // namespace attest

@@ -1,0 +1,160 @@
+// A job: tasks in a row, each with a result of the job's own type. Jobs run in worker processes, as
+// many at a time as there are to be, and the results are the same for any number.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "harness/core/result.hpp"
+#include "harness/workers/pool.hpp"
+
+namespace attest {
+
+template <typename R>
+class Job {
+ public:
+  virtual ~Job() = default;
+
+  virtual std::size_t size() const = 0;  // tasks
+
+  // Before the first task of a process. An error is one for all tasks, which are then left out.
+  virtual Result<void> open() { return {}; }
+
+  // REQUIRES: open() went well.
+  virtual Result<R> run(std::size_t task) = 0;
+
+  // After a task: the rest needs a fresh process.
+  virtual bool is_spent() const { return false; }
+
+  // After the last task of a process: ends what open() began.
+  virtual void close() {}
+};
+
+template <typename R>
+using Jobs = std::vector<std::unique_ptr<Job<R>>>;
+
+// How a result gets from a worker to its parent. Specialised for each type of result:
+//
+//     static std::string encode(const Result<R>& result);
+//     static Result<R> decode(const std::string& text);
+template <typename R>
+struct Codec;
+
+template <typename R>
+struct JobOptions {
+  int processes = 1;
+  bool in_process = false;  // for a debugger: one after the other, no processes
+  bool fail_fast =
+      false;  // nothing after the first job, in their order, that has an error or fails
+  std::function<void(const R&)> on_result = [](const R&) {};
+  std::function<bool(const R&)> fails = [](const R&) { return false; };
+  std::function<bool()> stop = [] { return false; };  // true: end soon, results do not matter
+};
+
+template <typename R>
+struct JobResults {
+  std::vector<R> results;     // in the order of jobs and tasks, whatever finished first
+  std::vector<Error> errors;  // in the same order
+  bool stopped_early = false;
+};
+
+namespace detail {
+
+// Calls `done` with the results of the tasks from `first` on, and of how many tasks each is.
+template <typename R, typename Done>
+void run_tasks(Job<R>& job, std::size_t first, Done&& done) {
+  if (const auto opened = job.open(); !opened) {
+    return done(Result<R>(tl::unexpected(opened.error())), job.size() - first);
+  }
+  bool is_spent = false;
+  for (std::size_t task = first; task < job.size() && !is_spent; ++task) {
+    done(job.run(task), 1);
+    is_spent = job.is_spent();
+  }
+  job.close();
+}
+
+// What has come back from the jobs.
+template <typename R>
+class Collector {
+ public:
+  Collector(std::size_t jobs, const JobOptions<R>& options) : options_(options), of_jobs_(jobs) {}
+
+  // False: nothing after this job is wanted.
+  bool take(std::size_t job, Result<R> result) {
+    Each& each = of_jobs_[job];
+    if (!result) {
+      each.errors.push_back(result.error());
+      return !options_.fail_fast;
+    }
+    options_.on_result(*result);
+    const bool fails = options_.fails(*result);
+    each.results.push_back(*std::move(result));
+    return !(options_.fail_fast && fails);
+  }
+
+  JobResults<R> finish(std::size_t end) {
+    JobResults<R> all;
+    all.stopped_early = end < of_jobs_.size();
+    for (std::size_t i = 0; i < end; ++i) {
+      auto& [results, errors] = of_jobs_[i];
+      std::move(results.begin(), results.end(), std::back_inserter(all.results));
+      std::move(errors.begin(), errors.end(), std::back_inserter(all.errors));
+    }
+    return all;
+  }
+
+ private:
+  struct Each {
+    std::vector<R> results;
+    std::vector<Error> errors;
+  };
+  const JobOptions<R>& options_;
+  std::vector<Each> of_jobs_;
+};
+
+template <typename R>
+JobResults<R> run_here(const Jobs<R>& jobs, const JobOptions<R>& options) {
+  Collector<R> collector(jobs.size(), options);
+  std::size_t end = 0;
+  for (bool goes_on = true; goes_on && end < jobs.size() && !options.stop(); ++end) {
+    run_tasks(*jobs[end], 0, [&](Result<R> result, std::size_t) {
+      goes_on = collector.take(end, std::move(result)) && goes_on;
+    });
+  }
+  return collector.finish(end);
+}
+
+}  // namespace detail
+
+template <typename R>
+JobResults<R> run_jobs(const Jobs<R>& jobs, const JobOptions<R>& options) {
+  if (options.in_process) return detail::run_here(jobs, options);
+  std::vector<Work> work;
+  for (const auto& job : jobs) {
+    work.push_back({job->size(), [&job](std::size_t first, const auto& done) {
+                      detail::run_tasks(*job, first,
+                                        [&](const Result<R>& result, std::size_t tasks) {
+                                          done(Codec<R>::encode(result), tasks);
+                                        });
+                    }});
+  }
+  detail::Collector<R> collector(jobs.size(), options);
+  PoolOptions pool;
+  pool.processes = options.processes;
+  pool.stop = options.stop;
+  pool.on_answer = [&](std::size_t index, const std::string& answer) {
+    return collector.take(index, Codec<R>::decode(answer));
+  };
+  const auto end = run_in_workers(work, pool);
+  JobResults<R> all = collector.finish(end ? *end : 0);
+  if (!end) all.errors.push_back(end.error());
+  return all;
+}
+
+}  // namespace attest

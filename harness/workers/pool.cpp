@@ -1,0 +1,111 @@
+#include "harness/workers/pool.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include "harness/process/child.hpp"
+
+namespace attest {
+namespace {
+
+class Pool {
+ public:
+  Pool(const std::vector<Work>& work, const PoolOptions& options)
+      : work_(work), options_(options), end_(work.size()) {}
+
+  Result<std::size_t> run() {
+    for (start_workers(); !workers_.empty() && !error_ && !options_.stop(); start_workers()) {
+      for (const std::size_t i : readable()) serve(workers_[i]);
+      std::erase_if(workers_, [](const Worker& worker) { return worker.over; });
+    }
+    if (error_) return tl::unexpected(*error_);
+    return std::min(next_, end_);
+  }
+
+ private:
+  struct Worker {
+    std::size_t work;
+    std::size_t task;  // that it is at
+    Child child;
+    bool over = false;
+  };
+
+  void start_workers() {
+    const auto most = static_cast<std::size_t>(std::max(options_.processes, 1));
+    while (workers_.size() < most && next_ < end_ && !error_) {
+      const std::size_t work = next_++;
+      if (work_[work].tasks > 0) start(work, 0);
+    }
+  }
+
+  void start(std::size_t work, std::size_t first) {
+    auto child = Child::spawn(Child::Runs::our_code, [&](MessageSocket& parent) {
+      work_[work].run(first, [&](const std::string& answer, std::size_t tasks) {
+        parent.send(answer, {{&tasks, sizeof tasks}});
+      });
+    });
+    if (child) {
+      workers_.push_back({work, first, *std::move(child)});
+    } else {
+      error_ = child.error();
+    }
+  }
+
+  std::vector<std::size_t> readable() {
+    std::vector<pollfd> descriptors;
+    for (Worker& worker : workers_) {
+      descriptors.push_back({worker.child.socket().descriptor(), POLLIN, 0});
+    }
+    constexpr int look_every_ms = 100;  // whether to stop
+    ::poll(descriptors.data(), descriptors.size(), look_every_ms);
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < descriptors.size(); ++i) {
+      if (descriptors[i].revents != 0) found.push_back(i);
+    }
+    return found;
+  }
+
+  void serve(Worker& worker) {
+    Patience patience;
+    patience.given_up = options_.stop;
+    const Received received = worker.child.receive(patience);
+    if (received.kind == Received::Kind::given_up) return;
+    if (received.kind != Received::Kind::message) return conclude(worker);
+    std::size_t tasks = 0;
+    if (worker.child.receive_blob(&tasks, sizeof tasks) != Received::Kind::message) {
+      return conclude(worker);
+    }
+    if (!options_.on_answer(worker.work, received.head)) end_ = std::min(end_, worker.work + 1);
+    worker.task += tasks;
+  }
+
+  void conclude(Worker& worker) {
+    worker.over = true;
+    const std::string how = worker.child.end(), words = worker.child.last_words();
+    if (how != "exited with status 0") {
+      error_ = Error{fmt::format("a process of attest that judges {}{}{}; please report this", how,
+                                 words.empty() ? "" : ": ", words)};
+    } else if (worker.task < work_[worker.work].tasks) {
+      start(worker.work, worker.task);  // `worker` may have moved
+    }
+  }
+
+  const std::vector<Work>& work_;
+  const PoolOptions& options_;
+  std::vector<Worker> workers_;
+  std::size_t next_ = 0;  // to be started
+  std::size_t end_;       // of what is wanted
+  std::optional<Error> error_;
+};
+
+}  // namespace
+
+Result<std::size_t> run_in_workers(const std::vector<Work>& work, const PoolOptions& options) {
+  return Pool(work, options).run();
+}
+
+}  // namespace attest

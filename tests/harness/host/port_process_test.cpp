@@ -1,0 +1,175 @@
+// A port in a process of its own answers as it does in this one; and whatever it does there is a
+// fault of the request.
+#include "harness/host/port_process.hpp"
+
+#include <cstring>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/casefile/stimulus.hpp"
+#include "harness/run/case_timing.hpp"
+#include "tests/harness/casefile/case_files.hpp"
+
+namespace attest {
+namespace {
+
+using testing::AnyOf;
+using testing::HasSubstr;
+using Kind = PortFault::Kind;
+
+const std::filesystem::path source = ATTEST_SOURCE_DIR;
+
+std::unique_ptr<PortHost> host_of(const std::string& port, bool in_process = false,
+                                  const Course& course = {}, double timeout_s = 60) {
+  HostOptions options;
+  options.port =
+      port == "builtin" ? port : fmt::format("lib:{}/port_{}.so", ATTEST_TEST_PORTS, port);
+  options.in_process = in_process;
+  options.timeout_s = timeout_s;
+  auto host = start_host(options, course);
+  EXPECT_TRUE(host) << host.error().to_string();
+  return host ? *std::move(host) : nullptr;
+}
+
+// Longer than the ports of tests/ports are right.
+Trace pitching() {
+  Case the_case = case_of(
+      "[control_state]\n"
+      "pitch_rate = { signal = \"step\", from = 0, to = 0.5, at_ticks = 3 }\n"
+      "[parameters]\nMC_PITCHRATE_P = 0.3\n");
+  the_case.duration = {30, Span::In::ticks};
+  return stimulate(the_case, Rate::hz(250));
+}
+
+std::vector<attest_outputs> outputs_of(const Trace& trace) {
+  std::vector<attest_outputs> outputs;
+  for (const Sample& sample : trace.samples) outputs.push_back(sample.out);
+  return outputs;
+}
+
+template <typename T>
+bool same_bits(const std::vector<T>& one, const std::vector<T>& other) {
+  return one.size() == other.size() &&
+         std::memcmp(one.data(), other.data(), one.size() * sizeof(T)) == 0;
+}
+
+const Subject unit{"px4-v1.5.5"};
+
+TEST(PortProcess, DrivesAsHere) {
+  for (const std::string port : {"builtin", "sign_flip"}) {
+    Trace here = pitching(), apart = pitching();
+    EXPECT_FALSE(host_of(port, true)->drive(unit, here));
+    const auto host = host_of(port);
+    for (int twice = 0; twice < 2; ++twice) {
+      EXPECT_FALSE(host->drive(unit, apart));
+      EXPECT_TRUE(same_bits(outputs_of(here), outputs_of(apart))) << port;
+    }
+    EXPECT_NE(here.samples[5].out.actuator_controls_0.control[1], 0);
+    EXPECT_EQ(apart.parameters, here.parameters);
+  }
+}
+
+TEST(PortProcess, FliesAsHere) {
+  const auto hover = parse_case(source / "cases/px4-v1.5.5/flight/hover.toml");
+  ASSERT_TRUE(hover);
+  const auto iris = *Airframe::load(source / "models", "iris");
+  const Course course{&*hover, iris.get()};
+  FlightPlan plan{{Rate::hz(50), Flyer{"iris", PlantKind::ode}}, case_timing(*hover, Rate::hz(50))};
+  plan.timing.resize(100);
+  const auto here = host_of("builtin", true, course)->fly(plan);
+  const auto apart = host_of("builtin", false, course)->fly(plan);
+  ASSERT_TRUE(here && apart);
+  ASSERT_EQ(apart->trace.samples.size(), 100u);
+  EXPECT_TRUE(same_bits(here->trace.samples, apart->trace.samples));
+  EXPECT_EQ(here->trace.parameters, apart->trace.parameters);
+  EXPECT_EQ(here->trace.plant.size(), apart->trace.plant.size());
+  EXPECT_EQ(here->trace.source, apart->trace.source);
+  EXPECT_TRUE(here->trace.present == apart->trace.present);
+}
+
+TEST(PortProcess, TimesEachStep) {
+  const auto times = host_of("builtin")->time_steps("px4-v1.5.5", pitching(), true);
+  ASSERT_TRUE(times) << times.error().to_string();
+  EXPECT_EQ(times->steps.size(), pitching().samples.size());
+  EXPECT_GT(*std::max_element(times->steps.begin(), times->steps.end()), Nanoseconds(0));
+  EXPECT_GT(times->stack_bytes.value_or(0), 0u);
+}
+
+TEST(PortProcess, ItsDeathIsTheFaultOfTheRequestAndOfAllThatFollow) {
+  const auto host = host_of("crash");
+  Trace trace = pitching();
+  for (int twice = 0; twice < 2; ++twice) {
+    const auto fault = host->drive(unit, trace);
+    ASSERT_TRUE(fault);
+    EXPECT_EQ(fault->kind, Kind::crash);
+    EXPECT_TRUE(host->is_spent());
+  }
+}
+
+TEST(PortProcess, AHangIsWaitedForOnce) {
+  const auto host = host_of("hang", false, {}, 0.2);
+  Trace trace = pitching();
+  const auto fault = host->drive(unit, trace);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->kind, Kind::timeout);
+  EXPECT_EQ(fault->what, "no answer within 0.2 s");
+  EXPECT_EQ(host->drive(unit, trace)->what, "not run: the port had timed out before");
+  EXPECT_FALSE(host->is_spent());
+}
+
+TEST(PortProcess, OneThatHangsWhenItIsLoadedSaysSoOnce) {
+  const auto host = host_of("hangs_in_load", false, {}, 0.2);
+  Trace trace = pitching();
+  EXPECT_EQ(host->drive(unit, trace)->what, "no answer within 0.2 s, when it was loaded");
+  EXPECT_EQ(host->drive(unit, trace)->what, "not run: the port had timed out before");
+}
+
+TEST(PortProcess, OneThatIsKnownToHangIsNotStarted) {
+  HostOptions options;
+  options.port = "lib:/does/not/exist.so";
+  options.hangs = "no answer within 10 s, when it was loaded";
+  const auto host = start_host(options);
+  ASSERT_TRUE(host) << host.error().to_string();
+  Trace trace = pitching();
+  const auto fault = (*host)->drive(unit, trace);
+  EXPECT_EQ(fault->kind, Kind::timeout);
+  EXPECT_EQ(fault->what, options.hangs);
+}
+
+TEST(PortProcess, WhatTheStepSaysComesBack) {
+  Trace trace = pitching();
+  const auto fault = host_of("step_fails")->drive(unit, trace);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->kind, Kind::failed);
+  EXPECT_EQ(fault->tick, 20u);
+  EXPECT_EQ(host_of("refuses_profile")->drive(unit, trace)->kind, Kind::profile);
+}
+
+TEST(PortProcess, APortIsHeldToWhatItSaid) {
+  HostOptions options;
+  options.said = PortSays{"another", "1", {}, {}, {}, false, false, {}};
+  const auto host = start_host(options);
+  ASSERT_TRUE(host);
+  Trace trace = pitching();
+  const auto fault = (*host)->drive(unit, trace);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->kind, Kind::protocol);
+  EXPECT_THAT(fault->what, HasSubstr("it was `another` when the port was asked first"));
+}
+
+TEST(PortProcess, WaitingEndsWhenTheAnswerDoesNotMatter) {
+  HostOptions options;
+  options.port = fmt::format("lib:{}/port_hang.so", ATTEST_TEST_PORTS);
+  options.timeout_s = 60;
+  bool was_looked_at = false;
+  options.stop = [&] { return std::exchange(was_looked_at, true); };
+  const auto host = start_host(options);
+  ASSERT_TRUE(host);
+  Trace trace = pitching();
+  EXPECT_EQ((*host)->drive(unit, trace)->kind, Kind::timeout);
+}
+
+}  // namespace
+}  // namespace attest

@@ -1,0 +1,179 @@
+// Jobs made for the test: what can happen to a worker, without a port.
+#include "harness/workers/job.hpp"
+
+#include <cstdlib>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace attest {
+
+template <>
+struct Codec<std::string> {
+  static std::string encode(const Result<std::string>& result) {
+    return result ? "=" + *result : "!" + result.error().message;
+  }
+  static Result<std::string> decode(const std::string& text) {
+    if (text.starts_with("!")) return fail(text.substr(1));
+    return text.substr(1);
+  }
+};
+
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+using Task = std::function<Result<std::string>()>;
+
+class FakeJob final : public Job<std::string> {
+ public:
+  FakeJob(std::vector<Task> tasks, bool opens) : tasks_(std::move(tasks)), opens_(opens) {}
+
+  std::size_t size() const override { return tasks_.size(); }
+  Result<void> open() override {
+    if (!opens_) return fail("no golden");
+    opened_ = true;
+    return {};
+  }
+  Result<std::string> run(std::size_t task) override {
+    EXPECT_TRUE(opened_);
+    auto result = tasks_[task]();
+    is_spent_ = result && *result == "spent";
+    ++done_here_;
+    if (result && *result == "counts") return fmt::format("{} here", done_here_);
+    return result;
+  }
+  bool is_spent() const override { return is_spent_; }
+
+ private:
+  std::vector<Task> tasks_;
+  bool opens_, opened_ = false, is_spent_ = false;
+  int done_here_ = 0;
+};
+
+Task says(const std::string& word) {
+  return [word]() -> Result<std::string> { return word; };
+}
+Task slowly(const std::string& word) {
+  return [word]() -> Result<std::string> {
+    ::usleep(50'000);
+    return word;
+  };
+}
+Result<std::string> breaks() { return fail("broken"); }
+
+Jobs<std::string> jobs_of(const std::vector<std::vector<Task>>& all, bool open = true) {
+  Jobs<std::string> jobs;
+  for (const auto& tasks : all) jobs.push_back(std::make_unique<FakeJob>(tasks, open));
+  return jobs;
+}
+
+JobOptions<std::string> with(int processes) {
+  JobOptions<std::string> options;
+  options.processes = processes;
+  return options;
+}
+
+JobOptions<std::string> in_process() {
+  JobOptions<std::string> options;
+  options.in_process = true;
+  return options;
+}
+
+TEST(Jobs, ResultsAreInOrderWhateverFinishesFirst) {
+  const auto jobs = jobs_of({{slowly("a"), says("b")}, {says("c")}, {slowly("d")}, {says("e")}});
+  for (const int processes : {1, 2, 4, 50}) {
+    EXPECT_THAT(run_jobs(jobs, with(processes)).results, ElementsAre("a", "b", "c", "d", "e"));
+  }
+  EXPECT_THAT(run_jobs(jobs, in_process()).results, ElementsAre("a", "b", "c", "d", "e"));
+}
+
+TEST(Jobs, AfterASpentTaskTheRestHasAFreshProcess) {
+  const auto jobs = jobs_of({{says("counts"), says("spent"), says("counts"), says("counts")}});
+  EXPECT_THAT(run_jobs(jobs, with(1)).results, ElementsAre("1 here", "spent", "1 here", "2 here"));
+}
+
+TEST(Jobs, AnErrorIsOfItsTask) {
+  for (const auto& options : {with(2), in_process()}) {
+    const auto outcome = run_jobs(jobs_of({{says("a"), breaks, says("b")}, {says("c")}}), options);
+    EXPECT_THAT(outcome.results, ElementsAre("a", "b", "c"));
+    ASSERT_EQ(outcome.errors.size(), 1u);
+    EXPECT_EQ(outcome.errors[0].message, "broken");
+  }
+}
+
+TEST(Jobs, OneThatDoesNotOpenIsOneError) {
+  for (const auto& options : {with(2), in_process()}) {
+    const auto outcome = run_jobs(jobs_of({{says("a"), says("b")}}, false), options);
+    EXPECT_THAT(outcome.results, IsEmpty());
+    ASSERT_EQ(outcome.errors.size(), 1u);
+    EXPECT_EQ(outcome.errors[0].message, "no golden");
+  }
+}
+
+// No port is in there: it is a mistake of ours, and no result of that run is to be believed.
+TEST(Jobs, AWorkerThatDiesIsAnError) {
+  const Task dies = []() -> Result<std::string> {
+    std::fputs("an assertion\n", stderr);
+    std::abort();
+  };
+  const auto outcome = run_jobs(jobs_of({{says("a"), dies}, {says("b")}}), with(1));
+  EXPECT_THAT(outcome.results, IsEmpty());
+  ASSERT_EQ(outcome.errors.size(), 1u);
+  EXPECT_THAT(outcome.errors[0].message, HasSubstr("was killed by signal 6"));
+  EXPECT_THAT(outcome.errors[0].message, HasSubstr("an assertion"));
+}
+
+TEST(Jobs, FailFastEndsWithTheFirstJobThatFailsInTheirOrder) {
+  const auto jobs = jobs_of({{slowly("good")}, {slowly("bad")}, {says("bad")}, {says("good")}});
+  for (auto options : {with(1), with(4), in_process()}) {
+    options.fail_fast = true;
+    options.fails = [](const std::string& result) { return result == "bad"; };
+    const auto outcome = run_jobs(jobs, options);
+    EXPECT_THAT(outcome.results, ElementsAre("good", "bad"));
+    EXPECT_TRUE(outcome.stopped_early);
+  }
+}
+
+TEST(Jobs, AFailureInTheLastJobStopsNothing) {
+  const auto jobs = jobs_of({{says("good")}, {says("bad"), says("good")}});
+  for (auto options : {with(2), in_process()}) {
+    options.fail_fast = true;
+    options.fails = [](const std::string& result) { return result == "bad"; };
+    EXPECT_FALSE(run_jobs(jobs, options).stopped_early);
+    EXPECT_EQ(run_jobs(jobs, options).results.size(), 3u);
+  }
+}
+
+TEST(Jobs, EveryResultIsToldOnce) {
+  for (auto options : {with(3), in_process()}) {
+    std::vector<std::string> told;
+    options.on_result = [&](const std::string& result) { told.push_back(result); };
+    run_jobs(jobs_of({{says("a"), says("b")}, {says("c")}, {says("d")}}), options);
+    EXPECT_THAT(told, testing::UnorderedElementsAre("a", "b", "c", "d"));
+  }
+}
+
+TEST(Jobs, StopWhenTheyAreTold) {
+  for (auto options : {with(1), in_process()}) {
+    int told = 0;
+    options.on_result = [&](const std::string&) { ++told; };
+    options.stop = [&] { return told > 0; };
+    run_jobs(jobs_of({{says("a")}, {says("b")}, {says("c")}}), options);
+    EXPECT_EQ(told, 1);
+  }
+}
+
+TEST(Jobs, NothingToDoIsDone) {
+  EXPECT_THAT(run_jobs(Jobs<std::string>(), with(2)).results, IsEmpty());
+  EXPECT_THAT(run_jobs(jobs_of({{}, {says("a")}}), with(1)).results, ElementsAre("a"));
+  // As few as there can be.
+  EXPECT_EQ(run_jobs(jobs_of({{says("a")}}), with(0)).results.size(), 1u);
+}
+
+}  // namespace
+}  // namespace attest
