@@ -17,6 +17,7 @@
 #include "harness/core/file.hpp"
 #include "harness/core/version.hpp"
 #include "harness/port/port.hpp"
+#include "harness/process/child.hpp"
 #include "harness/report/json.hpp"
 #include "harness/report/junit.hpp"
 #include "harness/report/progress.hpp"
@@ -142,6 +143,8 @@ Result<void> identify(const RunOptions& options, const SuiteFolder& suite, RunRe
   run.golden_version = suite.version_of(suite.golden());
   run.attest_version = version;
   run.port = options.host.port;
+  run.limits = {!options.host.in_process, options.host.timeout_s,
+                memory_is_limited() ? std::optional(max_memory_gib) : std::nullopt, max_file_mib};
   auto hash = suite.sha256();
   if (!hash) return tl::unexpected(hash.error());
   run.suite_sha256 = *hash;

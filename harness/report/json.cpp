@@ -87,6 +87,15 @@ ordered_json claims(const RunResult& run) {
   return out;
 }
 
+ordered_json limits(const Limits& of) {
+  ordered_json out = {{"own_process", of.own_process}};
+  if (!of.own_process) return out;
+  out["timeout_s"] = of.timeout_s;
+  if (of.memory_gib) out["memory_gib"] = *of.memory_gib;
+  out["file_mib"] = of.file_mib;
+  return out;
+}
+
 }  // namespace
 
 std::string json_report(const RunResult& run) {
@@ -111,6 +120,7 @@ std::string json_report(const RunResult& run) {
         {"sha256", run.suite_sha256},
         {"released", run.suite_is_released}}},
       {"date", run.date},
+      {"limits", limits(run.limits)},
       {"stopped_early", run.stopped_early},
       {"errors", errors(run)},
       {"results", results(run)},

@@ -108,7 +108,7 @@ Result<void> write_folder(const fs::path& folder, const Case& the_case,
   if (base) {
     if (auto noted = note_base(*base, the_case, provenance); !noted) return noted;
   }
-  return write_text(folder / provenance_name, to_toml(provenance));
+  return write_text(folder / provenance_name, sealed(to_toml(provenance)));
 }
 
 }  // namespace
@@ -142,6 +142,9 @@ Result<Golden> Golden::open(const fs::path& golden_root, const Case& the_case) {
     return fail_at((folder / provenance_name).string(),
                    fmt::format("the golden is stale: {} has changed since it was blessed; {} anew",
                                the_case.file.string(), how_to_bless(the_case)));
+  }
+  if (auto intact = check_seal(folder / provenance_name); !intact) {
+    return tl::unexpected(intact.error());
   }
   return Golden(folder, std::move(*provenance));
 }

@@ -24,8 +24,8 @@ namespace attest {
 // The golden of one case, open for reading.
 class Golden {
  public:
-  // Errors: there is none, or it was made from another version of the case file; the message names
-  // the `attest bless` that mends it.
+  // Errors: there is none, it was made from another version of the case file, or its provenance was
+  // edited; the message names what mends it.
   static Result<Golden> open(const std::filesystem::path& golden_root, const Case& the_case);
 
   // Errors: no trace for that setup, bytes that are not those that were blessed, a broken CSV.

@@ -14,6 +14,14 @@
 
 namespace attest {
 
+// What held the port during the run.
+struct Limits {
+  bool own_process = true;        // false: it shared that of its judge
+  double timeout_s = 0;           // for each answer
+  std::optional<int> memory_gib;  // empty: none
+  int file_mib = 0;               // of each file it writes
+};
+
 // Everything the reports say, in the order of the cases, for any number of jobs.
 struct RunResult {
   std::string attest_version;
@@ -34,6 +42,7 @@ struct RunResult {
   std::string suite_sha256;                                                   // of its content
   bool suite_is_released = false;  // that content is the one this attest was released with
   std::string port_sha256;         // of its library; empty: the port is part of attest
+  Limits limits;                   // of the port
   std::string date;                // of the run, UTC: "2026-03-31"
   std::vector<CaseResult> results;
   std::vector<Error> errors;           // of the environment: a golden that cannot be read, ...

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/core/file.hpp"
 #include "harness/core/nearest.hpp"
 #include "harness/core/toml.hpp"
 
@@ -200,6 +201,26 @@ std::string to_toml(const Provenance& provenance) {
   for (const auto& [name, value] : provenance.metrics) toml.set("metrics", name, value);
   for (const auto& [name, hash] : provenance.models) toml.set("models", name, hash);
   return toml.to_string();
+}
+
+namespace {
+
+constexpr std::string_view seal_prefix = "# SHA-256 of the lines above: ";
+
+}  // namespace
+
+std::string sealed(const std::string& toml) {
+  return fmt::format("{}{}{}\n", toml, seal_prefix, sha256(toml));
+}
+
+Result<void> check_seal(const std::filesystem::path& file) {
+  const auto text = read_file(file);
+  if (!text) return tl::unexpected(text.error());
+  const std::size_t seal = text->rfind(seal_prefix);
+  if (seal != std::string::npos && *text == sealed(text->substr(0, seal))) return {};
+  return fail_at(file.string(),
+                 "was changed after it was blessed (the SHA-256 in its last line is of other "
+                 "text); restore it from version control, or bless it anew");
 }
 
 Division divide(const std::vector<Trace>& traces) {

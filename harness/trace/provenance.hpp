@@ -49,6 +49,12 @@ Result<Provenance> provenance_in(const std::filesystem::path& folder);
 
 std::string to_toml(const Provenance& provenance);
 
+// A text with its own SHA-256 in a last line, which is a comment of TOML.
+std::string sealed(const std::string& toml);
+
+// Errors: the file cannot be read; it is not as it was sealed, or has no seal.
+Result<void> check_seal(const std::filesystem::path& file);
+
 // Divides the columns of traces that will stand in one folder: what has the same value in every
 // sample of all of them (by bits, NaN = NaN) goes to `constants`, the rest stays a column in each.
 // So does a parameter that has the same value from tick 0 on in all of them. timestamp stays a

@@ -64,3 +64,12 @@ value() { python3 -c "import json; r = json.load(open('report.json')); print($1)
   has "expected failure"
   has "px4-v1.5.5, numeric, 1 rate"
 }
+
+@test "a port in its judge's process is held by nothing, and conforms to nothing" {
+  run "$ATTEST" run --in-process --rate 250 --json report.json
+  has "port in its judge's process"
+  [ "$(value 'r["limits"]')" = "{'own_process': False}" ]
+  [ "$(value 'r["conformant"]')" = False ]
+  run "$ATTEST" run --group tpa --rate 250 --timeout 3 --json report.json
+  [ "$(value 'r["limits"]["own_process"], r["limits"]["timeout_s"]')" = "True 3.0" ]
+}

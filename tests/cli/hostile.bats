@@ -70,3 +70,29 @@ judged() {
   has "non-finite"
   has "first at tick 332"
 }
+
+@test "the golden is not in the memory of a port" {
+  for port in copies_golden rewrites_golden; do
+    run "$ATTEST" run --port "lib:$PORTS/hostile_$port.so" --filter 'rates/*_alone@250hz' \
+      --no-diagnose
+    [ "$status" -eq 1 ]
+    lacks "PASS"
+    has "0 of 7 cases conform"
+  done
+}
+
+@test "what a port writes on the socket of its process is no answer" {
+  judged forges
+  [ "$status" -eq 1 ]
+  has "protocol: the port wrote on the socket on which its process answers"
+  [ "$(grep -c '"verdict": "protocol"' report.json)" -eq "$(grep -c '"verdict"' report.json)" ]
+  for command in "sim hover --rate 250 --out f.csv" "time --filter rates/*@250hz" \
+    "replay $SOURCE/golden/recorded/px4-v1.5.5/fuzz_250hz.csv" \
+    "stress --rates 250 --duration 0.3 --no-cyclictest"; do
+    read -ra words <<<"$command"
+    run "$ATTEST" "${words[@]}" --port "lib:$PORTS/hostile_forges.so"
+    echo "$command: $status"
+    [ "$status" -eq 1 ]
+    has "protocol"
+  done
+}

@@ -180,7 +180,12 @@ quick=(--group attitude --group battery --group rates)
 
 @test "a golden that lacks an output is refused: nothing would be compared with it" {
   blessed_suite
-  sed -i "/^'out/d" suite/golden/px4-v1.5.5/attitude/roll/provenance.toml
+  provenance=suite/golden/px4-v1.5.5/attitude/roll/provenance.toml
+  sed -i "/^'out/d" $provenance
+  run "$ATTEST" --suite suite run
+  [ "$status" -eq 2 ]
+  has "provenance.toml: was changed after it was blessed"
+  reseal $provenance
   run "$ATTEST" --suite suite run
   [ "$status" -eq 2 ]
   has "has no out/"
