@@ -9,11 +9,11 @@
 #include <mujoco/mujoco.h>
 
 #include "harness/casefile/parse.hpp"
+#include "harness/loop/case_timing.hpp"
+#include "harness/loop/closed_loop.hpp"
+#include "harness/loop/flight.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/port/port.hpp"
-#include "harness/run/case_timing.hpp"
-#include "harness/run/closed_loop.hpp"
-#include "harness/run/flight.hpp"
 
 namespace attest::bench {
 namespace {

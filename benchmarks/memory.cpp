@@ -10,10 +10,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "harness/casefile/select.hpp"
 #include "harness/compare/compare_files.hpp"
-#include "harness/suite/case_job.hpp"
-#include "harness/suite/select.hpp"
 #include "harness/trace/csv.hpp"
+#include "harness/verify/case_job.hpp"
 
 namespace attest::bench {
 namespace {

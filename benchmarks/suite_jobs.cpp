@@ -4,9 +4,9 @@
 
 #include <benchmark/benchmark.h>
 
+#include "harness/casefile/select.hpp"
 #include "harness/plant/fleet.hpp"
-#include "harness/suite/case_job.hpp"
-#include "harness/suite/select.hpp"
+#include "harness/verify/case_job.hpp"
 
 namespace attest::bench {
 namespace {

@@ -16,15 +16,15 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/golden/decimate.hpp"
+#include "harness/golden/golden.hpp"
+#include "harness/golden/golden_lock.hpp"
+#include "harness/golden/other_side.hpp"
+#include "harness/golden/reference_flight.hpp"
+#include "harness/loop/open_loop.hpp"
 #include "harness/plant/fleet.hpp"
 #include "harness/port/port.hpp"
-#include "harness/run/decimate.hpp"
-#include "harness/run/golden.hpp"
-#include "harness/run/golden_lock.hpp"
-#include "harness/run/open_loop.hpp"
-#include "harness/run/other_side.hpp"
-#include "harness/run/reference_flight.hpp"
-#include "harness/suite/recorded_check.hpp"
+#include "harness/verify/recorded_check.hpp"
 
 namespace attest::cli {
 namespace {

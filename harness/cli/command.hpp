@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "harness/casefile/select.hpp"
 #include "harness/core/result.hpp"
 #include "harness/host/port_process.hpp"
-#include "harness/suite/select.hpp"
-#include "harness/suite/vector_times.hpp"
+#include "harness/measure/vector_times.hpp"
 
 namespace attest::cli {
 

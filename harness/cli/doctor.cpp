@@ -8,14 +8,14 @@
 #include <fmt/ranges.h>
 
 #include "controller/reference/profile.hpp"
+#include "harness/casefile/select.hpp"
 #include "harness/cli/command.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/version.hpp"
+#include "harness/golden/golden.hpp"
 #include "harness/host/port_process.hpp"
 #include "harness/process/child.hpp"
-#include "harness/run/golden.hpp"
-#include "harness/suite/recorded_check.hpp"
-#include "harness/suite/select.hpp"
+#include "harness/verify/recorded_check.hpp"
 
 namespace attest::cli {
 namespace {

@@ -7,12 +7,12 @@
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/nearest.hpp"
+#include "harness/diagnosis/diagnose_catalogue.hpp"
+#include "harness/diagnosis/fault_job.hpp"
+#include "harness/diagnosis/naive_suite.hpp"
 #include "harness/port/fault_port.hpp"
 #include "harness/report/diagnosis_text.hpp"
 #include "harness/report/fault_table.hpp"
-#include "harness/suite/diagnose_catalogue.hpp"
-#include "harness/suite/fault_job.hpp"
-#include "harness/suite/naive_suite.hpp"
 
 namespace attest::cli {
 namespace {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "harness/casefile/parse.hpp"
-#include "harness/suite/select.hpp"
+#include "harness/casefile/select.hpp"
 
 namespace attest::cli {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "harness/casefile/case.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/loop/timing_file.hpp"
 #include "harness/plant/plant.hpp"
-#include "harness/run/timing_file.hpp"
 
 namespace attest::cli {
 

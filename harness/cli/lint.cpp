@@ -5,7 +5,7 @@
 #include "harness/casefile/stimulus.hpp"
 #include "harness/cli/command.hpp"
 #include "harness/cli/suite_folder.hpp"
-#include "harness/run/margins.hpp"
+#include "harness/golden/margins.hpp"
 
 namespace attest::cli {
 namespace {

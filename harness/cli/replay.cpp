@@ -9,10 +9,10 @@
 
 #include "harness/cli/command.hpp"
 #include "harness/core/version.hpp"
+#include "harness/golden/recorded.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/text.hpp"
-#include "harness/run/recorded.hpp"
-#include "harness/suite/evaluate.hpp"
+#include "harness/verify/evaluate.hpp"
 
 namespace attest::cli {
 namespace {

@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <ctime>
+#include <functional>
 #include <optional>
 #include <set>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/version.hpp"
+#include "harness/diagnosis/diagnosis_job.hpp"
 #include "harness/port/port.hpp"
 #include "harness/process/child.hpp"
 #include "harness/report/json.hpp"
@@ -23,9 +25,8 @@
 #include "harness/report/progress.hpp"
 #include "harness/report/statement.hpp"
 #include "harness/report/terminal.hpp"
-#include "harness/suite/case_job.hpp"
-#include "harness/suite/diagnosis_job.hpp"
-#include "harness/suite/expected.hpp"
+#include "harness/verify/case_job.hpp"
+#include "harness/verify/expected.hpp"
 
 namespace attest::cli {
 namespace {
@@ -33,17 +34,20 @@ namespace {
 // A report file, opened before the run so that a path that cannot be written is said at once.
 struct ReportFile {
   AtomicFile file;
-  std::string (*render)(const RunResult&);
+  std::function<std::string(const RunResult&, const std::optional<Diagnosis>&)> render;
 };
 
 Result<std::vector<ReportFile>> open_reports(const RunOptions& options) {
   std::vector<ReportFile> reports;
-  using Render = std::string (*)(const RunResult&);
+  const auto undiagnosed = [](std::string (*render)(const RunResult&)) {
+    return [render](const RunResult& run, const std::optional<Diagnosis>&) { return render(run); };
+  };
+  using Render = decltype(ReportFile::render);
   const std::pair<const std::string&, Render> wanted[] = {
       {options.junit, junit_report},
       {options.json, json_report},
-      {options.badge, badge},
-      {options.write_expected, expected_failures_of}};
+      {options.badge, undiagnosed(badge)},
+      {options.write_expected, undiagnosed(expected_failures_of)}};
   for (const auto& [path, render] : wanted) {
     if (path.empty()) continue;
     auto file = AtomicFile::open(path);
@@ -53,9 +57,10 @@ Result<std::vector<ReportFile>> open_reports(const RunOptions& options) {
   return reports;
 }
 
-Result<void> write_reports(std::vector<ReportFile>& reports, const RunResult& run) {
+Result<void> write_reports(std::vector<ReportFile>& reports, const RunResult& run,
+                           const std::optional<Diagnosis>& diagnosis) {
   for (auto& [file, render] : reports) {
-    if (auto written = file.write(render(run)); !written) return written;
+    if (auto written = file.write(render(run, diagnosis)); !written) return written;
     if (auto committed = file.commit(); !committed) return committed;
   }
   return {};
@@ -252,13 +257,14 @@ int run_command(const RunOptions& options, const Globals& globals) {
   run.errors = std::move(outcome.errors);
   run.stopped_early = outcome.stopped_early;
   if (plan->expected) plan->expected->apply(options.select.selects_all(), run);
-  if (options.diagnose && run.failed()) run.diagnosis = diagnosed(*plan, options.jobs);
+  std::optional<Diagnosis> diagnosis;
+  if (options.diagnose && run.failed()) diagnosis = diagnosed(*plan, options.jobs);
   // Before the summary: whoever reads that may stop reading, and end the program.
-  const auto written = write_reports(*reports, run);
+  const auto written = write_reports(*reports, run, diagnosis);
   const int code = exit_code(run);
   if (!globals.quiet || code != exit_ok) {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-    fmt::print("{}", render_summary(run, wall.count(), terminal_style(stdout)));
+    fmt::print("{}", render_summary(run, wall.count(), terminal_style(stdout), diagnosis));
   }
   if (!written) return report_error(written.error());
   return code;

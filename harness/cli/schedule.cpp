@@ -6,10 +6,10 @@
 #include "harness/cli/find_case.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/loop/case_timing.hpp"
+#include "harness/loop/scheduled_timing.hpp"
 #include "harness/report/schedule_text.hpp"
-#include "harness/run/case_timing.hpp"
-#include "harness/run/scheduled_timing.hpp"
-#include "harness/suite/case_job.hpp"
+#include "harness/verify/case_job.hpp"
 
 namespace attest::cli {
 namespace {

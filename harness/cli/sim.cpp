@@ -8,9 +8,9 @@
 #include "harness/cli/find_case.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/loop/case_timing.hpp"
+#include "harness/measure/simulate.hpp"
 #include "harness/report/failure_text.hpp"
-#include "harness/run/case_timing.hpp"
-#include "harness/suite/simulate.hpp"
 
 namespace attest::cli {
 namespace {

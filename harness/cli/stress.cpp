@@ -1,4 +1,4 @@
-#include "harness/suite/stress.hpp"
+#include "harness/measure/stress.hpp"
 
 #include <algorithm>
 #include <optional>

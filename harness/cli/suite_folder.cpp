@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "harness/casefile/select.hpp"
 #include "harness/core/file.hpp"
-#include "harness/suite/select.hpp"
 
 namespace attest::cli {
 namespace {

@@ -9,10 +9,10 @@
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
+#include "harness/measure/sweep.hpp"
 #include "harness/plant/fleet.hpp"
 #include "harness/report/progress.hpp"
 #include "harness/report/sweep_text.hpp"
-#include "harness/suite/sweep.hpp"
 
 namespace attest::cli {
 namespace {

@@ -10,10 +10,10 @@
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/host/step_timer.hpp"
+#include "harness/measure/vector_times.hpp"
 #include "harness/realtime/instructions.hpp"
 #include "harness/report/progress.hpp"
 #include "harness/report/time_text.hpp"
-#include "harness/suite/vector_times.hpp"
 
 namespace attest::cli {
 namespace {

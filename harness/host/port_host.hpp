@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "harness/host/port_says.hpp"
-#include "harness/run/flight.hpp"
-#include "harness/run/open_loop.hpp"
+#include "harness/loop/flight.hpp"
+#include "harness/loop/open_loop.hpp"
 #include "harness/schedule/loop_timing.hpp"
 
 namespace attest {

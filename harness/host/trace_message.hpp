@@ -13,8 +13,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/loop/unit_driver.hpp"
 #include "harness/plant/plant.hpp"
-#include "harness/run/unit_driver.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace attest {

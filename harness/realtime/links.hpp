@@ -6,9 +6,9 @@
 #include <semaphore>
 
 #include "harness/core/time.hpp"
+#include "harness/loop/actuators.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/realtime/latest_value.hpp"
-#include "harness/run/actuators.hpp"
 
 namespace attest {
 

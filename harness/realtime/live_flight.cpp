@@ -6,8 +6,8 @@
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/core/float_environment.hpp"
-#include "harness/run/case_timing.hpp"
-#include "harness/run/flight.hpp"
+#include "harness/loop/case_timing.hpp"
+#include "harness/loop/flight.hpp"
 
 namespace attest {
 namespace {

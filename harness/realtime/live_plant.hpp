@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
+#include "harness/loop/plant_task.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/realtime/histogram.hpp"
 #include "harness/realtime/links.hpp"
 #include "harness/realtime/usage.hpp"
-#include "harness/run/plant_task.hpp"
 #include "harness/schedule/clock.hpp"
 
 namespace attest {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "harness/casefile/stimulus.hpp"
-#include "harness/run/case_timing.hpp"
+#include "harness/loop/case_timing.hpp"
 
 namespace attest {
 namespace {

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "harness/casefile/case.hpp"
+#include "harness/loop/unit_task.hpp"
 #include "harness/realtime/histogram.hpp"
 #include "harness/realtime/links.hpp"
 #include "harness/realtime/live_tick.hpp"
 #include "harness/realtime/usage.hpp"
-#include "harness/run/unit_task.hpp"
 #include "harness/schedule/clock.hpp"
 #include "harness/schedule/delay_line.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "harness/suite/diagnose.hpp"
+#include "harness/diagnosis/diagnose.hpp"
 
 namespace attest {
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "harness/suite/run_result.hpp"
+#include "harness/verify/run_result.hpp"
 
 namespace attest {
 

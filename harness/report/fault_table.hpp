@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "controller/faults/fault.hpp"
-#include "harness/suite/fault_job.hpp"
+#include "harness/diagnosis/fault_job.hpp"
 
 namespace attest {
 

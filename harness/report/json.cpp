@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/report/statement.hpp"
-#include "harness/suite/claim.hpp"
-#include "harness/suite/verdict_json.hpp"
+#include "harness/verify/claim.hpp"
+#include "harness/verify/verdict_json.hpp"
 
 namespace attest {
 namespace {
@@ -98,7 +98,7 @@ ordered_json limits(const Limits& of) {
 
 }  // namespace
 
-std::string json_report(const RunResult& run) {
+std::string json_report(const RunResult& run, const std::optional<Diagnosis>& found) {
   ordered_json port = {
       {"specification", run.port}, {"name", run.port_name}, {"version", run.port_version}};
   if (!run.port_sha256.empty()) port["sha256"] = run.port_sha256;
@@ -125,7 +125,7 @@ std::string json_report(const RunResult& run) {
       {"errors", errors(run)},
       {"results", results(run)},
   };
-  if (run.diagnosis) report["diagnosis"] = diagnosis(*run.diagnosis);
+  if (found) report["diagnosis"] = diagnosis(*found);
   return report.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -3,12 +3,14 @@
 // bytes, so it holds a date and no times.
 #pragma once
 
+#include <optional>
 #include <string>
 
-#include "harness/suite/run_result.hpp"
+#include "harness/diagnosis/diagnose.hpp"
+#include "harness/verify/run_result.hpp"
 
 namespace attest {
 
-std::string json_report(const RunResult& run);
+std::string json_report(const RunResult& run, const std::optional<Diagnosis>& diagnosis = {});
 
 }  // namespace attest

@@ -131,20 +131,22 @@ std::string suite_name(const CaseResult& result) {
 }
 
 // What a reader of one test's page needs: CI servers do not show what is said of the whole run.
-std::string failure_content(const CaseResult& result, const RunResult& run) {
+std::string failure_content(const CaseResult& result, const RunResult& run,
+                            const std::optional<Diagnosis>& diagnosis) {
   const std::string text = failure_text(result, run);
-  if (!run.diagnosis || !result.first) return text;
-  return text + "\nFrom all that fails in this run, " + diagnosis_text(*run.diagnosis);
+  if (!diagnosis || !result.first) return text;
+  return text + "\nFrom all that fails in this run, " + diagnosis_text(*diagnosis);
 }
 
-void add_result(pugi::xml_node suite, const CaseResult& result, const RunResult& run) {
+void add_result(pugi::xml_node suite, const CaseResult& result, const RunResult& run,
+                const std::optional<Diagnosis>& diagnosis) {
   const std::string name = one_line(result.name + "@" + result.setup().label());
   const pugi::xml_node test = add_test(suite, suite_name(result), name, result.elapsed_s);
   const Outcome outcome = outcome_of(result.verdict);
   if (outcome == Outcome::passed) return;
   const std::string headline = failure_headline(result);
   add_outcome(test, outcome, name_of(result.verdict), headline,
-              outcome == Outcome::skipped ? headline : failure_content(result, run));
+              outcome == Outcome::skipped ? headline : failure_content(result, run, diagnosis));
 }
 
 pugi::xml_node add_suite(pugi::xml_node root, const std::string& name, const Counts& counts,
@@ -199,7 +201,7 @@ struct StringWriter : pugi::xml_writer {
 
 }  // namespace
 
-std::string junit_report(const RunResult& run) {
+std::string junit_report(const RunResult& run, const std::optional<Diagnosis>& diagnosis) {
   const std::vector<Suite> suites = suites_of(run);
   Counts all;
   for (const CaseResult& result : run.results) {
@@ -218,7 +220,7 @@ std::string junit_report(const RunResult& run) {
   set_attribute(root, "time", seconds(all.time_s));
   for (const Suite& suite : suites) {
     const pugi::xml_node node = add_suite(root, suite.name, suite.counts, run);
-    for (const CaseResult* result : suite.results) add_result(node, *result, run);
+    for (const CaseResult* result : suite.results) add_result(node, *result, run, diagnosis);
   }
   add_environment(root, run);
   StringWriter writer;

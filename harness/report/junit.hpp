@@ -9,12 +9,14 @@
 // cases and their sums.
 #pragma once
 
+#include <optional>
 #include <string>
 
-#include "harness/suite/run_result.hpp"
+#include "harness/diagnosis/diagnose.hpp"
+#include "harness/verify/run_result.hpp"
 
 namespace attest {
 
-std::string junit_report(const RunResult& run);
+std::string junit_report(const RunResult& run, const std::optional<Diagnosis>& diagnosis = {});
 
 }  // namespace attest

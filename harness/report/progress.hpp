@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdio>
 
-#include "harness/suite/verdict.hpp"
+#include "harness/verify/verdict.hpp"
 
 namespace attest {
 

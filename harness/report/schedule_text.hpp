@@ -5,7 +5,7 @@
 
 #include "harness/casefile/task_set.hpp"
 #include "harness/schedule/loop_timing.hpp"
-#include "harness/suite/verdict.hpp"
+#include "harness/verify/verdict.hpp"
 
 namespace attest {
 

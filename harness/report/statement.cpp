@@ -9,7 +9,7 @@
 
 #include "harness/report/text.hpp"
 #include "harness/report/xml.hpp"
-#include "harness/suite/claim.hpp"
+#include "harness/verify/claim.hpp"
 
 namespace attest {
 namespace {

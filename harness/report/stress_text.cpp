@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/core/version.hpp"
+#include "harness/measure/stress_json.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/text.hpp"
-#include "harness/suite/stress_json.hpp"
 
 namespace attest {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "harness/host/port_process.hpp"
+#include "harness/measure/stress.hpp"
 #include "harness/report/terminal.hpp"
-#include "harness/suite/stress.hpp"
 
 namespace attest {
 

@@ -13,7 +13,7 @@
 #include <string>
 
 #include "harness/report/terminal.hpp"
-#include "harness/suite/run_result.hpp"
+#include "harness/verify/run_result.hpp"
 
 namespace attest {
 

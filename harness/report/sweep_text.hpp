@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/suite/sweep.hpp"
+#include "harness/measure/sweep.hpp"
 
 namespace attest {
 

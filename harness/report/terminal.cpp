@@ -107,8 +107,7 @@ std::string failures(const RunResult& run, TerminalStyle style) {
       untold += groups[i].size();
   }
   if (untold > 0) out += fmt::format("and {} more; see --json or --junit\n\n", untold);
-  out += stages(run);
-  return run.diagnosis ? out + diagnosis_text(*run.diagnosis) + "\n" : out;
+  return out + stages(run);
 }
 
 std::string cases_of(const Together& group) {
@@ -290,10 +289,12 @@ std::string painted(std::string_view text, Colour colour, TerminalStyle style) {
   return fmt::format("\x1b[{}m{}\x1b[0m", codes[static_cast<std::size_t>(colour)], text);
 }
 
-std::string render_summary(const RunResult& run, double wall_s, TerminalStyle style) {
+std::string render_summary(const RunResult& run, double wall_s, TerminalStyle style,
+                           const std::optional<Diagnosis>& diagnosis) {
   std::string out = header(run);
   if (const std::string table = render_table(run, style); !table.empty()) out += table + "\n";
   out += failures(run, style);
+  if (diagnosis) out += diagnosis_text(*diagnosis) + "\n";
   out += counted_apart(run);
   out += headroom(run);
   out += errors(run, style);

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <string_view>
 
-#include "harness/suite/run_result.hpp"
+#include "harness/diagnosis/diagnose.hpp"
+#include "harness/verify/run_result.hpp"
 
 namespace attest {
 
@@ -38,6 +40,7 @@ inline constexpr std::size_t errors_told = 20;
 // PASS says that nothing failed, there was no error and something was compared; where nothing was,
 // the word is NONE. `wall_s` is the time of the whole run. Ends with a
 // newline.
-std::string render_summary(const RunResult& run, double wall_s, TerminalStyle style);
+std::string render_summary(const RunResult& run, double wall_s, TerminalStyle style,
+                           const std::optional<Diagnosis>& diagnosis = {});
 
 }  // namespace attest

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/suite/vector_times.hpp"
+#include "harness/measure/vector_times.hpp"
 
 namespace attest {
 

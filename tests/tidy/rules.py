@@ -12,7 +12,8 @@ MAX_FILE_LINES = 350
 
 # A folder of harness/ includes itself and those before it.
 HARNESS_ORDER = (
-    "core process schedule trace plant port compare casefile run realtime suite report cli".split()
+    "core process workers schedule trace plant port compare casefile loop realtime host golden"
+    " verify diagnosis measure report cli".split()
 )
 
 

@@ -31,9 +31,9 @@ EXAMPLES = {
     "harness_order": [
         (
             {"harness/core/a.cpp": '#include "harness/trace/trace.hpp"\n'},
-            {"harness/trace/a.cpp": '#include "harness/core/a.hpp"\n// #include "harness/run/a"\n'},
+            {"harness/trace/a.cpp": '#include "harness/core/a.hpp"\n// #include "harness/cli/a"\n'},
         ),
-        ({"harness/newcomer/a.cpp": "\n"}, {"harness/cli/a.cpp": '#include "harness/run/a.hpp"\n'}),
+        ({"harness/newcomer/a.cpp": "\n"}, {"harness/cli/a.cpp": '#include "harness/host/a"\n'}),
         ({"harness/core/a.cpp": '#include "a.hpp"\n'}, {"harness/core/a.cpp": "#include <a>\n"}),
     ],
     "controller_stands_alone": [
@@ -47,18 +47,18 @@ EXAMPLES = {
     "one_owner": [
         (
             {
-                "harness/run/b.cpp": "#include <mujoco/mujoco.h>\n",
+                "harness/loop/b.cpp": "#include <mujoco/mujoco.h>\n",
                 "harness/plant/a.cpp": "#include <mujoco/mujoco.h>\n",
             },
-            {"harness/plant/a.cpp": "#include <mujoco/mujoco.h>\n", "harness/run/b.cpp": ""},
+            {"harness/plant/a.cpp": "#include <mujoco/mujoco.h>\n", "harness/loop/b.cpp": ""},
         ),
         (
             {"harness/core/toml.hpp": "#include <toml++/toml.h>\n"},
             {"harness/core/toml.cpp": "#include <toml++/toml.h>\n"},
         ),
         (
-            {"harness/run/b.cpp": "dlopen(p, 0);", "harness/port/a.cpp": "::dlopen(p, 0);"},
-            {"harness/port/a.cpp": "dlopen(p, 0);", "harness/run/b.cpp": "// dlopen(p) does\n"},
+            {"harness/loop/b.cpp": "dlopen(p, 0);", "harness/port/a.cpp": "::dlopen(p, 0);"},
+            {"harness/port/a.cpp": "dlopen(p, 0);", "harness/loop/b.cpp": "// dlopen(p) does\n"},
         ),
         (
             {"harness/plant/a.hpp": "#include <arkode/arkode_erkstep.h>\n"},
@@ -116,7 +116,7 @@ EXAMPLES = {
         ),
         (
             {"controller/a.cpp": "void f() { std::cout << 1; }\n"},
-            {"harness/run/a.cpp": "// not std::cout\n"},
+            {"harness/loop/a.cpp": "// not std::cout\n"},
         ),
     ],
 }

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/casefile/stimulus.hpp"
-#include "harness/run/case_timing.hpp"
+#include "harness/loop/case_timing.hpp"
 #include "tests/harness/casefile/case_files.hpp"
 
 namespace attest {

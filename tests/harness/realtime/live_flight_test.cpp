@@ -6,9 +6,9 @@
 
 #include "harness/casefile/parse.hpp"
 #include "harness/compare/compare.hpp"
+#include "harness/loop/flight.hpp"
+#include "harness/loop/open_loop.hpp"
 #include "harness/port/builtin.hpp"
-#include "harness/run/flight.hpp"
-#include "harness/run/open_loop.hpp"
 
 namespace attest {
 namespace {

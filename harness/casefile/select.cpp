@@ -1,0 +1,212 @@
+#include "harness/casefile/select.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <iterator>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include "harness/casefile/parse.hpp"
+#include "harness/core/nearest.hpp"
+
+namespace attest {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool matches(const std::string& pattern, const std::string& text) {
+  return ::fnmatch(pattern.c_str(), text.c_str(), 0) == 0;
+}
+
+// Which of the patterns match a case with a setup. None is passed over: one that matches no case at
+// all is an error.
+bool matches_any(const std::vector<std::string>& filters, const Case& the_case, const Setup& setup,
+                 std::set<std::string>& matching) {
+  if (filters.empty()) return true;
+  const std::string in_group = the_case.group + "/" + the_case.name;
+  std::vector<std::string> names = {the_case.name};
+  for (const std::string& name : {the_case.id(), in_group}) {
+    for (const std::string& end : {std::string(), "@" + setup.label(), "@" + setup.rate.label()}) {
+      names.push_back(name + end);
+    }
+  }
+  bool any = false;
+  for (const std::string& pattern : filters) {
+    if (!std::any_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return matches(pattern, name); })) {
+      continue;
+    }
+    any = true;
+    matching.insert(pattern);
+  }
+  return any;
+}
+
+template <typename T>
+bool contains(const std::vector<T>& list, const T& item) {
+  return list.empty() || std::find(list.begin(), list.end(), item) != list.end();
+}
+
+// Each name asked for must exist: a misspelt group would otherwise select nothing, silently.
+Result<void> check_names(const std::vector<std::string>& asked, const std::set<std::string>& known,
+                         const char* kind) {
+  for (const std::string& name : asked) {
+    if (known.count(name)) continue;
+    const std::vector<std::string> candidates(known.begin(), known.end());
+    return fail(fmt::format("no cases of {} `{}`{}; there are {}", kind, name,
+                            suggestion(name, candidates), fmt::join(candidates, ", ")));
+  }
+  return {};
+}
+
+// The group is in the path, so that files that cannot match need not be read.
+std::string group_of(const fs::path& file) { return file.parent_path().filename().string(); }
+
+Result<void> check_groups(const std::vector<fs::path>& files, const Selection& selection) {
+  std::set<std::string> groups;
+  for (const fs::path& file : files) groups.insert(group_of(file));
+  return check_names(selection.groups, groups, "group");
+}
+
+bool is_selected(const Setup& setup, const Selection& selection) {
+  if (!contains(selection.rates, setup.rate)) return false;
+  if (!setup.flyer) return selection.vehicles.empty() && selection.plants.empty();
+  return contains(selection.vehicles, setup.flyer->vehicle) &&
+         contains(selection.plants, std::string(name_of(setup.flyer->plant)));
+}
+
+std::vector<Setup> selected_setups(const Case& the_case, const Selection& selection,
+                                   std::set<std::string>& matching) {
+  std::vector<Setup> setups = the_case.setups();
+  std::erase_if(setups, [&](const Setup& setup) {
+    return !is_selected(setup, selection) ||
+           !matches_any(selection.filters, the_case, setup, matching);
+  });
+  return setups;
+}
+
+// What there is to choose from in the files that were read.
+struct Known {
+  std::set<Rate> rates;
+  std::set<std::string> profiles, vehicles, plants;
+
+  void add(const Case& the_case) {
+    profiles.insert(the_case.profiles.begin(), the_case.profiles.end());
+    for (const Setup& setup : the_case.setups()) {
+      rates.insert(setup.rate);
+      if (!setup.flyer) continue;
+      vehicles.insert(setup.flyer->vehicle);
+      plants.insert(std::string(name_of(setup.flyer->plant)));
+    }
+  }
+};
+
+// Only some of these: what the case files name, and no rate that none of them has.
+Result<void> check_rates(const std::vector<Rate>& asked, const std::set<Rate>& known) {
+  for (const Rate& rate : asked) {
+    if (known.count(rate)) continue;
+    std::vector<std::string> names;
+    for (const Rate& other : known) names.push_back(other.to_string());
+    return fail(fmt::format("no selected case runs at {} Hz; there are {} Hz", rate.to_string(),
+                            fmt::join(names, ", ")));
+  }
+  return {};
+}
+
+Result<void> check_known(const Selection& selection, const Known& known) {
+  auto profiles = check_names(selection.profiles, known.profiles, "profile");
+  if (!profiles) return profiles;
+  if (auto checked = check_rates(selection.rates, known.rates); !checked) return checked;
+  auto vehicles = check_names(selection.vehicles, known.vehicles, "vehicle");
+  return vehicles ? check_names(selection.plants, known.plants, "plant") : vehicles;
+}
+
+std::vector<SelectedCase> part_of(std::vector<SelectedCase> all, const Shard& shard) {
+  std::vector<SelectedCase> part;
+  for (std::size_t i = shard.index - 1; i < all.size(); i += shard.count) {
+    part.push_back(std::move(all[i]));
+  }
+  return part;
+}
+
+// A file is a case of each of its profiles.
+void add_selected(const Case& parsed, const Selection& selection, std::set<std::string>& matching,
+                  std::vector<SelectedCase>& selected) {
+  for (const std::string& profile : parsed.profiles) {
+    if (!contains(selection.profiles, profile)) continue;
+    Case the_case = parsed.in_profile(profile);
+    auto setups = selected_setups(the_case, selection, matching);
+    if (!setups.empty()) selected.push_back({std::move(the_case), std::move(setups)});
+  }
+}
+
+// Each filter must select something: a misspelt one would otherwise leave out, silently, what its
+// author wants to run.
+Result<void> check_filters(const Selection& selection, const std::set<std::string>& matching) {
+  std::vector<std::string> idle;
+  for (const std::string& filter : selection.filters) {
+    if (!matching.contains(filter)) idle.push_back(filter);
+  }
+  if (idle.empty() && !selection.filters.empty()) return {};
+  if (idle.empty()) return fail("no case matches the selection; `attest list` shows them all");
+  return fail(
+      fmt::format("no case matches `{}`; `attest list` shows them all", fmt::join(idle, "` or `")));
+}
+
+}  // namespace
+
+Result<Shard> Shard::parse(const std::string& text) {
+  Shard shard;
+  const char* end = text.data() + text.size();
+  const auto [slash, bad_index] = std::from_chars(text.data(), end, shard.index);
+  if (bad_index == std::errc{} && slash != end && *slash == '/') {
+    const auto [rest, bad_count] = std::from_chars(slash + 1, end, shard.count);
+    const bool in_range = shard.index >= 1 && shard.index <= shard.count;
+    if (bad_count == std::errc{} && rest == end && in_range) return shard;
+  }
+  return fail(fmt::format("`{}` is not a shard; write I/N with I from 1 to N, such as 2/4", text));
+}
+
+Result<std::vector<SelectedCase>> select_cases(const fs::path& folder, const Selection& selection) {
+  auto files = find_case_files(folder);
+  if (!files) return tl::unexpected(files.error());
+  if (auto known = check_groups(*files, selection); !known) return tl::unexpected(known.error());
+  std::vector<SelectedCase> selected;
+  Known known;
+  std::set<std::string> matching;  // of the filters
+  for (const fs::path& file : *files) {
+    if (!contains(selection.groups, group_of(file))) continue;
+    auto parsed = parse_case(file);
+    if (!parsed) return tl::unexpected(parsed.error());
+    known.add(*parsed);
+    add_selected(*parsed, selection, matching, selected);
+  }
+  if (auto checked = check_known(selection, known); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  if (selected.empty() || !selection.filters.empty()) {
+    if (auto checked = check_filters(selection, matching); !checked) {
+      return tl::unexpected(checked.error());
+    }
+  }
+  std::sort(selected.begin(), selected.end(), [](const SelectedCase& a, const SelectedCase& b) {
+    return a.the_case.id() < b.the_case.id();
+  });
+  const auto twin = std::adjacent_find(selected.begin(), selected.end(),
+                                       [](const SelectedCase& a, const SelectedCase& b) {
+                                         return a.the_case.id() == b.the_case.id();
+                                       });
+  if (twin != selected.end()) {
+    return fail_at(twin->the_case.file.string(),
+                   fmt::format("is {}, and so is {}; give one of them another name",
+                               twin->the_case.id(), std::next(twin)->the_case.file.string()));
+  }
+  selected = part_of(std::move(selected), selection.shard);
+  if (selected.empty()) return fail("this shard is empty: there are more shards than cases");
+  return selected;
+}
+
+}  // namespace attest

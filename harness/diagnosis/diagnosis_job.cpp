@@ -1,0 +1,134 @@
+#include "harness/diagnosis/diagnosis_job.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <nlohmann/json.hpp>
+
+#include "harness/casefile/stimulus.hpp"
+#include "harness/core/error_json.hpp"
+#include "harness/golden/other_side.hpp"
+#include "harness/loop/open_loop.hpp"
+#include "harness/port/builtin.hpp"
+#include "harness/verify/evaluate.hpp"
+#include "harness/verify/fixed_step.hpp"
+#include "harness/verify/judge.hpp"
+
+namespace attest {
+namespace {
+
+// Enough to tell the mistakes of the catalogue apart, in a second or two.
+constexpr std::size_t most_vectors = 48;
+
+struct Vector {
+  const Case* the_case;
+  Rate rate;
+};
+
+double distance_from_250(const Rate& rate) { return std::abs(std::log(rate.period_s() * 250)); }
+
+// One of each case, at the rate nearest to 250 Hz of those results that are `wanted`.
+template <typename Wanted>
+std::vector<Vector> vectors_of(const std::vector<SelectedCase>& cases,
+                               const std::vector<CaseResult>& results, Wanted wanted) {
+  std::map<std::string, Rate> nearest;
+  for (const CaseResult& result : results) {
+    if (result.flyer || !wanted(result)) continue;
+    const auto [place, is_new] = nearest.try_emplace(result.case_id(), result.rate);
+    if (!is_new && distance_from_250(result.rate) < distance_from_250(place->second)) {
+      place->second = result.rate;
+    }
+  }
+  std::vector<Vector> vectors;
+  for (const SelectedCase& selected : cases) {
+    const auto found = nearest.find(selected.the_case.id());
+    if (found == nearest.end() || is_long(selected.the_case)) continue;
+    vectors.push_back({&selected.the_case, found->second});
+  }
+  return vectors;
+}
+
+void add_spread(const std::vector<Vector>& vectors, const HostOptions& options,
+                const faults::Fault* partner, Jobs<VectorDiagnosis>& jobs) {
+  const std::size_t count = std::min(vectors.size(), most_vectors);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& [the_case, rate] = vectors[i * vectors.size() / count];
+    jobs.push_back(std::make_unique<DiagnosisJob>(*the_case, rate, partner, options));
+  }
+}
+
+using nlohmann::json;
+
+// Rows of numbers: there are hundreds.
+json to_json(const VectorDiagnosis& diagnosis) {
+  if (!diagnosis) return nullptr;
+  json rows = json::array();
+  for (const Likeness& one : diagnosis->likenesses) {
+    rows.push_back({one.matched, one.both, one.either});
+  }
+  return {{"ticks", diagnosis->ticks}, {"deviates", diagnosis->deviates}, {"faults", rows}};
+}
+
+VectorDiagnosis diagnosis_from(const json& in) {
+  if (in.is_null()) return std::nullopt;
+  VectorLikeness out;
+  out.ticks = in.at("ticks").get<std::size_t>();
+  out.deviates = in.at("deviates").get<bool>();
+  for (const json& row : in.at("faults")) {
+    out.likenesses.push_back(
+        {row.at(0).get<std::size_t>(), row.at(1).get<std::size_t>(), row.at(2).get<std::size_t>()});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string Codec<VectorDiagnosis>::encode(const Result<VectorDiagnosis>& result) {
+  return attest::encode(result.map([](const VectorDiagnosis& one) { return to_json(one); }));
+}
+
+Result<VectorDiagnosis> Codec<VectorDiagnosis>::decode(const std::string& text) {
+  return attest::decode(text).map(diagnosis_from);
+}
+
+Result<VectorDiagnosis> DiagnosisJob::run(std::size_t) {
+  const auto host = start_host(options_);
+  if (!host) return tl::unexpected(host.error());
+  const PortSays& port = (*host)->says();
+  const auto& declined = port.unsupported_groups;
+  if (std::find(declined.begin(), declined.end(), case_.group) != declined.end()) {
+    return std::nullopt;
+  }
+  Trace law = stimulate(has_fixed_step(port, case_) ? case_.from_one_period_on() : case_, rate_);
+  Trace got = law;
+  const Subject subject = subject_of(case_);
+  if ((*host)->drive(subject, got)) return std::nullopt;
+  const auto reference = open_builtin();
+  if (drive(*reference, subject, law)) return std::nullopt;
+  if (case_.either_side.any()) {
+    const auto others = other_sides(case_, law);
+    if (!others) return tl::unexpected(others.error());
+    law = on_the_side_of(
+        got, law, *others,
+        tolerances_of(case_, Level::numeric, port.fraction_bits, law.samples.size()));
+  }
+  return likeness(outputs_of(got), outputs_of(law), answers_of_faults(law, subject, partner_));
+}
+
+Jobs<VectorDiagnosis> diagnosis_jobs(const std::vector<SelectedCase>& cases,
+                                     const std::vector<CaseResult>& results,
+                                     const HostOptions& options, const faults::Fault* partner) {
+  const auto failed = [](const CaseResult& result) {
+    return result.first && fails_a_run(result.verdict);
+  };
+  const auto passed = [](const CaseResult& result) { return result.verdict == Verdict::pass; };
+  Jobs<VectorDiagnosis> jobs;
+  const auto failing = vectors_of(cases, results, failed);
+  if (failing.empty()) return jobs;
+  add_spread(failing, options, partner, jobs);
+  add_spread(vectors_of(cases, results, passed), options, partner, jobs);
+  return jobs;
+}
+
+}  // namespace attest

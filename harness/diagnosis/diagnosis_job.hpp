@@ -1,0 +1,52 @@
+// Runs a port on some vectors of the corpus, and every wrong controller of the catalogue, too.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "harness/casefile/select.hpp"
+#include "harness/diagnosis/likeness.hpp"
+#include "harness/host/port_process.hpp"
+#include "harness/verify/verdict.hpp"
+#include "harness/workers/job.hpp"
+
+namespace attest {
+
+// Empty when the port went wrong.
+using VectorDiagnosis = std::optional<VectorLikeness>;
+
+template <>
+struct Codec<VectorDiagnosis> {
+  static std::string encode(const Result<VectorDiagnosis>& result);
+  static Result<VectorDiagnosis> decode(const std::string& text);
+};
+
+// One vector.
+class DiagnosisJob final : public Job<VectorDiagnosis> {
+ public:
+  // Open loop. The case must outlive this. With a `partner` each fault is tried together with it.
+  DiagnosisJob(const Case& the_case, const Rate& rate, const faults::Fault* partner,
+               HostOptions options)
+      : case_(the_case), rate_(rate), partner_(partner), options_(std::move(options)) {}
+
+  std::size_t size() const override { return 1; }
+  Result<VectorDiagnosis> run(std::size_t task) override;
+
+ private:
+  const Case& case_;
+  Rate rate_;
+  const faults::Fault* partner_;
+  HostOptions options_;
+};
+
+// For the vectors that failed with a value, and as many that passed: one rate a case, the one
+// nearest to 250 Hz, spread over the corpus. `cases` are those that were run, and must outlive the
+// jobs.
+Jobs<VectorDiagnosis> diagnosis_jobs(const std::vector<SelectedCase>& cases,
+                                     const std::vector<CaseResult>& results,
+                                     const HostOptions& options,
+                                     const faults::Fault* partner = nullptr);
+
+}  // namespace attest

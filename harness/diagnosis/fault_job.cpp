@@ -1,0 +1,89 @@
+#include "harness/diagnosis/fault_job.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "harness/core/error_json.hpp"
+#include "harness/host/host_here.hpp"
+#include "harness/port/fault_port.hpp"
+#include "harness/verify/evaluate.hpp"
+
+namespace attest {
+namespace {
+
+// A case at a rate, by how likely it is to catch: own group, then 250 Hz, then in order.
+struct Attempt {
+  const Case* the_case;
+  Rate rate;
+  int turn;
+};
+
+std::vector<Attempt> attempts(const std::vector<SelectedCase>& cases, std::string_view group) {
+  std::vector<Attempt> list;
+  for (const auto& [the_case, setups] : cases) {
+    for (const Setup& setup : setups) {
+      const int turn = (the_case.group == group ? 0 : 2) + (setup.rate == Rate::hz(250) ? 0 : 1);
+      list.push_back({&the_case, setup.rate, turn});
+    }
+  }
+  std::stable_sort(list.begin(), list.end(),
+                   [](const Attempt& a, const Attempt& b) { return a.turn < b.turn; });
+  return list;
+}
+
+}  // namespace
+
+std::string Codec<FaultCatch>::encode(const Result<FaultCatch>& result) {
+  return attest::encode(result.map([](const FaultCatch& found) {
+    nlohmann::json out = {{"verdict", name_of(found.verdict)}, {"by", found.by}};
+    if (found.tick) out["tick"] = *found.tick;
+    return out;
+  }));
+}
+
+Result<FaultCatch> Codec<FaultCatch>::decode(const std::string& text) {
+  return attest::decode(text).map([](const nlohmann::json& in) {
+    FaultCatch found{
+        *parse_verdict(in.at("verdict").get<std::string>()), in.at("by").get<std::string>(), {}};
+    if (in.contains("tick")) found.tick = in.at("tick").get<std::size_t>();
+    return found;
+  });
+}
+
+Result<FaultCatch> FaultJob::run(std::size_t) {
+  auto port = open_fault(fault_.id, fraction_bits_);
+  if (!port) return tl::unexpected(port.error());
+  HostHere host(*std::move(port));
+  FaultCatch found;
+  // Of a module that the profile's cases do not have.
+  const bool has_group = std::any_of(cases_.begin(), cases_.end(), [&](const SelectedCase& one) {
+    return one.the_case.group == fault_.group;
+  });
+  if (!has_group && !fault_.is_detectable(profile_)) return found;
+  std::optional<Golden> golden;
+  const Case* opened = nullptr;
+  for (const auto& [the_case, rate, turn] : attempts(cases_, fault_.group)) {
+    if (opened != the_case) {
+      auto next = Golden::open(golden_root_, *the_case);
+      if (!next) return tl::unexpected(next.error());
+      golden.emplace(std::move(*next));
+      opened = the_case;
+    }
+    // Rounding tells a fault from the law that is equivalent to it.
+    if (the_case->exact_only && !fault_.is_detectable(profile_)) continue;
+    const Level level = the_case->exact_only ? Level::exact : Level::numeric;
+    const auto result = evaluate_case(*the_case, rate, *golden, host, level);
+    if (!result) return tl::unexpected(result.error());
+    if (!fails_a_run(result->verdict)) continue;
+    found.verdict = result->verdict;
+    found.by = result->id();
+    if (result->first) found.tick = result->first->tick;
+    return found;
+  }
+  return found;
+}
+
+}  // namespace attest

@@ -1,0 +1,60 @@
+// One wrong controller of the catalogue against the corpus, until something catches it: how good
+// the suite is, not how good a port is.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "controller/faults/fault.hpp"
+#include "harness/casefile/select.hpp"
+#include "harness/verify/verdict.hpp"
+#include "harness/workers/job.hpp"
+
+namespace attest {
+
+// The first case that caught a fault.
+struct FaultCatch {
+  Verdict verdict = Verdict::pass;  // pass: it survived all
+  std::string by;                   // id of the case, with its rate
+  std::optional<std::size_t> tick;  // that deviates first
+
+  bool is_caught() const { return fails_a_run(verdict); }
+};
+
+template <>
+struct Codec<FaultCatch> {
+  static std::string encode(const Result<FaultCatch>& result);
+  static Result<FaultCatch> decode(const std::string& text);
+};
+
+class FaultJob final : public Job<FaultCatch> {
+ public:
+  // `cases` are open loop, all of `profile`, and outlive this.
+  FaultJob(const faults::Fault& fault, faults::Profile profile,
+           const std::vector<SelectedCase>& cases, std::filesystem::path golden_root,
+           std::optional<int> fraction_bits)
+      : fault_(fault),
+        profile_(profile),
+        cases_(cases),
+        golden_root_(std::move(golden_root)),
+        fraction_bits_(fraction_bits) {}
+
+  std::size_t size() const override { return 1; }
+
+  // Cases of the fault's own group come first, and of each group 250 Hz. Cases on a threshold are
+  // judged at the exact level, the others at the numeric one.
+  Result<FaultCatch> run(std::size_t task) override;
+
+ private:
+  const faults::Fault& fault_;
+  faults::Profile profile_;
+  const std::vector<SelectedCase>& cases_;
+  std::filesystem::path golden_root_;
+  std::optional<int> fraction_bits_;  // judged as a port with so many would be
+};
+
+}  // namespace attest

@@ -1,0 +1,145 @@
+#include "harness/diagnosis/likeness.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "harness/compare/tolerance.hpp"
+#include "harness/loop/open_loop.hpp"
+#include "harness/port/fault_port.hpp"
+
+namespace attest {
+namespace {
+
+// A bit for each output value that differs; there are 30.
+using Mask = std::uint32_t;
+
+struct Output {
+  Channel channel;
+  Tolerance tolerance;
+};
+
+const std::vector<Output>& output_table() {
+  static const std::vector<Output> table = [] {
+    const Tolerances tolerances;
+    std::vector<Output> outputs;
+    for (std::size_t i = 0; i < channels().size(); ++i) {
+      if (channels()[i].is_output()) outputs.push_back({channels()[i], tolerances.of(i)});
+    }
+    return outputs;
+  }();
+  return table;
+}
+
+bool differs(const Output& output, const Sample& a, const Sample& b) {
+  if (output.channel.type != ChannelType::f32) {
+    return (value_of(output.channel, a) != 0) != (value_of(output.channel, b) != 0);
+  }
+  const double x = static_cast<double>(float_of(output.channel, a));
+  const double y = static_cast<double>(float_of(output.channel, b));
+  if (std::isnan(x) || std::isnan(y)) return std::isnan(x) != std::isnan(y);
+  if (x == y) return false;
+  if (std::isinf(x) || std::isinf(y)) return true;
+  const auto [absolute, relative] = output.tolerance;
+  return std::abs(x - y) > std::max(absolute, relative * std::abs(y));
+}
+
+Sample sample_of(const Answer& answer) {
+  Sample sample{};
+  sample.out = answer.out;
+  sample.mixer_out = answer.mixer_out;
+  sample.battery_out = answer.battery_out;
+  return sample;
+}
+
+Mask difference(const Answer& a, const Answer& b) {
+  if (std::memcmp(&a, &b, sizeof a) == 0) return 0;
+  const Sample x = sample_of(a), y = sample_of(b);
+  Mask mask = 0, bit = 1;
+  for (const Output& output : output_table()) {
+    if (differs(output, x, y)) mask |= bit;
+    bit <<= 1;
+  }
+  return mask;
+}
+
+Likeness likeness_of(const Outputs& port, const Outputs& law, const Outputs& fault,
+                     const std::vector<Mask>& port_deviates) {
+  Likeness result;
+  for (std::size_t tick = 0; tick < port.size(); ++tick) {
+    result.matched += difference(port[tick], fault[tick]) == 0 ? 1 : 0;
+    const Mask fault_deviates = difference(fault[tick], law[tick]);
+    const Mask both = port_deviates[tick] & fault_deviates;
+    const Mask either = port_deviates[tick] | fault_deviates;
+    result.both += static_cast<std::size_t>(std::popcount(both));
+    result.either += static_cast<std::size_t>(std::popcount(either));
+  }
+  return result;
+}
+
+bool same_bytes(const Outputs& a, const Outputs& b) {
+  if (a.size() != b.size()) return false;
+  return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Answer)) == 0;
+}
+
+}  // namespace
+
+Outputs outputs_of(const Trace& trace) {
+  Outputs outputs;
+  outputs.reserve(trace.samples.size());
+  for (const Sample& sample : trace.samples) {
+    outputs.push_back({sample.out, sample.mixer_out, sample.battery_out});
+  }
+  return outputs;
+}
+
+FaultAnswers answers_of_faults(const Trace& given, const Subject& subject,
+                               const faults::Fault* partner) {
+  FaultAnswers answers;
+  Trace answered = given;
+  for (const faults::Fault* fault : faults::catalogue()) {
+    std::string ids(fault->id);
+    if (partner != nullptr) ids += "+" + std::string(partner->id);
+    const auto port = open_fault(ids);
+    const bool done = !drive(**port, subject, answered);
+    Outputs outputs = done ? outputs_of(answered) : Outputs{};
+    const auto known = std::find_if(answers.distinct.begin(), answers.distinct.end(),
+                                    [&](const Outputs& one) { return same_bytes(one, outputs); });
+    answers.of_fault.push_back(static_cast<std::size_t>(known - answers.distinct.begin()));
+    if (known == answers.distinct.end()) answers.distinct.push_back(std::move(outputs));
+  }
+  return answers;
+}
+
+VectorLikeness distinct_likeness(const Outputs& port, const Outputs& law,
+                                 std::span<const Outputs> distinct) {
+  VectorLikeness result;
+  result.ticks = port.size();
+  std::vector<Mask> port_deviates;
+  for (std::size_t tick = 0; tick < port.size(); ++tick) {
+    port_deviates.push_back(difference(port[tick], law[tick]));
+    result.deviates = result.deviates || port_deviates.back() != 0;
+  }
+  for (const Outputs& fault : distinct) {
+    const bool answered = fault.size() == port.size();
+    result.likenesses.push_back(answered ? likeness_of(port, law, fault, port_deviates)
+                                         : Likeness{});
+  }
+  return result;
+}
+
+VectorLikeness of_each_fault(const VectorLikeness& distinct, const FaultAnswers& faults) {
+  VectorLikeness result{distinct.ticks, distinct.deviates, {}};
+  result.likenesses.reserve(faults.of_fault.size());
+  for (const std::size_t index : faults.of_fault) {
+    result.likenesses.push_back(distinct.likenesses[index]);
+  }
+  return result;
+}
+
+VectorLikeness likeness(const Outputs& port, const Outputs& law, const FaultAnswers& faults) {
+  return of_each_fault(distinct_likeness(port, law, faults.distinct), faults);
+}
+
+}  // namespace attest

@@ -1,0 +1,59 @@
+// How alike a port and the wrong controllers of the catalogue are on one vector: what a diagnosis
+// is made of.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "controller/faults/fault.hpp"
+#include "harness/loop/open_loop.hpp"
+#include "harness/trace/trace.hpp"
+
+namespace attest {
+
+// One fault beside the port.
+struct Likeness {
+  std::size_t matched = 0;  // ticks at which fault and port answer the same
+  std::size_t both = 0;     // values at which both deviate from the law
+  std::size_t either = 0;   // values at which one of them does
+};
+
+struct VectorLikeness {
+  std::size_t ticks = 0;
+  bool deviates = false;             // the port, from the law
+  std::vector<Likeness> likenesses;  // of each fault of the catalogue, in its order
+};
+
+// Of whichever part; zero of the others.
+struct Answer {
+  attest_outputs out;
+  attest_mixer_outputs mixer_out;
+  attest_battery_outputs battery_out;
+};
+using Outputs = std::vector<Answer>;  // one a tick
+
+Outputs outputs_of(const Trace& trace);
+
+// What the faults of the catalogue answer. Most answer alike on one vector: as the law does.
+struct FaultAnswers {
+  std::vector<Outputs> distinct;      // empty for faults that do not do the profile
+  std::vector<std::size_t> of_fault;  // index into `distinct`, in the order of the catalogue
+};
+
+// To the inputs of `given`, each fault alone or together with `partner`.
+FaultAnswers answers_of_faults(const Trace& given, const Subject& subject,
+                               const faults::Fault* partner = nullptr);
+
+// Of each of the distinct answers. Values are the same when the numeric level would pass them.
+VectorLikeness distinct_likeness(const Outputs& port, const Outputs& law,
+                                 std::span<const Outputs> distinct);
+
+// Of each fault, from what its answers have been found to be like.
+VectorLikeness of_each_fault(const VectorLikeness& distinct, const FaultAnswers& faults);
+
+VectorLikeness likeness(const Outputs& port, const Outputs& law, const FaultAnswers& faults);
+
+}  // namespace attest

@@ -1,0 +1,278 @@
+#include "harness/golden/golden.hpp"
+
+#include <cstdio>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+
+#include "harness/core/file.hpp"
+#include "harness/core/version.hpp"
+
+namespace attest {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string file_name(const Setup& setup) { return setup.label() + ".csv"; }
+
+std::string file_name(const Setup& setup, const std::string& other_side) {
+  return fmt::format("{}.{}.csv", setup.label(), other_side);
+}
+
+std::string metric_key(const Setup& setup, const std::string& metric) {
+  return fmt::format("{}.{}", setup.label(), metric);
+}
+
+std::string how_to_bless(const Case& the_case) {
+  return fmt::format("`attest bless --filter '{}' --reason \"...\"` makes it", the_case.id());
+}
+
+Result<void> write_text(const fs::path& path, const std::string& text) {
+  auto file = AtomicFile::open(path);
+  if (!file) return tl::unexpected(file.error());
+  if (auto written = file->write(text); !written) return written;
+  return file->commit();
+}
+
+Result<std::string> write_trace(const fs::path& path, const Trace& trace,
+                                const CsvColumns& columns) {
+  auto file = AtomicFile::open(path);
+  if (!file) return tl::unexpected(file.error());
+  if (auto written = write_csv(trace, columns, *file); !written) {
+    return tl::unexpected(written.error());
+  }
+  if (auto committed = file->commit(); !committed) return tl::unexpected(committed.error());
+  return sha256_of_file(path);
+}
+
+std::vector<Trace> samples_of(const std::vector<GoldenTrace>& traces) {
+  std::vector<Trace> samples;
+  for (const GoldenTrace& trace : traces) {
+    samples.push_back(trace.trace);
+    for (const auto& [side, other] : trace.other_sides) samples.push_back(other);
+  }
+  return samples;
+}
+
+// The base is named by its place, and by the bytes that it has now.
+Result<void> note_base(const GoldenBase& base, const Case& the_case, Provenance& provenance) {
+  const fs::path above = fs::path("..") / ".." / "..";
+  provenance.base = (above / the_case.profiles.front() / the_case.group / the_case.name).string();
+  for (const auto& [name, hash] : provenance.sha256) {
+    auto of_base = sha256_of_file(base.folder / name);
+    if (!of_base) return tl::unexpected(of_base.error());
+    provenance.base_sha256[name] = *of_base;
+  }
+  return {};
+}
+
+// What stays the same is said once in the provenance.
+Result<void> write_folder(const fs::path& folder, const Case& the_case,
+                          const std::vector<GoldenTrace>& traces,
+                          const std::vector<fs::path>& vehicle_files, const std::string& reason,
+                          const GoldenBase* base) {
+  const Division division =
+      base ? divide(samples_of(traces), samples_of(base->traces)) : divide(samples_of(traces));
+  Provenance provenance;
+  provenance.profile = the_case.profile;
+  provenance.case_id = the_case.id();
+  provenance.case_sha256 = the_case.sha256;
+  provenance.reference = fmt::format("attest {}", version);
+  provenance.compiler = compiler();
+  provenance.reason = reason;
+  provenance.constants = division.constants;
+  const auto write = [&](const std::string& name, const Trace& trace) -> Result<void> {
+    auto hash = write_trace(folder / name, trace, division.columns);
+    if (!hash) return tl::unexpected(hash.error());
+    provenance.sha256[name] = *hash;
+    return {};
+  };
+  for (const auto& [setup, trace, is_whole, horizon_s, metrics, other_sides] : traces) {
+    if (auto written = write(file_name(setup), trace); !written) return written;
+    for (const auto& [side, other] : other_sides) {
+      if (auto written = write(file_name(setup, side), other); !written) return written;
+    }
+    if (!the_case.mixer.empty()) provenance.mixers[setup.label()] = the_case.mixer;
+    if (horizon_s) provenance.horizon_s[setup.label()] = *horizon_s;
+    for (const auto& [metric, value] : metrics) {
+      provenance.metrics[metric_key(setup, metric)] = value;
+    }
+  }
+  for (const fs::path& file : vehicle_files) {
+    auto hash = sha256_of_file(file);
+    if (!hash) return tl::unexpected(hash.error());
+    provenance.models[file.filename().string()] = *hash;
+  }
+  if (base) {
+    if (auto noted = note_base(*base, the_case, provenance); !noted) return noted;
+  }
+  return write_text(folder / provenance_name, sealed(to_toml(provenance)));
+}
+
+}  // namespace
+
+bool keeps_every_tick(std::size_t ticks) {
+  constexpr std::size_t most = 1000;
+  return ticks <= most;
+}
+
+bool is_long(const Case& the_case) {
+  const std::int64_t ticks = tick_count(the_case.duration, the_case.rates.back());
+  return !the_case.flight && !keeps_every_tick(static_cast<std::size_t>(ticks));
+}
+
+fs::path golden_folder(const fs::path& golden_root, const Case& the_case) {
+  return golden_root / the_case.profile / the_case.group / the_case.name;
+}
+
+Golden::Golden(fs::path folder, Provenance provenance)
+    : folder_(std::move(folder)), provenance_(std::move(provenance)) {}
+
+Result<Golden> Golden::open(const fs::path& golden_root, const Case& the_case) {
+  const fs::path folder = golden_folder(golden_root, the_case);
+  if (!fs::exists(folder / provenance_name)) {
+    return fail_at(folder.string(),
+                   fmt::format("no golden for {}; {}", the_case.id(), how_to_bless(the_case)));
+  }
+  auto provenance = read_provenance(folder / provenance_name);
+  if (!provenance) return tl::unexpected(provenance.error());
+  if (provenance->case_sha256 != the_case.sha256) {
+    return fail_at((folder / provenance_name).string(),
+                   fmt::format("the golden is stale: {} has changed since it was blessed; {} anew",
+                               the_case.file.string(), how_to_bless(the_case)));
+  }
+  if (auto intact = check_seal(folder / provenance_name); !intact) {
+    return tl::unexpected(intact.error());
+  }
+  return Golden(folder, std::move(*provenance));
+}
+
+Result<Trace> Golden::read(const Setup& setup) const { return read_file(file_name(setup)); }
+
+Result<OtherSides> Golden::read_other_sides(const Setup& setup) const {
+  const std::string prefix = setup.label() + ".", suffix = ".csv";
+  OtherSides others;
+  for (const auto& [name, hash] : provenance_.sha256) {
+    const bool is_of_setup =
+        name.starts_with(prefix) && name.size() > prefix.size() + suffix.size();
+    if (!is_of_setup) continue;
+    auto trace = read_file(name);
+    if (!trace) return tl::unexpected(trace.error());
+    const std::size_t length = name.size() - prefix.size() - suffix.size();
+    others[name.substr(prefix.size(), length)] = std::move(*trace);
+  }
+  return others;
+}
+
+Result<Trace> Golden::read_file(const std::string& name) const {
+  const fs::path path = folder_ / name;
+  const auto blessed = provenance_.sha256.find(name);
+  if (blessed == provenance_.sha256.end()) {
+    return fail_at((folder_ / provenance_name).string(),
+                   fmt::format("no golden {}; `attest bless` makes it", name));
+  }
+  if (auto intact = check_bytes(path, blessed->second); !intact) {
+    return tl::unexpected(intact.error());
+  }
+  if (!provenance_.base.empty()) {
+    const auto of_base = provenance_.base_sha256.find(name);
+    const bool is_known = of_base != provenance_.base_sha256.end();
+    const fs::path base = (folder_ / provenance_.base / name).lexically_normal();
+    if (auto intact = check_bytes(base, is_known ? of_base->second : ""); !intact) {
+      return tl::unexpected(intact.error());
+    }
+  }
+  return read_csv(path, CsvNeed::outputs);  // inputs are compared with those that the case makes
+}
+
+Result<void> Golden::check_bytes(const fs::path& path, const std::string& blessed) const {
+  auto hash = sha256_of_file(path);
+  if (!hash) return tl::unexpected(hash.error());
+  if (*hash == blessed) return {};
+  return fail_at(
+      path.string(),
+      fmt::format("is not the file that was blessed (its SHA-256 is another than in {}); "
+                  "restore it from version control, or bless it anew",
+                  (folder_ / provenance_name).string()));
+}
+
+Result<ReferenceFlight> Golden::read_flight(const Setup& setup, const Vehicle& vehicle) const {
+  for (const fs::path& file : vehicle.files()) {
+    const auto blessed = provenance_.models.find(file.filename().string());
+    auto hash = sha256_of_file(file);
+    if (!hash) return tl::unexpected(hash.error());
+    if (blessed != provenance_.models.end() && blessed->second == *hash) continue;
+    return fail_at((folder_ / provenance_name).string(),
+                   fmt::format("the golden is stale: {} has changed since it was blessed; `attest "
+                               "bless --filter '{}' --reason \"...\"` makes it anew",
+                               file.string(), provenance_.case_id));
+  }
+  auto rows = read(setup);
+  if (!rows) return tl::unexpected(rows.error());
+  const auto horizon = provenance_.horizon_s.find(setup.label());
+  if (horizon == provenance_.horizon_s.end()) {
+    return fail_at((folder_ / provenance_name).string(),
+                   fmt::format("no horizon_s for {}; bless it anew", setup.label()));
+  }
+  ReferenceFlight flight{std::move(*rows), horizon->second, {}};
+  const std::string prefix = metric_key(setup, "");
+  for (const auto& [key, value] : provenance_.metrics) {
+    if (key.starts_with(prefix)) flight.metrics[key.substr(prefix.size())] = value;
+  }
+  return flight;
+}
+
+NewGolden::NewGolden(fs::path folder, fs::path written)
+    : folder_(std::move(folder)), written_(std::move(written)) {}
+
+NewGolden::NewGolden(NewGolden&& other) noexcept
+    : folder_(std::move(other.folder_)), written_(std::exchange(other.written_, {})) {}
+
+NewGolden::~NewGolden() {
+  if (written_.empty()) return;
+  std::error_code ignored;
+  fs::remove_all(written_, ignored);
+  // The folders of its group and profile, if they were made for it. Others are not empty.
+  fs::remove(written_.parent_path(), ignored);
+  fs::remove(written_.parent_path().parent_path(), ignored);
+}
+
+Result<NewGolden> NewGolden::write(const fs::path& golden_root, const Case& the_case,
+                                   const std::vector<GoldenTrace>& traces,
+                                   const std::vector<fs::path>& vehicle_files,
+                                   const std::string& reason, const GoldenBase* base) {
+  const fs::path folder = golden_folder(golden_root, the_case);
+  NewGolden golden(folder, fs::path(folder).concat(".new"));
+  std::error_code error;
+  fs::remove_all(golden.written_, error);  // left by a run that was killed
+  fs::create_directories(golden.written_, error);
+  if (error) {
+    return fail_at(golden.written_.string(), fmt::format("cannot be made: {}", error.message()));
+  }
+  auto done = write_folder(golden.written_, the_case, traces, vehicle_files, reason, base);
+  if (!done) return tl::unexpected(done.error());
+  return golden;
+}
+
+Result<void> NewGolden::put_in_place() {
+  const bool exchanged =
+      ::renameat2(AT_FDCWD, written_.c_str(), AT_FDCWD, folder_.c_str(), RENAME_EXCHANGE) == 0;
+  if (exchanged) return {};  // the old one is in `written_` now, and is removed with this
+  // There is no old one, or the file system cannot exchange: the old golden steps aside first.
+  const fs::path old = fs::path(folder_).concat(".old");
+  std::error_code error;
+  if (fs::exists(folder_)) fs::rename(folder_, old, error);
+  if (!error) fs::rename(written_, folder_, error);
+  if (error) {
+    std::error_code ignored;
+    if (!fs::exists(folder_, ignored)) fs::rename(old, folder_, ignored);
+    return fail_at(folder_.string(), fmt::format("cannot be replaced: {}", error.message()));
+  }
+  written_.clear();
+  fs::remove_all(old, error);
+  return {};
+}
+
+}  // namespace attest

@@ -1,0 +1,119 @@
+#include "harness/golden/golden_lock.hpp"
+
+#include <cerrno>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace attest {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr mode_t lock_mode = 0644;  // less the umask
+
+// Who held the lock before may have removed the file between our open() and flock().
+bool is_still_there(int descriptor, const fs::path& file) {
+  struct stat opened, there;
+  return ::fstat(descriptor, &opened) == 0 && ::stat(file.c_str(), &there) == 0 &&
+         opened.st_dev == there.st_dev && opened.st_ino == there.st_ino;
+}
+
+// The descriptor of the locked file.
+Result<int> lock(const fs::path& file) {
+  while (true) {
+    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, lock_mode);
+    const bool locked = descriptor >= 0 && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+    const int reason = errno;
+    if (locked && is_still_there(descriptor, file)) return descriptor;
+    if (descriptor >= 0) ::close(descriptor);
+    if (locked) continue;
+    if (descriptor >= 0 && reason == EWOULDBLOCK) {
+      return fail_at(file.string(),
+                     "another `attest bless` holds this lock and is writing goldens; try again "
+                     "when it has ended");
+    }
+    return fail_at(file.string(), fmt::format("cannot lock the goldens: {}",
+                                              std::generic_category().message(reason)));
+  }
+}
+
+// The folders <profile>/<group>/<name>, where goldens stand and are written.
+Result<std::vector<fs::path>> folders_of_cases(const fs::path& golden_root) {
+  constexpr int depth_of_cases = 2;
+  std::error_code error;
+  std::vector<fs::path> folders;
+  for (fs::recursive_directory_iterator it(golden_root, error), end; it != end && !error;
+       it.increment(error)) {
+    if (it.depth() < depth_of_cases) continue;
+    it.disable_recursion_pending();
+    std::error_code gone;
+    if (it->is_directory(gone)) folders.push_back(it->path());
+  }
+  if (!error) return folders;
+  return fail_at(golden_root.string(), fmt::format("cannot be read: {}", error.message()));
+}
+
+Result<void> remove_what_is_left(const fs::path& golden_root) {
+  const auto folders = folders_of_cases(golden_root);
+  if (!folders) return tl::unexpected(folders.error());
+  for (const fs::path& folder : *folders) {
+    const bool is_new = folder.extension() == ".new", is_old = folder.extension() == ".old";
+    if (!is_new && !is_old) continue;
+    const fs::path place = fs::path(folder).replace_extension();
+    std::error_code error;
+    if (is_old && !fs::exists(place, error)) {
+      fs::rename(folder, place, error);
+    } else {
+      fs::remove_all(folder, error);
+    }
+    if (error) {
+      return fail_at(folder.string(),
+                     fmt::format("was left by a run that was killed, and cannot be removed: {}",
+                                 error.message()));
+    }
+    // The folders of its group and profile, if they were made for it. Others are not empty.
+    fs::remove(folder.parent_path(), error);
+    fs::remove(folder.parent_path().parent_path(), error);
+  }
+  return {};
+}
+
+}  // namespace
+
+GoldenLock::GoldenLock(fs::path file, int descriptor)
+    : file_(std::move(file)), descriptor_(descriptor) {}
+
+GoldenLock::GoldenLock(GoldenLock&& other) noexcept
+    : file_(std::move(other.file_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+GoldenLock::~GoldenLock() {
+  if (descriptor_ < 0) return;
+  ::unlink(file_.c_str());  // while it is locked, so that it is nobody else's
+  ::close(descriptor_);
+}
+
+Result<GoldenLock> GoldenLock::take(const fs::path& golden_root) {
+  std::error_code error;
+  fs::create_directories(golden_root, error);
+  if (error) {
+    return fail_at(golden_root.string(), fmt::format("cannot be made: {}", error.message()));
+  }
+  const fs::path file = golden_root / ".bless.lock";
+  const auto descriptor = lock(file);
+  if (!descriptor) return tl::unexpected(descriptor.error());
+  GoldenLock taken(file, *descriptor);
+  if (auto removed = remove_what_is_left(golden_root); !removed) {
+    return tl::unexpected(removed.error());
+  }
+  return taken;
+}
+
+}  // namespace attest

@@ -1,0 +1,301 @@
+#include "harness/golden/margins.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include "controller/actuation/unit_table.hpp"
+#include "controller/reference/mc_att_control_definition.hpp"
+
+namespace attest {
+namespace {
+
+using reference::AttitudeGains;
+using reference::Matrix3;
+using reference::Quaternion;
+using reference::Topics;
+using Vector3d = reference::Vector3<double>;
+using Matrix3d = Matrix3<double>;
+using Tilt = reference::TiltError<double>;
+
+// What the stages note at the current tick.
+struct Notes {
+  Margins margins;
+  std::size_t tick = 0;
+
+  // NaN is near nothing.
+  void note(Decision decision, double distance) {
+    Margin& least = margins.of[static_cast<std::size_t>(decision)];
+    if (distance < least.distance) least = {distance, tick};
+  }
+};
+
+struct Step : reference::StepStages<double> {
+  Notes* notes;
+
+  bool sticks_beyond(const decltype(Topics::manual)& manual, double threshold) const {
+    const double x = std::abs(double(manual.x)), y = std::abs(double(manual.y));
+    // Either of them beyond is enough: the larger decides.
+    notes->note(Decision::rattitude, std::abs(std::max(x, y) - threshold));
+    return reference::StepStages<double>::sticks_beyond(manual, threshold);
+  }
+  float battery_factor(const Topics& topics, const reference::Gains<double>& gains,
+                       reference::Profile profile) const {
+    const double scale = std::abs(double(topics.battery_scale));
+    // A scale of exactly 0 is none, for everybody.
+    if (gains.battery_scaling && scale != 0) notes->note(Decision::battery_scale, scale);
+    return reference::StepStages<double>::battery_factor(topics, gains, profile);
+  }
+};
+
+struct Attitude : reference::AttitudeStages<double> {
+  using Law = reference::AttitudeStages<double>;
+  Notes* notes;
+
+  Tilt tilt_error(const Matrix3d& R_WB, const Matrix3d& R_WD) const {
+    const Tilt tilt = Law::tilt_error(R_WB, R_WD);
+    if (tilt.sine > 0) {
+      notes->note(Decision::tilt_axis, std::numbers::pi - std::atan2(tilt.sine, tilt.cosine));
+    } else if (tilt.cosine < 0) {
+      notes->note(Decision::tilt_axis, 0);
+    }
+    return tilt;
+  }
+  double yaw_error(const Vector3d& nose, const Matrix3d& R_WD, double weight) const {
+    const double error = Law::yaw_error(nose, R_WD, weight);
+    // Where yaw has next to no weight a whole turn of it is within tolerance.
+    constexpr double some = 1e-6;
+    if (weight > some) {
+      notes->note(Decision::yaw_wrap, std::numbers::pi - std::abs(error / weight));
+    }
+    return error;
+  }
+  Vector3d direct_error(const Matrix3d& R_WB, const Matrix3d& R_WD) const {
+    const auto q = reference::quaternion_of(reference::ordered::transpose_product(R_WB, R_WD));
+    notes->note(Decision::shorter_rotation, std::abs(q.w()));
+    return Law::direct_error(R_WB, R_WD);
+  }
+};
+
+// How far `value` is inside (-bound, bound): negative when it is outside.
+double inside(double value, double bound) { return bound - std::abs(value); }
+
+struct RateMargins : reference::RateStages<double> {
+  using Law = reference::RateStages<double>;
+  Notes* notes;
+
+  bool may_integrate(double thrust_sp, const reference::MotorLimits& limits) const {
+    if (!limits.lower && !limits.upper) {
+      notes->note(Decision::thrust_gate, std::abs(thrust_sp - double(reference::takeoff_thrust)));
+    }
+    return Law::may_integrate(thrust_sp, limits);
+  }
+  double integrate_axis(double integral, double control, double thrust_sp, double growth,
+                        bool frozen) const {
+    // A step of the integral that is far within its tolerance decides nothing.
+    constexpr double negligible = 2e-6;
+    if (!frozen && std::abs(growth) > negligible) {
+      const double bound = double(reference::integral_limit);
+      const std::array gates = {inside(control, thrust_sp), inside(integral + growth, bound),
+                                inside(control, bound)};
+      // All open: the first to shut. Else all that are shut have to open.
+      const double least = *std::min_element(gates.begin(), gates.end());
+      notes->note(Decision::integrator_gate, std::abs(least));
+    }
+    return Law::integrate_axis(integral, control, thrust_sp, growth, frozen);
+  }
+};
+
+struct Recovery : reference::RecoveryStages<double> {
+  using Law = reference::RecoveryStages<double>;
+  Notes* notes;
+
+  bool latch(bool recovering, double tilt_rad) const {
+    const double threshold = reference::radians(recovering ? 5.0 : 30.0);
+    notes->note(Decision::recovery_latch, std::abs(tilt_rad - threshold));
+    return Law::latch(recovering, tilt_rad);
+  }
+  Vector3d quaternion_rates(const Quaternion<double>& q_WB, const Quaternion<double>& q_WD,
+                            const AttitudeGains<double>& gains) const {
+    const Quaternion<double> q = reference::product(reference::conjugate(q_WD), q_WB);
+    notes->note(Decision::recovery_rotation, std::abs(q.w()));
+    return Law::quaternion_rates(q_WB, q_WD, gains);
+  }
+};
+
+struct NotingLaw {
+  Step step;
+  Attitude attitude;
+  RateMargins rate;
+  Recovery recovery;
+
+  explicit NotingLaw(Notes* notes)
+      : step{{}, notes}, attitude{{}, notes}, rate{{}, notes}, recovery{{}, notes} {}
+};
+
+struct Mixing : actuation::MixerStages<double> {
+  using Law = actuation::MixerStages<double>;
+  Notes* notes;
+
+  explicit Mixing(Notes* to) : notes(to) {}
+
+  Fit fit(double min_out, double max_out, double thrust) const {
+    notes->note(Decision::mixer_limit, std::min(std::abs(min_out), std::abs(max_out - 1)));
+    const bool one_end = (min_out < 0) != (max_out > 1);
+    if (one_end) notes->note(Decision::mixer_branch, std::abs(min_out + max_out - 1));
+    return Law::fit(min_out, max_out, thrust);
+  }
+  // The flag is set by the rotor that is furthest out, whichever comes first.
+  bool yield_yaw(std::span<const actuation::Rotor> rotors, Controls& c, const Fit& fit) const {
+    double beyond = -std::numeric_limits<double>::infinity();
+    for (const actuation::Rotor& rotor : rotors) {
+      const double out =
+          without_yaw(rotor, c, fit.roll_pitch_scale) + c.yaw * rotor.yaw + c.thrust + fit.boost;
+      beyond = std::max({beyond, -out, out - 1});
+    }
+    notes->note(Decision::mixer_yaw, std::abs(beyond));
+    return Law::yield_yaw(rotors, c, fit);
+  }
+};
+
+Margins mixer_margins(const Trace& given, const std::string& definition) {
+  Notes notes;
+  const auto parsed = actuation::parse_mixer(definition);
+  if (!parsed) return {};
+  actuation::BasicMixer<double, Mixing> mixer(*parsed, Mixing(&notes));
+  attest_mixer_outputs out{};
+  for (notes.tick = 0; notes.tick < given.samples.size(); ++notes.tick) {
+    actuation::step_mixer(mixer, given.samples[notes.tick].mixer_in, out);
+  }
+  return notes.margins;
+}
+
+void note_norm(const float (&q)[4], Notes& notes) {
+  double squared = 0;
+  for (const float component : q) squared += double(component) * double(component);
+  // Zeros and what is not finite are answered alike by all.
+  if (squared == 0 || !std::isfinite(squared)) return;
+  Margin& worst = notes.margins.of[static_cast<std::size_t>(Decision::quaternion_norm)];
+  const double off = std::abs(std::sqrt(squared) - 1);
+  if (std::isinf(worst.distance) || off > worst.distance) worst = {off, notes.tick};
+}
+
+}  // namespace
+
+std::string_view name_of(Decision decision) {
+  // In the order of the enumerators.
+  constexpr std::array<std::string_view, decision_count> names{"norm of quaternions",
+                                                               "thrust gate",
+                                                               "integrator gate",
+                                                               "rattitude",
+                                                               "shorter rotation",
+                                                               "yaw at +-180 deg",
+                                                               "tilt at 180 deg",
+                                                               "battery scale",
+                                                               "recovery's latch",
+                                                               "recovery's rotation",
+                                                               "mixer limit",
+                                                               "mixer branch",
+                                                               "mixer yaw"};
+  return names[static_cast<std::size_t>(decision)];
+}
+
+double least_margin(Decision decision) {
+  switch (decision) {
+    case Decision::quaternion_norm:
+      return 1e-6;  // float32 of a unit quaternion is within 1e-7
+    case Decision::thrust_gate:
+    case Decision::rattitude:
+    case Decision::battery_scale:
+      return 1e-6;  // inputs, which differ by how a port holds them
+    case Decision::integrator_gate:
+      return 1e-5;
+    case Decision::shorter_rotation:
+    case Decision::yaw_wrap:
+    case Decision::recovery_latch:
+    case Decision::recovery_rotation:
+    case Decision::mixer_limit:
+    case Decision::mixer_branch:
+    case Decision::mixer_yaw:
+      return 1e-5;
+    case Decision::tilt_axis:
+      return 1e-3;  // where the tolerance stops widening (tolerance.hpp)
+  }
+  return 0;
+}
+
+bool Margins::is_safe(Decision decision) const {
+  const double distance = (*this)[decision].distance;
+  if (decision == Decision::quaternion_norm) {
+    return std::isinf(distance) || distance <= least_margin(decision);
+  }
+  return distance >= least_margin(decision);
+}
+
+double least_margin(Decision decision, std::optional<int> fraction_bits) {
+  const double of_floats = least_margin(decision);
+  return fraction_bits ? std::max(of_floats, std::ldexp(decision_lsb, -*fraction_bits)) : of_floats;
+}
+
+struct MarginMeter::Impl {
+  explicit Impl(reference::Profile profile) : control(profile, NotingLaw(&notes)) {}
+
+  Notes notes;
+  reference::McAttControl<double, NotingLaw> control;
+  attest_outputs out{};
+};
+
+MarginMeter::MarginMeter(std::string_view profile)
+    : impl_(std::make_unique<Impl>(*reference::profile_from_name(profile))) {}
+MarginMeter::~MarginMeter() = default;
+
+const Margins& MarginMeter::step(std::span<const ParameterChange> changes,
+                                 const attest_inputs& in) {
+  Notes& notes = impl_->notes;
+  notes.margins = {};
+  for (const ParameterChange& change : changes) {
+    impl_->control.set_parameter(change.name, change.value);
+  }
+  note_norm(in.control_state.q, notes);
+  if (in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) {
+    note_norm(in.vehicle_attitude_setpoint.q_d, notes);
+  }
+  impl_->control.step(in, impl_->out);
+  ++notes.tick;
+  return notes.margins;
+}
+
+namespace {
+
+// The least of each; of the norm, for which far is near, the most.
+void gather(const Margins& at_tick, Margins& all) {
+  for (std::size_t i = 0; i < decision_count; ++i) {
+    const Margin& one = at_tick.of[i];
+    Margin& kept = all.of[i];
+    if (std::isinf(one.distance)) continue;
+    const bool is_norm = static_cast<Decision>(i) == Decision::quaternion_norm;
+    const bool is_nearer = is_norm ? one.distance > kept.distance : one.distance < kept.distance;
+    if (std::isinf(kept.distance) || is_nearer) kept = one;
+  }
+}
+
+}  // namespace
+
+Margins margins(const Trace& given, const Subject& subject) {
+  if (subject.part == Part::mixer) return mixer_margins(given, subject.mixer);
+  if (subject.part == Part::battery_status) return {};
+  if (!reference::profile_from_name(subject.profile)) return {};
+  MarginMeter meter(subject.profile);
+  std::span<const ParameterChange> changes = given.parameters;
+  Margins all;
+  for (std::size_t tick = 0; tick < given.samples.size(); ++tick) {
+    std::size_t now = 0;
+    while (now < changes.size() && changes[now].tick <= tick) ++now;
+    gather(meter.step(changes.first(now), given.samples[tick].in), all);
+    changes = changes.subspan(now);
+  }
+  return all;
+}
+
+}  // namespace attest

@@ -1,0 +1,145 @@
+#include "harness/golden/other_side.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <span>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "controller/reference/mc_att_control_definition.hpp"
+#include "harness/compare/compare.hpp"
+#include "harness/golden/margins.hpp"
+
+namespace attest {
+namespace {
+
+using Vector3f = reference::Vector3<float>;
+using Matrix3f = reference::Matrix3<float>;
+
+struct OtherSide : reference::AttitudeStages<float> {
+  using Law = reference::AttitudeStages<float>;
+  EitherSide sides;
+
+  float yaw_error(const Vector3f& nose, const Matrix3f& R_WD, float weight) const {
+    const float error = Law::yaw_error(nose, R_WD, weight);
+    const auto margin = static_cast<float>(least_margin(Decision::yaw_wrap));
+    const float from_wrap = std::numbers::pi_v<float> - std::abs(error / weight);
+    return sides.yaw_wrap && from_wrap < margin ? -error : error;
+  }
+  Vector3f direct_error(const Matrix3f& R_WB, const Matrix3f& R_WD) const {
+    const Vector3f error = Law::direct_error(R_WB, R_WD);
+    const auto q = reference::quaternion_of(reference::ordered::transpose_product(R_WB, R_WD));
+    const auto margin = static_cast<float>(least_margin(Decision::shorter_rotation));
+    const bool is_near = sides.shorter_rotation && std::abs(q.w()) < margin;
+    return is_near ? Vector3f(-error) : error;
+  }
+};
+
+struct LawOnOtherSide {
+  reference::StepStages<float> step;
+  OtherSide attitude;
+  reference::RateStages<float> rate;
+  reference::RecoveryStages<float> recovery;
+};
+
+// By value and by bits: the bytes between the members of a topic say nothing.
+bool is_same(std::string_view prefix, const Sample& a, const Sample& b) {
+  const ChannelSet chosen = channels_of(Part::mc_att_control, prefix);
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    const Channel& channel = channels()[i];
+    if (!chosen[i] || !channel.is_output()) continue;
+    const double x = value_of(channel, a), y = value_of(channel, b);
+    if (std::bit_cast<std::uint64_t>(x) != std::bit_cast<std::uint64_t>(y)) return false;
+  }
+  return true;
+}
+
+// One tick by itself, with the parameters in force at it.
+bool agrees(const Trace& got, const Trace& want, std::size_t tick, const Tolerances& tolerances) {
+  const auto& all = want.parameters;
+  const auto later = std::find_if(
+      all.begin(), all.end(), [tick](const ParameterChange& change) { return change.tick > tick; });
+  TickComparer comparer(want.present, want.present, tolerances);
+  comparer.add(got.samples[tick], want.samples[tick], {all.begin(), later});
+  return comparer.finish(1, 1).agrees();
+}
+
+// Null when `got` agrees with none of them.
+const Trace* side_of(const Trace& got, const Trace& law, const OtherSides& others, std::size_t tick,
+                     const Tolerances& tolerances) {
+  if (agrees(got, law, tick, tolerances)) return &law;
+  for (const auto& [name, other] : others) {
+    if (agrees(got, other, tick, tolerances)) return &other;
+  }
+  return nullptr;
+}
+
+Result<Trace> answers_of(const EitherSide& sides, const Case& the_case, const Trace& law) {
+  const auto profile = reference::profile_from_name(the_case.profile);
+  if (!profile) return fail_at(the_case.file.string(), "either_side: no such profile");
+  LawOnOtherSide stages;
+  stages.attitude.sides = sides;
+  reference::McAttControl<float, LawOnOtherSide> control(*profile, stages);
+  Trace other = law;
+  std::span<const ParameterChange> changes = law.parameters;
+  attest_outputs out{};
+  bool any = false;
+  for (std::size_t tick = 0; tick < other.samples.size(); ++tick) {
+    for (; !changes.empty() && changes.front().tick <= tick; changes = changes.subspan(1)) {
+      control.set_parameter(changes.front().name, changes.front().value);
+    }
+    Sample& sample = other.samples[tick];
+    control.step(sample.in, out);
+    sample.out = out;
+    any = any || !is_same("out/", sample, law.samples[tick]);
+    if (!is_same("out/mc_att_ctrl_status.", sample, law.samples[tick])) {
+      return fail_at(the_case.file.string(),
+                     fmt::format("either_side: at tick {} the integrals are not those of the other "
+                                 "side; keep them from moving, for example by a thrust of 0.15",
+                                 tick));
+    }
+  }
+  if (!any) {
+    return fail_at(the_case.file.string(), "either_side: no tick stands on such a threshold");
+  }
+  return other;
+}
+
+}  // namespace
+
+Result<OtherSides> other_sides(const Case& the_case, const Trace& law) {
+  const EitherSide allowed = the_case.either_side;
+  OtherSides others;
+  for (const EitherSide sides : {EitherSide{true, false}, {false, true}, {true, true}}) {
+    if ((sides.yaw_wrap && !allowed.yaw_wrap) ||
+        (sides.shorter_rotation && !allowed.shorter_rotation)) {
+      continue;
+    }
+    auto answers = answers_of(sides, the_case, law);
+    if (!answers) return tl::unexpected(answers.error());
+    std::string name = sides.yaw_wrap ? "yaw_wrap" : "shorter_rotation";
+    if (sides.yaw_wrap && sides.shorter_rotation) name += "+shorter_rotation";
+    others[name] = std::move(*answers);
+  }
+  return others;
+}
+
+Trace on_the_side_of(const Trace& got, const Trace& law, const OtherSides& others,
+                     const Tolerances& tolerances) {
+  Trace want = law;
+  for (std::size_t tick = 0; tick < want.samples.size(); ++tick) {
+    // What is right on no side is told from the nearest, not from the far one.
+    const Trace* side = nullptr;
+    for (double factor = 1; side == nullptr && factor <= 1e4; factor *= 10) {
+      side = side_of(got, law, others, tick, tolerances.scaled(factor));
+    }
+    if (side != nullptr) want.samples[tick] = side->samples[tick];
+  }
+  return want;
+}
+
+}  // namespace attest

@@ -1,0 +1,151 @@
+#include "harness/golden/recorded.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "controller/actuation/battery_status.hpp"
+#include "controller/actuation/mixer.hpp"
+#include "harness/casefile/parse.hpp"
+#include "harness/core/nearest.hpp"
+#include "harness/trace/csv.hpp"
+#include "harness/trace/mixer_csv.hpp"
+#include "harness/trace/provenance.hpp"
+
+namespace attest {
+namespace {
+
+constexpr const char* default_profile = "px4-v1.5.5";
+
+std::string mixer_of(const std::filesystem::path& file, const Provenance& provenance) {
+  const std::string stem = file.stem().string();
+  const auto found = provenance.mixers.find(stem);
+  if (found != provenance.mixers.end()) return found->second;
+  const std::string unscaled = fmt::format("R: {} 10000 10000 10000 0", stem);
+  return actuation::parse_mixer(unscaled) ? unscaled : "";
+}
+
+Result<void> check_mixer(const Trace& trace, const std::string& definition) {
+  if (definition.empty()) {
+    return fail_at(trace.source, "which mixer made it? pass --mixer \"R: 4x 10000 10000 10000 0\"");
+  }
+  const auto mixer = actuation::parse_mixer(definition);
+  if (!mixer)
+    return fail_at(trace.source, fmt::format("mixer `{}`: {}", definition, mixer.error()));
+  const ChannelSet outputs = channels_of(Part::mixer, "out/actuator_outputs.") & trace.present;
+  if (outputs.count() == mixer->rotors.size()) return {};
+  return fail_at(trace.source, fmt::format("has {} rotors, mixer `{}` has {}", outputs.count(),
+                                           definition, mixer->rotors.size()));
+}
+
+// Outputs of one part only.
+Result<void> check_part(const Trace& trace, Part part) {
+  const ChannelSet others = trace.present & ~channels_of(part, "out/");
+  const auto table = channels();
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (!others[i] || !table[i].is_output()) continue;
+    return fail_at(trace.source, fmt::format("{} is of another part than {}; keep the outputs of "
+                                             "one part",
+                                             table[i].name, name_of(part)));
+  }
+  return {};
+}
+
+bool is_one_of(const std::string& name, const std::vector<std::string>& names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// A trace of one version of the law may have been written with the columns of another.
+void leave_out_foreign_parameters(Recorded& recorded) {
+  const Subject& subject = recorded.subject;
+  const auto own = parameter_names(subject.part, subject.profile);
+  const auto all = parameter_names(subject.part, "");
+  std::set<std::string> foreign;
+  for (const ParameterChange& change : recorded.trace.parameters) {
+    if (!is_one_of(change.name, own) && is_one_of(change.name, all)) foreign.insert(change.name);
+  }
+  if (foreign.empty()) return;
+  std::erase_if(recorded.trace.parameters,
+                [&](const ParameterChange& change) { return foreign.contains(change.name); });
+  recorded.notes.push_back(fmt::format("not set, because {} does not have them: {}",
+                                       subject.profile, fmt::join(foreign, ", ")));
+}
+
+// Without cells the estimate never leaves 1, so a recording says how many there were, or had 3.
+void give_cells(Recorded& recorded) {
+  constexpr const char* name = "BAT_N_CELLS";
+  constexpr float usual_cells = 3;
+  if (recorded.subject.part != Part::battery_status) return;
+  const auto& parameters = recorded.trace.parameters;
+  const bool is_given =
+      std::any_of(parameters.begin(), parameters.end(),
+                  [](const ParameterChange& change) { return change.name == name; });
+  if (is_given) return;
+  recorded.trace.parameters.insert(recorded.trace.parameters.begin(), {0, name, usual_cells});
+  recorded.notes.push_back(
+      fmt::format("no column in/parameter.{0}: {1:g} cells are assumed; "
+                  "`--param {0}=N` sets another number",
+                  name, usual_cells));
+}
+
+Result<void> check_parameters(Recorded& recorded) {
+  leave_out_foreign_parameters(recorded);
+  give_cells(recorded);
+  for (const ParameterChange& change : recorded.trace.parameters) {
+    if (auto checked = check_parameter(recorded.subject, change); !checked) {
+      return fail_at(recorded.trace.source, checked.error().message);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> check_parameter(const Subject& subject, const ParameterChange& change) {
+  const std::vector<std::string> names = parameter_names(subject.part, subject.profile);
+  if (!is_one_of(change.name, names)) {
+    return fail(fmt::format("unknown parameter `{}` of {} in {}{}", change.name,
+                            name_of(subject.part), subject.profile,
+                            suggestion(change.name, names)));
+  }
+  actuation::BatteryOptions battery;
+  if (subject.part == Part::battery_status &&
+      !actuation::set_battery_parameter(battery, change.name, change.value)) {
+    return fail(fmt::format("{} cannot be {}", change.name, change.value));
+  }
+  return {};
+}
+
+Result<Recorded> read_recorded(const std::filesystem::path& file, const std::string& profile,
+                               const std::string& mixer) {
+  auto trace = looks_like_mixer_csv(file) ? read_mixer_csv(file)
+                                          : read_csv(file, CsvNeed::inputs_and_outputs);
+  if (!trace) return tl::unexpected(trace.error());
+  const auto beside = provenance_in(file.parent_path());
+  if (!beside) return tl::unexpected(beside.error());
+  const Provenance& provenance = *beside;
+  Recorded recorded{std::move(*trace), {profile, Part::mc_att_control, ""}, {}};
+  Subject& subject = recorded.subject;
+  subject.part = part_of(recorded.trace.present);
+  if (auto checked = check_part(recorded.trace, subject.part); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  if (subject.profile.empty()) subject.profile = provenance.profile;
+  if (subject.profile.empty()) subject.profile = default_profile;
+  if (auto checked = check_parameters(recorded); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  if (subject.part != Part::mixer && !mixer.empty()) {
+    return fail_at(recorded.trace.source, "is no mixer trace; leave --mixer out");
+  }
+  if (subject.part != Part::mixer) return recorded;
+  subject.mixer = mixer.empty() ? mixer_of(file, provenance) : mixer;
+  if (auto checked = check_mixer(recorded.trace, subject.mixer); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  return recorded;
+}
+
+}  // namespace attest

@@ -1,0 +1,82 @@
+#include "harness/golden/reference_flight.hpp"
+
+#include <fmt/format.h>
+
+#include "harness/compare/compare.hpp"
+#include "harness/golden/decimate.hpp"
+#include "harness/loop/case_timing.hpp"
+#include "harness/loop/flight.hpp"
+#include "harness/port/builtin.hpp"
+
+namespace attest {
+namespace {
+
+// Other right builds may part ten times faster than float32 and double do, and still pass.
+constexpr double part_of_tolerance = 0.1;
+
+Result<Trace> flown_by(Port& port, const Case& the_case, const Setup& setup,
+                       const Airframe& airframe, const LoopTiming& timing) {
+  const auto wrong = [&](const std::string& what) {
+    return fail_at(the_case.file.string(), fmt::format("at {}, {}", setup.label(), what));
+  };
+  const auto unit = port.create(the_case.profile);
+  if (!unit) return wrong(fmt::format("the reference has no profile `{}`", the_case.profile));
+  auto flown = fly(the_case, setup, airframe, *unit, timing);
+  if (!flown) return tl::unexpected(flown.error());
+  if (flown->fault) return wrong("the reference: " + flown->fault->what);
+  if (flown->divergence) {
+    return wrong(fmt::format("the reference loses the vehicle at {:.3f} s: {}",
+                             in_seconds(flown->divergence->at), flown->divergence->what));
+  }
+  return std::move(flown->trace);
+}
+
+double seconds_between(const Sample& first, const Sample& other) {
+  return static_cast<double>(other.in.timestamp - first.in.timestamp) * 1e-6;
+}
+
+double horizon_s(const Trace& flown, const Trace& in_double, const Case& the_case) {
+  Tolerances tolerances;
+  for (const auto& [prefix, tolerance] : the_case.tolerances) tolerances.set(prefix, tolerance);
+  const auto parted = compare(in_double, flown, tolerances.scaled(part_of_tolerance)).first;
+  const Sample& end = parted ? flown.samples[parted->tick] : flown.samples.back();
+  return seconds_between(flown.samples.front(), end);
+}
+
+}  // namespace
+
+Result<ReferenceFlight> reference_flight(const Case& the_case, const Setup& setup,
+                                         const Airframe& airframe, const LoopTiming& timing) {
+  auto flown = flown_by(*open_builtin(), the_case, setup, airframe, timing);
+  if (!flown) return tl::unexpected(flown.error());
+  const auto in_double = flown_by(*open_builtin_in_double(), the_case, setup, airframe, timing);
+  if (!in_double) return tl::unexpected(in_double.error());
+
+  ReferenceFlight result;
+  for (const Metric& metric : the_case.flight->metrics) {
+    result.metrics[metric.name] = measured(metric, *flown);
+  }
+  result.horizon_s = horizon_s(*flown, *in_double, the_case);
+  result.rows = std::move(*flown);
+  return result;
+}
+
+Result<ReferenceFlight> reference_flight(const Case& the_case, const Setup& setup,
+                                         const Airframe& airframe) {
+  auto flight = reference_flight(the_case, setup, airframe, case_timing(the_case, setup.rate));
+  if (!flight) return flight;
+  for (const Metric& metric : the_case.flight->metrics) {
+    const double value = flight->metrics[metric.name];
+    if (!(value >= metric.min && value <= metric.max)) {
+      return fail_at(the_case.file.string(),
+                     fmt::format("at {}, the reference misses the metric `{}`: {} is {:.4g}, not "
+                                 "from {:g} to {:g}",
+                                 setup.label(), metric.name, name_of(metric.measure), value,
+                                 metric.min, metric.max));
+    }
+  }
+  flight->rows = decimated(flight->rows);
+  return flight;
+}
+
+}  // namespace attest

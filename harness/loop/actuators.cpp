@@ -1,0 +1,48 @@
+#include "harness/loop/actuators.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace attest {
+namespace {
+
+constexpr std::uint8_t lower_limit_bit = 1, upper_limit_bit = 2, yaw_bit = 4;
+
+MotorLimits limits_of(const actuation::Saturation& saturation) {
+  const auto bit = [](bool set, std::uint8_t mask) { return set ? mask : std::uint8_t{0}; };
+  return {bit(saturation.lower, lower_limit_bit), bit(saturation.upper, upper_limit_bit),
+          bit(saturation.yaw, yaw_bit)};
+}
+
+}  // namespace
+
+Actuators::Actuators(const Vehicle& vehicle)
+    : vehicle_(vehicle), mixer_(actuation::parse_mixer(vehicle.mixer).value()) {
+  commands_.fill(-1);
+}
+
+void Actuators::mix(const attest_outputs& out, bool armed) {
+  if (!armed) {
+    commands_.fill(-1);
+    return;
+  }
+  if (out.actuator_controls_0.published == 0) return;
+  const float* control = out.actuator_controls_0.control;
+  actuation::Saturation saturation{};
+  const auto mixed = mixer_.mix({control[0], control[1], control[2], control[3]}, 0, saturation);
+  std::copy(mixed.begin(), mixed.end(), commands_.begin());
+  limits_ = limits_of(saturation);
+}
+
+std::span<const double> Actuators::speeds(const MotorCommands& commands, double supply,
+                                          const std::optional<std::size_t>& failed) {
+  const std::size_t rotors = vehicle_.rotors.size();
+  const double max_speed = vehicle_.rotor_max_rad_s * supply;
+  for (std::size_t i = 0; i < rotors; ++i) {
+    if (!std::isfinite(commands[i])) return {};
+    speeds_[i] = failed == i ? 0 : (static_cast<double>(commands[i]) + 1) / 2 * max_speed;
+  }
+  return std::span(speeds_).first(rotors);
+}
+
+}  // namespace attest

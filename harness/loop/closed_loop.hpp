@@ -1,0 +1,71 @@
+// A unit flies a plant. What happens at one instant happens in this order:
+//
+//     the plant is advanced to t
+//     disturbances    wind, centre of mass and motor failure change
+//     estimator       takes its sample of the plant
+//     battery         takes its sample of the plant
+//     motor limits    takes the flags of the mixer's last run, before t
+//     unit            stimulus; what has arrived from estimator, battery, motor limits; step; mixer
+//     actuators       the commands that have arrived are held until the next
+//
+// Each task has its own times. What a task makes arrives after the task's delay: without one, at
+// the unit's tick of the same instant. Those of the unit, of the sample that each tick is told and
+// of its command are the LoopTiming, from the case or from a run on a real clock. Samples of before
+// t = 0 do not exist: then the rotors turn as the case says and the unit has been told nothing.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "harness/casefile/case.hpp"
+#include "harness/loop/estimator.hpp"
+#include "harness/loop/plant_task.hpp"
+#include "harness/loop/unit_task.hpp"
+#include "harness/plant/plant.hpp"
+#include "harness/port/port.hpp"
+#include "harness/schedule/agenda.hpp"
+#include "harness/schedule/delay_line.hpp"
+#include "harness/schedule/loop_timing.hpp"
+#include "harness/trace/trace.hpp"
+
+namespace attest {
+
+struct FlightEnd {
+  std::size_t ticks = 0;  // that the unit finished
+  std::optional<PortFault> fault;
+  std::optional<Divergence> divergence;
+};
+
+class ClosedLoop {
+ public:
+  // REQUIRES: a flight, adapted to the vehicle (flight.hpp); a fresh plant and unit. All outlive
+  // this.
+  ClosedLoop(const Case& the_case, const Rate& rate, LoopTiming timing, const Vehicle& vehicle,
+             Plant& plant, Unit& unit);
+
+  // Flies to the end; records every tick into `trace` unless it is null. No allocation but for the
+  // trace and parameters that change. Call once.
+  FlightEnd run(Trace* trace);
+
+ private:
+  void happens(const Agenda::Event& event, Trace* trace);
+  void unit_tick(const Agenda::Event& event);
+  void record(Trace& trace) const;
+  bool is_over() const;
+
+  LoopTiming timing_;
+  std::size_t first_sampled_;  // tick of which there is a sample
+  PlantTask plant_;
+  UnitTask unit_;
+  NoisyEstimator estimator_;
+  Agenda agenda_;
+
+  DelayLine<Estimate> estimates_;
+  DelayLine<float> battery_scales_;
+  DelayLine<MotorLimits> limits_;
+  DelayLine<MotorCommands> commands_;
+
+  FlightEnd end_;
+};
+
+}  // namespace attest

@@ -1,0 +1,41 @@
+// One case in, one flown trace out.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "harness/casefile/case.hpp"
+#include "harness/core/result.hpp"
+#include "harness/loop/open_loop.hpp"
+#include "harness/plant/plant.hpp"
+#include "harness/port/port.hpp"
+#include "harness/schedule/loop_timing.hpp"
+#include "harness/trace/trace.hpp"
+
+namespace attest {
+
+struct Flown {
+  Trace trace;                           // every tick up to the end, with Trace::plant
+  std::optional<PortFault> fault;        // of the port: the ticks before it are valid
+  std::optional<Divergence> divergence;  // of the flight, in time since the first tick
+};
+
+// The case as this vehicle flies it: with the vehicle's parameters where the case has none of its
+// own, and thrusts in units of its hover thrust.
+Case adapted(const Case& the_case, const Vehicle& vehicle);
+
+// How often MuJoCo steps. REQUIRES: a flight.
+Rate physics_of(const Case& the_case, const Rate& loop);
+
+// The plant of a setup. REQUIRES: the case is a flight. Errors: as of fly().
+Result<std::unique_ptr<Plant>> plant_for(const Case& the_case, const Setup& setup,
+                                         const Airframe& airframe);
+
+// Flies `the_case` with a fresh `unit`, at the times that the case schedules, or those of `timing`.
+// REQUIRES: the case is a flight. Errors: the case cannot be flown that way (physics slower than
+// the loop, a rotor that the vehicle does not have), with file and line.
+Result<Flown> fly(const Case& the_case, const Setup& setup, const Airframe& airframe, Unit& unit);
+Result<Flown> fly(const Case& the_case, const Setup& setup, const Airframe& airframe, Unit& unit,
+                  LoopTiming timing);
+
+}  // namespace attest

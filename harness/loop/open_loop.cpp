@@ -1,0 +1,154 @@
+#include "harness/loop/open_loop.hpp"
+
+#include <memory>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace attest {
+namespace {
+
+// A unit on its way through a trace.
+template <typename PartUnit>
+class Drive {
+ public:
+  Drive(PartUnit& unit, Trace& trace) : driver_(unit), trace_(trace), changes_(trace.parameters) {}
+
+  bool is_over() const { return tick_ == trace_.samples.size(); }
+
+  std::optional<PortFault> step() {
+    std::size_t now = 0;
+    while (now < changes_.size() && changes_[now].tick == tick_) ++now;
+    auto fault = driver_.step(tick_, changes_.first(now), trace_.samples[tick_]);
+    changes_ = changes_.subspan(now);
+    ++tick_;
+    return fault;
+  }
+
+ private:
+  PartDriver<PartUnit> driver_;
+  Trace& trace_;
+  std::span<const ParameterChange> changes_;
+  std::size_t tick_ = 0;
+};
+
+template <typename PartUnit>
+std::optional<PortFault> drive_part(PartUnit& unit, Trace& trace) {
+  Drive<PartUnit> drive(unit, trace);
+  while (!drive.is_over()) {
+    if (auto fault = drive.step()) return fault;
+  }
+  return std::nullopt;
+}
+
+// Other inputs at the same times, so that the states of two instances differ in everything.
+Trace mirrored(Trace trace) {
+  for (Sample& sample : trace.samples) {
+    auto& state = sample.in.control_state;
+    for (float* const value : {&state.q[1], &state.q[2], &state.q[3], &state.roll_rate,
+                               &state.pitch_rate, &state.yaw_rate}) {
+      *value = -*value;
+    }
+    auto& setpoint = sample.in.vehicle_rates_setpoint;
+    for (float* const value : {&setpoint.roll, &setpoint.pitch, &setpoint.yaw}) *value = -*value;
+    for (float& control : sample.mixer_in.actuator_controls_0.control) control = 1 - control;
+    sample.battery_in.battery.voltage_v *= 0.9f;
+  }
+  return trace;
+}
+
+template <typename PartUnit>
+std::optional<PortFault> drive_by_turns(PartUnit& judged, Trace& trace, PartUnit& other,
+                                        Trace& of_other) {
+  Drive<PartUnit> drive(judged, trace), along(other, of_other);
+  while (!drive.is_over()) {
+    if (auto fault = along.step()) return fault;
+    if (auto fault = drive.step()) return fault;
+  }
+  return std::nullopt;
+}
+
+PortFault makes_only_one() {
+  return {PortFault::Kind::unsupported, 0,
+          "the port makes no second instance while it has one: create() returned NULL"};
+}
+
+PortFault makes_no_other() {
+  return {
+      PortFault::Kind::protocol, 0,
+      "create() returned NULL after the instance before was destroyed; it is legal at any time"};
+}
+
+// `create` makes a fresh instance.
+template <typename PartUnit, typename Create>
+std::optional<PortFault> drive_in_company(std::unique_ptr<PartUnit> first, Create create,
+                                          Instances instances, Trace& trace) {
+  Trace of_first = mirrored(trace);
+  // A fault of the first leaves the judged trace without an answer.
+  const auto drive_first = [&] {
+    auto fault = drive_part(*first, of_first);
+    if (fault) fault->tick = 0;
+    return fault;
+  };
+  if (instances == Instances::again) {
+    if (auto fault = drive_first()) return fault;
+    first.reset();
+  }
+  const std::unique_ptr<PartUnit> judged = create();
+  if (!judged) return instances == Instances::again ? makes_no_other() : makes_only_one();
+  if (instances == Instances::together) return drive_by_turns(*judged, trace, *first, of_first);
+  if (instances == Instances::crossed) {
+    if (auto fault = drive_first()) return fault;
+    first.reset();
+  }
+  return drive_part(*judged, trace);
+}
+
+template <typename Create>
+std::optional<PortFault> drive_created(Create create, const Subject& subject, Trace& trace) {
+  auto unit = create();
+  if (unit && subject.instances != Instances::one) {
+    return drive_in_company(std::move(unit), create, subject.instances, trace);
+  }
+  if (unit) return drive_part(*unit, trace);
+  if (subject.part == Part::mixer) {
+    return PortFault{
+        PortFault::Kind::unsupported, 0,
+        fmt::format("the port makes no mixer `{}` of profile {}", subject.mixer, subject.profile)};
+  }
+  return PortFault{PortFault::Kind::profile, 0,
+                   fmt::format("the port does not support profile {}", subject.profile)};
+}
+
+PortFault without(std::string_view part, const char* extension) {
+  return {PortFault::Kind::unsupported, 0,
+          fmt::format("the port has no {} (extension {})", part, extension)};
+}
+
+}  // namespace
+
+std::optional<PortFault> drive(Unit& unit, Trace& trace) { return drive_part(unit, trace); }
+
+Subject subject_of(const Case& the_case) {
+  return {the_case.profile, the_case.part, the_case.mixer, the_case.instances};
+}
+
+std::optional<PortFault> drive(Port& port, const Subject& subject, Trace& trace) {
+  switch (subject.part) {
+    case Part::mixer:
+      if (!port.has_mixer()) return without("mixer", ATTEST_EXTENSION_MIXER);
+      return drive_created([&] { return port.create_mixer(subject.profile, subject.mixer); },
+                           subject, trace);
+    case Part::battery_status:
+      if (!port.has_battery_status()) {
+        return without("battery estimate", ATTEST_EXTENSION_BATTERY_STATUS);
+      }
+      return drive_created([&] { return port.create_battery_status(subject.profile); }, subject,
+                           trace);
+    default:
+      return drive_created([&] { return port.create(subject.profile); }, subject, trace);
+  }
+}
+
+}  // namespace attest

@@ -1,0 +1,51 @@
+// The plant with all that is done to it: the same in simulation and on a real clock, for one
+// thread.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "harness/casefile/case.hpp"
+#include "harness/loop/actuators.hpp"
+#include "harness/loop/disturbances.hpp"
+#include "harness/loop/supply.hpp"
+#include "harness/plant/plant.hpp"
+
+namespace attest {
+
+class PlantTask {
+ public:
+  // Resets the plant to the start of the flight. REQUIRES: as of ClosedLoop.
+  PlantTask(const Case& the_case, const Rate& rate, const Vehicle& vehicle, Plant& plant);
+
+  // When disturb() is due.
+  const std::vector<Nanoseconds>& disturbance_times() const { return disturbances_.times(); }
+
+  std::optional<Divergence> advance(Nanoseconds to) { return plant_.advance(to); }
+
+  // Wind, centre of mass and motor failure as they are from `now` on. REQUIRES: `now` is reached.
+  std::optional<Divergence> disturb(Nanoseconds now);
+
+  // The motors follow `commands` from `now` on; before the first, they turn as at the start. A
+  // command that is not a number ends the flight.
+  std::optional<Divergence> command(Nanoseconds now, const MotorCommands& commands);
+
+  // As of Supply::sample.
+  float battery_scale(Nanoseconds now, float throttle, bool armed) {
+    return supply_.sample(now, plant_.state(), throttle, armed);
+  }
+
+  const PlantState& state() const { return plant_.state(); }
+  double voltage_V() const { return supply_.voltage_V(); }
+
+ private:
+  std::optional<Divergence> hold(Nanoseconds now);
+
+  Plant& plant_;
+  Disturbances disturbances_;
+  Supply supply_;
+  Actuators actuators_;
+  std::optional<MotorCommands> held_;
+};
+
+}  // namespace attest

@@ -1,0 +1,122 @@
+#include "harness/loop/timing_file.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "harness/core/file.hpp"
+
+namespace attest {
+namespace {
+
+using nlohmann::json;
+
+constexpr int format = 1;
+
+// Three times of an hour's ticks at 8 kHz.
+constexpr std::uintmax_t most_bytes = std::uintmax_t{2} << 30;
+
+std::optional<LoopTick> tick_of(const json& value) {
+  if (!value.is_array() || value.size() != 3) return std::nullopt;
+  if (!value[0].is_number_integer() || !value[1].is_number_integer()) return std::nullopt;
+  LoopTick tick{Nanoseconds(value[0].get<std::int64_t>()),
+                Nanoseconds(value[1].get<std::int64_t>()), std::nullopt};
+  if (value[2].is_number_integer()) tick.commanded = Nanoseconds(value[2].get<std::int64_t>());
+  if (!value[2].is_number_integer() && !value[2].is_null()) return std::nullopt;
+  return tick;
+}
+
+// What LoopTiming requires of a tick and those before it; a timestamp is a microsecond.
+bool follows(const LoopTick& tick, const LoopTiming& before, Nanoseconds last_commanded) {
+  const Nanoseconds commanded = tick.commanded.value_or(std::max(last_commanded, tick.begins));
+  const bool ordered = tick.sampled <= tick.begins && tick.begins <= commanded &&
+                       last_commanded <= commanded && tick.begins >= Nanoseconds(0);
+  if (before.empty()) return ordered;
+  const LoopTick& last = before.back();
+  return ordered && last.sampled <= tick.sampled &&
+         last.begins + std::chrono::microseconds(1) <= tick.begins;
+}
+
+Result<LoopTiming> ticks_of(const json& values, const std::string& file) {
+  LoopTiming ticks;
+  Nanoseconds last_commanded{0};
+  for (const json& value : values) {
+    const auto tick = tick_of(value);
+    if (!tick || !follows(*tick, ticks, last_commanded)) {
+      return fail_at(file, fmt::format("tick {}: {} is not [sampled, begins, commanded] in "
+                                       "nanoseconds, each at or after the one before it",
+                                       ticks.size(), value.dump()));
+    }
+    last_commanded = tick->commanded.value_or(last_commanded);
+    ticks.push_back(*tick);
+  }
+  if (ticks.empty()) return fail_at(file, "has no ticks");
+  return ticks;
+}
+
+Result<Setup> setup_of(const json& root) {
+  auto rate = Rate::parse(root.value("rate", ""));
+  if (!rate) return tl::unexpected(rate.error());
+  auto plant = parse_plant_kind(root.value("plant", ""));
+  if (!plant) return tl::unexpected(plant.error());
+  return Setup{*rate, Flyer{root.value("vehicle", ""), *plant}};
+}
+
+}  // namespace
+
+Result<TimingFile> read_timing(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  const auto text = read_file(path, most_bytes);
+  if (!text) return tl::unexpected(text.error());
+  const json root = json::parse(*text, nullptr, false);
+  const auto texts = {"case", "case_sha256", "rate", "vehicle", "plant"};
+  bool complete = root.is_object() && root.contains("attest_timing") &&
+                  root["attest_timing"] == format && root.contains("ticks_ns") &&
+                  root["ticks_ns"].is_array() && root.contains("duration_s") &&
+                  root["duration_s"].is_number();
+  for (const char* key : texts) complete = complete && root.contains(key) && root[key].is_string();
+  if (!complete) {
+    return fail_at(file, "is no timing file; `attest stress --record-timing` writes them");
+  }
+  auto setup = setup_of(root);
+  if (!setup) return fail_at(file, setup.error().message);
+  auto ticks = ticks_of(root["ticks_ns"], file);
+  if (!ticks) return tl::unexpected(ticks.error());
+  TimingFile timing{root["case"], root["case_sha256"], *setup, root["duration_s"],
+                    std::move(*ticks)};
+  const bool sane = timing.duration_s > 0 && timing.duration_s <= 1e6;
+  if (!sane) return fail_at(file, "`duration_s` must be positive, up to 1e6");
+  return timing;
+}
+
+Result<void> write_timing(const TimingFile& timing, const std::filesystem::path& path) {
+  json ticks = json::array();
+  for (const LoopTick& tick : timing.ticks) {
+    json commanded = tick.commanded ? json(tick.commanded->count()) : json();
+    ticks.push_back({tick.sampled.count(), tick.begins.count(), std::move(commanded)});
+  }
+  const json root = {{"attest_timing", format},
+                     {"case", timing.case_id},
+                     {"case_sha256", timing.case_sha256},
+                     {"rate", timing.setup.rate.to_string()},
+                     {"vehicle", timing.setup.flyer->vehicle},
+                     {"plant", name_of(timing.setup.flyer->plant)},
+                     {"duration_s", timing.duration_s},
+                     {"ticks_ns", std::move(ticks)}};
+  return write_file(path, root.dump() + "\n");
+}
+
+Case timed(Case the_case, const TimingFile& timing) {
+  the_case.duration = {timing.duration_s, Span::In::seconds};
+  std::erase_if(the_case.flight->metrics, [&](const Metric& metric) {
+    const bool starts = metric.window.from_s < timing.duration_s &&
+                        (!metric.versus || metric.versus->from_s < timing.duration_s);
+    return !starts;
+  });
+  return the_case;
+}
+
+}  // namespace attest

@@ -1,0 +1,115 @@
+#include "harness/loop/unit_driver.hpp"
+
+#include <cstring>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+namespace attest {
+namespace {
+
+using Kind = PortFault::Kind;
+using Margin = std::array<unsigned char, 64>;
+
+constexpr Margin untouched = [] {
+  Margin margin{};
+  margin.fill(0xa5);
+  return margin;
+}();
+
+std::optional<PortFault> fault_of(int code, std::size_t tick, const std::string& call) {
+  switch (code) {
+    case ATTEST_OK:
+      return std::nullopt;
+    case ATTEST_UNSUPPORTED:
+      return PortFault{Kind::unsupported, tick,
+                       fmt::format("{} returned ATTEST_UNSUPPORTED", call)};
+    case ATTEST_INVALID:
+      return PortFault{Kind::failed, tick, fmt::format("{} returned ATTEST_INVALID", call)};
+    case ATTEST_FAILED:
+      return PortFault{Kind::failed, tick, fmt::format("{} returned ATTEST_FAILED", call)};
+    default:
+      return PortFault{Kind::protocol, tick,
+                       fmt::format("{} returned {}, which is no ATTEST_ result", call, code)};
+  }
+}
+
+// Where in a sample the inputs and outputs of a part are.
+template <typename PartUnit>
+struct Place;
+template <>
+struct Place<Unit> {
+  static constexpr auto in = &Sample::in;
+  static constexpr auto out = &Sample::out;
+};
+template <>
+struct Place<MixerUnit> {
+  static constexpr auto in = &Sample::mixer_in;
+  static constexpr auto out = &Sample::mixer_out;
+};
+template <>
+struct Place<BatteryUnit> {
+  static constexpr auto in = &Sample::battery_in;
+  static constexpr auto out = &Sample::battery_out;
+};
+
+}  // namespace
+
+template <typename PartUnit>
+PartDriver<PartUnit>::PartDriver(PartUnit& unit) : unit_(unit) {
+  exchange_.behind_in = untouched;
+  exchange_.behind_out = untouched;
+}
+
+template <typename PartUnit>
+std::optional<PortFault> PartDriver<PartUnit>::step(
+    std::size_t tick, std::span<const ParameterChange> changes, Sample& sample,
+    std::optional<std::uint64_t> timestamp_sample_us) {
+  for (const ParameterChange& change : changes) {
+    const int code = unit_.set_parameter(change.name, change.value);
+    if (code == ATTEST_OK) continue;
+    return fault_of(code, tick, fmt::format("set_parameter({}) at tick {}", change.name, tick));
+  }
+  const Inputs& given = sample.*Place<PartUnit>::in;
+  exchange_.in = given;
+  if (const int code = tell_time(given, timestamp_sample_us); code != ATTEST_OK) {
+    return fault_of(code, tick, fmt::format("set_timestamp_sample at tick {}", tick));
+  }
+  if (const int code = unit_.step(exchange_.in, exchange_.out); code != ATTEST_OK) {
+    return fault_of(code, tick, fmt::format("step at tick {}", tick));
+  }
+  if (auto fault = broken_rule(given, tick)) return fault;
+  sample.*Place<PartUnit>::out = exchange_.out;
+  return std::nullopt;
+}
+
+template <typename PartUnit>
+int PartDriver<PartUnit>::tell_time(const Inputs& given,
+                                    std::optional<std::uint64_t> timestamp_sample_us) {
+  if constexpr (std::is_same_v<PartUnit, Unit>) {
+    return unit_.set_timestamp_sample(timestamp_sample_us.value_or(given.timestamp));
+  }
+  return ATTEST_OK;
+}
+
+template <typename PartUnit>
+std::optional<PortFault> PartDriver<PartUnit>::broken_rule(const Inputs& given,
+                                                           std::size_t tick) const {
+  if (exchange_.behind_in != untouched || exchange_.behind_out != untouched) {
+    return PortFault{Kind::protocol, tick,
+                     fmt::format("step wrote outside its outputs at tick {}; was the port "
+                                 "compiled with another attest_unit.h?",
+                                 tick)};
+  }
+  if (std::memcmp(&exchange_.in, &given, sizeof given) != 0) {
+    return PortFault{Kind::protocol, tick,
+                     fmt::format("step changed its inputs at tick {}; they are const", tick)};
+  }
+  return std::nullopt;
+}
+
+template class PartDriver<Unit>;
+template class PartDriver<MixerUnit>;
+template class PartDriver<BatteryUnit>;
+
+}  // namespace attest

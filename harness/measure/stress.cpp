@@ -1,0 +1,126 @@
+#include "harness/measure/stress.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "harness/loop/timing_file.hpp"
+#include "harness/measure/stress_judge.hpp"
+#include "harness/verify/evaluate.hpp"
+#include "harness/verify/judge.hpp"
+
+namespace attest {
+namespace {
+
+// Of so many ticks the outputs are kept and checked: half a minute at 8 kHz, 80 MB.
+constexpr std::size_t checked_ticks = 1u << 18;
+
+// Budgets may be longer than the clock counts.
+Nanoseconds nanoseconds(double microseconds) {
+  constexpr double longest_us = 1e15;
+  return Nanoseconds(static_cast<std::int64_t>(std::min(microseconds, longest_us) * 1000));
+}
+
+// What the histograms and counters of a flight say.
+void summarise(const LiveFlight& flight, const Rate& rate, const RealtimeBudget& budget,
+               StressResult& stress) {
+  const LiveUnitRecord& unit = flight.unit;
+  stress.latency = spread_of(unit.latency);
+  stress.execution = spread_of(unit.execution);
+  stress.response = spread_of(unit.response);
+  stress.age = spread_of(unit.age);
+  stress.plant = spread_of(flight.plant.latency);
+  stress.ticks = unit.ticks.size();
+  stress.deadlines = unit.ticks.size() + unit.skipped;
+  stress.misses = deadline_misses(unit.ticks, rate, nanoseconds(budget.p99_latency_us));
+  stress.misses.skipped = unit.skipped;  // with those before the first tick
+  for (const LiveTick& tick : unit.ticks) {
+    if (tick.waited) ++stress.waiting_steps;
+    const bool limited = budget.execution_us.has_value();
+    if (limited && tick.execution() > nanoseconds(*budget.execution_us)) ++stress.overruns;
+  }
+  stress.plant_steps = flight.plant.steps;
+  stress.plant_late_steps = flight.plant.late_steps;
+  stress.longest_gap = unit.longest_gap;
+  stress.wall = flight.wall;
+  stress.unit_usage = unit.usage;
+  stress.plant_usage = flight.plant.usage;
+  stress.rights = flight.rights;
+  stress.slow = slow_ticks(unit.ticks, unit.execution.percentile(0.5));
+}
+
+}  // namespace
+
+Spread spread_of(const Histogram& histogram) {
+  const auto percentile = [&](double part) -> std::optional<Nanoseconds> {
+    if (!supports_percentile(histogram.count(), part)) return std::nullopt;
+    return histogram.percentile(part);
+  };
+  return {histogram.count(), histogram.min(),  histogram.max(),   percentile(0.5),
+          percentile(0.9),   percentile(0.99), percentile(0.999), histogram.buckets()};
+}
+
+double StressResult::per_million(std::uint64_t count) const {
+  return deadlines == 0 ? 0 : 1e6 * static_cast<double>(count) / static_cast<double>(deadlines);
+}
+
+Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
+                                       const std::function<bool()>& stop,
+                                       const std::function<void(const StressProgress&)>& progress) {
+  StressMeasurement measured;
+  CaseResult& result = measured.stress.result = unjudged(task.the_case, task.setup);
+  const PortSays& says = task.port;
+  if (says.fixed_step && *says.fixed_step != task.setup.rate) {
+    result.verdict = Verdict::unsupported;
+    result.reason = fmt::format("the port has a fixed step of {} Hz", says.fixed_step->to_string());
+    return measured;
+  }
+  if (declines(says, result)) return measured;
+  const auto unit = port.create(task.the_case.profile);
+  if (!unit) {
+    result.verdict = Verdict::skip;
+    result.reason = fmt::format("the port does not support profile {}", task.the_case.profile);
+    return measured;
+  }
+  progress({{}, true});
+  const Histogram idle = idle_latency(task.setup.rate, task.idle_duration, task.live, stop);
+  auto flight = fly_live(task.the_case, task.setup, *task.airframe, *unit, task.live, checked_ticks,
+                         stop, [&](const LiveProgress& live) {
+                           progress({live, false});
+                         });
+  if (!flight) return tl::unexpected(flight.error());
+  measured.stress.idle = spread_of(idle);
+  summarise(*flight, task.setup.rate, task.the_case.flight->realtime, measured.stress);
+  measured.flight = *std::move(flight);
+  return measured;
+}
+
+Result<StressResult> judge_live(const StressTask& task, StressMeasurement measurement) {
+  StressResult& stress = measurement.stress;
+  if (!measurement.flight) return std::move(stress);
+  LiveFlight& flight = *measurement.flight;
+  if (!task.record_timing.empty()) {
+    const TimingFile timing{task.the_case.id(), task.the_case.sha256, task.setup,
+                            task.the_case.duration.amount, flight.timing()};
+    if (auto written = write_timing(timing, task.record_timing); !written) {
+      return tl::unexpected(written.error());
+    }
+  }
+  CaseResult& result = stress.result;
+  result.ticks = stress.ticks;
+  result.elapsed_s = in_seconds(stress.wall);
+  if (flight.unit.fault) {
+    judge(*flight.unit.fault, result);
+    return std::move(stress);
+  }
+  if (task.port.fixed_step) {
+    add_skip(result, "outputs not judged: a fixed step does not follow the times of a real clock");
+  } else {
+    judge_outputs(task.the_case, flight.unit, task.port.fraction_bits, result);
+  }
+  judge_flight_end(task, flight, result);
+  judge_timing(task.the_case.flight->realtime, stress);
+  return std::move(stress);
+}
+
+}  // namespace attest

@@ -1,0 +1,221 @@
+// The child process of a stress run, and the parent that listens to it.
+//
+//     {"progress": {"time_ns": ..., "deadlines": ..., "missed": ..., "idle": false}}
+//     {"stress": {...}} of a port that did not fly, or
+//     {"stress": {...}, "fault", "divergence", "parameters"}     inputs, outputs, ticks, times at
+//                                                                which the motors followed
+//     {"error": {...}}
+#include <atomic>
+#include <chrono>
+#include <csignal>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "harness/core/error_json.hpp"
+#include "harness/host/trace_message.hpp"
+#include "harness/measure/stress.hpp"
+#include "harness/measure/stress_json.hpp"
+#include "harness/process/child.hpp"
+#include "harness/verify/evaluate.hpp"
+
+namespace attest {
+namespace {
+
+using nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto report_every = std::chrono::seconds(1);
+
+std::atomic<bool> asked_to_stop{false};
+static_assert(std::atomic<bool>::is_always_lock_free);  // written by a signal handler
+
+void send_measured(const StressMeasurement& measured, MessageSocket& parent) {
+  json head = {{"stress", to_json(measured.stress)}};
+  if (!measured.flight) {
+    parent.send(text_of(head));
+    return;
+  }
+  const auto& [unit, plant, rights, wall] = *measured.flight;
+  head["ticks"] = unit.ticks.size();
+  head["samples"] = unit.samples.size();
+  head["commanded"] = plant.commanded.size();
+  head["parameters"] = changes_json(unit.changes);
+  set_end(unit.fault, plant.divergence, head);
+  parent.send(text_of(head),
+              {blob_of(unit.samples), blob_of(unit.ticks), blob_of(plant.commanded)});
+}
+
+// Empty: nothing that the child of a stress run sends. Throws json::exception, too.
+std::optional<StressMeasurement> measurement_from(const json& head, BlobReader& blobs) {
+  auto stress = stress_from_json(head.at("stress"));
+  if (!stress) return std::nullopt;
+  StressMeasurement measured{*std::move(stress), {}};
+  if (blobs.left() == 0) return measured;
+  auto samples = blobs.read<Sample>(head.at("samples").get<std::size_t>());
+  auto ticks = samples ? blobs.read<LiveTick>(head.at("ticks").get<std::size_t>()) : std::nullopt;
+  using Time = std::optional<Nanoseconds>;
+  auto commanded = ticks ? blobs.read<Time>(head.at("commanded").get<std::size_t>()) : std::nullopt;
+  if (!commanded || commanded->size() < ticks->size()) return std::nullopt;
+  LiveFlight& flight = measured.flight.emplace();
+  flight.unit.samples = *std::move(samples);
+  flight.unit.ticks = *std::move(ticks);
+  flight.plant.commanded = *std::move(commanded);
+  flight.unit.changes = changes_from(head.at("parameters"));
+  flight.unit.fault = fault_from(head);
+  flight.plant.divergence = divergence_from(head);
+  return measured;
+}
+
+void work(const StressTask& task, const std::string& specification, MessageSocket& parent) {
+  std::signal(SIGTERM, [](int) { asked_to_stop.store(true); });
+  auto port = open_port(specification);
+  if (!port) {
+    parent.send(text_of({{"error", to_json(port.error())}}));
+    return;
+  }
+  Clock::time_point reported{};
+  const auto progress = [&](const StressProgress& now) {
+    if (!now.idle && Clock::now() - reported < report_every) return;
+    reported = Clock::now();
+    parent.send(text_of({{"progress",
+                          {{"time_ns", now.live.time.count()},
+                           {"deadlines", now.live.deadlines},
+                           {"missed", now.live.missed},
+                           {"idle", now.idle}}}}));
+  };
+  const auto measured = measure_live(
+      task, **port, [] { return asked_to_stop.load(); }, progress);
+  if (measured) {
+    send_measured(*measured, parent);
+  } else {
+    parent.send(text_of({{"error", to_json(measured.error())}}));
+  }
+}
+
+StressResult gone_wrong(const StressTask& task, Verdict verdict, std::string reason) {
+  StressResult stress;
+  stress.result = unjudged(task.the_case, task.setup);
+  stress.result.verdict = verdict;
+  stress.result.reason = std::move(reason);
+  return stress;
+}
+
+// Listens until the child has said how it went, died, or hangs.
+class Listener {
+ public:
+  Listener(const StressTask& task, Child& child,
+           const std::function<void(const StressProgress&)>& progress)
+      : task_(task), child_(child), progress_(progress) {}
+
+  Result<StressResult> listen(const std::function<bool()>& stop) {
+    bool stopping = false;
+    Patience patience;
+    patience.given_up = [&] {
+      if (!stopping && stop()) {
+        child_.ask_to_stop();
+        stopping = true;
+      }
+      return hangs();
+    };
+    while (true) {
+      const Received received = child_.receive(patience);
+      if (received.kind == Received::Kind::message) {
+        if (auto answer = answer_of(received)) return *std::move(answer);
+      } else if (received.kind == Received::Kind::given_up) {
+        child_.kill();
+        return gone_wrong(task_, Verdict::timeout, how_it_hangs());
+      } else if (received.kind == Received::Kind::no_message) {
+        return forged();
+      } else {
+        break;
+      }
+    }
+    const std::string how = child_.end(), words = child_.last_words();
+    return gone_wrong(
+        task_, Verdict::crash,
+        fmt::format("the process {}{}", how, words.empty() ? "" : "; its last words: " + words));
+  }
+
+ private:
+  StressResult forged() {
+    child_.kill();
+    return gone_wrong(task_, Verdict::protocol,
+                      "the port wrote on the socket on which its process answers");
+  }
+
+  bool hangs() const {
+    const Nanoseconds duration(static_cast<std::int64_t>(task_.the_case.duration.amount * 1e9));
+    // A child that says nothing for so long, or flies on so long after the end, hangs.
+    const Nanoseconds limit = report_every + task_.timeout;
+    return Clock::now() - heard_ > (idle_ ? task_.idle_duration + limit : limit) ||
+           flown_ > duration + limit;
+  }
+
+  std::string how_it_hangs() const {
+    const double limit_s = in_seconds(task_.timeout);
+    const double flown_s = in_seconds(flown_);
+    return is_made_
+               ? fmt::format("the port did not come back {:.3f} s into the flight, within {:g} s",
+                             flown_s, limit_s)
+               : fmt::format("no answer within {:g} s, when it was loaded and created", limit_s);
+  }
+
+  // Empty: it is not the last message. The port shares the process, so nothing is taken on trust.
+  std::optional<Result<StressResult>> answer_of(const Received& received) {
+    heard_ = Clock::now();
+    const json head = json::parse(received.head, nullptr, false);
+    if (!head.is_object()) return forged();
+    if (head.contains("error")) {
+      auto error = error_from_json(head["error"]);
+      return Result<StressResult>(tl::unexpected(error ? *error : error.error()));
+    }
+    try {
+      if (head.contains("stress")) {
+        BlobReader blobs(received.blobs, [&](void* place, std::size_t size) {
+          const Patience patience = Patience::seconds(in_seconds(task_.timeout));
+          return child_.receive_blob(place, size, patience) == Received::Kind::message;
+        });
+        auto measured = measurement_from(head, blobs);
+        if (!measured) return forged();
+        return judge_live(task_, *std::move(measured));
+      }
+      take_progress(head.at("progress"));
+    } catch (const json::exception&) {
+      return forged();
+    }
+    return std::nullopt;
+  }
+
+  void take_progress(const json& now) {
+    const StressProgress progress{
+        {Nanoseconds(now.at("time_ns").get<std::int64_t>()),
+         now.at("deadlines").get<std::uint64_t>(), now.at("missed").get<std::uint64_t>()},
+        now.at("idle").get<bool>()};
+    is_made_ = true;
+    idle_ = progress.idle;
+    flown_ = progress.live.time;
+    progress_(progress);
+  }
+
+  const StressTask& task_;
+  Child& child_;
+  const std::function<void(const StressProgress&)>& progress_;
+  Clock::time_point heard_ = Clock::now();
+  bool is_made_ = false;  // the unit: the first progress comes after that
+  bool idle_ = true;
+  Nanoseconds flown_{0};
+};
+
+}  // namespace
+
+Result<StressResult> run_stress(const StressTask& task, const std::string& port,
+                                const std::function<bool()>& stop,
+                                const std::function<void(const StressProgress&)>& progress) {
+  auto child = Child::spawn(Child::Runs::code_of_others,
+                            [&](MessageSocket& parent) { work(task, port, parent); });
+  if (!child) return tl::unexpected(child.error());
+  return Listener(task, *child, progress).listen(stop);
+}
+
+}  // namespace attest

@@ -1,0 +1,187 @@
+#include "harness/measure/stress_json.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "harness/verify/verdict_json.hpp"
+
+namespace attest {
+namespace {
+
+using nlohmann::json;
+
+// One list of members for both directions: `visit(key, member)`.
+template <typename SpreadT, typename Visit>
+void members_of_spread(SpreadT& spread, Visit&& visit) {
+  visit("count", spread.count);
+  visit("min_ns", spread.min);
+  visit("median_ns", spread.median);
+  visit("p90_ns", spread.p90);
+  visit("p99_ns", spread.p99);
+  visit("p99_9_ns", spread.p999);
+  visit("max_ns", spread.max);
+  visit("buckets", spread.buckets);
+}
+
+template <typename UsageT, typename Visit>
+void members_of_usage(UsageT& usage, Visit&& visit) {
+  visit("cpu_ns", usage.cpu);
+  visit("allocations", usage.allocations);
+  visit("page_faults", usage.page_faults);
+  visit("yields", usage.yields);
+  visit("preemptions", usage.preemptions);
+}
+
+template <typename StressT, typename Visit>
+void numbers_of(StressT& stress, Visit&& visit) {
+  visit("deadlines", stress.deadlines);
+  visit("ticks", stress.ticks);
+  visit("late_responses", stress.misses.late);
+  visit("skipped_releases", stress.misses.skipped);
+  visit("deadline_misses_by_port", stress.misses.by_port);
+  visit("late_starts", stress.misses.late_starts);
+  visit("late_starts_by_port", stress.misses.late_starts_by_port);
+  visit("overruns", stress.overruns);
+  visit("waiting_steps", stress.waiting_steps);
+  visit("plant_steps", stress.plant_steps);
+  visit("plant_late_steps", stress.plant_late_steps);
+  visit("longest_gap_ns", stress.longest_gap);
+  visit("wall_ns", stress.wall);
+}
+
+template <typename StressT, typename Visit>
+void spreads_of(StressT& stress, Visit&& visit) {
+  visit("idle_wake_up_latency", stress.idle);
+  visit("wake_up_latency", stress.latency);
+  visit("execution_time", stress.execution);
+  visit("response_time", stress.response);
+  visit("sample_age", stress.age);
+  visit("plant_wake_up_latency", stress.plant);
+}
+
+using Buckets = std::vector<Histogram::Bucket>;
+
+struct Put {
+  json& out;
+  void operator()(const char* key, const Buckets& buckets) const {
+    out[key] = json::array();
+    for (const auto& [from, to, count] : buckets) {
+      out[key].push_back({{"from_ns", from.count()}, {"below_ns", to.count()}, {"count", count}});
+    }
+  }
+  void operator()(const char* key, const std::optional<Nanoseconds>& time) const {
+    if (time) out[key] = time->count();
+  }
+  void operator()(const char* key, Nanoseconds time) const { out[key] = time.count(); }
+  template <typename Number>
+  void operator()(const char* key, const Number& number) const {
+    out[key] = number;
+  }
+};
+
+// Throws json::exception on what is missing or of another type.
+struct Get {
+  const json& in;
+  void operator()(const char* key, Buckets& buckets) const {
+    for (const json& bucket : in.at(key)) {
+      buckets.push_back({Nanoseconds(bucket.at("from_ns").get<std::int64_t>()),
+                         Nanoseconds(bucket.at("below_ns").get<std::int64_t>()),
+                         bucket.at("count").get<std::uint64_t>()});
+    }
+  }
+  void operator()(const char* key, std::optional<Nanoseconds>& time) const {
+    if (in.contains(key)) time = Nanoseconds(in.at(key).get<std::int64_t>());
+  }
+  void operator()(const char* key, Nanoseconds& time) const {
+    time = Nanoseconds(in.at(key).get<std::int64_t>());
+  }
+  template <typename Number>
+  void operator()(const char* key, Number& number) const {
+    in.at(key).get_to(number);
+  }
+};
+
+json slow_to_json(const SlowTicks& slow) {
+  json worst = json::array();
+  for (const auto& [tick, execution, elapsed] : slow.worst) {
+    worst.push_back({{"tick", tick},
+                     {"execution_time_ns", execution.count()},
+                     {"elapsed_ns", elapsed.count()}});
+  }
+  json out = {{"threshold_ns", slow.threshold.count()}, {"count", slow.count}, {"worst", worst}};
+  if (const auto& rhythm = slow.rhythm) {
+    out["rhythm"] = {{"every_steps", rhythm->every},
+                     {"first_tick", rhythm->first},
+                     {"chance_at_most", rhythm->chance}};
+  }
+  return out;
+}
+
+SlowTicks slow_from_json(const json& in) {
+  SlowTicks slow;
+  slow.threshold = Nanoseconds(in.at("threshold_ns").get<std::int64_t>());
+  in.at("count").get_to(slow.count);
+  for (const json& tick : in.at("worst")) {
+    slow.worst.push_back({tick.at("tick").get<std::size_t>(),
+                          Nanoseconds(tick.at("execution_time_ns").get<std::int64_t>()),
+                          Nanoseconds(tick.at("elapsed_ns").get<std::int64_t>())});
+  }
+  if (in.contains("rhythm")) {
+    const json& rhythm = in["rhythm"];
+    slow.rhythm =
+        Rhythm{rhythm.at("every_steps"), rhythm.at("first_tick"), rhythm.at("chance_at_most")};
+  }
+  return slow;
+}
+
+StressResult read(const json& in) {
+  StressResult stress;
+  numbers_of(stress, Get{in});
+  spreads_of(stress,
+             [&](const char* key, Spread& spread) { members_of_spread(spread, Get{in.at(key)}); });
+  members_of_usage(stress.unit_usage, Get{in.at("unit")});
+  members_of_usage(stress.plant_usage, Get{in.at("plant")});
+  for (const json& right : in.at("rights")) {
+    stress.rights.push_back({right.at("name"), right.at("got"), right.at("why")});
+  }
+  stress.slow = slow_from_json(in.at("slow_steps"));
+  return stress;
+}
+
+}  // namespace
+
+json to_json(const StressResult& stress) {
+  json out = {{"result", to_json(stress.result)}, {"slow_steps", slow_to_json(stress.slow)}};
+  numbers_of(stress, Put{out});
+  out["deadline_misses"] = stress.misses.total();
+  spreads_of(stress, [&](const char* key, const Spread& spread) {
+    members_of_spread(spread, Put{out[key]});
+  });
+  members_of_usage(stress.unit_usage, Put{out["unit"]});
+  members_of_usage(stress.plant_usage, Put{out["plant"]});
+  out["rights"] = json::array();
+  for (const auto& [name, got, why] : stress.rights) {
+    out["rights"].push_back({{"name", name}, {"got", got}, {"why", why}});
+  }
+  if (const auto& cyclictest = stress.cyclictest) {
+    out["cyclictest"] = {{"median_ns", cyclictest->median.count()},
+                         {"max_ns", cyclictest->max.count()},
+                         {"cycles", cyclictest->cycles}};
+  }
+  return out;
+}
+
+Result<StressResult> stress_from_json(const json& in) {
+  if (!in.is_object() || !in.contains("result")) return fail("not the result of a stress run");
+  auto result = case_result_from_json(in["result"]);
+  if (!result) return tl::unexpected(result.error());
+  try {
+    StressResult stress = read(in);
+    stress.result = std::move(*result);
+    return stress;
+  } catch (const json::exception& error) {
+    return fail(fmt::format("not the result of a stress run: {}", error.what()));
+  }
+}
+
+}  // namespace attest

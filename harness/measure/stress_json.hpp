@@ -1,0 +1,17 @@
+// A StressResult as JSON and back: the line that the child of a stress run sends, and one entry of
+// the JSON report. Times are integer nanoseconds, their keys end in _ns.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "harness/core/result.hpp"
+#include "harness/measure/stress.hpp"
+
+namespace attest {
+
+nlohmann::json to_json(const StressResult& stress);
+
+// Errors: a missing or wrong member; the child shares its process with the port.
+Result<StressResult> stress_from_json(const nlohmann::json& json);
+
+}  // namespace attest

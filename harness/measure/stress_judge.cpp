@@ -1,0 +1,148 @@
+#include "harness/measure/stress_judge.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "harness/loop/flight.hpp"
+#include "harness/port/builtin.hpp"
+#include "harness/verify/answers.hpp"
+#include "harness/verify/judge.hpp"
+
+namespace attest {
+namespace {
+
+// A plant that falls behind more often than this is not the plant of the case.
+constexpr double plant_late_share = 0.01;
+// What a budget of the 99th percentile leaves. It is counted, which needs no percentile.
+constexpr double late_starts_share = 0.01;
+
+int gravity(Verdict verdict) { return fails_a_run(verdict) ? 2 : verdict == Verdict::pass ? 0 : 1; }
+
+// The gravest verdict holds, its reason first.
+void add(CaseResult& result, Verdict verdict, std::string reason) {
+  const bool is_graver = gravity(verdict) > gravity(result.verdict);
+  if (is_graver) result.verdict = verdict;
+  if (result.reason.empty()) {
+    result.reason = std::move(reason);
+  } else if (is_graver) {
+    result.reason = std::move(reason) + "; " + result.reason;
+  } else {
+    result.reason += "; " + reason;
+  }
+}
+
+double share_of(std::uint64_t count, std::uint64_t all) {
+  return all == 0 ? 0 : static_cast<double>(count) / static_cast<double>(all);
+}
+
+void judge_port(const RealtimeBudget& budget, StressResult& stress) {
+  const DeadlineMisses& misses = stress.misses;
+  const double allowed = budget.misses_per_million;
+  const auto fail = [&](std::string reason) {
+    add(stress.result, Verdict::fail, std::move(reason));
+  };
+  if (const double overruns = stress.per_million(stress.overruns); overruns > allowed) {
+    fail(
+        fmt::format("{} overruns of the execution time of {:g} us: {:.0f} per million, budget {:g}",
+                    stress.overruns, budget.execution_us.value_or(0), overruns, allowed));
+  }
+  if (const double missed = stress.per_million(misses.by_port); missed > allowed) {
+    fail(
+        fmt::format("{} deadline misses of {} are the port's, by its execution time: {:.0f} per "
+                    "million, budget {:g}",
+                    misses.by_port, misses.total(), missed, allowed));
+  }
+  if (share_of(misses.late_starts_by_port, stress.ticks) > late_starts_share) {
+    fail(
+        fmt::format("{} of {} steps start more than {:g} us after their release because the step "
+                    "before runs too long; budget 1%",
+                    misses.late_starts_by_port, stress.ticks, budget.p99_latency_us));
+  }
+}
+
+void judge_machine(const RealtimeBudget& budget, StressResult& stress) {
+  const DeadlineMisses& misses = stress.misses;
+  const double allowed = budget.misses_per_million;
+  if (const double missed = stress.per_million(misses.total()); missed > allowed) {
+    add_skip(stress.result,
+             fmt::format("the machine's, not the port's: {} of {} deadlines missed, {:.0f} per "
+                         "million, budget {:g}; {} of them by the port's execution time",
+                         misses.total(), stress.deadlines, missed, allowed, misses.by_port));
+  }
+  if (share_of(misses.late_starts, stress.ticks) > late_starts_share) {
+    add_skip(stress.result,
+             fmt::format("the machine's, not the port's: {} of {} wake-up latencies above {:g} us, "
+                         "budget 1%; at most {:.3g} us on the idle machine",
+                         misses.late_starts, stress.ticks, budget.p99_latency_us,
+                         static_cast<double>(stress.idle.max.count()) / 1000));
+  }
+}
+
+}  // namespace
+
+void add_skip(CaseResult& result, const std::string& reason) { add(result, Verdict::skip, reason); }
+
+void judge_outputs(const Case& the_case, LiveUnitRecord& unit, std::optional<int> fraction_bits,
+                   CaseResult& result) {
+  Trace got;
+  got.present = channels_of(Part::mc_att_control);
+  got.samples = std::move(unit.samples);
+  got.parameters = std::move(unit.changes);
+  if (got.samples.empty()) return add_skip(result, "outputs not judged: no step was over");
+  const std::size_t compared = got.samples.size();
+  const auto answers = compare_answers(
+      got, the_case.profile, tolerances_of(the_case, Level::numeric, fraction_bits, compared),
+      fraction_bits);
+  if (!answers) return add_skip(result, "outputs not judged: " + answers.error().to_string());
+  judge(answers->comparison, result);
+  if (const auto& undecided = answers->undecided) {
+    add_skip(result,
+             fmt::format("outputs not judged from tick {} on, which comes too near to a "
+                         "decision ({}): tick {} deviates",
+                         undecided->tick, name_of(undecided->decision), undecided->deviating_tick));
+  }
+  if (result.verdict == Verdict::pass && compared < unit.ticks.size()) {
+    add_skip(result, fmt::format("outputs judged for the first {} of {} ticks only: choose a "
+                                 "shorter --duration",
+                                 compared, unit.ticks.size()));
+  }
+  if (fails_a_run(result.verdict) && result.reason.empty()) {
+    result.reason = "outputs differ from the reference's";
+  }
+}
+
+void judge_flight_end(const StressTask& task, const LiveFlight& flight, CaseResult& result) {
+  const auto& lost = flight.plant.divergence;
+  if (!lost || fails_a_run(result.verdict)) return;
+  const std::string how =
+      fmt::format("the flight ended at {:.3f} s: {}", in_seconds(lost->at), lost->what);
+  if (result.verdict == Verdict::pass) {
+    return add_skip(result, how + "; until then the outputs agree with the reference's");
+  }
+  Case to_the_end = task.the_case;
+  to_the_end.duration = {in_seconds(lost->at), Span::In::seconds};
+  const auto reference_port = open_builtin();
+  const auto reference = reference_port->create(task.the_case.profile);
+  if (!reference) return add_skip(result, how);
+  const auto again = fly(to_the_end, task.setup, *task.airframe, *reference, flight.timing());
+  if (!again) return add_skip(result, how + "; " + again.error().to_string());
+  if (again->divergence) return add_skip(result, how + "; the reference loses it too");
+  add(result, Verdict::fail, how + "; the reference keeps it at the same times");
+}
+
+void judge_timing(const RealtimeBudget& budget, StressResult& stress) {
+  const Verdict before = stress.result.verdict;
+  judge_port(budget, stress);
+  const bool port_fails = fails_a_run(stress.result.verdict) && !fails_a_run(before);
+  if (port_fails) return;
+  if (share_of(stress.plant_late_steps, stress.plant_steps) > plant_late_share) {
+    add_skip(stress.result,
+             fmt::format("this machine does not step the plant in real time: {} of {} steps too "
+                         "late",
+                         stress.plant_late_steps, stress.plant_steps));
+  }
+  judge_machine(budget, stress);
+}
+
+}  // namespace attest

@@ -1,0 +1,148 @@
+#include "harness/measure/sweep.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "harness/core/error_json.hpp"
+#include "harness/loop/case_timing.hpp"
+#include "harness/verify/evaluate.hpp"
+#include "harness/verify/fixed_step.hpp"
+#include "harness/verify/judge.hpp"
+#include "harness/verify/verdict_json.hpp"
+
+namespace attest {
+namespace {
+
+// Above, every vehicle of a case holds, or its bounds are wrong; below, the law's own clamp of the
+// time step (20 ms) has long been passed.
+constexpr int highest_hz = 1000, lowest_hz = 2;
+constexpr double rate_step = 0.8;
+// In units of 0.1 ms: beyond half a second no multicopter is flown.
+constexpr int longest_delay = 5000, delay_step = 20;
+
+// Flies a case again and again, each time in another way.
+class Trial {
+ public:
+  Trial(const Case& the_case, PortHost& host, CaseResult& result)
+      : case_(the_case), host_(host), result_(result) {}
+
+  bool holds(const Setup& setup, Nanoseconds delay) {
+    if (result_.verdict != Verdict::pass || error_) return false;
+    FlightPlan plan{setup, case_timing(case_, setup.rate)};
+    const PortSays& port = host_.says();
+    if (has_other_steps(port, case_, setup.rate, plan.timing, result_)) return false;
+    if (declines(port, result_)) return false;
+    for (LoopTick& tick : plan.timing) *tick.commanded += delay;
+    plan.from_one_period_on = has_fixed_step(port, case_);
+    const auto flown = host_.fly(plan);
+    if (!flown) {
+      error_ = flown.error();
+    } else if (flown->fault) {
+      judge(*flown->fault, result_);
+    } else {
+      return !flown->divergence && within_bounds(flown->trace);
+    }
+    return false;
+  }
+
+  const std::optional<Error>& error() const { return error_; }
+
+ private:
+  bool within_bounds(const Trace& trace) const {
+    const auto& metrics = case_.flight->metrics;
+    return std::all_of(metrics.begin(), metrics.end(), [&](const Metric& metric) {
+      const double value = measured(metric, trace);
+      return value >= metric.min && value <= metric.max;
+    });
+  }
+
+  const Case& case_;
+  PortHost& host_;
+  CaseResult& result_;
+  std::optional<Error> error_;
+};
+
+// The last number from `good` towards `bad` that holds, given that `good` does and `bad` does not.
+template <typename Holds>
+int last_that_holds(int good, int bad, Holds&& holds) {
+  while (std::abs(good - bad) > 1) {
+    const int middle = (good + bad) / 2;
+    (holds(middle) ? good : bad) = middle;
+  }
+  return good;
+}
+
+template <typename Holds>
+double lowest_rate(Holds&& holds) {
+  if (!holds(highest_hz)) return -1;
+  int good = highest_hz;
+  while (good > lowest_hz) {
+    const int next = std::max(lowest_hz, static_cast<int>(good * rate_step));
+    if (!holds(next)) return last_that_holds(good, next, holds);
+    good = next;
+  }
+  return good;
+}
+
+template <typename Holds>
+double largest_delay(Holds&& holds) {
+  if (!holds(0)) return -1;
+  int good = 0;
+  while (good < longest_delay) {
+    const int next = good + delay_step;
+    if (!holds(next)) return last_that_holds(good, next, holds);
+    good = next;
+  }
+  return good;
+}
+
+}  // namespace
+
+std::string Codec<SweepResult>::encode(const Result<SweepResult>& result) {
+  return attest::encode(result.map([](const SweepResult& one) {
+    nlohmann::json out = {{"result", to_json(one.result)}};
+    if (one.lowest_rate_hz) out["lowest_rate_hz"] = *one.lowest_rate_hz;
+    if (one.largest_delay_ms) out["largest_delay_ms"] = *one.largest_delay_ms;
+    return out;
+  }));
+}
+
+Result<SweepResult> Codec<SweepResult>::decode(const std::string& text) {
+  const auto in = attest::decode(text);
+  if (!in) return tl::unexpected(in.error());
+  const auto figure = [&](const char* name) {
+    return in->contains(name) ? std::optional(in->at(name).get<double>()) : std::nullopt;
+  };
+  return case_result_from_json(in->at("result")).map([&](CaseResult result) {
+    return SweepResult{std::move(result), figure("lowest_rate_hz"), figure("largest_delay_ms")};
+  });
+}
+
+Result<void> SweepJob::open() {
+  auto host = start_host(options_, {&case_, airframe_.get()});
+  if (!host) return tl::unexpected(host.error());
+  host_ = *std::move(host);
+  return {};
+}
+
+Result<SweepResult> SweepJob::run(std::size_t task) {
+  const Setup setup{rates_[task == 0 ? 0 : task - 1], flyer_};
+  SweepResult found{unjudged(case_, setup), {}, {}};
+  Trial trial(case_, *host_, found.result);
+  if (task == 0) {
+    found.lowest_rate_hz = lowest_rate([&](int hertz) {
+      return trial.holds({Rate::hz(hertz), flyer_}, Nanoseconds(0));
+    });
+  } else {
+    found.largest_delay_ms = 0.1 * largest_delay([&](int delay) {
+                               return trial.holds(setup, delay * std::chrono::microseconds(100));
+                             });
+  }
+  if (trial.error()) return tl::unexpected(*trial.error());
+  return found;
+}
+
+}  // namespace attest

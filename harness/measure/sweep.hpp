@@ -1,0 +1,59 @@
+// Where a vehicle stops holding: the lowest loop rate and the largest delay with which a port still
+// flies a case within the bounds of its metrics.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "harness/host/port_process.hpp"
+#include "harness/verify/verdict.hpp"
+#include "harness/workers/job.hpp"
+
+namespace attest {
+
+// One of the two figures is there, and none where the port went wrong. Below 0: none holds.
+struct SweepResult {
+  CaseResult result;                       // a verdict other than pass: the port went wrong
+  std::optional<double> lowest_rate_hz;    //
+  std::optional<double> largest_delay_ms;  // of the motor commands, beyond the case's own
+};
+
+template <>
+struct Codec<SweepResult> {
+  static std::string encode(const Result<SweepResult>& result);
+  static Result<SweepResult> decode(const std::string& text);
+};
+
+// One vehicle on one plant. Task 0 looks for the lowest rate, task i for the largest delay at rate
+// i - 1. Both are searched by steps and then by halves: what is found is next to one that does not
+// hold, and nothing is said of what lies beyond that.
+class SweepJob final : public Job<SweepResult> {
+ public:
+  SweepJob(Case the_case, Flyer flyer, std::vector<Rate> rates,
+           std::shared_ptr<const Airframe> airframe, HostOptions options)
+      : case_(std::move(the_case)),
+        flyer_(std::move(flyer)),
+        rates_(std::move(rates)),
+        airframe_(std::move(airframe)),
+        options_(std::move(options)) {}
+
+  std::size_t size() const override { return rates_.size() + 1; }
+  Result<void> open() override;
+  Result<SweepResult> run(std::size_t task) override;
+  bool is_spent() const override { return host_->is_spent(); }
+  void close() override { host_.reset(); }
+
+ private:
+  Case case_;
+  Flyer flyer_;
+  std::vector<Rate> rates_;
+  std::shared_ptr<const Airframe> airframe_;
+  HostOptions options_;
+  std::unique_ptr<PortHost> host_;
+};
+
+}  // namespace attest

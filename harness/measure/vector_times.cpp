@@ -1,0 +1,152 @@
+#include "harness/measure/vector_times.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "harness/casefile/stimulus.hpp"
+#include "harness/core/file.hpp"
+#include "harness/trace/csv.hpp"
+#include "harness/verify/evaluate.hpp"
+#include "harness/verify/judge.hpp"
+
+namespace attest {
+namespace {
+
+// Times vectors, in a new process of the port where the last one ended.
+class Stopwatches {
+ public:
+  Stopwatches(const TimeOptions& options, const HostOptions& host)
+      : options_(options), host_options_(host) {}
+
+  Result<VectorTimes> time(const Case& the_case, const Setup& setup) {
+    if (auto started = start(); !started) return tl::unexpected(started.error());
+    VectorTimes times{unjudged(the_case, setup), {}, {}};
+    if (declines(host_->says(), times.result)) return times;
+    const Trace inputs = stimulate(the_case, setup.rate);
+    for (int repeat = 0; repeat < options_.repeats; ++repeat) {
+      const bool with_stack = options_.stack && repeat + 1 == options_.repeats;
+      auto timed = host_->time_steps(the_case.profile, inputs, with_stack);
+      if (!timed) return tl::unexpected(timed.error());
+      clock_ = timed->clock;
+      if (timed->fault) {
+        judge(*timed->fault, times.result);
+        return VectorTimes{std::move(times.result), {}, {}};
+      }
+      keep_quickest(std::move(timed->steps), times.steps);
+      times.stack_bytes = timed->stack_bytes;
+    }
+    times.result.ticks = times.steps.size();
+    return times;
+  }
+
+  Nanoseconds clock() const { return clock_; }
+
+ private:
+  Result<void> start() {
+    if (host_ && !host_->is_spent()) return {};
+    auto started = start_host(host_options_);
+    if (!started) return tl::unexpected(started.error());
+    host_ = *std::move(started);
+    return {};
+  }
+
+  static void keep_quickest(std::vector<Nanoseconds> steps, std::vector<Nanoseconds>& quickest) {
+    if (quickest.empty()) {
+      quickest = std::move(steps);
+      return;
+    }
+    for (std::size_t i = 0; i < quickest.size(); ++i) {
+      quickest[i] = std::min(quickest[i], steps[i]);
+    }
+  }
+
+  const TimeOptions& options_;
+  const HostOptions& host_options_;
+  std::unique_ptr<PortHost> host_;
+  Nanoseconds clock_{0};
+};
+
+Histogram histogram_for(const TimeOptions& options) {
+  return Histogram(options.budget_us
+                       ? Nanoseconds(static_cast<std::int64_t>(*options.budget_us * 1000))
+                       : Nanoseconds::max());
+}
+
+const Case* find_case(const std::vector<SelectedCase>& cases, const std::string& id) {
+  const auto found = std::find_if(cases.begin(), cases.end(),
+                                  [&](const SelectedCase& one) { return one.the_case.id() == id; });
+  return found == cases.end() ? nullptr : &found->the_case;
+}
+
+}  // namespace
+
+std::size_t VectorTimes::slowest_tick() const {
+  return static_cast<std::size_t>(std::max_element(steps.begin(), steps.end()) - steps.begin());
+}
+
+Nanoseconds VectorTimes::median() const {
+  std::vector<Nanoseconds> sorted = steps;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return *middle;
+}
+
+const VectorTimes* CorpusTimes::with_slowest_step() const {
+  const VectorTimes* found = nullptr;
+  for (const VectorTimes& vector : vectors) {
+    if (vector.is_timed() && (!found || vector.slowest() > found->slowest())) found = &vector;
+  }
+  return found;
+}
+
+const VectorTimes* CorpusTimes::with_most_stack() const {
+  const VectorTimes* found = nullptr;
+  for (const VectorTimes& vector : vectors) {
+    if (vector.stack_bytes && (!found || *vector.stack_bytes > *found->stack_bytes)) {
+      found = &vector;
+    }
+  }
+  return found;
+}
+
+Result<CorpusTimes> time_corpus(const std::vector<SelectedCase>& cases, const TimeOptions& options,
+                                const HostOptions& host,
+                                const std::function<void(const CaseResult&)>& on_result) {
+  Stopwatches stopwatches(options, host);
+  CorpusTimes times{{}, histogram_for(options), {}};
+  for (const auto& [the_case, setups] : cases) {
+    for (const Setup& setup : setups) {
+      if (host.stop()) return times;
+      auto vector = stopwatches.time(the_case, setup);
+      if (!vector) return tl::unexpected(vector.error());
+      for (const Nanoseconds step : vector->steps) times.steps.add(step);
+      on_result(vector->result);
+      times.vectors.push_back(*std::move(vector));
+    }
+  }
+  times.clock = stopwatches.clock();
+  return times;
+}
+
+Result<void> write_slowest(const CorpusTimes& times, const std::vector<SelectedCase>& cases,
+                           const HostOptions& host, const std::filesystem::path& file) {
+  const VectorTimes* slowest = times.with_slowest_step();
+  const Case* the_case = slowest ? find_case(cases, slowest->result.case_id()) : nullptr;
+  if (!the_case) return fail("nothing was timed that could be written");
+  Trace trace = stimulate(*the_case, slowest->result.rate);
+  const std::size_t tick = slowest->slowest_tick();
+  trace.samples.resize(tick + 1);
+  std::erase_if(trace.parameters,
+                [&](const ParameterChange& change) { return change.tick > tick; });
+  const auto started = start_host(host);
+  if (!started) return tl::unexpected(started.error());
+  if (const auto fault = (*started)->drive({the_case->profile}, trace)) return fail(fault->what);
+  trace.present = channels_of(Part::mc_att_control);
+  auto opened = AtomicFile::open(file);
+  if (!opened) return tl::unexpected(opened.error());
+  if (auto written = write_csv(trace, all_columns(trace), *opened); !written) return written;
+  return opened->commit();
+}
+
+}  // namespace attest

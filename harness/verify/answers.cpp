@@ -1,0 +1,89 @@
+#include "harness/verify/answers.hpp"
+
+#include <memory>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "harness/loop/unit_driver.hpp"
+#include "harness/port/builtin.hpp"
+
+namespace attest {
+namespace {
+
+// The decision that rounding makes at a tick with these margins. Not the norm of quaternions: those
+// of an estimator are as long as floats can make them.
+std::optional<Decision> made_by_rounding(const Margins& margins, std::optional<int> fraction_bits) {
+  for (std::size_t i = 0; i < decision_count; ++i) {
+    const auto decision = static_cast<Decision>(i);
+    if (decision == Decision::quaternion_norm) continue;
+    if (margins[decision].distance < least_margin(decision, fraction_bits)) return decision;
+  }
+  return std::nullopt;
+}
+
+// The ticks so far, and what was before the first that rounding decides.
+class Answering {
+ public:
+  Answering(const Trace& flown, const Tolerances& tolerances)
+      : comparer_(flown.present, flown.present, tolerances) {}
+
+  void decided_by_rounding(Decision decision, std::size_t tick) {
+    if (before_) return;
+    before_ = comparer_.finish(tick, tick);
+    near_ = {decision, tick, 0};
+  }
+  void add(const Sample& got, const Sample& want, std::span<const ParameterChange> changes) {
+    comparer_.add(got, want, changes);
+  }
+
+  Answers finish(std::size_t ticks) {
+    Answers answers{comparer_.finish(ticks, ticks), std::nullopt};
+    Comparison& all = answers.comparison;
+    if (!before_) return answers;
+    if (all.agrees()) {
+      all.tightest = before_->tightest;  // what follows may be near its tolerance
+    } else if (before_->agrees() && all.first && !all.got_non_finite) {
+      near_.deviating_tick = all.first->tick;
+      answers.undecided = near_;
+      all = *before_;
+    }
+    return answers;
+  }
+
+ private:
+  TickComparer comparer_;
+  std::optional<Comparison> before_;
+  Answers::Undecided near_{};
+};
+
+}  // namespace
+
+Result<Answers> compare_answers(const Trace& flown, const std::string& profile,
+                                const Tolerances& tolerances, std::optional<int> fraction_bits) {
+  const std::unique_ptr<Port> reference = open_builtin();
+  const std::unique_ptr<Unit> unit = reference->create(profile);
+  if (!unit) return fail(fmt::format("the reference has no profile `{}`", profile));
+  UnitDriver law(*unit);
+  MarginMeter meter(profile);
+  Answering answering(flown, tolerances);
+  std::span<const ParameterChange> changes = flown.parameters;
+  for (std::size_t tick = 0; tick < flown.samples.size(); ++tick) {
+    const Sample& got = flown.samples[tick];
+    std::size_t now = 0;
+    while (now < changes.size() && changes[now].tick == tick) ++now;
+    const auto at_tick = changes.first(now);
+    changes = changes.subspan(now);
+    if (const auto decision = made_by_rounding(meter.step(at_tick, got.in), fraction_bits)) {
+      answering.decided_by_rounding(*decision, tick);
+    }
+    Sample want = got;
+    if (const auto fault = law.step(tick, at_tick, want)) {
+      return fail(fmt::format("the reference, at tick {}: {}", tick, fault->what));
+    }
+    answering.add(got, want, at_tick);
+  }
+  return answering.finish(flown.samples.size());
+}
+
+}  // namespace attest

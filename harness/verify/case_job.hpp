@@ -1,0 +1,88 @@
+// The cases of a run as jobs: what a worker process judges.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "harness/casefile/case.hpp"
+#include "harness/casefile/select.hpp"
+#include "harness/compare/tolerance.hpp"
+#include "harness/golden/golden.hpp"
+#include "harness/host/port_process.hpp"
+#include "harness/loop/timing_file.hpp"
+#include "harness/plant/fleet.hpp"
+#include "harness/verify/verdict.hpp"
+#include "harness/workers/job.hpp"
+
+namespace attest {
+
+template <>
+struct Codec<CaseResult> {
+  static std::string encode(const Result<CaseResult>& result);
+  static Result<CaseResult> decode(const std::string& text);
+};
+
+// A case in some of its setups: any of an open-loop case, or those of one flyer. The port has a
+// process of its own, which is started before the golden is read.
+class CaseJob final : public Job<CaseResult> {
+ public:
+  // `airframe` is the flyer's; null for open loop.
+  CaseJob(Case the_case, std::vector<Setup> setups, std::shared_ptr<const Airframe> airframe,
+          std::filesystem::path golden_root, Level level, HostOptions options)
+      : case_(std::move(the_case)),
+        setups_(std::move(setups)),
+        airframe_(std::move(airframe)),
+        golden_root_(std::move(golden_root)),
+        level_(level),
+        options_(std::move(options)) {}
+
+  std::size_t size() const override { return setups_.size(); }
+  Result<void> open() override;
+  Result<CaseResult> run(std::size_t task) override;
+  bool is_spent() const override { return host_->is_spent(); }
+  void close() override { host_.reset(); }
+
+ private:
+  Case case_;
+  std::vector<Setup> setups_;
+  std::shared_ptr<const Airframe> airframe_;
+  std::filesystem::path golden_root_;
+  Level level_;
+  HostOptions options_;
+  std::unique_ptr<PortHost> host_;
+  std::optional<Golden> golden_;
+};
+
+// A flight at recorded times.
+class TimedJob final : public Job<CaseResult> {
+ public:
+  TimedJob(Case the_case, TimingFile timing, std::shared_ptr<const Airframe> airframe,
+           HostOptions options)
+      : case_(std::move(the_case)),
+        timing_(std::move(timing)),
+        airframe_(std::move(airframe)),
+        options_(std::move(options)) {}
+
+  std::size_t size() const override { return 1; }
+  Result<CaseResult> run(std::size_t task) override;
+
+ private:
+  Case case_;
+  TimingFile timing_;
+  std::shared_ptr<const Airframe> airframe_;
+  HostOptions options_;
+};
+
+// The jobs of the cases that were selected, in order: one for an open-loop case, one a flyer for a
+// flight, so that long flights are shared among the workers. Errors: a vehicle that cannot be
+// loaded.
+Result<Jobs<CaseResult>> case_jobs(const std::vector<SelectedCase>& cases,
+                                   const std::filesystem::path& golden_root, Fleet& fleet,
+                                   Level level, const HostOptions& options);
+
+}  // namespace attest

@@ -1,0 +1,179 @@
+#include "harness/verify/claim.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace attest {
+namespace {
+
+// Extensions of the ABI that a port need not have.
+bool is_module(const std::string& group) { return group == "mixer" || group == "battery_status"; }
+
+// What came of the cases of a group at a rate.
+struct Tally {
+  std::size_t in_suite = 0, run = 0, good = 0;
+};
+
+struct Group {
+  std::map<Rate, Tally> rates;
+  bool passes = false, fails = false;
+  // Cases that were counted apart.
+  std::size_t unsupported = 0, skipped = 0, expected_failures = 0;
+
+  bool was_run() const {
+    return std::any_of(rates.begin(), rates.end(),
+                       [](const auto& rate) { return rate.second.run > 0; });
+  }
+};
+
+using Groups = std::map<std::string, Group>;
+
+// A port with a fixed step has no other rate, and the claim names its step.
+bool is_of_another_step(const CaseResult& result, const RunResult& run) {
+  return run.fixed_step && result.rate != *run.fixed_step && result.verdict == Verdict::unsupported;
+}
+
+void add(const CaseResult& result, const RunResult& run, Group& group) {
+  Tally& tally = group.rates[result.rate];
+  ++tally.run;
+  const bool is_exact_only = result.verdict == Verdict::skip && run.level != Level::exact &&
+                             result.reason == exact_level_only;
+  if (result.verdict == Verdict::pass || is_exact_only) ++tally.good;
+  group.passes = group.passes || result.verdict == Verdict::pass;
+  group.fails = group.fails || fails_a_run(result.verdict);
+  if (result.verdict == Verdict::xfail) ++group.expected_failures;
+  if (result.verdict == Verdict::skip && !is_exact_only) ++group.skipped;
+  if (result.verdict == Verdict::unsupported && !is_of_another_step(result, run)) {
+    ++group.unsupported;
+  }
+}
+
+std::map<std::string, Groups> groups_of(const RunResult& run) {
+  std::map<std::string, Groups> profiles;
+  for (const auto& [name, rates] : run.suite) {
+    const std::size_t slash = name.find('/');
+    Group& group = profiles[name.substr(0, slash)][name.substr(slash + 1)];
+    for (const auto& [rate, cases] : rates) group.rates[rate].in_suite = cases;
+  }
+  for (const CaseResult& result : run.results) {
+    add(result, run, profiles[result.profile][result.group]);
+  }
+  return profiles;
+}
+
+bool was_judged(const Groups& groups) {
+  return std::any_of(groups.begin(), groups.end(), [](const auto& group) {
+    return group.second.passes || group.second.fails || group.second.expected_failures > 0;
+  });
+}
+
+// At the rates that were run, or at the one of a fixed step.
+bool is_whole(const Group& group, const RunResult& run) {
+  const std::set<Rate> selected(run.rates.begin(), run.rates.end());
+  return group.was_run() &&
+         std::all_of(group.rates.begin(), group.rates.end(), [&](const auto& each) {
+           const auto& [rate, tally] = each;
+           if (run.fixed_step ? rate != *run.fixed_step : !selected.contains(rate)) return true;
+           return tally.good >= std::max(tally.in_suite, tally.run);
+         });
+}
+
+// "3 cases unsupported (modes, tpa)"; none is not said.
+void say(const Groups& groups, std::size_t Group::*count, const char* singular, const char* plural,
+         std::vector<std::string>& missing) {
+  std::size_t all = 0;
+  std::vector<std::string> names;
+  for (const auto& [name, group] : groups) {
+    if (is_module(name) || group.*count == 0) continue;
+    all += group.*count;
+    names.push_back(name);
+  }
+  if (all == 0) return;
+  missing.push_back(
+      fmt::format("{} {} ({})", all, all == 1 ? singular : plural, fmt::join(names, ", ")));
+}
+
+// The mandatory groups and the rates of which no case was run, and what else was not.
+void say_what_was_not_run(const Groups& groups, const RunResult& run,
+                          std::vector<std::string>& missing) {
+  std::vector<std::string> names, rates;
+  std::map<Rate, std::size_t> run_at;
+  std::size_t left_out = 0;
+  for (const auto& [name, group] : groups) {
+    if (is_module(name)) continue;
+    if (!group.was_run()) names.push_back(name);
+    for (const auto& [rate, tally] : group.rates) {
+      run_at[rate] += tally.run;
+      left_out += tally.in_suite - std::min(tally.in_suite, tally.run);
+    }
+  }
+  for (const auto& [rate, cases] : run_at) {
+    if (cases == 0) rates.push_back(rate.to_string());
+  }
+  if (left_out == 0) return;
+  if (!run.selection.empty()) missing.push_back("only " + run.selection);
+  if (!names.empty()) missing.push_back(fmt::format("no case of {}", fmt::join(names, ", ")));
+  if (!rates.empty()) missing.push_back(fmt::format("no case at {} Hz", fmt::join(rates, ", ")));
+  missing.push_back(
+      fmt::format("{} not run", left_out == 1 ? "1 case" : fmt::format("{} cases", left_out)));
+}
+
+std::vector<std::string> missing_of(const Groups& groups, const RunResult& run) {
+  std::vector<std::string> missing;
+  if (!run.suite_is_released) missing.emplace_back("custom suite");
+  if (!run.limits.own_process) missing.emplace_back("port in its judge's process");
+  if (!run.timing.empty()) missing.emplace_back("at recorded times");
+  if (run.fixed_step) {
+    missing.push_back(fmt::format("fixed step of {} Hz", run.fixed_step->to_string()));
+  }
+  say_what_was_not_run(groups, run, missing);
+  say(groups, &Group::unsupported, "case unsupported", "cases unsupported", missing);
+  say(groups, &Group::skipped, "case skipped", "cases skipped", missing);
+  say(groups, &Group::expected_failures, "expected failure", "expected failures", missing);
+  return missing;
+}
+
+Claim claim_of(const std::string& profile, const Groups& groups, const RunResult& run) {
+  Claim claim;
+  claim.profile = profile;
+  claim.has_all_groups = true;
+  for (const auto& [name, group] : groups) {
+    const bool whole = is_whole(group, run);
+    if (group.fails) claim.failing.push_back(name);
+    if (!is_module(name)) claim.has_all_groups = claim.has_all_groups && whole && !group.fails;
+    if (group.fails || !(whole || group.passes)) continue;
+    if (!is_module(name)) {
+      (whole ? claim.whole : claim.in_part).push_back(name);
+    } else if (whole) {
+      claim.modules.push_back(name);
+    }
+  }
+  claim.missing = missing_of(groups, run);
+  if (claim.whole.empty() && claim.missing.empty()) claim.missing.emplace_back("nothing passed");
+  return claim;
+}
+
+}  // namespace
+
+std::vector<Claim> claims_of(const RunResult& run) {
+  std::vector<Claim> claims;
+  for (const auto& [profile, groups] : groups_of(run)) {
+    if (was_judged(groups)) claims.push_back(claim_of(profile, groups, run));
+  }
+  return claims;
+}
+
+Standing standing_of(const RunResult& run) {
+  const bool is_complete = !run.failed() && run.errors.empty() && !run.stopped_early;
+  if (!is_complete || run.count(Verdict::pass) == 0) return Standing::none;
+  const auto claims = claims_of(run);
+  const bool conforms = std::any_of(claims.begin(), claims.end(),
+                                    [](const Claim& claim) { return claim.conforms(); });
+  return conforms ? Standing::conformant : Standing::partial;
+}
+
+}  // namespace attest

@@ -1,0 +1,165 @@
+#include "harness/verify/evaluate.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "harness/casefile/stimulus.hpp"
+#include "harness/compare/events.hpp"
+#include "harness/golden/keyframes.hpp"
+#include "harness/golden/other_side.hpp"
+#include "harness/host/host_here.hpp"
+#include "harness/loop/open_loop.hpp"
+#include "harness/port/builtin.hpp"
+#include "harness/trace/provenance.hpp"
+#include "harness/verify/fixed_step.hpp"
+#include "harness/verify/judge.hpp"
+#include "harness/verify/stopwatch.hpp"
+
+namespace attest {
+namespace {
+
+// Drives a fresh unit through `answered`, whose inputs are those of `want`, and compares. Where
+// there are other sides they are as right; the exact level is the law's.
+void run_and_judge(Trace& answered, const Trace& want, const OtherSides& others,
+                   const Subject& subject, PortHost& host, const Tolerances& tolerances,
+                   const Tolerances& of_sides, CaseResult& result) {
+  if (declines(host.says(), result)) return;
+  const auto fault = host.drive(subject, answered);
+  if (fault && !leaves_ticks_to_judge(*fault)) return judge(*fault, result);
+  if (fault) leave_out_from(fault->tick, want, answered);
+  if (others.empty() || tolerances.level() == Level::exact) {
+    judge(compare(answered, want, tolerances), result);
+  } else {
+    const Trace allowed = on_the_side_of(answered, want, others, of_sides);
+    judge(compare(answered, allowed, tolerances), result);
+  }
+  if (fault) judge_after(*fault, result);
+}
+
+// What the case gives the unit, and what the reference answered to just that.
+struct Prepared {
+  Trace answered;  // inputs only, so far
+  Trace want;
+  OtherSides other_sides;
+};
+
+Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& golden) {
+  auto want = golden.read({rate, std::nullopt});
+  if (!want) return tl::unexpected(want.error());
+  Trace made = stimulate(the_case, rate);
+  if (!keeps_every_tick(made.samples.size())) {
+    auto whole = filled_in(made, *want, subject_of(the_case), !the_case.numeric_only);
+    if (!whole) return tl::unexpected(whole.error());
+    return Prepared{std::move(made), std::move(*whole), {}};
+  }
+  if (const ChannelSet missing = made.present & ~want->present; missing.any()) {
+    return fail_at(want->source,
+                   fmt::format("has no {}, neither as a column nor in the {} beside it; bless it "
+                               "anew, or restore it from version control",
+                               channels()[missing._Find_first()].name, provenance_name));
+  }
+  if (const auto tick = first_input_difference(made, *want)) {
+    return fail_at(want->source,
+                   fmt::format("at tick {} the golden's inputs are not those that {} makes; bless "
+                               "it anew, or restore it from version control",
+                               *tick, the_case.file.string()));
+  }
+  auto others = golden.read_other_sides({rate, std::nullopt});
+  if (!others) return tl::unexpected(others.error());
+  return Prepared{std::move(made), std::move(*want), std::move(*others)};
+}
+
+// The same for a port with a fixed step (fixed_step.hpp): the reference's answers from one period
+// after zero on. Errors: the reference does not agree with the golden.
+Result<Prepared> prepare_from_one_period_on(const Case& the_case, const Rate& rate,
+                                            const Golden& golden) {
+  HostHere reference(open_builtin());
+  const auto checked = evaluate_case(the_case, rate, golden, reference, Level::exact);
+  if (!checked) return tl::unexpected(checked.error());
+  if (checked->verdict != Verdict::pass) {
+    return fail_at(the_case.file.string(),
+                   fmt::format("at {}, the reference of this attest does not agree with the "
+                               "golden, which therefore cannot be shifted",
+                               rate.label()));
+  }
+  const Case begun = the_case.from_one_period_on();
+  Prepared prepared{stimulate(begun, rate), stimulate(begun, rate), {}};
+  if (const auto fault = reference.drive(subject_of(begun), prepared.want)) {
+    return fail_at(the_case.file.string(), "the reference: " + fault->what);
+  }
+  if (!begun.either_side.any()) return prepared;
+  auto others = other_sides(begun, prepared.want);
+  if (!others) return tl::unexpected(others.error());
+  prepared.other_sides = std::move(*others);
+  return prepared;
+}
+
+}  // namespace
+
+CaseResult unjudged(const Case& the_case, const Setup& setup) {
+  CaseResult result;
+  result.profile = the_case.profile;
+  result.group = the_case.group;
+  result.name = the_case.name;
+  result.rate = setup.rate;
+  result.flyer = setup.flyer;
+  return result;
+}
+
+CaseResult unjudged(const Trace& recorded, const std::string& profile) {
+  CaseResult result;
+  result.profile = profile;
+  result.name = recorded.source;
+  return result;
+}
+
+Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const Golden& golden,
+                                 PortHost& host, Level level) {
+  const Stopwatch stopwatch;
+  CaseResult result = unjudged(the_case, {rate, std::nullopt});
+  if (the_case.exact_only && level != Level::exact) {
+    result.verdict = Verdict::skip;
+    result.reason = exact_level_only;
+    return result;
+  }
+  if (has_other_steps(host.says(), the_case, rate, result)) return result;
+  auto prepared = has_fixed_step(host.says(), the_case)
+                      ? prepare_from_one_period_on(the_case, rate, golden)
+                      : prepare(the_case, rate, golden);
+  if (!prepared) return tl::unexpected(prepared.error());
+  const bool numeric_for_exact = level == Level::exact && the_case.numeric_only;
+  const bool numeric_for_events = level == Level::events && !has_events(the_case.part);
+  if (numeric_for_exact || numeric_for_events) level = Level::numeric;
+  const auto bits = host.says().fraction_bits;
+  const std::size_t ticks = prepared->answered.samples.size();
+  run_and_judge(prepared->answered, prepared->want, prepared->other_sides, subject_of(the_case),
+                host, tolerances_of(the_case, level, bits, ticks),
+                tolerances_of(the_case, Level::numeric, bits, ticks), result);
+  result.elapsed_s = stopwatch.elapsed_s();
+  return result;
+}
+
+CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHost& host,
+                          const Tolerances& tolerances) {
+  const Stopwatch stopwatch;
+  CaseResult result = unjudged(recorded, subject.profile);
+  if (subject.part == Part::mc_att_control && has_other_steps(host.says(), recorded, result)) {
+    return result;
+  }
+  Trace answered = recorded;
+  for (Sample& sample : answered.samples) {
+    sample.out = {};
+    sample.mixer_out = {};
+    sample.battery_out = {};
+  }
+  const bool numeric_for_events = tolerances.level() == Level::events && !has_events(subject.part);
+  Tolerances allowed = numeric_for_events ? Tolerances(Level::numeric) : tolerances;
+  if (const auto bits = host.says().fraction_bits)
+    allowed.allow_lsb(*bits, recorded.samples.size());
+  run_and_judge(answered, recorded, {}, subject, host, allowed, allowed, result);
+  result.elapsed_s = stopwatch.elapsed_s();
+  return result;
+}
+
+}  // namespace attest

@@ -1,0 +1,225 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "harness/compare/compare_rows.hpp"
+#include "harness/golden/reference_flight.hpp"
+#include "harness/host/host_here.hpp"
+#include "harness/loop/case_timing.hpp"
+#include "harness/loop/flight.hpp"
+#include "harness/port/builtin.hpp"
+#include "harness/verify/answers.hpp"
+#include "harness/verify/evaluate.hpp"
+#include "harness/verify/fixed_step.hpp"
+#include "harness/verify/judge.hpp"
+#include "harness/verify/stopwatch.hpp"
+
+namespace attest {
+namespace {
+
+// How far a right controller's metric may be from the reference's: beyond the horizon two right
+// flights differ, and these are a few times what they were seen to differ by, and far less than
+// what a port with a wrong gain does.
+double tolerance_of(Measure measure, double reference, const Rate& rate) {
+  constexpr double relative = 0.05;
+  const auto at_least = [&] {
+    switch (measure) {
+      case Measure::settling_time_s:
+        return 0.05 + 2 * rate.period_s();  // the band is crossed between two ticks
+      case Measure::overshoot_deg:
+        return 0.5;
+      case Measure::rms_attitude_error_deg:
+        return 0.1;
+      case Measure::rms_rate_error_rad_s:
+        return 0.02;
+      case Measure::peak_rate_rad_s:
+        return 0.1;
+      case Measure::saturation_duty:
+        return 0.02;
+      case Measure::peak_integral:
+        return 0.005;
+      case Measure::sink_m:
+        return 0.05;
+    }
+    return 0.0;
+  };
+  const double size = std::isfinite(reference) ? std::abs(reference) : 0;
+  return std::max(at_least(), relative * size);
+}
+
+std::string off(const MetricResult& metric) {
+  if (metric.value < metric.min || metric.value > metric.max) {
+    const bool low = metric.value < metric.min;
+    return fmt::format("metric {}: {} is {:.4g}, {} {:g}", metric.name, name_of(metric.measure),
+                       metric.value, low ? "below" : "above", low ? metric.min : metric.max);
+  }
+  return fmt::format("metric {}: {} is {:.4g}, the reference's {:.4g} +- {:.2g}", metric.name,
+                     name_of(metric.measure), metric.value, metric.reference, metric.tolerance);
+}
+
+void judge_metrics(const Case& the_case, const Trace& flown, const ReferenceFlight& reference,
+                   CaseResult& result, std::vector<std::string>& reasons) {
+  for (const Metric& metric : the_case.flight->metrics) {
+    const auto known = reference.metrics.find(metric.name);
+    const double expected =
+        known == reference.metrics.end() ? std::numeric_limits<double>::quiet_NaN() : known->second;
+    MetricResult measurement{metric.name,
+                             metric.measure,
+                             measured(metric, flown),
+                             expected,
+                             tolerance_of(metric.measure, expected, result.rate),
+                             metric.min,
+                             metric.max};
+    // A ratio has no unit, so the absolute part does not apply to it.
+    if (metric.versus) measurement.tolerance = 0.05 * std::abs(expected);
+    if (!measurement.within()) reasons.push_back(off(measurement));
+    result.metrics.push_back(std::move(measurement));
+  }
+}
+
+// Of a flight whose every answer is right: the loop beside the golden's.
+Comparison with_tightest(Comparison loop, const Comparison& answers) {
+  loop.ticks = answers.ticks;
+  if (!loop.tightest || (answers.tightest && answers.tightest->ratio < loop.tightest->ratio)) {
+    loop.tightest = answers.tightest;
+  }
+  return loop;
+}
+
+// Each answer by the reference, the loop by the golden's rows to the horizon, and no NaN and no
+// infinity at any tick.
+Result<void> judge_ticks(const Case& the_case, const Flown& flown, const ReferenceFlight& reference,
+                         std::optional<int> fraction_bits, CaseResult& result) {
+  // The horizon is of floats. In flight, where what it rounds comes back to it, a port with 22 bits
+  // behind the point was measured to leave the golden by seven times what its LSBs are allowed.
+  // With 30 bits that is a tenth of what floats are allowed; with fewer, the loop as a whole is
+  // judged by its metrics.
+  constexpr int as_near_as_floats_bits = 30;
+  const double horizon_s = fraction_bits.value_or(as_near_as_floats_bits) < as_near_as_floats_bits
+                               ? 0
+                               : reference.horizon_s;
+  const Tolerances tolerances =
+      tolerances_of(the_case, Level::numeric, fraction_bits, flown.trace.samples.size());
+  auto answers = compare_answers(flown.trace, the_case.profile, tolerances, fraction_bits);
+  if (!answers) return tl::unexpected(answers.error());
+  Comparison& comparison = answers->comparison;
+  if (comparison.agrees()) {
+    comparison =
+        with_tightest(compare_rows(flown.trace, reference.rows, horizon_s, tolerances), comparison);
+  }
+  if (const auto non_finite = first_non_finite(flown.trace, reference.rows)) {
+    if (!comparison.first) comparison.first = non_finite;
+    comparison.got_non_finite = true;
+  }
+  judge(comparison, result);
+  return {};
+}
+
+Result<void> judge_flight(const Case& the_case, const Flown& flown,
+                          const ReferenceFlight& reference, std::optional<int> fraction_bits,
+                          CaseResult& result) {
+  auto judged = judge_ticks(the_case, flown, reference, fraction_bits, result);
+  if (!judged) return judged;
+  std::vector<std::string> reasons;
+  if (!result.reason.empty()) reasons.push_back(result.reason);
+  if (flown.divergence) {
+    reasons.push_back(how_it_ended(flown));
+  } else {
+    judge_metrics(the_case, flown.trace, reference, result, reasons);
+  }
+  if (result.verdict == Verdict::pass && !reasons.empty()) result.verdict = Verdict::fail;
+  result.reason = fmt::format("{}", fmt::join(reasons, "; "));
+  return {};
+}
+
+}  // namespace
+
+std::string how_it_ended(const Flown& flown) {
+  return fmt::format("the flight ended at {:.3f} s (tick {}): {}", in_seconds(flown.divergence->at),
+                     flown.trace.samples.size(), flown.divergence->what);
+}
+
+namespace {
+
+// A fresh unit flies at those times, and is judged by the reference.
+Result<CaseResult> evaluate_with(const Case& the_case, const FlightPlan& plan,
+                                 const ReferenceFlight& reference, PortHost& host) {
+  const Stopwatch stopwatch;
+  CaseResult result = unjudged(the_case, plan.setup);
+  if (declines(host.says(), result)) return result;
+  const auto flown = host.fly(plan);
+  if (!flown) return tl::unexpected(flown.error());
+  const auto bits = host.says().fraction_bits;
+  Result<void> judged;
+  if (!flown->fault) {
+    judged = judge_flight(the_case, *flown, reference, bits, result);
+  } else if (leaves_ticks_to_judge(*flown->fault)) {
+    judged = judge_ticks(the_case, *flown, reference, bits, result);
+    judge_after(*flown->fault, result);
+  } else {
+    judge(*flown->fault, result);
+  }
+  if (!judged) return tl::unexpected(judged.error());
+  result.elapsed_s = stopwatch.elapsed_s();
+  return result;
+}
+
+// Of a port with a fixed step (fixed_step.hpp): compared with the reference from one period after
+// zero on. Errors: the reference does not agree with the golden.
+Result<CaseResult> evaluate_from_one_period_on(const Case& the_case, FlightPlan plan,
+                                               const Airframe& airframe,
+                                               const ReferenceFlight& golden, PortHost& host) {
+  HostHere builtin(open_builtin(), {}, {&the_case, &airframe});
+  const auto checked = evaluate_with(the_case, plan, golden, builtin);
+  if (!checked) return tl::unexpected(checked.error());
+  if (checked->verdict != Verdict::pass) {
+    return fail_at(the_case.file.string(),
+                   fmt::format("at {}, the reference of this attest does not agree with the "
+                               "golden, which therefore cannot be shifted: {}",
+                               plan.setup.label(), checked->reason));
+  }
+  const Case begun = the_case.from_one_period_on();
+  const auto reference = reference_flight(begun, plan.setup, airframe, plan.timing);
+  if (!reference) return tl::unexpected(reference.error());
+  plan.from_one_period_on = true;
+  return evaluate_with(begun, plan, *reference, host);
+}
+
+}  // namespace
+
+Result<CaseResult> evaluate_flight(const Case& the_case, const Setup& setup,
+                                   const Airframe& airframe, const Golden& golden, PortHost& host) {
+  const auto reference = golden.read_flight(setup, airframe.vehicle());
+  if (!reference) return tl::unexpected(reference.error());
+  const FlightPlan plan{setup, case_timing(the_case, setup.rate)};
+  if (!has_fixed_step(host.says(), the_case)) {
+    return evaluate_with(the_case, plan, *reference, host);
+  }
+  CaseResult result = unjudged(the_case, setup);
+  if (has_other_steps(host.says(), the_case, setup.rate, plan.timing, result)) return result;
+  return evaluate_from_one_period_on(the_case, plan, airframe, *reference, host);
+}
+
+Result<CaseResult> evaluate_timed_flight(const Case& the_case, const Setup& setup,
+                                         const Airframe& airframe, const LoopTiming& timing,
+                                         PortHost& host) {
+  CaseResult result = unjudged(the_case, setup);
+  if (has_other_steps(host.says(), the_case, setup.rate, timing, result)) return result;
+  const FlightPlan plan{setup, timing, has_fixed_step(host.says(), the_case)};
+  Case relaxed = plan.from_one_period_on ? the_case.from_one_period_on() : the_case;
+  const auto reference = reference_flight(relaxed, setup, airframe, timing);
+  if (!reference) return tl::unexpected(reference.error());
+  for (Metric& metric : relaxed.flight->metrics) {
+    const double value = reference->metrics.at(metric.name);
+    if (value < metric.min) metric.min = -std::numeric_limits<double>::infinity();
+    if (value > metric.max) metric.max = std::numeric_limits<double>::infinity();
+  }
+  return evaluate_with(relaxed, plan, *reference, host);
+}
+
+}  // namespace attest

@@ -1,0 +1,86 @@
+#include "harness/verify/judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace attest {
+
+Tolerances tolerances_of(const Case& the_case, Level level, std::optional<int> fraction_bits,
+                         std::size_t ticks) {
+  Tolerances tolerances(level);
+  for (const auto& [prefix, tolerance] : the_case.tolerances) tolerances.set(prefix, tolerance);
+  if (fraction_bits) tolerances.allow_lsb(*fraction_bits, ticks);
+  return tolerances;
+}
+
+bool declines(const PortSays& port, CaseResult& result) {
+  const auto& declined = port.unsupported_groups;
+  if (std::find(declined.begin(), declined.end(), result.group) == declined.end()) return false;
+  result.verdict = Verdict::unsupported;
+  result.reason = fmt::format("the port declares that it does not do {}", result.group);
+  return true;
+}
+
+void judge(const PortFault& fault, CaseResult& result) {
+  result.reason = fault.what;
+  switch (fault.kind) {
+    case PortFault::Kind::profile:
+      result.verdict = Verdict::skip;
+      return;
+    case PortFault::Kind::unsupported:
+      result.verdict = Verdict::unsupported;
+      return;
+    case PortFault::Kind::protocol:
+      result.verdict = Verdict::protocol;
+      return;
+    case PortFault::Kind::crash:
+      result.verdict = Verdict::crash;
+      return;
+    case PortFault::Kind::timeout:
+      result.verdict = Verdict::timeout;
+      return;
+    default:
+      result.verdict = Verdict::fail;
+  }
+}
+
+bool leaves_ticks_to_judge(const PortFault& fault) {
+  return fault.kind == PortFault::Kind::unsupported && fault.tick > 0;
+}
+
+void leave_out_from(std::size_t tick, const Trace& want, Trace& answered) {
+  for (std::size_t i = tick; i < answered.samples.size(); ++i) {
+    answered.samples[i].out = want.samples[i].out;
+    answered.samples[i].mixer_out = want.samples[i].mixer_out;
+    answered.samples[i].battery_out = want.samples[i].battery_out;
+  }
+}
+
+void judge_after(const PortFault& fault, CaseResult& result) {
+  if (result.verdict != Verdict::pass) {
+    result.reason += fmt::format("{}before {}", result.reason.empty() ? "" : "; ", fault.what);
+    return;
+  }
+  result.tightest.reset();
+  result.ticks = std::min(result.ticks, fault.tick);
+  judge(fault, result);
+}
+
+void judge(const Comparison& comparison, CaseResult& result) {
+  result.ticks = comparison.ticks;
+  result.deviating_ticks = comparison.deviating_ticks;
+  result.first = comparison.first;
+  result.tightest = comparison.tightest;
+  result.reason = comparison.mismatch.empty() ? comparison.event : comparison.mismatch;
+  if (comparison.agrees()) return;
+  result.verdict = comparison.got_non_finite ? Verdict::non_finite : Verdict::fail;
+  const bool is_told =
+      !comparison.got_non_finite || !comparison.first || !std::isfinite(comparison.first->got);
+  if (is_told) return;
+  result.reason = fmt::format("{}{}an output is NaN or infinite where the golden has a number",
+                              result.reason, result.reason.empty() ? "" : "; ");
+}
+
+}  // namespace attest

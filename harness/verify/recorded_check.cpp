@@ -1,0 +1,105 @@
+#include "harness/verify/recorded_check.hpp"
+
+#include <algorithm>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "harness/golden/recorded.hpp"
+#include "harness/host/host_here.hpp"
+#include "harness/port/builtin.hpp"
+#include "harness/trace/provenance.hpp"
+#include "harness/verify/evaluate.hpp"
+
+namespace attest {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> traces_below(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end;
+       it.increment(error)) {
+    if (it->path().extension() == ".csv") files.push_back(it->path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// A recording that was edited is no judge any more.
+Result<void> check_bytes(const fs::path& file, const Provenance& provenance) {
+  const auto recorded = provenance.sha256.find(file.filename().string());
+  if (recorded == provenance.sha256.end()) {
+    return fail_at(file.string(), "is not listed under [sha256] in provenance.toml");
+  }
+  const auto hash = sha256_of_file(file);
+  if (!hash) return tl::unexpected(hash.error());
+  if (*hash == recorded->second) return {};
+  return fail_at(file.string(),
+                 "is not what was recorded (its SHA-256 is another than in "
+                 "provenance.toml); restore it from version control");
+}
+
+Tolerances tolerances_for(const fs::path& file, const Provenance& provenance) {
+  const auto stated = provenance.tolerances.find(file.stem().string());
+  if (stated == provenance.tolerances.end()) return Tolerances(Level::exact);
+  Tolerances tolerances(Level::numeric);
+  tolerances.set("", {stated->second, 0});
+  return tolerances;
+}
+
+// What differs, in words; empty when nothing does.
+Result<std::string> trace_difference(const fs::path& file, const Provenance& provenance) {
+  const auto recorded = read_recorded(file);
+  if (!recorded) return tl::unexpected(recorded.error());
+  HostHere reference(open_builtin());
+  const CaseResult result = evaluate_trace(recorded->trace, recorded->subject, reference,
+                                           tolerances_for(file, provenance));
+  if (result.verdict == Verdict::pass) return std::string();
+  if (!result.first) return result.reason;
+  return fmt::format("{} at tick {}", channels()[result.first->channel].name, result.first->tick);
+}
+
+Result<std::string> difference(const fs::path& file) {
+  const auto provenance = read_provenance(file.parent_path() / provenance_name);
+  if (!provenance) return tl::unexpected(provenance.error());
+  if (auto intact = check_bytes(file, *provenance); !intact) {
+    return tl::unexpected(intact.error());
+  }
+  return trace_difference(file, *provenance);
+}
+
+}  // namespace
+
+Result<RecordedCheck> check_recorded(const fs::path& folder) {
+  RecordedCheck check;
+  for (const fs::path& file : traces_below(folder)) {
+    const auto found = difference(file);
+    if (!found) return tl::unexpected(found.error());
+    ++check.traces;
+    check.conforming += found->empty() ? 1 : 0;
+    if (!found->empty() && check.first_difference.empty()) {
+      check.first_difference = fmt::format("{}: {}", file.string(), *found);
+    }
+  }
+  if (check.traces == 0) return fail_at(folder.string(), "no recorded traces in here");
+  return check;
+}
+
+Result<std::set<std::string>> covered_groups(const fs::path& folder) {
+  std::set<fs::path> folders;
+  for (const fs::path& file : traces_below(folder)) folders.insert(file.parent_path());
+  std::set<std::string> groups;
+  for (const fs::path& one : folders) {
+    const auto provenance = read_provenance(one / provenance_name);
+    if (!provenance) return tl::unexpected(provenance.error());
+    for (const std::string& group : provenance->covers) {
+      groups.insert(provenance->profile + "/" + group);
+    }
+  }
+  return groups;
+}
+
+}  // namespace attest

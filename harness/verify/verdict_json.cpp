@@ -1,0 +1,237 @@
+#include "harness/verify/verdict_json.hpp"
+
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace attest {
+namespace {
+
+using nlohmann::json;
+
+json number(double value) {
+  if (std::isnan(value)) return "nan";
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  return value;
+}
+
+std::string valid_utf8(const std::string& text) {
+  const std::string repaired = json(text).dump(-1, ' ', false, json::error_handler_t::replace);
+  return json::parse(repaired).get<std::string>();
+}
+
+std::string float_bits(double value) {
+  return fmt::format("0x{:08x}", std::bit_cast<std::uint32_t>(static_cast<float>(value)));
+}
+
+json deviation_to_json(const Deviation& deviation) {
+  const Channel& channel = channels()[deviation.channel];
+  json out = {
+      {"tick", deviation.tick},       {"timestamp_us", deviation.timestamp_us},
+      {"channel", channel.name},      {"stage", name_of(channel.stage)},
+      {"got", number(deviation.got)}, {"want", number(deviation.want)},
+      {"ulp", deviation.ulp},         {"tolerance", number(deviation.tolerance)},
+  };
+  if (channel.type == ChannelType::f32) {
+    out["got_bits"] = float_bits(deviation.got);
+    out["want_bits"] = float_bits(deviation.want);
+  }
+  return out;
+}
+
+json headroom_to_json(const Headroom& headroom) {
+  return {{"ratio", number(headroom.ratio)},
+          {"tick", headroom.tick},
+          {"channel", channels()[headroom.channel].name}};
+}
+
+// Reads straight on and keeps the first thing that was wrong.
+class Reader {
+ public:
+  Reader(const json& object, std::string& error) : object_(object), error_(error) {
+    if (!object.is_object()) wrong("not an object");
+  }
+
+  bool has(const char* key) const { return object_.is_object() && object_.contains(key); }
+
+  const json& member(const char* key) {
+    static const json nothing;
+    if (has(key)) return object_.at(key);
+    wrong(fmt::format("`{}` is missing", key));
+    return nothing;
+  }
+
+  std::string text(const char* key) {
+    const json& value = member(key);
+    if (value.is_string()) return value.get<std::string>();
+    wrong(fmt::format("`{}` is not a string", key));
+    return {};
+  }
+
+  std::uint64_t count(const char* key) {
+    const json& value = member(key);
+    if (value.is_number_unsigned()) return value.get<std::uint64_t>();
+    wrong(fmt::format("`{}` is not a count", key));
+    return 0;
+  }
+
+  std::int64_t integer(const char* key) {
+    const json& value = member(key);
+    if (value.is_number_integer()) return value.get<std::int64_t>();
+    wrong(fmt::format("`{}` is not an integer", key));
+    return 0;
+  }
+
+  double real(const char* key) {
+    const json& value = member(key);
+    if (value.is_number()) return value.get<double>();
+    if (value == "nan") return std::numeric_limits<double>::quiet_NaN();
+    if (value == "inf") return std::numeric_limits<double>::infinity();
+    if (value == "-inf") return -std::numeric_limits<double>::infinity();
+    wrong(fmt::format("`{}` is not a number", key));
+    return 0;
+  }
+
+  std::size_t channel(const char* key) {
+    const std::string name = text(key);
+    if (const auto index = find_channel(name)) return *index;
+    wrong(fmt::format("there is no channel `{}`", name));
+    return 0;
+  }
+
+  void wrong(std::string message) {
+    if (error_.empty()) error_ = std::move(message);
+  }
+
+ private:
+  const json& object_;
+  std::string& error_;
+};
+
+// The sign and the payload of a NaN are in its bits only.
+double with_bits(Reader& reader, double value, const char* key) {
+  if (!reader.has(key)) return value;
+  const std::string text = reader.text(key);
+  std::uint32_t bits = 0;
+  const char* const end = text.data() + text.size();
+  const bool hex = text.size() == 10 && text.starts_with("0x") &&
+                   std::from_chars(text.data() + 2, end, bits, 16).ptr == end;
+  if (!hex) reader.wrong(fmt::format("`{}` is not 0x and 8 hex digits", key));
+  const float exact = std::bit_cast<float>(bits);
+  return hex && std::isnan(value) && std::isnan(exact) ? static_cast<double>(exact) : value;
+}
+
+Deviation deviation_from(Reader reader) {
+  Deviation out;
+  out.tick = reader.count("tick");
+  out.timestamp_us = reader.count("timestamp_us");
+  out.channel = reader.channel("channel");
+  out.got = with_bits(reader, reader.real("got"), "got_bits");
+  out.want = with_bits(reader, reader.real("want"), "want_bits");
+  out.ulp = reader.integer("ulp");
+  out.tolerance = reader.real("tolerance");
+  return out;
+}
+
+json metric_to_json(const MetricResult& metric) {
+  return {{"name", valid_utf8(metric.name)},
+          {"measure", name_of(metric.measure)},
+          {"value", number(metric.value)},
+          {"reference", number(metric.reference)},
+          {"tolerance", number(metric.tolerance)},
+          {"min", number(metric.min)},
+          {"max", number(metric.max)},
+          {"within", metric.within()}};
+}
+
+MetricResult metric_from(Reader reader) {
+  MetricResult out;
+  out.name = reader.text("name");
+  const auto measure = parse_measure(reader.text("measure"));
+  if (!measure) reader.wrong(measure.error().message);
+  if (measure) out.measure = *measure;
+  out.value = reader.real("value");
+  out.reference = reader.real("reference");
+  out.tolerance = reader.real("tolerance");
+  out.min = reader.real("min");
+  out.max = reader.real("max");
+  return out;
+}
+
+Flyer flyer_from(Reader reader) {
+  Flyer flyer{reader.text("vehicle"), PlantKind::mujoco};
+  const auto plant = parse_plant_kind(reader.text("plant"));
+  if (!plant) reader.wrong(plant.error().message);
+  if (plant) flyer.plant = *plant;
+  return flyer;
+}
+
+Headroom headroom_from(Reader reader) {
+  return {reader.real("ratio"), reader.count("tick"), reader.channel("channel")};
+}
+
+}  // namespace
+
+nlohmann::json to_json(const CaseResult& result) {
+  json out = {
+      {"id", valid_utf8(result.id())},
+      {"profile", valid_utf8(result.profile)},
+      {"group", valid_utf8(result.group)},
+      {"name", valid_utf8(result.name)},
+      {"rate", result.rate.to_string()},
+      {"verdict", name_of(result.verdict)},
+      {"reason", valid_utf8(result.reason)},
+      {"ticks", result.ticks},
+      {"deviating_ticks", result.deviating_ticks},
+      {"elapsed_s", number(result.elapsed_s)},
+  };
+  if (result.first) out["first"] = deviation_to_json(*result.first);
+  if (result.tightest) out["tightest"] = headroom_to_json(*result.tightest);
+  if (result.flyer) {
+    out["vehicle"] = valid_utf8(result.flyer->vehicle);
+    out["plant"] = name_of(result.flyer->plant);
+  }
+  for (const MetricResult& metric : result.metrics) {
+    out["metrics"].push_back(metric_to_json(metric));
+  }
+  return out;
+}
+
+Result<CaseResult> case_result_from_json(const nlohmann::json& json) {
+  std::string error;
+  Reader reader(json, error);
+  CaseResult out;
+  out.profile = reader.text("profile");
+  out.group = reader.text("group");
+  out.name = reader.text("name");
+  out.reason = reader.text("reason");
+  out.ticks = reader.count("ticks");
+  out.deviating_ticks = reader.count("deviating_ticks");
+  out.elapsed_s = reader.real("elapsed_s");
+  const std::string verdict = reader.text("verdict");
+  if (const auto known = parse_verdict(verdict))
+    out.verdict = *known;
+  else
+    reader.wrong(fmt::format("there is no verdict `{}`", verdict));
+  if (const auto rate = Rate::parse(reader.text("rate")))
+    out.rate = *rate;
+  else
+    reader.wrong(rate.error().message);
+  if (reader.has("first")) out.first = deviation_from({reader.member("first"), error});
+  if (reader.has("tightest")) out.tightest = headroom_from({reader.member("tightest"), error});
+  if (reader.has("vehicle")) out.flyer = flyer_from({json, error});
+  if (reader.has("metrics")) {
+    for (const auto& metric : reader.member("metrics")) {
+      out.metrics.push_back(metric_from({metric, error}));
+    }
+  }
+  if (!error.empty()) return fail("result of a worker: " + error);
+  return out;
+}
+
+}  // namespace attest

@@ -1,0 +1,34 @@
+// A CaseResult as JSON and back: the line that a worker process sends through its pipe, and one
+// entry of the JSON report.
+//
+//     {"id": "px4-v1.5.5/attitude/roll_30@250hz", "profile": ..., "group": ..., "name": ...,
+//      "rate": "250", "verdict": "fail", "reason": "...", "ticks": 500, "deviating_ticks": 3,
+//      "first": {"channel": "out/vehicle_rates_setpoint.roll", "stage": "attitude law", ...},
+//      "tightest": {"ratio": 12.3, "tick": 17, "channel": "out/..."}, "elapsed_s": 0.012}
+//
+// A flight has "vehicle", "plant" and "metrics" besides, a list of {"name": "settles", "measure":
+// "settling_time_s", "value": 0.62, "reference": 0.61, "tolerance": 0.08, "min": "-inf", "max": 1,
+// "within": true}.
+//
+// `first` and `tightest` are absent when there is none. JSON has no NaN and no infinity: where a
+// number is not finite it is the string "nan", "inf" or "-inf". Channels go by name. Values of
+// float32 channels carry their bits beside the number.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "harness/core/result.hpp"
+#include "harness/verify/verdict.hpp"
+
+namespace attest {
+
+// Text that is not UTF-8 (a port chooses its own words) is repaired with U+FFFD: dump() of the
+// result never throws.
+nlohmann::json to_json(const CaseResult& result);
+
+// The inverse. Errors: a discarded value (json::parse without exceptions), a missing or wrong
+// member, an unknown verdict, channel or rate. Nothing is taken on trust: a worker shares its
+// process with the port. Unknown and derived members (id, stage) are ignored.
+Result<CaseResult> case_result_from_json(const nlohmann::json& json);
+
+}  // namespace attest

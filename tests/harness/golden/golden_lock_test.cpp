@@ -1,0 +1,89 @@
+#include "harness/golden/golden_lock.hpp"
+
+#include <csignal>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "harness/core/file.hpp"
+#include "tests/harness/core/temporary_directory.hpp"
+
+namespace attest {
+namespace {
+
+using testing::HasSubstr;
+
+namespace fs = std::filesystem;
+
+class GoldenLockTest : public testing::Test {
+ protected:
+  fs::path root() const { return directory_.path() / "golden"; }
+  fs::path folder(const std::string& name) const { return root() / "profile" / "group" / name; }
+
+  void put(const std::string& name, const std::string& text) const {
+    fs::create_directories(folder(name));
+    ASSERT_TRUE(write_file(folder(name) / "a.csv", text));
+  }
+  std::string text_of(const std::string& name) const {
+    return read_file(folder(name) / "a.csv").value_or("there is no such file");
+  }
+
+ private:
+  TemporaryDirectory directory_;
+};
+
+TEST_F(GoldenLockTest, IsHeldByOneAtATime) {
+  {
+    const auto first = GoldenLock::take(root());
+    ASSERT_TRUE(first) << first.error().to_string();
+    const auto second = GoldenLock::take(root());
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().file, (root() / ".bless.lock").string());
+    EXPECT_THAT(second.error().message, HasSubstr("another `attest bless` holds this lock"));
+  }
+  EXPECT_TRUE(fs::is_empty(root()));
+  EXPECT_TRUE(GoldenLock::take(root()));
+}
+
+TEST_F(GoldenLockTest, IsReleasedByTheDeathOfItsProcess) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const auto lock = GoldenLock::take(root());
+    ::raise(SIGKILL);
+  }
+  ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+  EXPECT_TRUE(fs::exists(root() / ".bless.lock"));
+  EXPECT_TRUE(GoldenLock::take(root()));
+  EXPECT_FALSE(fs::exists(root() / ".bless.lock"));
+}
+
+TEST_F(GoldenLockTest, WhatAKilledProcessHasLeftIsRemoved) {
+  put("changed", "blessed");
+  put("changed.new", "half");
+  put("changed.old", "before");
+  put("first.new", "half");
+  put("moved.old", "blessed");
+  ASSERT_TRUE(GoldenLock::take(root()));
+  EXPECT_EQ(text_of("changed"), "blessed");
+  EXPECT_EQ(text_of("moved"), "blessed");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder("changed").parent_path()), {}), 2);
+}
+
+TEST_F(GoldenLockTest, WithoutItWhatIsInTheMakingStays) {
+  const auto held = GoldenLock::take(root());
+  put("changed.new", "half");
+  EXPECT_FALSE(GoldenLock::take(root()));
+  EXPECT_EQ(text_of("changed.new"), "half");
+}
+
+TEST_F(GoldenLockTest, ARootThatCannotBeMadeIsAnError) {
+  ASSERT_TRUE(write_file(root(), "a file where the folder should be"));
+  const auto lock = GoldenLock::take(root());
+  ASSERT_FALSE(lock);
+  EXPECT_EQ(lock.error().file, root().string());
+}
+
+}  // namespace
+}  // namespace attest

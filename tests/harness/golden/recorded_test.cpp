@@ -1,0 +1,57 @@
+#include "harness/golden/recorded.hpp"
+
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/harness/core/temporary_directory.hpp"
+
+namespace attest {
+namespace {
+
+using testing::HasSubstr;
+
+const std::filesystem::path recorded = ATTEST_SOURCE_DIR "/golden/recorded";
+const std::filesystem::path mixers = recorded / "mixer-v1.5.5";
+
+TEST(Recorded, AControllersTraceIsOfTheProfileThatItsProvenanceNames) {
+  const auto read = read_recorded(recorded / "px4-v1.3.4" / "fuzz_250hz.csv");
+  ASSERT_TRUE(read) << read.error().to_string();
+  EXPECT_EQ(read->subject.part, Part::mc_att_control);
+  EXPECT_EQ(read->subject.profile, "px4-v1.3.4");
+}
+
+TEST(Recorded, AMixersDefinitionStandsInItsProvenance) {
+  const auto read = read_recorded(mixers / "4x_scaled_idle.csv");
+  ASSERT_TRUE(read) << read.error().to_string();
+  EXPECT_EQ(read->subject.part, Part::mixer);
+  EXPECT_EQ(read->subject.mixer, "R: 4x 8000 9000 5000 1500");
+}
+
+TEST(Recorded, OrIsTheGeometryThatTheFileIsNamedAfter) {
+  const TemporaryDirectory folder;
+  std::filesystem::copy(mixers / "6x.csv", folder.path());
+  const auto read = read_recorded(folder.path() / "6x.csv");
+  ASSERT_TRUE(read) << read.error().to_string();
+  EXPECT_EQ(read->subject.mixer, "R: 6x 10000 10000 10000 0");
+  EXPECT_EQ(read->subject.profile, "px4-v1.5.5");
+
+  std::filesystem::copy(mixers / "6x.csv", folder.path() / "flight.csv");
+  const auto unknown = read_recorded(folder.path() / "flight.csv");
+  ASSERT_FALSE(unknown);
+  EXPECT_THAT(unknown.error().message, HasSubstr("which mixer made it?"));
+}
+
+TEST(Recorded, ADefinitionThatDoesNotFitIsAnError) {
+  const auto none = read_recorded(mixers / "4x.csv", "", "R: 4q 1 1 1 0");
+  ASSERT_FALSE(none);
+  EXPECT_THAT(none.error().message, HasSubstr("mixer `R: 4q 1 1 1 0`"));
+  const auto six = read_recorded(mixers / "4x.csv", "", "R: 6x 10000 10000 10000 0");
+  ASSERT_FALSE(six);
+  EXPECT_THAT(six.error().message, HasSubstr("has 4 rotors"));
+}
+
+}  // namespace
+}  // namespace attest

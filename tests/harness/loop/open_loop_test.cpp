@@ -1,0 +1,318 @@
+#include "harness/loop/open_loop.hpp"
+
+#include <cstring>
+#include <functional>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace attest {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+using Kind = PortFault::Kind;
+
+// Does what the test says, and notes the calls.
+class FakeUnit final : public Unit {
+ public:
+  using Step = std::function<int(const attest_inputs&, attest_outputs&)>;
+  explicit FakeUnit(Step step = [](const auto&, auto&) { return ATTEST_OK; })
+      : step_(std::move(step)) {}
+
+  int set_parameter(const std::string& name, float value) override {
+    calls.push_back(fmt::format("{}={}", name, value));
+    return name == "BAD" ? bad_parameter : ATTEST_OK;
+  }
+  int step(const attest_inputs& in, attest_outputs& out) override {
+    calls.push_back(fmt::format("step {}", in.timestamp));
+    return step_(in, out);
+  }
+
+  std::vector<std::string> calls;
+  int bad_parameter = ATTEST_INVALID;
+
+ private:
+  Step step_;
+};
+
+Trace trace_of(std::size_t ticks) {
+  Trace trace;
+  for (std::size_t tick = 0; tick < ticks; ++tick) {
+    Sample sample{};
+    sample.in.timestamp = tick;
+    trace.samples.push_back(sample);
+  }
+  return trace;
+}
+
+// The fault of a unit whose step at tick 1 returns `code`.
+std::optional<PortFault> fault_of_code(int code) {
+  FakeUnit unit(
+      [&](const attest_inputs& in, auto&) { return in.timestamp == 1 ? code : ATTEST_OK; });
+  Trace trace = trace_of(3);
+  return drive(unit, trace);
+}
+
+TEST(Drive, SetsParametersBeforeTheStepOfTheirTick) {
+  FakeUnit unit;
+  Trace trace = trace_of(3);
+  trace.parameters = {{0, "A", 1}, {0, "B", 2}, {2, "A", 3}};
+  EXPECT_FALSE(drive(unit, trace));
+  EXPECT_THAT(unit.calls, ElementsAre("A=1", "B=2", "step 0", "step 1", "A=3", "step 2"));
+}
+
+TEST(Drive, GivesEachStepTheOutputsOfTheOneBefore) {
+  FakeUnit unit([](const attest_inputs& in, attest_outputs& out) {
+    EXPECT_EQ(out.actuator_controls_0.control[0], static_cast<float>(in.timestamp));
+    out.actuator_controls_0.control[0] += 1;
+    return ATTEST_OK;
+  });
+  Trace trace = trace_of(3);
+  // What is there already is replaced, and is no starting point.
+  for (Sample& sample : trace.samples) sample.out.actuator_controls_0.control[0] = 99;
+  EXPECT_FALSE(drive(unit, trace));
+  EXPECT_EQ(trace.samples[0].out.actuator_controls_0.control[0], 1);
+  EXPECT_EQ(trace.samples[2].out.actuator_controls_0.control[0], 3);
+}
+
+TEST(Drive, ATraceWithoutTicksIsNothingToDo) {
+  FakeUnit unit;
+  Trace trace;
+  EXPECT_FALSE(drive(unit, trace));
+  EXPECT_THAT(unit.calls, IsEmpty());
+}
+
+TEST(Drive, SaysWhatTheStepReturned) {
+  EXPECT_FALSE(fault_of_code(ATTEST_OK));
+  const auto unsupported = fault_of_code(ATTEST_UNSUPPORTED);
+  ASSERT_TRUE(unsupported);
+  EXPECT_EQ(unsupported->kind, Kind::unsupported);
+  EXPECT_EQ(unsupported->tick, 1u);
+  EXPECT_EQ(unsupported->what, "step at tick 1 returned ATTEST_UNSUPPORTED");
+  EXPECT_EQ(fault_of_code(ATTEST_FAILED)->kind, Kind::failed);
+  EXPECT_EQ(fault_of_code(ATTEST_INVALID)->kind, Kind::failed);
+  EXPECT_THAT(fault_of_code(ATTEST_INVALID)->what, HasSubstr("ATTEST_INVALID"));
+}
+
+TEST(Drive, AnotherResultBreaksTheRules) {
+  for (const int code : {-1, 4, 1000}) {
+    const auto fault = fault_of_code(code);
+    ASSERT_TRUE(fault);
+    EXPECT_EQ(fault->kind, Kind::protocol);
+    EXPECT_THAT(fault->what, HasSubstr(fmt::format("returned {}, which is no ATTEST_", code)));
+  }
+}
+
+TEST(Drive, SaysWhichParameterWasRefused) {
+  FakeUnit unit;
+  Trace trace = trace_of(3);
+  trace.parameters = {{0, "GOOD", 1}, {2, "BAD", 2}};
+  const auto fault = drive(unit, trace);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->kind, Kind::failed);
+  EXPECT_EQ(fault->tick, 2u);
+  EXPECT_EQ(fault->what, "set_parameter(BAD) at tick 2 returned ATTEST_INVALID");
+  unit.bad_parameter = ATTEST_UNSUPPORTED;
+  EXPECT_EQ(drive(unit, trace)->kind, Kind::unsupported);
+}
+
+TEST(Drive, StopsAtTheFaultAndKeepsWhatWasBefore) {
+  FakeUnit unit([](const attest_inputs& in, attest_outputs& out) {
+    out.actuator_controls_0.control[0] = 5;
+    return in.timestamp == 1 ? ATTEST_FAILED : ATTEST_OK;
+  });
+  Trace trace = trace_of(3);
+  EXPECT_TRUE(drive(unit, trace));
+  EXPECT_THAT(unit.calls, ElementsAre("step 0", "step 1"));
+  EXPECT_EQ(trace.samples[0].out.actuator_controls_0.control[0], 5);
+  EXPECT_EQ(trace.samples[1].out.actuator_controls_0.control[0], 0);
+}
+
+TEST(Drive, InputsAreConst) {
+  FakeUnit unit([](const attest_inputs& in, auto&) {
+    if (in.timestamp == 1) const_cast<attest_inputs&>(in).battery_status.scale = 2;
+    return ATTEST_OK;
+  });
+  Trace trace = trace_of(3);
+  const auto fault = drive(unit, trace);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->kind, Kind::protocol);
+  EXPECT_EQ(fault->what, "step changed its inputs at tick 1; they are const");
+}
+
+// Of which a test says what it does.
+class FakeMixer final : public MixerUnit {
+ public:
+  using Step = std::function<int(const attest_mixer_inputs&, attest_mixer_outputs&)>;
+  explicit FakeMixer(Step step) : step_(std::move(step)) {}
+  int set_parameter(const std::string&, float) override { return ATTEST_INVALID; }
+  int step(const attest_mixer_inputs& in, attest_mixer_outputs& out) override {
+    return step_(in, out);
+  }
+
+ private:
+  Step step_;
+};
+
+class FakePort final : public Port {
+ public:
+  explicit FakePort(FakeMixer::Step step) : step_(std::move(step)) {}
+  std::string name() const override { return "fake"; }
+  std::string version() const override { return "1"; }
+  std::unique_ptr<Unit> create(const std::string&) override { return nullptr; }
+  bool has_mixer() const override { return true; }
+  std::unique_ptr<MixerUnit> create_mixer(const std::string& profile,
+                                          const std::string& definition) override {
+    if (profile != "known") return nullptr;
+    asked_for = definition;
+    return std::make_unique<FakeMixer>(step_);
+  }
+
+  std::string asked_for;
+
+ private:
+  FakeMixer::Step step_;
+};
+
+TEST(DriveAPart, GivesAMixerItsInputsAndRecordsItsOutputs) {
+  FakePort port([](const attest_mixer_inputs& in, attest_mixer_outputs& out) {
+    out.actuator_outputs.output[2] += in.actuator_controls_0.control[1];
+    return ATTEST_OK;
+  });
+  Trace trace = trace_of(3);
+  for (Sample& sample : trace.samples) sample.mixer_in.actuator_controls_0.control[1] = 0.25f;
+  EXPECT_FALSE(drive(port, {"known", Part::mixer, "R: 4x 1 1 1 0"}, trace));
+  EXPECT_EQ(port.asked_for, "R: 4x 1 1 1 0");
+  EXPECT_EQ(trace.samples[2].mixer_out.actuator_outputs.output[2], 0.75f);
+}
+
+TEST(DriveAPart, WhatThePortDoesNotHaveIsUnsupported) {
+  FakePort port([](const auto&, auto&) { return ATTEST_OK; });
+  Trace trace = trace_of(1);
+  const auto without = drive(port, {"known", Part::battery_status}, trace);
+  ASSERT_TRUE(without);
+  EXPECT_EQ(without->kind, Kind::unsupported);
+  EXPECT_THAT(without->what, HasSubstr("attest.battery_status.v1"));
+  const auto unknown = drive(port, {"unknown", Part::mixer, "R: 4x 1 1 1 0"}, trace);
+  ASSERT_TRUE(unknown);
+  EXPECT_EQ(unknown->kind, Kind::unsupported);
+  EXPECT_THAT(unknown->what, HasSubstr("no mixer `R: 4x 1 1 1 0` of profile unknown"));
+  EXPECT_EQ(drive(port, {"known"}, trace)->kind, Kind::profile);
+}
+
+TEST(DriveAPart, WritingBehindItsOutputsIsSeen) {
+  FakePort port([](const attest_mixer_inputs&, attest_mixer_outputs& out) {
+    unsigned char* volatile place = reinterpret_cast<unsigned char*>(&out) + sizeof out;
+    *place = 0;
+    return ATTEST_OK;
+  });
+  Trace trace = trace_of(1);
+  const auto fault = drive(port, {"known", Part::mixer}, trace);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->kind, Kind::protocol);
+}
+
+TEST(Drive, OneByteBehindTheStructsIsSeen) {
+  for (const bool behind_inputs : {false, true}) {
+    FakeUnit unit([&](const attest_inputs& in, attest_outputs& out) {
+      auto* const end =
+          behind_inputs
+              ? reinterpret_cast<unsigned char*>(&const_cast<attest_inputs&>(in)) + sizeof in
+              : reinterpret_cast<unsigned char*>(&out) + sizeof out;
+      // Through volatile, because the compiler knows where the struct ends.
+      unsigned char* volatile place = end;
+      *place = 0;
+      return ATTEST_OK;
+    });
+    Trace trace = trace_of(1);
+    const auto fault = drive(unit, trace);
+    ASSERT_TRUE(fault);
+    EXPECT_EQ(fault->kind, Kind::protocol);
+    EXPECT_THAT(fault->what, HasSubstr("wrote outside its outputs at tick 0"));
+  }
+}
+
+// Says what its instances do, and shares a counter among them if it is asked to.
+class CountingPort final : public Port {
+ public:
+  std::string name() const override { return "counting"; }
+  std::string version() const override { return "1"; }
+  std::unique_ptr<Unit> create(const std::string&) override {
+    if (alive_ == most_alive) return nullptr;
+    ++alive_;
+    calls.push_back(fmt::format("create {}", ++made_));
+    return std::make_unique<Counting>(*this, made_);
+  }
+
+  int most_alive = 9;
+  std::vector<std::string> calls;
+
+ private:
+  class Counting final : public Unit {
+   public:
+    Counting(CountingPort& port, int number) : port_(port), number_(number) {}
+    ~Counting() override {
+      port_.calls.push_back(fmt::format("destroy {}", number_));
+      --port_.alive_;
+    }
+    int set_parameter(const std::string&, float) override { return ATTEST_OK; }
+    int step(const attest_inputs& in, attest_outputs& out) override {
+      port_.calls.push_back(fmt::format("step {} {:g}", number_, in.control_state.roll_rate));
+      out.actuator_controls_0.control[0] = in.control_state.roll_rate;
+      return ATTEST_OK;
+    }
+
+   private:
+    CountingPort& port_;
+    int number_;
+  };
+
+  int made_ = 0, alive_ = 0;
+};
+
+class Company : public testing::Test {
+ protected:
+  std::optional<PortFault> drive_with(Instances instances) {
+    trace_ = trace_of(2);
+    for (Sample& sample : trace_.samples) sample.in.control_state.roll_rate = 1;
+    return drive(port_, Subject{.profile = "any", .instances = instances}, trace_);
+  }
+
+  CountingPort port_;
+  Trace trace_;
+};
+
+TEST_F(Company, AgainDestroysTheOtherBeforeTheJudgedIsMade) {
+  EXPECT_FALSE(drive_with(Instances::again));
+  EXPECT_THAT(port_.calls, ElementsAre("create 1", "step 1 -1", "step 1 -1", "destroy 1",
+                                       "create 2", "step 2 1", "step 2 1", "destroy 2"));
+  EXPECT_EQ(trace_.samples[1].out.actuator_controls_0.control[0], 1);
+}
+
+TEST_F(Company, TogetherStepsThemByTurns) {
+  EXPECT_FALSE(drive_with(Instances::together));
+  EXPECT_THAT(port_.calls, ElementsAre("create 1", "create 2", "step 1 -1", "step 2 1", "step 1 -1",
+                                       "step 2 1", "destroy 2", "destroy 1"));
+}
+
+TEST_F(Company, CrossedDestroysTheFirstWhileTheJudgedLives) {
+  EXPECT_FALSE(drive_with(Instances::crossed));
+  EXPECT_THAT(port_.calls, ElementsAre("create 1", "create 2", "step 1 -1", "step 1 -1",
+                                       "destroy 1", "step 2 1", "step 2 1", "destroy 2"));
+}
+
+TEST_F(Company, APortThatMakesOneInstanceDoesNotSupportTwo) {
+  port_.most_alive = 1;
+  const auto fault = drive_with(Instances::together);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->kind, Kind::unsupported);
+  EXPECT_FALSE(drive_with(Instances::again));
+}
+
+}  // namespace
+}  // namespace attest

@@ -1,0 +1,138 @@
+#include "harness/measure/stress.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "harness/casefile/parse.hpp"
+#include "harness/measure/stress_json.hpp"
+#include "tests/harness/verify/small_suite.hpp"
+
+namespace attest {
+namespace {
+
+using testing::HasSubstr;
+
+const std::filesystem::path source = ATTEST_SOURCE_DIR;
+
+StressTask hover_task() {
+  StressTask task;
+  task.the_case = *parse_case(source / "cases/px4-v1.5.5/flight/hover.toml");
+  task.the_case.duration = {0.3, Span::In::seconds};
+  // Whatever the machine does: verdicts on timing are tested in stress_judge_test.
+  task.the_case.flight->realtime = {1e6, 1e9, std::nullopt};
+  task.setup = {Rate::hz(250), Flyer{"iris", PlantKind::mujoco}};
+  task.airframe = *Airframe::load(source / "models", "iris");
+  task.live.fifo = false;
+  task.live.unit_cpu = task.live.plant_cpu = usable_cpus().front();
+  task.idle_duration = std::chrono::milliseconds(20);
+  return task;
+}
+
+Result<StressResult> stressed(const std::string& port, const StressTask& task = hover_task()) {
+  return run_stress(
+      task, port, [] { return false; }, [](const StressProgress&) {});
+}
+
+TEST(Stress, ARightPortIsJudgedByItsOutputsToo) {
+  const auto stress = stressed("builtin");
+  ASSERT_TRUE(stress) << stress.error().to_string();
+  // A machine that cannot step the plant in time judges nothing.
+  if (stress->result.verdict == Verdict::skip) GTEST_SKIP() << stress->result.reason;
+  EXPECT_EQ(stress->result.verdict, Verdict::pass) << stress->result.reason;
+  EXPECT_EQ(stress->deadlines, 75u);
+  EXPECT_EQ(stress->ticks + stress->misses.skipped, 75u);
+  EXPECT_EQ(stress->execution.count, stress->ticks);
+  EXPECT_EQ(stress->response.count, stress->ticks);
+  EXPECT_FALSE(stress->response.p99);  // of 75 steps
+  EXPECT_FALSE(stress->response.buckets.empty());
+  EXPECT_GT(stress->idle.count, 0u);
+}
+
+TEST(Stress, AWrongPortFailsWhateverItsTiming) {
+  const auto flip = stressed(test_port("sign_flip"));
+  ASSERT_TRUE(flip) << flip.error().to_string();
+  EXPECT_EQ(flip->result.verdict, Verdict::fail);
+  ASSERT_TRUE(flip->result.first);
+}
+
+TEST(Stress, APortWithAFixedStepIsNotPassed) {
+  for (const char* port : {"fixed_step", "fixed_step_gain_off"}) {
+    StressTask task = hover_task();
+    task.port = *describe_port(host_of(test_port(port)));
+    const auto stress = stressed(test_port(port), task);
+    ASSERT_TRUE(stress) << stress.error().to_string();
+    EXPECT_EQ(stress->result.verdict, Verdict::skip) << stress->result.reason;
+    EXPECT_THAT(stress->result.reason, HasSubstr("outputs not judged: a fixed step"));
+    EXPECT_EQ(stress->deadlines, 75u);
+  }
+}
+
+TEST(Stress, APortThatDiesHasAVerdict) {
+  const auto crash = stressed(test_port("crash"));
+  ASSERT_TRUE(crash) << crash.error().to_string();
+  EXPECT_EQ(crash->result.verdict, Verdict::crash);
+  EXPECT_THAT(crash->result.reason, HasSubstr("the process "));
+  EXPECT_EQ(stressed(test_port("step_fails"))->result.verdict, Verdict::fail);
+  EXPECT_EQ(stressed(test_port("refuses_profile"))->result.verdict, Verdict::skip);
+  EXPECT_FALSE(stressed("lib:no_such_library.so"));
+}
+
+TEST(Stress, APortThatHangsAnywhereHasAVerdict) {
+  StressTask task = hover_task();
+  task.timeout = std::chrono::milliseconds(300);
+  for (const char* port : {"hangs_in_load", "hangs_in_create"}) {
+    const auto stress = stressed(test_port(port), task);
+    ASSERT_TRUE(stress) << stress.error().to_string();
+    EXPECT_EQ(stress->result.verdict, Verdict::timeout);
+    EXPECT_EQ(stress->result.reason, "no answer within 0.3 s, when it was loaded and created");
+  }
+  for (const char* port : {"hang", "hangs_in_destroy"}) {
+    const auto stress = stressed(test_port(port), task);
+    ASSERT_TRUE(stress) << stress.error().to_string();
+    EXPECT_EQ(stress->result.verdict, Verdict::timeout) << stress->result.reason;
+    EXPECT_THAT(stress->result.reason, HasSubstr("the port did not come back"));
+  }
+}
+
+TEST(StressJson, IsReadAsItWasWritten) {
+  StressResult stress;
+  stress.result.profile = "px4-v1.5.5";
+  stress.result.group = "flight";
+  stress.result.name = "hover";
+  stress.result.rate = Rate::hz(333);
+  stress.result.flyer = Flyer{"iris", PlantKind::ode};
+  const auto ns = [](std::int64_t count) { return Nanoseconds(count); };
+  stress.execution = {1, ns(2), ns(7), ns(3), ns(4), ns(5), ns(6), {{ns(2), ns(8), 1}}};
+  stress.response = {1, ns(2), ns(7), ns(3), {}, {}, {}, {}};
+  stress.deadlines = 10;
+  stress.misses = {1, 2, 3, 4, 5};
+  stress.waiting_steps = 6;
+  stress.unit_usage = {ns(1), 2, 3, 4, 5};
+  stress.rights = {{"mlockall", false, "no \xff"}};
+  stress.slow = {ns(20), 2, {{7, ns(300), ns(290)}}, Rhythm{1000, 7, 1e-5}};
+  const nlohmann::json json = to_json(stress);
+  const std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  const auto read = stress_from_json(nlohmann::json::parse(text));
+  ASSERT_TRUE(read) << read.error().to_string();
+  EXPECT_EQ(read->misses, stress.misses);
+  EXPECT_FALSE(json["response_time"].contains("p90_ns"));
+  nlohmann::json expected = nlohmann::json::parse(text);
+  EXPECT_EQ(to_json(*read), expected);
+}
+
+TEST(StressJson, ThatIsNotWholeIsRefused) {
+  const nlohmann::json whole = to_json(StressResult{});
+  EXPECT_FALSE(stress_from_json(nlohmann::json()));
+  for (const auto& [key, value] : whole.items()) {
+    if (key == "deadline_misses") continue;  // the sum of two others
+    nlohmann::json broken = whole;
+    broken.erase(key);
+    EXPECT_FALSE(stress_from_json(broken)) << key;
+    broken[key] = "?";
+    EXPECT_FALSE(stress_from_json(broken)) << key;
+  }
+}
+
+}  // namespace
+}  // namespace attest

@@ -1,0 +1,126 @@
+#include "harness/verify/answers.hpp"
+
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "harness/casefile/stimulus.hpp"
+#include "harness/loop/open_loop.hpp"
+#include "harness/port/builtin.hpp"
+#include "tests/harness/casefile/case_files.hpp"
+
+namespace attest {
+namespace {
+
+constexpr const char* profile = "px4-v1.5.5";
+
+// What the reference answers to a vehicle that rolls and pitches, 10 ticks of it.
+Trace flown(const std::string& body = "[control_state]\nroll_rate = 0.4\npitch_rate = 0.5\n") {
+  Trace trace = stimulate(case_of(body), Rate::hz(250));
+  EXPECT_FALSE(drive(*open_builtin(), Subject{profile}, trace));
+  trace.present = channels_of(Part::mc_att_control);
+  return trace;
+}
+
+Answers answers_of(const Trace& trace, std::optional<int> fraction_bits = {}) {
+  auto answers = compare_answers(trace, profile, Tolerances(), fraction_bits);
+  EXPECT_TRUE(answers) << answers.error().to_string();
+  return answers ? *answers : Answers();
+}
+
+Comparison compared(const Trace& trace) { return answers_of(trace).comparison; }
+
+// Thrust passes the gate of the integrals at 0.2: whether it is above is rounding's.
+Trace flown_over_the_gate(double thrust) {
+  return flown(
+      fmt::format("[vehicle_attitude_setpoint]\nthrust = {{ signal = \"samples\", times_ticks = "
+                  "[0, 6], values = [0.5, {}] }}\n",
+                  thrust));
+}
+
+TEST(Answers, OfTheReferenceAreRightToTheLastTick) {
+  const Comparison comparison = compared(flown());
+  EXPECT_TRUE(comparison.agrees()) << comparison.mismatch;
+  EXPECT_EQ(comparison.ticks, 10u);
+}
+
+TEST(Answers, AWrongOneIsFoundAtItsTick) {
+  for (const std::size_t tick : {0u, 4u, 9u}) {
+    Trace trace = flown();
+    trace.samples[tick].out.actuator_controls_0.control[2] += 0.01f;
+    const Comparison comparison = compared(trace);
+    ASSERT_TRUE(comparison.first);
+    EXPECT_EQ(comparison.first->tick, tick);
+    EXPECT_EQ(comparison.deviating_ticks, 1u);
+  }
+}
+
+TEST(Answers, WhatIsNoNumberIsFound) {
+  Trace trace = flown();
+  trace.samples[7].out.mc_att_ctrl_status.yaw_rate_integ = std::numeric_limits<float>::quiet_NaN();
+  const Comparison comparison = compared(trace);
+  ASSERT_TRUE(comparison.first);
+  EXPECT_EQ(comparison.first->tick, 7u);
+  EXPECT_TRUE(comparison.got_non_finite);
+}
+
+// The parameters that the port was given are those that the reference is given.
+TEST(Answers, ParametersAreThoseOfTheFlight) {
+  Trace trace = flown("[parameters]\nMC_ROLL_P = 9\n[control_state]\nq = { roll_deg = 10 }\n");
+  EXPECT_TRUE(compared(trace).agrees());
+  trace.parameters.clear();
+  EXPECT_FALSE(compared(trace).agrees());
+}
+
+TEST(Answers, WhereRoundingDecidesADeviationIsUndecided) {
+  EXPECT_FALSE(answers_of(flown_over_the_gate(0.2)).undecided);
+  EXPECT_EQ(compared(flown_over_the_gate(0.2)).ticks, 10u);
+  for (const std::size_t tick : {6u, 8u}) {
+    Trace trace = flown_over_the_gate(0.2);
+    trace.samples[tick].out.actuator_controls_0.control[0] += 0.01f;
+    const Answers answers = answers_of(trace);
+    EXPECT_TRUE(answers.comparison.agrees());
+    EXPECT_EQ(answers.comparison.ticks, 6u);
+    ASSERT_TRUE(answers.undecided);
+    EXPECT_EQ(answers.undecided->decision, Decision::thrust_gate);
+    EXPECT_EQ(answers.undecided->tick, 6u);
+    EXPECT_EQ(answers.undecided->deviating_tick, tick);
+  }
+}
+
+TEST(Answers, ADeviationBeforeThatIsWrong) {
+  Trace trace = flown_over_the_gate(0.2);
+  for (const std::size_t tick : {5u, 8u}) {
+    trace.samples[tick].out.actuator_controls_0.control[0] += 0.01f;
+  }
+  const Answers answers = answers_of(trace);
+  EXPECT_FALSE(answers.undecided);
+  ASSERT_TRUE(answers.comparison.first);
+  EXPECT_EQ(answers.comparison.first->tick, 5u);
+}
+
+TEST(Answers, WhatIsNoNumberIsWrongWhereRoundingDecidesToo) {
+  Trace trace = flown_over_the_gate(0.2);
+  trace.samples[8].out.actuator_controls_0.control[0] = std::numeric_limits<float>::infinity();
+  const Answers answers = answers_of(trace);
+  EXPECT_FALSE(answers.undecided);
+  EXPECT_TRUE(answers.comparison.got_non_finite);
+}
+
+// A port with few bits rounds more, and so more often decides by rounding.
+TEST(Answers, FewerBitsDecideByRoundingFurtherFromADecision) {
+  Trace trace = flown_over_the_gate(0.2001);
+  trace.samples[8].out.actuator_controls_0.control[0] += 0.01f;
+  EXPECT_FALSE(answers_of(trace).undecided);
+  EXPECT_FALSE(answers_of(trace, 30).undecided);
+  EXPECT_TRUE(answers_of(trace, 22).undecided);
+}
+
+TEST(Answers, TheReferenceMustHaveTheProfile) {
+  EXPECT_FALSE(compare_answers(flown(), "px4-v9.9.9", Tolerances()));
+}
+
+}  // namespace
+}  // namespace attest

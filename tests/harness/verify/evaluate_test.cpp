@@ -1,0 +1,113 @@
+#include "harness/verify/evaluate.hpp"
+
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/core/file.hpp"
+#include "harness/host/host_here.hpp"
+#include "harness/trace/csv.hpp"
+#include "tests/harness/golden/blessed.hpp"
+#include "tests/harness/verify/small_suite.hpp"
+
+namespace attest {
+namespace {
+
+using testing::HasSubstr;
+
+std::unique_ptr<PortHost> opened(const std::string& specification) {
+  auto host = open_host_here(specification);
+  if (!host) throw std::invalid_argument(host.error().to_string());
+  return *std::move(host);
+}
+
+class EvaluateTest : public testing::Test {
+ protected:
+  // The first case at 100 Hz.
+  Result<CaseResult> evaluate(const std::string& port, Level level = Level::numeric) {
+    const auto golden = Golden::open(suite_.golden(), suite_[0]);
+    if (!golden) return tl::unexpected(golden.error());
+    const auto host = opened(port);
+    return evaluate_case(suite_[0], Rate::hz(100), *golden, *host, level);
+  }
+
+  Verdict verdict_of(const std::string& port, Level level = Level::numeric) {
+    const auto result = evaluate(port, level);
+    EXPECT_TRUE(result) << result.error().to_string();
+    return result ? result->verdict : Verdict::protocol;
+  }
+
+  SmallSuite suite_;
+};
+
+constexpr const char* pitching = "[control_state]\npitch_rate = 0.5\n";
+
+TEST_F(EvaluateTest, APassHasTicksAndHeadroomToSpare) {
+  suite_.add("pitch", pitching);
+  const auto result = evaluate("builtin");
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->id(), "px4-v1.5.5/tests/pitch@100hz");
+  EXPECT_EQ(result->verdict, Verdict::pass);
+  EXPECT_EQ(result->ticks, 30u);
+  EXPECT_EQ(result->reason, "");
+  EXPECT_EQ(verdict_of("builtin", Level::exact), Verdict::pass);
+}
+
+TEST_F(EvaluateTest, TolerancesOfTheCaseApplyToTheNumericLevel) {
+  suite_.add("pitch", std::string(pitching) +
+                          "[tolerance]\nwhy = \"x\"\n"
+                          "actuator_controls_0 = { absolute = 9 }\n"
+                          "mc_att_ctrl_status = { absolute = 9 }\n");
+  EXPECT_EQ(verdict_of(test_port("sign_flip")), Verdict::pass);
+  EXPECT_EQ(verdict_of(test_port("sign_flip"), Level::exact), Verdict::fail);
+}
+
+TEST_F(EvaluateTest, ACaseOnAThresholdIsForTheExactLevel) {
+  suite_.add("pitch", std::string("level = \"exact\"\n") + pitching);
+  const auto result = evaluate(test_port("sign_flip"));
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->verdict, Verdict::skip);
+  EXPECT_THAT(result->reason, HasSubstr("exact level only"));
+  EXPECT_EQ(verdict_of(test_port("sign_flip"), Level::exact), Verdict::fail);
+  EXPECT_EQ(verdict_of("builtin", Level::exact), Verdict::pass);
+}
+
+TEST_F(EvaluateTest, AMissingGoldenIsOneErrorForAllRates) {
+  suite_.add_unblessed("pitch", pitching);
+  const auto outcome = suite_.run(host_of("builtin"));
+  EXPECT_THAT(outcome.results, testing::IsEmpty());
+  ASSERT_EQ(outcome.errors.size(), 1u);
+  EXPECT_THAT(outcome.errors[0].message, HasSubstr("no golden for px4-v1.5.5/tests/pitch"));
+}
+
+// The case is as it was, but what is made of it is not: the harness has changed.
+TEST_F(EvaluateTest, AGoldenWithOtherInputsIsAnError) {
+  suite_.add_unblessed("pitch", pitching);
+  Case other = suite_[0];
+  other.parameters.push_back({"MC_ROLL_P", Constant{5}});
+  bless(suite_.golden(), other);
+  const auto result = evaluate("builtin");
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().message, HasSubstr("at tick 0 the golden's inputs are not those"));
+}
+
+TEST_F(EvaluateTest, ARecordedTraceIsGivenToThePort) {
+  suite_.add("pitch", pitching);
+  Trace recorded = answers_of_reference(suite_[0])[0].trace;
+  recorded.source = "flight.csv";
+  const auto judge = [&](const std::string& port) {
+    return evaluate_trace(recorded, {"px4-v1.5.5"}, *opened(port), Tolerances());
+  };
+  EXPECT_EQ(judge("builtin").verdict, Verdict::pass);
+  EXPECT_EQ(judge("builtin").name, "flight.csv");
+  EXPECT_EQ(judge(test_port("sign_flip")).verdict, Verdict::fail);
+  EXPECT_EQ(judge(test_port("refuses_profile")).verdict, Verdict::skip);
+  recorded.samples[5].out.actuator_controls_0.control[3] += 0.5f;
+  const CaseResult result = judge("builtin");
+  ASSERT_TRUE(result.first);
+  EXPECT_EQ(result.first->tick, 5u);
+}
+
+}  // namespace
+}  // namespace attest
