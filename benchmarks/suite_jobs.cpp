@@ -1,5 +1,6 @@
 // The whole suite on the reference, numeric level, from reading the case files to the verdicts,
-// with one, two and, where there are as many processors, four worker processes.
+// with one, two and, where there are as many processors, four worker processes; and with two that
+// have the port in their own process, which is the floor of keeping it apart.
 #include <thread>
 
 #include <benchmark/benchmark.h>
@@ -11,12 +12,13 @@
 namespace attest::bench {
 namespace {
 
-void suite(benchmark::State& state, int processes) {
+void suite(benchmark::State& state, int processes, bool port_apart = true) {
   for (auto _ : state) {
     const auto cases = select_cases(ATTEST_SOURCE_DIR "/cases", {});
     Fleet fleet(ATTEST_SOURCE_DIR "/models");
-    const auto jobs =
-        case_jobs(*cases, ATTEST_SOURCE_DIR "/golden", fleet, Level::numeric, HostOptions());
+    HostOptions host;
+    host.in_process = !port_apart;
+    const auto jobs = case_jobs(*cases, ATTEST_SOURCE_DIR "/golden", fleet, Level::numeric, host);
     JobOptions<CaseResult> options;
     options.processes = processes;
     const auto outcome = run_jobs(*jobs, options);
@@ -26,6 +28,8 @@ void suite(benchmark::State& state, int processes) {
 
 void one_job(benchmark::State& state) { suite(state, 1); }
 void two_jobs(benchmark::State& state) { suite(state, 2); }
+void port_apart(benchmark::State& state) { suite(state, 2); }
+void port_shared(benchmark::State& state) { suite(state, 2, false); }
 
 void four_jobs(benchmark::State& state) {
   if (std::thread::hardware_concurrency() < 4) return state.SkipWithError("needs 4 processors");
@@ -34,6 +38,8 @@ void four_jobs(benchmark::State& state) {
 
 BENCHMARK(one_job)->Name("suite/1_job")->UseRealTime()->Iterations(1);
 BENCHMARK(two_jobs)->Name("suite/2_jobs")->UseRealTime()->Iterations(1);
+BENCHMARK(port_apart)->Name("suite/port_apart")->UseRealTime()->Iterations(1);
+BENCHMARK(port_shared)->Name("suite/port_shared")->UseRealTime()->Iterations(1);
 BENCHMARK(four_jobs)->Name("suite/4_jobs")->UseRealTime()->Iterations(1);
 
 }  // namespace
