@@ -24,10 +24,13 @@ constexpr int physics_hz = 1000;
 
 struct Flying {
   Case the_case = *parse_case(ATTEST_SOURCE_DIR "/cases/px4-v1.5.5/flight/tilt_step_30.toml");
-  std::shared_ptr<const Airframe> iris = *Airframe::load(ATTEST_SOURCE_DIR "/models", "iris");
+  std::shared_ptr<const VehicleModel> iris =
+      *VehicleModel::load(ATTEST_SOURCE_DIR "/models", "iris");
   std::unique_ptr<Port> port = *open_port("builtin");
 
-  Setup setup(int hertz) const { return {Rate::hz(hertz), Flyer{"iris", PlantKind::mujoco}}; }
+  RunConfiguration configuration(int hertz) const {
+    return {Rate::hz(hertz), PlantConfiguration{"iris", PlantKind::mujoco}};
+  }
 };
 
 const Flying& flying() {
@@ -37,9 +40,9 @@ const Flying& flying() {
 
 void flight(benchmark::State& state, int hertz, bool keep_trace) {
   const Flying& f = flying();
-  const Case scripted = adapted(f.the_case, f.iris->vehicle());
+  const Case scripted = bound_to_vehicle(f.the_case, f.iris->vehicle());
   for (auto _ : state) {
-    const auto plant = *plant_for(f.the_case, f.setup(hertz), *f.iris);
+    const auto plant = *plant_for(f.the_case, f.configuration(hertz), *f.iris);
     const auto unit = f.port->create("px4-v1.5.5");
     ClosedLoop loop(scripted, Rate::hz(hertz), case_timing(scripted, Rate::hz(hertz)),
                     f.iris->vehicle(), *plant, *unit);
@@ -56,7 +59,7 @@ void flight(benchmark::State& state, int hertz, bool keep_trace) {
 std::vector<double> commands(int hertz) {
   const Flying& f = flying();
   const auto unit = f.port->create("px4-v1.5.5");
-  const auto flown = *fly(f.the_case, f.setup(hertz), *f.iris, *unit);
+  const auto flown = *fly(f.the_case, f.configuration(hertz), *f.iris, *unit);
   std::vector<double> all;
   for (const PlantSample& sample : flown.trace.plant) {
     for (std::size_t i = 0; i < 4; ++i) {
@@ -116,8 +119,8 @@ BENCHMARK_CAPTURE(flight, traced, 250, true)->Name("flight/250hz_trace")->UseMan
 BENCHMARK_CAPTURE(bare_steps, at_250, 250)->Name("mj_step/250hz")->UseManualTime();
 BENCHMARK_CAPTURE(flight, at_1000, 1000, false)->Name("flight/1000hz")->UseManualTime();
 BENCHMARK_CAPTURE(bare_steps, at_1000, 1000)->Name("mj_step/1000hz")->UseManualTime();
-BENCHMARK(set_up)->Name("setup/plant");
-BENCHMARK(bare_set_up)->Name("setup/mujoco");
+BENCHMARK(set_up)->Name("configuration/plant");
+BENCHMARK(bare_set_up)->Name("configuration/mujoco");
 
 }  // namespace
 }  // namespace attest::bench

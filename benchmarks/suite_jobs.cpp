@@ -6,7 +6,7 @@
 #include <benchmark/benchmark.h>
 
 #include "harness/casefile/select.hpp"
-#include "harness/plant/fleet.hpp"
+#include "harness/plant/vehicle_models.hpp"
 #include "harness/verify/case_job.hpp"
 
 namespace attest::bench {
@@ -15,10 +15,11 @@ namespace {
 void suite(benchmark::State& state, int processes, bool port_apart = true) {
   for (auto _ : state) {
     const auto cases = select_cases(ATTEST_SOURCE_DIR "/cases", {});
-    Fleet fleet(ATTEST_SOURCE_DIR "/models");
+    VehicleModels vehicle_models(ATTEST_SOURCE_DIR "/models");
     HostOptions host;
     host.in_process = !port_apart;
-    const auto jobs = case_jobs(*cases, ATTEST_SOURCE_DIR "/golden", fleet, Level::numeric, host);
+    const auto jobs =
+        case_jobs(*cases, ATTEST_SOURCE_DIR "/golden", vehicle_models, Level::numeric, host);
     JobOptions<CaseResult> options;
     options.processes = processes;
     const auto outcome = run_jobs(*jobs, options);

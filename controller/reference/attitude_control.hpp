@@ -168,7 +168,7 @@ ATTEST_INLINE Vector3<Scalar> AttitudeControl<Scalar, Stages>::update(
   Vector3<Scalar> rates_sp =
       stages_.limit(stages_.proportional(error_B, gains_), in.autonomous, gains_);
   Scalar& yaw = rates_sp[2];
-  if (in.weathervane && profile_ == Profile::px4_v1_3_4) {
+  if (in.weathervane && traits_of(profile_).limits_yaw_before_feed_forward) {
     yaw = stages_.weathervane_limit(yaw, gains_);
   }
   yaw = stages_.yaw_feed_forward(yaw, in.yaw_sp_move_rate_rad_s, weight, gains_);

@@ -171,7 +171,7 @@ ATTEST_INLINE void McAttControl<Scalar, Law>::publish_actuators(const Vector3<Sc
   for (int i = 0; i < 3; ++i) actuators.control[i] = stages_.guarded(float(control[i]));
   actuators.control[3] = stages_.guarded(float(thrust_sp));
   for (int i = 4; i < 8; ++i) actuators.control[i] = 0.0f;
-  if (profile_ == Profile::px4_v1_5_5) {
+  if (traits_of(profile_).has_landing_gear) {
     actuators.control[7] = topics_.attitude_setpoint.landing_gear;
   }
   // A factor of 1 changes no bit.

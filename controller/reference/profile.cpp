@@ -3,20 +3,20 @@
 #include <array>
 
 namespace attest::reference {
-namespace {
 
-// In the order of the enumerators.
-constexpr std::array<std::string_view, 2> all_names{"px4-v1.5.5", "px4-v1.3.4"};
-
-}  // namespace
-
-std::span<const std::string_view> profile_names() { return all_names; }
-
-std::string_view name_of(Profile profile) { return all_names[static_cast<std::size_t>(profile)]; }
+std::span<const std::string_view> profile_names() {
+  static constexpr auto names = [] {
+    std::array<std::string_view, every_profile.size()> all;
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = name_of(every_profile[i]);
+    return all;
+  }();
+  return names;
+}
 
 std::optional<Profile> profile_from_name(std::string_view name) {
-  if (name == all_names[0]) return Profile::px4_v1_5_5;
-  if (name == all_names[1]) return Profile::px4_v1_3_4;
+  for (const Profile profile : every_profile) {
+    if (name_of(profile) == name) return profile;
+  }
   return std::nullopt;
 }
 

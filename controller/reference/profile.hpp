@@ -1,6 +1,7 @@
 // The versions of the law that are known, by name.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
@@ -9,9 +10,33 @@
 
 namespace attest::reference {
 
-// v1.3.4 (June 2016) has no throttle attenuation, landing gear or battery scaling, feeds forward
-// the change of the rate setpoint, and clamps yaw twice when weather-vaning.
 enum class Profile { px4_v1_5_5, px4_v1_3_4 };
+
+// Newest first.
+inline constexpr std::array<Profile, 2> every_profile{Profile::px4_v1_5_5, Profile::px4_v1_3_4};
+
+// All in which the profiles differ, but for their parameters (parameters.hpp).
+struct ProfileTraits {
+  std::string_view name;
+  bool attenuates_by_throttle;          // the proportional rate gain (TPA)
+  bool feeds_forward_rates;             // the rates setpoint itself; else its change
+  bool freezes_yaw_integral;            // while the mixer reports yaw at its limit
+  bool limits_yaw_before_feed_forward;  // when weather-vaning, and after it in any case
+  bool limits_rates_in_auto;            // in every auto mode; else in those with velocity control
+  bool has_landing_gear;
+  bool scales_by_battery;
+};
+
+// A new profile has to be decided here: the compiler warns of one that is not.
+constexpr ProfileTraits traits_of(Profile profile) {
+  switch (profile) {
+    case Profile::px4_v1_5_5:
+      return {"px4-v1.5.5", true, true, true, false, true, true, true};
+    case Profile::px4_v1_3_4:  // of June 2016
+      return {"px4-v1.3.4", false, false, false, true, false, false, false};
+  }
+  return {};
+}
 
 // Some of the profiles: those that have a parameter, or can tell a mistake.
 class ProfileSet {
@@ -32,9 +57,9 @@ inline constexpr ProfileSet all_profiles{Profile::px4_v1_5_5, Profile::px4_v1_3_
 inline constexpr ProfileSet from_v1_5_5{Profile::px4_v1_5_5};
 inline constexpr ProfileSet only_v1_3_4{Profile::px4_v1_3_4};
 
-// "px4-v1.5.5", "px4-v1.3.4": newest first.
+// Of every_profile.
 std::span<const std::string_view> profile_names();
-std::string_view name_of(Profile profile);
+constexpr std::string_view name_of(Profile profile) { return traits_of(profile).name; }
 
 std::optional<Profile> profile_from_name(std::string_view name);
 

@@ -137,7 +137,9 @@ class RateControl {
 template <typename Scalar, typename Stages>
 ATTEST_INLINE Vector3<Scalar> RateControl<Scalar, Stages>::feed_forward(
     const RateInput<Scalar>& in) const {
-  if (profile_ == Profile::px4_v1_5_5) return stages_.feed_forward(in.rates_sp_B, gains_);
+  if (traits_of(profile_).feeds_forward_rates) {
+    return stages_.feed_forward(in.rates_sp_B, gains_);
+  }
   return stages_.feed_forward_change(in.rates_sp_B, rates_sp_prev_, in.dt_s, gains_);
 }
 
@@ -150,14 +152,14 @@ ATTEST_INLINE Vector3<Scalar> RateControl<Scalar, Stages>::integrate(
   const auto axis = [&](int i, bool frozen) {
     return stages_.integrate_axis(integral_[i], control[i], in.thrust_sp, growth[i], frozen);
   };
-  const bool yaw_frozen = profile_ == Profile::px4_v1_5_5 && in.limits.yaw;
+  const bool yaw_frozen = traits_of(profile_).freezes_yaw_integral && in.limits.yaw;
   return {axis(0, false), axis(1, false), axis(2, yaw_frozen)};
 }
 
 template <typename Scalar, typename Stages>
 ATTEST_INLINE Vector3<Scalar> RateControl<Scalar, Stages>::update(const RateInput<Scalar>& in) {
   if (!in.flying) integral_.setZero();
-  const Scalar attenuation = profile_ == Profile::px4_v1_5_5
+  const Scalar attenuation = traits_of(profile_).attenuates_by_throttle
                                  ? stages_.throttle_attenuation(in.published_thrust_sp, gains_)
                                  : Scalar(1);
   const Vector3<Scalar> error = in.rates_sp_B - in.rates_B;

@@ -57,8 +57,9 @@ struct StepStages {
   }
 
   ATTEST_INLINE static bool is_autonomous(const decltype(Topics::mode)& mode, Profile profile) {
-    const bool by_vehicle = mode.flag_control_velocity_enabled != 0 ||
-                            (profile == Profile::px4_v1_5_5 && mode.flag_control_auto_enabled != 0);
+    const bool by_vehicle =
+        mode.flag_control_velocity_enabled != 0 ||
+        (traits_of(profile).limits_rates_in_auto && mode.flag_control_auto_enabled != 0);
     return by_vehicle && mode.flag_control_manual_enabled == 0;
   }
 
@@ -91,8 +92,8 @@ struct StepStages {
   // What the first four controls are multiplied with.
   ATTEST_INLINE static float battery_factor(const Topics& topics, const Gains<Scalar>& gains,
                                             Profile profile) {
-    const bool scales =
-        profile == Profile::px4_v1_5_5 && gains.battery_scaling && topics.battery_scale > 0.0f;
+    const bool scales = traits_of(profile).scales_by_battery && gains.battery_scaling &&
+                        topics.battery_scale > 0.0f;
     return scales ? topics.battery_scale : 1.0f;
   }
 };

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "harness/casefile/flight.hpp"
-#include "harness/casefile/setup.hpp"
+#include "harness/casefile/run_configuration.hpp"
 #include "harness/casefile/signal.hpp"
 #include "harness/compare/tolerance.hpp"
 #include "harness/schedule/rate.hpp"
@@ -142,8 +142,9 @@ struct Case {
   Part part = Part::mc_att_control;  // which is given the inputs
   std::string mixer;                 // of Part::mixer, its definition
 
-  // Every way to run it: open loop one a rate, ascending; a flight by flyer, then rate.
-  std::vector<Setup> setups() const;
+  // Every way to run it: open loop one a rate, ascending; a flight by plant configuration, then
+  // rate.
+  std::vector<RunConfiguration> configurations() const;
 
   std::string id() const { return profile + "/" + group + "/" + name; }
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/casefile/setup.hpp"
+#include "harness/casefile/run_configuration.hpp"
 #include "harness/casefile/signal.hpp"
 #include "harness/compare/metric.hpp"
 #include "harness/plant/plant.hpp"
@@ -73,7 +73,7 @@ struct RealtimeBudget {
 };
 
 struct Flight {
-  std::vector<Flyer> flyers;      // ascending
+  std::vector<PlantConfiguration> plant_configurations;  // ascending
   std::string lead_vehicle;       // flies at all rates of the case, the others at:
   std::vector<Rate> other_rates;  // ascending
   std::optional<Rate> physics;    // of MuJoCo; empty: 1 kHz, or the loop rate if that is higher

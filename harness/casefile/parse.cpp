@@ -16,7 +16,7 @@
 #include "harness/casefile/parse_topic.hpp"
 #include "harness/casefile/parse_unit.hpp"
 #include "harness/core/file.hpp"
-#include "harness/core/nearest.hpp"
+#include "harness/core/suggestion.hpp"
 #include "harness/core/toml.hpp"
 
 namespace attest {

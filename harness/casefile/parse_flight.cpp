@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "harness/casefile/parse_signal.hpp"
-#include "harness/core/nearest.hpp"
+#include "harness/core/suggestion.hpp"
 
 namespace attest {
 namespace {
@@ -47,10 +47,11 @@ void parse_flyers(const TomlTable& table, const std::vector<std::string>& known,
   const std::vector<std::string> vehicles = parse_vehicles(table, known);
   const std::vector<PlantKind> plants = parse_plants(table);
   for (const std::string& vehicle : vehicles) {
-    for (const PlantKind plant : plants) flight.flyers.push_back({vehicle, plant});
+    for (const PlantKind plant : plants) flight.plant_configurations.push_back({vehicle, plant});
   }
-  std::sort(flight.flyers.begin(), flight.flyers.end());
-  if (std::adjacent_find(flight.flyers.begin(), flight.flyers.end()) != flight.flyers.end()) {
+  std::sort(flight.plant_configurations.begin(), flight.plant_configurations.end());
+  if (std::adjacent_find(flight.plant_configurations.begin(), flight.plant_configurations.end()) !=
+      flight.plant_configurations.end()) {
     table.error("vehicles", "names a vehicle or plant twice");
   }
   if (vehicles.empty()) return;
@@ -270,8 +271,11 @@ void parse_flight(const TomlTable& root, const std::filesystem::path& models, Ca
   parse_metrics(table, flight.metrics);
   flight.realtime = parse_realtime(table);
   const bool needs_contact =
-      flight.floor && std::any_of(flight.flyers.begin(), flight.flyers.end(),
-                                  [](const Flyer& flyer) { return flyer.plant == PlantKind::ode; });
+      flight.floor &&
+      std::any_of(flight.plant_configurations.begin(), flight.plant_configurations.end(),
+                  [](const PlantConfiguration& plant_configuration) {
+                    return plant_configuration.plant == PlantKind::ode;
+                  });
   if (needs_contact) {
     table.error("floor", "needs `plants = [\"mujoco\"]`: the ode plant has no ground contact");
   }

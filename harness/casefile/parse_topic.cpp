@@ -9,7 +9,7 @@
 
 #include "harness/casefile/flight_mode.hpp"
 #include "harness/casefile/parse_signal.hpp"
-#include "harness/core/nearest.hpp"
+#include "harness/core/suggestion.hpp"
 #include "harness/trace/channels.hpp"
 
 namespace attest {

@@ -10,7 +10,7 @@
 #include <fnmatch.h>
 
 #include "harness/casefile/parse.hpp"
-#include "harness/core/nearest.hpp"
+#include "harness/core/suggestion.hpp"
 
 namespace attest {
 namespace {
@@ -21,15 +21,16 @@ bool matches(const std::string& pattern, const std::string& text) {
   return ::fnmatch(pattern.c_str(), text.c_str(), 0) == 0;
 }
 
-// Which of the patterns match a case with a setup. None is passed over: one that matches no case at
-// all is an error.
-bool matches_any(const std::vector<std::string>& filters, const Case& the_case, const Setup& setup,
-                 std::set<std::string>& matching) {
+// Which of the patterns match a case with a configuration. None is passed over: one that matches no
+// case at all is an error.
+bool matches_any(const std::vector<std::string>& filters, const Case& the_case,
+                 const RunConfiguration& configuration, std::set<std::string>& matching) {
   if (filters.empty()) return true;
   const std::string in_group = the_case.group + "/" + the_case.name;
   std::vector<std::string> names = {the_case.name};
   for (const std::string& name : {the_case.id(), in_group}) {
-    for (const std::string& end : {std::string(), "@" + setup.label(), "@" + setup.rate.label()}) {
+    for (const std::string& end :
+         {std::string(), "@" + configuration.label(), "@" + configuration.rate.label()}) {
       names.push_back(name + end);
     }
   }
@@ -71,21 +72,22 @@ Result<void> check_groups(const std::vector<fs::path>& files, const Selection& s
   return check_names(selection.groups, groups, "group");
 }
 
-bool is_selected(const Setup& setup, const Selection& selection) {
-  if (!contains(selection.rates, setup.rate)) return false;
-  if (!setup.flyer) return selection.vehicles.empty() && selection.plants.empty();
-  return contains(selection.vehicles, setup.flyer->vehicle) &&
-         contains(selection.plants, std::string(name_of(setup.flyer->plant)));
+bool is_selected(const RunConfiguration& configuration, const Selection& selection) {
+  if (!contains(selection.rates, configuration.rate)) return false;
+  if (!configuration.plant_configuration)
+    return selection.vehicles.empty() && selection.plants.empty();
+  return contains(selection.vehicles, configuration.plant_configuration->vehicle) &&
+         contains(selection.plants, std::string(name_of(configuration.plant_configuration->plant)));
 }
 
-std::vector<Setup> selected_setups(const Case& the_case, const Selection& selection,
-                                   std::set<std::string>& matching) {
-  std::vector<Setup> setups = the_case.setups();
-  std::erase_if(setups, [&](const Setup& setup) {
-    return !is_selected(setup, selection) ||
-           !matches_any(selection.filters, the_case, setup, matching);
+std::vector<RunConfiguration> selected_setups(const Case& the_case, const Selection& selection,
+                                              std::set<std::string>& matching) {
+  std::vector<RunConfiguration> configurations = the_case.configurations();
+  std::erase_if(configurations, [&](const RunConfiguration& configuration) {
+    return !is_selected(configuration, selection) ||
+           !matches_any(selection.filters, the_case, configuration, matching);
   });
-  return setups;
+  return configurations;
 }
 
 // What there is to choose from in the files that were read.
@@ -95,11 +97,11 @@ struct Known {
 
   void add(const Case& the_case) {
     profiles.insert(the_case.profiles.begin(), the_case.profiles.end());
-    for (const Setup& setup : the_case.setups()) {
-      rates.insert(setup.rate);
-      if (!setup.flyer) continue;
-      vehicles.insert(setup.flyer->vehicle);
-      plants.insert(std::string(name_of(setup.flyer->plant)));
+    for (const RunConfiguration& configuration : the_case.configurations()) {
+      rates.insert(configuration.rate);
+      if (!configuration.plant_configuration) continue;
+      vehicles.insert(configuration.plant_configuration->vehicle);
+      plants.insert(std::string(name_of(configuration.plant_configuration->plant)));
     }
   }
 };
@@ -138,8 +140,9 @@ void add_selected(const Case& parsed, const Selection& selection, std::set<std::
   for (const std::string& profile : parsed.profiles) {
     if (!contains(selection.profiles, profile)) continue;
     Case the_case = parsed.in_profile(profile);
-    auto setups = selected_setups(the_case, selection, matching);
-    if (!setups.empty()) selected.push_back({std::move(the_case), std::move(setups)});
+    auto configurations = selected_setups(the_case, selection, matching);
+    if (!configurations.empty())
+      selected.push_back({std::move(the_case), std::move(configurations)});
   }
 }
 

@@ -22,8 +22,9 @@ struct Shard {
 
 // Empty lists select everything.
 struct Selection {
-  // Shell patterns (* ? [..]); one must match the id `<profile>/<group>/<name>@<setup>`, or that id
-  // without the setup, or with its rate only, or one of these without profile, or the name alone.
+  // Shell patterns (* ? [..]); one must match the id `<profile>/<group>/<name>@<configuration>`, or
+  // that id without the configuration, or with its rate only, or one of these without profile, or
+  // the name alone.
   std::vector<std::string> filters;
   std::vector<std::string> groups;
   std::vector<std::string> profiles;
@@ -35,7 +36,8 @@ struct Selection {
 
 struct SelectedCase {
   Case the_case;
-  std::vector<Setup> setups;  // in the order of Case::setups(), not empty
+  std::vector<RunConfiguration>
+      configurations;  // in the order of Case::configurations(), not empty
 };
 
 // Reads the case files below `folder` that can match and keeps what is selected, in the order of

@@ -12,7 +12,7 @@
 
 #include "harness/cli/command.hpp"
 #include "harness/cli/timing_arguments.hpp"
-#include "harness/core/nearest.hpp"
+#include "harness/core/suggestion.hpp"
 #include "harness/core/version.hpp"
 
 namespace attest::cli {

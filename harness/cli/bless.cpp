@@ -16,13 +16,13 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/golden/branch_alternatives.hpp"
 #include "harness/golden/decimate.hpp"
 #include "harness/golden/golden.hpp"
 #include "harness/golden/golden_lock.hpp"
-#include "harness/golden/other_side.hpp"
 #include "harness/golden/reference_flight.hpp"
 #include "harness/loop/open_loop.hpp"
-#include "harness/plant/fleet.hpp"
+#include "harness/plant/vehicle_models.hpp"
 #include "harness/port/port.hpp"
 #include "harness/verify/recorded_check.hpp"
 
@@ -62,15 +62,16 @@ Result<void> note_uncovered(const std::vector<SelectedCase>& cases, const SuiteF
   return {};
 }
 
-Result<GoldenTrace> open_loop_trace(const Case& the_case, const Setup& setup, Port& port) {
-  Trace trace = stimulate(the_case, setup.rate);
+Result<GoldenTrace> open_loop_trace(const Case& the_case, const RunConfiguration& configuration,
+                                    Port& port) {
+  Trace trace = stimulate(the_case, configuration.rate);
   if (const auto fault = drive(port, subject_of(the_case), trace)) {
     return fail_at(the_case.file.string(), fmt::format("the reference: {}", fault->what));
   }
-  GoldenTrace golden{setup, std::move(trace)};
-  auto others = other_sides(the_case, golden.trace);
+  GoldenTrace golden{configuration, std::move(trace)};
+  auto others = branch_alternatives(the_case, golden.trace);
   if (!others) return tl::unexpected(others.error());
-  golden.other_sides = std::move(*others);
+  golden.branch_alternatives = std::move(*others);
   golden.is_whole = keeps_every_tick(golden.trace.samples.size());
   if (!golden.is_whole) golden.trace = decimated(golden.trace);
   return golden;
@@ -82,24 +83,25 @@ struct Reference {
   std::vector<std::filesystem::path> vehicle_files;
 };
 
-Result<Reference> reference_of(const Case& the_case, Port& port, Fleet& fleet) {
+Result<Reference> reference_of(const Case& the_case, Port& port, VehicleModels& vehicle_models) {
   Reference reference;
   std::set<std::filesystem::path> files;
-  for (const Setup& setup : the_case.setups()) {  // a provenance speaks of all of them
+  for (const RunConfiguration& configuration :
+       the_case.configurations()) {  // a provenance speaks of all of them
     if (auto go_on = check_not_interrupted(); !go_on) return tl::unexpected(go_on.error());
-    if (!setup.flyer) {
-      auto trace = open_loop_trace(the_case, setup, port);
+    if (!configuration.plant_configuration) {
+      auto trace = open_loop_trace(the_case, configuration, port);
       if (!trace) return tl::unexpected(trace.error());
       reference.traces.push_back(std::move(*trace));
       continue;
     }
-    const auto airframe = fleet.get(setup.flyer->vehicle);
-    if (!airframe) return tl::unexpected(airframe.error());
-    auto flight = reference_flight(the_case, setup, **airframe);
+    const auto vehicle_model = vehicle_models.get(configuration.plant_configuration->vehicle);
+    if (!vehicle_model) return tl::unexpected(vehicle_model.error());
+    auto flight = reference_flight(the_case, configuration, **vehicle_model);
     if (!flight) return tl::unexpected(flight.error());
-    reference.traces.push_back(
-        {setup, std::move(flight->rows), false, flight->horizon_s, std::move(flight->metrics)});
-    for (auto& file : (*airframe)->vehicle().files()) files.insert(std::move(file));
+    reference.traces.push_back({configuration, std::move(flight->rows), false, flight->horizon_s,
+                                std::move(flight->metrics)});
+    for (auto& file : (*vehicle_model)->vehicle().files()) files.insert(std::move(file));
   }
   reference.vehicle_files.assign(files.begin(), files.end());
   return reference;
@@ -172,14 +174,14 @@ std::string summary(const Case& the_case, const std::vector<GoldenTrace>& traces
     total.max_channel = change.max_channel;
   };
   for (const GoldenTrace& made : traces) {
-    const auto old_trace = golden->read(made.setup);
-    const auto old_others = golden->read_other_sides(made.setup);
-    if (!old_trace || !old_others || old_others->size() != made.other_sides.size()) {
+    const auto old_trace = golden->read(made.configuration);
+    const auto old_others = golden->read_branch_alternatives(made.configuration);
+    if (!old_trace || !old_others || old_others->size() != made.branch_alternatives.size()) {
       ++changed;
       continue;
     }
     add(*old_trace, made.trace);
-    for (const auto& [side, other] : made.other_sides) {
+    for (const auto& [side, other] : made.branch_alternatives) {
       const auto old_other = old_others->find(side);
       if (old_other != old_others->end()) add(old_other->second, other);
     }
@@ -201,7 +203,7 @@ struct Pending {
 // What makes a golden, and where it goes.
 struct Blessing {
   Port& port;
-  Fleet& fleet;
+  VehicleModels& vehicle_models;
   std::filesystem::path golden_root;
   std::string reason;
 };
@@ -213,7 +215,7 @@ Result<void> write_file_beside(const Case& first, Blessing& blessing, Pending& p
   bool base_changes = false;
   for (const std::string& profile : first.profiles) {
     const Case the_case = first.in_profile(profile);
-    auto reference = reference_of(the_case, blessing.port, blessing.fleet);
+    auto reference = reference_of(the_case, blessing.port, blessing.vehicle_models);
     if (!reference) return tl::unexpected(reference.error());
     const bool is_first = the_case.is_of_first_profile();
     if (is_first) of_first = *reference;
@@ -247,8 +249,8 @@ Result<Pending> write_beside(const std::vector<SelectedCase>& cases, const Suite
                              const std::string& reason) {
   auto port = open_port("builtin");
   if (!port) return tl::unexpected(port.error());
-  Fleet fleet(suite.models());
-  Blessing blessing{**port, fleet, suite.golden(), reason};
+  VehicleModels vehicle_models(suite.models());
+  Blessing blessing{**port, vehicle_models, suite.golden(), reason};
   Pending pending;
   std::set<std::filesystem::path> done;
   for (const SelectedCase& selected : cases) {

@@ -29,7 +29,7 @@ std::string SelectionOptions::narrowing() const {
   return fmt::format("{}", fmt::join(options, " "));
 }
 
-bool SelectionOptions::selects_all_setups() const {
+bool SelectionOptions::selects_all_configurations() const {
   const bool of_setups = std::any_of(filters.begin(), filters.end(), [](const std::string& filter) {
     return filter.find('@') != std::string::npos;
   });

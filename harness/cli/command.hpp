@@ -45,7 +45,7 @@ struct SelectionOptions {
   std::string narrowing() const;
 
   // Each selected case at all its rates, on all its vehicles and plants?
-  bool selects_all_setups() const;
+  bool selects_all_configurations() const;
 
   // The cases below `folder` that are selected. Errors: as of select_cases, and text that is no
   // rate or shard.

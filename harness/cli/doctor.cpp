@@ -52,14 +52,14 @@ void examine_cases(const SuiteFolder& suite, Examination& examination) {
   if (!cases) return examination.bad("cases", cases.error().to_string());
   std::size_t vectors = 0;
   std::vector<std::string> stale;
-  for (const auto& [the_case, setups] : *cases) {
-    vectors += setups.size();
+  for (const auto& [the_case, configurations] : *cases) {
+    vectors += configurations.size();
     if (const auto golden = Golden::open(suite.golden(), the_case); !golden) {
       stale.push_back(golden.error().to_string());
     }
   }
-  examination.good("cases", fmt::format("{} cases, {} with all their setups, in {}", cases->size(),
-                                        vectors, suite.cases().string()));
+  examination.good("cases", fmt::format("{} cases, {} with all their configurations, in {}",
+                                        cases->size(), vectors, suite.cases().string()));
   if (stale.empty()) return examination.good("golden", "one for each case, none stale");
   examination.bad("golden", fmt::format("{} missing or stale; first: {}", stale.size(), stale[0]));
 }

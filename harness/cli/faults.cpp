@@ -6,7 +6,7 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/suite_folder.hpp"
-#include "harness/core/nearest.hpp"
+#include "harness/core/suggestion.hpp"
 #include "harness/diagnosis/diagnose_catalogue.hpp"
 #include "harness/diagnosis/fault_job.hpp"
 #include "harness/diagnosis/naive_suite.hpp"

@@ -31,15 +31,15 @@ Result<Case> find_case(const std::string& name, const SuiteFolder& suite) {
                           (*found)[0].the_case.id(), (*found)[1].the_case.id()));
 }
 
-Result<Flyer> find_flyer(const Case& the_case, const std::string& vehicle,
-                         const std::string& plant) {
-  Flyer flyer{vehicle.empty() ? the_case.flight->lead_vehicle : vehicle,
-              the_case.flight->flyers.front().plant};
-  if (plant.empty()) return flyer;
+Result<PlantConfiguration> find_flyer(const Case& the_case, const std::string& vehicle,
+                                      const std::string& plant) {
+  PlantConfiguration plant_configuration{vehicle.empty() ? the_case.flight->lead_vehicle : vehicle,
+                                         the_case.flight->plant_configurations.front().plant};
+  if (plant.empty()) return plant_configuration;
   const auto kind = parse_plant_kind(plant);
   if (!kind) return tl::unexpected(kind.error());
-  flyer.plant = *kind;
-  return flyer;
+  plant_configuration.plant = *kind;
+  return plant_configuration;
 }
 
 }  // namespace
@@ -57,11 +57,12 @@ Result<ChosenFlight> choose_flight(const std::string& name, const std::string& v
                                    const std::string& plant, const SuiteFolder& suite) {
   auto the_case = find_flight(name, suite);
   if (!the_case) return tl::unexpected(the_case.error());
-  auto flyer = find_flyer(*the_case, vehicle, plant);
-  if (!flyer) return tl::unexpected(flyer.error());
-  auto airframe = Airframe::load(suite.models(), flyer->vehicle);
-  if (!airframe) return tl::unexpected(airframe.error());
-  return ChosenFlight{std::move(*the_case), std::move(*flyer), std::move(*airframe)};
+  auto plant_configuration = find_flyer(*the_case, vehicle, plant);
+  if (!plant_configuration) return tl::unexpected(plant_configuration.error());
+  auto vehicle_model = VehicleModel::load(suite.models(), plant_configuration->vehicle);
+  if (!vehicle_model) return tl::unexpected(vehicle_model.error());
+  return ChosenFlight{std::move(*the_case), std::move(*plant_configuration),
+                      std::move(*vehicle_model)};
 }
 
 Result<TimedFlight> find_timed_flight(const std::string& file, const SuiteFolder& suite) {
@@ -73,10 +74,11 @@ Result<TimedFlight> find_timed_flight(const std::string& file, const SuiteFolder
     return fail_at(file, fmt::format("was recorded with another {}: the file has changed since",
                                      the_case->file.string()));
   }
-  auto airframe = Airframe::load(suite.models(), timing->setup.flyer->vehicle);
-  if (!airframe) return tl::unexpected(airframe.error());
+  auto vehicle_model =
+      VehicleModel::load(suite.models(), timing->configuration.plant_configuration->vehicle);
+  if (!vehicle_model) return tl::unexpected(vehicle_model.error());
   Case as_long = timed(std::move(*the_case), *timing);
-  return TimedFlight{std::move(as_long), std::move(*timing), std::move(*airframe)};
+  return TimedFlight{std::move(as_long), std::move(*timing), std::move(*vehicle_model)};
 }
 
 }  // namespace attest::cli

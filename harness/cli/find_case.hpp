@@ -19,8 +19,8 @@ Result<Case> find_flight(const std::string& name, const SuiteFolder& suite);
 // With what flies it: empty texts leave that to the case, whose lead vehicle and first plant fly.
 struct ChosenFlight {
   Case the_case;
-  Flyer flyer;
-  std::shared_ptr<const Airframe> airframe;
+  PlantConfiguration plant_configuration;
+  std::shared_ptr<const VehicleModel> vehicle_model;
 };
 Result<ChosenFlight> choose_flight(const std::string& name, const std::string& vehicle,
                                    const std::string& plant, const SuiteFolder& suite);
@@ -29,7 +29,7 @@ Result<ChosenFlight> choose_flight(const std::string& name, const std::string& v
 struct TimedFlight {
   Case the_case;  // as long as it was
   TimingFile timing;
-  std::shared_ptr<const Airframe> airframe;
+  std::shared_ptr<const VehicleModel> vehicle_model;
 };
 
 // Errors, with the file: it is no timing; its case is not in the suite, or is another than when it

@@ -38,24 +38,24 @@ int lint_command(const VectorOptions& options, const Globals& globals) {
   if (!cases) return report_error(cases.error());
   std::array<Nearest, decision_count> nearest;
   std::size_t vectors = 0, refused = 0;
-  for (const auto& [the_case, setups] : *cases) {
+  for (const auto& [the_case, configurations] : *cases) {
     if (the_case.flight || the_case.exact_only) continue;
-    for (const Setup& setup : setups) {
-      const Margins found = margins(stimulate(the_case, setup.rate), subject_of(the_case));
+    for (const RunConfiguration& configuration : configurations) {
+      const Margins found = margins(stimulate(the_case, configuration.rate), subject_of(the_case));
       ++vectors;
       for (std::size_t i = 0; i < decision_count; ++i) {
         const auto decision = static_cast<Decision>(i);
         if (stands_on(the_case.either_side, decision)) continue;
         const Margin& margin = found[decision];
         const std::string where =
-            fmt::format("{}@{} at tick {}", the_case.id(), setup.label(), margin.tick);
+            fmt::format("{}@{} at tick {}", the_case.id(), configuration.label(), margin.tick);
         if (is_nearer(decision, margin, nearest[i])) nearest[i] = {margin, where};
         if (found.is_safe(decision)) continue;
         ++refused;
         fmt::print(stderr,
                    "attest: error: {}: at {}, tick {}, {} is at {:.2g}; a numeric vector "
                    "needs {} {:g}, or `level = \"exact\"`\n",
-                   the_case.file.string(), setup.label(), margin.tick, name_of(decision),
+                   the_case.file.string(), configuration.label(), margin.tick, name_of(decision),
                    margin.distance, decision == Decision::quaternion_norm ? "at most" : "at least",
                    least_margin(decision));
       }

@@ -12,7 +12,7 @@
 #include "harness/casefile/flight_mode.hpp"
 #include "harness/cli/command.hpp"
 #include "harness/cli/suite_folder.hpp"
-#include "harness/core/nearest.hpp"
+#include "harness/core/suggestion.hpp"
 #include "harness/plant/vehicle.hpp"
 #include "harness/trace/channels.hpp"
 
@@ -105,22 +105,23 @@ std::string first_sentence(std::string text) {
 void list_cases(const std::vector<SelectedCase>& cases) {
   std::size_t width = 0;
   for (const auto& selected : cases) width = std::max(width, selected.the_case.id().size());
-  for (const auto& [the_case, setups] : cases) {
-    fmt::print("{:<{}}  {:>2} {}{}{}  {}\n", the_case.id(), width, setups.size(),
-               the_case.flight ? "setup" : "rate", setups.size() == 1 ? " " : "s",
+  for (const auto& [the_case, configurations] : cases) {
+    fmt::print("{:<{}}  {:>2} {}{}{}  {}\n", the_case.id(), width, configurations.size(),
+               the_case.flight ? "configuration" : "rate", configurations.size() == 1 ? " " : "s",
                the_case.exact_only ? ", exact only" : "", first_sentence(the_case.why));
   }
 }
 
 void list_groups(const std::vector<SelectedCase>& cases) {
   std::map<std::string, std::pair<std::size_t, std::size_t>> groups;
-  for (const auto& [the_case, setups] : cases) {
+  for (const auto& [the_case, configurations] : cases) {
     auto& [count, results] = groups[the_case.profile + "/" + the_case.group];
     ++count;
-    results += setups.size();
+    results += configurations.size();
   }
   for (const auto& [name, counts] : groups) {
-    fmt::print("{:<40} {:>4} cases {:>6} with all setups\n", name, counts.first, counts.second);
+    fmt::print("{:<40} {:>4} cases {:>6} with all configurations\n", name, counts.first,
+               counts.second);
   }
 }
 

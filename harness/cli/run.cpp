@@ -96,18 +96,19 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
   if (!cases) return tl::unexpected(cases.error());
   std::set<Rate> rates;
   for (const SelectedCase& selected : *cases) {
-    for (const Setup& setup : selected.setups) rates.insert(setup.rate);
-    plan.results += selected.setups.size();
+    for (const RunConfiguration& configuration : selected.configurations)
+      rates.insert(configuration.rate);
+    plan.results += selected.configurations.size();
   }
   std::set<std::string> profiles;
   for (const SelectedCase& selected : *cases) profiles.insert(selected.the_case.profile);
   if (auto asked = ask_port({profiles.begin(), profiles.end()}, plan); !asked) return asked;
-  Fleet fleet(suite.models());
-  auto jobs = case_jobs(*cases, suite.golden(), fleet, plan.run.level, plan.host);
+  VehicleModels vehicle_models(suite.models());
+  auto jobs = case_jobs(*cases, suite.golden(), vehicle_models, plan.run.level, plan.host);
   if (!jobs) return tl::unexpected(jobs.error());
   plan.jobs = *std::move(jobs);
   plan.run.selection = options.select.narrowing();
-  plan.run.all_setups = options.select.selects_all_setups();
+  plan.run.all_configurations = options.select.selects_all_configurations();
   plan.run.rates.assign(rates.begin(), rates.end());
   plan.cases = std::move(*cases);
   return {};
@@ -121,10 +122,10 @@ Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, Run
   if (auto asked = ask_port({flight->the_case.profile}, plan); !asked) return asked;
   plan.results = 1;
   plan.run.timing = options.timing;
-  plan.run.rates = {flight->timing.setup.rate};
+  plan.run.rates = {flight->timing.configuration.rate};
   plan.jobs.push_back(std::make_unique<TimedJob>(std::move(flight->the_case),
                                                  std::move(flight->timing),
-                                                 std::move(flight->airframe), plan.host));
+                                                 std::move(flight->vehicle_model), plan.host));
   return {};
 }
 
@@ -194,12 +195,12 @@ std::optional<Diagnosis> diagnosed(const RunPlan& plan, int processes) {
   options.in_process = plan.host.in_process;
   options.stop = interrupted;
   const auto vectors = [&](const faults::Fault* partner) {
-    std::vector<VectorLikeness> likenesses;
+    std::vector<VectorSimilarity> similarities;
     const auto jobs = diagnosis_jobs(plan.cases, plan.run.results, plan.host, partner);
     for (VectorDiagnosis& vector : run_jobs(jobs, options).results) {
-      if (vector) likenesses.push_back(*std::move(vector));
+      if (vector) similarities.push_back(*std::move(vector));
     }
-    return likenesses;
+    return similarities;
   };
   auto diagnosis = diagnose(vectors(nullptr));
   if (diagnosis && wants_partner(*diagnosis)) {

@@ -32,20 +32,20 @@ Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder
   if (!port) return tl::unexpected(port.error());
 
   const Case& the_case = chosen->the_case;
-  const Setup setup{set->tasks[set->unit].rate, chosen->flyer};
-  const Nanoseconds duration = timeline_of(the_case, setup.rate).duration;
+  const RunConfiguration configuration{set->tasks[set->unit].rate, chosen->plant_configuration};
+  const Nanoseconds duration = timeline_of(the_case, configuration.rate).duration;
   auto jobs = simulate(set->tasks, duration);
   if (!jobs) return fail_at(options.tasks, jobs.error().message);
   const std::vector<TaskJob>* estimator = set->estimator ? &(*jobs)[*set->estimator] : nullptr;
 
   SchedulePlan plan;
-  plan.scheduled = {the_case.id(), the_case.sha256, setup, in_seconds(duration),
+  plan.scheduled = {the_case.id(), the_case.sha256, configuration, in_seconds(duration),
                     scheduled_timing((*jobs)[set->unit], estimator)};
   TimingFile in_time = plan.scheduled;
-  in_time.ticks = case_timing(the_case, setup.rate);
+  in_time.ticks = case_timing(the_case, configuration.rate);
   for (const TimingFile& timing : {in_time, plan.scheduled}) {
     plan.flights.push_back(
-        std::make_unique<TimedJob>(the_case, timing, chosen->airframe, options.host));
+        std::make_unique<TimedJob>(the_case, timing, chosen->vehicle_model, options.host));
   }
   plan.set = std::move(*set);
   plan.jobs = std::move(*jobs);

@@ -17,9 +17,9 @@ namespace {
 
 struct Sim {
   Case the_case;
-  Setup setup;
+  RunConfiguration configuration;
   LoopTiming timing;
-  std::shared_ptr<const Airframe> airframe;
+  std::shared_ptr<const VehicleModel> vehicle_model;
 };
 
 Result<Sim> prepare_timed(const SimOptions& options, const SuiteFolder& suite) {
@@ -29,8 +29,8 @@ Result<Sim> prepare_timed(const SimOptions& options, const SuiteFolder& suite) {
   }
   auto flight = find_timed_flight(options.timing, suite);
   if (!flight) return tl::unexpected(flight.error());
-  return Sim{std::move(flight->the_case), flight->timing.setup, std::move(flight->timing.ticks),
-             std::move(flight->airframe)};
+  return Sim{std::move(flight->the_case), flight->timing.configuration,
+             std::move(flight->timing.ticks), std::move(flight->vehicle_model)};
 }
 
 Result<Sim> prepare(const SimOptions& options, const Globals& globals) {
@@ -49,9 +49,9 @@ Result<Sim> prepare(const SimOptions& options, const Globals& globals) {
   if (!chosen) return tl::unexpected(chosen.error());
   LoopTiming timing = case_timing(chosen->the_case, *rate);
   return Sim{std::move(chosen->the_case),
-             {*rate, std::move(chosen->flyer)},
+             {*rate, std::move(chosen->plant_configuration)},
              std::move(timing),
-             std::move(chosen->airframe)};
+             std::move(chosen->vehicle_model)};
 }
 
 void print(const CaseResult& result, const std::string& out) {
@@ -70,9 +70,10 @@ void print(const CaseResult& result, const std::string& out) {
 int sim_command(const SimOptions& options, const Globals& globals) {
   auto sim = prepare(options, globals);
   if (!sim) return report_error(sim.error());
-  const auto host = start_host(options.host, {&sim->the_case, sim->airframe.get()});
+  const auto host = start_host(options.host, {&sim->the_case, sim->vehicle_model.get()});
   if (!host) return report_error(host.error());
-  const auto flown = simulate_flight(sim->the_case, {sim->setup, sim->timing}, **host, options.out);
+  const auto flown =
+      simulate_flight(sim->the_case, {sim->configuration, sim->timing}, **host, options.out);
   if (!flown) return report_error(flown.error());
   const CaseResult& result = *flown;
   if (!globals.quiet || result.verdict != Verdict::pass) print(result, options.out);

@@ -78,7 +78,8 @@ Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& su
   for (const std::string& text : options.rates) {
     const auto rate = Rate::parse(text);
     if (!rate) return tl::unexpected(rate.error());
-    plan.tasks.push_back({the_case, Setup{*rate, chosen->flyer}, chosen->airframe, plan.port, *live,
+    plan.tasks.push_back({the_case, RunConfiguration{*rate, chosen->plant_configuration},
+                          chosen->vehicle_model, plan.port, *live,
                           nanoseconds(std::min(options.duration_s, idle_s_max)),
                           options.record_timing, nanoseconds(options.host.timeout_s)});
   }
@@ -99,8 +100,8 @@ class StressProgressLine {
             : fmt::format("{:.0f} of {:g} s, {} deadlines, {} missed", in_seconds(now.live.time),
                           task.the_case.duration.amount, now.live.deadlines, now.live.missed);
     const bool terminal = style_.width > 0;
-    fmt::print(stderr, "{}{} Hz: {}{}", terminal ? "\r\x1b[K" : "", task.setup.rate.to_string(),
-               what, terminal ? "" : "\n");
+    fmt::print(stderr, "{}{} Hz: {}{}", terminal ? "\r\x1b[K" : "",
+               task.configuration.rate.to_string(), what, terminal ? "" : "\n");
     std::fflush(stderr);
     drawn_ = terminal;
   }
@@ -130,7 +131,7 @@ Result<void> write_report(std::optional<AtomicFile>& file, const std::string& te
 
 // A cyclictest that is installed and does not answer is said: its row is missing then.
 std::optional<Cyclictest> idle_by_cyclictest(const StressTask& task) {
-  auto idle = run_cyclictest(task.setup.rate, task.idle_duration, task.live, interrupted);
+  auto idle = run_cyclictest(task.configuration.rate, task.idle_duration, task.live, interrupted);
   if (!idle && !interrupted() && is_installed("cyclictest")) {
     fmt::print(stderr, "attest: cyclictest failed, or gave no figures in time\n");
   }
@@ -152,7 +153,8 @@ Result<void> run_all(const StressPlan& plan, const StressOptions& options, const
     if (!stress) return tl::unexpected(stress.error());
     stress->cyclictest = judge;
     line.erase();
-    if (run.results.empty() && !globals.quiet) fmt::print("{}", render_rights(stress->rights));
+    if (run.results.empty() && !globals.quiet)
+      fmt::print("{}", render_privileges(stress->privileges));
     const bool told = !globals.quiet || stress->result.verdict != Verdict::pass;
     if (told) fmt::print("{}", render_stress(*stress, style));
     std::fflush(stdout);

@@ -45,9 +45,9 @@ std::map<std::string, std::map<Rate, std::size_t>> SuiteFolder::cases_by_group()
   std::map<std::string, std::map<Rate, std::size_t>> groups;
   const auto all = select_cases(cases(), {});
   if (!all) return {};
-  for (const auto& [the_case, setups] : *all) {
+  for (const auto& [the_case, configurations] : *all) {
     auto& rates = groups[the_case.profile + "/" + the_case.group];
-    for (const Setup& setup : setups) ++rates[setup.rate];
+    for (const RunConfiguration& configuration : configurations) ++rates[configuration.rate];
   }
   return groups;
 }

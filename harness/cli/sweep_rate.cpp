@@ -10,7 +10,7 @@
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/measure/sweep.hpp"
-#include "harness/plant/fleet.hpp"
+#include "harness/plant/vehicle_models.hpp"
 #include "harness/report/progress.hpp"
 #include "harness/report/sweep_text.hpp"
 
@@ -23,17 +23,19 @@ struct SweepPlan {
   Jobs<SweepResult> jobs;
 };
 
-Result<std::vector<Flyer>> flyers_of(const Case& the_case, const SweepOptions& options) {
-  std::vector<Flyer> flyers;
-  for (const Flyer& flyer : the_case.flight->flyers) {
+Result<std::vector<PlantConfiguration>> plant_configurations_of(const Case& the_case,
+                                                                const SweepOptions& options) {
+  std::vector<PlantConfiguration> plant_configurations;
+  for (const PlantConfiguration& plant_configuration : the_case.flight->plant_configurations) {
     const auto wanted = [](const std::vector<std::string>& names, std::string_view name) {
       return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
     };
-    if (wanted(options.vehicles, flyer.vehicle) && wanted(options.plants, name_of(flyer.plant))) {
-      flyers.push_back(flyer);
+    if (wanted(options.vehicles, plant_configuration.vehicle) &&
+        wanted(options.plants, name_of(plant_configuration.plant))) {
+      plant_configurations.push_back(plant_configuration);
     }
   }
-  if (!flyers.empty()) return flyers;
+  if (!plant_configurations.empty()) return plant_configurations;
   return fail(
       fmt::format("{} is flown by no such vehicle on no such plant; see `attest list "
                   "--vehicles`, and the case's own `vehicles` and `plants`",
@@ -49,20 +51,20 @@ Result<SweepPlan> make_plan(const SweepOptions& options, const SuiteFolder& suit
     if (!rate) return tl::unexpected(rate.error());
     plan.rates.push_back(*rate);
   }
-  const auto flyers = flyers_of(*the_case, options);
-  if (!flyers) return tl::unexpected(flyers.error());
+  const auto plant_configurations = plant_configurations_of(*the_case, options);
+  if (!plant_configurations) return tl::unexpected(plant_configurations.error());
   const auto port = describe_port(options.host);
   if (!port) return tl::unexpected(port.error());
   HostOptions host = options.host;
   host.hangs = port->hangs;
   host.stop = interrupted;
   if (port->hangs.empty()) host.said = *port;
-  Fleet fleet(suite.models());
-  for (const Flyer& flyer : *flyers) {
-    auto airframe = fleet.get(flyer.vehicle);
-    if (!airframe) return tl::unexpected(airframe.error());
-    plan.jobs.push_back(
-        std::make_unique<SweepJob>(*the_case, flyer, plan.rates, *std::move(airframe), host));
+  VehicleModels vehicle_models(suite.models());
+  for (const PlantConfiguration& plant_configuration : *plant_configurations) {
+    auto vehicle_model = vehicle_models.get(plant_configuration.vehicle);
+    if (!vehicle_model) return tl::unexpected(vehicle_model.error());
+    plan.jobs.push_back(std::make_unique<SweepJob>(*the_case, plant_configuration, plan.rates,
+                                                   *std::move(vehicle_model), host));
   }
   plan.the_case = std::move(*the_case);
   return plan;

@@ -60,7 +60,7 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
 
   note_interrupts();
   std::size_t vectors = 0;
-  for (const SelectedCase& selected : *cases) vectors += selected.setups.size();
+  for (const SelectedCase& selected : *cases) vectors += selected.configurations.size();
   Progress progress(vectors, Progress::on_stderr(globals.quiet));
   HostOptions host = options.host;
   host.stop = interrupted;

@@ -27,7 +27,7 @@ void add_selection(CLI::App& command, SelectionOptions& options) {
   command
       .add_option("--filter", options.filters,
                   "Only cases whose id matches this shell pattern; quote it. Ids are "
-                  "PROFILE/GROUP/NAME@SETUP; profile and setup may be left out")
+                  "PROFILE/GROUP/NAME@CONFIGURATION; profile and configuration may be left out")
       ->type_name("GLOB")
       ->allow_extra_args(false);
   command.add_option("--group", options.groups, "Only this group of cases")

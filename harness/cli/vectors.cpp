@@ -26,13 +26,14 @@ Result<void> write_vector(const Case& the_case, const Rate& rate,
 }
 
 // Which law, and which mixer, the inputs are for; beside what the folder holds already.
-Result<void> write_origin(const Case& the_case, const std::vector<Setup>& setups,
+Result<void> write_origin(const Case& the_case, const std::vector<RunConfiguration>& configurations,
                           const std::filesystem::path& folder) {
   auto provenance = provenance_in(folder);
   if (!provenance) return tl::unexpected(provenance.error());
   provenance->profile = the_case.profile;
   if (the_case.part == Part::mixer) {
-    for (const Setup& setup : setups) provenance->mixers[setup.label()] = the_case.mixer;
+    for (const RunConfiguration& configuration : configurations)
+      provenance->mixers[configuration.label()] = the_case.mixer;
   }
   return write_file(folder / provenance_name, to_toml(*provenance));
 }
@@ -46,17 +47,18 @@ Result<std::size_t> write_vectors(const VectorOptions& options, const Globals& g
   const auto cases = options.select.cases_in(suite->cases());
   if (!cases) return tl::unexpected(cases.error());
   std::size_t count = 0;
-  for (const auto& [the_case, setups] : *cases) {
+  for (const auto& [the_case, configurations] : *cases) {
     if (the_case.flight) continue;  // what a port is given in a flight depends on its answers
     const std::filesystem::path folder = std::filesystem::path(options.folder) / the_case.id();
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) return fail_at(folder.string(), fmt::format("cannot be made: {}", error.message()));
-    if (auto written = write_origin(the_case, setups, folder); !written) {
+    if (auto written = write_origin(the_case, configurations, folder); !written) {
       return tl::unexpected(written.error());
     }
-    for (const Setup& setup : setups) {
-      auto written = write_vector(the_case, setup.rate, folder / (setup.label() + ".csv"));
+    for (const RunConfiguration& configuration : configurations) {
+      auto written =
+          write_vector(the_case, configuration.rate, folder / (configuration.label() + ".csv"));
       if (!written) return tl::unexpected(written.error());
       ++count;
     }

@@ -64,10 +64,10 @@ std::vector<bool> half_turns_in(const Trace& want) {
   for (const Sample& sample : want.samples) {
     const bool has_setpoint = (sample.in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;
     if (is_half_turn.empty() || has_setpoint) setpoint = sample.in;
-    const double likeness =
+    const double similarity =
         likeness_of(sample.in.control_state.q, setpoint.vehicle_attitude_setpoint.q_d);
     const bool goes_by_it = sample.in.vehicle_control_mode.flag_control_attitude_enabled != 0;
-    is_half_turn.push_back(goes_by_it && !(likeness >= near));
+    is_half_turn.push_back(goes_by_it && !(similarity >= near));
   }
   return is_half_turn;
 }

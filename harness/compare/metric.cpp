@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "harness/core/nearest.hpp"
+#include "harness/core/suggestion.hpp"
 
 namespace attest {
 namespace {

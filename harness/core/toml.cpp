@@ -12,7 +12,7 @@
 #include <toml++/toml.h>
 
 #include "harness/core/file.hpp"
-#include "harness/core/nearest.hpp"
+#include "harness/core/suggestion.hpp"
 #include "harness/core/toml_depth.hpp"
 
 namespace attest {

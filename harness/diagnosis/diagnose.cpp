@@ -7,7 +7,7 @@ namespace attest {
 namespace {
 
 constexpr std::size_t most_suspects = 3;
-constexpr std::size_t most_or_else = 4;
+constexpr std::size_t most_in_group = 4;
 
 // Of the vectors that pass a suspect has to pass this part: one mistake may hide another.
 constexpr double passing_part = 0.95;
@@ -19,21 +19,22 @@ struct Record {
   std::size_t passes = 0;              // passing vectors that it matches
   std::size_t matched_passing = 0;     // their ticks
   std::vector<std::size_t> explained;  // failing vectors that it matches at every tick
-  std::size_t both = 0, either = 0;
+  std::size_t intersection = 0, union_size = 0;
 
-  double alikeness() const {
-    return either == 0 ? 0 : static_cast<double>(both) / static_cast<double>(either);
+  double jaccard_index() const {
+    return union_size == 0 ? 0
+                           : static_cast<double>(intersection) / static_cast<double>(union_size);
   }
 };
 
-Record record_of(std::size_t fault, const std::vector<VectorLikeness>& vectors) {
+Record record_of(std::size_t fault, const std::vector<VectorSimilarity>& vectors) {
   Record record;
   record.fault = fault;
   for (std::size_t v = 0; v < vectors.size(); ++v) {
-    const Likeness& one = vectors[v].likenesses[fault];
+    const Similarity& one = vectors[v].similarities[fault];
     const bool all = one.matched == vectors[v].ticks;
-    record.both += one.both;
-    record.either += one.either;
+    record.intersection += one.intersection;
+    record.union_size += one.union_size;
     if (!vectors[v].deviates) {
       record.passes += all ? 1 : 0;
       record.matched_passing += one.matched;
@@ -46,7 +47,7 @@ Record record_of(std::size_t fault, const std::vector<VectorLikeness>& vectors) 
   return record;
 }
 
-std::vector<Record> records_of(const std::vector<VectorLikeness>& vectors) {
+std::vector<Record> records_of(const std::vector<VectorSimilarity>& vectors) {
   std::vector<Record> records;
   for (std::size_t i = 0; i < faults::catalogue().size(); ++i) {
     if (faults::catalogue()[i]->equivalent.empty()) records.push_back(record_of(i, vectors));
@@ -55,14 +56,14 @@ std::vector<Record> records_of(const std::vector<VectorLikeness>& vectors) {
 }
 
 // Those that deviate where the port does not.
-void leave_out_accusers(std::size_t passing, std::vector<Record>& records) {
+void drop_contradicted(std::size_t passing, std::vector<Record>& records) {
   const double enough = passing_part * static_cast<double>(passing);
   std::erase_if(records, [enough](const Record& record) {
     return static_cast<double>(record.passes) < enough;
   });
 }
 
-std::vector<std::size_t> failing(const std::vector<VectorLikeness>& vectors) {
+std::vector<std::size_t> failing(const std::vector<VectorSimilarity>& vectors) {
   std::vector<std::size_t> indices;
   for (std::size_t v = 0; v < vectors.size(); ++v) {
     if (vectors[v].deviates) indices.push_back(v);
@@ -88,8 +89,8 @@ Suspect suspect_of(const Record& best, const std::vector<Record>& records,
   Suspect suspect{all[best.fault], best.matched, best.ticks, best.explained.size(), failing, {}};
   for (const Record& other : records) {
     const bool as_good = other.fault != best.fault && rank(other, left) == rank(best, left);
-    if (as_good && suspect.or_else.size() < most_or_else) {
-      suspect.or_else.push_back(all[other.fault]);
+    if (as_good && suspect.ambiguity_group.size() < most_in_group) {
+      suspect.ambiguity_group.push_back(all[other.fault]);
     }
   }
   return suspect;
@@ -97,7 +98,7 @@ Suspect suspect_of(const Record& best, const std::vector<Record>& records,
 
 }  // namespace
 
-std::optional<Diagnosis> diagnose(const std::vector<VectorLikeness>& vectors) {
+std::optional<Diagnosis> diagnose(const std::vector<VectorSimilarity>& vectors) {
   Diagnosis diagnosis;
   std::vector<std::size_t> left = failing(vectors);  // that nothing explains yet
   if (left.empty()) return std::nullopt;
@@ -107,13 +108,13 @@ std::optional<Diagnosis> diagnose(const std::vector<VectorLikeness>& vectors) {
   std::vector<Record> records = records_of(vectors);
   const auto nearest =
       std::max_element(records.begin(), records.end(), [](const Record& a, const Record& b) {
-        return std::tuple(a.alikeness(), a.matched) < std::tuple(b.alikeness(), b.matched);
+        return std::tuple(a.jaccard_index(), a.matched) < std::tuple(b.jaccard_index(), b.matched);
       });
   diagnosis.nearest = faults::catalogue()[nearest->fault];
-  diagnosis.alikeness = nearest->alikeness();
+  diagnosis.jaccard_index = nearest->jaccard_index();
   diagnosis.stage = diagnosis.nearest->stage;
 
-  leave_out_accusers(vectors.size() - left.size(), records);
+  drop_contradicted(vectors.size() - left.size(), records);
   while (!records.empty() && !left.empty() && diagnosis.suspects.size() < most_suspects) {
     const auto best = std::max_element(
         records.begin(), records.end(),
@@ -134,10 +135,10 @@ bool wants_partner(const Diagnosis& diagnosis) {
   return !diagnosis.suspects.empty() && diagnosis.unexplained > 0;
 }
 
-void add_partner(const std::vector<VectorLikeness>& vectors, Diagnosis& diagnosis) {
+void add_partner(const std::vector<VectorSimilarity>& vectors, Diagnosis& diagnosis) {
   const std::vector<std::size_t> all = failing(vectors);
   std::vector<Record> records = records_of(vectors);
-  leave_out_accusers(vectors.size() - all.size(), records);
+  drop_contradicted(vectors.size() - all.size(), records);
   if (records.empty()) return;
   const auto best = std::max_element(
       records.begin(), records.end(),

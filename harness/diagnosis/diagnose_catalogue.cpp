@@ -13,14 +13,14 @@ namespace {
 // A vector, and what each of the distinct answers to it is like.
 struct Answered {
   FaultAnswers faults;
-  std::vector<VectorLikeness> of_distinct;
+  std::vector<VectorSimilarity> of_distinct;
 };
 
 Rate rate_for(const SelectedCase& selected) {
-  for (const Setup& setup : selected.setups) {
-    if (setup.rate == Rate::hz(250)) return setup.rate;
+  for (const RunConfiguration& configuration : selected.configurations) {
+    if (configuration.rate == Rate::hz(250)) return configuration.rate;
   }
-  return selected.setups.front().rate;
+  return selected.configurations.front().rate;
 }
 
 Answered answered(const SelectedCase& selected) {
@@ -31,7 +31,7 @@ Answered answered(const SelectedCase& selected) {
   Answered vector{answers_of_faults(law, subject), {}};
   const Outputs right = outputs_of(law);
   for (const Outputs& outputs : vector.faults.distinct) {
-    vector.of_distinct.push_back(distinct_likeness(outputs, right, vector.faults.distinct));
+    vector.of_distinct.push_back(distinct_similarity(outputs, right, vector.faults.distinct));
   }
   vector.faults.distinct.clear();  // some hundred megabytes in all
   return vector;
@@ -43,7 +43,8 @@ bool SelfDiagnosis::is_named() const {
   if (!diagnosis || diagnosis->suspects.empty()) return false;
   const Suspect& first = diagnosis->suspects.front();
   return first.fault == fault ||
-         std::find(first.or_else.begin(), first.or_else.end(), fault) != first.or_else.end();
+         std::find(first.ambiguity_group.begin(), first.ambiguity_group.end(), fault) !=
+             first.ambiguity_group.end();
 }
 
 bool SelfDiagnosis::is_stage_named() const { return diagnosis && diagnosis->stage == fault->stage; }
@@ -58,7 +59,7 @@ std::vector<SelfDiagnosis> diagnose_catalogue(const std::vector<SelectedCase>& c
   std::vector<SelfDiagnosis> results;
   for (std::size_t i = 0; i < catalogue.size(); ++i) {
     if (!catalogue[i]->is_detectable(profile)) continue;
-    std::vector<VectorLikeness> of_fault;
+    std::vector<VectorSimilarity> of_fault;
     for (const Answered& vector : vectors) {
       const std::size_t index = vector.faults.of_fault[i];
       of_fault.push_back(of_each_fault(vector.of_distinct[index], vector.faults));

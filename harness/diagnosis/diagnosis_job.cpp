@@ -8,7 +8,7 @@
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/core/error_json.hpp"
-#include "harness/golden/other_side.hpp"
+#include "harness/golden/branch_alternatives.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/port/builtin.hpp"
 #include "harness/verify/evaluate.hpp"
@@ -34,7 +34,7 @@ std::vector<Vector> vectors_of(const std::vector<SelectedCase>& cases,
                                const std::vector<CaseResult>& results, Wanted wanted) {
   std::map<std::string, Rate> nearest;
   for (const CaseResult& result : results) {
-    if (result.flyer || !wanted(result)) continue;
+    if (result.plant_configuration || !wanted(result)) continue;
     const auto [place, is_new] = nearest.try_emplace(result.case_id(), result.rate);
     if (!is_new && distance_from_250(result.rate) < distance_from_250(place->second)) {
       place->second = result.rate;
@@ -64,19 +64,19 @@ using nlohmann::json;
 json to_json(const VectorDiagnosis& diagnosis) {
   if (!diagnosis) return nullptr;
   json rows = json::array();
-  for (const Likeness& one : diagnosis->likenesses) {
-    rows.push_back({one.matched, one.both, one.either});
+  for (const Similarity& one : diagnosis->similarities) {
+    rows.push_back({one.matched, one.intersection, one.union_size});
   }
   return {{"ticks", diagnosis->ticks}, {"deviates", diagnosis->deviates}, {"faults", rows}};
 }
 
 VectorDiagnosis diagnosis_from(const json& in) {
   if (in.is_null()) return std::nullopt;
-  VectorLikeness out;
+  VectorSimilarity out;
   out.ticks = in.at("ticks").get<std::size_t>();
   out.deviates = in.at("deviates").get<bool>();
   for (const json& row : in.at("faults")) {
-    out.likenesses.push_back(
+    out.similarities.push_back(
         {row.at(0).get<std::size_t>(), row.at(1).get<std::size_t>(), row.at(2).get<std::size_t>()});
   }
   return out;
@@ -107,13 +107,13 @@ Result<VectorDiagnosis> DiagnosisJob::run(std::size_t) {
   const auto reference = open_builtin();
   if (drive(*reference, subject, law)) return std::nullopt;
   if (case_.either_side.any()) {
-    const auto others = other_sides(case_, law);
+    const auto others = branch_alternatives(case_, law);
     if (!others) return tl::unexpected(others.error());
     law = on_the_side_of(
         got, law, *others,
         tolerances_of(case_, Level::numeric, port.fraction_bits, law.samples.size()));
   }
-  return likeness(outputs_of(got), outputs_of(law), answers_of_faults(law, subject, partner_));
+  return similarity(outputs_of(got), outputs_of(law), answers_of_faults(law, subject, partner_));
 }
 
 Jobs<VectorDiagnosis> diagnosis_jobs(const std::vector<SelectedCase>& cases,

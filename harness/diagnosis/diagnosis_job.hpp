@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "harness/casefile/select.hpp"
-#include "harness/diagnosis/likeness.hpp"
+#include "harness/diagnosis/similarity.hpp"
 #include "harness/host/port_process.hpp"
 #include "harness/verify/verdict.hpp"
 #include "harness/workers/job.hpp"
@@ -15,7 +15,7 @@
 namespace attest {
 
 // Empty when the port went wrong.
-using VectorDiagnosis = std::optional<VectorLikeness>;
+using VectorDiagnosis = std::optional<VectorSimilarity>;
 
 template <>
 struct Codec<VectorDiagnosis> {

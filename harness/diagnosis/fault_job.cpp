@@ -23,10 +23,11 @@ struct Attempt {
 
 std::vector<Attempt> attempts(const std::vector<SelectedCase>& cases, std::string_view group) {
   std::vector<Attempt> list;
-  for (const auto& [the_case, setups] : cases) {
-    for (const Setup& setup : setups) {
-      const int turn = (the_case.group == group ? 0 : 2) + (setup.rate == Rate::hz(250) ? 0 : 1);
-      list.push_back({&the_case, setup.rate, turn});
+  for (const auto& [the_case, configurations] : cases) {
+    for (const RunConfiguration& configuration : configurations) {
+      const int turn =
+          (the_case.group == group ? 0 : 2) + (configuration.rate == Rate::hz(250) ? 0 : 1);
+      list.push_back({&the_case, configuration.rate, turn});
     }
   }
   std::stable_sort(list.begin(), list.end(),

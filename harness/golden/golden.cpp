@@ -15,14 +15,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string file_name(const Setup& setup) { return setup.label() + ".csv"; }
-
-std::string file_name(const Setup& setup, const std::string& other_side) {
-  return fmt::format("{}.{}.csv", setup.label(), other_side);
+std::string file_name(const RunConfiguration& configuration) {
+  return configuration.label() + ".csv";
 }
 
-std::string metric_key(const Setup& setup, const std::string& metric) {
-  return fmt::format("{}.{}", setup.label(), metric);
+std::string file_name(const RunConfiguration& configuration,
+                      const std::string& branch_alternative) {
+  return fmt::format("{}.{}.csv", configuration.label(), branch_alternative);
+}
+
+std::string metric_key(const RunConfiguration& configuration, const std::string& metric) {
+  return fmt::format("{}.{}", configuration.label(), metric);
 }
 
 std::string how_to_bless(const Case& the_case) {
@@ -51,7 +54,7 @@ std::vector<Trace> samples_of(const std::vector<GoldenTrace>& traces) {
   std::vector<Trace> samples;
   for (const GoldenTrace& trace : traces) {
     samples.push_back(trace.trace);
-    for (const auto& [side, other] : trace.other_sides) samples.push_back(other);
+    for (const auto& [side, other] : trace.branch_alternatives) samples.push_back(other);
   }
   return samples;
 }
@@ -89,15 +92,16 @@ Result<void> write_folder(const fs::path& folder, const Case& the_case,
     provenance.sha256[name] = *hash;
     return {};
   };
-  for (const auto& [setup, trace, is_whole, horizon_s, metrics, other_sides] : traces) {
-    if (auto written = write(file_name(setup), trace); !written) return written;
-    for (const auto& [side, other] : other_sides) {
-      if (auto written = write(file_name(setup, side), other); !written) return written;
+  for (const auto& [configuration, trace, is_whole, horizon_s, metrics, branch_alternatives] :
+       traces) {
+    if (auto written = write(file_name(configuration), trace); !written) return written;
+    for (const auto& [side, other] : branch_alternatives) {
+      if (auto written = write(file_name(configuration, side), other); !written) return written;
     }
-    if (!the_case.mixer.empty()) provenance.mixers[setup.label()] = the_case.mixer;
-    if (horizon_s) provenance.horizon_s[setup.label()] = *horizon_s;
+    if (!the_case.mixer.empty()) provenance.mixers[configuration.label()] = the_case.mixer;
+    if (horizon_s) provenance.horizon_s[configuration.label()] = *horizon_s;
     for (const auto& [metric, value] : metrics) {
-      provenance.metrics[metric_key(setup, metric)] = value;
+      provenance.metrics[metric_key(configuration, metric)] = value;
     }
   }
   for (const fs::path& file : vehicle_files) {
@@ -149,11 +153,14 @@ Result<Golden> Golden::open(const fs::path& golden_root, const Case& the_case) {
   return Golden(folder, std::move(*provenance));
 }
 
-Result<Trace> Golden::read(const Setup& setup) const { return read_file(file_name(setup)); }
+Result<Trace> Golden::read(const RunConfiguration& configuration) const {
+  return read_file(file_name(configuration));
+}
 
-Result<OtherSides> Golden::read_other_sides(const Setup& setup) const {
-  const std::string prefix = setup.label() + ".", suffix = ".csv";
-  OtherSides others;
+Result<BranchAlternatives> Golden::read_branch_alternatives(
+    const RunConfiguration& configuration) const {
+  const std::string prefix = configuration.label() + ".", suffix = ".csv";
+  BranchAlternatives others;
   for (const auto& [name, hash] : provenance_.sha256) {
     const bool is_of_setup =
         name.starts_with(prefix) && name.size() > prefix.size() + suffix.size();
@@ -198,7 +205,8 @@ Result<void> Golden::check_bytes(const fs::path& path, const std::string& blesse
                   (folder_ / provenance_name).string()));
 }
 
-Result<ReferenceFlight> Golden::read_flight(const Setup& setup, const Vehicle& vehicle) const {
+Result<ReferenceFlight> Golden::read_flight(const RunConfiguration& configuration,
+                                            const Vehicle& vehicle) const {
   for (const fs::path& file : vehicle.files()) {
     const auto blessed = provenance_.models.find(file.filename().string());
     auto hash = sha256_of_file(file);
@@ -209,15 +217,15 @@ Result<ReferenceFlight> Golden::read_flight(const Setup& setup, const Vehicle& v
                                "bless --filter '{}' --reason \"...\"` makes it anew",
                                file.string(), provenance_.case_id));
   }
-  auto rows = read(setup);
+  auto rows = read(configuration);
   if (!rows) return tl::unexpected(rows.error());
-  const auto horizon = provenance_.horizon_s.find(setup.label());
+  const auto horizon = provenance_.horizon_s.find(configuration.label());
   if (horizon == provenance_.horizon_s.end()) {
     return fail_at((folder_ / provenance_name).string(),
-                   fmt::format("no horizon_s for {}; bless it anew", setup.label()));
+                   fmt::format("no horizon_s for {}; bless it anew", configuration.label()));
   }
   ReferenceFlight flight{std::move(*rows), horizon->second, {}};
-  const std::string prefix = metric_key(setup, "");
+  const std::string prefix = metric_key(configuration, "");
   for (const auto& [key, value] : provenance_.metrics) {
     if (key.starts_with(prefix)) flight.metrics[key.substr(prefix.size())] = value;
   }

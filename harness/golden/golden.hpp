@@ -1,6 +1,6 @@
-// The golden traces of a case: golden/<profile>/<group>/<name>/<setup>.csv and one provenance.toml,
-// which says what they were made from. Of a flight some ticks are kept, and in the provenance its
-// horizon and metrics; of a long open-loop case some ticks too (keeps_every_tick).
+// The golden traces of a case: golden/<profile>/<group>/<name>/<configuration>.csv and one
+// provenance.toml, which says what they were made from. Of a flight some ticks are kept, and in the
+// provenance its horizon and metrics; of a long open-loop case some ticks too (keeps_every_tick).
 //
 // Where a case file has several profiles, the goldens of the others hold what differs from that of
 // the first, which is their base. Goldens that keep some ticks have none: in another profile other
@@ -15,7 +15,7 @@
 
 #include "harness/casefile/case.hpp"
 #include "harness/core/result.hpp"
-#include "harness/golden/other_side.hpp"
+#include "harness/golden/branch_alternatives.hpp"
 #include "harness/golden/reference_flight.hpp"
 #include "harness/trace/provenance.hpp"
 
@@ -28,15 +28,17 @@ class Golden {
   // edited; the message names what mends it.
   static Result<Golden> open(const std::filesystem::path& golden_root, const Case& the_case);
 
-  // Errors: no trace for that setup, bytes that are not those that were blessed, a broken CSV.
-  Result<Trace> read(const Setup& setup) const;
+  // Errors: no trace for that configuration, bytes that are not those that were blessed, a broken
+  // CSV.
+  Result<Trace> read(const RunConfiguration& configuration) const;
 
   // What it is on other sides; empty for a case without Case::either_side. Errors: as of read().
-  Result<OtherSides> read_other_sides(const Setup& setup) const;
+  Result<BranchAlternatives> read_branch_alternatives(const RunConfiguration& configuration) const;
 
   // The rows, horizon and metrics of a flight. Errors: as of read(), and a vehicle whose files have
   // changed since.
-  Result<ReferenceFlight> read_flight(const Setup& setup, const Vehicle& vehicle) const;
+  Result<ReferenceFlight> read_flight(const RunConfiguration& configuration,
+                                      const Vehicle& vehicle) const;
 
   const Provenance& provenance() const { return provenance_; }
 
@@ -60,12 +62,12 @@ bool is_long(const Case& the_case);
 
 // One trace of a golden to be.
 struct GoldenTrace {
-  Setup setup;
+  RunConfiguration configuration;
   Trace trace;
   bool is_whole = true;  // false: some of its ticks, of a flight or a long case
   std::optional<double> horizon_s = std::nullopt;
   std::map<std::string, double> metrics = {};
-  OtherSides other_sides = {};  // of a case with Case::either_side
+  BranchAlternatives branch_alternatives = {};  // of a case with Case::either_side
 };
 
 // The golden of a case's first profile, which that of another one rests on.
@@ -78,9 +80,9 @@ struct GoldenBase {
 // the GoldenLock.
 class NewGolden {
  public:
-  // Writes `traces` (one for each of the case's setups, in that order). `vehicle_files` are those
-  // that the flights depend on. `base`: null, or the golden of the first profile as it is written,
-  // or stands, in `base_folder`.
+  // Writes `traces` (one for each of the case's configurations, in that order). `vehicle_files` are
+  // those that the flights depend on. `base`: null, or the golden of the first profile as it is
+  // written, or stands, in `base_folder`.
   static Result<NewGolden> write(const std::filesystem::path& golden_root, const Case& the_case,
                                  const std::vector<GoldenTrace>& traces,
                                  const std::vector<std::filesystem::path>& vehicle_files,

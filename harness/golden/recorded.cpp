@@ -9,7 +9,7 @@
 #include "controller/actuation/battery_status.hpp"
 #include "controller/actuation/mixer.hpp"
 #include "harness/casefile/parse.hpp"
-#include "harness/core/nearest.hpp"
+#include "harness/core/suggestion.hpp"
 #include "harness/trace/csv.hpp"
 #include "harness/trace/mixer_csv.hpp"
 #include "harness/trace/provenance.hpp"

@@ -14,14 +14,14 @@ namespace {
 // Other right builds may part ten times faster than float32 and double do, and still pass.
 constexpr double part_of_tolerance = 0.1;
 
-Result<Trace> flown_by(Port& port, const Case& the_case, const Setup& setup,
-                       const Airframe& airframe, const LoopTiming& timing) {
+Result<Trace> flown_by(Port& port, const Case& the_case, const RunConfiguration& configuration,
+                       const VehicleModel& vehicle_model, const LoopTiming& timing) {
   const auto wrong = [&](const std::string& what) {
-    return fail_at(the_case.file.string(), fmt::format("at {}, {}", setup.label(), what));
+    return fail_at(the_case.file.string(), fmt::format("at {}, {}", configuration.label(), what));
   };
   const auto unit = port.create(the_case.profile);
   if (!unit) return wrong(fmt::format("the reference has no profile `{}`", the_case.profile));
-  auto flown = fly(the_case, setup, airframe, *unit, timing);
+  auto flown = fly(the_case, configuration, vehicle_model, *unit, timing);
   if (!flown) return tl::unexpected(flown.error());
   if (flown->fault) return wrong("the reference: " + flown->fault->what);
   if (flown->divergence) {
@@ -45,11 +45,14 @@ double horizon_s(const Trace& flown, const Trace& in_double, const Case& the_cas
 
 }  // namespace
 
-Result<ReferenceFlight> reference_flight(const Case& the_case, const Setup& setup,
-                                         const Airframe& airframe, const LoopTiming& timing) {
-  auto flown = flown_by(*open_builtin(), the_case, setup, airframe, timing);
+Result<ReferenceFlight> reference_flight(const Case& the_case,
+                                         const RunConfiguration& configuration,
+                                         const VehicleModel& vehicle_model,
+                                         const LoopTiming& timing) {
+  auto flown = flown_by(*open_builtin(), the_case, configuration, vehicle_model, timing);
   if (!flown) return tl::unexpected(flown.error());
-  const auto in_double = flown_by(*open_builtin_in_double(), the_case, setup, airframe, timing);
+  const auto in_double =
+      flown_by(*open_builtin_in_double(), the_case, configuration, vehicle_model, timing);
   if (!in_double) return tl::unexpected(in_double.error());
 
   ReferenceFlight result;
@@ -61,9 +64,11 @@ Result<ReferenceFlight> reference_flight(const Case& the_case, const Setup& setu
   return result;
 }
 
-Result<ReferenceFlight> reference_flight(const Case& the_case, const Setup& setup,
-                                         const Airframe& airframe) {
-  auto flight = reference_flight(the_case, setup, airframe, case_timing(the_case, setup.rate));
+Result<ReferenceFlight> reference_flight(const Case& the_case,
+                                         const RunConfiguration& configuration,
+                                         const VehicleModel& vehicle_model) {
+  auto flight = reference_flight(the_case, configuration, vehicle_model,
+                                 case_timing(the_case, configuration.rate));
   if (!flight) return flight;
   for (const Metric& metric : the_case.flight->metrics) {
     const double value = flight->metrics[metric.name];
@@ -71,7 +76,7 @@ Result<ReferenceFlight> reference_flight(const Case& the_case, const Setup& setu
       return fail_at(the_case.file.string(),
                      fmt::format("at {}, the reference misses the metric `{}`: {} is {:.4g}, not "
                                  "from {:g} to {:g}",
-                                 setup.label(), metric.name, name_of(metric.measure), value,
+                                 configuration.label(), metric.name, name_of(metric.measure), value,
                                  metric.min, metric.max));
     }
   }

@@ -22,13 +22,16 @@ struct ReferenceFlight {
 // the time of the first tick at which an output differs by more than a tenth of its tolerance.
 // Errors, with the case's file: the flight cannot be set up; the reference loses the vehicle, or
 // misses a bound of the case's own metrics.
-Result<ReferenceFlight> reference_flight(const Case& the_case, const Setup& setup,
-                                         const Airframe& airframe);
+Result<ReferenceFlight> reference_flight(const Case& the_case,
+                                         const RunConfiguration& configuration,
+                                         const VehicleModel& vehicle_model);
 
 // The same at times that are not the case's, for which there is no golden: every row, and metrics
 // whatever they are, as the case's bounds were not made for such times. Errors: the flight cannot
 // be set up; the reference loses the vehicle.
-Result<ReferenceFlight> reference_flight(const Case& the_case, const Setup& setup,
-                                         const Airframe& airframe, const LoopTiming& timing);
+Result<ReferenceFlight> reference_flight(const Case& the_case,
+                                         const RunConfiguration& configuration,
+                                         const VehicleModel& vehicle_model,
+                                         const LoopTiming& timing);
 
 }  // namespace attest

@@ -52,7 +52,7 @@ Result<Flown> HostHere::fly(const FlightPlan& plan) {
       return none;
     }
     auto flown = attest::fly(plan.from_one_period_on ? whole.from_one_period_on() : whole,
-                             plan.setup, *course_.airframe, *unit, plan.timing);
+                             plan.configuration, *course_.vehicle_model, *unit, plan.timing);
     if (flown) flown->fault = held(std::move(flown->fault), whole.profile);
     return flown;
   });

@@ -83,9 +83,9 @@ class Answerer {
 
   bool fly(const json& head) {
     FlightPlan plan;
-    plan.setup.rate = Rate::parse(head.at("rate").get<std::string>()).value();
-    plan.setup.flyer =
-        Flyer{head.at("vehicle").get<std::string>(), head.at("plant").get<PlantKind>()};
+    plan.configuration.rate = Rate::parse(head.at("rate").get<std::string>()).value();
+    plan.configuration.plant_configuration = PlantConfiguration{
+        head.at("vehicle").get<std::string>(), head.at("plant").get<PlantKind>()};
     plan.timing = question_.blobs.read<LoopTick>(head.at("ticks").get<std::size_t>()).value();
     plan.from_one_period_on = head.at("from_one_period_on").get<bool>();
     const auto flown = host_.fly(plan);
@@ -151,9 +151,9 @@ std::string drive_request(const Subject& subject, const Trace& trace) {
 
 std::string fly_request(const FlightPlan& plan) {
   return text_of({{"do", "fly"},
-                  {"rate", plan.setup.rate.to_string()},
-                  {"vehicle", plan.setup.flyer->vehicle},
-                  {"plant", plan.setup.flyer->plant},
+                  {"rate", plan.configuration.rate.to_string()},
+                  {"vehicle", plan.configuration.plant_configuration->vehicle},
+                  {"plant", plan.configuration.plant_configuration->plant},
                   {"ticks", plan.timing.size()},
                   {"from_one_period_on", plan.from_one_period_on}});
 }

@@ -17,12 +17,12 @@ namespace attest {
 // What a host flies: known when it starts. Both outlive the host.
 struct Course {
   const Case* the_case = nullptr;
-  const Airframe* airframe = nullptr;
+  const VehicleModel* vehicle_model = nullptr;
 };
 
 // One flight of a course.
 struct FlightPlan {
-  Setup setup;
+  RunConfiguration configuration;
   LoopTiming timing;
   bool from_one_period_on = false;  // as of Case
 };

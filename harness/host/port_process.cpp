@@ -57,9 +57,7 @@ class PortProcess final : public PortHost {
   PortProcess(const HostOptions& options, std::optional<Child> child)
       : options_(options), child_(std::move(child)) {
     if (options.said) says_ = *options.said;
-    if (!child_) {
-      fault_ = PortFault{PortFault::Kind::timeout, 0, options.hangs};
-    }
+    if (!child_) fault_ = PortFault{PortFault::Kind::timeout, 0, options.hangs};
   }
 
   // Waits until the port is loaded. Errors: it cannot be.
@@ -120,7 +118,7 @@ class PortProcess final : public PortHost {
       -> std::invoke_result_t<Read, const Arrived&> {
     const bool is_told = std::exchange(is_told_, true);
     if (fault_) {
-      if (is_told) fault_->what = "not run: the port had timed out before";
+      if (is_told && !is_spent()) fault_->what = "not run: the port had timed out before";
       return std::nullopt;
     }
     ++request_;

@@ -10,8 +10,8 @@ namespace {
 
 enum Task : std::size_t { disturbances, estimator, battery, motor_limits, unit, actuators };
 
-Agenda agenda_of(const Flight& flight, const Timeline& timeline, const LoopTiming& timing,
-                 const std::vector<Nanoseconds>& disturbed) {
+EventQueue agenda_of(const Flight& flight, const Timeline& timeline, const LoopTiming& timing,
+                     const std::vector<Nanoseconds>& disturbed) {
   std::vector<std::vector<Nanoseconds>> times(actuators + 1);
   times[disturbances] = disturbed;
   if (flight.battery) times[battery] = task_times(flight.battery->timing, timeline);
@@ -21,7 +21,7 @@ Agenda agenda_of(const Flight& flight, const Timeline& timeline, const LoopTimin
     times[unit].push_back(tick.begins);
     if (tick.commanded) times[actuators].push_back(*tick.commanded);
   }
-  return Agenda(std::move(times));
+  return EventQueue(std::move(times));
 }
 
 std::size_t first_sampled(const LoopTiming& timing) {
@@ -73,8 +73,8 @@ ClosedLoop::ClosedLoop(const Case& the_case, const Rate& rate, LoopTiming timing
       plant_(the_case, rate, vehicle, plant),
       unit_(the_case, rate, vehicle, unit, control_state_of(plant_.state())),
       estimator_(the_case.flight->estimator),
-      agenda_(agenda_of(*the_case.flight, timeline_of(the_case, rate), timing_,
-                        plant_.disturbance_times())),
+      event_queue_(agenda_of(*the_case.flight, timeline_of(the_case, rate), timing_,
+                             plant_.disturbance_times())),
       estimates_(Nanoseconds(0), most_between(timing_, &sampled, &begins) + 1),
       battery_scales_(line<float>(the_case.flight->battery.value_or(BatteryFlight{}).timing, rate)),
       limits_(line<MotorLimits>(the_case.flight->motor_limits, rate)),
@@ -83,7 +83,7 @@ ClosedLoop::ClosedLoop(const Case& the_case, const Rate& rate, LoopTiming timing
 FlightEnd ClosedLoop::run(Trace* trace) {
   const DefaultFloatEnvironment environment;
   while (!is_over()) {
-    const auto event = agenda_.next();
+    const auto event = event_queue_.next();
     end_.divergence = plant_.advance(event->time);
     if (!end_.divergence) happens(*event, trace);
   }
@@ -94,7 +94,7 @@ bool ClosedLoop::is_over() const {
   return end_.fault || end_.divergence || end_.ticks == timing_.size();
 }
 
-void ClosedLoop::happens(const Agenda::Event& event, Trace* trace) {
+void ClosedLoop::happens(const EventQueue::Event& event, Trace* trace) {
   const Nanoseconds now = event.time;
   switch (event.task) {
     case disturbances:
@@ -120,7 +120,7 @@ void ClosedLoop::happens(const Agenda::Event& event, Trace* trace) {
   }
 }
 
-void ClosedLoop::unit_tick(const Agenda::Event& event) {
+void ClosedLoop::unit_tick(const EventQueue::Event& event) {
   const Nanoseconds now = event.time;
   end_.fault =
       unit_.tick(event.index, now,

@@ -23,8 +23,8 @@
 #include "harness/loop/unit_task.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/port/port.hpp"
-#include "harness/schedule/agenda.hpp"
 #include "harness/schedule/delay_line.hpp"
+#include "harness/schedule/event_queue.hpp"
 #include "harness/schedule/loop_timing.hpp"
 #include "harness/trace/trace.hpp"
 
@@ -38,8 +38,8 @@ struct FlightEnd {
 
 class ClosedLoop {
  public:
-  // REQUIRES: a flight, adapted to the vehicle (flight.hpp); a fresh plant and unit. All outlive
-  // this.
+  // REQUIRES: a flight, bound_to_vehicle to the vehicle (flight.hpp); a fresh plant and unit. All
+  // outlive this.
   ClosedLoop(const Case& the_case, const Rate& rate, LoopTiming timing, const Vehicle& vehicle,
              Plant& plant, Unit& unit);
 
@@ -48,8 +48,8 @@ class ClosedLoop {
   FlightEnd run(Trace* trace);
 
  private:
-  void happens(const Agenda::Event& event, Trace* trace);
-  void unit_tick(const Agenda::Event& event);
+  void happens(const EventQueue::Event& event, Trace* trace);
+  void unit_tick(const EventQueue::Event& event);
   void record(Trace& trace) const;
   bool is_over() const;
 
@@ -58,7 +58,7 @@ class ClosedLoop {
   PlantTask plant_;
   UnitTask unit_;
   NoisyEstimator estimator_;
-  Agenda agenda_;
+  EventQueue event_queue_;
 
   DelayLine<Estimate> estimates_;
   DelayLine<float> battery_scales_;

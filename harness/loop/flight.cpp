@@ -14,13 +14,14 @@ namespace {
 // float32 of the unit's inputs (models/README.md).
 const Rate slowest_physics = Rate::hz(1000);
 
-Result<void> check(const Case& the_case, const Setup& setup, const Vehicle& vehicle) {
+Result<void> check(const Case& the_case, const RunConfiguration& configuration,
+                   const Vehicle& vehicle) {
   const Flight& flight = *the_case.flight;
-  if (physics_of(the_case, setup.rate) < setup.rate) {
+  if (physics_of(the_case, configuration.rate) < configuration.rate) {
     return fail_at(the_case.file.string(),
                    fmt::format("physics at {} Hz is slower than the loop at {} Hz; raise "
                                "`physics_hz`, or leave it out",
-                               flight.physics->to_string(), setup.rate.to_string()),
+                               flight.physics->to_string(), configuration.rate.to_string()),
                    flight.physics_line);
   }
   if (flight.motor_failure && flight.motor_failure->rotor >= vehicle.rotors.size()) {
@@ -38,7 +39,7 @@ Rate physics_of(const Case& the_case, const Rate& loop) {
   return the_case.flight->physics.value_or(std::max(slowest_physics, loop));
 }
 
-Case adapted(const Case& the_case, const Vehicle& vehicle) {
+Case bound_to_vehicle(const Case& the_case, const Vehicle& vehicle) {
   Case result = the_case;
   result.parameters.clear();
   for (const auto& entry : vehicle.parameters) {
@@ -57,29 +58,34 @@ Case adapted(const Case& the_case, const Vehicle& vehicle) {
   return result;
 }
 
-Result<std::unique_ptr<Plant>> plant_for(const Case& the_case, const Setup& setup,
-                                         const Airframe& airframe) {
+Result<std::unique_ptr<Plant>> plant_for(const Case& the_case,
+                                         const RunConfiguration& configuration,
+                                         const VehicleModel& vehicle_model) {
   const Flight& flight = *the_case.flight;
-  if (auto sane = check(the_case, setup, airframe.vehicle()); !sane) {
+  if (auto sane = check(the_case, configuration, vehicle_model.vehicle()); !sane) {
     return tl::unexpected(sane.error());
   }
-  return airframe.make_plant(setup.flyer->plant, {physics_of(the_case, setup.rate), flight.floor});
+  return vehicle_model.make_plant(configuration.plant_configuration->plant,
+                                  {physics_of(the_case, configuration.rate), flight.floor});
 }
 
-Result<Flown> fly(const Case& the_case, const Setup& setup, const Airframe& airframe, Unit& unit) {
-  return fly(the_case, setup, airframe, unit, case_timing(the_case, setup.rate));
+Result<Flown> fly(const Case& the_case, const RunConfiguration& configuration,
+                  const VehicleModel& vehicle_model, Unit& unit) {
+  return fly(the_case, configuration, vehicle_model, unit,
+             case_timing(the_case, configuration.rate));
 }
 
-Result<Flown> fly(const Case& the_case, const Setup& setup, const Airframe& airframe, Unit& unit,
-                  LoopTiming timing) {
-  auto plant = plant_for(the_case, setup, airframe);
+Result<Flown> fly(const Case& the_case, const RunConfiguration& configuration,
+                  const VehicleModel& vehicle_model, Unit& unit, LoopTiming timing) {
+  auto plant = plant_for(the_case, configuration, vehicle_model);
   if (!plant) return tl::unexpected(plant.error());
-  const Case scripted = adapted(the_case, airframe.vehicle());
+  const Case scripted = bound_to_vehicle(the_case, vehicle_model.vehicle());
   const std::size_t ticks = timing.size();
-  ClosedLoop loop(scripted, setup.rate, std::move(timing), airframe.vehicle(), **plant, unit);
+  ClosedLoop loop(scripted, configuration.rate, std::move(timing), vehicle_model.vehicle(), **plant,
+                  unit);
 
   Flown flown;
-  flown.trace.source = fmt::format("{}@{}", the_case.id(), setup.label());
+  flown.trace.source = fmt::format("{}@{}", the_case.id(), configuration.label());
   flown.trace.present = channels_of(Part::mc_att_control);
   flown.trace.samples.reserve(ticks);
   flown.trace.plant.reserve(ticks);

@@ -22,20 +22,22 @@ struct Flown {
 
 // The case as this vehicle flies it: with the vehicle's parameters where the case has none of its
 // own, and thrusts in units of its hover thrust.
-Case adapted(const Case& the_case, const Vehicle& vehicle);
+Case bound_to_vehicle(const Case& the_case, const Vehicle& vehicle);
 
 // How often MuJoCo steps. REQUIRES: a flight.
 Rate physics_of(const Case& the_case, const Rate& loop);
 
-// The plant of a setup. REQUIRES: the case is a flight. Errors: as of fly().
-Result<std::unique_ptr<Plant>> plant_for(const Case& the_case, const Setup& setup,
-                                         const Airframe& airframe);
+// The plant of a configuration. REQUIRES: the case is a flight. Errors: as of fly().
+Result<std::unique_ptr<Plant>> plant_for(const Case& the_case,
+                                         const RunConfiguration& configuration,
+                                         const VehicleModel& vehicle_model);
 
 // Flies `the_case` with a fresh `unit`, at the times that the case schedules, or those of `timing`.
 // REQUIRES: the case is a flight. Errors: the case cannot be flown that way (physics slower than
 // the loop, a rotor that the vehicle does not have), with file and line.
-Result<Flown> fly(const Case& the_case, const Setup& setup, const Airframe& airframe, Unit& unit);
-Result<Flown> fly(const Case& the_case, const Setup& setup, const Airframe& airframe, Unit& unit,
-                  LoopTiming timing);
+Result<Flown> fly(const Case& the_case, const RunConfiguration& configuration,
+                  const VehicleModel& vehicle_model, Unit& unit);
+Result<Flown> fly(const Case& the_case, const RunConfiguration& configuration,
+                  const VehicleModel& vehicle_model, Unit& unit, LoopTiming timing);
 
 }  // namespace attest

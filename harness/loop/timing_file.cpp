@@ -57,12 +57,12 @@ Result<LoopTiming> ticks_of(const json& values, const std::string& file) {
   return ticks;
 }
 
-Result<Setup> setup_of(const json& root) {
+Result<RunConfiguration> setup_of(const json& root) {
   auto rate = Rate::parse(root.value("rate", ""));
   if (!rate) return tl::unexpected(rate.error());
   auto plant = parse_plant_kind(root.value("plant", ""));
   if (!plant) return tl::unexpected(plant.error());
-  return Setup{*rate, Flyer{root.value("vehicle", ""), *plant}};
+  return RunConfiguration{*rate, PlantConfiguration{root.value("vehicle", ""), *plant}};
 }
 
 }  // namespace
@@ -81,11 +81,11 @@ Result<TimingFile> read_timing(const std::filesystem::path& path) {
   if (!complete) {
     return fail_at(file, "is no timing file; `attest stress --record-timing` writes them");
   }
-  auto setup = setup_of(root);
-  if (!setup) return fail_at(file, setup.error().message);
+  auto configuration = setup_of(root);
+  if (!configuration) return fail_at(file, configuration.error().message);
   auto ticks = ticks_of(root["ticks_ns"], file);
   if (!ticks) return tl::unexpected(ticks.error());
-  TimingFile timing{root["case"], root["case_sha256"], *setup, root["duration_s"],
+  TimingFile timing{root["case"], root["case_sha256"], *configuration, root["duration_s"],
                     std::move(*ticks)};
   const bool sane = timing.duration_s > 0 && timing.duration_s <= 1e6;
   if (!sane) return fail_at(file, "`duration_s` must be positive, up to 1e6");
@@ -101,9 +101,9 @@ Result<void> write_timing(const TimingFile& timing, const std::filesystem::path&
   const json root = {{"attest_timing", format},
                      {"case", timing.case_id},
                      {"case_sha256", timing.case_sha256},
-                     {"rate", timing.setup.rate.to_string()},
-                     {"vehicle", timing.setup.flyer->vehicle},
-                     {"plant", name_of(timing.setup.flyer->plant)},
+                     {"rate", timing.configuration.rate.to_string()},
+                     {"vehicle", timing.configuration.plant_configuration->vehicle},
+                     {"plant", name_of(timing.configuration.plant_configuration->plant)},
                      {"duration_s", timing.duration_s},
                      {"ticks_ns", std::move(ticks)}};
   return write_file(path, root.dump() + "\n");

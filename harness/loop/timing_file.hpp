@@ -19,7 +19,7 @@ namespace attest {
 struct TimingFile {
   std::string case_id;
   std::string case_sha256;
-  Setup setup;
+  RunConfiguration configuration;
   double duration_s = 0;
   LoopTiming ticks;
 };

@@ -11,7 +11,7 @@ namespace {
 using Kind = PortFault::Kind;
 using Margin = std::array<unsigned char, 64>;
 
-constexpr Margin untouched = [] {
+constexpr Margin canary = [] {
   Margin margin{};
   margin.fill(0xa5);
   return margin;
@@ -57,8 +57,8 @@ struct Place<BatteryUnit> {
 
 template <typename PartUnit>
 PartDriver<PartUnit>::PartDriver(PartUnit& unit) : unit_(unit) {
-  exchange_.behind_in = untouched;
-  exchange_.behind_out = untouched;
+  exchange_.canary_in = canary;
+  exchange_.canary_out = canary;
 }
 
 template <typename PartUnit>
@@ -95,7 +95,7 @@ int PartDriver<PartUnit>::tell_time(const Inputs& given,
 template <typename PartUnit>
 std::optional<PortFault> PartDriver<PartUnit>::broken_rule(const Inputs& given,
                                                            std::size_t tick) const {
-  if (exchange_.behind_in != untouched || exchange_.behind_out != untouched) {
+  if (exchange_.canary_in != canary || exchange_.canary_out != canary) {
     return PortFault{Kind::protocol, tick,
                      fmt::format("step wrote outside its outputs at tick {}; was the port "
                                  "compiled with another attest_unit.h?",

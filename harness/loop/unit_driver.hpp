@@ -57,9 +57,9 @@ class PartDriver {
   // another layout writes there first.
   struct Exchange {
     Inputs in{};
-    std::array<unsigned char, 64> behind_in;
+    std::array<unsigned char, 64> canary_in;
     Outputs out{};
-    std::array<unsigned char, 64> behind_out;
+    std::array<unsigned char, 64> canary_out;
   };
 
   int tell_time(const Inputs& given, std::optional<std::uint64_t> timestamp_sample_us);

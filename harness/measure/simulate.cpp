@@ -24,9 +24,9 @@ Result<void> write_flown(const Trace& trace, const std::filesystem::path& path) 
 
 Result<CaseResult> simulate_flight(const Case& the_case, FlightPlan plan, PortHost& host,
                                    const std::filesystem::path& out) {
-  CaseResult result = unjudged(the_case, plan.setup);
+  CaseResult result = result_for(the_case, plan.configuration);
   const PortSays& port = host.says();
-  if (has_other_steps(port, the_case, plan.setup.rate, plan.timing, result)) return result;
+  if (has_other_steps(port, the_case, plan.configuration.rate, plan.timing, result)) return result;
   if (declines(port, result)) return result;
   plan.from_one_period_on = has_fixed_step(port, the_case);
   const auto flown = host.fly(plan);

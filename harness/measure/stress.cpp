@@ -25,11 +25,11 @@ Nanoseconds nanoseconds(double microseconds) {
 void summarise(const LiveFlight& flight, const Rate& rate, const RealtimeBudget& budget,
                StressResult& stress) {
   const LiveUnitRecord& unit = flight.unit;
-  stress.latency = spread_of(unit.latency);
-  stress.execution = spread_of(unit.execution);
-  stress.response = spread_of(unit.response);
-  stress.age = spread_of(unit.age);
-  stress.plant = spread_of(flight.plant.latency);
+  stress.latency = percentiles_of(unit.latency);
+  stress.execution = percentiles_of(unit.execution);
+  stress.response = percentiles_of(unit.response);
+  stress.age = percentiles_of(unit.age);
+  stress.plant = percentiles_of(flight.plant.latency);
   stress.ticks = unit.ticks.size();
   stress.deadlines = unit.ticks.size() + unit.skipped;
   stress.misses = deadline_misses(unit.ticks, rate, nanoseconds(budget.p99_latency_us));
@@ -45,13 +45,13 @@ void summarise(const LiveFlight& flight, const Rate& rate, const RealtimeBudget&
   stress.wall = flight.wall;
   stress.unit_usage = unit.usage;
   stress.plant_usage = flight.plant.usage;
-  stress.rights = flight.rights;
+  stress.privileges = flight.privileges;
   stress.slow = slow_ticks(unit.ticks, unit.execution.percentile(0.5));
 }
 
 }  // namespace
 
-Spread spread_of(const Histogram& histogram) {
+Percentiles percentiles_of(const Histogram& histogram) {
   const auto percentile = [&](double part) -> std::optional<Nanoseconds> {
     if (!supports_percentile(histogram.count(), part)) return std::nullopt;
     return histogram.percentile(part);
@@ -68,9 +68,9 @@ Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
                                        const std::function<bool()>& stop,
                                        const std::function<void(const StressProgress&)>& progress) {
   StressMeasurement measured;
-  CaseResult& result = measured.stress.result = unjudged(task.the_case, task.setup);
+  CaseResult& result = measured.stress.result = result_for(task.the_case, task.configuration);
   const PortSays& says = task.port;
-  if (says.fixed_step && *says.fixed_step != task.setup.rate) {
+  if (says.fixed_step && *says.fixed_step != task.configuration.rate) {
     result.verdict = Verdict::unsupported;
     result.reason = fmt::format("the port has a fixed step of {} Hz", says.fixed_step->to_string());
     return measured;
@@ -83,14 +83,14 @@ Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
     return measured;
   }
   progress({{}, true});
-  const Histogram idle = idle_latency(task.setup.rate, task.idle_duration, task.live, stop);
-  auto flight = fly_live(task.the_case, task.setup, *task.airframe, *unit, task.live, checked_ticks,
-                         stop, [&](const LiveProgress& live) {
+  const Histogram idle = idle_latency(task.configuration.rate, task.idle_duration, task.live, stop);
+  auto flight = fly_live(task.the_case, task.configuration, *task.vehicle_model, *unit, task.live,
+                         checked_ticks, stop, [&](const LiveProgress& live) {
                            progress({live, false});
                          });
   if (!flight) return tl::unexpected(flight.error());
-  measured.stress.idle = spread_of(idle);
-  summarise(*flight, task.setup.rate, task.the_case.flight->realtime, measured.stress);
+  measured.stress.idle = percentiles_of(idle);
+  summarise(*flight, task.configuration.rate, task.the_case.flight->realtime, measured.stress);
   measured.flight = *std::move(flight);
   return measured;
 }
@@ -100,7 +100,7 @@ Result<StressResult> judge_live(const StressTask& task, StressMeasurement measur
   if (!measurement.flight) return std::move(stress);
   LiveFlight& flight = *measurement.flight;
   if (!task.record_timing.empty()) {
-    const TimingFile timing{task.the_case.id(), task.the_case.sha256, task.setup,
+    const TimingFile timing{task.the_case.id(), task.the_case.sha256, task.configuration,
                             task.the_case.duration.amount, flight.timing()};
     if (auto written = write_timing(timing, task.record_timing); !written) {
       return tl::unexpected(written.error());

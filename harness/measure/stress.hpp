@@ -21,29 +21,29 @@ namespace attest {
 
 // What a report says of a histogram. A percentile is empty where there are too few samples for it
 // (supports_percentile()); min and max are always there.
-struct Spread {
+struct Percentiles {
   std::uint64_t count = 0;
   Nanoseconds min{0}, max{0};
   std::optional<Nanoseconds> median, p90, p99, p999;
   std::vector<Histogram::Bucket> buckets;
 };
-Spread spread_of(const Histogram& histogram);
+Percentiles percentiles_of(const Histogram& histogram);
 
 struct StressResult {
   // Verdict; ticks, first and tightest are of the outputs, compared with the reference's.
   CaseResult result;
-  Spread idle;  // wake-up latency of a thread with nothing to do: the machine's own floor
-  Spread latency, execution, response, age;  // as of LiveUnitRecord
-  Spread plant;                              // wake-up latency of the plant
-  std::uint64_t deadlines = 0;               // releases: steps that ran, and skipped ones
-  std::uint64_t ticks = 0;                   // steps that ran
-  DeadlineMisses misses;                     // late starts: above RealtimeBudget::p99_latency_us
-  std::uint64_t overruns = 0;                // steps above RealtimeBudget::execution_us
-  std::uint64_t waiting_steps = 0;           // LiveTick::waited
+  Percentiles idle;  // wake-up latency of a thread with nothing to do: the machine's own floor
+  Percentiles latency, execution, response, age;  // as of LiveUnitRecord
+  Percentiles plant;                              // wake-up latency of the plant
+  std::uint64_t deadlines = 0;                    // releases: steps that ran, and skipped ones
+  std::uint64_t ticks = 0;                        // steps that ran
+  DeadlineMisses misses;            // late starts: above RealtimeBudget::p99_latency_us
+  std::uint64_t overruns = 0;       // steps above RealtimeBudget::execution_us
+  std::uint64_t waiting_steps = 0;  // LiveTick::waited
   std::uint64_t plant_steps = 0, plant_late_steps = 0;
   Nanoseconds longest_gap{0}, wall{0};
   Usage unit_usage, plant_usage;
-  std::vector<Right> rights;
+  std::vector<RealtimePrivilege> privileges;
   SlowTicks slow;
   std::optional<Cyclictest> cyclictest;
 
@@ -53,8 +53,8 @@ struct StressResult {
 // One rate of a stress run.
 struct StressTask {
   Case the_case;  // its duration is that of the run
-  Setup setup;
-  std::shared_ptr<const Airframe> airframe;
+  RunConfiguration configuration;
+  std::shared_ptr<const VehicleModel> vehicle_model;
   PortSays port;  // what the port said before
   LiveOptions live;
   Nanoseconds idle_duration{0};

@@ -36,7 +36,7 @@ void send_measured(const StressMeasurement& measured, MessageSocket& parent) {
     parent.send(text_of(head));
     return;
   }
-  const auto& [unit, plant, rights, wall] = *measured.flight;
+  const auto& [unit, plant, privileges, wall] = *measured.flight;
   head["ticks"] = unit.ticks.size();
   head["samples"] = unit.samples.size();
   head["commanded"] = plant.commanded.size();
@@ -95,7 +95,7 @@ void work(const StressTask& task, const std::string& specification, MessageSocke
 
 StressResult gone_wrong(const StressTask& task, Verdict verdict, std::string reason) {
   StressResult stress;
-  stress.result = unjudged(task.the_case, task.setup);
+  stress.result = result_for(task.the_case, task.configuration);
   stress.result.verdict = verdict;
   stress.result.reason = std::move(reason);
   return stress;

@@ -137,12 +137,13 @@ SlowTicks slow_from_json(const json& in) {
 StressResult read(const json& in) {
   StressResult stress;
   numbers_of(stress, Get{in});
-  spreads_of(stress,
-             [&](const char* key, Spread& spread) { members_of_spread(spread, Get{in.at(key)}); });
+  spreads_of(stress, [&](const char* key, Percentiles& spread) {
+    members_of_spread(spread, Get{in.at(key)});
+  });
   members_of_usage(stress.unit_usage, Get{in.at("unit")});
   members_of_usage(stress.plant_usage, Get{in.at("plant")});
-  for (const json& right : in.at("rights")) {
-    stress.rights.push_back({right.at("name"), right.at("got"), right.at("why")});
+  for (const json& right : in.at("privileges")) {
+    stress.privileges.push_back({right.at("name"), right.at("got"), right.at("why")});
   }
   stress.slow = slow_from_json(in.at("slow_steps"));
   return stress;
@@ -154,14 +155,14 @@ json to_json(const StressResult& stress) {
   json out = {{"result", to_json(stress.result)}, {"slow_steps", slow_to_json(stress.slow)}};
   numbers_of(stress, Put{out});
   out["deadline_misses"] = stress.misses.total();
-  spreads_of(stress, [&](const char* key, const Spread& spread) {
+  spreads_of(stress, [&](const char* key, const Percentiles& spread) {
     members_of_spread(spread, Put{out[key]});
   });
   members_of_usage(stress.unit_usage, Put{out["unit"]});
   members_of_usage(stress.plant_usage, Put{out["plant"]});
-  out["rights"] = json::array();
-  for (const auto& [name, got, why] : stress.rights) {
-    out["rights"].push_back({{"name", name}, {"got", got}, {"why", why}});
+  out["privileges"] = json::array();
+  for (const auto& [name, got, why] : stress.privileges) {
+    out["privileges"].push_back({{"name", name}, {"got", got}, {"why", why}});
   }
   if (const auto& cyclictest = stress.cyclictest) {
     out["cyclictest"] = {{"median_ns", cyclictest->median.count()},

@@ -125,7 +125,8 @@ void judge_flight_end(const StressTask& task, const LiveFlight& flight, CaseResu
   const auto reference_port = open_builtin();
   const auto reference = reference_port->create(task.the_case.profile);
   if (!reference) return add_skip(result, how);
-  const auto again = fly(to_the_end, task.setup, *task.airframe, *reference, flight.timing());
+  const auto again =
+      fly(to_the_end, task.configuration, *task.vehicle_model, *reference, flight.timing());
   if (!again) return add_skip(result, how + "; " + again.error().to_string());
   if (again->divergence) return add_skip(result, how + "; the reference loses it too");
   add(result, Verdict::fail, how + "; the reference keeps it at the same times");

@@ -29,11 +29,11 @@ class Trial {
   Trial(const Case& the_case, PortHost& host, CaseResult& result)
       : case_(the_case), host_(host), result_(result) {}
 
-  bool holds(const Setup& setup, Nanoseconds delay) {
+  bool holds(const RunConfiguration& configuration, Nanoseconds delay) {
     if (result_.verdict != Verdict::pass || error_) return false;
-    FlightPlan plan{setup, case_timing(case_, setup.rate)};
+    FlightPlan plan{configuration, case_timing(case_, configuration.rate)};
     const PortSays& port = host_.says();
-    if (has_other_steps(port, case_, setup.rate, plan.timing, result_)) return false;
+    if (has_other_steps(port, case_, configuration.rate, plan.timing, result_)) return false;
     if (declines(port, result_)) return false;
     for (LoopTick& tick : plan.timing) *tick.commanded += delay;
     plan.from_one_period_on = has_fixed_step(port, case_);
@@ -122,24 +122,25 @@ Result<SweepResult> Codec<SweepResult>::decode(const std::string& text) {
 }
 
 Result<void> SweepJob::open() {
-  auto host = start_host(options_, {&case_, airframe_.get()});
+  auto host = start_host(options_, {&case_, vehicle_model_.get()});
   if (!host) return tl::unexpected(host.error());
   host_ = *std::move(host);
   return {};
 }
 
 Result<SweepResult> SweepJob::run(std::size_t task) {
-  const Setup setup{rates_[task == 0 ? 0 : task - 1], flyer_};
-  SweepResult found{unjudged(case_, setup), {}, {}};
+  const RunConfiguration configuration{rates_[task == 0 ? 0 : task - 1], plant_configuration_};
+  SweepResult found{result_for(case_, configuration), {}, {}};
   Trial trial(case_, *host_, found.result);
   if (task == 0) {
     found.lowest_rate_hz = lowest_rate([&](int hertz) {
-      return trial.holds({Rate::hz(hertz), flyer_}, Nanoseconds(0));
+      return trial.holds({Rate::hz(hertz), plant_configuration_}, Nanoseconds(0));
     });
   } else {
-    found.largest_delay_ms = 0.1 * largest_delay([&](int delay) {
-                               return trial.holds(setup, delay * std::chrono::microseconds(100));
-                             });
+    found.largest_delay_ms =
+        0.1 * largest_delay([&](int delay) {
+          return trial.holds(configuration, delay * std::chrono::microseconds(100));
+        });
   }
   if (trial.error()) return tl::unexpected(*trial.error());
   return found;

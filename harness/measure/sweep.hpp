@@ -33,12 +33,12 @@ struct Codec<SweepResult> {
 // hold, and nothing is said of what lies beyond that.
 class SweepJob final : public Job<SweepResult> {
  public:
-  SweepJob(Case the_case, Flyer flyer, std::vector<Rate> rates,
-           std::shared_ptr<const Airframe> airframe, HostOptions options)
+  SweepJob(Case the_case, PlantConfiguration plant_configuration, std::vector<Rate> rates,
+           std::shared_ptr<const VehicleModel> vehicle_model, HostOptions options)
       : case_(std::move(the_case)),
-        flyer_(std::move(flyer)),
+        plant_configuration_(std::move(plant_configuration)),
         rates_(std::move(rates)),
-        airframe_(std::move(airframe)),
+        vehicle_model_(std::move(vehicle_model)),
         options_(std::move(options)) {}
 
   std::size_t size() const override { return rates_.size() + 1; }
@@ -49,9 +49,9 @@ class SweepJob final : public Job<SweepResult> {
 
  private:
   Case case_;
-  Flyer flyer_;
+  PlantConfiguration plant_configuration_;
   std::vector<Rate> rates_;
-  std::shared_ptr<const Airframe> airframe_;
+  std::shared_ptr<const VehicleModel> vehicle_model_;
   HostOptions options_;
   std::unique_ptr<PortHost> host_;
 };

@@ -19,11 +19,11 @@ class Stopwatches {
   Stopwatches(const TimeOptions& options, const HostOptions& host)
       : options_(options), host_options_(host) {}
 
-  Result<VectorTimes> time(const Case& the_case, const Setup& setup) {
+  Result<VectorTimes> time(const Case& the_case, const RunConfiguration& configuration) {
     if (auto started = start(); !started) return tl::unexpected(started.error());
-    VectorTimes times{unjudged(the_case, setup), {}, {}};
+    VectorTimes times{result_for(the_case, configuration), {}, {}};
     if (declines(host_->says(), times.result)) return times;
-    const Trace inputs = stimulate(the_case, setup.rate);
+    const Trace inputs = stimulate(the_case, configuration.rate);
     for (int repeat = 0; repeat < options_.repeats; ++repeat) {
       const bool with_stack = options_.stack && repeat + 1 == options_.repeats;
       auto timed = host_->time_steps(the_case.profile, inputs, with_stack);
@@ -115,10 +115,10 @@ Result<CorpusTimes> time_corpus(const std::vector<SelectedCase>& cases, const Ti
                                 const std::function<void(const CaseResult&)>& on_result) {
   Stopwatches stopwatches(options, host);
   CorpusTimes times{{}, histogram_for(options), {}};
-  for (const auto& [the_case, setups] : cases) {
-    for (const Setup& setup : setups) {
+  for (const auto& [the_case, configurations] : cases) {
+    for (const RunConfiguration& configuration : configurations) {
       if (host.stop()) return times;
-      auto vector = stopwatches.time(the_case, setup);
+      auto vector = stopwatches.time(the_case, configuration);
       if (!vector) return tl::unexpected(vector.error());
       for (const Nanoseconds step : vector->steps) times.steps.add(step);
       on_result(vector->result);

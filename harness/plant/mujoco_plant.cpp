@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
-#include "harness/plant/complaint.hpp"
 #include "harness/plant/model_numbers.hpp"
+#include "harness/plant/simulator_message.hpp"
 
 namespace attest {
 namespace {
@@ -99,9 +99,9 @@ Result<Model> compile(const std::filesystem::path& xml) {
   } catch (const MujocoError& error) {
     return fail_at(xml.string(), "MuJoCo: " + one_line(error.what), line_in(error.what));
   }
-  const std::string complaint = one_line(text[0] ? std::string(text) : warning);
-  if (!model || !complaint.empty()) {
-    return fail_at(xml.string(), "MuJoCo: " + complaint, line_in(complaint));
+  const std::string simulator_message = one_line(text[0] ? std::string(text) : warning);
+  if (!model || !simulator_message.empty()) {
+    return fail_at(xml.string(), "MuJoCo: " + simulator_message, line_in(simulator_message));
   }
   return model;
 }

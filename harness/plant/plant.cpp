@@ -4,25 +4,30 @@
 
 #include <fmt/format.h>
 
-#include "harness/core/nearest.hpp"
+#include "harness/core/suggestion.hpp"
 #include "harness/plant/mujoco_plant.hpp"
 #include "harness/plant/ode_plant.hpp"
 
 namespace attest {
 namespace {
 
-class LoadedAirframe final : public Airframe {
+class LoadedModel final : public VehicleModel {
  public:
-  LoadedAirframe(Vehicle vehicle, std::shared_ptr<const MujocoModel> model)
+  LoadedModel(Vehicle vehicle, std::shared_ptr<const MujocoModel> model)
       : vehicle_(std::move(vehicle)), model_(std::move(model)) {}
 
   const Vehicle& vehicle() const override { return vehicle_; }
 
   Result<std::unique_ptr<Plant>> make_plant(PlantKind kind,
                                             const PlantOptions& options) const override {
-    if (kind == PlantKind::mujoco) return model_->make_plant(vehicle_, options);
-    if (options.floor) return fail("the ode plant has no floor; fly this on mujoco");
-    return make_ode_plant(vehicle_, {});
+    switch (kind) {
+      case PlantKind::mujoco:
+        return model_->make_plant(vehicle_, options);
+      case PlantKind::ode:
+        if (options.floor) return fail("the ode plant has no floor; fly this on mujoco");
+        return make_ode_plant(vehicle_, {});
+    }
+    return fail("a plant that nobody makes");
   }
 
  private:
@@ -32,7 +37,15 @@ class LoadedAirframe final : public Airframe {
 
 }  // namespace
 
-std::string_view name_of(PlantKind kind) { return kind == PlantKind::mujoco ? "mujoco" : "ode"; }
+std::string_view name_of(PlantKind kind) {
+  switch (kind) {
+    case PlantKind::mujoco:
+      return "mujoco";
+    case PlantKind::ode:
+      return "ode";
+  }
+  return "";
+}
 
 Result<PlantKind> parse_plant_kind(std::string_view name) {
   for (const PlantKind kind : plant_kinds) {
@@ -42,8 +55,8 @@ Result<PlantKind> parse_plant_kind(std::string_view name) {
                           suggestion(name, {"mujoco", "ode"})));
 }
 
-Result<std::shared_ptr<const Airframe>> Airframe::load(const std::filesystem::path& models,
-                                                       const std::string& name) {
+Result<std::shared_ptr<const VehicleModel>> VehicleModel::load(const std::filesystem::path& models,
+                                                               const std::string& name) {
   const auto toml = models / (name + ".toml");
   std::error_code ignored;
   if (!std::filesystem::exists(toml, ignored)) {
@@ -55,7 +68,7 @@ Result<std::shared_ptr<const Airframe>> Airframe::load(const std::filesystem::pa
   if (!vehicle) return tl::unexpected(vehicle.error());
   auto model = MujocoModel::load(models / (name + ".xml"), *vehicle);
   if (!model) return tl::unexpected(model.error());
-  return std::make_shared<const LoadedAirframe>(std::move(*vehicle), std::move(*model));
+  return std::make_shared<const LoadedModel>(std::move(*vehicle), std::move(*model));
 }
 
 }  // namespace attest

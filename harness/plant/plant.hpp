@@ -83,18 +83,18 @@ struct PlantOptions {
 
 // A vehicle ready to fly: its numbers, and its model as MuJoCo compiled it, which takes
 // milliseconds and is done once. Immutable; may be shared, also across fork().
-class Airframe {
+class VehicleModel {
  public:
   // Reads models/<name>.toml and models/<name>.xml. Errors, with file and line where there is one:
   // no such vehicle (says which there are), what read_vehicle refuses, XML that MuJoCo refuses, a
   // model that disagrees with its TOML (says in what).
-  static Result<std::shared_ptr<const Airframe>> load(const std::filesystem::path& models,
-                                                      const std::string& name);
-  virtual ~Airframe() = default;
+  static Result<std::shared_ptr<const VehicleModel>> load(const std::filesystem::path& models,
+                                                          const std::string& name);
+  virtual ~VehicleModel() = default;
 
   virtual const Vehicle& vehicle() const = 0;
 
-  // Errors: the ode plant has no floor. The airframe must outlive the plant.
+  // Errors: the ode plant has no floor. The vehicle model must outlive the plant.
   virtual Result<std::unique_ptr<Plant>> make_plant(PlantKind kind,
                                                     const PlantOptions& options) const = 0;
 };

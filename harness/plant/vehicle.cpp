@@ -9,7 +9,7 @@
 
 #include "controller/actuation/mixer.hpp"
 #include "controller/reference/parameters.hpp"
-#include "harness/core/nearest.hpp"
+#include "harness/core/suggestion.hpp"
 #include "harness/core/toml.hpp"
 
 namespace attest {

@@ -9,7 +9,7 @@
 #include "controller/actuation/unit_table.hpp"
 #include "controller/faults/faulty_controller.hpp"
 #include "controller/reference/profile.hpp"
-#include "harness/core/nearest.hpp"
+#include "harness/core/suggestion.hpp"
 
 namespace attest {
 namespace {

@@ -8,7 +8,7 @@
 #include "harness/core/time.hpp"
 #include "harness/loop/actuators.hpp"
 #include "harness/plant/plant.hpp"
-#include "harness/realtime/latest_value.hpp"
+#include "harness/realtime/triple_buffer.hpp"
 
 namespace attest {
 
@@ -33,9 +33,9 @@ struct LiveBattery {
 };
 
 struct Links {
-  LatestValue<LiveState> states;
-  LatestValue<LiveCommand> commands;
-  LatestValue<LiveBattery> batteries;
+  TripleBuffer<LiveState> states;
+  TripleBuffer<LiveCommand> commands;
+  TripleBuffer<LiveBattery> batteries;
   std::atomic<bool> stop{false};  // anyone may say so
   // Of a unit that the estimator triggers: released with each sample of the estimator that is in
   // `states`; the plant's thread has published its last when `all_published` is set.

@@ -25,11 +25,11 @@ void touch_stack() {
   static_cast<void>(pages[0]);
 }
 
-// The body of a real-time thread: claims its rights, gets its memory ready, does its work.
+// The body of a real-time thread: claims its privileges, gets its memory ready, does its work.
 template <typename Work>
-void run_claimed(const ThreadWish& wish, std::vector<Right>& rights, Work&& work) {
+void run_claimed(const ThreadWish& wish, std::vector<RealtimePrivilege>& privileges, Work&& work) {
   const DefaultFloatEnvironment environment;
-  rights = claim(wish);
+  privileges = claim(wish);
   touch_stack();
   work();
 }
@@ -53,36 +53,37 @@ LoopTiming LiveFlight::timing() const {
   return timing;
 }
 
-Result<LiveFlight> fly_live(const Case& the_case, const Setup& setup, const Airframe& airframe,
-                            Unit& unit, const LiveOptions& options, std::size_t samples,
+Result<LiveFlight> fly_live(const Case& the_case, const RunConfiguration& configuration,
+                            const VehicleModel& vehicle_model, Unit& unit,
+                            const LiveOptions& options, std::size_t samples,
                             const std::function<bool()>& stop,
                             const std::function<void(const LiveProgress&)>& progress) {
-  auto plant = plant_for(the_case, setup, airframe);
+  auto plant = plant_for(the_case, configuration, vehicle_model);
   if (!plant) return tl::unexpected(plant.error());
-  const Case scripted = adapted(the_case, airframe.vehicle());
-  const Timeline timeline = timeline_of(scripted, setup.rate);
+  const Case scripted = bound_to_vehicle(the_case, vehicle_model.vehicle());
+  const Timeline timeline = timeline_of(scripted, configuration.rate);
 
-  ProcessRights process;
+  ProcessPrivileges process;
   Links links;
-  PlantTask plant_task(scripted, setup.rate, airframe.vehicle(), **plant);
-  UnitTask unit_task(scripted, setup.rate, airframe.vehicle(), unit,
+  PlantTask plant_task(scripted, configuration.rate, vehicle_model.vehicle(), **plant);
+  UnitTask unit_task(scripted, configuration.rate, vehicle_model.vehicle(), unit,
                      control_state_of(plant_task.state()));
   const Nanoseconds origin = Pacer::now_monotonic() + settle_in;
   Pacer unit_clock(origin, options.wait), plant_clock(origin, Wait{});
-  LiveUnit live_unit(scripted, setup.rate, unit_task, unit_clock, links, samples);
+  LiveUnit live_unit(scripted, configuration.rate, unit_task, unit_clock, links, samples);
   LivePlantPlan plan{
-      physics_of(scripted, setup.rate), timeline.duration, live_unit.deadlines(), {}, {}};
+      physics_of(scripted, configuration.rate), timeline.duration, live_unit.deadlines(), {}, {}};
   if (const auto& battery = scripted.flight->battery) {
     plan.battery_times = task_times(battery->timing, timeline);
   }
-  if (scripted.unit.on_estimate) plan.estimator = setup.rate;
+  if (scripted.unit.on_estimate) plan.estimator = configuration.rate;
   LivePlant live_plant(plant_task, std::move(plan), plant_clock, links);
 
-  std::vector<Right> unit_rights, plant_rights;
+  std::vector<RealtimePrivilege> unit_privileges, plant_privileges;
   std::thread plant_thread(
-      [&] { run_claimed(plant_wish(options), plant_rights, [&] { live_plant.run(); }); });
+      [&] { run_claimed(plant_wish(options), plant_privileges, [&] { live_plant.run(); }); });
   std::thread unit_thread(
-      [&] { run_claimed(unit_wish(options), unit_rights, [&] { live_unit.run(); }); });
+      [&] { run_claimed(unit_wish(options), unit_privileges, [&] { live_unit.run(); }); });
   Pacer here(origin, Wait{});
   here.wait_until(Nanoseconds(0));
   while (!links.stop.load()) {
@@ -93,21 +94,22 @@ Result<LiveFlight> fly_live(const Case& the_case, const Setup& setup, const Airf
   unit_thread.join();
   plant_thread.join();
 
-  LiveFlight flight{live_unit.take_record(), live_plant.take_record(), process.rights(), {}};
+  LiveFlight flight{live_unit.take_record(), live_plant.take_record(), process.privileges(), {}};
   if (!flight.unit.ticks.empty()) flight.wall = flight.unit.ticks.back().begins;
-  flight.rights.insert(flight.rights.end(), unit_rights.begin(), unit_rights.end());
-  std::copy_if(plant_rights.begin(), plant_rights.end(), std::back_inserter(flight.rights),
-               [](const Right& right) { return !right.got; });
+  flight.privileges.insert(flight.privileges.end(), unit_privileges.begin(), unit_privileges.end());
+  std::copy_if(plant_privileges.begin(), plant_privileges.end(),
+               std::back_inserter(flight.privileges),
+               [](const RealtimePrivilege& right) { return !right.got; });
   return flight;
 }
 
 Histogram idle_latency(const Rate& rate, Nanoseconds duration, const LiveOptions& options,
                        const std::function<bool()>& stop) {
   Histogram latency;
-  std::vector<Right> rights;
+  std::vector<RealtimePrivilege> privileges;
   std::thread thread([&] {
-    ProcessRights process;
-    run_claimed(unit_wish(options), rights, [&] {
+    ProcessPrivileges process;
+    run_claimed(unit_wish(options), privileges, [&] {
       Pacer clock(Pacer::now_monotonic() + settle_in, options.wait);
       for (std::int64_t k = 0; rate.tick(k) < duration && !stop(); ++k) {
         const Nanoseconds woke = clock.wait_until(rate.tick(k));

@@ -12,7 +12,7 @@
 #include "harness/realtime/live_plant.hpp"
 #include "harness/realtime/live_unit.hpp"
 #include "harness/realtime/pacer.hpp"
-#include "harness/realtime/rights.hpp"
+#include "harness/realtime/privileges.hpp"
 #include "harness/schedule/loop_timing.hpp"
 
 namespace attest {
@@ -32,8 +32,9 @@ struct LiveProgress {
 struct LiveFlight {
   LiveUnitRecord unit;
   LivePlantRecord plant;
-  std::vector<Right> rights;  // of process and unit; the plant's only where it was refused
-  Nanoseconds wall{0};        // how long the flight was
+  std::vector<RealtimePrivilege>
+      privileges;       // of process and unit; the plant's only where it was refused
+  Nanoseconds wall{0};  // how long the flight was
 
   // When everything happened: what a simulated flight can be flown with again.
   LoopTiming timing() const;
@@ -45,13 +46,14 @@ struct LiveFlight {
 // `samples` ticks. `progress` is called every tenth of a second. A battery is sampled by the
 // plant's thread, and takes into account the command that the motors follow. REQUIRES: a flight; a
 // fresh unit. Errors: as of fly().
-Result<LiveFlight> fly_live(const Case& the_case, const Setup& setup, const Airframe& airframe,
-                            Unit& unit, const LiveOptions& options, std::size_t samples,
+Result<LiveFlight> fly_live(const Case& the_case, const RunConfiguration& configuration,
+                            const VehicleModel& vehicle_model, Unit& unit,
+                            const LiveOptions& options, std::size_t samples,
                             const std::function<bool()>& stop,
                             const std::function<void(const LiveProgress&)>& progress);
 
 // Wake-ups at that rate with nothing to do: the latency of the machine itself, on the unit's CPU
-// and with its rights.
+// and with its privileges.
 Histogram idle_latency(const Rate& rate, Nanoseconds duration, const LiveOptions& options,
                        const std::function<bool()>& stop);
 

@@ -17,9 +17,9 @@ std::string suspect_text(const Suspect& suspect) {
       "      matches on {} of {} ticks, all of {} of {}\n",
       fault.id, with, fault.what, fault.kind, name_of(fault.stage), suspect.matched, suspect.ticks,
       suspect.explained, counted(suspect.failing, "failing vector"));
-  if (suspect.or_else.empty()) return out;
+  if (suspect.ambiguity_group.empty()) return out;
   std::vector<std::string> others;
-  for (const faults::Fault* other : suspect.or_else)
+  for (const faults::Fault* other : suspect.ambiguity_group)
     others.push_back(fmt::format("`{}`", other->id));
   return out + fmt::format("      as well as {}\n", fmt::join(others, ", "));
 }
@@ -31,7 +31,7 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
     return fmt::format(
         "it looks like no mistake of the catalogue; what deviates is most like a mistake in the "
         "stage {}\n  ({:.0f}% of the values, as of `{}`: {})\n",
-        name_of(diagnosis.stage), 100 * diagnosis.alikeness, diagnosis.nearest->id,
+        name_of(diagnosis.stage), 100 * diagnosis.jaccard_index, diagnosis.nearest->id,
         diagnosis.nearest->what);
   }
   std::string out = "it looks like:\n";

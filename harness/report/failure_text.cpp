@@ -95,11 +95,12 @@ std::string first_deviation(const Deviation& deviation, Level level) {
 
 // To watch the flight that failed.
 std::string sim_command(const CaseResult& result, const RunResult& run) {
-  return one_line(fmt::format(
-      "attest sim {} --rate {} --vehicle {} --plant {} --port {} "
-      "--out flown.csv",
-      shell_word(result.case_id()), result.rate.to_string(), shell_word(result.flyer->vehicle),
-      name_of(result.flyer->plant), shell_word(run.port)));
+  return one_line(
+      fmt::format("attest sim {} --rate {} --vehicle {} --plant {} --port {} "
+                  "--out flown.csv",
+                  shell_word(result.case_id()), result.rate.to_string(),
+                  shell_word(result.plant_configuration->vehicle),
+                  name_of(result.plant_configuration->plant), shell_word(run.port)));
 }
 
 }  // namespace
@@ -142,7 +143,7 @@ std::string finding_text(const CaseResult& result, Level level) {
   if (result.first) out += first_deviation(*result.first, level);
   if (result.deviating_ticks > 0) {
     out += fmt::format("  {} of {} deviate\n", result.deviating_ticks,
-                       counted(result.ticks, result.flyer ? "row" : "tick"));
+                       counted(result.ticks, result.plant_configuration ? "row" : "tick"));
   }
   return out;
 }
@@ -155,9 +156,10 @@ std::string failure_text(const CaseResult& result, const RunResult& run) {
   const std::string id = one_line(result.case_id());
   out += fmt::format("  case:      cases/{}.toml\n", id);
   if (result.first && run.command == "run" && run.timing.empty())
-    out += fmt::format("  golden:    golden/{}/{}.csv\n", id, result.setup().label());
+    out += fmt::format("  golden:    golden/{}/{}.csv\n", id, result.configuration().label());
   out += "  reproduce: " + reproduce_command(result, run);
-  if (result.flyer && run.timing.empty()) out += "\n  fly it:    " + sim_command(result, run);
+  if (result.plant_configuration && run.timing.empty())
+    out += "\n  fly it:    " + sim_command(result, run);
   const bool hides = result.verdict == Verdict::crash || result.verdict == Verdict::timeout;
   return hides ? out + "\n  debug:     the same with --in-process, under a debugger" : out;
 }

@@ -56,7 +56,7 @@ ordered_json diagnosis(const Diagnosis& found) {
   ordered_json suspects = ordered_json::array();
   for (const Suspect& suspect : found.suspects) {
     ordered_json others = ordered_json::array();
-    for (const faults::Fault* other : suspect.or_else) others.push_back(other->id);
+    for (const faults::Fault* other : suspect.ambiguity_group) others.push_back(other->id);
     suspects.push_back({{"fault", suspect.fault->id},
                         {"stage", name_of(suspect.fault->stage)},
                         {"what", suspect.fault->what},
@@ -64,14 +64,14 @@ ordered_json diagnosis(const Diagnosis& found) {
                         {"matched_ticks", suspect.matched},
                         {"ticks", suspect.ticks},
                         {"explained_vectors", suspect.explained},
-                        {"or_else", others}});
+                        {"ambiguity_group", others}});
     if (suspect.with) suspects.back()["with"] = suspect.with->id;
   }
   return {{"stage", name_of(found.stage)},
           {"vectors", found.vectors},
           {"failing_vectors", found.failing},
           {"suspects", suspects},
-          {"nearest", {{"fault", found.nearest->id}, {"alikeness", found.alikeness}}}};
+          {"nearest", {{"fault", found.nearest->id}, {"jaccard_index", found.jaccard_index}}}};
 }
 
 ordered_json claims(const RunResult& run) {

@@ -140,7 +140,7 @@ std::string failure_content(const CaseResult& result, const RunResult& run,
 
 void add_result(pugi::xml_node suite, const CaseResult& result, const RunResult& run,
                 const std::optional<Diagnosis>& diagnosis) {
-  const std::string name = one_line(result.name + "@" + result.setup().label());
+  const std::string name = one_line(result.name + "@" + result.configuration().label());
   const pugi::xml_node test = add_test(suite, suite_name(result), name, result.elapsed_s);
   const Outcome outcome = outcome_of(result.verdict);
   if (outcome == Outcome::passed) return;

@@ -20,7 +20,7 @@ std::string percentile(const std::optional<Nanoseconds>& time) {
   return time ? human_time(*time) : "-";
 }
 
-std::string row(std::string_view name, const Spread& spread) {
+std::string row(std::string_view name, const Percentiles& spread) {
   if (spread.count == 0) return "";
   return fmt::format("  {:<22}{:>10}{:>10}{:>10}{:>10}{:>10}\n", name, percentile(spread.median),
                      percentile(spread.p90), percentile(spread.p99), percentile(spread.p999),
@@ -124,9 +124,9 @@ std::string render_stress(const StressResult& stress, TerminalStyle style) {
   return out + "\n";
 }
 
-std::string render_rights(const std::vector<Right>& rights) {
+std::string render_privileges(const std::vector<RealtimePrivilege>& privileges) {
   std::vector<std::string> got, refused;
-  for (const auto& [name, has, why] : rights) {
+  for (const auto& [name, has, why] : privileges) {
     (has ? got : refused).push_back(has ? name : fmt::format("{} ({})", name, why));
   }
   std::string out =

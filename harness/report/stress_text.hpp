@@ -30,7 +30,7 @@ std::vector<std::string> rates_not_judged(const StressRun& run);
 std::string render_stress(const StressResult& stress, TerminalStyle style);
 
 // What was got and refused of the operating system; the last line, with the totals.
-std::string render_rights(const std::vector<Right>& rights);
+std::string render_privileges(const std::vector<RealtimePrivilege>& privileges);
 std::string render_stress_end(const StressRun& run, TerminalStyle style);
 
 // The same for the common reports: what JUnit is made of.

@@ -18,8 +18,8 @@ std::string csv_cell(double value) { return value < 0 ? "" : fmt::format("{:g}",
 std::vector<SweepRow> sweep_rows(const std::vector<SweepResult>& results) {
   std::vector<SweepRow> rows;
   for (const auto& [result, lowest_rate_hz, largest_delay_ms] : results) {
-    if (rows.empty() || rows.back().flyer != *result.flyer) {
-      rows.push_back({*result.flyer, -1, {}, {}});
+    if (rows.empty() || rows.back().plant_configuration != *result.plant_configuration) {
+      rows.push_back({*result.plant_configuration, -1, {}, {}});
     }
     SweepRow& row = rows.back();
     if (result.verdict != Verdict::pass && row.failure.empty()) {
@@ -36,8 +36,8 @@ std::string render_sweep(const std::vector<SweepRow>& rows, const std::vector<Ra
   for (const Rate& rate : rates) out += fmt::format("{:>14}", "at " + rate.to_string() + " Hz");
   out += "\n";
   for (const SweepRow& row : rows) {
-    out += fmt::format("{:<14}{:<8}{:>12}", row.flyer.vehicle, name_of(row.flyer.plant),
-                       cell(row.lowest_rate_hz, "Hz"));
+    out += fmt::format("{:<14}{:<8}{:>12}", row.plant_configuration.vehicle,
+                       name_of(row.plant_configuration.plant), cell(row.lowest_rate_hz, "Hz"));
     for (const double delay : row.largest_delay_ms) out += fmt::format("{:>14}", cell(delay, "ms"));
     if (!row.failure.empty()) out += "  " + row.failure;
     out += "\n";
@@ -49,9 +49,9 @@ std::string sweep_csv(const std::vector<SweepRow>& rows, const std::vector<Rate>
   std::string out = "vehicle,plant,rate_hz,largest_delay_ms,lowest_rate_hz\n";
   for (const SweepRow& row : rows) {
     for (std::size_t i = 0; i < row.largest_delay_ms.size(); ++i) {
-      out += fmt::format("{},{},{:g},{},{}\n", row.flyer.vehicle, name_of(row.flyer.plant),
-                         rates[i].hertz(), csv_cell(row.largest_delay_ms[i]),
-                         csv_cell(row.lowest_rate_hz));
+      out += fmt::format("{},{},{:g},{},{}\n", row.plant_configuration.vehicle,
+                         name_of(row.plant_configuration.plant), rates[i].hertz(),
+                         csv_cell(row.largest_delay_ms[i]), csv_cell(row.lowest_rate_hz));
     }
   }
   return out;

@@ -55,7 +55,7 @@ std::string header(const RunResult& run) {
 
 // Where else a case fails alike: rates, or how many more flights.
 std::string others(const Together& group) {
-  if (group.front()->flyer) return "in " + counted(group.size() - 1, "more flight");
+  if (group.front()->plant_configuration) return "in " + counted(group.size() - 1, "more flight");
   std::vector<std::string> rates;
   for (const CaseResult* result : group) rates.push_back(result->rate.to_string());
   rates.erase(rates.begin());

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "harness/core/nearest.hpp"
+#include "harness/core/suggestion.hpp"
 #include "harness/trace/csv_rows.hpp"
 
 namespace attest {

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "harness/core/file.hpp"
-#include "harness/core/nearest.hpp"
+#include "harness/core/suggestion.hpp"
 #include "harness/core/toml.hpp"
 
 namespace attest {

@@ -19,7 +19,7 @@ Result<CaseResult> Codec<CaseResult>::decode(const std::string& text) {
 }
 
 Result<void> CaseJob::open() {
-  auto host = start_host(options_, {&case_, airframe_.get()});
+  auto host = start_host(options_, {&case_, vehicle_model_.get()});
   if (!host) return tl::unexpected(host.error());
   host_ = *std::move(host);
   auto golden = Golden::open(golden_root_, case_);
@@ -29,32 +29,36 @@ Result<void> CaseJob::open() {
 }
 
 Result<CaseResult> CaseJob::run(std::size_t task) {
-  const Setup& setup = setups_[task];
-  if (!airframe_) return evaluate_case(case_, setup.rate, *golden_, *host_, level_);
-  return evaluate_flight(case_, setup, *airframe_, *golden_, *host_);
+  const RunConfiguration& configuration = configurations_[task];
+  if (!vehicle_model_) return evaluate_case(case_, configuration.rate, *golden_, *host_, level_);
+  return evaluate_flight(case_, configuration, *vehicle_model_, *golden_, *host_);
 }
 
 Result<CaseResult> TimedJob::run(std::size_t) {
-  const auto host = start_host(options_, {&case_, airframe_.get()});
+  const auto host = start_host(options_, {&case_, vehicle_model_.get()});
   if (!host) return tl::unexpected(host.error());
-  return evaluate_timed_flight(case_, timing_.setup, *airframe_, timing_.ticks, **host);
+  return evaluate_timed_flight(case_, timing_.configuration, *vehicle_model_, timing_.ticks,
+                               **host);
 }
 
 Result<Jobs<CaseResult>> case_jobs(const std::vector<SelectedCase>& cases,
-                                   const std::filesystem::path& golden_root, Fleet& fleet,
-                                   Level level, const HostOptions& options) {
+                                   const std::filesystem::path& golden_root,
+                                   VehicleModels& vehicle_models, Level level,
+                                   const HostOptions& options) {
   Jobs<CaseResult> jobs;
-  for (const auto& [the_case, setups] : cases) {
-    for (auto begin = setups.begin(); begin != setups.end();) {
-      const auto end = std::find_if(
-          begin, setups.end(), [&](const Setup& setup) { return setup.flyer != begin->flyer; });
-      std::shared_ptr<const Airframe> airframe;
-      if (begin->flyer) {
-        auto loaded = fleet.get(begin->flyer->vehicle);
+  for (const auto& [the_case, configurations] : cases) {
+    for (auto begin = configurations.begin(); begin != configurations.end();) {
+      const auto end =
+          std::find_if(begin, configurations.end(), [&](const RunConfiguration& configuration) {
+            return configuration.plant_configuration != begin->plant_configuration;
+          });
+      std::shared_ptr<const VehicleModel> vehicle_model;
+      if (begin->plant_configuration) {
+        auto loaded = vehicle_models.get(begin->plant_configuration->vehicle);
         if (!loaded) return tl::unexpected(loaded.error());
-        airframe = *loaded;
+        vehicle_model = *loaded;
       }
-      jobs.push_back(std::make_unique<CaseJob>(the_case, std::vector(begin, end), airframe,
+      jobs.push_back(std::make_unique<CaseJob>(the_case, std::vector(begin, end), vehicle_model,
                                                golden_root, level, options));
       begin = end;
     }

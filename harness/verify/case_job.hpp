@@ -15,7 +15,7 @@
 #include "harness/golden/golden.hpp"
 #include "harness/host/port_process.hpp"
 #include "harness/loop/timing_file.hpp"
-#include "harness/plant/fleet.hpp"
+#include "harness/plant/vehicle_models.hpp"
 #include "harness/verify/verdict.hpp"
 #include "harness/workers/job.hpp"
 
@@ -27,21 +27,23 @@ struct Codec<CaseResult> {
   static Result<CaseResult> decode(const std::string& text);
 };
 
-// A case in some of its setups: any of an open-loop case, or those of one flyer. The port has a
-// process of its own, which is started before the golden is read.
+// A case in some of its configurations: any of an open-loop case, or those of one
+// plant configuration. The port has a process of its own, which is started before the golden is
+// read.
 class CaseJob final : public Job<CaseResult> {
  public:
-  // `airframe` is the flyer's; null for open loop.
-  CaseJob(Case the_case, std::vector<Setup> setups, std::shared_ptr<const Airframe> airframe,
-          std::filesystem::path golden_root, Level level, HostOptions options)
+  // `vehicle_model` is the plant configuration's; null for open loop.
+  CaseJob(Case the_case, std::vector<RunConfiguration> configurations,
+          std::shared_ptr<const VehicleModel> vehicle_model, std::filesystem::path golden_root,
+          Level level, HostOptions options)
       : case_(std::move(the_case)),
-        setups_(std::move(setups)),
-        airframe_(std::move(airframe)),
+        configurations_(std::move(configurations)),
+        vehicle_model_(std::move(vehicle_model)),
         golden_root_(std::move(golden_root)),
         level_(level),
         options_(std::move(options)) {}
 
-  std::size_t size() const override { return setups_.size(); }
+  std::size_t size() const override { return configurations_.size(); }
   Result<void> open() override;
   Result<CaseResult> run(std::size_t task) override;
   bool is_spent() const override { return host_->is_spent(); }
@@ -49,8 +51,8 @@ class CaseJob final : public Job<CaseResult> {
 
  private:
   Case case_;
-  std::vector<Setup> setups_;
-  std::shared_ptr<const Airframe> airframe_;
+  std::vector<RunConfiguration> configurations_;
+  std::shared_ptr<const VehicleModel> vehicle_model_;
   std::filesystem::path golden_root_;
   Level level_;
   HostOptions options_;
@@ -61,11 +63,11 @@ class CaseJob final : public Job<CaseResult> {
 // A flight at recorded times.
 class TimedJob final : public Job<CaseResult> {
  public:
-  TimedJob(Case the_case, TimingFile timing, std::shared_ptr<const Airframe> airframe,
+  TimedJob(Case the_case, TimingFile timing, std::shared_ptr<const VehicleModel> vehicle_model,
            HostOptions options)
       : case_(std::move(the_case)),
         timing_(std::move(timing)),
-        airframe_(std::move(airframe)),
+        vehicle_model_(std::move(vehicle_model)),
         options_(std::move(options)) {}
 
   std::size_t size() const override { return 1; }
@@ -74,15 +76,16 @@ class TimedJob final : public Job<CaseResult> {
  private:
   Case case_;
   TimingFile timing_;
-  std::shared_ptr<const Airframe> airframe_;
+  std::shared_ptr<const VehicleModel> vehicle_model_;
   HostOptions options_;
 };
 
-// The jobs of the cases that were selected, in order: one for an open-loop case, one a flyer for a
-// flight, so that long flights are shared among the workers. Errors: a vehicle that cannot be
-// loaded.
+// The jobs of the cases that were selected, in order: one for an open-loop case, one a
+// plant configuration for a flight, so that long flights are shared among the workers. Errors: a
+// vehicle that cannot be loaded.
 Result<Jobs<CaseResult>> case_jobs(const std::vector<SelectedCase>& cases,
-                                   const std::filesystem::path& golden_root, Fleet& fleet,
-                                   Level level, const HostOptions& options);
+                                   const std::filesystem::path& golden_root,
+                                   VehicleModels& vehicle_models, Level level,
+                                   const HostOptions& options);
 
 }  // namespace attest

@@ -6,8 +6,8 @@
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/compare/events.hpp"
+#include "harness/golden/branch_alternatives.hpp"
 #include "harness/golden/keyframes.hpp"
-#include "harness/golden/other_side.hpp"
 #include "harness/host/host_here.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/port/builtin.hpp"
@@ -21,7 +21,7 @@ namespace {
 
 // Drives a fresh unit through `answered`, whose inputs are those of `want`, and compares. Where
 // there are other sides they are as right; the exact level is the law's.
-void run_and_judge(Trace& answered, const Trace& want, const OtherSides& others,
+void run_and_judge(Trace& answered, const Trace& want, const BranchAlternatives& others,
                    const Subject& subject, PortHost& host, const Tolerances& tolerances,
                    const Tolerances& of_sides, CaseResult& result) {
   if (declines(host.says(), result)) return;
@@ -41,7 +41,7 @@ void run_and_judge(Trace& answered, const Trace& want, const OtherSides& others,
 struct Prepared {
   Trace answered;  // inputs only, so far
   Trace want;
-  OtherSides other_sides;
+  BranchAlternatives branch_alternatives;
 };
 
 Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& golden) {
@@ -65,7 +65,7 @@ Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& g
                                "it anew, or restore it from version control",
                                *tick, the_case.file.string()));
   }
-  auto others = golden.read_other_sides({rate, std::nullopt});
+  auto others = golden.read_branch_alternatives({rate, std::nullopt});
   if (!others) return tl::unexpected(others.error());
   return Prepared{std::move(made), std::move(*want), std::move(*others)};
 }
@@ -89,25 +89,25 @@ Result<Prepared> prepare_from_one_period_on(const Case& the_case, const Rate& ra
     return fail_at(the_case.file.string(), "the reference: " + fault->what);
   }
   if (!begun.either_side.any()) return prepared;
-  auto others = other_sides(begun, prepared.want);
+  auto others = branch_alternatives(begun, prepared.want);
   if (!others) return tl::unexpected(others.error());
-  prepared.other_sides = std::move(*others);
+  prepared.branch_alternatives = std::move(*others);
   return prepared;
 }
 
 }  // namespace
 
-CaseResult unjudged(const Case& the_case, const Setup& setup) {
+CaseResult result_for(const Case& the_case, const RunConfiguration& configuration) {
   CaseResult result;
   result.profile = the_case.profile;
   result.group = the_case.group;
   result.name = the_case.name;
-  result.rate = setup.rate;
-  result.flyer = setup.flyer;
+  result.rate = configuration.rate;
+  result.plant_configuration = configuration.plant_configuration;
   return result;
 }
 
-CaseResult unjudged(const Trace& recorded, const std::string& profile) {
+CaseResult result_for(const Trace& recorded, const std::string& profile) {
   CaseResult result;
   result.profile = profile;
   result.name = recorded.source;
@@ -117,7 +117,7 @@ CaseResult unjudged(const Trace& recorded, const std::string& profile) {
 Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const Golden& golden,
                                  PortHost& host, Level level) {
   const Stopwatch stopwatch;
-  CaseResult result = unjudged(the_case, {rate, std::nullopt});
+  CaseResult result = result_for(the_case, {rate, std::nullopt});
   if (the_case.exact_only && level != Level::exact) {
     result.verdict = Verdict::skip;
     result.reason = exact_level_only;
@@ -133,8 +133,8 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
   if (numeric_for_exact || numeric_for_events) level = Level::numeric;
   const auto bits = host.says().fraction_bits;
   const std::size_t ticks = prepared->answered.samples.size();
-  run_and_judge(prepared->answered, prepared->want, prepared->other_sides, subject_of(the_case),
-                host, tolerances_of(the_case, level, bits, ticks),
+  run_and_judge(prepared->answered, prepared->want, prepared->branch_alternatives,
+                subject_of(the_case), host, tolerances_of(the_case, level, bits, ticks),
                 tolerances_of(the_case, Level::numeric, bits, ticks), result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
@@ -143,7 +143,7 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
 CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHost& host,
                           const Tolerances& tolerances) {
   const Stopwatch stopwatch;
-  CaseResult result = unjudged(recorded, subject.profile);
+  CaseResult result = result_for(recorded, subject.profile);
   if (subject.part == Part::mc_att_control && has_other_steps(host.says(), recorded, result)) {
     return result;
   }

@@ -150,7 +150,7 @@ namespace {
 Result<CaseResult> evaluate_with(const Case& the_case, const FlightPlan& plan,
                                  const ReferenceFlight& reference, PortHost& host) {
   const Stopwatch stopwatch;
-  CaseResult result = unjudged(the_case, plan.setup);
+  CaseResult result = result_for(the_case, plan.configuration);
   if (declines(host.says(), result)) return result;
   const auto flown = host.fly(plan);
   if (!flown) return tl::unexpected(flown.error());
@@ -172,19 +172,19 @@ Result<CaseResult> evaluate_with(const Case& the_case, const FlightPlan& plan,
 // Of a port with a fixed step (fixed_step.hpp): compared with the reference from one period after
 // zero on. Errors: the reference does not agree with the golden.
 Result<CaseResult> evaluate_from_one_period_on(const Case& the_case, FlightPlan plan,
-                                               const Airframe& airframe,
+                                               const VehicleModel& vehicle_model,
                                                const ReferenceFlight& golden, PortHost& host) {
-  HostHere builtin(open_builtin(), {}, {&the_case, &airframe});
+  HostHere builtin(open_builtin(), {}, {&the_case, &vehicle_model});
   const auto checked = evaluate_with(the_case, plan, golden, builtin);
   if (!checked) return tl::unexpected(checked.error());
   if (checked->verdict != Verdict::pass) {
     return fail_at(the_case.file.string(),
                    fmt::format("at {}, the reference of this attest does not agree with the "
                                "golden, which therefore cannot be shifted: {}",
-                               plan.setup.label(), checked->reason));
+                               plan.configuration.label(), checked->reason));
   }
   const Case begun = the_case.from_one_period_on();
-  const auto reference = reference_flight(begun, plan.setup, airframe, plan.timing);
+  const auto reference = reference_flight(begun, plan.configuration, vehicle_model, plan.timing);
   if (!reference) return tl::unexpected(reference.error());
   plan.from_one_period_on = true;
   return evaluate_with(begun, plan, *reference, host);
@@ -192,27 +192,30 @@ Result<CaseResult> evaluate_from_one_period_on(const Case& the_case, FlightPlan 
 
 }  // namespace
 
-Result<CaseResult> evaluate_flight(const Case& the_case, const Setup& setup,
-                                   const Airframe& airframe, const Golden& golden, PortHost& host) {
-  const auto reference = golden.read_flight(setup, airframe.vehicle());
+Result<CaseResult> evaluate_flight(const Case& the_case, const RunConfiguration& configuration,
+                                   const VehicleModel& vehicle_model, const Golden& golden,
+                                   PortHost& host) {
+  const auto reference = golden.read_flight(configuration, vehicle_model.vehicle());
   if (!reference) return tl::unexpected(reference.error());
-  const FlightPlan plan{setup, case_timing(the_case, setup.rate)};
+  const FlightPlan plan{configuration, case_timing(the_case, configuration.rate)};
   if (!has_fixed_step(host.says(), the_case)) {
     return evaluate_with(the_case, plan, *reference, host);
   }
-  CaseResult result = unjudged(the_case, setup);
-  if (has_other_steps(host.says(), the_case, setup.rate, plan.timing, result)) return result;
-  return evaluate_from_one_period_on(the_case, plan, airframe, *reference, host);
+  CaseResult result = result_for(the_case, configuration);
+  if (has_other_steps(host.says(), the_case, configuration.rate, plan.timing, result))
+    return result;
+  return evaluate_from_one_period_on(the_case, plan, vehicle_model, *reference, host);
 }
 
-Result<CaseResult> evaluate_timed_flight(const Case& the_case, const Setup& setup,
-                                         const Airframe& airframe, const LoopTiming& timing,
-                                         PortHost& host) {
-  CaseResult result = unjudged(the_case, setup);
-  if (has_other_steps(host.says(), the_case, setup.rate, timing, result)) return result;
-  const FlightPlan plan{setup, timing, has_fixed_step(host.says(), the_case)};
+Result<CaseResult> evaluate_timed_flight(const Case& the_case,
+                                         const RunConfiguration& configuration,
+                                         const VehicleModel& vehicle_model,
+                                         const LoopTiming& timing, PortHost& host) {
+  CaseResult result = result_for(the_case, configuration);
+  if (has_other_steps(host.says(), the_case, configuration.rate, timing, result)) return result;
+  const FlightPlan plan{configuration, timing, has_fixed_step(host.says(), the_case)};
   Case relaxed = plan.from_one_period_on ? the_case.from_one_period_on() : the_case;
-  const auto reference = reference_flight(relaxed, setup, airframe, timing);
+  const auto reference = reference_flight(relaxed, configuration, vehicle_model, timing);
   if (!reference) return tl::unexpected(reference.error());
   for (Metric& metric : relaxed.flight->metrics) {
     const double value = reference->metrics.at(metric.name);

@@ -15,7 +15,7 @@
 namespace attest {
 
 struct ExpectedFailure {
-  std::string pattern;  // shell pattern of ids, as --filter, or of ids without the setup
+  std::string pattern;  // shell pattern of ids, as --filter, or of ids without the configuration
   std::string reason;
 };
 
@@ -36,8 +36,8 @@ class ExpectedFailures {
   std::vector<ExpectedFailure> entries_;
 };
 
-// The file for what fails in this run: one entry a case when it fails at all its setups and all
-// were run, else one a setup.
+// The file for what fails in this run: one entry a case when it fails at all its configurations and
+// all were run, else one a configuration.
 std::string expected_failures_of(const RunResult& run);
 
 }  // namespace attest

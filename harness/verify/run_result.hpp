@@ -33,7 +33,7 @@ struct RunResult {
   Level level = Level::numeric;
   std::vector<Rate> rates;  // selected, ascending
   std::string selection;    // the options that selected less than all: "--group tpa"; or empty
-  bool all_setups = false;  // of each case that was selected, all were
+  bool all_configurations = false;  // of each case that was selected, all were
   // "profile/group" -> how many cases the suite has at each rate, selected or not.
   std::map<std::string, std::map<Rate, std::size_t>> suite;
   std::string cases_version = "unversioned", golden_version = "unversioned";  // of the suite

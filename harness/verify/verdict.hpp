@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/casefile/setup.hpp"
+#include "harness/casefile/run_configuration.hpp"
 #include "harness/compare/compare.hpp"
 #include "harness/compare/metric.hpp"
 #include "harness/schedule/rate.hpp"
@@ -55,7 +55,7 @@ struct CaseResult {
   std::string group;    // "attitude"
   std::string name;     // "roll_30": with profile and group, the stem in cases/ and golden/
   Rate rate = Rate::hz(1);
-  std::optional<Flyer> flyer;  // of a flight
+  std::optional<PlantConfiguration> plant_configuration;  // of a flight
   Verdict verdict = Verdict::pass;
   std::string reason;     // one line; empty for a plain pass
   std::size_t ticks = 0;  // compared
@@ -66,10 +66,10 @@ struct CaseResult {
   double elapsed_s = 0;  // of wall time, for JUnit only: everything else is deterministic
 
   std::string case_id() const { return profile + "/" + group + "/" + name; }
-  Setup setup() const { return {rate, flyer}; }
+  RunConfiguration configuration() const { return {rate, plant_configuration}; }
   // "px4-v1.5.5/attitude/roll_30@250hz", "px4-v1.5.5/flight/hover@250hz-iris-ode": what --filter
   // matches and what a report names.
-  std::string id() const { return case_id() + "@" + setup().label(); }
+  std::string id() const { return case_id() + "@" + configuration().label(); }
 };
 
 }  // namespace attest

@@ -163,12 +163,12 @@ MetricResult metric_from(Reader reader) {
   return out;
 }
 
-Flyer flyer_from(Reader reader) {
-  Flyer flyer{reader.text("vehicle"), PlantKind::mujoco};
+PlantConfiguration plant_configuration_from(Reader reader) {
+  PlantConfiguration plant_configuration{reader.text("vehicle"), PlantKind::mujoco};
   const auto plant = parse_plant_kind(reader.text("plant"));
   if (!plant) reader.wrong(plant.error().message);
-  if (plant) flyer.plant = *plant;
-  return flyer;
+  if (plant) plant_configuration.plant = *plant;
+  return plant_configuration;
 }
 
 Headroom headroom_from(Reader reader) {
@@ -192,9 +192,9 @@ nlohmann::json to_json(const CaseResult& result) {
   };
   if (result.first) out["first"] = deviation_to_json(*result.first);
   if (result.tightest) out["tightest"] = headroom_to_json(*result.tightest);
-  if (result.flyer) {
-    out["vehicle"] = valid_utf8(result.flyer->vehicle);
-    out["plant"] = name_of(result.flyer->plant);
+  if (result.plant_configuration) {
+    out["vehicle"] = valid_utf8(result.plant_configuration->vehicle);
+    out["plant"] = name_of(result.plant_configuration->plant);
   }
   for (const MetricResult& metric : result.metrics) {
     out["metrics"].push_back(metric_to_json(metric));
@@ -224,7 +224,7 @@ Result<CaseResult> case_result_from_json(const nlohmann::json& json) {
     reader.wrong(rate.error().message);
   if (reader.has("first")) out.first = deviation_from({reader.member("first"), error});
   if (reader.has("tightest")) out.tightest = headroom_from({reader.member("tightest"), error});
-  if (reader.has("vehicle")) out.flyer = flyer_from({json, error});
+  if (reader.has("vehicle")) out.plant_configuration = plant_configuration_from({json, error});
   if (reader.has("metrics")) {
     for (const auto& metric : reader.member("metrics")) {
       out.metrics.push_back(metric_from({metric, error}));

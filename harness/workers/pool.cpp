@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <poll.h>
 
 #include "harness/process/child.hpp"
@@ -105,6 +106,8 @@ class Pool {
 }  // namespace
 
 Result<std::size_t> run_in_workers(const std::vector<Work>& work, const PoolOptions& options) {
+  // What is free here would be copied page by page by each process that uses it again.
+  ::malloc_trim(0);
   return Pool(work, options).run();
 }
 

@@ -44,7 +44,7 @@ class ParseFlight : public testing::Test {
 TEST_F(ParseFlight, EveryVehicleFliesOnEveryPlantTheLeadAtAllRates) {
   const Case parsed = case_of(std::string("[flight]\n") + metrics);
   std::vector<std::string> labels;
-  for (const auto& setup : parsed.setups()) labels.push_back(setup.label());
+  for (const auto& configuration : parsed.configurations()) labels.push_back(configuration.label());
   ASSERT_EQ(labels.size(), 2 * (11 + 3));
   EXPECT_EQ(labels.front(), "100hz-bee-mujoco");
   EXPECT_EQ(labels[3], "100hz-bee-ode");
@@ -56,7 +56,7 @@ TEST_F(ParseFlight, AChoiceOfVehiclesOrPlantsSaysWhy) {
   const Flight flight = flight_of(
       "vehicles = [\"bee\"]\nvehicles_why = \"small\"\nplants = [\"ode\"]\nplants_why = \"exact\"\n"
       "other_rates_hz = [250, 100]\n");
-  EXPECT_THAT(flight.flyers, ElementsAre(Flyer{"bee", PlantKind::ode}));
+  EXPECT_THAT(flight.plant_configurations, ElementsAre(PlantConfiguration{"bee", PlantKind::ode}));
   EXPECT_EQ(flight.lead_vehicle, "bee");
   EXPECT_THAT(flight.other_rates, ElementsAre(Rate::hz(100), Rate::hz(250)));
   EXPECT_THAT(flight_error("vehicles = [\"bee\"]\n"), HasSubstr("vehicles_why"));

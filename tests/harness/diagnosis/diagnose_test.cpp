@@ -12,7 +12,7 @@ namespace attest {
 namespace {
 
 // Vectors of a few cases for a port with these faults.
-std::vector<VectorLikeness> vectors(const char* faults) {
+std::vector<VectorSimilarity> vectors(const char* faults) {
   SmallSuite suite;
   suite.add_unblessed("level", "");
   suite.add_unblessed("tilt",
@@ -23,7 +23,7 @@ std::vector<VectorLikeness> vectors(const char* faults) {
   suite.add_unblessed("thrust",
                       "[parameters]\nMC_TPA_BREAK = 0.3\n[control_state]\nroll_rate = 0.3\n"
                       "[vehicle_attitude_setpoint]\nthrust = 0.8\n");
-  std::vector<VectorLikeness> all;
+  std::vector<VectorSimilarity> all;
   for (std::size_t i = 0; i < 4; ++i) {
     Trace law = stimulate(suite[i], Rate::hz(250));
     Trace got = law;
@@ -32,7 +32,7 @@ std::vector<VectorLikeness> vectors(const char* faults) {
     const auto port = open_fault(faults);
     drive(*(*port)->create("px4-v1.5.5"), got);
     all.push_back(
-        likeness(outputs_of(got), outputs_of(law), answers_of_faults(law, {"px4-v1.5.5"})));
+        similarity(outputs_of(got), outputs_of(law), answers_of_faults(law, {"px4-v1.5.5"})));
   }
   return all;
 }
@@ -65,9 +65,9 @@ TEST(Diagnose, NamesBothOfTwo) {
 
 // A port that answers nothing of the catalogue still deviates somewhere.
 TEST(Diagnose, WithoutASuspectTheStageIsWhereDeviationsLie) {
-  std::vector<VectorLikeness> all = vectors("yaw-weight-dropped");
-  for (VectorLikeness& vector : all) {
-    for (Likeness& one : vector.likenesses) {
+  std::vector<VectorSimilarity> all = vectors("yaw-weight-dropped");
+  for (VectorSimilarity& vector : all) {
+    for (Similarity& one : vector.similarities) {
       if (one.matched == vector.ticks && vector.deviates) --one.matched;
     }
   }
@@ -75,7 +75,7 @@ TEST(Diagnose, WithoutASuspectTheStageIsWhereDeviationsLie) {
   ASSERT_TRUE(diagnosis);
   EXPECT_TRUE(diagnosis->suspects.empty());
   EXPECT_EQ(diagnosis->stage, faults::Stage::yaw);
-  EXPECT_EQ(diagnosis->alikeness, 1);
+  EXPECT_EQ(diagnosis->jaccard_index, 1);
 }
 
 }  // namespace

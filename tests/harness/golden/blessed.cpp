@@ -11,12 +11,12 @@ namespace attest {
 std::vector<GoldenTrace> answers_of_reference(const Case& the_case) {
   const auto port = open_port("builtin");
   std::vector<GoldenTrace> traces;
-  for (const Setup& setup : the_case.setups()) {
-    Trace trace = stimulate(the_case, setup.rate);
+  for (const RunConfiguration& configuration : the_case.configurations()) {
+    Trace trace = stimulate(the_case, configuration.rate);
     const auto unit = (*port)->create(the_case.profile);
     const auto fault = drive(*unit, trace);
     EXPECT_FALSE(fault) << fault->what;
-    traces.push_back({setup, std::move(trace)});
+    traces.push_back({configuration, std::move(trace)});
   }
   return traces;
 }

@@ -9,7 +9,7 @@
 
 namespace attest {
 
-// What the reference answers in each of the case's setups. REQUIRES: open loop.
+// What the reference answers in each of the case's configurations. REQUIRES: open loop.
 std::vector<GoldenTrace> answers_of_reference(const Case& the_case);
 
 // Puts the golden in its place. Fails the test if it cannot. REQUIRES: that of the case's first

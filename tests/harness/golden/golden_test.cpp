@@ -20,7 +20,7 @@ using testing::UnorderedElementsAre;
 
 namespace fs = std::filesystem;
 
-Setup at(std::int64_t hertz) { return {Rate::hz(hertz), std::nullopt}; }
+RunConfiguration at(std::int64_t hertz) { return {Rate::hz(hertz), std::nullopt}; }
 
 constexpr const char* two_rates = "rates_hz = [100, 333]\nrates_why = \"two\"\n";
 
@@ -65,7 +65,7 @@ TEST_F(GoldenTest, ReadsBackWhatWasBlessed) {
   ASSERT_TRUE(golden) << golden.error().to_string();
   const auto answers = answers_of_reference(the_case);
   for (std::size_t i = 0; i < the_case.rates.size(); ++i) {
-    const auto read = golden->read(the_case.setups()[i]);
+    const auto read = golden->read(the_case.configurations()[i]);
     ASSERT_TRUE(read) << read.error().to_string();
     EXPECT_EQ(first_input_difference(*read, answers[i].trace), std::nullopt);
     EXPECT_TRUE(compare(answers[i].trace, *read, Tolerances(Level::exact)).agrees());

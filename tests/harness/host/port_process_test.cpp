@@ -74,9 +74,10 @@ TEST(PortProcess, DrivesAsHere) {
 TEST(PortProcess, FliesAsHere) {
   const auto hover = parse_case(source / "cases/px4-v1.5.5/flight/hover.toml");
   ASSERT_TRUE(hover);
-  const auto iris = *Airframe::load(source / "models", "iris");
+  const auto iris = *VehicleModel::load(source / "models", "iris");
   const Course course{&*hover, iris.get()};
-  FlightPlan plan{{Rate::hz(50), Flyer{"iris", PlantKind::ode}}, case_timing(*hover, Rate::hz(50))};
+  FlightPlan plan{{Rate::hz(50), PlantConfiguration{"iris", PlantKind::ode}},
+                  case_timing(*hover, Rate::hz(50))};
   plan.timing.resize(100);
   const auto here = host_of("builtin", true, course)->fly(plan);
   const auto apart = host_of("builtin", false, course)->fly(plan);
@@ -104,6 +105,7 @@ TEST(PortProcess, ItsDeathIsTheFaultOfTheRequestAndOfAllThatFollow) {
     const auto fault = host->drive(unit, trace);
     ASSERT_TRUE(fault);
     EXPECT_EQ(fault->kind, Kind::crash);
+    EXPECT_THAT(fault->what, HasSubstr("the port's process "));
     EXPECT_TRUE(host->is_spent());
   }
 }

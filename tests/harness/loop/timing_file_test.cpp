@@ -16,7 +16,7 @@ using testing::HasSubstr;
 TimingFile sample() {
   return {"px4-v1.5.5/flight/hover",
           "0123",
-          {Rate::hz(1000, 3), Flyer{"iris", PlantKind::ode}},
+          {Rate::hz(1000, 3), PlantConfiguration{"iris", PlantKind::ode}},
           0.25,
           {{us(-1), us(10), us(1000)},
            {us(0), us(3010), std::nullopt},
@@ -46,7 +46,7 @@ TEST_F(TimingFileTest, IsReadAsItWasWritten) {
   ASSERT_TRUE(read) << read.error().to_string();
   EXPECT_EQ(read->case_id, sample().case_id);
   EXPECT_EQ(read->case_sha256, sample().case_sha256);
-  EXPECT_EQ(read->setup, sample().setup);
+  EXPECT_EQ(read->configuration, sample().configuration);
   EXPECT_EQ(read->duration_s, 0.25);
   EXPECT_EQ(read->ticks, sample().ticks);
 }

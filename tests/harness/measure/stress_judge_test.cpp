@@ -25,10 +25,10 @@ class StressJudge : public testing::Test {
     task_.the_case = *parse_case(tree / "cases/px4-v1.5.5/flight/hover.toml");
     task_.the_case.duration = {0.4, Span::In::seconds};
     task_.the_case.flight->metrics.clear();
-    task_.setup = {Rate::hz(250), Flyer{"iris", PlantKind::mujoco}};
-    task_.airframe = *Airframe::load(tree / "models", "iris");
+    task_.configuration = {Rate::hz(250), PlantConfiguration{"iris", PlantKind::mujoco}};
+    task_.vehicle_model = *VehicleModel::load(tree / "models", "iris");
     const auto unit = open_builtin()->create("px4-v1.5.5");
-    const Flown flown = *fly(task_.the_case, task_.setup, *task_.airframe, *unit);
+    const Flown flown = *fly(task_.the_case, task_.configuration, *task_.vehicle_model, *unit);
     flight_.unit.samples = flown.trace.samples;
     flight_.unit.changes = flown.trace.parameters;
     for (std::int64_t k = 0; k < 100; ++k) {

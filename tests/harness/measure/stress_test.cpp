@@ -21,8 +21,8 @@ StressTask hover_task() {
   task.the_case.duration = {0.3, Span::In::seconds};
   // Whatever the machine does: verdicts on timing are tested in stress_judge_test.
   task.the_case.flight->realtime = {1e6, 1e9, std::nullopt};
-  task.setup = {Rate::hz(250), Flyer{"iris", PlantKind::mujoco}};
-  task.airframe = *Airframe::load(source / "models", "iris");
+  task.configuration = {Rate::hz(250), PlantConfiguration{"iris", PlantKind::mujoco}};
+  task.vehicle_model = *VehicleModel::load(source / "models", "iris");
   task.live.fifo = false;
   task.live.unit_cpu = task.live.plant_cpu = usable_cpus().front();
   task.idle_duration = std::chrono::milliseconds(20);
@@ -101,7 +101,7 @@ TEST(StressJson, IsReadAsItWasWritten) {
   stress.result.group = "flight";
   stress.result.name = "hover";
   stress.result.rate = Rate::hz(333);
-  stress.result.flyer = Flyer{"iris", PlantKind::ode};
+  stress.result.plant_configuration = PlantConfiguration{"iris", PlantKind::ode};
   const auto ns = [](std::int64_t count) { return Nanoseconds(count); };
   stress.execution = {1, ns(2), ns(7), ns(3), ns(4), ns(5), ns(6), {{ns(2), ns(8), 1}}};
   stress.response = {1, ns(2), ns(7), ns(3), {}, {}, {}, {}};
@@ -109,7 +109,7 @@ TEST(StressJson, IsReadAsItWasWritten) {
   stress.misses = {1, 2, 3, 4, 5};
   stress.waiting_steps = 6;
   stress.unit_usage = {ns(1), 2, 3, 4, 5};
-  stress.rights = {{"mlockall", false, "no \xff"}};
+  stress.privileges = {{"mlockall", false, "no \xff"}};
   stress.slow = {ns(20), 2, {{7, ns(300), ns(290)}}, Rhythm{1000, 7, 1e-5}};
   const nlohmann::json json = to_json(stress);
   const std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);

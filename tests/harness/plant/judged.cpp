@@ -6,26 +6,26 @@
 
 namespace attest::test {
 
-Judged mujoco(const Airframe& airframe, const Rate& physics) {
-  auto plant = airframe.make_plant(PlantKind::mujoco, {physics, false});
+Judged mujoco(const VehicleModel& vehicle_model, const Rate& physics) {
+  auto plant = vehicle_model.make_plant(PlantKind::mujoco, {physics, false});
   return {fmt::format("mujoco, {} Hz", physics.to_string()), std::move(*plant)};
 }
 
-Judged ode(const Airframe& airframe) {
-  return {"ode", make_ode_plant(airframe.vehicle(), OdeOptions{})};
+Judged ode(const VehicleModel& vehicle_model) {
+  return {"ode", make_ode_plant(vehicle_model.vehicle(), OdeOptions{})};
 }
 
-Judged fixed_ode(const Airframe& airframe, int order, double step_s) {
+Judged fixed_ode(const VehicleModel& vehicle_model, int order, double step_s) {
   OdeOptions options;
   options.order = order;
   options.fixed_step_s = step_s;
-  return {fmt::format("ode, order {}", order), make_ode_plant(airframe.vehicle(), options)};
+  return {fmt::format("ode, order {}", order), make_ode_plant(vehicle_model.vehicle(), options)};
 }
 
-std::vector<Judged> both(const Airframe& airframe) {
+std::vector<Judged> both(const VehicleModel& vehicle_model) {
   std::vector<Judged> plants;
-  plants.push_back(mujoco(airframe));
-  plants.push_back(ode(airframe));
+  plants.push_back(mujoco(vehicle_model));
+  plants.push_back(ode(vehicle_model));
   return plants;
 }
 

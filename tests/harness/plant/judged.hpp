@@ -9,15 +9,15 @@
 
 namespace attest::test {
 
-// Named as the table names it. The airframe must outlive it.
+// Named as the table names it. The vehicle model must outlive it.
 struct Judged {
   std::string name;
   std::unique_ptr<Plant> plant;
 };
 
-Judged mujoco(const Airframe& airframe, const Rate& physics = Rate::hz(1000));
-Judged ode(const Airframe& airframe);
-Judged fixed_ode(const Airframe& airframe, int order, double step_s);
-std::vector<Judged> both(const Airframe& airframe);
+Judged mujoco(const VehicleModel& vehicle_model, const Rate& physics = Rate::hz(1000));
+Judged ode(const VehicleModel& vehicle_model);
+Judged fixed_ode(const VehicleModel& vehicle_model, int order, double step_s);
+std::vector<Judged> both(const VehicleModel& vehicle_model);
 
 }  // namespace attest::test

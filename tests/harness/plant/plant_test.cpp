@@ -21,7 +21,7 @@ Nanoseconds ms(double milliseconds) { return Nanoseconds(std::llround(millisecon
 
 class EveryPlant : public testing::TestWithParam<PlantKind> {
  protected:
-  std::unique_ptr<Plant> plant(const Airframe& frame, const PlantOptions& options = {}) const {
+  std::unique_ptr<Plant> plant(const VehicleModel& frame, const PlantOptions& options = {}) const {
     auto made = frame.make_plant(GetParam(), options);
     if (!made) throw std::runtime_error(made.error().to_string());
     return std::move(*made);
@@ -35,7 +35,7 @@ class EveryPlant : public testing::TestWithParam<PlantKind> {
 
   // The state after 50 ms with rotor i at `factors[i]` times hover.
   PlantState after(const std::vector<double>& factors) const {
-    const auto frame = test::airframe("iris");
+    const auto frame = test::vehicle_model("iris");
     const auto flown = plant(*frame);
     flown->reset(hovering(frame->vehicle()));
     std::vector<double> command;
@@ -53,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EveryPlant, testing::ValuesIn(plant_kinds),
 
 TEST_P(EveryPlant, EveryVehicleHoversAtItsHoverThrust) {
   for (const char* name : {"crazyflie2", "heavy_quad", "hexa", "hummingbird", "iris"}) {
-    const auto frame = test::airframe(std::string(name));
+    const auto frame = test::vehicle_model(std::string(name));
     const auto flown = plant(*frame);
     flown->reset(hovering(frame->vehicle()));
     ASSERT_FALSE(flown->advance(ms(1000)));
@@ -82,7 +82,7 @@ TEST_P(EveryPlant, MoreThrustClimbs) {
 }
 
 TEST_P(EveryPlant, ATiltedVehicleFliesWhereItsThrustPoints) {
-  const auto frame = test::airframe("iris");
+  const auto frame = test::vehicle_model("iris");
   const auto flown = plant(*frame);
   PlantState start = hovering(frame->vehicle());
   start.attitude = {std::cos(0.1), 0, -std::sin(0.1), 0};  // nose down
@@ -96,7 +96,7 @@ TEST_P(EveryPlant, ATiltedVehicleFliesWhereItsThrustPoints) {
 }
 
 TEST_P(EveryPlant, WindCarriesAVehicleThatHasDrag) {
-  const auto frame = test::airframe("iris");
+  const auto frame = test::vehicle_model("iris");
   const auto flown = plant(*frame);
   flown->reset(hovering(frame->vehicle()));
   flown->set_wind({5, -3, 0});
@@ -107,7 +107,7 @@ TEST_P(EveryPlant, WindCarriesAVehicleThatHasDrag) {
 }
 
 TEST_P(EveryPlant, AShiftedLoadDoesNotMoveTheCentreOfMassByItself) {
-  const auto frame = test::airframe("iris");
+  const auto frame = test::vehicle_model("iris");
   const auto flown = plant(*frame);
   PlantState start = hovering(frame->vehicle());
   start.position_m = {1, 2, 3};
@@ -130,7 +130,7 @@ TEST_P(EveryPlant, AShiftedLoadDoesNotMoveTheCentreOfMassByItself) {
 
 // A fall of the offset body about its centre of mass is the same in both plants.
 TEST(Plants, AgreeOnAShiftedLoadInWind) {
-  const auto frame = test::airframe("iris");
+  const auto frame = test::vehicle_model("iris");
   std::vector<PlantState> states;
   for (const PlantKind kind : plant_kinds) {
     const auto plant = frame->make_plant(kind, {});
@@ -155,7 +155,7 @@ TEST(Plants, AgreeOnAShiftedLoadInWind) {
 }
 
 TEST_P(EveryPlant, TheSameCallsGiveTheSameBits) {
-  const auto frame = test::airframe("hexa");
+  const auto frame = test::vehicle_model("hexa");
   const auto fly = [&](Plant& flown) {
     flown.reset(hovering(frame->vehicle()));
     flown.command(std::vector<double>{500, 520, 540, 560, 530, 510});
@@ -176,7 +176,7 @@ TEST_P(EveryPlant, TheSameCallsGiveTheSameBits) {
 TEST_P(EveryPlant, ADivergedPlantSaysWhenAndStays) {
   test::Numbers numbers;
   numbers.rate_bound_rad_s = 10;
-  const auto frame = test::airframe(numbers);
+  const auto frame = test::vehicle_model(numbers);
   const auto flown = plant(*frame);
   flown->reset({});
   flown->command(std::vector<double>{0, 2000, 2000, 0});
@@ -193,7 +193,7 @@ TEST_P(EveryPlant, ADivergedPlantSaysWhenAndStays) {
 }
 
 TEST_P(EveryPlant, AStateThatIsNoNumberIsDiverged) {
-  const auto frame = test::airframe("iris");
+  const auto frame = test::vehicle_model("iris");
   const auto flown = plant(*frame);
   PlantState start;
   start.velocity_m_s[0] = std::nan("");
@@ -205,7 +205,7 @@ TEST_P(EveryPlant, AStateThatIsNoNumberIsDiverged) {
 }
 
 TEST_P(EveryPlant, AStepDoesNotAllocate) {
-  const auto frame = test::airframe("iris");
+  const auto frame = test::vehicle_model("iris");
   const auto flown = plant(*frame);
   flown->reset(hovering(frame->vehicle()));
   const std::vector<double> command{800, 790, 810, 795};
@@ -222,7 +222,7 @@ TEST_P(EveryPlant, AStepDoesNotAllocate) {
 
 TEST(Floor, HoldsAVehicleThatRestsOnIt) {
   for (const char* name : {"crazyflie2", "heavy_quad", "hexa", "hummingbird", "iris"}) {
-    const auto frame = test::airframe(std::string(name));
+    const auto frame = test::vehicle_model(std::string(name));
     const auto plant = frame->make_plant(PlantKind::mujoco, {Rate::hz(1000), true});
     ASSERT_TRUE(plant);
     PlantState start;
@@ -237,7 +237,7 @@ TEST(Floor, HoldsAVehicleThatRestsOnIt) {
 }
 
 TEST(Floor, IsNotThereUnlessAskedFor) {
-  const auto frame = test::airframe("iris");
+  const auto frame = test::vehicle_model("iris");
   const auto plant = frame->make_plant(PlantKind::mujoco, {});
   (*plant)->reset({});
   (*plant)->advance(ms(1000));

@@ -49,11 +49,11 @@ std::string xml_of(const Numbers& n) {
       n.mass_kg, I[0], I[1], I[2], sites, motors);
 }
 
-std::shared_ptr<const Airframe> loaded(const std::filesystem::path& models,
-                                       const std::string& name) {
-  auto airframe = Airframe::load(models, name);
-  if (!airframe) throw std::runtime_error(airframe.error().to_string());
-  return *airframe;
+std::shared_ptr<const VehicleModel> loaded(const std::filesystem::path& models,
+                                           const std::string& name) {
+  auto vehicle_model = VehicleModel::load(models, name);
+  if (!vehicle_model) throw std::runtime_error(vehicle_model.error().to_string());
+  return *vehicle_model;
 }
 
 }  // namespace
@@ -63,13 +63,13 @@ void write_vehicle(const std::filesystem::path& folder, const Numbers& numbers) 
   std::ofstream(folder / "brick.xml") << xml_of(numbers);
 }
 
-std::shared_ptr<const Airframe> airframe(const Numbers& numbers) {
+std::shared_ptr<const VehicleModel> vehicle_model(const Numbers& numbers) {
   const TemporaryDirectory folder;
   write_vehicle(folder.path(), numbers);
   return loaded(folder.path(), "brick");
 }
 
-std::shared_ptr<const Airframe> airframe(const std::string& name) {
+std::shared_ptr<const VehicleModel> vehicle_model(const std::string& name) {
   return loaded(ATTEST_SOURCE_DIR "/models", name);
 }
 

@@ -23,9 +23,9 @@ struct Numbers {
 void write_vehicle(const std::filesystem::path& folder, const Numbers& numbers);
 
 // Loads it through the files. Throws what is wrong with them.
-std::shared_ptr<const Airframe> airframe(const Numbers& numbers);
+std::shared_ptr<const VehicleModel> vehicle_model(const Numbers& numbers);
 
 // A vehicle of the repository.
-std::shared_ptr<const Airframe> airframe(const std::string& name);
+std::shared_ptr<const VehicleModel> vehicle_model(const std::string& name);
 
 }  // namespace attest::test

@@ -104,7 +104,7 @@ double asymmetric_error(Plant& plant, const AsymmetricTop& top, double end_s, in
 
 void asymmetric_top(std::vector<Truth>& table) {
   const Numbers numbers;
-  const auto frame = airframe(numbers);
+  const auto frame = vehicle_model(numbers);
   const AsymmetricTop top(numbers.inertia_kg_m2, 3, 5);
   for (const auto& [name, plant] : both(*frame)) {
     table.push_back({"torque-free asymmetric top, 5 s", "Jacobi elliptic functions", name, "rad/s",
@@ -115,7 +115,7 @@ void asymmetric_top(std::vector<Truth>& table) {
 void symmetric_top(std::vector<Truth>& table) {
   Numbers numbers;
   numbers.inertia_kg_m2 = {0.01, 0.01, 0.018};
-  const auto frame = airframe(numbers);
+  const auto frame = vehicle_model(numbers);
   const auto& I = numbers.inertia_kg_m2;
   const PlantState start = turning({1.5, 0, 6});
   const double spin = (I[2] - I[0]) * start.rate_rad_s[2] / I[0];
@@ -146,7 +146,7 @@ void symmetric_top(std::vector<Truth>& table) {
 
 void invariants(std::vector<Truth>& table) {
   const Numbers numbers;
-  const auto frame = airframe(numbers);
+  const auto frame = vehicle_model(numbers);
   const auto& I = numbers.inertia_kg_m2;
   const PlantState start = turning({2, -4, 3});
   const Vector3 L = momentum(start, I);
@@ -178,7 +178,7 @@ void nesc_case_2(std::vector<Truth>& table) {
   constexpr double kg_m2 = 1.3558179483314004;  // of a slug ft2
   Numbers numbers;
   numbers.inertia_kg_m2 = {.00189422 * kg_m2, .006211019 * kg_m2, .007194665 * kg_m2};
-  const auto frame = airframe(numbers);
+  const auto frame = vehicle_model(numbers);
   const PlantState start = turning({10 * degree, 20 * degree, 30 * degree});
   const auto fine = fixed_ode(*frame, 8, 1e-3).plant;
   fine->reset(start);
@@ -203,7 +203,7 @@ void nesc_case_2(std::vector<Truth>& table) {
 void fall_with_drag(std::vector<Truth>& table) {
   Numbers numbers;
   numbers.drag_kg_s = {0, 0, 0.7};
-  const auto frame = airframe(numbers);
+  const auto frame = vehicle_model(numbers);
   const double m = numbers.mass_kg, k = 0.7;
   for (const auto& [name, plant] : both(*frame)) {
     table.push_back({"fall with linear drag, 5 s", "v = (m g / k) (1 - exp(-k t / m))", name, "m/s",
@@ -218,7 +218,7 @@ void fall_with_drag(std::vector<Truth>& table) {
 
 void motor_response(std::vector<Truth>& table) {
   const Numbers numbers;
-  const auto frame = airframe(numbers);
+  const auto frame = vehicle_model(numbers);
   for (const double command : {900.0, 300.0}) {
     const bool up = command > 600;
     const double tau = up ? numbers.time_constant_up_s : numbers.time_constant_down_s;
@@ -244,7 +244,7 @@ void motor_response(std::vector<Truth>& table) {
 
 void observed_order(std::vector<Truth>& table) {
   const Numbers numbers;
-  const auto frame = airframe(numbers);
+  const auto frame = vehicle_model(numbers);
   const AsymmetricTop top(numbers.inertia_kg_m2, 6, 10);
   const auto slope = [&](const std::function<Judged(int)>& with_steps, int steps) {
     const double coarse = asymmetric_error(*with_steps(steps).plant, top, 1, 1);
@@ -297,7 +297,7 @@ double largest_distance(const std::vector<Vector3>& a, const std::vector<Vector3
 }
 
 void held_inputs(std::vector<Truth>& table) {
-  const auto iris = airframe("iris");
+  const auto iris = vehicle_model("iris");
   const Vehicle& vehicle = iris->vehicle();
   for (const auto& [part, bound] : {std::pair(0.03, 1e-11), std::pair(0.1, 5e-11)}) {
     const auto reference = flown(*fixed_ode(*iris, 8, 1e-3).plant, vehicle, 1e-3, part);

@@ -8,7 +8,7 @@
 
 #include "controller/actuation/mixer.hpp"
 #include "harness/plant/battery.hpp"
-#include "harness/plant/fleet.hpp"
+#include "harness/plant/vehicle_models.hpp"
 #include "tests/harness/plant/test_vehicle.hpp"
 
 namespace attest {
@@ -44,7 +44,7 @@ class VehicleFile : public testing::Test {
   // What is said of the model once `what` is `with`.
   std::string model_error(const std::string& what, const std::string& with) const {
     replace("brick.xml", what, with);
-    const auto frame = Airframe::load(folder_.path(), "brick");
+    const auto frame = VehicleModel::load(folder_.path(), "brick");
     return frame ? "" : frame.error().to_string();
   }
 
@@ -55,7 +55,7 @@ TEST(Models, EachIsTheVehicleOfItsToml) {
   EXPECT_THAT(vehicle_names(models),
               ElementsAre("crazyflie2", "heavy_quad", "hexa", "hummingbird", "iris"));
   for (const std::string& name : vehicle_names(models)) {
-    const auto frame = Airframe::load(models, name);  // compares all numbers
+    const auto frame = VehicleModel::load(models, name);  // compares all numbers
     ASSERT_TRUE(frame) << frame.error().to_string();
     const Vehicle& vehicle = (*frame)->vehicle();
     EXPECT_GT(vehicle.hover_thrust(), 0.3) << name;
@@ -136,12 +136,12 @@ TEST_F(VehicleFile, BrokenXmlIsNamedWithItsLine) {
               HasSubstr("brick.xml:1: MuJoCo: XML Error: Schema violation"));
 }
 
-TEST(Fleet, LoadsAVehicleOnceAndNamesTheNearestOfAnUnknownOne) {
-  Fleet fleet(models);
-  const auto first = fleet.get("iris");
+TEST(VehicleModels, LoadsAVehicleOnceAndNamesTheNearestOfAnUnknownOne) {
+  VehicleModels vehicle_models(models);
+  const auto first = vehicle_models.get("iris");
   ASSERT_TRUE(first);
-  EXPECT_EQ(*fleet.get("iris"), *first);
-  const auto unknown = fleet.get("irsi");
+  EXPECT_EQ(*vehicle_models.get("iris"), *first);
+  const auto unknown = vehicle_models.get("irsi");
   ASSERT_FALSE(unknown);
   EXPECT_THAT(unknown.error().message, HasSubstr("unknown vehicle `irsi`; did you mean `iris`?"));
 }

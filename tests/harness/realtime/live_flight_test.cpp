@@ -15,7 +15,7 @@ namespace {
 
 const std::filesystem::path source = ATTEST_SOURCE_DIR;
 
-const Setup setup{Rate::hz(500), Flyer{"iris", PlantKind::mujoco}};
+const RunConfiguration configuration{Rate::hz(500), PlantConfiguration{"iris", PlantKind::mujoco}};
 
 LiveOptions options() {
   LiveOptions live;
@@ -32,11 +32,11 @@ Case tilt_case(double duration_s) {
 }
 
 LiveFlight flown(const Case& the_case, const std::function<bool()>& stop) {
-  const auto iris = *Airframe::load(source / "models", "iris");
+  const auto iris = *VehicleModel::load(source / "models", "iris");
   const auto port = open_builtin();
   const auto unit = port->create("px4-v1.5.5");
-  auto flight =
-      fly_live(the_case, setup, *iris, *unit, options(), 1000, stop, [](const LiveProgress&) {});
+  auto flight = fly_live(the_case, configuration, *iris, *unit, options(), 1000, stop,
+                         [](const LiveProgress&) {});
   if (!flight) throw std::runtime_error(flight.error().to_string());
   return std::move(*flight);
 }
@@ -62,9 +62,9 @@ TEST(LiveFlight, ItsTimesCanBeFlownAgain) {
     EXPECT_LE(timing[i - 1].sampled, timing[i].sampled);
     EXPECT_LT(timing[i - 1].begins, timing[i].begins);
   }
-  const auto iris = *Airframe::load(source / "models", "iris");
+  const auto iris = *VehicleModel::load(source / "models", "iris");
   const auto unit = open_builtin()->create("px4-v1.5.5");
-  const Flown again = *fly(the_case, setup, *iris, *unit, timing);
+  const Flown again = *fly(the_case, configuration, *iris, *unit, timing);
   ASSERT_EQ(again.trace.samples.size(), live.unit.samples.size());
   // MuJoCo's steps are cut elsewhere, so not to the bit; far below what the unit could feel.
   for (std::size_t i = 0; i < again.trace.samples.size(); ++i) {
@@ -127,9 +127,9 @@ TEST(LiveFlight, ABatteryEmptiesAndItsScaleReachesTheUnit) {
   // 100 Hz; on a machine that is late some are overtaken.
   EXPECT_GE(published, 2u);
   EXPECT_LE(published, 51u);
-  const auto iris = *Airframe::load(source / "models", "iris");
+  const auto iris = *VehicleModel::load(source / "models", "iris");
   const auto unit = open_builtin()->create("px4-v1.5.5");
-  const Flown again = *fly(the_case, setup, *iris, *unit, live.timing());
+  const Flown again = *fly(the_case, configuration, *iris, *unit, live.timing());
   ASSERT_EQ(again.trace.samples.size(), live.unit.samples.size());
   EXPECT_NEAR(last_scale(live.unit.samples), last_scale(again.trace.samples), 2e-3);
   EXPECT_GT(last_scale(again.trace.samples), 1.005f);

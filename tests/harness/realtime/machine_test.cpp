@@ -11,7 +11,7 @@
 #include "harness/realtime/cyclictest.hpp"
 #include "harness/realtime/load.hpp"
 #include "harness/realtime/pacer.hpp"
-#include "harness/realtime/rights.hpp"
+#include "harness/realtime/privileges.hpp"
 #include "harness/realtime/usage.hpp"
 #include "tests/harness/times.hpp"
 
@@ -29,21 +29,22 @@ TEST(Pacer, ReturnsAtItsDeadlineOrLater) {
 }
 
 TEST(Rights, AreGotOrRefusedWithAReason) {
-  std::vector<Right> rights;
-  std::thread thread([&] { rights = claim({usable_cpus().front(), 50}); });
+  std::vector<RealtimePrivilege> privileges;
+  std::thread thread([&] { privileges = claim({usable_cpus().front(), 50}); });
   thread.join();
-  ASSERT_EQ(rights.size(), 3u);
-  EXPECT_TRUE(rights[0].got);
-  EXPECT_EQ(rights[1].name, "SCHED_FIFO 50");
-  for (const Right& right : rights) EXPECT_EQ(right.got, right.why.empty()) << right.name;
+  ASSERT_EQ(privileges.size(), 3u);
+  EXPECT_TRUE(privileges[0].got);
+  EXPECT_EQ(privileges[1].name, "SCHED_FIFO 50");
+  for (const RealtimePrivilege& right : privileges)
+    EXPECT_EQ(right.got, right.why.empty()) << right.name;
 }
 
 TEST(Rights, ACpuThatIsNotThereIsRefused) {
-  std::vector<Right> rights;
-  std::thread thread([&] { rights = claim({1023, 0}); });
+  std::vector<RealtimePrivilege> privileges;
+  std::thread thread([&] { privileges = claim({1023, 0}); });
   thread.join();
-  EXPECT_FALSE(rights.front().got);
-  EXPECT_FALSE(rights.front().why.empty());
+  EXPECT_FALSE(privileges.front().got);
+  EXPECT_FALSE(privileges.front().why.empty());
 }
 
 TEST(Usage, CountsWhatAThreadDoes) {

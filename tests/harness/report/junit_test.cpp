@@ -108,7 +108,7 @@ TEST(JunitReport, TheContentIsTheFailureText) {
   std::size_t compared = 0;
   for (const CaseResult& result : run.results) {
     if (!fails_a_run(result.verdict)) continue;
-    const std::string name = result.name + "@" + result.setup().label();
+    const std::string name = result.name + "@" + result.configuration().label();
     const pugi::xml_node node = testcase(document, name.c_str()).first_child();
     EXPECT_EQ(node.text().get(), failure_text(result, run));
     EXPECT_EQ(node.attribute("message").value(), failure_headline(result));

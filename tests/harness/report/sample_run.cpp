@@ -94,13 +94,13 @@ void add_flights(std::vector<CaseResult>& results) {
   const double infinity = std::numeric_limits<double>::infinity();
   CaseResult lost = failing("flight", "hover", Rate::hz(250),
                             deviation("out/vehicle_rates_setpoint.roll", 20, -1.5F, 0.3F, 2e-4), 3);
-  lost.flyer = Flyer{"iris", PlantKind::mujoco};
+  lost.plant_configuration = PlantConfiguration{"iris", PlantKind::mujoco};
   lost.ticks = 40;
   lost.reason = "the flight ended at 1.918 s (tick 480): the body rate is 80 rad/s, beyond 80";
   results.push_back(lost);
   CaseResult slow = result(Verdict::fail, "flight", "hover", Rate::hz(250),
                            "metric levels: settling_time_s is inf, above 2");
-  slow.flyer = Flyer{"hexa", PlantKind::ode};
+  slow.plant_configuration = PlantConfiguration{"hexa", PlantKind::ode};
   slow.metrics = {{"levels", Measure::settling_time_s, infinity, 0.5, 0.05, -infinity, 2},
                   {"rolls", Measure::peak_rate_rad_s, 6.1, 6, 0.3, 5, 9}};
   results.push_back(slow);

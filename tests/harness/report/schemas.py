@@ -77,7 +77,7 @@ WRONG_STRESS = {
     "a rhythm of every step": lambda r: r["results"][1]["slow_steps"]["rhythm"].update(
         every_steps=1
     ),
-    "a refusal without a reason": lambda r: r["results"][1]["rights"][1].pop("why"),
+    "a refusal without a reason": lambda r: r["results"][1]["privileges"][1].pop("why"),
 }
 
 # (schema, the baselines of its reports, the one that is made wrong, how)

@@ -14,10 +14,10 @@ using testing::HasSubstr;
 using testing::Not;
 
 // Of that many samples, of which each is some microseconds.
-Spread spread(std::uint64_t count) {
+Percentiles spread(std::uint64_t count) {
   Histogram histogram;
   for (std::uint64_t i = 0; i < count; ++i) histogram.add(us(i % 100 == 99 ? 40 : 8));
-  return spread_of(histogram);
+  return percentiles_of(histogram);
 }
 
 StressResult result(Rate rate, Verdict verdict, std::string reason = "") {
@@ -26,7 +26,7 @@ StressResult result(Rate rate, Verdict verdict, std::string reason = "") {
   stress.result.group = "flight";
   stress.result.name = "hover";
   stress.result.rate = rate;
-  stress.result.flyer = Flyer{"iris", PlantKind::mujoco};
+  stress.result.plant_configuration = PlantConfiguration{"iris", PlantKind::mujoco};
   stress.result.verdict = verdict;
   stress.result.reason = std::move(reason);
   stress.ticks = stress.result.ticks = 499;
@@ -51,7 +51,7 @@ StressRun mixed_run() {
   slow.waiting_steps = 1;
   slow.slow = {us(64), 2, {{99, us(300), us(310)}, {199, us(290), us(290)}}, Rhythm{100, 99, 1e-9}};
   slow.cyclictest = Cyclictest{us(7), us(70), 2000};
-  slow.rights = {{"mlockall", true, ""}, {"SCHED_FIFO 80", false, "not permitted"}};
+  slow.privileges = {{"mlockall", true, ""}, {"SCHED_FIFO 80", false, "not permitted"}};
   run.results.push_back(result(Rate::hz(1000), Verdict::skip, "the machine's"));
   return run;
 }

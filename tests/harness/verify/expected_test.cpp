@@ -90,7 +90,7 @@ TEST_F(Expected, APatternThatExcusesEverythingIsRefused) {
 
 TEST_F(Expected, WhatIsWrittenIsReadAndExcusesTheRun) {
   EXPECT_THAT(expected_failures_of(run_), HasSubstr("'px4-v1.5.5/tpa/b@50hz'"));
-  run_.all_setups = true;
+  run_.all_configurations = true;
   const std::string text = expected_failures_of(run_);
   EXPECT_THAT(text, HasSubstr("'px4-v1.5.5/tpa/b@*' = 'fail: say why"));
   EXPECT_FALSE(applied(text).failed());

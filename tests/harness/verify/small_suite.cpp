@@ -43,7 +43,7 @@ HostOptions host_of(const std::string& port) {
 JobResults<CaseResult> SmallSuite::run(const HostOptions& host, int processes) const {
   Jobs<CaseResult> jobs;
   for (const Case& the_case : cases_) {
-    jobs.push_back(std::make_unique<CaseJob>(the_case, the_case.setups(), nullptr, golden(),
+    jobs.push_back(std::make_unique<CaseJob>(the_case, the_case.configurations(), nullptr, golden(),
                                              Level::numeric, host));
   }
   JobOptions<CaseResult> options;

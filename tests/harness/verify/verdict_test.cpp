@@ -140,7 +140,7 @@ TEST(VerdictJson, RoundTripsEveryKindOfNumber) {
 TEST(VerdictJson, RoundTripsAFlight) {
   const double inf = std::numeric_limits<double>::infinity();
   CaseResult result = with(Verdict::fail);
-  result.flyer = Flyer{"hexa", PlantKind::ode};
+  result.plant_configuration = PlantConfiguration{"hexa", PlantKind::ode};
   for (int i = 0; i <= static_cast<int>(Measure::sink_m); ++i) {
     result.metrics.push_back({"m", static_cast<Measure>(i), inf, 0.1, 0.05, -inf, 2});
   }

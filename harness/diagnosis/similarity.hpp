@@ -15,16 +15,16 @@
 namespace attest {
 
 // One fault beside the port.
-struct Likeness {
-  std::size_t matched = 0;  // ticks at which fault and port answer the same
-  std::size_t both = 0;     // values at which both deviate from the law
-  std::size_t either = 0;   // values at which one of them does
+struct Similarity {
+  std::size_t matched = 0;       // ticks at which fault and port answer the same
+  std::size_t intersection = 0;  // values at which both deviate from the law
+  std::size_t union_size = 0;    // values at which one of them does
 };
 
-struct VectorLikeness {
+struct VectorSimilarity {
   std::size_t ticks = 0;
-  bool deviates = false;             // the port, from the law
-  std::vector<Likeness> likenesses;  // of each fault of the catalogue, in its order
+  bool deviates = false;                 // the port, from the law
+  std::vector<Similarity> similarities;  // of each fault of the catalogue, in its order
 };
 
 // Of whichever part; zero of the others.
@@ -48,12 +48,12 @@ FaultAnswers answers_of_faults(const Trace& given, const Subject& subject,
                                const faults::Fault* partner = nullptr);
 
 // Of each of the distinct answers. Values are the same when the numeric level would pass them.
-VectorLikeness distinct_likeness(const Outputs& port, const Outputs& law,
-                                 std::span<const Outputs> distinct);
+VectorSimilarity distinct_similarity(const Outputs& port, const Outputs& law,
+                                     std::span<const Outputs> distinct);
 
 // Of each fault, from what its answers have been found to be like.
-VectorLikeness of_each_fault(const VectorLikeness& distinct, const FaultAnswers& faults);
+VectorSimilarity of_each_fault(const VectorSimilarity& distinct, const FaultAnswers& faults);
 
-VectorLikeness likeness(const Outputs& port, const Outputs& law, const FaultAnswers& faults);
+VectorSimilarity similarity(const Outputs& port, const Outputs& law, const FaultAnswers& faults);
 
 }  // namespace attest

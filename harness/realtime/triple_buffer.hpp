@@ -13,7 +13,7 @@
 namespace attest {
 
 template <typename T>
-class LatestValue {
+class TripleBuffer {
  public:
   // Writer only.
   void write(const T& value) {

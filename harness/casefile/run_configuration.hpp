@@ -12,21 +12,21 @@
 namespace attest {
 
 // What flies: in the order flights are listed.
-struct Flyer {
+struct PlantConfiguration {
   std::string vehicle;
   PlantKind plant = PlantKind::mujoco;
 
-  friend auto operator<=>(const Flyer&, const Flyer&) = default;
+  friend auto operator<=>(const PlantConfiguration&, const PlantConfiguration&) = default;
 };
 
-struct Setup {
+struct RunConfiguration {
   Rate rate = Rate::hz(1);
-  std::optional<Flyer> flyer;  // empty: open loop
+  std::optional<PlantConfiguration> plant_configuration;  // empty: open loop
 
   // For ids and file names: "250hz" or "250hz-iris-ode".
   std::string label() const;
 
-  friend bool operator==(const Setup&, const Setup&) = default;
+  friend bool operator==(const RunConfiguration&, const RunConfiguration&) = default;
 };
 
 }  // namespace attest

@@ -1,4 +1,4 @@
-#include "harness/schedule/agenda.hpp"
+#include "harness/schedule/event_queue.hpp"
 
 #include <algorithm>
 #include <tuple>
@@ -12,22 +12,23 @@
 namespace attest {
 namespace {
 
-TEST(Agenda, AtOneInstantTheLowerTaskComesFirst) {
-  Agenda agenda({{ns(5)}, {ns(0), ns(5)}, {ns(5)}});
+TEST(EventQueue, AtOneInstantTheLowerTaskComesFirst) {
+  EventQueue event_queue({{ns(5)}, {ns(0), ns(5)}, {ns(5)}});
   std::vector<std::size_t> tasks;
-  while (const auto event = agenda.next()) tasks.push_back(event->task);
+  while (const auto event = event_queue.next()) tasks.push_back(event->task);
   EXPECT_EQ(tasks, (std::vector<std::size_t>{1, 0, 1, 2}));
 }
 
-TEST(Agenda, ATaskWithoutTimesNeverRuns) {
-  Agenda agenda({{}, {ns(1)}});
-  EXPECT_EQ(agenda.size(0), 0u);
-  EXPECT_EQ(agenda.next()->task, 1u);
-  EXPECT_FALSE(agenda.next());
-  EXPECT_FALSE(agenda.next());
+TEST(EventQueue, ATaskWithoutTimesNeverRuns) {
+  EventQueue event_queue({{}, {ns(1)}});
+  EXPECT_EQ(event_queue.size(0), 0u);
+  EXPECT_EQ(event_queue.next()->task, 1u);
+  EXPECT_FALSE(event_queue.next());
+  EXPECT_FALSE(event_queue.next());
 }
 
-RC_GTEST_PROP(Agenda, GivesEveryTimeOnceInOrder, (std::vector<std::vector<std::uint8_t>> counts)) {
+RC_GTEST_PROP(EventQueue, GivesEveryTimeOnceInOrder,
+              (std::vector<std::vector<std::uint8_t>> counts)) {
   using Entry = std::tuple<Nanoseconds, std::size_t, std::size_t>;
   std::vector<std::vector<Nanoseconds>> times;
   std::vector<Entry> expected;
@@ -40,9 +41,10 @@ RC_GTEST_PROP(Agenda, GivesEveryTimeOnceInOrder, (std::vector<std::vector<std::u
     }
   }
   std::sort(expected.begin(), expected.end());
-  Agenda agenda(times);
+  EventQueue event_queue(times);
   std::vector<Entry> got;
-  while (const auto event = agenda.next()) got.emplace_back(event->time, event->task, event->index);
+  while (const auto event = event_queue.next())
+    got.emplace_back(event->time, event->task, event->index);
   RC_ASSERT(got == expected);
 }
 

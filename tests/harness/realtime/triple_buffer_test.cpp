@@ -1,4 +1,4 @@
-#include "harness/realtime/latest_value.hpp"
+#include "harness/realtime/triple_buffer.hpp"
 
 #include <array>
 #include <atomic>
@@ -9,8 +9,8 @@
 namespace attest {
 namespace {
 
-TEST(LatestValue, IsReadOnce) {
-  LatestValue<int> value;
+TEST(TripleBuffer, IsReadOnce) {
+  TripleBuffer<int> value;
   EXPECT_EQ(value.read(), nullptr);
   value.write(1);
   value.write(2);
@@ -20,8 +20,8 @@ TEST(LatestValue, IsReadOnce) {
   EXPECT_EQ(*value.read(), 3);
 }
 
-TEST(LatestValue, StaysWhileOthersAreWritten) {
-  LatestValue<int> value;
+TEST(TripleBuffer, StaysWhileOthersAreWritten) {
+  TripleBuffer<int> value;
   value.write(1);
   const int* const read = value.read();
   for (int i = 2; i < 10; ++i) value.write(i);
@@ -31,10 +31,10 @@ TEST(LatestValue, StaysWhileOthersAreWritten) {
 
 // Two threads at full speed: no value is torn, none comes twice or out of order. The thread
 // sanitizer sees whether it rests on luck.
-TEST(LatestValue, GoesFromThreadToThreadWhole) {
+TEST(TripleBuffer, GoesFromThreadToThreadWhole) {
   using Wide = std::array<std::uint64_t, 32>;
   constexpr std::uint64_t last = 200'000;
-  LatestValue<Wide> value;
+  TripleBuffer<Wide> value;
   std::thread writer([&] {
     for (std::uint64_t i = 1; i <= last; ++i) {
       Wide wide;

@@ -1,4 +1,4 @@
-#include "harness/casefile/setup.hpp"
+#include "harness/casefile/run_configuration.hpp"
 
 #include <fmt/format.h>
 
@@ -19,9 +19,10 @@ std::vector<Rate> distinct_time_steps(const std::vector<Rate>& rates) {
 
 }  // namespace
 
-std::string Setup::label() const {
-  if (!flyer) return rate.label();
-  return fmt::format("{}-{}-{}", rate.label(), flyer->vehicle, name_of(flyer->plant));
+std::string RunConfiguration::label() const {
+  if (!plant_configuration) return rate.label();
+  return fmt::format("{}-{}-{}", rate.label(), plant_configuration->vehicle,
+                     name_of(plant_configuration->plant));
 }
 
 Case Case::in_profile(const std::string& other) const {
@@ -36,16 +37,17 @@ Case Case::from_one_period_on() const {
   return same;
 }
 
-std::vector<Setup> Case::setups() const {
-  std::vector<Setup> all;
+std::vector<RunConfiguration> Case::configurations() const {
+  std::vector<RunConfiguration> all;
   if (!flight) {
     for (const Rate& rate : rates) all.push_back({rate, std::nullopt});
     return all;
   }
   const std::vector<Rate> lead_rates = is_of_first_profile() ? rates : distinct_time_steps(rates);
-  for (const Flyer& flyer : flight->flyers) {
-    const bool leads = flyer.vehicle == flight->lead_vehicle;
-    for (const Rate& rate : leads ? lead_rates : flight->other_rates) all.push_back({rate, flyer});
+  for (const PlantConfiguration& plant_configuration : flight->plant_configurations) {
+    const bool leads = plant_configuration.vehicle == flight->lead_vehicle;
+    for (const Rate& rate : leads ? lead_rates : flight->other_rates)
+      all.push_back({rate, plant_configuration});
   }
   return all;
 }

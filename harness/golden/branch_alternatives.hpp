@@ -16,16 +16,16 @@
 namespace attest {
 
 // By the decisions that fall on their other side: "yaw_wrap", "yaw_wrap+shorter_rotation".
-using OtherSides = std::map<std::string, Trace>;
+using BranchAlternatives = std::map<std::string, Trace>;
 
 // The reference's answers to the inputs of `law` on every other side that the case allows; `law`
 // has its answers on this one. Errors: the integrals are not the same on both, so that the sides
 // are not a matter of a tick; no tick is on the threshold; the profile is unknown.
-Result<OtherSides> other_sides(const Case& the_case, const Trace& law);
+Result<BranchAlternatives> branch_alternatives(const Case& the_case, const Trace& law);
 
 // `law` with the answers of another side at those ticks at which `got` agrees with them and not
 // with the law's, or is nearer to them. REQUIRES: as many samples in all.
-Trace on_the_side_of(const Trace& got, const Trace& law, const OtherSides& others,
+Trace on_the_side_of(const Trace& got, const Trace& law, const BranchAlternatives& others,
                      const Tolerances& tolerances);
 
 }  // namespace attest

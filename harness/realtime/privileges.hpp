@@ -7,7 +7,7 @@
 
 namespace attest {
 
-struct Right {
+struct RealtimePrivilege {
   std::string name;  // "SCHED_FIFO 80"
   bool got = false;
   std::string why;  // it was refused: "Operation not permitted"
@@ -15,17 +15,17 @@ struct Right {
 
 // For the process while this lives: memory that stays in RAM, and CPUs that do not sleep deeply
 // (/dev/cpu_dma_latency at 0 us).
-class ProcessRights {
+class ProcessPrivileges {
  public:
-  ProcessRights();
-  ~ProcessRights();
-  ProcessRights(const ProcessRights&) = delete;
-  ProcessRights& operator=(const ProcessRights&) = delete;
+  ProcessPrivileges();
+  ~ProcessPrivileges();
+  ProcessPrivileges(const ProcessPrivileges&) = delete;
+  ProcessPrivileges& operator=(const ProcessPrivileges&) = delete;
 
-  const std::vector<Right>& rights() const { return rights_; }
+  const std::vector<RealtimePrivilege>& privileges() const { return privileges_; }
 
  private:
-  std::vector<Right> rights_;
+  std::vector<RealtimePrivilege> privileges_;
   int latency_ = -1;
 };
 
@@ -35,7 +35,7 @@ struct ThreadWish {
 };
 
 // For the calling thread: CPU, scheduler, and timers that fire when they are asked to.
-std::vector<Right> claim(const ThreadWish& wish);
+std::vector<RealtimePrivilege> claim(const ThreadWish& wish);
 
 // The CPUs that this process may use, ascending; at least one.
 std::vector<int> usable_cpus();

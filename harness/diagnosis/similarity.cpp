@@ -1,4 +1,4 @@
-#include "harness/diagnosis/likeness.hpp"
+#include "harness/diagnosis/similarity.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -64,16 +64,16 @@ Mask difference(const Answer& a, const Answer& b) {
   return mask;
 }
 
-Likeness likeness_of(const Outputs& port, const Outputs& law, const Outputs& fault,
-                     const std::vector<Mask>& port_deviates) {
-  Likeness result;
+Similarity likeness_of(const Outputs& port, const Outputs& law, const Outputs& fault,
+                       const std::vector<Mask>& port_deviates) {
+  Similarity result;
   for (std::size_t tick = 0; tick < port.size(); ++tick) {
     result.matched += difference(port[tick], fault[tick]) == 0 ? 1 : 0;
     const Mask fault_deviates = difference(fault[tick], law[tick]);
-    const Mask both = port_deviates[tick] & fault_deviates;
-    const Mask either = port_deviates[tick] | fault_deviates;
-    result.both += static_cast<std::size_t>(std::popcount(both));
-    result.either += static_cast<std::size_t>(std::popcount(either));
+    const Mask in_both = port_deviates[tick] & fault_deviates;
+    const Mask in_either = port_deviates[tick] | fault_deviates;
+    result.intersection += static_cast<std::size_t>(std::popcount(in_both));
+    result.union_size += static_cast<std::size_t>(std::popcount(in_either));
   }
   return result;
 }
@@ -112,9 +112,9 @@ FaultAnswers answers_of_faults(const Trace& given, const Subject& subject,
   return answers;
 }
 
-VectorLikeness distinct_likeness(const Outputs& port, const Outputs& law,
-                                 std::span<const Outputs> distinct) {
-  VectorLikeness result;
+VectorSimilarity distinct_similarity(const Outputs& port, const Outputs& law,
+                                     std::span<const Outputs> distinct) {
+  VectorSimilarity result;
   result.ticks = port.size();
   std::vector<Mask> port_deviates;
   for (std::size_t tick = 0; tick < port.size(); ++tick) {
@@ -123,23 +123,23 @@ VectorLikeness distinct_likeness(const Outputs& port, const Outputs& law,
   }
   for (const Outputs& fault : distinct) {
     const bool answered = fault.size() == port.size();
-    result.likenesses.push_back(answered ? likeness_of(port, law, fault, port_deviates)
-                                         : Likeness{});
+    result.similarities.push_back(answered ? likeness_of(port, law, fault, port_deviates)
+                                           : Similarity{});
   }
   return result;
 }
 
-VectorLikeness of_each_fault(const VectorLikeness& distinct, const FaultAnswers& faults) {
-  VectorLikeness result{distinct.ticks, distinct.deviates, {}};
-  result.likenesses.reserve(faults.of_fault.size());
+VectorSimilarity of_each_fault(const VectorSimilarity& distinct, const FaultAnswers& faults) {
+  VectorSimilarity result{distinct.ticks, distinct.deviates, {}};
+  result.similarities.reserve(faults.of_fault.size());
   for (const std::size_t index : faults.of_fault) {
-    result.likenesses.push_back(distinct.likenesses[index]);
+    result.similarities.push_back(distinct.similarities[index]);
   }
   return result;
 }
 
-VectorLikeness likeness(const Outputs& port, const Outputs& law, const FaultAnswers& faults) {
-  return of_each_fault(distinct_likeness(port, law, faults.distinct), faults);
+VectorSimilarity similarity(const Outputs& port, const Outputs& law, const FaultAnswers& faults) {
+  return of_each_fault(distinct_similarity(port, law, faults.distinct), faults);
 }
 
 }  // namespace attest

@@ -1,4 +1,4 @@
-#include "harness/golden/other_side.hpp"
+#include "harness/golden/branch_alternatives.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -69,8 +69,8 @@ bool agrees(const Trace& got, const Trace& want, std::size_t tick, const Toleran
 }
 
 // Null when `got` agrees with none of them.
-const Trace* side_of(const Trace& got, const Trace& law, const OtherSides& others, std::size_t tick,
-                     const Tolerances& tolerances) {
+const Trace* side_of(const Trace& got, const Trace& law, const BranchAlternatives& others,
+                     std::size_t tick, const Tolerances& tolerances) {
   if (agrees(got, law, tick, tolerances)) return &law;
   for (const auto& [name, other] : others) {
     if (agrees(got, other, tick, tolerances)) return &other;
@@ -111,9 +111,9 @@ Result<Trace> answers_of(const EitherSide& sides, const Case& the_case, const Tr
 
 }  // namespace
 
-Result<OtherSides> other_sides(const Case& the_case, const Trace& law) {
+Result<BranchAlternatives> branch_alternatives(const Case& the_case, const Trace& law) {
   const EitherSide allowed = the_case.either_side;
-  OtherSides others;
+  BranchAlternatives others;
   for (const EitherSide sides : {EitherSide{true, false}, {false, true}, {true, true}}) {
     if ((sides.yaw_wrap && !allowed.yaw_wrap) ||
         (sides.shorter_rotation && !allowed.shorter_rotation)) {
@@ -128,7 +128,7 @@ Result<OtherSides> other_sides(const Case& the_case, const Trace& law) {
   return others;
 }
 
-Trace on_the_side_of(const Trace& got, const Trace& law, const OtherSides& others,
+Trace on_the_side_of(const Trace& got, const Trace& law, const BranchAlternatives& others,
                      const Tolerances& tolerances) {
   Trace want = law;
   for (std::size_t tick = 0; tick < want.samples.size(); ++tick) {

@@ -1,4 +1,4 @@
-#include "harness/core/nearest.hpp"
+#include "harness/core/suggestion.hpp"
 
 #include <gtest/gtest.h>
 

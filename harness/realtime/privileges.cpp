@@ -1,4 +1,4 @@
-#include "harness/realtime/rights.hpp"
+#include "harness/realtime/privileges.hpp"
 
 #include <cerrno>
 #include <cstdint>
@@ -15,48 +15,48 @@
 namespace attest {
 namespace {
 
-Right right(std::string name, bool got) {
+RealtimePrivilege right(std::string name, bool got) {
   return {std::move(name), got, got ? "" : std::strerror(errno)};
 }
 
 }  // namespace
 
-ProcessRights::ProcessRights() {
+ProcessPrivileges::ProcessPrivileges() {
   // Where locked memory is limited, locking what comes would make allocations fail later.
   rlimit limit{};
   ::getrlimit(RLIMIT_MEMLOCK, &limit);
   const bool unlimited = limit.rlim_cur == RLIM_INFINITY || ::geteuid() == 0;
   const int pages = unlimited ? MCL_CURRENT | MCL_FUTURE : MCL_CURRENT;
-  rights_.push_back(right("mlockall", ::mlockall(pages) == 0));
+  privileges_.push_back(right("mlockall", ::mlockall(pages) == 0));
   // The kernel keeps to it as long as the file is open (Documentation/power/pm_qos_interface).
   const std::int32_t no_latency_us = 0;
   latency_ = ::open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
   const bool kept = latency_ >= 0 && ::write(latency_, &no_latency_us, sizeof no_latency_us) ==
                                          static_cast<ssize_t>(sizeof no_latency_us);
-  rights_.push_back(right("cpu_dma_latency 0", kept));
+  privileges_.push_back(right("cpu_dma_latency 0", kept));
 }
 
-ProcessRights::~ProcessRights() {
+ProcessPrivileges::~ProcessPrivileges() {
   if (latency_ >= 0) ::close(latency_);
   ::munlockall();
 }
 
-std::vector<Right> claim(const ThreadWish& wish) {
-  std::vector<Right> rights;
+std::vector<RealtimePrivilege> claim(const ThreadWish& wish) {
+  std::vector<RealtimePrivilege> privileges;
   cpu_set_t cpus;
   CPU_ZERO(&cpus);
   CPU_SET(static_cast<std::size_t>(wish.cpu), &cpus);
-  rights.push_back(
+  privileges.push_back(
       right(fmt::format("CPU {}", wish.cpu), ::sched_setaffinity(0, sizeof cpus, &cpus) == 0));
   if (wish.fifo_priority > 0) {
     sched_param parameters{};
     parameters.sched_priority = wish.fifo_priority;
-    rights.push_back(right(fmt::format("SCHED_FIFO {}", wish.fifo_priority),
-                           ::sched_setscheduler(0, SCHED_FIFO, &parameters) == 0));
+    privileges.push_back(right(fmt::format("SCHED_FIFO {}", wish.fifo_priority),
+                               ::sched_setscheduler(0, SCHED_FIFO, &parameters) == 0));
   }
   // An ordinary thread's timers may be 50 us late to save power, unless it says otherwise.
-  rights.push_back(right("timer slack 1 ns", ::prctl(PR_SET_TIMERSLACK, 1ul) == 0));
-  return rights;
+  privileges.push_back(right("timer slack 1 ns", ::prctl(PR_SET_TIMERSLACK, 1ul) == 0));
+  return privileges;
 }
 
 std::vector<int> usable_cpus() {

@@ -13,7 +13,7 @@
 
 namespace attest {
 
-class Agenda {
+class EventQueue {
  public:
   struct Event {
     std::size_t task;
@@ -22,7 +22,7 @@ class Agenda {
   };
 
   // When each task runs, by its number. REQUIRES: no task's times decrease.
-  explicit Agenda(std::vector<std::vector<Nanoseconds>> times);
+  explicit EventQueue(std::vector<std::vector<Nanoseconds>> times);
 
   // How often a task runs in all.
   std::size_t size(std::size_t task) const { return tasks_[task].times.size(); }

@@ -1,12 +1,12 @@
-#include "harness/schedule/agenda.hpp"
+#include "harness/schedule/event_queue.hpp"
 
 namespace attest {
 
-Agenda::Agenda(std::vector<std::vector<Nanoseconds>> times) {
+EventQueue::EventQueue(std::vector<std::vector<Nanoseconds>> times) {
   for (auto& of_task : times) tasks_.push_back({std::move(of_task), 0});
 }
 
-std::optional<Agenda::Event> Agenda::next() {
+std::optional<EventQueue::Event> EventQueue::next() {
   std::optional<Event> first;
   for (std::size_t i = 0; i < tasks_.size(); ++i) {
     const auto& [times, done] = tasks_[i];

@@ -1,4 +1,4 @@
-#include "harness/golden/other_side.hpp"
+#include "harness/golden/branch_alternatives.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ float yaw_at(const Trace& trace, std::size_t tick) {
 TEST(OtherSide, TurnsTheOtherWayWhereTheLawIsFree) {
   const Case the_case = case_of(turned + "0.15\n");
   const Trace law = answers(the_case, *open_builtin());
-  const auto others = other_sides(the_case, law);
+  const auto others = branch_alternatives(the_case, law);
   ASSERT_TRUE(others) << others.error().to_string();
   ASSERT_THAT(*others, ElementsAre(Key("yaw_wrap")));
   const Trace& other = others->at("yaw_wrap");
@@ -48,7 +48,7 @@ TEST(OtherSide, TurnsTheOtherWayWhereTheLawIsFree) {
 TEST(OtherSide, IsAllowedAtEachTickByItself) {
   const Case the_case = case_of(turned + "0.15\n");
   const Trace law = answers(the_case, *open_builtin());
-  const OtherSides others = other_sides(the_case, law).value();
+  const BranchAlternatives others = branch_alternatives(the_case, law).value();
   Trace got = law;
   got.samples[1] = others.at("yaw_wrap").samples[1];
   got.samples[3] = others.at("yaw_wrap").samples[3];
@@ -74,7 +74,7 @@ TEST(OtherSide, OfTwoDecisionsThereAreThree) {
       "[vehicle_attitude_setpoint]\nthrust = 0.15\n"
       // No limit hides which way it turns.
       "[parameters]\nMC_ROLLRATE_MAX = 1800\nMC_PITCHRATE_MAX = 1800\n");
-  const auto others = other_sides(the_case, answers(the_case, *open_builtin()));
+  const auto others = branch_alternatives(the_case, answers(the_case, *open_builtin()));
   ASSERT_TRUE(others) << others.error().to_string();
   EXPECT_THAT(*others, ElementsAre(Key("shorter_rotation"), Key("yaw_wrap"),
                                    Key("yaw_wrap+shorter_rotation")));
@@ -82,14 +82,14 @@ TEST(OtherSide, OfTwoDecisionsThereAreThree) {
 
 TEST(OtherSide, ACaseThatDoesNotStandThereIsAnError) {
   const Case level = case_of("either_side = [\"yaw_wrap\"]\n");
-  const auto none = other_sides(level, answers(level, *open_builtin()));
+  const auto none = branch_alternatives(level, answers(level, *open_builtin()));
   ASSERT_FALSE(none);
   EXPECT_THAT(none.error().message, HasSubstr("no tick stands on such a threshold"));
 }
 
 TEST(OtherSide, IntegralsThatMoveAreAnError) {
   const Case moving = case_of(turned + "0.6\n[parameters]\nMC_YAWRATE_P = 0.01\n");
-  const auto parted = other_sides(moving, answers(moving, *open_builtin()));
+  const auto parted = branch_alternatives(moving, answers(moving, *open_builtin()));
   ASSERT_FALSE(parted);
   EXPECT_THAT(parted.error().message, HasSubstr("the integrals are not those of the other side"));
 }

@@ -11,16 +11,16 @@
 
 namespace attest {
 
-class Fleet {
+class VehicleModels {
  public:
-  explicit Fleet(std::filesystem::path models) : models_(std::move(models)) {}
+  explicit VehicleModels(std::filesystem::path models) : models_(std::move(models)) {}
 
-  // Errors: as of Airframe::load.
-  Result<std::shared_ptr<const Airframe>> get(const std::string& name);
+  // Errors: as of VehicleModel::load.
+  Result<std::shared_ptr<const VehicleModel>> get(const std::string& name);
 
  private:
   std::filesystem::path models_;
-  std::map<std::string, std::shared_ptr<const Airframe>> loaded_;
+  std::map<std::string, std::shared_ptr<const VehicleModel>> loaded_;
 };
 
 }  // namespace attest
