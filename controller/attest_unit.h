@@ -197,8 +197,10 @@ typedef struct attest_unit {
   const char* version;  /* of the port */
 
   /* A new instance in its power-on state with default parameters. `profile` names the version of
-   * the law, such as "px4-v1.5.5". NULL: profile not supported, its cases are skipped. Legal at any
-   * time, also while other instances exist. May allocate. */
+   * the law, such as "px4-v1.5.5". NULL: profile not supported, its cases are skipped. A profile
+   * that was supported once stays so; a port that can have one instance only returns NULL while it
+   * has it, and makes the next when that was destroyed. Legal at any time, also while other
+   * instances exist. May allocate. */
   void* (*create)(const char* profile);
 
   /* Frees an instance. Called once per successful create(), after the last call with it. */

@@ -75,13 +75,13 @@ struct ParameterStimulus {
   Signal signal;
 };
 
-// Something else holds the processor, as of Stall.
+// Something else holds the processor, as in Stall.
 struct UnitStall {
   Span every, length;
   bool catches_up = false;
 };
 
-// The unit's own ticks: late by jitter or stalls, or missing, as of TickSchedule.
+// The unit's own ticks: late by jitter or stalls, or missing, as in TickSchedule.
 struct UnitTiming {
   Span start{5.0, Span::In::seconds};  // timestamp of the first tick
   double jitter = 0;

@@ -14,6 +14,7 @@
 #include "harness/cli/timing_arguments.hpp"
 #include "harness/core/suggestion.hpp"
 #include "harness/core/version.hpp"
+#include "harness/report/report_format.hpp"
 
 namespace attest::cli {
 namespace {
@@ -54,11 +55,6 @@ void add_run(CLI::App& app, const Globals& globals, Action& action) {
               "passes fails the run")
           ->type_name("F");
   command
-      ->add_option("--write-expected", options->write_expected,
-                   "Write what fails as such a file, to fill in the reasons")
-      ->type_name("F")
-      ->excludes(expected);
-  command
       ->add_option("--timing", options->timing,
                    "Only the flight of `stress --record-timing`, at the very times it had, beside "
                    "the reference at these times")
@@ -75,13 +71,11 @@ void add_run(CLI::App& app, const Globals& globals, Action& action) {
   add_timeout(*command, options->host.timeout_s);
   command->add_flag("--in-process", options->host.in_process,
                     "No worker processes: for a debugger, or a sanitizer in the port");
-  command->add_option("--junit", options->junit, "Write a JUnit XML report")->type_name("FILE");
-  command->add_option("--json", options->json, "Write a JSON report")->type_name("FILE");
-  command
-      ->add_option("--badge", options->badge,
-                   "Write a badge (SVG): green when the port conforms to a profile, amber "
-                   "when the result is partial, red when something fails")
-      ->type_name("FILE");
+  for (const ReportFormat& format : report_formats()) {
+    command->add_option(format.option, options->reports[format.option], format.help)
+        ->type_name("FILE");
+  }
+  command->get_option("--write-expected")->excludes(expected);
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return run_command(*options, globals); };
   });

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,7 +48,7 @@ struct SelectionOptions {
   // Each selected case at all its rates, on all its vehicles and plants?
   bool selects_all_configurations() const;
 
-  // The cases below `folder` that are selected. Errors: as of select_cases, and text that is no
+  // The cases below `folder` that are selected. Errors: those of select_cases, and text that is no
   // rate or shard.
   Result<std::vector<SelectedCase>> cases_in(const std::filesystem::path& folder) const;
 };
@@ -60,11 +61,8 @@ struct RunOptions {
   int jobs = 1;
   bool fail_fast = false;
   std::string level = "numeric";
-  std::string junit;
-  std::string json;
-  std::string badge;
+  std::map<std::string, std::string> reports;  // files, by ReportFormat::option; empty: not wanted
   std::string expected_failures;
-  std::string write_expected;
   std::string timing;    // file; empty: the cases' own
   bool diagnose = true;  // when something fails
 };

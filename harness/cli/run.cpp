@@ -2,7 +2,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <ctime>
-#include <functional>
 #include <optional>
 #include <set>
 #include <utility>
@@ -20,10 +19,8 @@
 #include "harness/diagnosis/diagnosis_job.hpp"
 #include "harness/port/port.hpp"
 #include "harness/process/child.hpp"
-#include "harness/report/json.hpp"
-#include "harness/report/junit.hpp"
 #include "harness/report/progress.hpp"
-#include "harness/report/statement.hpp"
+#include "harness/report/report_format.hpp"
 #include "harness/report/terminal.hpp"
 #include "harness/verify/case_job.hpp"
 #include "harness/verify/expected.hpp"
@@ -34,33 +31,25 @@ namespace {
 // A report file, opened before the run so that a path that cannot be written is said at once.
 struct ReportFile {
   AtomicFile file;
-  std::function<std::string(const RunResult&, const std::optional<Diagnosis>&)> render;
+  const ReportFormat& format;
 };
 
 Result<std::vector<ReportFile>> open_reports(const RunOptions& options) {
   std::vector<ReportFile> reports;
-  const auto undiagnosed = [](std::string (*render)(const RunResult&)) {
-    return [render](const RunResult& run, const std::optional<Diagnosis>&) { return render(run); };
-  };
-  using Render = decltype(ReportFile::render);
-  const std::pair<const std::string&, Render> wanted[] = {
-      {options.junit, junit_report},
-      {options.json, json_report},
-      {options.badge, undiagnosed(badge)},
-      {options.write_expected, undiagnosed(expected_failures_of)}};
-  for (const auto& [path, render] : wanted) {
+  for (const ReportFormat& format : report_formats()) {
+    const std::string& path = options.reports.at(format.option);
     if (path.empty()) continue;
     auto file = AtomicFile::open(path);
     if (!file) return tl::unexpected(file.error());
-    reports.push_back({std::move(*file), render});
+    reports.push_back({*std::move(file), format});
   }
   return reports;
 }
 
 Result<void> write_reports(std::vector<ReportFile>& reports, const RunResult& run,
                            const std::optional<Diagnosis>& diagnosis) {
-  for (auto& [file, render] : reports) {
-    if (auto written = file.write(render(run, diagnosis)); !written) return written;
+  for (auto& [file, format] : reports) {
+    if (auto written = file.write(format.render(run, diagnosis)); !written) return written;
     if (auto committed = file.commit(); !committed) return committed;
   }
   return {};
@@ -227,9 +216,10 @@ int run_command(const RunOptions& options, const Globals& globals) {
   note_interrupts();  // before the port is asked anything, which may hang
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
-  const auto checked =
-      check_outputs({options.junit, options.json, options.badge, options.write_expected},
-                    {options.host.port, {options.expected_failures, options.timing}}, *suite);
+  std::vector<std::string> outputs;
+  for (const auto& [option, path] : options.reports) outputs.push_back(path);
+  const auto checked = check_outputs(
+      outputs, {options.host.port, {options.expected_failures, options.timing}}, *suite);
   if (!checked) return report_error(checked.error());
   auto plan = make_plan(options, *suite);
   if (!plan) return report_error(plan.error());

@@ -18,7 +18,7 @@ Result<int> open_regular_file(const std::filesystem::path& path);
 // More than any text that a person writes. What a program wrote may need more.
 inline constexpr std::uintmax_t most_text_bytes = std::uintmax_t{64} << 20;
 
-// The whole file. Errors: as of open_regular_file(), unreadable, more than `most_bytes`.
+// The whole file. Errors: those of open_regular_file(), unreadable, more than `most_bytes`.
 Result<std::string> read_file(const std::filesystem::path& path,
                               std::uintmax_t most_bytes = most_text_bytes);
 

@@ -32,11 +32,11 @@ class Golden {
   // CSV.
   Result<Trace> read(const RunConfiguration& configuration) const;
 
-  // What it is on other sides; empty for a case without Case::either_side. Errors: as of read().
+  // What it is on other sides; empty for a case without Case::either_side. Errors: those of read().
   Result<BranchAlternatives> read_branch_alternatives(const RunConfiguration& configuration) const;
 
-  // The rows, horizon and metrics of a flight. Errors: as of read(), and a vehicle whose files have
-  // changed since.
+  // The rows, horizon and metrics of a flight. Errors: those of read(), and a vehicle whose files
+  // have changed since.
   Result<ReferenceFlight> read_flight(const RunConfiguration& configuration,
                                       const Vehicle& vehicle) const;
 

@@ -35,7 +35,7 @@ class HostHere final : public PortHost {
   std::optional<PaintedStack> stack_;
 };
 
-// Opens the port (open_port), in its own floating point environment. Errors: as of open_port().
+// Opens the port (open_port), in its own floating point environment. Errors: those of open_port().
 Result<std::unique_ptr<PortHost>> open_host_here(const std::string& port,
                                                  std::optional<PortSays> said = {},
                                                  Course course = {});

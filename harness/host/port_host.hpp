@@ -24,7 +24,7 @@ struct Course {
 struct FlightPlan {
   RunConfiguration configuration;
   LoopTiming timing;
-  bool from_one_period_on = false;  // as of Case
+  bool from_one_period_on = false;  // Case::from_one_period_on()
 };
 
 // How long each step of a trace took.

@@ -13,6 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/core/large_pages.hpp"
 #include "harness/loop/unit_driver.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/trace/trace.hpp"
@@ -50,7 +51,9 @@ class BlobReader {
     constexpr std::size_t most = (std::size_t{1} << 30) / sizeof(T);
     if (left() == 0 || count > most || sizes_[next_] != count * sizeof(T)) return std::nullopt;
     ++next_;
-    std::vector<T> objects(count);
+    std::vector<T> objects;
+    reserve_large(objects, count);
+    objects.resize(count);
     if (!read_(objects.data(), count * sizeof(T))) return std::nullopt;
     return objects;
   }

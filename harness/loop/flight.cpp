@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/core/large_pages.hpp"
 #include "harness/loop/case_timing.hpp"
 #include "harness/loop/closed_loop.hpp"
 
@@ -87,8 +88,8 @@ Result<Flown> fly(const Case& the_case, const RunConfiguration& configuration,
   Flown flown;
   flown.trace.source = fmt::format("{}@{}", the_case.id(), configuration.label());
   flown.trace.present = channels_of(Part::mc_att_control);
-  flown.trace.samples.reserve(ticks);
-  flown.trace.plant.reserve(ticks);
+  reserve_large(flown.trace.samples, ticks);
+  reserve_large(flown.trace.plant, ticks);
   FlightEnd end = loop.run(&flown.trace);
   flown.fault = std::move(end.fault);
   flown.divergence = std::move(end.divergence);

@@ -27,7 +27,7 @@ Case bound_to_vehicle(const Case& the_case, const Vehicle& vehicle);
 // How often MuJoCo steps. REQUIRES: a flight.
 Rate physics_of(const Case& the_case, const Rate& loop);
 
-// The plant of a configuration. REQUIRES: the case is a flight. Errors: as of fly().
+// The plant of a configuration. REQUIRES: the case is a flight. Errors: those of fly().
 Result<std::unique_ptr<Plant>> plant_for(const Case& the_case,
                                          const RunConfiguration& configuration,
                                          const VehicleModel& vehicle_model);

@@ -15,7 +15,7 @@ namespace attest {
 
 class PlantTask {
  public:
-  // Resets the plant to the start of the flight. REQUIRES: as of ClosedLoop.
+  // Resets the plant to the start of the flight. REQUIRES: what ClosedLoop requires.
   PlantTask(const Case& the_case, const Rate& rate, const Vehicle& vehicle, Plant& plant);
 
   // When disturb() is due.

@@ -4,7 +4,7 @@
 //      "vehicle": "iris", "plant": "mujoco", "duration_s": 10,
 //      "ticks_ns": [[0, 8113, 1000000], [0, 1009001, null], ...]}
 //
-// A tick is [sampled, begins, commanded] as of LoopTick, null where its command was overtaken.
+// A tick is [sampled, begins, commanded] as in LoopTick, null where its command was overtaken.
 #pragma once
 
 #include <filesystem>

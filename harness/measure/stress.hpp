@@ -33,7 +33,7 @@ struct StressResult {
   // Verdict; ticks, first and tightest are of the outputs, compared with the reference's.
   CaseResult result;
   Percentiles idle;  // wake-up latency of a thread with nothing to do: the machine's own floor
-  Percentiles latency, execution, response, age;  // as of LiveUnitRecord
+  Percentiles latency, execution, response, age;  // as in LiveUnitRecord
   Percentiles plant;                              // wake-up latency of the plant
   std::uint64_t deadlines = 0;                    // releases: steps that ran, and skipped ones
   std::uint64_t ticks = 0;                        // steps that ran

@@ -13,7 +13,7 @@ class Battery {
   // update. REQUIRES: a positive capacity.
   Battery(const BatteryPack& pack, double charge);
 
-  // Measures at `now`: `hover_seconds_used` as of PlantState, `power_ratio` the rotors' power
+  // Measures at `now`: `hover_seconds_used` is that of PlantState, `power_ratio` the rotors' power
   // beside that in hover. REQUIRES: times do not decrease.
   void update(Nanoseconds now, double hover_seconds_used, double power_ratio);
 

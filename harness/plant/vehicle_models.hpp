@@ -15,7 +15,7 @@ class VehicleModels {
  public:
   explicit VehicleModels(std::filesystem::path models) : models_(std::move(models)) {}
 
-  // Errors: as of VehicleModel::load.
+  // Errors: those of VehicleModel::load.
   Result<std::shared_ptr<const VehicleModel>> get(const std::string& name);
 
  private:

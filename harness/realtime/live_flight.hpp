@@ -45,7 +45,7 @@ struct LiveFlight {
 // plant's thread, which publishes a sample at each tick of the rate. Keeps the samples of the first
 // `samples` ticks. `progress` is called every tenth of a second. A battery is sampled by the
 // plant's thread, and takes into account the command that the motors follow. REQUIRES: a flight; a
-// fresh unit. Errors: as of fly().
+// fresh unit. Errors: those of fly().
 Result<LiveFlight> fly_live(const Case& the_case, const RunConfiguration& configuration,
                             const VehicleModel& vehicle_model, Unit& unit,
                             const LiveOptions& options, std::size_t samples,

@@ -20,8 +20,8 @@ namespace attest {
 
 struct LiveUnitRecord {
   Histogram latency;           // of the wake-ups
-  Histogram execution;         // as of LiveTick
-  Histogram response;          // as of LiveTick
+  Histogram execution;         // as in LiveTick
+  Histogram response;          // as in LiveTick
   Histogram age;               // of the sample used, when the step ended: what the loop feels
   std::uint64_t late = 0;      // responses longer than the period
   std::uint64_t skipped = 0;   // releases passed over; with the late responses all the misses

@@ -14,7 +14,7 @@ namespace attest {
 
 struct SlowTick {
   std::size_t tick = 0;
-  Nanoseconds execution{0}, elapsed{0};  // as of LiveTick
+  Nanoseconds execution{0}, elapsed{0};  // as in LiveTick
 };
 
 // Slow by execution time: a step that was preempted is not slow.

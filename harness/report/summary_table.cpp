@@ -49,7 +49,7 @@ struct Table {
   std::vector<Row> rows;
 };
 
-std::vector<Rate> rates_of(const RunResult& run) {
+std::vector<Rate> selected_rates(const RunResult& run) {
   std::vector<Rate> rates = run.rates;
   for (const CaseResult& result : run.results) rates.push_back(result.rate);
   std::sort(rates.begin(), rates.end());
@@ -72,7 +72,7 @@ Row& row_labelled(std::vector<Row>& rows, const std::string& label, std::size_t 
 
 Table table_of(const RunResult& run) {
   Table table;
-  const std::vector<Rate> rates = rates_of(run);
+  const std::vector<Rate> rates = selected_rates(run);
   for (const Rate& rate : rates) table.header.push_back(rate.to_string());
   table.header.push_back("total");
 

@@ -11,7 +11,7 @@ namespace attest {
 struct SweepRow {
   PlantConfiguration plant_configuration;
   double lowest_rate_hz = -1;
-  std::vector<double> largest_delay_ms;  // by rate, as of sweep.hpp
+  std::vector<double> largest_delay_ms;  // by rate, as in sweep.hpp
   std::string failure;                   // of the port; empty: none
 };
 

@@ -77,6 +77,15 @@ TEST(Tolerances, OfFixedPointAreAtLeastItsLsbs) {
   EXPECT_DOUBLE_EQ(coarse.of(yaw).absolute, Tolerances::rate_lsb / (1 << 22));
   EXPECT_DOUBLE_EQ(coarse.of(integral).absolute, Tolerances::integral_lsb / (1 << 22));
   EXPECT_EQ(coarse.of(channel("out/actuator_controls_0.published")).absolute, 0);
+  // What is not computed in fixed point is not rounded by it.
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    const Quantity quantity = channels()[i].quantity;
+    const bool is_computed = channels()[i].is_output() && quantity != Quantity::flag &&
+                             quantity != Quantity::time && quantity != Quantity::quaternion;
+    if (is_computed) continue;
+    EXPECT_EQ(coarse.of(i).absolute, Tolerances().of(i).absolute) << channels()[i].name;
+    EXPECT_EQ(coarse.of(i).relative, Tolerances().of(i).relative) << channels()[i].name;
+  }
   // What integrates has an LSB more for each tick of a flight.
   Tolerances of_flight;
   of_flight.allow_lsb(22, 1000);

@@ -1,0 +1,33 @@
+#include "harness/report/report_format.hpp"
+
+#include "harness/report/json.hpp"
+#include "harness/report/junit.hpp"
+#include "harness/report/statement.hpp"
+#include "harness/verify/expected.hpp"
+
+namespace attest {
+namespace {
+
+// Of a report that has no place for a diagnosis.
+auto without_diagnosis(std::string (*render)(const RunResult&)) {
+  return [render](const RunResult& run, const std::optional<Diagnosis>&) { return render(run); };
+}
+
+}  // namespace
+
+std::span<const ReportFormat> report_formats() {
+  static const ReportFormat formats[] = {
+      {"--junit", "Write a JUnit XML report", junit_report},
+      {"--json", "Write a JSON report", json_report},
+      {"--badge",
+       "Write a badge (SVG): green when the port conforms to a profile, amber when the result is "
+       "partial, red when something fails",
+       without_diagnosis(badge)},
+      {"--write-expected",
+       "Write what fails as a file for --expected-failures, to fill in the reasons",
+       without_diagnosis(expected_failures_of)},
+  };
+  return formats;
+}
+
+}  // namespace attest

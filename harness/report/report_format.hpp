@@ -1,0 +1,23 @@
+// The reports that a run can write to a file: the one list from which the options of `attest run`
+// and the writing of files come.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "harness/diagnosis/diagnose.hpp"
+#include "harness/verify/run_result.hpp"
+
+namespace attest {
+
+struct ReportFormat {
+  std::string option;  // of `attest run`: "--junit"
+  std::string help;
+  std::function<std::string(const RunResult&, const std::optional<Diagnosis>&)> render;
+};
+
+std::span<const ReportFormat> report_formats();
+
+}  // namespace attest
