@@ -54,17 +54,6 @@ TEST(Events, TwoTicksLaterAreOthers) {
   EXPECT_TRUE(first_event_difference(moving(5, 14), moving(5, 12)));
 }
 
-// What is shown at a tick without publication is the last value that was published.
-TEST(Events, AStepAfterATickWithoutPublicationIsUnclear) {
-  Trace got = moving(20, 20), want = got;
-  for (Trace* trace : {&got, &want}) set(*trace, 8, "out/mc_att_ctrl_status.published", 0);
-  for (std::size_t tick = 9; tick < 20; ++tick) set(got, tick, integral, 1e-4);
-  EXPECT_FALSE(first_event_difference(got, want));
-  set(want, 8, "out/mc_att_ctrl_status.published", 1);
-  set(got, 8, "out/mc_att_ctrl_status.published", 1);
-  EXPECT_TRUE(first_event_difference(got, want));
-}
-
 TEST(Events, AMissingPulseOfOneTickIsSeen) {
   EXPECT_TRUE(first_event_difference(moving(20, 20), moving(8, 9)));
   EXPECT_TRUE(first_event_difference(moving(8, 9), moving(20, 20)));
