@@ -13,7 +13,7 @@ constexpr std::size_t ticks = 100'000;
 
 Trace made() {
   Trace trace;
-  trace.present = channels_of(Part::mc_att_control);
+  trace.present = channels_of(Module::mc_att_control);
   trace.samples.resize(ticks);
   for (std::size_t i = 0; i < ticks; ++i) {
     Sample& sample = trace.samples[i];

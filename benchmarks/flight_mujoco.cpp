@@ -119,8 +119,8 @@ BENCHMARK_CAPTURE(flight, traced, 250, true)->Name("flight/250hz_trace")->UseMan
 BENCHMARK_CAPTURE(bare_steps, at_250, 250)->Name("mj_step/250hz")->UseManualTime();
 BENCHMARK_CAPTURE(flight, at_1000, 1000, false)->Name("flight/1000hz")->UseManualTime();
 BENCHMARK_CAPTURE(bare_steps, at_1000, 1000)->Name("mj_step/1000hz")->UseManualTime();
-BENCHMARK(set_up)->Name("configuration/plant");
-BENCHMARK(bare_set_up)->Name("configuration/mujoco");
+BENCHMARK(set_up)->Name("plant/set_up");
+BENCHMARK(bare_set_up)->Name("mujoco/set_up");
 
 }  // namespace
 }  // namespace attest::bench

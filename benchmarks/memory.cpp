@@ -67,15 +67,14 @@ void whole_suite() {
 // Outputs only, which is what a long comparison is about.
 void write_long_trace(const std::filesystem::path& path, std::size_t ticks) {
   Trace trace;
-  trace.present =
-      channels_of(Part::mc_att_control, "out/") | channels_of(Part::mc_att_control, "timestamp");
+  trace.present = channels_of(Module::mc_att_control, "out/") |
+                  channels_of(Module::mc_att_control, "timestamp");
   trace.samples.resize(ticks);
   for (std::size_t i = 0; i < ticks; ++i) {
     trace.samples[i].in.timestamp = 5'000'000 + 125 * i;
     trace.samples[i].out.actuator_controls_0.control[0] = static_cast<float>(i % 1000) * 1e-3f;
   }
-  auto file = AtomicFile::open(path);
-  if (file && write_csv(trace, all_columns(trace), *file)) file->commit();
+  write_csv(path, trace, all_columns(trace));
 }
 
 // Of comparing a trace of so many ticks with itself, file by file.

@@ -12,12 +12,12 @@
 namespace attest::bench {
 namespace {
 
-void suite(benchmark::State& state, int processes, bool port_apart = true) {
+void suite(benchmark::State& state, int processes, bool isolated = true) {
   for (auto _ : state) {
     const auto cases = select_cases(ATTEST_SOURCE_DIR "/cases", {});
     VehicleModels vehicle_models(ATTEST_SOURCE_DIR "/models");
     HostOptions host;
-    host.in_process = !port_apart;
+    host.in_process = !isolated;
     const auto jobs =
         case_jobs(*cases, ATTEST_SOURCE_DIR "/golden", vehicle_models, Level::numeric, host);
     JobOptions<CaseResult> options;
@@ -29,7 +29,6 @@ void suite(benchmark::State& state, int processes, bool port_apart = true) {
 
 void one_job(benchmark::State& state) { suite(state, 1); }
 void two_jobs(benchmark::State& state) { suite(state, 2); }
-void port_apart(benchmark::State& state) { suite(state, 2); }
 void port_shared(benchmark::State& state) { suite(state, 2, false); }
 
 void four_jobs(benchmark::State& state) {
@@ -39,7 +38,6 @@ void four_jobs(benchmark::State& state) {
 
 BENCHMARK(one_job)->Name("suite/1_job")->UseRealTime()->Iterations(1);
 BENCHMARK(two_jobs)->Name("suite/2_jobs")->UseRealTime()->Iterations(1);
-BENCHMARK(port_apart)->Name("suite/port_apart")->UseRealTime()->Iterations(1);
 BENCHMARK(port_shared)->Name("suite/port_shared")->UseRealTime()->Iterations(1);
 BENCHMARK(four_jobs)->Name("suite/4_jobs")->UseRealTime()->Iterations(1);
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <initializer_list>
 #include <optional>
 #include <span>
@@ -31,17 +32,33 @@ struct ProfileTraits {
 constexpr ProfileTraits traits_of(Profile profile) {
   switch (profile) {
     case Profile::px4_v1_5_5:
-      return {"px4-v1.5.5", true, true, true, false, true, true, true};
+      return {.name = "px4-v1.5.5",
+              .attenuates_by_throttle = true,
+              .feeds_forward_rates = true,
+              .freezes_yaw_integral = true,
+              .limits_yaw_before_feed_forward = false,
+              .limits_rates_in_auto = true,
+              .has_landing_gear = true,
+              .scales_by_battery = true};
     case Profile::px4_v1_3_4:  // of June 2016
-      return {"px4-v1.3.4", false, false, false, true, false, false, false};
+      return {.name = "px4-v1.3.4",
+              .attenuates_by_throttle = false,
+              .feeds_forward_rates = false,
+              .freezes_yaw_integral = false,
+              .limits_yaw_before_feed_forward = true,
+              .limits_rates_in_auto = false,
+              .has_landing_gear = false,
+              .scales_by_battery = false};
   }
-  return {};
+  std::abort();  // a value that is no enumerator
 }
 
 // Some of the profiles: those that have a parameter, or can tell a mistake.
 class ProfileSet {
  public:
-  constexpr ProfileSet(std::initializer_list<Profile> profiles) {
+  constexpr ProfileSet(std::initializer_list<Profile> profiles)
+      : ProfileSet(std::span(profiles.begin(), profiles.size())) {}
+  constexpr explicit ProfileSet(std::span<const Profile> profiles) {
     for (const Profile profile : profiles) bits_ |= bit(profile);
   }
   constexpr bool contains(Profile profile) const { return (bits_ & bit(profile)) != 0; }
@@ -53,7 +70,7 @@ class ProfileSet {
   std::uint32_t bits_ = 0;
 };
 
-inline constexpr ProfileSet all_profiles{Profile::px4_v1_5_5, Profile::px4_v1_3_4};
+inline constexpr ProfileSet all_profiles{std::span(every_profile)};
 inline constexpr ProfileSet from_v1_5_5{Profile::px4_v1_5_5};
 inline constexpr ProfileSet only_v1_3_4{Profile::px4_v1_3_4};
 

@@ -101,8 +101,8 @@ struct ToleranceOverride {
 };
 
 // Thresholds of the attitude law that a case stands on, where turning one way is as right as the
-// other: at such a tick a port may answer what either side does.
-struct EitherSide {
+// other: at such a tick a port may answer what either branch does.
+struct EitherBranch {
   bool yaw_wrap = false;          // a yaw error of 180 deg
   bool shorter_rotation = false;  // beyond 90 deg of tilt, a direct rotation of 180 deg
 
@@ -136,11 +136,11 @@ struct Case {
   bool exact_only = false;
   // Where bits are the platform's (its exp and acos) and not the law's: never compared exactly.
   bool numeric_only = false;
-  EitherSide either_side;
+  EitherBranch either_branch;
   Instances instances = Instances::one;
-  std::optional<Flight> flight;      // empty: open loop, every input is scripted
-  Part part = Part::mc_att_control;  // which is given the inputs
-  std::string mixer;                 // of Part::mixer, its definition
+  std::optional<Flight> flight;            // empty: open loop, every input is scripted
+  Module module = Module::mc_att_control;  // which is given the inputs
+  std::string mixer;                       // of Module::mixer, its definition
 
   // Every way to run it: open loop one a rate, ascending; a flight by plant configuration, then
   // rate.

@@ -31,22 +31,22 @@ constexpr std::int64_t schema_version = 1;
 constexpr std::int64_t max_ticks = 1'000'000;
 
 // A mixer has no clock, and a battery is looked at 100 times a second.
-std::vector<Rate> default_rates(Part part) {
-  switch (part) {
-    case Part::mixer:
+std::vector<Rate> default_rates(Module module) {
+  switch (module) {
+    case Module::mixer:
       return {Rate::hz(250)};
-    case Part::battery_status:
+    case Module::battery_status:
       return {Rate::hz(100)};
     default:
       return standard_rates();
   }
 }
 
-std::vector<Rate> parse_rates(const TomlTable& root, Part part) {
+std::vector<Rate> parse_rates(const TomlTable& root, Module module) {
   constexpr const char* key = "rates_hz";
   if (!root.has(key)) {
     if (root.has("rates_why")) root.error("rates_why", "explains `rates_hz`, which is not there");
-    return default_rates(part);
+    return default_rates(module);
   }
   root.text("rates_why");  // required: a case that leaves out rates must say why
   std::vector<Rate> rates;
@@ -66,13 +66,13 @@ std::vector<Rate> parse_rates(const TomlTable& root, Part part) {
   return rates;
 }
 
-EitherSide parse_either_side(const TomlTable& root) {
-  constexpr const char* key = "either_side";
-  EitherSide sides;
-  if (!root.has(key)) return sides;
+EitherBranch parse_either_branch(const TomlTable& root) {
+  constexpr const char* key = "either_branch";
+  EitherBranch branches;
+  if (!root.has(key)) return branches;
   for (const std::string& decision : root.texts(key)) {
-    sides.yaw_wrap |= decision == "yaw_wrap";
-    sides.shorter_rotation |= decision == "shorter_rotation";
+    branches.yaw_wrap |= decision == "yaw_wrap";
+    branches.shorter_rotation |= decision == "shorter_rotation";
     if (decision != "yaw_wrap" && decision != "shorter_rotation") {
       root.error(key, fmt::format("no decision `{}`; use yaw_wrap, shorter_rotation", decision));
     }
@@ -80,7 +80,7 @@ EitherSide parse_either_side(const TomlTable& root) {
   if (root.has("level") || root.has("flight") || root.has("mixer") || root.has("battery")) {
     root.error(key, "is for the controller in open loop, at any level");
   }
-  return sides;
+  return branches;
 }
 
 Instances parse_instances(const TomlTable& root) {
@@ -96,14 +96,15 @@ Instances parse_instances(const TomlTable& root) {
 }
 
 // What the case is for: `[mixer]` and `[battery]` say so.
-void parse_part(const TomlTable& root, Case& parsed) {
+void parse_module(const TomlTable& root, Case& parsed) {
   for (const char* other : {"mixer", "battery"}) {
     if (!root.has(other)) continue;
     if (root.has("flight")) root.error(other, "is a case of its own; leave [flight] out");
-    if (parsed.part != Part::mc_att_control) root.error(other, "`mixer` is given too; keep one");
-    parsed.part = root.has("mixer") ? Part::mixer : Part::battery_status;
+    if (parsed.module != Module::mc_att_control)
+      root.error(other, "`mixer` is given too; keep one");
+    parsed.module = root.has("mixer") ? Module::mixer : Module::battery_status;
   }
-  if (parsed.part != Part::mixer) return;
+  if (parsed.module != Module::mixer) return;
   const TomlTable table = root.table("mixer");
   parsed.mixer = table.text("definition");
   if (const auto mixer = actuation::parse_mixer(parsed.mixer); !mixer) {
@@ -113,7 +114,7 @@ void parse_part(const TomlTable& root, Case& parsed) {
 
 void check_parameter_name(const TomlTable& table, const std::string& name, const Case& parsed) {
   for (const std::string& profile : parsed.profiles) {
-    const std::vector<std::string> known = parameter_names(parsed.part, profile);
+    const std::vector<std::string> known = parameter_names(parsed.module, profile);
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     table.error(name, fmt::format("unknown parameter `{}`{}; `attest list --parameters --profile "
                                   "{}` shows those of {}",
@@ -129,7 +130,7 @@ std::vector<ParameterStimulus> parse_parameters(const TomlTable& root, const Cas
   for (const std::string& name : table.keys()) {
     parameters.push_back({name, parse_signal(table, name)});
     check_parameter_name(table, name, parsed);
-    if (parsed.part != Part::mc_att_control && varies(parameters.back().signal)) {
+    if (parsed.module != Module::mc_att_control && varies(parameters.back().signal)) {
       table.error(name, "does not change while it runs: give one value");
     }
   }
@@ -225,8 +226,8 @@ void parse_body(const TomlTable& root, Case& parsed) {
   if (root.integer("schema") != schema_version && root.has("schema")) {
     root.error("schema", fmt::format("must be {}", schema_version));
   }
-  parse_part(root, parsed);
-  parsed.rates = parse_rates(root, parsed.part);
+  parse_module(root, parsed);
+  parsed.rates = parse_rates(root, parsed.module);
   parse_duration(root, parsed);
   if (root.has("level")) {
     const std::string level = root.text("level");
@@ -234,29 +235,30 @@ void parse_body(const TomlTable& root, Case& parsed) {
     parsed.numeric_only = level == "numeric";
     if (level != "numeric" && level != "exact") root.error("level", "must be numeric or exact");
   }
-  parsed.either_side = parse_either_side(root);
-  if (parsed.either_side.any() && tick_count(parsed.duration, parsed.rates.back()) > 1000) {
-    root.error("either_side", "is for cases of at most 1000 ticks, whose goldens keep every tick");
+  parsed.either_branch = parse_either_branch(root);
+  if (parsed.either_branch.any() && tick_count(parsed.duration, parsed.rates.back()) > 1000) {
+    root.error("either_branch",
+               "is for cases of at most 1000 ticks, whose goldens keep every tick");
   }
   parsed.instances = parse_instances(root);
   parsed.unit = parse_unit(root);
   check_unit(root, parsed);
   parsed.parameters = parse_parameters(root, parsed);
-  parsed.topics = parse_topics(root, parsed.part, root.has("flight"));
+  parsed.topics = parse_topics(root, parsed.module, root.has("flight"));
   if (root.has("flight")) parse_flight(root, models_beside(parsed.file), parsed);
   parse_tolerances(root, parsed);
 }
 
 }  // namespace
 
-std::vector<std::string> parameter_names(Part part, const std::string& profile) {
+std::vector<std::string> parameter_names(Module module, const std::string& profile) {
   const auto known = reference::profile_from_name(profile);
   std::vector<std::string> names;
-  if (part == Part::mc_att_control) {
+  if (module == Module::mc_att_control) {
     for (const auto& info : reference::parameter_table()) {
       if (!known || info.profiles.contains(*known)) names.emplace_back(info.name);
     }
-  } else if (part == Part::battery_status) {
+  } else if (module == Module::battery_status) {
     for (const auto& info : actuation::battery_parameters()) names.emplace_back(info.name);
   }
   return names;

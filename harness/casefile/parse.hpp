@@ -18,8 +18,8 @@ Result<Case> parse_case(const std::filesystem::path& file);
 // The case files below a folder, in the order of their paths. Errors: no such folder, no cases.
 Result<std::vector<std::filesystem::path>> find_case_files(const std::filesystem::path& folder);
 
-// Of the parameters that a case of that part and profile may set; of a profile that is not known,
+// Of the parameters that a case of that module and profile may set; of a profile that is not known,
 // all that there are.
-std::vector<std::string> parameter_names(Part part, const std::string& profile);
+std::vector<std::string> parameter_names(Module module, const std::string& profile);
 
 }  // namespace attest

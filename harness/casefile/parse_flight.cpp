@@ -43,7 +43,8 @@ std::vector<PlantKind> parse_plants(const TomlTable& table) {
   return plants;
 }
 
-void parse_flyers(const TomlTable& table, const std::vector<std::string>& known, Flight& flight) {
+void parse_plant_configurations(const TomlTable& table, const std::vector<std::string>& known,
+                                Flight& flight) {
   const std::vector<std::string> vehicles = parse_vehicles(table, known);
   const std::vector<PlantKind> plants = parse_plants(table);
   for (const std::string& vehicle : vehicles) {
@@ -253,7 +254,7 @@ void parse_flight(const TomlTable& root, const std::filesystem::path& models, Ca
                       fmt::format("needs vehicles, and there are none in {}", models.string()));
   }
   Flight& flight = parsed.flight.emplace();
-  parse_flyers(table, known, flight);
+  parse_plant_configurations(table, known, flight);
   flight.other_rates = parse_other_rates(table, parsed.rates);
   parse_physics(table, parsed.rates, flight);
   flight.floor = table.boolean("floor", false);

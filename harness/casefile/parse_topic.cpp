@@ -245,11 +245,11 @@ TopicStimulus baseline_topic(std::string_view name, std::uint32_t updated_bit, b
   return topic;
 }
 
-std::vector<TopicStimulus> baseline_topics(Part part, bool is_flight) {
-  if (part == Part::mixer) {
+std::vector<TopicStimulus> baseline_topics(Module module, bool is_flight) {
+  if (module == Module::mixer) {
     return {baseline_topic("actuator_controls_0", 0, false), baseline_topic("mixer", 0, false)};
   }
-  if (part == Part::battery_status) return {baseline_topic("battery", 0, false)};
+  if (module == Module::battery_status) return {baseline_topic("battery", 0, false)};
   std::vector<TopicStimulus> topics{baseline_topic(control_state, 0, is_flight)};
   std::uint32_t bit = 1;
   for (const std::string_view name : updated_topics()) {
@@ -280,8 +280,8 @@ void parse_topic(const TomlTable& table, TopicStimulus& topic) {
 
 }  // namespace
 
-std::vector<TopicStimulus> parse_topics(const TomlTable& root, Part part, bool is_flight) {
-  std::vector<TopicStimulus> topics = baseline_topics(part, is_flight);
+std::vector<TopicStimulus> parse_topics(const TomlTable& root, Module module, bool is_flight) {
+  std::vector<TopicStimulus> topics = baseline_topics(module, is_flight);
   if (is_flight) {
     std::erase_if(topics, [&](const TopicStimulus& topic) {
       if (topic.topic != control_state && topic.topic != motor_limits) return false;

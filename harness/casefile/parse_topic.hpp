@@ -8,10 +8,10 @@
 
 namespace attest {
 
-// Every topic of a part's inputs, those the file does not mention with the values of a vehicle that
-// hovers level, armed, in STABILIZED: see SCHEMA.md. In a flight the thrust of the baseline is that
-// of the vehicle's hover, and control_state and multirotor_motor_limits are not there: the plant
-// and the mixer make them.
-std::vector<TopicStimulus> parse_topics(const TomlTable& root, Part part, bool is_flight);
+// Every topic of a module's inputs, those the file does not mention with the values of a vehicle
+// that hovers level, armed, in STABILIZED: see SCHEMA.md. In a flight the thrust of the baseline is
+// that of the vehicle's hover, and control_state and multirotor_motor_limits are not there: the
+// plant and the mixer make them.
+std::vector<TopicStimulus> parse_topics(const TomlTable& root, Module module, bool is_flight);
 
 }  // namespace attest

@@ -233,14 +233,14 @@ std::vector<Nanoseconds> unit_ticks(const Case& the_case, const Rate& rate, doub
 
 struct Stimulus::Impl {
   Impl(const Case& the_case, const Rate& rate)
-      : part(the_case.part),
+      : module(the_case.module),
         start(the_case.unit.start.on(rate)),
         parameters(the_case.parameters, timeline_of(the_case, rate)) {
     const Timeline timeline = timeline_of(the_case, rate);
     for (const TopicStimulus& topic : the_case.topics) publishers.emplace_back(topic, timeline);
   }
 
-  Part part;
+  Module module;
   Nanoseconds start;
   std::vector<Publisher> publishers;
   ParameterPublisher parameters;
@@ -262,15 +262,15 @@ void Stimulus::tick(std::size_t tick, Nanoseconds now, Sample& sample,
   for (Publisher& publisher : impl_->publishers) publisher.tick(now, sample);
   impl_->parameters.tick(tick, now, sample, changes);
   // Only the controller is told what is new.
-  if (impl_->part != Part::mc_att_control) sample.in.updated = 0;
+  if (impl_->module != Module::mc_att_control) sample.in.updated = 0;
 }
 
 namespace {
 
 // A mixer has outputs for as many rotors as it has.
 ChannelSet channels_of(const Case& the_case) {
-  ChannelSet channels = attest::channels_of(the_case.part);
-  if (the_case.part != Part::mixer) return channels;
+  ChannelSet channels = attest::channels_of(the_case.module);
+  if (the_case.module != Module::mixer) return channels;
   const std::size_t rotors = actuation::parse_mixer(the_case.mixer)->rotors.size();
   const std::size_t first = *find_channel("out/actuator_outputs.output[0]");
   for (std::size_t i = rotors; i < actuation::rotors_max; ++i) channels.reset(first + i);

@@ -69,8 +69,10 @@ void add_run(CLI::App& app, const Globals& globals, Action& action) {
       ->capture_default_str();
   command->add_flag("--fail-fast", options->fail_fast, "Stop after the first failing case");
   add_timeout(*command, options->host.timeout_s);
-  command->add_flag("--in-process", options->host.in_process,
-                    "No worker processes: for a debugger, or a sanitizer in the port");
+  command->add_flag(
+      "--in-process", options->host.in_process,
+      "Run the port in attest's own process, for a debugger or a sanitizer; the result is "
+      "partial");
   for (const ReportFormat& format : report_formats()) {
     command->add_option(format.option, options->reports[format.option], format.help)
         ->type_name("FILE");

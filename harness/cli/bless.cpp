@@ -17,9 +17,9 @@
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/golden/branch_alternatives.hpp"
-#include "harness/golden/decimate.hpp"
 #include "harness/golden/golden.hpp"
 #include "harness/golden/golden_lock.hpp"
+#include "harness/golden/keyframes.hpp"
 #include "harness/golden/reference_flight.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/plant/vehicle_models.hpp"
@@ -73,7 +73,7 @@ Result<GoldenTrace> open_loop_trace(const Case& the_case, const RunConfiguration
   if (!others) return tl::unexpected(others.error());
   golden.branch_alternatives = std::move(*others);
   golden.is_whole = keeps_every_tick(golden.trace.samples.size());
-  if (!golden.is_whole) golden.trace = decimated(golden.trace);
+  if (!golden.is_whole) golden.trace = keyframes_of(golden.trace);
   return golden;
 }
 

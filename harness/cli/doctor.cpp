@@ -92,9 +92,10 @@ void examine_reference(const SuiteFolder& suite, Examination& examination) {
 void examine_limits(const DoctorOptions& options, Examination& examination) {
   const std::string memory = memory_is_limited() ? fmt::format("{} GiB of memory", max_memory_gib)
                                                  : "memory without limit (sanitizers)";
-  examination.good("limits", fmt::format("of a port's process: {:g} s a case, {}, {} MiB a file; "
-                                         "it ends with all that it started",
-                                         options.host.timeout_s, memory, max_file_mib));
+  examination.good("limits",
+                   fmt::format("of a port's process: {:g} s an answer, {}, {} MiB a file; "
+                               "it ends with all that it started",
+                               options.host.timeout_s, memory, max_file_mib));
 }
 
 void examine_port(const DoctorOptions& options, Examination& examination) {

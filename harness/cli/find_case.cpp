@@ -31,8 +31,9 @@ Result<Case> find_case(const std::string& name, const SuiteFolder& suite) {
                           (*found)[0].the_case.id(), (*found)[1].the_case.id()));
 }
 
-Result<PlantConfiguration> find_flyer(const Case& the_case, const std::string& vehicle,
-                                      const std::string& plant) {
+Result<PlantConfiguration> find_plant_configuration(const Case& the_case,
+                                                    const std::string& vehicle,
+                                                    const std::string& plant) {
   PlantConfiguration plant_configuration{vehicle.empty() ? the_case.flight->lead_vehicle : vehicle,
                                          the_case.flight->plant_configurations.front().plant};
   if (plant.empty()) return plant_configuration;
@@ -57,7 +58,7 @@ Result<ChosenFlight> choose_flight(const std::string& name, const std::string& v
                                    const std::string& plant, const SuiteFolder& suite) {
   auto the_case = find_flight(name, suite);
   if (!the_case) return tl::unexpected(the_case.error());
-  auto plant_configuration = find_flyer(*the_case, vehicle, plant);
+  auto plant_configuration = find_plant_configuration(*the_case, vehicle, plant);
   if (!plant_configuration) return tl::unexpected(plant_configuration.error());
   auto vehicle_model = VehicleModel::load(suite.models(), plant_configuration->vehicle);
   if (!vehicle_model) return tl::unexpected(vehicle_model.error());
@@ -77,7 +78,7 @@ Result<TimedFlight> find_timed_flight(const std::string& file, const SuiteFolder
   auto vehicle_model =
       VehicleModel::load(suite.models(), timing->configuration.plant_configuration->vehicle);
   if (!vehicle_model) return tl::unexpected(vehicle_model.error());
-  Case as_long = timed(std::move(*the_case), *timing);
+  Case as_long = with_timing(std::move(*the_case), *timing);
   return TimedFlight{std::move(as_long), std::move(*timing), std::move(*vehicle_model)};
 }
 

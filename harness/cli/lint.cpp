@@ -23,10 +23,10 @@ bool is_nearer(Decision decision, const Margin& margin, const Nearest& nearest) 
                  : margin.distance < nearest.margin.distance;
 }
 
-// On purpose, and both sides are right.
-bool stands_on(const EitherSide& sides, Decision decision) {
-  return (sides.yaw_wrap && decision == Decision::yaw_wrap) ||
-         (sides.shorter_rotation && decision == Decision::shorter_rotation);
+// On purpose, and both branches are right.
+bool stands_on(const EitherBranch& branches, Decision decision) {
+  return (branches.yaw_wrap && decision == Decision::yaw_wrap) ||
+         (branches.shorter_rotation && decision == Decision::shorter_rotation);
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ int lint_command(const VectorOptions& options, const Globals& globals) {
       ++vectors;
       for (std::size_t i = 0; i < decision_count; ++i) {
         const auto decision = static_cast<Decision>(i);
-        if (stands_on(the_case.either_side, decision)) continue;
+        if (stands_on(the_case.either_branch, decision)) continue;
         const Margin& margin = found[decision];
         const std::string where =
             fmt::format("{}@{} at tick {}", the_case.id(), configuration.label(), margin.tick);

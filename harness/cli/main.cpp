@@ -24,7 +24,7 @@ void open_standard_streams() {
   if (descriptor > STDERR_FILENO) ::close(descriptor);
 }
 
-// Whether a run of one worker can open its files, pipes and processes. With fewer the error would
+// Whether a run with one job can open its files, sockets and processes. With fewer the error would
 // come where nobody expects it, in a port too, whose fault it is not.
 bool enough_descriptors() {
   std::array<int, 24> opened{};

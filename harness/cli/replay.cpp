@@ -86,13 +86,21 @@ class Replay {
   }
 
  private:
-  Result<void> replay(const std::string& file) {
-    const auto host = start_host(options_.host);  // before the recorded answers are read
+  // The process of the port: once, before any recorded answer is read; again after a crash.
+  Result<void> start() {
+    if (host_ && !host_->is_spent()) return {};
+    auto host = start_host(options_.host);
     if (!host) return tl::unexpected(host.error());
+    host_ = *std::move(host);
+    return {};
+  }
+
+  Result<void> replay(const std::string& file) {
+    if (auto started = start(); !started) return started;
     const auto recorded = recorded_in(file, options_);
     if (!recorded) return tl::unexpected(recorded.error());
     const CaseResult result =
-        evaluate_trace(recorded->trace, recorded->subject, **host, Tolerances(level_));
+        evaluate_trace(recorded->trace, recorded->subject, *host_, Tolerances(level_));
     const bool passed = result.verdict == Verdict::pass;
     passed_ += passed ? 1 : 0;
     failed_ += fails_a_run(result.verdict) ? 1 : 0;
@@ -104,6 +112,7 @@ class Replay {
   const Globals& globals_;
   Level level_;
   std::string arithmetic_;  // how the port computes, if not in floats
+  std::unique_ptr<PortHost> host_;
   std::size_t passed_ = 0;
   std::size_t failed_ = 0;
 };

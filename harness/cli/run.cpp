@@ -186,7 +186,11 @@ std::optional<Diagnosis> diagnosed(const RunPlan& plan, int processes) {
   const auto vectors = [&](const faults::Fault* partner) {
     std::vector<VectorSimilarity> similarities;
     const auto jobs = diagnosis_jobs(plan.cases, plan.run.results, plan.host, partner);
-    for (VectorDiagnosis& vector : run_jobs(jobs, options).results) {
+    auto outcome = run_jobs(jobs, options);
+    if (!outcome.errors.empty() && !interrupted()) {
+      fmt::print(stderr, "attest: diagnosis: {}\n", outcome.errors.front().to_string());
+    }
+    for (VectorDiagnosis& vector : outcome.results) {
       if (vector) similarities.push_back(*std::move(vector));
     }
     return similarities;
@@ -195,6 +199,7 @@ std::optional<Diagnosis> diagnosed(const RunPlan& plan, int processes) {
   if (diagnosis && wants_partner(*diagnosis)) {
     add_partner(vectors(diagnosis->suspects.front().fault), *diagnosis);
   }
+  if (interrupted()) return std::nullopt;  // some vectors are missing
   return diagnosis;
 }
 
@@ -247,7 +252,8 @@ int run_command(const RunOptions& options, const Globals& globals) {
   run.results = std::move(outcome.results);
   run.errors = std::move(outcome.errors);
   run.stopped_early = outcome.stopped_early;
-  if (plan->expected) plan->expected->apply(options.select.selects_all(), run);
+  const bool is_complete = options.select.selects_all() && !run.stopped_early && run.errors.empty();
+  if (plan->expected) plan->expected->apply(is_complete, run);
   std::optional<Diagnosis> diagnosis;
   if (options.diagnose && run.failed()) diagnosis = diagnosed(*plan, options.jobs);
   // Before the summary: whoever reads that may stop reading, and end the program.

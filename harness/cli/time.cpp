@@ -25,7 +25,7 @@ Result<std::vector<SelectedCase>> open_loop_cases(const TimeCommandOptions& opti
   auto cases = options.select.cases_in(suite.cases());
   if (!cases) return cases;
   std::erase_if(*cases, [](const SelectedCase& one) {
-    return one.the_case.flight || one.the_case.part != Part::mc_att_control;
+    return one.the_case.flight || one.the_case.module != Module::mc_att_control;
   });
   if (cases->empty()) return fail("nothing of the controller in open loop is selected to be timed");
   return cases;

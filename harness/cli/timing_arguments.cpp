@@ -16,9 +16,10 @@ void add_port(CLI::App& command, std::string& port) {
 
 void add_timeout(CLI::App& command, double& timeout_s) {
   command
-      .add_option("--timeout", timeout_s,
-                  "Limit for one case at one rate [s]; a port that gives no answer in time has the "
-                  "verdict `timeout`")
+      .add_option(
+          "--timeout", timeout_s,
+          "Limit for each answer of the port [s]; a port that gives no answer in time has the "
+          "verdict `timeout`")
       ->check(CLI::Range(0.1, 86400.0))
       ->capture_default_str();
 }
@@ -207,7 +208,7 @@ void add_time(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("F");
   add_timeout(*command, options->host.timeout_s);
   command->add_flag("--in-process", options->host.in_process,
-                    "No worker process: for valgrind, perf or a debugger");
+                    "Run the port in attest's own process: for valgrind, perf or a debugger");
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return time_command(*options, globals); };
   });

@@ -8,6 +8,7 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/core/file.hpp"
 #include "harness/trace/csv.hpp"
 #include "harness/trace/provenance.hpp"
 
@@ -18,11 +19,8 @@ namespace {
 Result<void> write_vector(const Case& the_case, const Rate& rate,
                           const std::filesystem::path& path) {
   Trace trace = stimulate(the_case, rate);
-  trace.present &= ~channels_of(the_case.part, "out/");
-  auto file = AtomicFile::open(path);
-  if (!file) return tl::unexpected(file.error());
-  if (auto written = write_csv(trace, all_columns(trace), *file); !written) return written;
-  return file->commit();
+  trace.present &= ~channels_of(the_case.module, "out/");
+  return write_csv(path, trace, all_columns(trace));
 }
 
 // Which law, and which mixer, the inputs are for; beside what the folder holds already.
@@ -31,7 +29,7 @@ Result<void> write_origin(const Case& the_case, const std::vector<RunConfigurati
   auto provenance = provenance_in(folder);
   if (!provenance) return tl::unexpected(provenance.error());
   provenance->profile = the_case.profile;
-  if (the_case.part == Part::mixer) {
+  if (the_case.module == Module::mixer) {
     for (const RunConfiguration& configuration : configurations)
       provenance->mixers[configuration.label()] = the_case.mixer;
   }

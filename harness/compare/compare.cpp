@@ -192,13 +192,10 @@ void compare_events(const Trace& got, const Trace& want, Comparison& result) {
 
 Comparison compare(const Trace& got, const Trace& want, const Tolerances& tolerances) {
   TickComparer comparer(got.present, want.present, tolerances);
-  std::span<const ParameterChange> changes = want.parameters;
+  PendingChanges changes(want.parameters);
   const std::size_t common = std::min(got.samples.size(), want.samples.size());
   for (std::size_t tick = 0; tick < common; ++tick) {
-    std::size_t now = 0;
-    while (now < changes.size() && changes[now].tick <= tick) ++now;
-    comparer.add(got.samples[tick], want.samples[tick], changes.first(now));
-    changes = changes.subspan(now);
+    comparer.add(got.samples[tick], want.samples[tick], changes.take_until(tick));
   }
   Comparison result = comparer.finish(got.samples.size(), want.samples.size());
   const bool of_events = tolerances.level() == Level::events && result.mismatch.empty();
@@ -235,18 +232,17 @@ namespace {
 // The parameters in force at each tick, walking forward.
 class ParametersInForce {
  public:
-  explicit ParametersInForce(const Trace& trace) : changes_(trace.parameters) {}
+  explicit ParametersInForce(const Trace& trace) : pending_(trace.parameters) {}
 
   const std::map<std::string, float>& at(std::size_t tick) {
-    for (; next_ < changes_.size() && changes_[next_].tick <= tick; ++next_) {
-      values_[changes_[next_].name] = changes_[next_].value;
+    for (const ParameterChange& change : pending_.take_until(tick)) {
+      values_[change.name] = change.value;
     }
     return values_;
   }
 
  private:
-  const std::vector<ParameterChange>& changes_;
-  std::size_t next_ = 0;
+  PendingChanges pending_;
   std::map<std::string, float> values_;
 };
 

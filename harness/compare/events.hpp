@@ -20,7 +20,7 @@ struct EventDifference {
 };
 
 // A mixer and a battery estimate are judged by their values.
-inline bool has_events(Part part) { return part == Part::mc_att_control; }
+inline bool has_events(Module module) { return module == Module::mc_att_control; }
 
 // Is there a channel that an event is told from?
 bool tells_events(const ChannelSet& present);

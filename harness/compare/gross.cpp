@@ -46,7 +46,7 @@ bool is_published(const Channel& channel, const Sample& sample) {
 }
 
 // |w| of the rotation from one attitude to the other: cos(angle / 2).
-double likeness_of(const float (&q)[4], const float (&q_d)[4]) {
+double similarity_of(const float (&q)[4], const float (&q_d)[4]) {
   double product = 0, of_q = 0, of_q_d = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     product += static_cast<double>(q[i]) * static_cast<double>(q_d[i]);
@@ -65,7 +65,7 @@ std::vector<bool> half_turns_in(const Trace& want) {
     const bool has_setpoint = (sample.in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;
     if (is_half_turn.empty() || has_setpoint) setpoint = sample.in;
     const double similarity =
-        likeness_of(sample.in.control_state.q, setpoint.vehicle_attitude_setpoint.q_d);
+        similarity_of(sample.in.control_state.q, setpoint.vehicle_attitude_setpoint.q_d);
     const bool goes_by_it = sample.in.vehicle_control_mode.flag_control_attitude_enabled != 0;
     is_half_turn.push_back(goes_by_it && !(similarity >= near));
   }

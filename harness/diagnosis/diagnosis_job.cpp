@@ -96,20 +96,17 @@ Result<VectorDiagnosis> DiagnosisJob::run(std::size_t) {
   const auto host = start_host(options_);
   if (!host) return tl::unexpected(host.error());
   const PortSays& port = (*host)->says();
-  const auto& declined = port.unsupported_groups;
-  if (std::find(declined.begin(), declined.end(), case_.group) != declined.end()) {
-    return std::nullopt;
-  }
+  if (declines(port, case_.group)) return std::nullopt;
   Trace law = stimulate(has_fixed_step(port, case_) ? case_.from_one_period_on() : case_, rate_);
   Trace got = law;
   const Subject subject = subject_of(case_);
   if ((*host)->drive(subject, got)) return std::nullopt;
   const auto reference = open_builtin();
   if (drive(*reference, subject, law)) return std::nullopt;
-  if (case_.either_side.any()) {
+  if (case_.either_branch.any()) {
     const auto others = branch_alternatives(case_, law);
     if (!others) return tl::unexpected(others.error());
-    law = on_the_side_of(
+    law = on_the_branch_of(
         got, law, *others,
         tolerances_of(case_, Level::numeric, port.fraction_bits, law.samples.size()));
   }

@@ -39,7 +39,7 @@ Sample hovering(std::size_t tick) {
 // Small attitude errors and rates that wander, and a setpoint that tilts a little.
 Trace hover() {
   Trace trace;
-  trace.present = channels_of(Part::mc_att_control);
+  trace.present = channels_of(Module::mc_att_control);
   Random random(1);
   double roll = 0, pitch = 0;
   for (std::size_t tick = 0; tick < 2500; ++tick) {
@@ -58,8 +58,9 @@ Trace hover() {
 
 Trace random_attitudes() {
   Trace trace;
-  trace.present = channels_of(Part::mc_att_control) & ~channels_of(Part::mc_att_control, "out/");
-  trace.present |= channels_of(Part::mc_att_control, "out/vehicle_rates_setpoint.");
+  trace.present =
+      channels_of(Module::mc_att_control) & ~channels_of(Module::mc_att_control, "out/");
+  trace.present |= channels_of(Module::mc_att_control, "out/vehicle_rates_setpoint.");
   Random random(2);
   const auto any = [&](float(&q)[4]) {
     set_quaternion(q, between(random, -1, 1), between(random, -1, 1), between(random, -1, 1),

@@ -64,8 +64,8 @@ Mask difference(const Answer& a, const Answer& b) {
   return mask;
 }
 
-Similarity likeness_of(const Outputs& port, const Outputs& law, const Outputs& fault,
-                       const std::vector<Mask>& port_deviates) {
+Similarity similarity_of(const Outputs& port, const Outputs& law, const Outputs& fault,
+                         const std::vector<Mask>& port_deviates) {
   Similarity result;
   for (std::size_t tick = 0; tick < port.size(); ++tick) {
     result.matched += difference(port[tick], fault[tick]) == 0 ? 1 : 0;
@@ -123,7 +123,7 @@ VectorSimilarity distinct_similarity(const Outputs& port, const Outputs& law,
   }
   for (const Outputs& fault : distinct) {
     const bool answered = fault.size() == port.size();
-    result.similarities.push_back(answered ? likeness_of(port, law, fault, port_deviates)
+    result.similarities.push_back(answered ? similarity_of(port, law, fault, port_deviates)
                                            : Similarity{});
   }
   return result;

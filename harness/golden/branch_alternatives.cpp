@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <span>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -20,35 +19,35 @@ namespace {
 using Vector3f = reference::Vector3<float>;
 using Matrix3f = reference::Matrix3<float>;
 
-struct OtherSide : reference::AttitudeStages<float> {
+struct OtherBranch : reference::AttitudeStages<float> {
   using Law = reference::AttitudeStages<float>;
-  EitherSide sides;
+  EitherBranch branches;
 
   float yaw_error(const Vector3f& nose, const Matrix3f& R_WD, float weight) const {
     const float error = Law::yaw_error(nose, R_WD, weight);
     const auto margin = static_cast<float>(least_margin(Decision::yaw_wrap));
     const float from_wrap = std::numbers::pi_v<float> - std::abs(error / weight);
-    return sides.yaw_wrap && from_wrap < margin ? -error : error;
+    return branches.yaw_wrap && from_wrap < margin ? -error : error;
   }
   Vector3f direct_error(const Matrix3f& R_WB, const Matrix3f& R_WD) const {
     const Vector3f error = Law::direct_error(R_WB, R_WD);
     const auto q = reference::quaternion_of(reference::ordered::transpose_product(R_WB, R_WD));
     const auto margin = static_cast<float>(least_margin(Decision::shorter_rotation));
-    const bool is_near = sides.shorter_rotation && std::abs(q.w()) < margin;
+    const bool is_near = branches.shorter_rotation && std::abs(q.w()) < margin;
     return is_near ? Vector3f(-error) : error;
   }
 };
 
-struct LawOnOtherSide {
+struct LawOnOtherBranch {
   reference::StepStages<float> step;
-  OtherSide attitude;
+  OtherBranch attitude;
   reference::RateStages<float> rate;
   reference::RecoveryStages<float> recovery;
 };
 
 // By value and by bits: the bytes between the members of a topic say nothing.
 bool is_same(std::string_view prefix, const Sample& a, const Sample& b) {
-  const ChannelSet chosen = channels_of(Part::mc_att_control, prefix);
+  const ChannelSet chosen = channels_of(Module::mc_att_control, prefix);
   for (std::size_t i = 0; i < channels().size(); ++i) {
     const Channel& channel = channels()[i];
     if (!chosen[i] || !channel.is_output()) continue;
@@ -69,8 +68,8 @@ bool agrees(const Trace& got, const Trace& want, std::size_t tick, const Toleran
 }
 
 // Null when `got` agrees with none of them.
-const Trace* side_of(const Trace& got, const Trace& law, const BranchAlternatives& others,
-                     std::size_t tick, const Tolerances& tolerances) {
+const Trace* branch_of(const Trace& got, const Trace& law, const BranchAlternatives& others,
+                       std::size_t tick, const Tolerances& tolerances) {
   if (agrees(got, law, tick, tolerances)) return &law;
   for (const auto& [name, other] : others) {
     if (agrees(got, other, tick, tolerances)) return &other;
@@ -78,33 +77,34 @@ const Trace* side_of(const Trace& got, const Trace& law, const BranchAlternative
   return nullptr;
 }
 
-Result<Trace> answers_of(const EitherSide& sides, const Case& the_case, const Trace& law) {
+Result<Trace> answers_of(const EitherBranch& branches, const Case& the_case, const Trace& law) {
   const auto profile = reference::profile_from_name(the_case.profile);
-  if (!profile) return fail_at(the_case.file.string(), "either_side: no such profile");
-  LawOnOtherSide stages;
-  stages.attitude.sides = sides;
-  reference::McAttControl<float, LawOnOtherSide> control(*profile, stages);
+  if (!profile) return fail_at(the_case.file.string(), "either_branch: no such profile");
+  LawOnOtherBranch stages;
+  stages.attitude.branches = branches;
+  reference::McAttControl<float, LawOnOtherBranch> control(*profile, stages);
   Trace other = law;
-  std::span<const ParameterChange> changes = law.parameters;
+  PendingChanges changes(law.parameters);
   attest_outputs out{};
   bool any = false;
   for (std::size_t tick = 0; tick < other.samples.size(); ++tick) {
-    for (; !changes.empty() && changes.front().tick <= tick; changes = changes.subspan(1)) {
-      control.set_parameter(changes.front().name, changes.front().value);
+    for (const ParameterChange& change : changes.take_until(tick)) {
+      control.set_parameter(change.name, change.value);
     }
     Sample& sample = other.samples[tick];
     control.step(sample.in, out);
     sample.out = out;
     any = any || !is_same("out/", sample, law.samples[tick]);
     if (!is_same("out/mc_att_ctrl_status.", sample, law.samples[tick])) {
-      return fail_at(the_case.file.string(),
-                     fmt::format("either_side: at tick {} the integrals are not those of the other "
-                                 "side; keep them from moving, for example by a thrust of 0.15",
-                                 tick));
+      return fail_at(
+          the_case.file.string(),
+          fmt::format("either_branch: at tick {} the integrals are not those of the other "
+                      "branch; keep them from moving, for example by a thrust of 0.15",
+                      tick));
     }
   }
   if (!any) {
-    return fail_at(the_case.file.string(), "either_side: no tick stands on such a threshold");
+    return fail_at(the_case.file.string(), "either_branch: no tick stands on such a threshold");
   }
   return other;
 }
@@ -112,32 +112,32 @@ Result<Trace> answers_of(const EitherSide& sides, const Case& the_case, const Tr
 }  // namespace
 
 Result<BranchAlternatives> branch_alternatives(const Case& the_case, const Trace& law) {
-  const EitherSide allowed = the_case.either_side;
+  const EitherBranch allowed = the_case.either_branch;
   BranchAlternatives others;
-  for (const EitherSide sides : {EitherSide{true, false}, {false, true}, {true, true}}) {
-    if ((sides.yaw_wrap && !allowed.yaw_wrap) ||
-        (sides.shorter_rotation && !allowed.shorter_rotation)) {
+  for (const EitherBranch branches : {EitherBranch{true, false}, {false, true}, {true, true}}) {
+    if ((branches.yaw_wrap && !allowed.yaw_wrap) ||
+        (branches.shorter_rotation && !allowed.shorter_rotation)) {
       continue;
     }
-    auto answers = answers_of(sides, the_case, law);
+    auto answers = answers_of(branches, the_case, law);
     if (!answers) return tl::unexpected(answers.error());
-    std::string name = sides.yaw_wrap ? "yaw_wrap" : "shorter_rotation";
-    if (sides.yaw_wrap && sides.shorter_rotation) name += "+shorter_rotation";
+    std::string name = branches.yaw_wrap ? "yaw_wrap" : "shorter_rotation";
+    if (branches.yaw_wrap && branches.shorter_rotation) name += "+shorter_rotation";
     others[name] = std::move(*answers);
   }
   return others;
 }
 
-Trace on_the_side_of(const Trace& got, const Trace& law, const BranchAlternatives& others,
-                     const Tolerances& tolerances) {
+Trace on_the_branch_of(const Trace& got, const Trace& law, const BranchAlternatives& others,
+                       const Tolerances& tolerances) {
   Trace want = law;
   for (std::size_t tick = 0; tick < want.samples.size(); ++tick) {
-    // What is right on no side is told from the nearest, not from the far one.
-    const Trace* side = nullptr;
-    for (double factor = 1; side == nullptr && factor <= 1e4; factor *= 10) {
-      side = side_of(got, law, others, tick, tolerances.scaled(factor));
+    // What is right on no branch is told from the nearest, not from the far one.
+    const Trace* branch = nullptr;
+    for (double factor = 1; branch == nullptr && factor <= 1e4; factor *= 10) {
+      branch = branch_of(got, law, others, tick, tolerances.scaled(factor));
     }
-    if (side != nullptr) want.samples[tick] = side->samples[tick];
+    if (branch != nullptr) want.samples[tick] = branch->samples[tick];
   }
   return want;
 }

@@ -32,21 +32,11 @@ std::string how_to_bless(const Case& the_case) {
   return fmt::format("`attest bless --filter '{}' --reason \"...\"` makes it", the_case.id());
 }
 
-Result<void> write_text(const fs::path& path, const std::string& text) {
-  auto file = AtomicFile::open(path);
-  if (!file) return tl::unexpected(file.error());
-  if (auto written = file->write(text); !written) return written;
-  return file->commit();
-}
-
 Result<std::string> write_trace(const fs::path& path, const Trace& trace,
                                 const CsvColumns& columns) {
-  auto file = AtomicFile::open(path);
-  if (!file) return tl::unexpected(file.error());
-  if (auto written = write_csv(trace, columns, *file); !written) {
+  if (auto written = write_csv(path, trace, columns); !written) {
     return tl::unexpected(written.error());
   }
-  if (auto committed = file->commit(); !committed) return tl::unexpected(committed.error());
   return sha256_of_file(path);
 }
 
@@ -54,7 +44,7 @@ std::vector<Trace> samples_of(const std::vector<GoldenTrace>& traces) {
   std::vector<Trace> samples;
   for (const GoldenTrace& trace : traces) {
     samples.push_back(trace.trace);
-    for (const auto& [side, other] : trace.branch_alternatives) samples.push_back(other);
+    for (const auto& [branch, other] : trace.branch_alternatives) samples.push_back(other);
   }
   return samples;
 }
@@ -95,8 +85,8 @@ Result<void> write_folder(const fs::path& folder, const Case& the_case,
   for (const auto& [configuration, trace, is_whole, horizon_s, metrics, branch_alternatives] :
        traces) {
     if (auto written = write(file_name(configuration), trace); !written) return written;
-    for (const auto& [side, other] : branch_alternatives) {
-      if (auto written = write(file_name(configuration, side), other); !written) return written;
+    for (const auto& [branch, other] : branch_alternatives) {
+      if (auto written = write(file_name(configuration, branch), other); !written) return written;
     }
     if (!the_case.mixer.empty()) provenance.mixers[configuration.label()] = the_case.mixer;
     if (horizon_s) provenance.horizon_s[configuration.label()] = *horizon_s;
@@ -112,7 +102,7 @@ Result<void> write_folder(const fs::path& folder, const Case& the_case,
   if (base) {
     if (auto noted = note_base(*base, the_case, provenance); !noted) return noted;
   }
-  return write_text(folder / provenance_name, sealed(to_toml(provenance)));
+  return write_file(folder / provenance_name, sealed(to_toml(provenance)));
 }
 
 }  // namespace
@@ -150,6 +140,10 @@ Result<Golden> Golden::open(const fs::path& golden_root, const Case& the_case) {
   if (auto intact = check_seal(folder / provenance_name); !intact) {
     return tl::unexpected(intact.error());
   }
+  if (!provenance->base.empty()) {
+    const fs::path base = (folder / provenance->base / provenance_name).lexically_normal();
+    if (auto intact = check_seal(base); !intact) return tl::unexpected(intact.error());
+  }
   return Golden(folder, std::move(*provenance));
 }
 
@@ -162,9 +156,9 @@ Result<BranchAlternatives> Golden::read_branch_alternatives(
   const std::string prefix = configuration.label() + ".", suffix = ".csv";
   BranchAlternatives others;
   for (const auto& [name, hash] : provenance_.sha256) {
-    const bool is_of_setup =
+    const bool is_of_configuration =
         name.starts_with(prefix) && name.size() > prefix.size() + suffix.size();
-    if (!is_of_setup) continue;
+    if (!is_of_configuration) continue;
     auto trace = read_file(name);
     if (!trace) return tl::unexpected(trace.error());
     const std::size_t length = name.size() - prefix.size() - suffix.size();

@@ -32,7 +32,8 @@ class Golden {
   // CSV.
   Result<Trace> read(const RunConfiguration& configuration) const;
 
-  // What it is on other sides; empty for a case without Case::either_side. Errors: those of read().
+  // What it is on other branches; empty for a case without Case::either_branch. Errors: those of
+  // read().
   Result<BranchAlternatives> read_branch_alternatives(const RunConfiguration& configuration) const;
 
   // The rows, horizon and metrics of a flight. Errors: those of read(), and a vehicle whose files
@@ -67,7 +68,7 @@ struct GoldenTrace {
   bool is_whole = true;  // false: some of its ticks, of a flight or a long case
   std::optional<double> horizon_s = std::nullopt;
   std::map<std::string, double> metrics = {};
-  BranchAlternatives branch_alternatives = {};  // of a case with Case::either_side
+  BranchAlternatives branch_alternatives = {};  // of a case with Case::either_branch
 };
 
 // The golden of a case's first profile, which that of another one rests on.

@@ -1,6 +1,7 @@
 #include "harness/golden/keyframes.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -9,6 +10,20 @@
 
 namespace attest {
 namespace {
+
+constexpr std::size_t first_ticks = 4;
+constexpr std::size_t regular_ticks = 12;
+
+// NaN is neither smallest nor largest.
+void add_extremes(const Channel& channel, const Trace& flown, std::set<std::size_t>& kept) {
+  std::size_t lowest = 0, highest = 0;
+  for (std::size_t tick = 1; tick < flown.samples.size(); ++tick) {
+    const float value = float_of(channel, flown.samples[tick]);
+    if (value < float_of(channel, flown.samples[lowest])) lowest = tick;
+    if (value > float_of(channel, flown.samples[highest])) highest = tick;
+  }
+  kept.insert({lowest, highest});
+}
 
 // The samples of `all` at the ticks of `kept`, with the channels of `kept` only; fewer samples
 // where a tick of `kept` is not in `all`.
@@ -30,11 +45,32 @@ Trace at_ticks_of(const Trace& kept, const Trace& all) {
 
 }  // namespace
 
+Trace keyframes_of(const Trace& flown) {
+  const std::size_t last = flown.samples.size() - 1;
+  std::set<std::size_t> kept;
+  for (std::size_t tick = 0; tick < std::min(first_ticks, last); ++tick) kept.insert(tick);
+  for (std::size_t i = 0; i <= regular_ticks; ++i) kept.insert(last * i / regular_ticks);
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    const Channel& channel = channels()[i];
+    if (flown.present[i] && channel.is_output() && channel.type == ChannelType::f32) {
+      add_extremes(channel, flown, kept);
+    }
+  }
+  Trace rows;
+  rows.source = flown.source;
+  rows.present = flown.present & ~channels_of(Module::mc_att_control, "in/updated.");
+  for (const std::size_t tick : kept) {
+    rows.samples.push_back(flown.samples[tick]);
+    rows.samples.back().in.updated = 0;
+  }
+  return rows;
+}
+
 Result<Trace> filled_in(Trace made, const Trace& kept, const Subject& subject, bool is_exact) {
   if (const auto fault = drive(*open_builtin(), subject, made)) {
     return fail_at(kept.source, fmt::format("the reference: {}", fault->what));
   }
-  const ChannelSet missing = made.present & channels_of(subject.part, "out/") & ~kept.present;
+  const ChannelSet missing = made.present & channels_of(subject.module, "out/") & ~kept.present;
   if (missing.any()) {
     return fail_at(kept.source, fmt::format("has no {}; bless it anew, or restore it from version "
                                             "control",

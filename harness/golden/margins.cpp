@@ -181,49 +181,49 @@ void note_norm(const float (&q)[4], Notes& notes) {
   if (std::isinf(worst.distance) || off > worst.distance) worst = {off, notes.tick};
 }
 
+struct DecisionTraits {
+  Decision decision;
+  std::string_view name;
+  double least_margin;
+};
+
+constexpr double of_input = 1e-6;  // an input differs by how a port holds it
+constexpr double of_law = 1e-5;
+
+// In the order of the enumerators.
+constexpr std::array<DecisionTraits, decision_count> all_traits{{
+    {Decision::quaternion_norm, "norm of quaternions", 1e-6},  // of float32, within 1e-7 of 1
+    {Decision::thrust_gate, "thrust gate", of_input},
+    {Decision::integrator_gate, "integrator gate", of_law},
+    {Decision::rattitude, "rattitude", of_input},
+    {Decision::shorter_rotation, "shorter rotation", of_law},
+    {Decision::yaw_wrap, "yaw at +-180 deg", of_law},
+    {Decision::tilt_axis, "tilt at 180 deg", 1e-3},  // where the tolerance stops widening
+    {Decision::battery_scale, "battery scale", of_input},
+    {Decision::recovery_latch, "recovery's latch", of_law},
+    {Decision::recovery_rotation, "recovery's rotation", of_law},
+    {Decision::mixer_limit, "mixer limit", of_law},
+    {Decision::mixer_branch, "mixer branch", of_law},
+    {Decision::mixer_yaw, "mixer yaw", of_law},
+}};
+
+constexpr bool is_in_order() {
+  for (std::size_t i = 0; i < all_traits.size(); ++i) {
+    if (all_traits[i].decision != static_cast<Decision>(i)) return false;
+  }
+  return true;
+}
+static_assert(is_in_order());
+
+const DecisionTraits& traits_of(Decision decision) {
+  return all_traits[static_cast<std::size_t>(decision)];
+}
+
 }  // namespace
 
-std::string_view name_of(Decision decision) {
-  // In the order of the enumerators.
-  constexpr std::array<std::string_view, decision_count> names{"norm of quaternions",
-                                                               "thrust gate",
-                                                               "integrator gate",
-                                                               "rattitude",
-                                                               "shorter rotation",
-                                                               "yaw at +-180 deg",
-                                                               "tilt at 180 deg",
-                                                               "battery scale",
-                                                               "recovery's latch",
-                                                               "recovery's rotation",
-                                                               "mixer limit",
-                                                               "mixer branch",
-                                                               "mixer yaw"};
-  return names[static_cast<std::size_t>(decision)];
-}
+std::string_view name_of(Decision decision) { return traits_of(decision).name; }
 
-double least_margin(Decision decision) {
-  switch (decision) {
-    case Decision::quaternion_norm:
-      return 1e-6;  // float32 of a unit quaternion is within 1e-7
-    case Decision::thrust_gate:
-    case Decision::rattitude:
-    case Decision::battery_scale:
-      return 1e-6;  // inputs, which differ by how a port holds them
-    case Decision::integrator_gate:
-      return 1e-5;
-    case Decision::shorter_rotation:
-    case Decision::yaw_wrap:
-    case Decision::recovery_latch:
-    case Decision::recovery_rotation:
-    case Decision::mixer_limit:
-    case Decision::mixer_branch:
-    case Decision::mixer_yaw:
-      return 1e-5;
-    case Decision::tilt_axis:
-      return 1e-3;  // where the tolerance stops widening (tolerance.hpp)
-  }
-  return 0;
-}
+double least_margin(Decision decision) { return traits_of(decision).least_margin; }
 
 bool Margins::is_safe(Decision decision) const {
   const double distance = (*this)[decision].distance;
@@ -283,17 +283,14 @@ void gather(const Margins& at_tick, Margins& all) {
 }  // namespace
 
 Margins margins(const Trace& given, const Subject& subject) {
-  if (subject.part == Part::mixer) return mixer_margins(given, subject.mixer);
-  if (subject.part == Part::battery_status) return {};
+  if (subject.module == Module::mixer) return mixer_margins(given, subject.mixer);
+  if (subject.module == Module::battery_status) return {};
   if (!reference::profile_from_name(subject.profile)) return {};
   MarginMeter meter(subject.profile);
-  std::span<const ParameterChange> changes = given.parameters;
+  PendingChanges changes(given.parameters);
   Margins all;
   for (std::size_t tick = 0; tick < given.samples.size(); ++tick) {
-    std::size_t now = 0;
-    while (now < changes.size() && changes[now].tick <= tick) ++now;
-    gather(meter.step(changes.first(now), given.samples[tick].in), all);
-    changes = changes.subspan(now);
+    gather(meter.step(changes.take_until(tick), given.samples[tick].in), all);
   }
   return all;
 }

@@ -36,7 +36,7 @@ enum class Decision {
   mixer_branch,       // which end has more room than the other lacks
   mixer_yaw,          // yaw against the rotors' limits, which it sets the flag by
 };
-inline constexpr std::size_t decision_count = 13;
+inline constexpr auto decision_count = static_cast<std::size_t>(Decision::mixer_yaw) + 1;
 
 std::string_view name_of(Decision decision);  // "integrator gate"
 

@@ -34,21 +34,21 @@ Result<void> check_mixer(const Trace& trace, const std::string& definition) {
   const auto mixer = actuation::parse_mixer(definition);
   if (!mixer)
     return fail_at(trace.source, fmt::format("mixer `{}`: {}", definition, mixer.error()));
-  const ChannelSet outputs = channels_of(Part::mixer, "out/actuator_outputs.") & trace.present;
+  const ChannelSet outputs = channels_of(Module::mixer, "out/actuator_outputs.") & trace.present;
   if (outputs.count() == mixer->rotors.size()) return {};
   return fail_at(trace.source, fmt::format("has {} rotors, mixer `{}` has {}", outputs.count(),
                                            definition, mixer->rotors.size()));
 }
 
-// Outputs of one part only.
-Result<void> check_part(const Trace& trace, Part part) {
-  const ChannelSet others = trace.present & ~channels_of(part, "out/");
+// Outputs of one module only.
+Result<void> check_module(const Trace& trace, Module module) {
+  const ChannelSet others = trace.present & ~channels_of(module, "out/");
   const auto table = channels();
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (!others[i] || !table[i].is_output()) continue;
-    return fail_at(trace.source, fmt::format("{} is of another part than {}; keep the outputs of "
-                                             "one part",
-                                             table[i].name, name_of(part)));
+    return fail_at(trace.source, fmt::format("{} is of another module than {}; keep the outputs of "
+                                             "one module",
+                                             table[i].name, name_of(module)));
   }
   return {};
 }
@@ -60,8 +60,8 @@ bool is_one_of(const std::string& name, const std::vector<std::string>& names) {
 // A trace of one version of the law may have been written with the columns of another.
 void leave_out_foreign_parameters(Recorded& recorded) {
   const Subject& subject = recorded.subject;
-  const auto own = parameter_names(subject.part, subject.profile);
-  const auto all = parameter_names(subject.part, "");
+  const auto own = parameter_names(subject.module, subject.profile);
+  const auto all = parameter_names(subject.module, "");
   std::set<std::string> foreign;
   for (const ParameterChange& change : recorded.trace.parameters) {
     if (!is_one_of(change.name, own) && is_one_of(change.name, all)) foreign.insert(change.name);
@@ -77,7 +77,7 @@ void leave_out_foreign_parameters(Recorded& recorded) {
 void give_cells(Recorded& recorded) {
   constexpr const char* name = "BAT_N_CELLS";
   constexpr float usual_cells = 3;
-  if (recorded.subject.part != Part::battery_status) return;
+  if (recorded.subject.module != Module::battery_status) return;
   const auto& parameters = recorded.trace.parameters;
   const bool is_given =
       std::any_of(parameters.begin(), parameters.end(),
@@ -104,14 +104,14 @@ Result<void> check_parameters(Recorded& recorded) {
 }  // namespace
 
 Result<void> check_parameter(const Subject& subject, const ParameterChange& change) {
-  const std::vector<std::string> names = parameter_names(subject.part, subject.profile);
+  const std::vector<std::string> names = parameter_names(subject.module, subject.profile);
   if (!is_one_of(change.name, names)) {
     return fail(fmt::format("unknown parameter `{}` of {} in {}{}", change.name,
-                            name_of(subject.part), subject.profile,
+                            name_of(subject.module), subject.profile,
                             suggestion(change.name, names)));
   }
   actuation::BatteryOptions battery;
-  if (subject.part == Part::battery_status &&
+  if (subject.module == Module::battery_status &&
       !actuation::set_battery_parameter(battery, change.name, change.value)) {
     return fail(fmt::format("{} cannot be {}", change.name, change.value));
   }
@@ -126,10 +126,10 @@ Result<Recorded> read_recorded(const std::filesystem::path& file, const std::str
   const auto beside = provenance_in(file.parent_path());
   if (!beside) return tl::unexpected(beside.error());
   const Provenance& provenance = *beside;
-  Recorded recorded{std::move(*trace), {profile, Part::mc_att_control, ""}, {}};
+  Recorded recorded{std::move(*trace), {profile, Module::mc_att_control, ""}, {}};
   Subject& subject = recorded.subject;
-  subject.part = part_of(recorded.trace.present);
-  if (auto checked = check_part(recorded.trace, subject.part); !checked) {
+  subject.module = module_of(recorded.trace.present);
+  if (auto checked = check_module(recorded.trace, subject.module); !checked) {
     return tl::unexpected(checked.error());
   }
   if (subject.profile.empty()) subject.profile = provenance.profile;
@@ -137,10 +137,10 @@ Result<Recorded> read_recorded(const std::filesystem::path& file, const std::str
   if (auto checked = check_parameters(recorded); !checked) {
     return tl::unexpected(checked.error());
   }
-  if (subject.part != Part::mixer && !mixer.empty()) {
+  if (subject.module != Module::mixer && !mixer.empty()) {
     return fail_at(recorded.trace.source, "is no mixer trace; leave --mixer out");
   }
-  if (subject.part != Part::mixer) return recorded;
+  if (subject.module != Module::mixer) return recorded;
   subject.mixer = mixer.empty() ? mixer_of(file, provenance) : mixer;
   if (auto checked = check_mixer(recorded.trace, subject.mixer); !checked) {
     return tl::unexpected(checked.error());

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "harness/compare/compare.hpp"
-#include "harness/golden/decimate.hpp"
+#include "harness/golden/keyframes.hpp"
 #include "harness/loop/case_timing.hpp"
 #include "harness/loop/flight.hpp"
 #include "harness/port/builtin.hpp"
@@ -80,7 +80,7 @@ Result<ReferenceFlight> reference_flight(const Case& the_case,
                                  metric.min, metric.max));
     }
   }
-  flight->rows = decimated(flight->rows);
+  flight->rows = keyframes_of(flight->rows);
   return flight;
 }
 

@@ -13,7 +13,7 @@
 namespace attest {
 
 struct ReferenceFlight {
-  Trace rows;                             // decimated
+  Trace rows;                             // keyframes
   double horizon_s = 0;                   // how long two right controllers stay together
   std::map<std::string, double> metrics;  // by name
 };

@@ -23,7 +23,7 @@ class HostHere final : public PortHost {
   bool supports(const std::string& profile) override;
 
  private:
-  // The fault of a request, or else that the port is no more what it said.
+  // The fault of a request, or a fault of kind protocol if the port now describes itself otherwise.
   std::optional<PortFault> held(std::optional<PortFault> fault, const std::string& profile) const;
   Result<void> measure_stack(const std::string& profile, Trace trace, StepTimes& times);
 

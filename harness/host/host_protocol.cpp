@@ -13,7 +13,7 @@ using nlohmann::json;
 
 json to_json(const Subject& subject) {
   return {{"profile", subject.profile},
-          {"part", subject.part},
+          {"module", subject.module},
           {"mixer", subject.mixer},
           {"instances", subject.instances}};
 }
@@ -39,14 +39,12 @@ PortSays says_from(const json& in) {
                 in.at("has_battery_status").get<bool>(),
                 {}};
   if (in.contains("fraction_bits")) says.fraction_bits = in.at("fraction_bits").get<int>();
-  if (in.contains("fixed_step")) {
-    says.fixed_step = Rate::parse(in.at("fixed_step").get<std::string>()).value();
-  }
+  if (const auto step = Rate::parse(in.value("fixed_step", ""))) says.fixed_step = *step;
   return says;
 }
 
 Subject subject_from(const json& in) {
-  return {in.at("profile").get<std::string>(), in.at("part").get<Part>(),
+  return {in.at("profile").get<std::string>(), in.at("module").get<Module>(),
           in.at("mixer").get<std::string>(), in.at("instances").get<Instances>()};
 }
 
@@ -192,7 +190,7 @@ std::optional<Result<Flown>> read_flown(const Arrived& arrived, std::size_t tick
     auto plant = samples ? arrived.blobs.read<PlantSample>(count) : std::nullopt;
     if (!plant) return std::nullopt;
     flown.trace = {head.at("source").get<std::string>(), *std::move(samples),
-                   changes_from(head.at("parameters")), channels_of(Part::mc_att_control),
+                   changes_from(head.at("parameters")), channels_of(Module::mc_att_control),
                    *std::move(plant)};
     return flown;
   });

@@ -1,21 +1,21 @@
 // What a judge and the process of a port say to each other (message_socket.hpp): a head in JSON,
 // and structs as they are in memory, because the one process is a fork of the other.
 //
-//     process -> {"says": {...}}                            once, when the port is loaded, or
-//                {"error": {...}}                           why it cannot be
+//     process -> {"request": 0, "says": {...}}              once, when the port is loaded
 //     judge   -> {"do": "drive", "subject": ..., ...}       samples, with inputs only
 //     process -> {"request": 1, "fault": {...}}             the same samples with outputs
 //     judge   -> {"do": "fly", "rate": "250", ...}          LoopTicks
 //     process -> {"request": 2, "fault", "divergence", "parameters"}
-//                                                           samples, plant samples
+//                                                           samples, their sources, plant samples
 //     judge   -> {"do": "time", "profile": ..., ...}        samples, with inputs only
-//     process -> {"request": 3, "fault", "clock_ns"}        nanoseconds of each step
+//     process -> {"request": 3, "fault", "clock_ns"}        nanoseconds of each step, stack bytes
 //     judge   -> {"do": "supports", "profile": ...}
 //     process -> {"request": 4, "supports": true}
 //
-// Instead of an answer may come {"request": n, "error": {...}}. The port shares the process, so the
-// judge takes nothing on trust: what is not an answer to its request, complete and of the right
-// size, is no answer.
+// {"request": n, "error": {...}} in place of the greeting says why the port cannot be loaded; in
+// place of an answer to "fly" or "time", why that cannot be done. The port shares the process, so
+// the judge takes nothing on trust: a message that does not answer its request, is incomplete or
+// has the wrong size, counts as no answer.
 #pragma once
 
 #include <cstddef>

@@ -57,7 +57,7 @@ class PortHost {
   // Whether the port makes a unit of that profile; also false of a port that went wrong.
   virtual bool supports(const std::string& profile) = 0;
 
-  // It answers nothing any more: what is left needs a host of its own.
+  // Its process has ended: further requests need a new host.
   virtual bool is_spent() const { return false; }
 };
 

@@ -35,19 +35,13 @@ void serve(const HostOptions& options, const Course& course, MessageSocket& judg
 // What a port is to answer is not sent to it.
 std::vector<Sample> inputs_of(const Trace& trace) {
   std::vector<Sample> inputs = trace.samples;
-  for (Sample& sample : inputs) {
-    sample.out = {};
-    sample.mixer_out = {};
-    sample.battery_out = {};
-  }
+  for (Sample& sample : inputs) sample.clear_outputs();
   return inputs;
 }
 
 void set_outputs(const std::vector<Sample>& answered, Trace& trace) {
   for (std::size_t i = 0; i < trace.samples.size(); ++i) {
-    trace.samples[i].out = answered[i].out;
-    trace.samples[i].mixer_out = answered[i].mixer_out;
-    trace.samples[i].battery_out = answered[i].battery_out;
+    trace.samples[i].copy_outputs(answered[i]);
   }
 }
 
@@ -63,7 +57,7 @@ class PortProcess final : public PortHost {
   // Waits until the port is loaded. Errors: it cannot be.
   Result<void> greet() {
     if (!child_) return {};
-    const auto greeted = answer_from("when it was loaded", read_greeting);
+    const auto greeted = answer_from("when it was loaded", patience(), read_greeting);
     if (greeted && !*greeted) return tl::unexpected(greeted->error());
     if (greeted && !options_.said) says_ = **greeted;
     return {};
@@ -122,16 +116,21 @@ class PortProcess final : public PortHost {
       return std::nullopt;
     }
     ++request_;
-    // A process that does not listen any more says why when it is listened to.
-    child_->socket().send(question, blobs, Patience::seconds(options_.timeout_s));
-    return answer_from("", std::move(read));
+    const Patience limit = patience();
+    // If this fails, the wait for the answer finds out why.
+    child_->socket().send(question, blobs, limit);
+    return answer_from("", limit, std::move(read));
+  }
+
+  Patience patience() const {
+    Patience limit = Patience::seconds(options_.timeout_s);
+    limit.given_up = options_.stop;
+    return limit;
   }
 
   template <typename Read>
-  auto answer_from(const std::string& when, Read read)
+  auto answer_from(const std::string& when, const Patience& patience, Read read)
       -> std::invoke_result_t<Read, const Arrived&> {
-    Patience patience = Patience::seconds(options_.timeout_s);
-    patience.given_up = options_.stop;
     const Received received = child_->receive(patience);
     Kind kind = received.kind;
     if (kind == Kind::message) {
@@ -173,7 +172,7 @@ class PortProcess final : public PortHost {
   std::optional<Child> child_;
   PortSays says_;
   std::uint64_t request_ = 0;
-  bool is_told_ = false;            // a request has ended with the fault of loading, or went well
+  bool is_told_ = false;            // a request was made: after a timeout the next is `not run`
   std::optional<PortFault> fault_;  // for good
 };
 
@@ -202,15 +201,17 @@ Result<std::unique_ptr<PortHost>> start_host(const HostOptions& options, const C
 
 Result<PortDescription> describe_port(const HostOptions& options,
                                       const std::vector<std::string>& profiles) {
-  const auto first = start_process(options, {});
-  if (!first) return tl::unexpected(first.error());
   PortDescription description;
-  if (const auto& fault = (*first)->fault()) {
-    if (fault->kind != PortFault::Kind::timeout) return fail_at(options.port, fault->what);
-    description.hangs = fault->what;
-    return description;
-  }
-  static_cast<PortSays&>(description) = (*first)->says();
+  {
+    const auto first = start_process(options, {});
+    if (!first) return tl::unexpected(first.error());
+    if (const auto& fault = (*first)->fault()) {
+      if (fault->kind != PortFault::Kind::timeout) return fail_at(options.port, fault->what);
+      description.hangs = fault->what;
+      return description;
+    }
+    static_cast<PortSays&>(description) = (*first)->says();
+  }  // one process of the port at a time
   for (const std::string& profile : profiles) {
     const auto host = start_process(options, {});
     if (!host) return tl::unexpected(host.error());

@@ -22,8 +22,8 @@ struct HostOptions {
   std::optional<PortSays> said = {};
   double timeout_s = default_timeout_s;
   bool in_process = false;  // for a debugger: no process of its own, no protection
-  // Why the port is not to be asked at all, as it hangs when it is loaded: each request ends with
-  // this. Empty: it is asked.
+  // Why the port is not to be asked at all, as it hangs when it is loaded: the fault of the first
+  // request; later ones are "not run". Empty: it is asked.
   std::string hangs = {};
   // Looked at while an answer is awaited; true: the answer does not matter any more.
   std::function<bool()> stop = [] { return false; };

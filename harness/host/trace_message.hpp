@@ -43,13 +43,12 @@ class BlobReader {
 
   std::size_t left() const { return sizes_.size() - next_; }
 
-  // The next blob. Empty when it does not come, or has not `count` objects.
+  // The next blob. Empty when it does not come, or has not `count` objects. REQUIRES: `count` is
+  // not what an untrusted process says: there is memory for so many.
   template <typename T>
   std::optional<std::vector<T>> read(std::size_t count) {
     static_assert(std::is_trivially_copyable_v<T>);
-    // No trace of ours is as long; a length that a port made up is not worth the memory.
-    constexpr std::size_t most = (std::size_t{1} << 30) / sizeof(T);
-    if (left() == 0 || count > most || sizes_[next_] != count * sizeof(T)) return std::nullopt;
+    if (left() == 0 || sizes_[next_] != count * sizeof(T)) return std::nullopt;
     ++next_;
     std::vector<T> objects;
     reserve_large(objects, count);

@@ -10,8 +10,8 @@ namespace {
 
 enum Task : std::size_t { disturbances, estimator, battery, motor_limits, unit, actuators };
 
-EventQueue agenda_of(const Flight& flight, const Timeline& timeline, const LoopTiming& timing,
-                     const std::vector<Nanoseconds>& disturbed) {
+EventQueue event_queue_of(const Flight& flight, const Timeline& timeline, const LoopTiming& timing,
+                          const std::vector<Nanoseconds>& disturbed) {
   std::vector<std::vector<Nanoseconds>> times(actuators + 1);
   times[disturbances] = disturbed;
   if (flight.battery) times[battery] = task_times(flight.battery->timing, timeline);
@@ -73,8 +73,8 @@ ClosedLoop::ClosedLoop(const Case& the_case, const Rate& rate, LoopTiming timing
       plant_(the_case, rate, vehicle, plant),
       unit_(the_case, rate, vehicle, unit, control_state_of(plant_.state())),
       estimator_(the_case.flight->estimator),
-      event_queue_(agenda_of(*the_case.flight, timeline_of(the_case, rate), timing_,
-                             plant_.disturbance_times())),
+      event_queue_(event_queue_of(*the_case.flight, timeline_of(the_case, rate), timing_,
+                                  plant_.disturbance_times())),
       estimates_(Nanoseconds(0), most_between(timing_, &sampled, &begins) + 1),
       battery_scales_(line<float>(the_case.flight->battery.value_or(BatteryFlight{}).timing, rate)),
       limits_(line<MotorLimits>(the_case.flight->motor_limits, rate)),

@@ -87,7 +87,7 @@ Result<Flown> fly(const Case& the_case, const RunConfiguration& configuration,
 
   Flown flown;
   flown.trace.source = fmt::format("{}@{}", the_case.id(), configuration.label());
-  flown.trace.present = channels_of(Part::mc_att_control);
+  flown.trace.present = channels_of(Module::mc_att_control);
   reserve_large(flown.trace.samples, ticks);
   reserve_large(flown.trace.plant, ticks);
   FlightEnd end = loop.run(&flown.trace);

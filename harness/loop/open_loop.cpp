@@ -1,7 +1,6 @@
 #include "harness/loop/open_loop.hpp"
 
 #include <memory>
-#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,32 +9,30 @@ namespace attest {
 namespace {
 
 // A unit on its way through a trace.
-template <typename PartUnit>
+template <typename ModuleUnit>
 class Drive {
  public:
-  Drive(PartUnit& unit, Trace& trace) : driver_(unit), trace_(trace), changes_(trace.parameters) {}
+  Drive(ModuleUnit& unit, Trace& trace)
+      : driver_(unit), trace_(trace), changes_(trace.parameters) {}
 
   bool is_over() const { return tick_ == trace_.samples.size(); }
 
   std::optional<PortFault> step() {
-    std::size_t now = 0;
-    while (now < changes_.size() && changes_[now].tick == tick_) ++now;
-    auto fault = driver_.step(tick_, changes_.first(now), trace_.samples[tick_]);
-    changes_ = changes_.subspan(now);
+    auto fault = driver_.step(tick_, changes_.take_until(tick_), trace_.samples[tick_]);
     ++tick_;
     return fault;
   }
 
  private:
-  PartDriver<PartUnit> driver_;
+  ModuleDriver<ModuleUnit> driver_;
   Trace& trace_;
-  std::span<const ParameterChange> changes_;
+  PendingChanges changes_;
   std::size_t tick_ = 0;
 };
 
-template <typename PartUnit>
-std::optional<PortFault> drive_part(PartUnit& unit, Trace& trace) {
-  Drive<PartUnit> drive(unit, trace);
+template <typename ModuleUnit>
+std::optional<PortFault> drive_module(ModuleUnit& unit, Trace& trace) {
+  Drive<ModuleUnit> drive(unit, trace);
   while (!drive.is_over()) {
     if (auto fault = drive.step()) return fault;
   }
@@ -58,10 +55,10 @@ Trace mirrored(Trace trace) {
   return trace;
 }
 
-template <typename PartUnit>
-std::optional<PortFault> drive_by_turns(PartUnit& judged, Trace& trace, PartUnit& other,
+template <typename ModuleUnit>
+std::optional<PortFault> drive_by_turns(ModuleUnit& judged, Trace& trace, ModuleUnit& other,
                                         Trace& of_other) {
-  Drive<PartUnit> drive(judged, trace), along(other, of_other);
+  Drive<ModuleUnit> drive(judged, trace), along(other, of_other);
   while (!drive.is_over()) {
     if (auto fault = along.step()) return fault;
     if (auto fault = drive.step()) return fault;
@@ -81,13 +78,13 @@ PortFault makes_no_other() {
 }
 
 // `create` makes a fresh instance.
-template <typename PartUnit, typename Create>
-std::optional<PortFault> drive_in_company(std::unique_ptr<PartUnit> first, Create create,
+template <typename ModuleUnit, typename Create>
+std::optional<PortFault> drive_in_company(std::unique_ptr<ModuleUnit> first, Create create,
                                           Instances instances, Trace& trace) {
   Trace of_first = mirrored(trace);
   // A fault of the first leaves the judged trace without an answer.
   const auto drive_first = [&] {
-    auto fault = drive_part(*first, of_first);
+    auto fault = drive_module(*first, of_first);
     if (fault) fault->tick = 0;
     return fault;
   };
@@ -95,14 +92,14 @@ std::optional<PortFault> drive_in_company(std::unique_ptr<PartUnit> first, Creat
     if (auto fault = drive_first()) return fault;
     first.reset();
   }
-  const std::unique_ptr<PartUnit> judged = create();
+  const std::unique_ptr<ModuleUnit> judged = create();
   if (!judged) return instances == Instances::again ? makes_no_other() : makes_only_one();
   if (instances == Instances::together) return drive_by_turns(*judged, trace, *first, of_first);
   if (instances == Instances::crossed) {
     if (auto fault = drive_first()) return fault;
     first.reset();
   }
-  return drive_part(*judged, trace);
+  return drive_module(*judged, trace);
 }
 
 template <typename Create>
@@ -111,8 +108,8 @@ std::optional<PortFault> drive_created(Create create, const Subject& subject, Tr
   if (unit && subject.instances != Instances::one) {
     return drive_in_company(std::move(unit), create, subject.instances, trace);
   }
-  if (unit) return drive_part(*unit, trace);
-  if (subject.part == Part::mixer) {
+  if (unit) return drive_module(*unit, trace);
+  if (subject.module == Module::mixer) {
     return PortFault{
         PortFault::Kind::unsupported, 0,
         fmt::format("the port makes no mixer `{}` of profile {}", subject.mixer, subject.profile)};
@@ -121,26 +118,26 @@ std::optional<PortFault> drive_created(Create create, const Subject& subject, Tr
                    fmt::format("the port does not support profile {}", subject.profile)};
 }
 
-PortFault without(std::string_view part, const char* extension) {
+PortFault without(std::string_view module, const char* extension) {
   return {PortFault::Kind::unsupported, 0,
-          fmt::format("the port has no {} (extension {})", part, extension)};
+          fmt::format("the port has no {} (extension {})", module, extension)};
 }
 
 }  // namespace
 
-std::optional<PortFault> drive(Unit& unit, Trace& trace) { return drive_part(unit, trace); }
+std::optional<PortFault> drive(Unit& unit, Trace& trace) { return drive_module(unit, trace); }
 
 Subject subject_of(const Case& the_case) {
-  return {the_case.profile, the_case.part, the_case.mixer, the_case.instances};
+  return {the_case.profile, the_case.module, the_case.mixer, the_case.instances};
 }
 
 std::optional<PortFault> drive(Port& port, const Subject& subject, Trace& trace) {
-  switch (subject.part) {
-    case Part::mixer:
+  switch (subject.module) {
+    case Module::mixer:
       if (!port.has_mixer()) return without("mixer", ATTEST_EXTENSION_MIXER);
       return drive_created([&] { return port.create_mixer(subject.profile, subject.mixer); },
                            subject, trace);
-    case Part::battery_status:
+    case Module::battery_status:
       if (!port.has_battery_status()) {
         return without("battery estimate", ATTEST_EXTENSION_BATTERY_STATUS);
       }

@@ -18,15 +18,15 @@ std::optional<PortFault> drive(Unit& unit, Trace& trace);
 // What of a port a trace is given to.
 struct Subject {
   std::string profile;
-  Part part = Part::mc_att_control;
-  std::string mixer = {};  // of Part::mixer, its definition: "R: 4x 10000 10000 10000 0"
+  Module module = Module::mc_att_control;
+  std::string mixer = {};  // of Module::mixer, its definition: "R: 4x 10000 10000 10000 0"
   Instances instances = Instances::one;
 };
 
 Subject subject_of(const Case& the_case);
 
-// The same with a fresh instance of that part of the port, in the company that the subject says. A
-// port that makes no second instance beside a living one does not support such a subject.
+// The same with a fresh instance of that module of the port, in the company that the subject says.
+// A port that makes no second instance beside a living one does not support such a subject.
 std::optional<PortFault> drive(Port& port, const Subject& subject, Trace& trace);
 
 }  // namespace attest

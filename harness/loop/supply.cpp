@@ -14,16 +14,6 @@ BatteryPack pack_of(const BatteryFlight& flight, const Vehicle& vehicle) {
   return pack;
 }
 
-// The rotors' power beside that in hover.
-double power_ratio(const PlantState& state, const Vehicle& vehicle) {
-  double sum = 0;
-  for (std::size_t i = 0; i < vehicle.rotors.size(); ++i) {
-    const double ratio = state.rotor_rad_s[i] / vehicle.hover_rotor_rad_s();
-    sum += ratio * ratio * ratio;
-  }
-  return sum / static_cast<double>(vehicle.rotors.size());
-}
-
 }  // namespace
 
 Supply::Supply(const std::optional<BatteryFlight>& battery, const Vehicle& vehicle)
@@ -34,7 +24,7 @@ Supply::Supply(const std::optional<BatteryFlight>& battery, const Vehicle& vehic
 }
 
 float Supply::sample(Nanoseconds now, const PlantState& state, float throttle, bool armed) {
-  battery_->update(now, state.hover_seconds_used, power_ratio(state, vehicle_));
+  battery_->update(now, state.hover_seconds_used, vehicle_.power_ratio(state.rotor_rad_s));
   return status_->update({static_cast<float>(battery_->voltage_V()),
                           static_cast<float>(battery_->current_A()), throttle, armed});
 }

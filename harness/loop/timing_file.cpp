@@ -109,7 +109,7 @@ Result<void> write_timing(const TimingFile& timing, const std::filesystem::path&
   return write_file(path, root.dump() + "\n");
 }
 
-Case timed(Case the_case, const TimingFile& timing) {
+Case with_timing(Case the_case, const TimingFile& timing) {
   the_case.duration = {timing.duration_s, Span::In::seconds};
   std::erase_if(the_case.flight->metrics, [&](const Metric& metric) {
     const bool starts = metric.window.from_s < timing.duration_s &&

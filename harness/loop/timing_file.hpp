@@ -31,6 +31,6 @@ Result<void> write_timing(const TimingFile& timing, const std::filesystem::path&
 
 // The case as it was flown then: as long as that, without metrics of windows that begin later.
 // REQUIRES: it is the timing's.
-Case timed(Case the_case, const TimingFile& timing);
+Case with_timing(Case the_case, const TimingFile& timing);
 
 }  // namespace attest

@@ -34,8 +34,8 @@ std::optional<PortFault> fault_of(int code, std::size_t tick, const std::string&
   }
 }
 
-// Where in a sample the inputs and outputs of a part are.
-template <typename PartUnit>
+// Where in a sample the inputs and outputs of a module are.
+template <typename ModuleUnit>
 struct Place;
 template <>
 struct Place<Unit> {
@@ -55,14 +55,14 @@ struct Place<BatteryUnit> {
 
 }  // namespace
 
-template <typename PartUnit>
-PartDriver<PartUnit>::PartDriver(PartUnit& unit) : unit_(unit) {
+template <typename ModuleUnit>
+ModuleDriver<ModuleUnit>::ModuleDriver(ModuleUnit& unit) : unit_(unit) {
   exchange_.canary_in = canary;
   exchange_.canary_out = canary;
 }
 
-template <typename PartUnit>
-std::optional<PortFault> PartDriver<PartUnit>::step(
+template <typename ModuleUnit>
+std::optional<PortFault> ModuleDriver<ModuleUnit>::step(
     std::size_t tick, std::span<const ParameterChange> changes, Sample& sample,
     std::optional<std::uint64_t> timestamp_sample_us) {
   for (const ParameterChange& change : changes) {
@@ -70,7 +70,7 @@ std::optional<PortFault> PartDriver<PartUnit>::step(
     if (code == ATTEST_OK) continue;
     return fault_of(code, tick, fmt::format("set_parameter({}) at tick {}", change.name, tick));
   }
-  const Inputs& given = sample.*Place<PartUnit>::in;
+  const Inputs& given = sample.*Place<ModuleUnit>::in;
   exchange_.in = given;
   if (const int code = tell_time(given, timestamp_sample_us); code != ATTEST_OK) {
     return fault_of(code, tick, fmt::format("set_timestamp_sample at tick {}", tick));
@@ -79,22 +79,22 @@ std::optional<PortFault> PartDriver<PartUnit>::step(
     return fault_of(code, tick, fmt::format("step at tick {}", tick));
   }
   if (auto fault = broken_rule(given, tick)) return fault;
-  sample.*Place<PartUnit>::out = exchange_.out;
+  sample.*Place<ModuleUnit>::out = exchange_.out;
   return std::nullopt;
 }
 
-template <typename PartUnit>
-int PartDriver<PartUnit>::tell_time(const Inputs& given,
-                                    std::optional<std::uint64_t> timestamp_sample_us) {
-  if constexpr (std::is_same_v<PartUnit, Unit>) {
+template <typename ModuleUnit>
+int ModuleDriver<ModuleUnit>::tell_time(const Inputs& given,
+                                        std::optional<std::uint64_t> timestamp_sample_us) {
+  if constexpr (std::is_same_v<ModuleUnit, Unit>) {
     return unit_.set_timestamp_sample(timestamp_sample_us.value_or(given.timestamp));
   }
   return ATTEST_OK;
 }
 
-template <typename PartUnit>
-std::optional<PortFault> PartDriver<PartUnit>::broken_rule(const Inputs& given,
-                                                           std::size_t tick) const {
+template <typename ModuleUnit>
+std::optional<PortFault> ModuleDriver<ModuleUnit>::broken_rule(const Inputs& given,
+                                                               std::size_t tick) const {
   if (exchange_.canary_in != canary || exchange_.canary_out != canary) {
     return PortFault{Kind::protocol, tick,
                      fmt::format("step wrote outside its outputs at tick {}; was the port "
@@ -108,8 +108,8 @@ std::optional<PortFault> PartDriver<PartUnit>::broken_rule(const Inputs& given,
   return std::nullopt;
 }
 
-template class PartDriver<Unit>;
-template class PartDriver<MixerUnit>;
-template class PartDriver<BatteryUnit>;
+template class ModuleDriver<Unit>;
+template class ModuleDriver<MixerUnit>;
+template class ModuleDriver<BatteryUnit>;
 
 }  // namespace attest

@@ -18,7 +18,7 @@ namespace attest {
 struct PortFault {
   enum class Kind {
     profile,      // does not do the profile
-    unsupported,  // ATTEST_UNSUPPORTED, or a part that the port does not have
+    unsupported,  // ATTEST_UNSUPPORTED, or a module that the port does not have
     failed,       // ATTEST_FAILED, ATTEST_INVALID
     protocol,     // broke the rules of the ABI
     crash,        // its process died
@@ -29,12 +29,12 @@ struct PortFault {
   std::string what;      // one line
 };
 
-// PartUnit is Unit, MixerUnit or BatteryUnit.
-template <typename PartUnit>
-class PartDriver {
+// ModuleUnit is Unit, MixerUnit or BatteryUnit.
+template <typename ModuleUnit>
+class ModuleDriver {
  public:
   // REQUIRES: the unit is in its power-on state, and outlives this.
-  explicit PartDriver(PartUnit& unit);
+  explicit ModuleDriver(ModuleUnit& unit);
 
   // One tick:
   //
@@ -50,8 +50,8 @@ class PartDriver {
                                 std::optional<std::uint64_t> timestamp_sample_us = std::nullopt);
 
  private:
-  using Inputs = typename PartUnit::Inputs;
-  using Outputs = typename PartUnit::Outputs;
+  using Inputs = typename ModuleUnit::Inputs;
+  using Outputs = typename ModuleUnit::Outputs;
 
   // What the unit gets, with a margin behind it that must stay as it was: a port compiled with
   // another layout writes there first.
@@ -65,14 +65,14 @@ class PartDriver {
   int tell_time(const Inputs& given, std::optional<std::uint64_t> timestamp_sample_us);
   std::optional<PortFault> broken_rule(const Inputs& given, std::size_t tick) const;
 
-  PartUnit& unit_;
+  ModuleUnit& unit_;
   Exchange exchange_;
 };
 
-extern template class PartDriver<Unit>;
-extern template class PartDriver<MixerUnit>;
-extern template class PartDriver<BatteryUnit>;
+extern template class ModuleDriver<Unit>;
+extern template class ModuleDriver<MixerUnit>;
+extern template class ModuleDriver<BatteryUnit>;
 
-using UnitDriver = PartDriver<Unit>;
+using UnitDriver = ModuleDriver<Unit>;
 
 }  // namespace attest

@@ -12,12 +12,9 @@ namespace attest {
 namespace {
 
 Result<void> write_flown(const Trace& trace, const std::filesystem::path& path) {
-  auto file = AtomicFile::open(path);
-  if (!file) return tl::unexpected(file.error());
   CsvColumns columns = all_columns(trace);
   columns.plant = true;
-  if (auto written = write_csv(trace, columns, *file); !written) return written;
-  return file->commit();
+  return write_csv(path, trace, columns);
 }
 
 }  // namespace

@@ -12,9 +12,6 @@
 namespace attest {
 namespace {
 
-// Of so many ticks the outputs are kept and checked: half a minute at 8 kHz, 80 MB.
-constexpr std::size_t checked_ticks = 1u << 18;
-
 // Budgets may be longer than the clock counts.
 Nanoseconds nanoseconds(double microseconds) {
   constexpr double longest_us = 1e15;

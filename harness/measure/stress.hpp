@@ -62,6 +62,9 @@ struct StressTask {
   Nanoseconds timeout = std::chrono::seconds(10);  // for each answer of the port
 };
 
+// Of so many ticks the outputs are kept and checked: half a minute at 8 kHz, 80 MB.
+inline constexpr std::size_t checked_ticks = 1u << 18;
+
 struct StressProgress {
   LiveProgress live;
   bool idle = false;  // measuring the machine alone

@@ -5,6 +5,7 @@
 //     {"stress": {...}, "fault", "divergence", "parameters"}     inputs, outputs, ticks, times at
 //                                                                which the motors followed
 //     {"error": {...}}
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -46,17 +47,39 @@ void send_measured(const StressMeasurement& measured, MessageSocket& parent) {
               {blob_of(unit.samples), blob_of(unit.ticks), blob_of(plant.commanded)});
 }
 
-// Empty: nothing that the child of a stress run sends. Throws json::exception, too.
-std::optional<StressMeasurement> measurement_from(const json& head, BlobReader& blobs) {
+// The first of what comes in that number, if there are at most so many.
+template <typename T>
+std::optional<std::vector<T>> read_some(const json& count, std::size_t most, BlobReader& blobs) {
+  const auto wanted = count.get<std::size_t>();
+  return wanted <= most ? blobs.read<T>(wanted) : std::nullopt;
+}
+
+// Of the task, whatever the child says of itself: verdicts are not the child's to give, but for a
+// port that did not fly. Empty: nothing that the child of a stress run sends. Throws
+// json::exception, too.
+std::optional<StressMeasurement> measurement_from(const StressTask& task, const json& head,
+                                                  BlobReader& blobs) {
   auto stress = stress_from_json(head.at("stress"));
   if (!stress) return std::nullopt;
   StressMeasurement measured{*std::move(stress), {}};
-  if (blobs.left() == 0) return measured;
-  auto samples = blobs.read<Sample>(head.at("samples").get<std::size_t>());
-  auto ticks = samples ? blobs.read<LiveTick>(head.at("ticks").get<std::size_t>()) : std::nullopt;
+  const CaseResult said = std::move(measured.stress.result);
+  CaseResult& result = measured.stress.result = result_for(task.the_case, task.configuration);
+  if (blobs.left() == 0) {
+    result.verdict = said.verdict;
+    result.reason = said.reason;
+    const bool did_not_fly = said.verdict == Verdict::skip || said.verdict == Verdict::unsupported;
+    return did_not_fly ? std::optional(std::move(measured)) : std::nullopt;
+  }
+  const auto most =
+      static_cast<std::size_t>(tick_count(task.the_case.duration, task.configuration.rate));
+  auto samples = read_some<Sample>(head.at("samples"), most, blobs);
+  auto ticks = samples ? read_some<LiveTick>(head.at("ticks"), most, blobs) : std::nullopt;
   using Time = std::optional<Nanoseconds>;
-  auto commanded = ticks ? blobs.read<Time>(head.at("commanded").get<std::size_t>()) : std::nullopt;
-  if (!commanded || commanded->size() < ticks->size()) return std::nullopt;
+  auto commanded = ticks ? read_some<Time>(head.at("commanded"), most, blobs) : std::nullopt;
+  const bool is_whole = commanded && blobs.left() == 0 && commanded->size() >= ticks->size() &&
+                        ticks->size() == measured.stress.ticks &&
+                        samples->size() == std::min(ticks->size(), checked_ticks);
+  if (!is_whole) return std::nullopt;
   LiveFlight& flight = measured.flight.emplace();
   flight.unit.samples = *std::move(samples);
   flight.unit.ticks = *std::move(ticks);
@@ -120,24 +143,27 @@ class Listener {
     };
     while (true) {
       const Received received = child_.receive(patience);
-      if (received.kind == Received::Kind::message) {
-        if (auto answer = answer_of(received)) return *std::move(answer);
-      } else if (received.kind == Received::Kind::given_up) {
-        child_.kill();
-        return gone_wrong(task_, Verdict::timeout, how_it_hangs());
-      } else if (received.kind == Received::Kind::no_message) {
-        return forged();
-      } else {
-        break;
-      }
+      if (received.kind != Received::Kind::message) return end_of(received.kind);
+      if (auto answer = answer_of(received, patience)) return *std::move(answer);
     }
-    const std::string how = child_.end(), words = child_.last_words();
-    return gone_wrong(
-        task_, Verdict::crash,
-        fmt::format("the process {}{}", how, words.empty() ? "" : "; its last words: " + words));
   }
 
  private:
+  // Why no answer came, or what came is none.
+  StressResult end_of(Received::Kind why) {
+    if (why == Received::Kind::ended) {
+      const std::string how = child_.end(), words = child_.last_words();
+      return gone_wrong(
+          task_, Verdict::crash,
+          fmt::format("the process {}{}", how, words.empty() ? "" : "; its last words: " + words));
+    }
+    child_.kill();
+    if (why == Received::Kind::too_late || why == Received::Kind::given_up) {
+      return gone_wrong(task_, Verdict::timeout, how_it_hangs());
+    }
+    return forged();
+  }
+
   StressResult forged() {
     child_.kill();
     return gone_wrong(task_, Verdict::protocol,
@@ -149,7 +175,9 @@ class Listener {
     // A child that says nothing for so long, or flies on so long after the end, hangs.
     const Nanoseconds limit = report_every + task_.timeout;
     return Clock::now() - heard_ > (idle_ ? task_.idle_duration + limit : limit) ||
-           flown_ > duration + limit;
+           flown_ > duration + limit ||
+           // Whatever it says of its progress.
+           Clock::now() - began_ > task_.timeout + task_.idle_duration + duration + 2 * limit;
   }
 
   std::string how_it_hangs() const {
@@ -162,7 +190,8 @@ class Listener {
   }
 
   // Empty: it is not the last message. The port shares the process, so nothing is taken on trust.
-  std::optional<Result<StressResult>> answer_of(const Received& received) {
+  std::optional<Result<StressResult>> answer_of(const Received& received,
+                                                const Patience& patience) {
     heard_ = Clock::now();
     const json head = json::parse(received.head, nullptr, false);
     if (!head.is_object()) return forged();
@@ -172,12 +201,14 @@ class Listener {
     }
     try {
       if (head.contains("stress")) {
+        auto kind = Received::Kind::no_message;
         BlobReader blobs(received.blobs, [&](void* place, std::size_t size) {
-          const Patience patience = Patience::seconds(in_seconds(task_.timeout));
-          return child_.receive_blob(place, size, patience) == Received::Kind::message;
+          const auto came = child_.receive_blob(place, size, patience);
+          if (came != Received::Kind::message) kind = came;
+          return came == Received::Kind::message;
         });
-        auto measured = measurement_from(head, blobs);
-        if (!measured) return forged();
+        auto measured = measurement_from(task_, head, blobs);
+        if (!measured) return end_of(kind);
         return judge_live(task_, *std::move(measured));
       }
       take_progress(head.at("progress"));
@@ -201,6 +232,7 @@ class Listener {
   const StressTask& task_;
   Child& child_;
   const std::function<void(const StressProgress&)>& progress_;
+  const Clock::time_point began_ = Clock::now();
   Clock::time_point heard_ = Clock::now();
   bool is_made_ = false;  // the unit: the first progress comes after that
   bool idle_ = true;

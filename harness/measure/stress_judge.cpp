@@ -86,7 +86,7 @@ void add_skip(CaseResult& result, const std::string& reason) { add(result, Verdi
 void judge_outputs(const Case& the_case, LiveUnitRecord& unit, std::optional<int> fraction_bits,
                    CaseResult& result) {
   Trace got;
-  got.present = channels_of(Part::mc_att_control);
+  got.present = channels_of(Module::mc_att_control);
   got.samples = std::move(unit.samples);
   got.parameters = std::move(unit.changes);
   if (got.samples.empty()) return add_skip(result, "outputs not judged: no step was over");

@@ -143,6 +143,10 @@ Result<SweepResult> SweepJob::run(std::size_t task) {
         });
   }
   if (trial.error()) return tl::unexpected(*trial.error());
+  // What was found before the port went wrong is no figure of it.
+  if (found.result.verdict != Verdict::pass) {
+    (task == 0 ? found.lowest_rate_hz : found.largest_delay_ms) = -1;
+  }
   return found;
 }
 

@@ -15,7 +15,7 @@
 
 namespace attest {
 
-// One of the two figures is there, and none where the port went wrong. Below 0: none holds.
+// One of the two figures is there. Below 0: nothing holds, or the port went wrong (`result`).
 struct SweepResult {
   CaseResult result;                       // a verdict other than pass: the port went wrong
   std::optional<double> lowest_rate_hz;    //

@@ -142,11 +142,8 @@ Result<void> write_slowest(const CorpusTimes& times, const std::vector<SelectedC
   const auto started = start_host(host);
   if (!started) return tl::unexpected(started.error());
   if (const auto fault = (*started)->drive({the_case->profile}, trace)) return fail(fault->what);
-  trace.present = channels_of(Part::mc_att_control);
-  auto opened = AtomicFile::open(file);
-  if (!opened) return tl::unexpected(opened.error());
-  if (auto written = write_csv(trace, all_columns(trace), *opened); !written) return written;
-  return opened->commit();
+  trace.present = channels_of(Module::mc_att_control);
+  return write_csv(file, trace, all_columns(trace));
 }
 
 }  // namespace attest

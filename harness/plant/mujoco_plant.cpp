@@ -164,8 +164,7 @@ class MujocoPlant final : public Plant {
         data_(std::move(data)),
         vehicle_(vehicle),
         physics_(physics),
-        rotors_(vehicle.rotors.size()),
-        hover_rad_s_(vehicle.hover_rotor_rad_s()) {}
+        rotors_(vehicle.rotors.size()) {}
 
   void reset(const PlantState& start) override {
     mj_resetData(model_.get(), data_.get());
@@ -238,14 +237,7 @@ class MujocoPlant final : public Plant {
     }
   }
 
-  double power_ratio() const {
-    double sum = 0;
-    for (std::size_t i = 0; i < rotors_; ++i) {
-      const double ratio = data_->act[i] / hover_rad_s_;
-      sum += ratio * ratio * ratio;
-    }
-    return sum / static_cast<double>(rotors_);
-  }
+  double power_ratio() const { return vehicle_.power_ratio({data_->act, rotors_}); }
 
   // MuJoCo takes short cuts where the centre of mass is the body's origin.
   void place_centre_of_mass(const Vector3& offset_flu) {
@@ -263,13 +255,13 @@ class MujocoPlant final : public Plant {
     mjtNum* qvel = data_->qvel;
     qpos[3] = q.w, qpos[4] = q.x, qpos[5] = q.y, qpos[6] = q.z;
     copy(flu_from_frd(state_.rate_rad_s), qvel + 3);
-    mjtNum arm[3], turning[3], velocity[3];
-    offset_in_world(arm, turning, velocity);
+    mjtNum arm_W[3], velocity_W[3];
+    offset_in_world(arm_W, velocity_W);
     const Vector3 position = enu_from_ned(state_.position_m);
     const Vector3 speed = enu_from_ned(state_.velocity_m_s);
     for (int i = 0; i < 3; ++i) {
-      qpos[i] = position[static_cast<std::size_t>(i)] - arm[i];
-      qvel[i] = speed[static_cast<std::size_t>(i)] - velocity[i];
+      qpos[i] = position[static_cast<std::size_t>(i)] - arm_W[i];
+      qvel[i] = speed[static_cast<std::size_t>(i)] - velocity_W[i];
     }
   }
 
@@ -278,20 +270,21 @@ class MujocoPlant final : public Plant {
     const mjtNum* qvel = data_->qvel;
     state_.attitude = frd_to_ned({qpos[3], qpos[4], qpos[5], qpos[6]});
     state_.rate_rad_s = frd_from_flu(vector_at(qvel + 3));
-    mjtNum arm[3], turning[3], velocity[3];
-    offset_in_world(arm, turning, velocity);
-    state_.position_m = ned_from_enu({qpos[0] + arm[0], qpos[1] + arm[1], qpos[2] + arm[2]});
+    mjtNum arm_W[3], velocity_W[3];
+    offset_in_world(arm_W, velocity_W);
+    state_.position_m = ned_from_enu({qpos[0] + arm_W[0], qpos[1] + arm_W[1], qpos[2] + arm_W[2]});
     state_.velocity_m_s =
-        ned_from_enu({qvel[0] + velocity[0], qvel[1] + velocity[1], qvel[2] + velocity[2]});
+        ned_from_enu({qvel[0] + velocity_W[0], qvel[1] + velocity_W[1], qvel[2] + velocity_W[2]});
     std::copy_n(data_->act, rotors_, state_.rotor_rad_s.begin());
   }
 
   // From the body's origin to the centre of mass, and its velocity, in the world.
-  void offset_in_world(mjtNum* arm, mjtNum* turning, mjtNum* velocity) const {
-    const mjtNum* offset = model_->body_ipos + 3 * body;
-    mju_cross(turning, data_->qvel + 3, offset);
-    mju_rotVecQuat(arm, offset, data_->qpos + 3);
-    mju_rotVecQuat(velocity, turning, data_->qpos + 3);
+  void offset_in_world(mjtNum* arm_W, mjtNum* velocity_W) const {
+    const mjtNum* arm_B = model_->body_ipos + 3 * body;
+    mjtNum velocity_B[3];
+    mju_cross(velocity_B, data_->qvel + 3, arm_B);
+    mju_rotVecQuat(arm_W, arm_B, data_->qpos + 3);
+    mju_rotVecQuat(velocity_W, velocity_B, data_->qpos + 3);
   }
 
   Model model_;
@@ -299,7 +292,6 @@ class MujocoPlant final : public Plant {
   const Vehicle& vehicle_;
   Rate physics_;
   std::size_t rotors_;
-  double hover_rad_s_;
 
   Nanoseconds now_{0};
   std::int64_t steps_ = 0;  // whole physics periods

@@ -179,6 +179,16 @@ double Vehicle::hover_rotor_rad_s() const {
   return std::sqrt(of_one / thrust_coefficient);
 }
 
+double Vehicle::power_ratio(std::span<const double> rotor_rad_s) const {
+  const double hover_rad_s = hover_rotor_rad_s();
+  double sum = 0;
+  for (const double speed : rotor_rad_s.first(rotors.size())) {
+    const double ratio = speed / hover_rad_s;
+    sum += ratio * ratio * ratio;
+  }
+  return sum / static_cast<double>(rotors.size());
+}
+
 double Vehicle::arm_m() const {
   double longest = 0;
   for (const VehicleRotor& rotor : rotors) {

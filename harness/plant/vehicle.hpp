@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -58,7 +59,10 @@ struct Vehicle {
   std::vector<std::filesystem::path> files() const;
 
   double hover_rotor_rad_s() const;  // all rotors alike
-  double arm_m() const;              // from the centre of mass to the farthest hub
+  // The power of rotors that turn so fast beside that in hover: it goes with the cube of the speed.
+  // REQUIRES: a speed a rotor [rad/s].
+  double power_ratio(std::span<const double> rotor_rad_s) const;
+  double arm_m() const;  // from the centre of mass to the farthest hub
   // The thrust control, 0..1, at which it hovers: motor commands are linear in the speed.
   double hover_thrust() const { return hover_rotor_rad_s() / rotor_max_rad_s; }
 };

@@ -58,7 +58,7 @@ void keep_only(int nothing, int output, int socket) {
   ::close(nothing);
   ::dup2(output, STDOUT_FILENO);
   ::dup2(output, STDERR_FILENO);
-  // The reports and pipes that the parent has open are not the child's.
+  // The reports and sockets that the parent has open are not the child's.
   constexpr unsigned first_other = 3;
   const auto kept = static_cast<unsigned>(socket);
   if (kept > first_other) ::close_range(first_other, kept - 1, 0);
@@ -105,7 +105,7 @@ Result<Child> Child::spawn(Runs runs, const std::function<void(MessageSocket&)>&
       ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     const int reason = errno;
     close_all({nothing, output});
-    return fail(fmt::format("cannot open the files of a worker: {}{}", std::strerror(reason),
+    return fail(fmt::format("cannot open the files of a process: {}{}", std::strerror(reason),
                             reason == EMFILE ? " (`ulimit -n` limits how many are open)" : ""));
   }
   auto process = Process::start(
@@ -186,6 +186,7 @@ std::string Child::end() {
   const bool was_killed = process_.was_killed();
   const Ending ending = process_.end(enough_to_end_s);
   const bool went_on = ending.was_killed && !was_killed;
+  has_exited_well_ = ending.is_success() && !ending.was_killed;
   return went_on ? "closed the socket on which it answers, and went on" : ending.to_string();
 }
 

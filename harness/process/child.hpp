@@ -32,8 +32,8 @@ class Child {
   // To the child's `work`, for sending.
   MessageSocket& socket() { return socket_; }
 
-  // As of MessageSocket. What the child started may hold its end open when it has died, so that its
-  // death is looked for, too.
+  // Same as MessageSocket. Also ends when the child has died, because a process that it started may
+  // keep its end open.
   Received receive(const Patience& patience = {});
   Received::Kind receive_blob(void* place, std::size_t size, const Patience& patience = {});
 
@@ -43,9 +43,12 @@ class Child {
   void ask_to_stop() { process_.terminate(); }  // SIGTERM, for work that has arranged for it
 
   // How it ended, as Ending::to_string() says. For a child that was killed or whose socket has
-  // ended: it has two seconds to end by itself; one that goes on without its socket is killed, and
-  // called so.
+  // ended: it has two seconds to end by itself. If it still runs then, it is killed, and the text
+  // says so.
   std::string end();
+
+  // After end(): it exited by itself, with status 0.
+  bool has_exited_well() const { return has_exited_well_; }
 
   // The last line that the child printed on stdout or stderr; empty when it printed nothing.
   std::string last_words() const;
@@ -57,6 +60,7 @@ class Child {
   Process process_;
   MessageSocket socket_;
   int output_ = -1;  // file that holds what the child prints
+  bool has_exited_well_ = false;
 };
 
 }  // namespace attest

@@ -43,14 +43,14 @@ struct Received {
     ended,      // the other process closed its end, or died, perhaps in the middle of a message
     too_late,   // nothing complete in time
     given_up,   // as the patience said
-    no_message  // bytes that are none: the other process is not to be listened to any more
+    no_message  // bytes that are not a message: nothing more is to be read here
   };
   Kind kind = Kind::ended;
   std::string head = {};
   std::vector<std::size_t> blobs = {};  // the size of each, which is to be read next
 };
 
-// One end. A process that this one starts has no part in it: what it sends is not sent.
+// One end. Only the process that made this object can send: in its forks send() returns false.
 class MessageSocket {
  public:
   explicit MessageSocket(int descriptor);  // owned

@@ -6,53 +6,53 @@
 namespace attest {
 namespace {
 
-constexpr Channel number(std::string_view name, Quantity quantity, Part part, Stage stage,
+constexpr Channel number(std::string_view name, Quantity quantity, Module module, Stage stage,
                          std::size_t offset) {
-  return {name, ChannelType::f32, quantity, part, stage, offset, 0};
+  return {name, ChannelType::f32, quantity, module, stage, offset, 0};
 }
 
-constexpr Channel flag(std::string_view name, Part part, Stage stage, std::size_t offset) {
-  return {name, ChannelType::u8, Quantity::flag, part, stage, offset, 0};
+constexpr Channel flag(std::string_view name, Module module, Stage stage, std::size_t offset) {
+  return {name, ChannelType::u8, Quantity::flag, module, stage, offset, 0};
 }
 
 constexpr Channel updated(std::string_view name, int mask) {
   return {name,
           ChannelType::bit,
           Quantity::flag,
-          Part::mc_att_control,
+          Module::mc_att_control,
           Stage::input,
           offsetof(Sample, in.updated),
           static_cast<std::uint32_t>(mask)};
 }
 
 // The name is the member: "in/" #member at offsetof(Sample, in.member).
-#define IN(member, quantity)                                                    \
-  number("in/" #member, Quantity::quantity, Part::mc_att_control, Stage::input, \
+#define IN(member, quantity)                                                      \
+  number("in/" #member, Quantity::quantity, Module::mc_att_control, Stage::input, \
          offsetof(Sample, in.member))
 #define FLAG(member) \
-  flag("in/" #member, Part::mc_att_control, Stage::input, offsetof(Sample, in.member))
-#define OUT(member, quantity, stage)                                             \
-  number("out/" #member, Quantity::quantity, Part::mc_att_control, Stage::stage, \
+  flag("in/" #member, Module::mc_att_control, Stage::input, offsetof(Sample, in.member))
+#define OUT(member, quantity, stage)                                               \
+  number("out/" #member, Quantity::quantity, Module::mc_att_control, Stage::stage, \
          offsetof(Sample, out.member))
-#define PUBLISHED(topic, stage)                                        \
-  flag("out/" #topic ".published", Part::mc_att_control, Stage::stage, \
+#define PUBLISHED(topic, stage)                                          \
+  flag("out/" #topic ".published", Module::mc_att_control, Stage::stage, \
        offsetof(Sample, out.topic.published))
 
-#define MIXER_IN(member, quantity)                                     \
-  number("in/" #member, Quantity::quantity, Part::mixer, Stage::input, \
+#define MIXER_IN(member, quantity)                                       \
+  number("in/" #member, Quantity::quantity, Module::mixer, Stage::input, \
          offsetof(Sample, mixer_in.member))
-#define MIXER_OUT(rotor)                                                                        \
-  number("out/actuator_outputs.output[" #rotor "]", Quantity::motor, Part::mixer, Stage::mixer, \
+#define MIXER_OUT(rotor)                                                                          \
+  number("out/actuator_outputs.output[" #rotor "]", Quantity::motor, Module::mixer, Stage::mixer, \
          offsetof(Sample, mixer_out.actuator_outputs.output) + sizeof(float) * rotor)
 #define MIXER_FLAG(member) \
-  flag("out/" #member, Part::mixer, Stage::mixer, offsetof(Sample, mixer_out.member))
+  flag("out/" #member, Module::mixer, Stage::mixer, offsetof(Sample, mixer_out.member))
 
-#define BATTERY_IN(member, quantity)                                            \
-  number("in/" #member, Quantity::quantity, Part::battery_status, Stage::input, \
+#define BATTERY_IN(member, quantity)                                              \
+  number("in/" #member, Quantity::quantity, Module::battery_status, Stage::input, \
          offsetof(Sample, battery_in.member))
 
 constexpr std::array<Channel, max_channels> table = {{
-    {"timestamp", ChannelType::u64, Quantity::time, Part::mc_att_control, Stage::input,
+    {"timestamp", ChannelType::u64, Quantity::time, Module::mc_att_control, Stage::input,
      offsetof(Sample, in.timestamp), 0},
     IN(control_state.q[0], quaternion),
     IN(control_state.q[1], quaternion),
@@ -136,10 +136,10 @@ constexpr std::array<Channel, max_channels> table = {{
     BATTERY_IN(battery.voltage_v, voltage),
     BATTERY_IN(battery.current_a, current),
     BATTERY_IN(battery.throttle, thrust),
-    flag("in/battery.armed", Part::battery_status, Stage::input,
+    flag("in/battery.armed", Module::battery_status, Stage::input,
          offsetof(Sample, battery_in.battery.armed)),
-    number("out/battery_status.scale", Quantity::scale, Part::battery_status, Stage::battery_status,
-           offsetof(Sample, battery_out.battery_status.scale)),
+    number("out/battery_status.scale", Quantity::scale, Module::battery_status,
+           Stage::battery_status, offsetof(Sample, battery_out.battery_status.scale)),
 }};
 
 #undef IN
@@ -179,6 +179,14 @@ void store(Sample& sample, std::size_t offset, T value) {
 
 }  // namespace
 
+void Sample::clear_outputs() { copy_outputs({}); }
+
+void Sample::copy_outputs(const Sample& from) {
+  out = from.out;
+  mixer_out = from.mixer_out;
+  battery_out = from.battery_out;
+}
+
 std::span<const Channel> channels() { return table; }
 
 std::optional<std::size_t> find_channel(std::string_view name) {
@@ -195,31 +203,31 @@ std::optional<std::string_view> parameter_of(std::string_view column) {
   return column;
 }
 
-ChannelSet channels_of(Part part, std::string_view prefix) {
+ChannelSet channels_of(Module module, std::string_view prefix) {
   ChannelSet set;
   for (std::size_t i = 0; i < table.size(); ++i) {
-    const bool is_of_part = i == 0 || table[i].part == part;
-    set[i] = is_of_part && table[i].name.starts_with(prefix);
+    const bool is_of_module = i == 0 || table[i].module == module;
+    set[i] = is_of_module && table[i].name.starts_with(prefix);
   }
   return set;
 }
 
-Part part_of(const ChannelSet& channels) {
+Module module_of(const ChannelSet& channels) {
   for (std::size_t i = 1; i < table.size(); ++i) {
-    if (channels[i]) return table[i].part;
+    if (channels[i]) return table[i].module;
   }
-  return Part::mc_att_control;
+  return Module::mc_att_control;
 }
 
 std::span<const std::string_view> updated_topics() { return topics; }
 
-std::string_view name_of(Part part) {
-  switch (part) {
-    case Part::mc_att_control:
+std::string_view name_of(Module module) {
+  switch (module) {
+    case Module::mc_att_control:
       return "mc_att_control";
-    case Part::mixer:
+    case Module::mixer:
       return "mixer";
-    case Part::battery_status:
+    case Module::battery_status:
       return "battery_status";
   }
   return "";

@@ -19,19 +19,23 @@
 
 namespace attest {
 
-// The part of a flight controller that a trace is of: what attest_unit.h has, or one of the
+// The module of a flight controller that a trace is of: what attest_unit.h has, or one of the
 // extensions of attest_actuation.h.
-enum class Part : std::uint8_t { mc_att_control, mixer, battery_status };
-std::string_view name_of(Part part);  // "mc_att_control"
+enum class Module : std::uint8_t { mc_att_control, mixer, battery_status };
+std::string_view name_of(Module module);  // "mc_att_control"
 
-// One step: what a part was given and what it answered. Those of the other parts are zero.
+// One step: what a module was given and what it answered. Those of the other modules are zero.
 struct Sample {
-  attest_inputs in;  // its timestamp is that of every part's step
+  attest_inputs in;  // its timestamp is that of every module's step
   attest_outputs out;
   attest_mixer_inputs mixer_in;
   attest_mixer_outputs mixer_out;
   attest_battery_inputs battery_in;
   attest_battery_outputs battery_out;
+
+  // Those of all modules.
+  void clear_outputs();
+  void copy_outputs(const Sample& from);
 };
 
 enum class ChannelType : std::uint8_t { u64, f32, u8, bit };
@@ -67,7 +71,7 @@ struct Channel {
   std::string_view name;  // with its prefix
   ChannelType type;
   Quantity quantity;
-  Part part;  // timestamp belongs to all
+  Module module;  // timestamp belongs to all
   Stage stage;
   std::size_t offset;  // of the member in Sample [bytes]
   std::uint32_t bit;   // for ChannelType::bit, its ATTEST_UPDATED_... mask; 0 for the others
@@ -75,7 +79,7 @@ struct Channel {
   bool is_output() const { return stage != Stage::input; }
 };
 
-// All channels in column order, part by part: timestamp, inputs, freshness, outputs.
+// All channels in column order, module by module: timestamp, inputs, freshness, outputs.
 std::span<const Channel> channels();
 inline constexpr std::size_t max_channels = 85;
 using ChannelSet = std::bitset<max_channels>;  // by index into channels()
@@ -87,11 +91,11 @@ std::optional<std::size_t> find_channel(std::string_view name);
 inline constexpr std::string_view parameter_prefix = "in/parameter.";
 std::optional<std::string_view> parameter_of(std::string_view column);
 
-// The channels of a part (with timestamp) whose name begins with `prefix`, for example "out/".
-ChannelSet channels_of(Part part, std::string_view prefix = "");
+// The channels of a module (with timestamp) whose name begins with `prefix`, for example "out/".
+ChannelSet channels_of(Module module, std::string_view prefix = "");
 
-// The part that channels are of: that of the first but timestamp.
-Part part_of(const ChannelSet& channels);
+// The module that channels are of: that of the first but timestamp.
+Module module_of(const ChannelSet& channels);
 
 // The topics that have a freshness bit, in bit order: "vehicle_attitude_setpoint", ...
 std::span<const std::string_view> updated_topics();

@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "harness/core/file.hpp"
 #include "harness/core/result.hpp"
 #include "harness/trace/trace.hpp"
 
@@ -64,8 +63,10 @@ struct CsvColumns {
 // Everything the trace has, parameters in the order they are first set; without plant/ columns.
 CsvColumns all_columns(const Trace& trace);
 
-// Does not commit. Errors: the file cannot be written, and what a column cannot say of a parameter:
-// a first value later than tick 0, a change at a tick without in/updated.parameter_update.
-Result<void> write_csv(const Trace& trace, const CsvColumns& columns, AtomicFile& file);
+// Written aside and renamed. Errors: the file cannot be written, and what a column cannot say of a
+// parameter: a first value later than tick 0, a change at a tick without
+// in/updated.parameter_update.
+Result<void> write_csv(const std::filesystem::path& path, const Trace& trace,
+                       const CsvColumns& columns);
 
 }  // namespace attest

@@ -125,8 +125,8 @@ Result<void> check_need(const ChannelSet& present, CsvNeed need, const std::stri
   if (!present[timestamp_channel]) {
     return missing("timestamp", 0, "add the time of each sample in microseconds");
   }
-  const Part part = part_of(present);
-  const ChannelSet absent = channels_of(part, "in/") & ~present;
+  const Module module = module_of(present);
+  const ChannelSet absent = channels_of(module, "in/") & ~present;
   if (need != CsvNeed::outputs && absent.any()) {
     const std::string_view name = channels()[absent._Find_first()].name;
     return missing(
@@ -135,7 +135,7 @@ Result<void> check_need(const ChannelSet& present, CsvNeed need, const std::stri
                     "the file",
                     name, provenance_name));
   }
-  if (need != CsvNeed::inputs && (present & channels_of(part, "out/")).none()) {
+  if (need != CsvNeed::inputs && (present & channels_of(module, "out/")).none()) {
     return missing("out/...", 0, "add at least one output of the unit");
   }
   return {};

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/core/file.hpp"
 #include "harness/trace/csv.hpp"
 #include "harness/trace/csv_text.hpp"
 #include "harness/trace/plant_columns.hpp"
@@ -53,24 +54,20 @@ void write_cell(const Channel& channel, const Sample& sample, CsvText& text) {
 class ParameterValues {
  public:
   ParameterValues(const Trace& trace, const std::vector<std::string>& names)
-      : names_(names),
-        next_(trace.parameters.begin()),
-        end_(trace.parameters.end()),
-        values_(names.size()) {}
+      : names_(names), pending_(trace.parameters), values_(names.size()) {}
 
   const std::vector<float>& at(std::size_t tick) {
-    for (; next_ != end_ && next_->tick <= tick; ++next_) {
-      const auto name = std::find(names_.begin(), names_.end(), next_->name);
+    for (const ParameterChange& change : pending_.take_until(tick)) {
+      const auto name = std::find(names_.begin(), names_.end(), change.name);
       if (name == names_.end()) continue;
-      values_[static_cast<std::size_t>(name - names_.begin())] = next_->value;
+      values_[static_cast<std::size_t>(name - names_.begin())] = change.value;
     }
     return values_;
   }
 
  private:
   const std::vector<std::string>& names_;
-  std::vector<ParameterChange>::const_iterator next_;
-  std::vector<ParameterChange>::const_iterator end_;
+  PendingChanges pending_;
   std::vector<float> values_;
 };
 
@@ -93,13 +90,16 @@ CsvColumns all_columns(const Trace& trace) {
   return columns;
 }
 
-Result<void> write_csv(const Trace& trace, const CsvColumns& columns, AtomicFile& file) {
+Result<void> write_csv(const std::filesystem::path& path, const Trace& trace,
+                       const CsvColumns& columns) {
   for (const std::string& parameter : columns.parameters) {
     if (auto checked = check_changes(trace, parameter); !checked) return checked;
   }
+  auto file = AtomicFile::open(path);
+  if (!file) return tl::unexpected(file.error());
   const std::vector<const Channel*> inputs = chosen(columns.channels, false);
   const std::vector<const Channel*> outputs = chosen(columns.channels, true);
-  CsvText text(file);
+  CsvText text(*file);
   for (const Channel* channel : inputs) text.name(channel->name);
   for (const std::string& parameter : columns.parameters) {
     text.name(fmt::format("{}{}", parameter_prefix, parameter));
@@ -123,7 +123,8 @@ Result<void> write_csv(const Trace& trace, const CsvColumns& columns, AtomicFile
     }
     text.end_row();
   }
-  return text.finish();
+  if (auto written = text.finish(); !written) return written;
+  return file->commit();
 }
 
 }  // namespace attest

@@ -12,7 +12,7 @@
 
 namespace attest {
 
-// As a trace of Part::mixer, whose timestamps count the rows. Errors as in csv.hpp: unreadable
+// As a trace of Module::mixer, whose timestamps count the rows. Errors as in csv.hpp: unreadable
 // file, no header, unknown, repeated or missing column, a number of out[] columns other than 4, 6
 // and 8, a bad row or cell, no rows.
 Result<Trace> read_mixer_csv(const std::filesystem::path& path);

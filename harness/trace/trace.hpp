@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,24 @@ struct ParameterChange {
   float value;
 
   friend bool operator==(const ParameterChange&, const ParameterChange&) = default;
+};
+
+// The changes of a trace as its ticks go by.
+class PendingChanges {
+ public:
+  explicit PendingChanges(std::span<const ParameterChange> changes) : pending_(changes) {}
+
+  // Those up to `tick` that no earlier call returned; valid as long as the trace is.
+  std::span<const ParameterChange> take_until(std::size_t tick) {
+    std::size_t count = 0;
+    while (count < pending_.size() && pending_[count].tick <= tick) ++count;
+    const auto due = pending_.first(count);
+    pending_ = pending_.subspan(count);
+    return due;
+  }
+
+ private:
+  std::span<const ParameterChange> pending_;
 };
 
 // What is true of the vehicle at a tick, beside what the unit was told: for metrics and for people

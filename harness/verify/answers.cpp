@@ -67,13 +67,10 @@ Result<Answers> compare_answers(const Trace& flown, const std::string& profile,
   UnitDriver law(*unit);
   MarginMeter meter(profile);
   Answering answering(flown, tolerances);
-  std::span<const ParameterChange> changes = flown.parameters;
+  PendingChanges changes(flown.parameters);
   for (std::size_t tick = 0; tick < flown.samples.size(); ++tick) {
     const Sample& got = flown.samples[tick];
-    std::size_t now = 0;
-    while (now < changes.size() && changes[now].tick == tick) ++now;
-    const auto at_tick = changes.first(now);
-    changes = changes.subspan(now);
+    const auto at_tick = changes.take_until(tick);
     if (const auto decision = made_by_rounding(meter.step(at_tick, got.in), fraction_bits)) {
       answering.decided_by_rounding(*decision, tick);
     }

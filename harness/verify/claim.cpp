@@ -125,7 +125,7 @@ void say_what_was_not_run(const Groups& groups, const RunResult& run,
 std::vector<std::string> missing_of(const Groups& groups, const RunResult& run) {
   std::vector<std::string> missing;
   if (!run.suite_is_released) missing.emplace_back("custom suite");
-  if (!run.limits.own_process) missing.emplace_back("port in its judge's process");
+  if (!run.limits.own_process) missing.emplace_back("port not isolated: --in-process");
   if (!run.timing.empty()) missing.emplace_back("at recorded times");
   if (run.fixed_step) {
     missing.push_back(fmt::format("fixed step of {} Hz", run.fixed_step->to_string()));

@@ -20,10 +20,10 @@ namespace attest {
 namespace {
 
 // Drives a fresh unit through `answered`, whose inputs are those of `want`, and compares. Where
-// there are other sides they are as right; the exact level is the law's.
+// there are other branches they are as right; the exact level is the law's.
 void run_and_judge(Trace& answered, const Trace& want, const BranchAlternatives& others,
                    const Subject& subject, PortHost& host, const Tolerances& tolerances,
-                   const Tolerances& of_sides, CaseResult& result) {
+                   const Tolerances& of_branches, CaseResult& result) {
   if (declines(host.says(), result)) return;
   const auto fault = host.drive(subject, answered);
   if (fault && !leaves_ticks_to_judge(*fault)) return judge(*fault, result);
@@ -31,7 +31,7 @@ void run_and_judge(Trace& answered, const Trace& want, const BranchAlternatives&
   if (others.empty() || tolerances.level() == Level::exact) {
     judge(compare(answered, want, tolerances), result);
   } else {
-    const Trace allowed = on_the_side_of(answered, want, others, of_sides);
+    const Trace allowed = on_the_branch_of(answered, want, others, of_branches);
     judge(compare(answered, allowed, tolerances), result);
   }
   if (fault) judge_after(*fault, result);
@@ -88,7 +88,7 @@ Result<Prepared> prepare_from_one_period_on(const Case& the_case, const Rate& ra
   if (const auto fault = reference.drive(subject_of(begun), prepared.want)) {
     return fail_at(the_case.file.string(), "the reference: " + fault->what);
   }
-  if (!begun.either_side.any()) return prepared;
+  if (!begun.either_branch.any()) return prepared;
   auto others = branch_alternatives(begun, prepared.want);
   if (!others) return tl::unexpected(others.error());
   prepared.branch_alternatives = std::move(*others);
@@ -129,7 +129,7 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
                       : prepare(the_case, rate, golden);
   if (!prepared) return tl::unexpected(prepared.error());
   const bool numeric_for_exact = level == Level::exact && the_case.numeric_only;
-  const bool numeric_for_events = level == Level::events && !has_events(the_case.part);
+  const bool numeric_for_events = level == Level::events && !has_events(the_case.module);
   if (numeric_for_exact || numeric_for_events) level = Level::numeric;
   const auto bits = host.says().fraction_bits;
   const std::size_t ticks = prepared->answered.samples.size();
@@ -144,16 +144,13 @@ CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHos
                           const Tolerances& tolerances) {
   const Stopwatch stopwatch;
   CaseResult result = result_for(recorded, subject.profile);
-  if (subject.part == Part::mc_att_control && has_other_steps(host.says(), recorded, result)) {
+  if (subject.module == Module::mc_att_control && has_other_steps(host.says(), recorded, result)) {
     return result;
   }
   Trace answered = recorded;
-  for (Sample& sample : answered.samples) {
-    sample.out = {};
-    sample.mixer_out = {};
-    sample.battery_out = {};
-  }
-  const bool numeric_for_events = tolerances.level() == Level::events && !has_events(subject.part);
+  for (Sample& sample : answered.samples) sample.clear_outputs();
+  const bool numeric_for_events =
+      tolerances.level() == Level::events && !has_events(subject.module);
   Tolerances allowed = numeric_for_events ? Tolerances(Level::numeric) : tolerances;
   if (const auto bits = host.says().fraction_bits)
     allowed.allow_lsb(*bits, recorded.samples.size());

@@ -46,7 +46,7 @@ Result<CaseResult> evaluate_timed_flight(const Case& the_case,
 // divergence.
 std::string how_it_ended(const Flown& flown);
 
-// The recorded inputs are given to a fresh instance of that part of the port, and what it answers
+// The recorded inputs are given to a fresh instance of that module of the port, and what it answers
 // is compared with the recorded outputs.
 CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHost& host,
                           const Tolerances& tolerances);

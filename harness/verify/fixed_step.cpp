@@ -36,7 +36,7 @@ bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rat
 }  // namespace
 
 bool has_fixed_step(const PortSays& port, const Case& the_case) {
-  return the_case.part == Part::mc_att_control && port.fixed_step.has_value();
+  return the_case.module == Module::mc_att_control && port.fixed_step.has_value();
 }
 
 bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,

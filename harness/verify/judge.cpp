@@ -15,9 +15,13 @@ Tolerances tolerances_of(const Case& the_case, Level level, std::optional<int> f
   return tolerances;
 }
 
-bool declines(const PortSays& port, CaseResult& result) {
+bool declines(const PortSays& port, const std::string& group) {
   const auto& declined = port.unsupported_groups;
-  if (std::find(declined.begin(), declined.end(), result.group) == declined.end()) return false;
+  return std::find(declined.begin(), declined.end(), group) != declined.end();
+}
+
+bool declines(const PortSays& port, CaseResult& result) {
+  if (!declines(port, result.group)) return false;
   result.verdict = Verdict::unsupported;
   result.reason = fmt::format("the port declares that it does not do {}", result.group);
   return true;
@@ -52,9 +56,7 @@ bool leaves_ticks_to_judge(const PortFault& fault) {
 
 void leave_out_from(std::size_t tick, const Trace& want, Trace& answered) {
   for (std::size_t i = tick; i < answered.samples.size(); ++i) {
-    answered.samples[i].out = want.samples[i].out;
-    answered.samples[i].mixer_out = want.samples[i].mixer_out;
-    answered.samples[i].battery_out = want.samples[i].battery_out;
+    answered.samples[i].copy_outputs(want.samples[i]);
   }
 }
 

@@ -18,6 +18,7 @@ Tolerances tolerances_of(const Case& the_case, Level level, std::optional<int> f
 
 // The port declares that it does not do the result's group: the verdict is unsupported.
 bool declines(const PortSays& port, CaseResult& result);
+bool declines(const PortSays& port, const std::string& group);
 
 void judge(const PortFault& fault, CaseResult& result);
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/core/file.hpp"
 #include "harness/golden/recorded.hpp"
 #include "harness/host/host_here.hpp"
 #include "harness/port/builtin.hpp"

@@ -230,7 +230,7 @@ Result<CaseResult> case_result_from_json(const nlohmann::json& json) {
       out.metrics.push_back(metric_from({metric, error}));
     }
   }
-  if (!error.empty()) return fail("result of a worker: " + error);
+  if (!error.empty()) return fail("a case result as JSON: " + error);
   return out;
 }
 

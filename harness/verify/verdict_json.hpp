@@ -1,5 +1,5 @@
-// A CaseResult as JSON and back: the line that a worker process sends through its pipe, and one
-// entry of the JSON report.
+// A CaseResult as JSON and back: what a worker process sends to the
+// judge, and one entry of the JSON report.
 //
 //     {"id": "px4-v1.5.5/attitude/roll_30@250hz", "profile": ..., "group": ..., "name": ...,
 //      "rate": "250", "verdict": "fail", "reason": "...", "ticks": 500, "deviating_ticks": 3,
@@ -27,8 +27,7 @@ namespace attest {
 nlohmann::json to_json(const CaseResult& result);
 
 // The inverse. Errors: a discarded value (json::parse without exceptions), a missing or wrong
-// member, an unknown verdict, channel or rate. Nothing is taken on trust: a worker shares its
-// process with the port. Unknown and derived members (id, stage) are ignored.
+// member, an unknown verdict, channel or rate. Unknown and derived members (id, stage) are ignored.
 Result<CaseResult> case_result_from_json(const nlohmann::json& json);
 
 }  // namespace attest

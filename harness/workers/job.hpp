@@ -31,7 +31,7 @@ class Job {
   // After a task: the rest needs a fresh process.
   virtual bool is_spent() const { return false; }
 
-  // After the last task of a process: ends what open() began.
+  // After the last task of a process, or an open() that failed: ends what open() began.
   virtual void close() {}
 };
 
@@ -69,6 +69,7 @@ namespace detail {
 template <typename R, typename Done>
 void run_tasks(Job<R>& job, std::size_t first, Done&& done) {
   if (const auto opened = job.open(); !opened) {
+    job.close();
     return done(Result<R>(tl::unexpected(opened.error())), job.size() - first);
   }
   bool is_spent = false;
@@ -85,13 +86,14 @@ class Collector {
  public:
   Collector(std::size_t jobs, const JobOptions<R>& options) : options_(options), of_jobs_(jobs) {}
 
-  // False: nothing after this job is wanted.
+  // Both: false, nothing after this job is wanted.
+  bool fail(std::size_t job, const Error& error) {
+    of_jobs_[job].errors.push_back(error);
+    return !options_.fail_fast;
+  }
   bool take(std::size_t job, Result<R> result) {
+    if (!result) return fail(job, result.error());
     Each& each = of_jobs_[job];
-    if (!result) {
-      each.errors.push_back(result.error());
-      return !options_.fail_fast;
-    }
     options_.on_result(*result);
     const bool fails = options_.fails(*result);
     each.results.push_back(*std::move(result));
@@ -151,10 +153,10 @@ JobResults<R> run_jobs(const Jobs<R>& jobs, const JobOptions<R>& options) {
   pool.on_answer = [&](std::size_t index, const std::string& answer) {
     return collector.take(index, Codec<R>::decode(answer));
   };
-  const auto end = run_in_workers(work, pool);
-  JobResults<R> all = collector.finish(end ? *end : 0);
-  if (!end) all.errors.push_back(end.error());
-  return all;
+  pool.on_error = [&](std::size_t index, const Error& error) {
+    return collector.fail(index, error);
+  };
+  return collector.finish(run_in_workers(work, pool));
 }
 
 }  // namespace attest

@@ -1,7 +1,6 @@
 #include "harness/workers/pool.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,26 +17,25 @@ class Pool {
   Pool(const std::vector<Work>& work, const PoolOptions& options)
       : work_(work), options_(options), end_(work.size()) {}
 
-  Result<std::size_t> run() {
-    for (start_workers(); !workers_.empty() && !error_ && !options_.stop(); start_workers()) {
+  std::size_t run() {
+    for (start_workers(); !workers_.empty() && !options_.stop(); start_workers()) {
       for (const std::size_t i : readable()) serve(workers_[i]);
       std::erase_if(workers_, [](const Worker& worker) { return worker.over; });
     }
-    if (error_) return tl::unexpected(*error_);
     return std::min(next_, end_);
   }
 
  private:
   struct Worker {
     std::size_t work;
-    std::size_t task;  // that it is at
+    std::size_t first, task;  // of its tasks, and that it is at
     Child child;
     bool over = false;
   };
 
   void start_workers() {
     const auto most = static_cast<std::size_t>(std::max(options_.processes, 1));
-    while (workers_.size() < most && next_ < end_ && !error_) {
+    while (workers_.size() < most && next_ < end_) {
       const std::size_t work = next_++;
       if (work_[work].tasks > 0) start(work, 0);
     }
@@ -50,10 +48,14 @@ class Pool {
       });
     });
     if (child) {
-      workers_.push_back({work, first, *std::move(child)});
+      workers_.push_back({work, first, first, *std::move(child)});
     } else {
-      error_ = child.error();
+      fail(work, child.error());
     }
+  }
+
+  void fail(std::size_t work, const Error& error) {
+    if (!options_.on_error(work, error)) end_ = std::min(end_, work + 1);
   }
 
   std::vector<std::size_t> readable() {
@@ -87,10 +89,11 @@ class Pool {
   void conclude(Worker& worker) {
     worker.over = true;
     const std::string how = worker.child.end(), words = worker.child.last_words();
-    if (how != "exited with status 0") {
-      error_ = Error{fmt::format("a process of attest that judges {}{}{}; please report this", how,
-                                 words.empty() ? "" : ": ", words)};
-    } else if (worker.task < work_[worker.work].tasks) {
+    const bool is_done = worker.task >= work_[worker.work].tasks;
+    if (!worker.child.has_exited_well() || (!is_done && worker.task == worker.first)) {
+      fail(worker.work, {fmt::format("a process of attest that judges {}{}{}; please report this",
+                                     how, words.empty() ? "" : ": ", words)});
+    } else if (!is_done) {
       start(worker.work, worker.task);  // `worker` may have moved
     }
   }
@@ -100,12 +103,11 @@ class Pool {
   std::vector<Worker> workers_;
   std::size_t next_ = 0;  // to be started
   std::size_t end_;       // of what is wanted
-  std::optional<Error> error_;
 };
 
 }  // namespace
 
-Result<std::size_t> run_in_workers(const std::vector<Work>& work, const PoolOptions& options) {
+std::size_t run_in_workers(const std::vector<Work>& work, const PoolOptions& options) {
   // What is free here would be copied page by page by each process that uses it again.
   ::malloc_trim(0);
   return Pool(work, options).run();

@@ -26,11 +26,13 @@ struct PoolOptions {
   std::function<bool()> stop = [] { return false; };  // true: end soon, answers do not matter
   // In the caller's process, in any order. False: begin no piece of work after this one.
   std::function<bool(std::size_t work, const std::string& answer)> on_answer;
+  // The rest of that piece is not done: a process cannot be started, or one died. The latter is a
+  // mistake of ours, as the code of a port is in processes of its own (host/port_process.hpp).
+  std::function<bool(std::size_t work, const Error& error)> on_error;
 };
 
-// The index of the first piece of work that was not run, its size where all were. Pieces are begun
-// in their order. Errors: a process cannot be started; one died, which is a mistake of ours, as the
-// code of a port is in processes of its own (host/port_process.hpp).
-Result<std::size_t> run_in_workers(const std::vector<Work>& work, const PoolOptions& options);
+// The index of the first piece of work that was not begun, or how many there are. Pieces are begun
+// in their order.
+std::size_t run_in_workers(const std::vector<Work>& work, const PoolOptions& options);
 
 }  // namespace attest

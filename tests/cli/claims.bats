@@ -67,7 +67,7 @@ value() { python3 -c "import json; r = json.load(open('report.json')); print($1)
 
 @test "a port in its judge's process is held by nothing, and conforms to nothing" {
   run "$ATTEST" run --in-process --rate 250 --json report.json
-  has "port in its judge's process"
+  has "port not isolated: --in-process"
   [ "$(value 'r["limits"]')" = "{'own_process': False}" ]
   [ "$(value 'r["conformant"]')" = False ]
   run "$ATTEST" run --group tpa --rate 250 --timeout 3 --json report.json

@@ -41,7 +41,7 @@ load common
 
 @test "doctor finds this tree in good health" {
   run "$ATTEST" doctor
-  has "of a port's process: 10 s a case"
+  has "of a port's process: 10 s an answer"
   [ "$status" -eq 0 ]
   has "agrees with 43 of 43 traces recorded from the firmware"
   lacks "BAD"

@@ -88,7 +88,7 @@ TASKS
   done
   for command in run sim schedule sweep-rate time replay stress doctor; do
     run "$ATTEST" $command --help
-    has "Limit for one case at one rate [s]"
+    has "Limit for each answer of the port [s]"
   done
 }
 

@@ -109,7 +109,7 @@ recorded() { ls "$SOURCE"/golden/recorded/*/*.csv | grep -v tailsitter; }
   has "nowhere.csv"
 }
 
-@test "outputs and parameters of another part are refused, with file and reason" {
+@test "outputs and parameters of another module are refused, with file and reason" {
   trace="$SOURCE/golden/recorded/px4-v1.5.5/tracking_100hz.csv"
   python3 - "$trace" <<'PYTHON'
 import csv, pathlib, shutil, sys
@@ -123,7 +123,7 @@ for name, column in added.items():
 PYTHON
   run "$ATTEST" replay part.csv
   [ "$status" -eq 2 ]
-  has "out/actuator_outputs.output[0] is of another part than mc_att_control"
+  has "out/actuator_outputs.output[0] is of another module than mc_att_control"
   run "$ATTEST" replay name.csv
   [ "$status" -eq 2 ]
   has 'did you mean `MC_ROLL_P`'

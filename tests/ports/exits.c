@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: crash. A worker that ends with status 0 before its verdict has not passed. */
+/* Judged: crash. A process that ends with status 0 before its answer has not passed. */
 #include <stdlib.h>
 
 #include "wrapper.h"

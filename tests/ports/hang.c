@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: timeout; the worker must be gone afterwards. */
+/* Judged: timeout; the port's process must be gone afterwards. */
 #include "wrapper.h"
 
 static int step(void* self, const attest_inputs* in, attest_outputs* out) {

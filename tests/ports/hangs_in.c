@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
  * hangs_in.c - never comes back from one of its functions, HANGS_IN: create, set_parameter, destroy
- * or load. Judged: timeout; the worker must be gone afterwards.
+ * or load. Judged: timeout; the port's process must be gone afterwards.
  */
 #include "wrapper.h"
 

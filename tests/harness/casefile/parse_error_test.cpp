@@ -138,11 +138,11 @@ TEST(CaseErrors, JitterKeepsTicksApart) {
             "7:1: leaves less than 1 us between ticks at 8000 Hz");
 }
 
-TEST(CaseErrors, EitherSide) {
-  EXPECT_EQ(errors_of("either_side = [\"yaw_wrap\", \"shorter_rotation\"]\n"), "");
-  EXPECT_EQ(errors_of("either_side = [\"yaw\"]\n"),
+TEST(CaseErrors, EitherBranch) {
+  EXPECT_EQ(errors_of("either_branch = [\"yaw_wrap\", \"shorter_rotation\"]\n"), "");
+  EXPECT_EQ(errors_of("either_branch = [\"yaw\"]\n"),
             "6:1: no decision `yaw`; use yaw_wrap, shorter_rotation");
-  EXPECT_THAT(errors_of("either_side = [\"yaw_wrap\"]\nlevel = \"exact\"\n"),
+  EXPECT_THAT(errors_of("either_branch = [\"yaw_wrap\"]\nlevel = \"exact\"\n"),
               HasSubstr("6:1: is for the controller in open loop"));
 }
 

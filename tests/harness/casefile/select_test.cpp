@@ -93,7 +93,7 @@ TEST_F(SelectTest, ByGroupAndRate) {
   EXPECT_THAT(select(selection), ElementsAre("rates/roll:1", "rates/slow:1"));
 }
 
-TEST_F(SelectTest, FlightsByVehiclePlantAndSetup) {
+TEST_F(SelectTest, FlightsByVehiclePlantAndConfiguration) {
   for (const char* vehicle : {"iris", "hexa"}) files_.name_vehicle(vehicle);
   add("flight", "hover",
       "[flight]\nvehicles = [\"iris\", \"hexa\"]\nvehicles_why = \"two\"\n"

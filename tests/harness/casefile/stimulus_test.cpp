@@ -24,15 +24,15 @@ TEST(Stimulate, HasARowForEachTick) {
   EXPECT_EQ(trace.samples[0].in.timestamp, 5'000'000u);
   EXPECT_EQ(trace.samples[1].in.timestamp, 5'004'000u);
   EXPECT_EQ(trace.source, "px4-v1.5.5/tests/the_case@250hz");
-  EXPECT_TRUE(trace.present == channels_of(Part::mc_att_control));
+  EXPECT_TRUE(trace.present == channels_of(Module::mc_att_control));
 }
 
 TEST(Stimulate, AMixersTraceHasAsManyOutputsAsRotors) {
   const Trace trace = stimulated(
       "[mixer]\ndefinition = \"R: 6x 10000 10000 10000 0\"\ndelta_out_max = 0.25\n"
       "[actuator_controls_0]\n\"control[1]\" = -0.5\n");
-  EXPECT_EQ(part_of(trace.present), Part::mixer);
-  EXPECT_EQ((trace.present & channels_of(Part::mixer, "out/actuator_outputs")).count(), 6u);
+  EXPECT_EQ(module_of(trace.present), Module::mixer);
+  EXPECT_EQ((trace.present & channels_of(Module::mixer, "out/actuator_outputs")).count(), 6u);
   const auto& [controls, mixer] = trace.samples[3].mixer_in;
   EXPECT_THAT(controls.control, ElementsAre(0, -0.5f, 0, 0.5f));
   EXPECT_EQ(mixer.delta_out_max, 0.25f);
@@ -43,7 +43,7 @@ TEST(Stimulate, ABatteryIsFullAndArmed) {
   const Case the_case = case_of("[battery]\n[parameters]\nBAT_N_CELLS = 3\n");
   EXPECT_THAT(the_case.rates, ElementsAre(Rate::hz(100)));
   const Trace trace = stimulate(the_case, Rate::hz(100));
-  EXPECT_EQ(trace.present, channels_of(Part::battery_status));
+  EXPECT_EQ(trace.present, channels_of(Module::battery_status));
   const auto& battery = trace.samples[9].battery_in.battery;
   EXPECT_EQ(battery.voltage_v, 12.15f);
   EXPECT_EQ(battery.armed, 1);

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "harness/core/file.hpp"
 #include "harness/trace/csv.hpp"
 #include "tests/harness/compare/sample_trace.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
@@ -17,8 +18,7 @@ class CompareFilesTest : public testing::Test {
  protected:
   std::filesystem::path write(const std::string& name, const Trace& trace) const {
     const auto path = directory_.path() / name;
-    auto file = AtomicFile::open(path);
-    EXPECT_TRUE(file && write_csv(trace, all_columns(trace), *file) && file->commit());
+    EXPECT_TRUE(write_csv(path, trace, all_columns(trace)));
     return path;
   }
 

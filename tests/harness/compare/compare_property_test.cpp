@@ -36,7 +36,7 @@ Place any_float_output() {
   std::vector<std::size_t> outputs;
   for (std::size_t i = 0; i < channels().size(); ++i) {
     const Channel& what = channels()[i];
-    if (what.part != Part::mc_att_control) continue;
+    if (what.module != Module::mc_att_control) continue;
     if (what.is_output() && what.type == ChannelType::f32) outputs.push_back(i);
   }
   return {*rc::gen::inRange<std::size_t>(0, trace_ticks), *rc::gen::elementOf(outputs)};

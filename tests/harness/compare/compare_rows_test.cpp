@@ -14,7 +14,7 @@ const char* const yaw = "out/vehicle_rates_setpoint.yaw";
 // What a golden keeps of a flight: every third tick, and not what was new.
 Trace rows_of(const Trace& flown) {
   Trace rows;
-  rows.present = flown.present & ~channels_of(Part::mc_att_control, "in/updated.");
+  rows.present = flown.present & ~channels_of(Module::mc_att_control, "in/updated.");
   for (std::size_t tick = 0; tick < flown.samples.size(); tick += 3) {
     rows.samples.push_back(flown.samples[tick]);
     rows.samples.back().in.updated = 0;

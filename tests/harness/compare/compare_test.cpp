@@ -130,7 +130,7 @@ TEST(Compare, OnlyWhatWasRecordedIsCompared) {
   set(got, 0, roll, 9);
   want.present.reset(channel(roll));
   EXPECT_TRUE(compare(got, want, Tolerances(Level::exact)).agrees());
-  want.present &= channels_of(Part::mc_att_control, "in/");
+  want.present &= channels_of(Module::mc_att_control, "in/");
   EXPECT_THAT(compare(got, want, Tolerances()).mismatch, HasSubstr("nothing to compare"));
 }
 

@@ -16,7 +16,7 @@ void set(Trace& trace, std::size_t tick, std::string_view name, double value) {
 
 Trace sample_trace(std::size_t ticks) {
   Trace trace;
-  trace.present = channels_of(Part::mc_att_control);
+  trace.present = channels_of(Module::mc_att_control);
   const auto table = channels();
   for (std::size_t tick = 0; tick < ticks; ++tick) {
     Sample sample{};

@@ -20,7 +20,7 @@ const Rate rate = Rate::hz(250);
 
 // Yaw is off by 180 deg, from tick 5 on by less.
 const std::string turned =
-    "either_side = [\"yaw_wrap\"]\n"
+    "either_branch = [\"yaw_wrap\"]\n"
     "[control_state]\nq.yaw_deg = { signal = \"step\", from = 180, to = 100, at_ticks = 5 }\n"
     "[vehicle_attitude_setpoint]\nthrust = ";
 
@@ -54,22 +54,22 @@ TEST(OtherSide, IsAllowedAtEachTickByItself) {
   got.samples[3] = others.at("yaw_wrap").samples[3];
   const Tolerances tolerances;
   EXPECT_FALSE(compare(got, law, tolerances).agrees());
-  EXPECT_TRUE(compare(got, on_the_side_of(got, law, others, tolerances), tolerances).agrees());
+  EXPECT_TRUE(compare(got, on_the_branch_of(got, law, others, tolerances), tolerances).agrees());
 
-  // Neither side: the way of one with the size of none; and a turn where the law is not free.
+  // Neither branch: the way of one with the size of none; and a turn where the law is not free.
   got.samples[3].out.vehicle_rates_setpoint.yaw *= 0.9f;
-  EXPECT_FALSE(compare(got, on_the_side_of(got, law, others, tolerances), tolerances).agrees());
+  EXPECT_FALSE(compare(got, on_the_branch_of(got, law, others, tolerances), tolerances).agrees());
   // It is told from the nearest side.
-  EXPECT_EQ(yaw_at(on_the_side_of(got, law, others, tolerances), 3),
+  EXPECT_EQ(yaw_at(on_the_branch_of(got, law, others, tolerances), 3),
             yaw_at(others.at("yaw_wrap"), 3));
   got = law;
   got.samples[7].out.vehicle_rates_setpoint.yaw *= -1;
-  EXPECT_FALSE(compare(got, on_the_side_of(got, law, others, tolerances), tolerances).agrees());
+  EXPECT_FALSE(compare(got, on_the_branch_of(got, law, others, tolerances), tolerances).agrees());
 }
 
 TEST(OtherSide, OfTwoDecisionsThereAreThree) {
   const Case the_case = case_of(
-      "either_side = [\"yaw_wrap\", \"shorter_rotation\"]\n"
+      "either_branch = [\"yaw_wrap\", \"shorter_rotation\"]\n"
       "[control_state]\nq = { tilt_deg = 120, azimuth_deg = 40, yaw_deg = 180 }\n"
       "[vehicle_attitude_setpoint]\nthrust = 0.15\n"
       // No limit hides which way it turns.
@@ -81,7 +81,7 @@ TEST(OtherSide, OfTwoDecisionsThereAreThree) {
 }
 
 TEST(OtherSide, ACaseThatDoesNotStandThereIsAnError) {
-  const Case level = case_of("either_side = [\"yaw_wrap\"]\n");
+  const Case level = case_of("either_branch = [\"yaw_wrap\"]\n");
   const auto none = branch_alternatives(level, answers(level, *open_builtin()));
   ASSERT_FALSE(none);
   EXPECT_THAT(none.error().message, HasSubstr("no tick stands on such a threshold"));
@@ -91,7 +91,7 @@ TEST(OtherSide, IntegralsThatMoveAreAnError) {
   const Case moving = case_of(turned + "0.6\n[parameters]\nMC_YAWRATE_P = 0.01\n");
   const auto parted = branch_alternatives(moving, answers(moving, *open_builtin()));
   ASSERT_FALSE(parted);
-  EXPECT_THAT(parted.error().message, HasSubstr("the integrals are not those of the other side"));
+  EXPECT_THAT(parted.error().message, HasSubstr("the integrals are not those of the other branch"));
 }
 
 }  // namespace

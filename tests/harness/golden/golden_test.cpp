@@ -166,9 +166,18 @@ TEST_F(TwoProfiles, BytesOfTheFirstThatWereNotBlessedAreAnErrorOfTheOther) {
   EXPECT_THAT(read.error().message, HasSubstr("is not the file that was blessed"));
 }
 
+TEST_F(TwoProfiles, AProvenanceOfTheFirstThatWasEditedIsAnErrorOfTheOther) {
+  const fs::path provenance = golden_folder(root(), first_) / "provenance.toml";
+  std::ofstream(provenance, std::ios::app) << "\n";
+  const auto golden = Golden::open(root(), other_);
+  ASSERT_FALSE(golden);
+  EXPECT_EQ(golden.error().file, provenance.string());
+  EXPECT_THAT(golden.error().message, HasSubstr("was changed after it was blessed"));
+}
+
 TEST_F(TwoProfiles, WithoutTheFirstTheOtherIsAnError) {
   fs::remove_all(golden_folder(root(), first_));
-  EXPECT_FALSE(Golden::open(root(), other_)->read(at(100)));
+  EXPECT_FALSE(Golden::open(root(), other_));
 }
 
 TEST_F(GoldenTest, IsNotInPlaceBeforeItIsPutThere) {

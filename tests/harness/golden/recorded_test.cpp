@@ -19,14 +19,14 @@ const std::filesystem::path mixers = recorded / "mixer-v1.5.5";
 TEST(Recorded, AControllersTraceIsOfTheProfileThatItsProvenanceNames) {
   const auto read = read_recorded(recorded / "px4-v1.3.4" / "fuzz_250hz.csv");
   ASSERT_TRUE(read) << read.error().to_string();
-  EXPECT_EQ(read->subject.part, Part::mc_att_control);
+  EXPECT_EQ(read->subject.module, Module::mc_att_control);
   EXPECT_EQ(read->subject.profile, "px4-v1.3.4");
 }
 
 TEST(Recorded, AMixersDefinitionStandsInItsProvenance) {
   const auto read = read_recorded(mixers / "4x_scaled_idle.csv");
   ASSERT_TRUE(read) << read.error().to_string();
-  EXPECT_EQ(read->subject.part, Part::mixer);
+  EXPECT_EQ(read->subject.module, Module::mixer);
   EXPECT_EQ(read->subject.mixer, "R: 4x 8000 9000 5000 1500");
 }
 

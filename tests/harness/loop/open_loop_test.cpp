@@ -186,7 +186,7 @@ TEST(DriveAPart, GivesAMixerItsInputsAndRecordsItsOutputs) {
   });
   Trace trace = trace_of(3);
   for (Sample& sample : trace.samples) sample.mixer_in.actuator_controls_0.control[1] = 0.25f;
-  EXPECT_FALSE(drive(port, {"known", Part::mixer, "R: 4x 1 1 1 0"}, trace));
+  EXPECT_FALSE(drive(port, {"known", Module::mixer, "R: 4x 1 1 1 0"}, trace));
   EXPECT_EQ(port.asked_for, "R: 4x 1 1 1 0");
   EXPECT_EQ(trace.samples[2].mixer_out.actuator_outputs.output[2], 0.75f);
 }
@@ -194,11 +194,11 @@ TEST(DriveAPart, GivesAMixerItsInputsAndRecordsItsOutputs) {
 TEST(DriveAPart, WhatThePortDoesNotHaveIsUnsupported) {
   FakePort port([](const auto&, auto&) { return ATTEST_OK; });
   Trace trace = trace_of(1);
-  const auto without = drive(port, {"known", Part::battery_status}, trace);
+  const auto without = drive(port, {"known", Module::battery_status}, trace);
   ASSERT_TRUE(without);
   EXPECT_EQ(without->kind, Kind::unsupported);
   EXPECT_THAT(without->what, HasSubstr("attest.battery_status.v1"));
-  const auto unknown = drive(port, {"unknown", Part::mixer, "R: 4x 1 1 1 0"}, trace);
+  const auto unknown = drive(port, {"unknown", Module::mixer, "R: 4x 1 1 1 0"}, trace);
   ASSERT_TRUE(unknown);
   EXPECT_EQ(unknown->kind, Kind::unsupported);
   EXPECT_THAT(unknown->what, HasSubstr("no mixer `R: 4x 1 1 1 0` of profile unknown"));
@@ -212,7 +212,7 @@ TEST(DriveAPart, WritingBehindItsOutputsIsSeen) {
     return ATTEST_OK;
   });
   Trace trace = trace_of(1);
-  const auto fault = drive(port, {"known", Part::mixer}, trace);
+  const auto fault = drive(port, {"known", Module::mixer}, trace);
   ASSERT_TRUE(fault);
   EXPECT_EQ(fault->kind, Kind::protocol);
 }

@@ -82,7 +82,7 @@ TEST(Timed, IsAsLongAsItWasWithTheMetricsThatBegin) {
   Metric early, late;
   late.window.from_s = 1;
   the_case.flight->metrics = {early, late};
-  const Case as_long = timed(the_case, sample());
+  const Case as_long = with_timing(the_case, sample());
   EXPECT_EQ(as_long.duration.amount, 0.25);
   EXPECT_EQ(as_long.flight->metrics.size(), 1u);
 }

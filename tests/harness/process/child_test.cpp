@@ -149,7 +149,7 @@ TEST(Child, HasNoInputAndLeavesNoCore) {
   EXPECT_THAT(said(child), Optional(std::string("so it is")));
 }
 
-// A report that is being written, the pipe of another worker.
+// A report that is being written, the socket of another child.
 TEST(Child, HasNoDescriptorOfItsParent) {
   const int opened = ::open("/dev/null", O_WRONLY);
   ASSERT_GE(opened, 0);

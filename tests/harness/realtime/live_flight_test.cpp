@@ -94,7 +94,7 @@ TEST(LiveFlight, TheEstimatorMayTriggerTheUnit) {
 TEST(LiveFlight, WhatItComputesDoesNotDependOnTheThreads) {
   LiveFlight flight = flown(tilt_case(0.2), [] { return false; });
   Trace trace;
-  trace.present = channels_of(Part::mc_att_control);
+  trace.present = channels_of(Module::mc_att_control);
   trace.samples = flight.unit.samples;
   trace.parameters = flight.unit.changes;
   Trace again = trace;

@@ -28,7 +28,7 @@ TEST(Pacer, ReturnsAtItsDeadlineOrLater) {
   }
 }
 
-TEST(Rights, AreGotOrRefusedWithAReason) {
+TEST(RealtimePrivileges, AreGotOrRefusedWithAReason) {
   std::vector<RealtimePrivilege> privileges;
   std::thread thread([&] { privileges = claim({usable_cpus().front(), 50}); });
   thread.join();
@@ -39,7 +39,7 @@ TEST(Rights, AreGotOrRefusedWithAReason) {
     EXPECT_EQ(right.got, right.why.empty()) << right.name;
 }
 
-TEST(Rights, ACpuThatIsNotThereIsRefused) {
+TEST(RealtimePrivileges, ACpuThatIsNotThereIsRefused) {
   std::vector<RealtimePrivilege> privileges;
   std::thread thread([&] { privileges = claim({1023, 0}); });
   thread.join();

@@ -20,7 +20,7 @@ TEST(Channels, AreTheColumnsOfTheRecordedFilesInTheirOrder) {
   const std::string text = Sheet::recorded().text();
   std::string names;
   for (const Channel& c : channels()) {
-    if (c.part != Part::mc_att_control) continue;
+    if (c.module != Module::mc_att_control) continue;
     const std::string_view name = c.name;
     const bool left_out = name.ends_with("control[4]") || name.ends_with("control[5]") ||
                           name.ends_with("control[6]");
@@ -57,7 +57,7 @@ TEST(Channels, AreFoundByName) {
   EXPECT_EQ(channel("in/control_state.q[3]").name, "in/control_state.q[3]");
   EXPECT_FALSE(find_channel("in/control_state.q[4]"));
   EXPECT_FALSE(find_channel("control_state.q[3]"));
-  EXPECT_EQ(channel("out/actuator_outputs.output[7]").part, Part::mixer);
+  EXPECT_EQ(channel("out/actuator_outputs.output[7]").module, Module::mixer);
   EXPECT_FALSE(find_channel("in/parameter.MC_ROLL_P"));
   EXPECT_FALSE(find_channel(""));
 }
@@ -118,19 +118,19 @@ TEST(Channels, HaveUnits) {
 }
 
 TEST(Channels, AreOfOnePart) {
-  for (const Part part : {Part::mc_att_control, Part::mixer, Part::battery_status}) {
-    EXPECT_EQ(part_of(channels_of(part)), part) << name_of(part);
-    EXPECT_TRUE(channels_of(part)[0]) << name_of(part);
+  for (const Module module : {Module::mc_att_control, Module::mixer, Module::battery_status}) {
+    EXPECT_EQ(module_of(channels_of(module)), module) << name_of(module);
+    EXPECT_TRUE(channels_of(module)[0]) << name_of(module);
   }
 }
 
 TEST(Channels, AreChosenByPrefix) {
-  EXPECT_EQ(channels_of(Part::mc_att_control).count(), 64u);
-  EXPECT_EQ(channels_of(Part::mixer).count(), 17u);
-  EXPECT_EQ(channels_of(Part::battery_status).count(), 6u);
-  EXPECT_EQ(channels_of(Part::mc_att_control, "in/").count(), 45u);
-  EXPECT_EQ(channels_of(Part::mc_att_control, "out/").count(), 18u);
-  EXPECT_EQ(channels_of(Part::mc_att_control, "in/updated.").count(), 9u);
+  EXPECT_EQ(channels_of(Module::mc_att_control).count(), 64u);
+  EXPECT_EQ(channels_of(Module::mixer).count(), 17u);
+  EXPECT_EQ(channels_of(Module::battery_status).count(), 6u);
+  EXPECT_EQ(channels_of(Module::mc_att_control, "in/").count(), 45u);
+  EXPECT_EQ(channels_of(Module::mc_att_control, "out/").count(), 18u);
+  EXPECT_EQ(channels_of(Module::mc_att_control, "in/updated.").count(), 9u);
 }
 
 TEST(Channels, NameTheTopicsOfTheFreshnessBitsInBitOrder) {

@@ -47,7 +47,7 @@ TEST_F(CsvReader, ReadsARecordedTrace) {
 
 TEST_F(CsvReader, ChannelsWithoutAColumnAreNotPresent) {
   const Trace trace = read(Sheet::recorded().text());
-  EXPECT_EQ(trace.present.count(), channels_of(Part::mc_att_control).count() - 3);
+  EXPECT_EQ(trace.present.count(), channels_of(Module::mc_att_control).count() - 3);
   EXPECT_FALSE(trace.present[*find_channel("out/actuator_controls_0.control[4]")]);
   EXPECT_TRUE(trace.present[*find_channel("out/actuator_controls_0.control[7]")]);
 }
@@ -55,7 +55,7 @@ TEST_F(CsvReader, ChannelsWithoutAColumnAreNotPresent) {
 TEST_F(CsvReader, TakesWhatIsNeededAndNoMore) {
   Sheet inputs = Sheet::recorded();
   for (const Channel& channel : channels()) {
-    if (channel.part != Part::mc_att_control) continue;
+    if (channel.module != Module::mc_att_control) continue;
     if (channel.is_output() && channel.name.find("control[") == channel.name.npos) {
       inputs.remove(channel.name);
     }

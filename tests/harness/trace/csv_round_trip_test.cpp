@@ -5,6 +5,7 @@
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
+#include "harness/core/file.hpp"
 #include "harness/trace/csv.hpp"
 #include "harness/trace/provenance.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
@@ -40,7 +41,7 @@ float arbitrary_float() {
 
 void fill(Sample& sample) {
   for (const Channel& channel : channels()) {
-    if (channel.part != Part::mc_att_control) continue;
+    if (channel.module != Module::mc_att_control) continue;
     if (channel.type == ChannelType::f32) {
       set_value(channel, sample, static_cast<double>(arbitrary_float()));
     } else if (channel.type != ChannelType::u64) {
@@ -53,7 +54,7 @@ void fill(Sample& sample) {
 // A trace as runs make them: parameters have values at tick 0 and change where the unit is told.
 Trace arbitrary_trace() {
   Trace trace;
-  trace.present = channels_of(Part::mc_att_control);
+  trace.present = channels_of(Module::mc_att_control);
   const std::vector<std::string> names = {"MC_ROLL_P", "MC_YAW_P", "VT_TYPE"};
   std::vector<float> values;
   for (const std::string& name : names) {
@@ -92,10 +93,7 @@ bool same_changes(const Trace& a, const Trace& b) {
 Trace written_and_read(const Trace& trace, const CsvColumns& columns,
                        const TemporaryDirectory& directory) {
   const std::filesystem::path path = directory.path() / "a.csv";
-  auto file = AtomicFile::open(path);
-  const auto done = write_csv(trace, columns, *file);
-  RC_ASSERT(done.has_value());
-  RC_ASSERT(file->commit().has_value());
+  RC_ASSERT(write_csv(path, trace, columns).has_value());
   auto read = read_csv(path, CsvNeed::inputs_and_outputs);
   RC_ASSERT(read.has_value());
   return *std::move(read);
@@ -141,9 +139,7 @@ TEST(CsvRoundTrip, WritesWhatWasReadOfARecordedTrace) {
   const TemporaryDirectory directory;
   const auto trace =
       read_csv(directory.write("recorded.csv", Sheet::recorded().text()), CsvNeed::inputs);
-  auto file = AtomicFile::open(directory.path() / "b.csv");
-  ASSERT_TRUE(write_csv(*trace, all_columns(*trace), *file));
-  ASSERT_TRUE(file->commit());
+  ASSERT_TRUE(write_csv(directory.path() / "b.csv", *trace, all_columns(*trace)));
   const std::string text = read_file(directory.path() / "b.csv").value();
   const std::string recorded = Sheet::recorded().text();
   EXPECT_EQ(text.substr(0, text.find('\n')), recorded.substr(0, recorded.find('\n')));

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "harness/core/file.hpp"
 #include "harness/trace/csv.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
 #include "tests/harness/trace/sheet.hpp"
@@ -24,12 +25,7 @@ class CsvWriter : public testing::Test {
     }
   }
 
-  Result<void> write(const CsvColumns& columns) {
-    auto file = AtomicFile::open(path());
-    const auto done = write_csv(trace_, columns, *file);
-    EXPECT_TRUE(file->commit());
-    return done;
-  }
+  Result<void> write(const CsvColumns& columns) { return write_csv(path(), trace_, columns); }
 
   std::string written(const CsvColumns& columns) {
     const auto done = write(columns);
@@ -135,8 +131,7 @@ TEST_F(CsvWriter, RefusesAColumnForAParameterThatIsNotSet) {
 }
 
 TEST_F(CsvWriter, ReportsAFullDisk) {
-  auto file = AtomicFile::open("/dev/full");
-  EXPECT_EQ(write_csv(trace_, all_columns(trace_), *file).error().to_string(),
+  EXPECT_EQ(write_csv("/dev/full", trace_, all_columns(trace_)).error().to_string(),
             "/dev/full: cannot write the file: No space left on device");
 }
 

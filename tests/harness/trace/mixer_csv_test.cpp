@@ -32,8 +32,8 @@ TEST_F(MixerCsv, ReadsARecordedTrace) {
   const auto trace = read_mixer_csv(directory_.write("6x.csv", recorded));
   ASSERT_TRUE(trace) << trace.error().to_string();
   EXPECT_EQ(trace->source, (directory_.path() / "6x.csv").string());
-  EXPECT_EQ(part_of(trace->present), Part::mixer);
-  EXPECT_EQ((trace->present & channels_of(Part::mixer, "out/actuator_outputs")).count(), 6u);
+  EXPECT_EQ(module_of(trace->present), Module::mixer);
+  EXPECT_EQ((trace->present & channels_of(Module::mixer, "out/actuator_outputs")).count(), 6u);
   ASSERT_EQ(trace->samples.size(), 2u);
   EXPECT_LT(trace->samples[0].in.timestamp, trace->samples[1].in.timestamp);
   const auto& [in, out] = std::tie(trace->samples[1].mixer_in, trace->samples[1].mixer_out);

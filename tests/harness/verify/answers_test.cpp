@@ -20,7 +20,7 @@ constexpr const char* profile = "px4-v1.5.5";
 Trace flown(const std::string& body = "[control_state]\nroll_rate = 0.4\npitch_rate = 0.5\n") {
   Trace trace = stimulate(case_of(body), Rate::hz(250));
   EXPECT_FALSE(drive(*open_builtin(), Subject{profile}, trace));
-  trace.present = channels_of(Part::mc_att_control);
+  trace.present = channels_of(Module::mc_att_control);
   return trace;
 }
 

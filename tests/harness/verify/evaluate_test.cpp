@@ -107,7 +107,7 @@ class Reciting final : public PortHost {
 TEST_F(EvaluateTest, AnotherSideIsAsRightButNotAtTheExactLevel) {
   suite_.add_unblessed(
       "turned",
-      "either_side = [\"yaw_wrap\"]\n"
+      "either_branch = [\"yaw_wrap\"]\n"
       "[control_state]\nq.yaw_deg = { signal = \"step\", from = 180, to = 100, at_ticks = 5 }\n"
       "[vehicle_attitude_setpoint]\nthrust = 0.15\n");
   const Case& turned = suite_[0];

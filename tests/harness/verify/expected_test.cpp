@@ -96,7 +96,7 @@ TEST_F(Expected, WhatIsWrittenIsReadAndExcusesTheRun) {
   EXPECT_FALSE(applied(text).failed());
 }
 
-TEST_F(Expected, OneSetupThatFailsIsWrittenByItself) {
+TEST_F(Expected, OneConfigurationThatFailsIsWrittenByItself) {
   run_.results.push_back(result_of("b", Verdict::pass, Rate::hz(1000)));
   EXPECT_THAT(expected_failures_of(run_), HasSubstr("'px4-v1.5.5/tpa/b@50hz' = 'crash"));
 }

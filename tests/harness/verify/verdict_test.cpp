@@ -68,7 +68,7 @@ TEST(RunResult, Counts) {
 
 // --- verdict_json ---
 
-CaseResult through_a_pipe(const CaseResult& result) {
+CaseResult through_json(const CaseResult& result) {
   const std::string line = to_json(result).dump();
   EXPECT_EQ(line.find('\n'), std::string::npos);
   const Result<CaseResult> back = case_result_from_json(json::parse(line));
@@ -111,7 +111,7 @@ TEST(VerdictJson, RoundTripsEveryVerdict) {
     result.ticks = 5000;
     result.deviating_ticks = 17;
     result.elapsed_s = 0.1 + 0.2;
-    expect_same(result, through_a_pipe(result));
+    expect_same(result, through_json(result));
   }
 }
 
@@ -133,7 +133,7 @@ TEST(VerdictJson, RoundTripsEveryKindOfNumber) {
     result.first = first;
     result.tightest = Headroom{std::isnan(value) ? inf : value, 3, 5};
     result.elapsed_s = std::isnan(value) ? 0 : value;
-    expect_same(result, through_a_pipe(result));
+    expect_same(result, through_json(result));
   }
 }
 
@@ -144,7 +144,7 @@ TEST(VerdictJson, RoundTripsAFlight) {
   for (int i = 0; i <= static_cast<int>(Measure::sink_m); ++i) {
     result.metrics.push_back({"m", static_cast<Measure>(i), inf, 0.1, 0.05, -inf, 2});
   }
-  const CaseResult back = through_a_pipe(result);
+  const CaseResult back = through_json(result);
   expect_same(result, back);
   ASSERT_EQ(back.metrics.size(), result.metrics.size());
   for (std::size_t i = 0; i < back.metrics.size(); ++i) {
@@ -179,7 +179,7 @@ TEST(VerdictJson, RoundTripsEveryChannel) {
     result.first = Deviation{};
     result.first->channel = channel;
     result.first->want = 1;
-    expect_same(result, through_a_pipe(result));
+    expect_same(result, through_json(result));
   }
 }
 
@@ -207,10 +207,10 @@ TEST(VerdictJson, IsWhatTheHeaderSays) {
 TEST(VerdictJson, WordsThatAreNotUtf8AreRepaired) {
   CaseResult result = with(Verdict::crash);
   result.reason = "last words: \xff";
-  EXPECT_EQ(through_a_pipe(result).reason, "last words: \xef\xbf\xbd");
+  EXPECT_EQ(through_json(result).reason, "last words: \xef\xbf\xbd");
 }
 
-// Each is a line that a broken worker could write.
+// Each is a line that a broken process could send.
 TEST(VerdictJson, NothingIsTakenOnTrust) {
   CaseResult result = with(Verdict::fail);
   result.first = Deviation{};

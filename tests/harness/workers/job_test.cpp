@@ -115,17 +115,26 @@ TEST(Jobs, OneThatDoesNotOpenIsOneError) {
   }
 }
 
-// No port is in there: it is a mistake of ours, and no result of that run is to be believed.
+// No port is in there: it is a mistake of ours, and the run has an error.
 TEST(Jobs, AWorkerThatDiesIsAnError) {
   const Task dies = []() -> Result<std::string> {
     std::fputs("an assertion\n", stderr);
     std::abort();
   };
   const auto outcome = run_jobs(jobs_of({{says("a"), dies}, {says("b")}}), with(1));
-  EXPECT_THAT(outcome.results, IsEmpty());
+  EXPECT_THAT(outcome.results, ElementsAre("a", "b"));
+  EXPECT_FALSE(outcome.stopped_early);
   ASSERT_EQ(outcome.errors.size(), 1u);
   EXPECT_THAT(outcome.errors[0].message, HasSubstr("was killed by signal 6"));
   EXPECT_THAT(outcome.errors[0].message, HasSubstr("an assertion"));
+}
+
+// It would be started for ever.
+TEST(Jobs, AWorkerThatEndsWithoutAnAnswerIsAnError) {
+  const Task ends = []() -> Result<std::string> { ::_exit(EXIT_SUCCESS); };
+  const auto outcome = run_jobs(jobs_of({{ends, says("a")}, {says("b")}}), with(1));
+  EXPECT_THAT(outcome.results, ElementsAre("b"));
+  EXPECT_EQ(outcome.errors.size(), 1u);
 }
 
 TEST(Jobs, FailFastEndsWithTheFirstJobThatFailsInTheirOrder) {
