@@ -14,7 +14,7 @@ namespace {
 
 const Trace& recorded() {
   static const Trace trace =
-      *read_csv(ATTEST_SOURCE_DIR "/golden/recorded/px4-v1.5.5/fuzz_250hz.csv", CsvNeed::inputs);
+      *read_csv(ATTEST_SOURCE_DIR "/golden/recorded/px4-v1.5.5/fuzz_250hz.csv", TraceNeed::inputs);
   return trace;
 }
 

@@ -26,7 +26,7 @@ void bare_from_chars(benchmark::State& state) {
 }
 
 void whole_reader(benchmark::State& state) {
-  for (auto _ : state) benchmark::DoNotOptimize(read_csv(file, CsvNeed::inputs_and_outputs));
+  for (auto _ : state) benchmark::DoNotOptimize(read_csv(file, TraceNeed::inputs_and_outputs));
 }
 
 BENCHMARK(bare_from_chars)->Name("csv/from_chars");

@@ -1,6 +1,7 @@
 #include "harness/compare/compare_files.hpp"
 
 #include "harness/trace/csv.hpp"
+#include "harness/trace/trace_file.hpp"
 
 namespace attest {
 namespace {
@@ -21,9 +22,9 @@ struct Side {
 
 Result<Comparison> compare_whole(const std::filesystem::path& got,
                                  const std::filesystem::path& want, const Tolerances& tolerances) {
-  const auto all_got = read_csv(got, CsvNeed::outputs);
+  const auto all_got = open_trace(got, TraceNeed::outputs);
   if (!all_got) return tl::unexpected(all_got.error());
-  const auto all_want = read_csv(want, CsvNeed::outputs);
+  const auto all_want = open_trace(want, TraceNeed::outputs);
   if (!all_want) return tl::unexpected(all_want.error());
   return compare(*all_got, *all_want, tolerances);
 }
@@ -33,9 +34,9 @@ Result<Comparison> compare_whole(const std::filesystem::path& got,
 Result<Comparison> compare_files(const std::filesystem::path& got,
                                  const std::filesystem::path& want, const Tolerances& tolerances) {
   if (tolerances.level() == Level::events) return compare_whole(got, want, tolerances);
-  auto got_reader = TraceReader::open(got, CsvNeed::outputs);
+  auto got_reader = TraceReader::open(got, TraceNeed::outputs);
   if (!got_reader) return tl::unexpected(got_reader.error());
-  auto want_reader = TraceReader::open(want, CsvNeed::outputs);
+  auto want_reader = TraceReader::open(want, TraceNeed::outputs);
   if (!want_reader) return tl::unexpected(want_reader.error());
   Side a{std::move(*got_reader)}, b{std::move(*want_reader)};
   TickComparer comparer(a.reader.present(), b.reader.present(), tolerances);

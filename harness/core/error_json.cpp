@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/core/json_text.hpp"
+
 namespace attest {
 namespace {
 
@@ -37,7 +39,7 @@ Result<Error> error_from_json(const nlohmann::json& json) {
 std::string encode(const Result<nlohmann::json>& result) {
   const nlohmann::json text = result ? nlohmann::json{{"result", *result}}
                                      : nlohmann::json{{"error", to_json(result.error())}};
-  return text.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return text_of(text);
 }
 
 Result<nlohmann::json> decode(const std::string& text) {

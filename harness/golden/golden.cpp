@@ -9,6 +9,8 @@
 
 #include "harness/core/file.hpp"
 #include "harness/core/version.hpp"
+#include "harness/trace/csv.hpp"
+#include "harness/trace/trace_file.hpp"
 
 namespace attest {
 namespace {
@@ -185,7 +187,8 @@ Result<Trace> Golden::read_file(const std::string& name) const {
       return tl::unexpected(intact.error());
     }
   }
-  return read_csv(path, CsvNeed::outputs);  // inputs are compared with those that the case makes
+  return open_trace(path,
+                    TraceNeed::outputs);  // inputs are compared with those that the case makes
 }
 
 Result<void> Golden::check_bytes(const fs::path& path, const std::string& blessed) const {

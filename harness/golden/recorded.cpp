@@ -10,9 +10,8 @@
 #include "controller/actuation/mixer.hpp"
 #include "harness/casefile/parse.hpp"
 #include "harness/core/suggestion.hpp"
-#include "harness/trace/csv.hpp"
-#include "harness/trace/mixer_csv.hpp"
 #include "harness/trace/provenance.hpp"
+#include "harness/trace/trace_file.hpp"
 
 namespace attest {
 namespace {
@@ -120,8 +119,7 @@ Result<void> check_parameter(const Subject& subject, const ParameterChange& chan
 
 Result<Recorded> read_recorded(const std::filesystem::path& file, const std::string& profile,
                                const std::string& mixer) {
-  auto trace = looks_like_mixer_csv(file) ? read_mixer_csv(file)
-                                          : read_csv(file, CsvNeed::inputs_and_outputs);
+  auto trace = open_trace(file, TraceNeed::inputs_and_outputs);
   if (!trace) return tl::unexpected(trace.error());
   const auto beside = provenance_in(file.parent_path());
   if (!beside) return tl::unexpected(beside.error());

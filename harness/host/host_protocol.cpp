@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/core/error_json.hpp"
+#include "harness/core/json_text.hpp"
 
 namespace attest {
 namespace {

@@ -7,10 +7,6 @@ namespace attest {
 
 using nlohmann::json;
 
-std::string text_of(const json& head) {
-  return head.dump(-1, ' ', false, json::error_handler_t::replace);
-}
-
 json changes_json(const std::vector<ParameterChange>& changes) {
   json list = json::array();
   for (const ParameterChange& change : changes) {

@@ -20,9 +20,6 @@
 
 namespace attest {
 
-// A port chooses its words, which may not be UTF-8: they are repaired.
-std::string text_of(const nlohmann::json& head);
-
 // Values as bits: JSON has no NaN.
 nlohmann::json changes_json(const std::vector<ParameterChange>& changes);
 std::vector<ParameterChange> changes_from(const nlohmann::json& list);

@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/core/error_json.hpp"
+#include "harness/core/json_text.hpp"
 #include "harness/host/trace_message.hpp"
 #include "harness/measure/stress.hpp"
 #include "harness/measure/stress_json.hpp"

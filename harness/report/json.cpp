@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/core/json_text.hpp"
 #include "harness/report/statement.hpp"
 #include "harness/verify/claim.hpp"
 #include "harness/verify/verdict_json.hpp"
@@ -126,7 +127,7 @@ std::string json_report(const RunResult& run, const std::optional<Diagnosis>& fo
       {"results", results(run)},
   };
   if (found) report["diagnosis"] = diagnosis(*found);
-  return report.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return document_of(report);
 }
 
 }  // namespace attest

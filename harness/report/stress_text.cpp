@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "harness/core/json_text.hpp"
 #include "harness/core/version.hpp"
 #include "harness/measure/stress_json.hpp"
 #include "harness/report/failure_text.hpp"
@@ -203,7 +204,7 @@ std::string stress_json(const StressRun& run) {
   for (const StressResult& stress : run.results) {
     out["results"].push_back(nlohmann::ordered_json(to_json(stress)));
   }
-  return out.dump(2) + "\n";
+  return document_of(out);
 }
 
 }  // namespace attest

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "harness/core/json_text.hpp"
 #include "harness/core/version.hpp"
 #include "harness/report/stress_text.hpp"
 #include "harness/report/text.hpp"
@@ -141,7 +142,7 @@ std::string time_json(const TimeRun& run) {
                       {"vectors", ordered_json::array()}};
   if (run.budget_us) out["budget_us"] = *run.budget_us;
   for (const VectorTimes& vector : run.times.vectors) out["vectors"].push_back(json_of(vector));
-  return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return document_of(out);
 }
 
 }  // namespace attest

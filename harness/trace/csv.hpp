@@ -18,25 +18,18 @@
 
 namespace attest {
 
-// What a file must contain, beside timestamp.
-enum class CsvNeed {
-  inputs,             // every in/ channel: to feed a port
-  outputs,            // at least one out/ channel: to compare
-  inputs_and_outputs  // to replay
-};
-
 // Reads the whole trace, with the constants of the provenance.toml beside it if there is one.
 // Parameter columns become changes: all at tick 0, after those of the constants; then, at each tick
 // with in/updated.parameter_update, those whose value is not the one last set (by bits, NaN = NaN).
 // Errors, each as file:line:column with what to do: unreadable file, no header, unknown or repeated
 // column, missing channel, short or long row, a cell that is not a number of its channel's type,
 // timestamps that do not increase, no rows.
-Result<Trace> read_csv(const std::filesystem::path& path, CsvNeed need);
+Result<Trace> read_csv(const std::filesystem::path& path, TraceNeed need);
 
 // The same a tick at a time, in memory that does not grow with the length of the trace.
 class TraceReader {
  public:
-  static Result<TraceReader> open(const std::filesystem::path& path, CsvNeed need);
+  static Result<TraceReader> open(const std::filesystem::path& path, TraceNeed need);
   TraceReader(TraceReader&&) noexcept;
   ~TraceReader();
 

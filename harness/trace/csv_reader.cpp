@@ -64,7 +64,7 @@ class Base {
       return fail_at(path.string(),
                      fmt::format("its base {} has a base itself; name that one", place.string()));
     }
-    auto reader = TraceReader::open(place, CsvNeed::outputs);
+    auto reader = TraceReader::open(place, TraceNeed::outputs);
     if (!reader) return tl::unexpected(reader.error());
     return std::unique_ptr<Base>(new Base(std::move(*reader), own));
   }
@@ -117,7 +117,7 @@ Result<void> apply_constants(const std::map<std::string, double>& constants, con
   return {};
 }
 
-Result<void> check_need(const ChannelSet& present, CsvNeed need, const std::string& file) {
+Result<void> check_need(const ChannelSet& present, TraceNeed need, const std::string& file) {
   const auto missing = [&](std::string_view name, std::size_t others, std::string_view what_to_do) {
     const std::string more = others == 0 ? "" : fmt::format(" (nor {} others)", others);
     return fail_at(file, fmt::format("no column {}{}; {}", name, more, what_to_do), 1);
@@ -127,7 +127,7 @@ Result<void> check_need(const ChannelSet& present, CsvNeed need, const std::stri
   }
   const Module module = module_of(present);
   const ChannelSet absent = channels_of(module, "in/") & ~present;
-  if (need != CsvNeed::outputs && absent.any()) {
+  if (need != TraceNeed::outputs && absent.any()) {
     const std::string_view name = channels()[absent._Find_first()].name;
     return missing(
         name, absent.count() - 1,
@@ -135,7 +135,7 @@ Result<void> check_need(const ChannelSet& present, CsvNeed need, const std::stri
                     "the file",
                     name, provenance_name));
   }
-  if (need != CsvNeed::inputs && (present & channels_of(module, "out/")).none()) {
+  if (need != TraceNeed::inputs && (present & channels_of(module, "out/")).none()) {
     return missing("out/...", 0, "add at least one output of the unit");
   }
   return {};
@@ -230,7 +230,7 @@ Result<bool> TraceReader::next(Sample& sample, std::vector<ParameterChange>& cha
   return impl_->next(sample, changes);
 }
 
-Result<TraceReader> TraceReader::open(const std::filesystem::path& path, CsvNeed need) {
+Result<TraceReader> TraceReader::open(const std::filesystem::path& path, TraceNeed need) {
   auto rows = CsvRows::open(path);
   if (!rows) return tl::unexpected(rows.error());
   auto layout = layout_of(*rows);
@@ -261,7 +261,7 @@ Result<TraceReader> TraceReader::open(const std::filesystem::path& path, CsvNeed
   return TraceReader(std::move(impl));
 }
 
-Result<Trace> read_csv(const std::filesystem::path& path, CsvNeed need) {
+Result<Trace> read_csv(const std::filesystem::path& path, TraceNeed need) {
   auto reader = TraceReader::open(path, need);
   if (!reader) return tl::unexpected(reader.error());
   Trace trace;

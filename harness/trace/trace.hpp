@@ -53,6 +53,13 @@ struct PlantSample {
   std::uint8_t saturated;             // the mixer gave something up at this tick
 };
 
+// What a file of a trace must contain, beside timestamp.
+enum class TraceNeed {
+  inputs,             // every in/ channel: to feed a port
+  outputs,            // at least one out/ channel: to compare
+  inputs_and_outputs  // to replay
+};
+
 struct Trace {
   std::string source;                       // file or case, for messages
   std::vector<Sample> samples;              // one a tick, timestamps strictly increasing

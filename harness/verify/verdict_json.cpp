@@ -20,11 +20,6 @@ json number(double value) {
   return value;
 }
 
-std::string valid_utf8(const std::string& text) {
-  const std::string repaired = json(text).dump(-1, ' ', false, json::error_handler_t::replace);
-  return json::parse(repaired).get<std::string>();
-}
-
 std::string float_bits(double value) {
   return fmt::format("0x{:08x}", std::bit_cast<std::uint32_t>(static_cast<float>(value)));
 }
@@ -139,7 +134,7 @@ Deviation deviation_from(Reader reader) {
 }
 
 json metric_to_json(const MetricResult& metric) {
-  return {{"name", valid_utf8(metric.name)},
+  return {{"name", metric.name},
           {"measure", name_of(metric.measure)},
           {"value", number(metric.value)},
           {"reference", number(metric.reference)},
@@ -179,13 +174,13 @@ Headroom headroom_from(Reader reader) {
 
 nlohmann::json to_json(const CaseResult& result) {
   json out = {
-      {"id", valid_utf8(result.id())},
-      {"profile", valid_utf8(result.profile)},
-      {"group", valid_utf8(result.group)},
-      {"name", valid_utf8(result.name)},
+      {"id", result.id()},
+      {"profile", result.profile},
+      {"group", result.group},
+      {"name", result.name},
       {"rate", result.rate.to_string()},
       {"verdict", name_of(result.verdict)},
-      {"reason", valid_utf8(result.reason)},
+      {"reason", result.reason},
       {"ticks", result.ticks},
       {"deviating_ticks", result.deviating_ticks},
       {"elapsed_s", number(result.elapsed_s)},
@@ -193,7 +188,7 @@ nlohmann::json to_json(const CaseResult& result) {
   if (result.first) out["first"] = deviation_to_json(*result.first);
   if (result.tightest) out["tightest"] = headroom_to_json(*result.tightest);
   if (result.plant_configuration) {
-    out["vehicle"] = valid_utf8(result.plant_configuration->vehicle);
+    out["vehicle"] = result.plant_configuration->vehicle;
     out["plant"] = name_of(result.plant_configuration->plant);
   }
   for (const MetricResult& metric : result.metrics) {

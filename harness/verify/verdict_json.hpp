@@ -22,8 +22,7 @@
 
 namespace attest {
 
-// Text that is not UTF-8 (a port chooses its own words) is repaired with U+FFFD: dump() of the
-// result never throws.
+// With the port's words as they are: text_of() and document_of() repair what is not UTF-8.
 nlohmann::json to_json(const CaseResult& result);
 
 // The inverse. Errors: a discarded value (json::parse without exceptions), a missing or wrong

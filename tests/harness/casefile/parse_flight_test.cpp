@@ -188,5 +188,19 @@ TEST_F(ParseFlight, AFlightNeedsVehicles) {
   EXPECT_THAT(flight_error(""), HasSubstr("needs vehicles, and there are none in "));
 }
 
+// From 500 Hz on all rates give the law the same time step.
+TEST_F(ParseFlight, AFurtherProfileFliesAtEachDistinctTimeStep) {
+  Case parsed = case_of(std::string("[flight]\nvehicles = [\"iris\"]\nvehicles_why = \"one\"\n"
+                                    "plants = [\"ode\"]\nplants_why = \"one\"\n") +
+                        metrics);
+  parsed.profiles = {"px4-v1.5.5", "px4-v1.3.4"};
+  std::vector<std::string> labels;
+  for (const auto& configuration : parsed.in_profile("px4-v1.3.4").configurations()) {
+    labels.push_back(configuration.rate.label());
+  }
+  EXPECT_THAT(labels, testing::IsSupersetOf({"50hz", "333hz", "500hz", "8000hz"}));
+  EXPECT_THAT(labels, testing::Not(testing::Contains("1000hz")));
+}
+
 }  // namespace
 }  // namespace attest

@@ -180,5 +180,19 @@ TEST(Stimulate, InSecondsTheTicksAreThoseOfTheRate) {
   EXPECT_EQ(stimulate(*parsed, Rate::hz(8000)).samples.size(), 800u);
 }
 
+TEST(Stimulate, ATimestampIsRoundedDownOnce) {
+  const Stimulus stimulus(case_of("[unit]\nstart_s = 0.0000015\n"), Rate::hz(250));
+  EXPECT_EQ(stimulus.timestamp_us(Nanoseconds(400)), 1u);
+  EXPECT_EQ(stimulus.timestamp_us(Nanoseconds(500)), 2u);
+}
+
+// Whose clock runs faster by a quarter has its ticks earlier, and more of them in the same time.
+TEST(UnitTicks, OnAFasterClockAreCloserTogether) {
+  const auto times = unit_ticks(case_of(""), Rate::hz(100), 0.25);
+  ASSERT_EQ(times.size(), 13u);
+  EXPECT_EQ(times[1], Nanoseconds(8'000'000));
+  EXPECT_EQ(times.back(), Nanoseconds(96'000'000));
+}
+
 }  // namespace
 }  // namespace attest

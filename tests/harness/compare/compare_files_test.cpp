@@ -25,7 +25,7 @@ class CompareFilesTest : public testing::Test {
   Result<Comparison> compared(const Trace& got, const Trace& want) const {
     const auto a = write("got.csv", got), b = write("want.csv", want);
     const auto whole =
-        compare(*read_csv(a, CsvNeed::outputs), *read_csv(b, CsvNeed::outputs), tolerances_);
+        compare(*read_csv(a, TraceNeed::outputs), *read_csv(b, TraceNeed::outputs), tolerances_);
     auto files = compare_files(a, b, tolerances_);
     if (!files) return files;
     EXPECT_EQ(files->ticks, whole.ticks);

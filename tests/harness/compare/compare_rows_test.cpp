@@ -84,5 +84,22 @@ TEST(CompareRows, KnowsTheSetpointInForce) {
   EXPECT_EQ(comparison.tightest->tick, 6u);
 }
 
+// Nearly upside down at first, where the tolerance is wide; then a setpoint that is met.
+TEST(CompareRows, ARowHasItsOwnSetpoint) {
+  Trace flown = sample_trace(10);
+  for (std::size_t tick = 0; tick < 5; ++tick) {
+    set(flown, tick, "in/vehicle_attitude_setpoint.q_d[0]", 0.002);
+    set(flown, tick, "in/vehicle_attitude_setpoint.q_d[1]", 1);
+  }
+  const Trace golden = rows_of(flown);
+  const char* const roll = "out/vehicle_rates_setpoint.roll";
+  set(flown, 3, roll, value_of(channels()[channel(roll)], flown.samples[3]) + 4e-4);
+  EXPECT_FALSE(compare_rows(flown, golden, whole, Tolerances()).first);
+  set(flown, 6, roll, value_of(channels()[channel(roll)], flown.samples[6]) + 4e-4);
+  const Comparison comparison = compare_rows(flown, golden, whole, Tolerances());
+  ASSERT_TRUE(comparison.first);
+  EXPECT_EQ(comparison.first->tick, 6u);
+}
+
 }  // namespace
 }  // namespace attest

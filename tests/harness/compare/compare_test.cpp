@@ -185,5 +185,19 @@ TEST(FirstNonFinite, IsFoundBetweenTheRows) {
   EXPECT_FALSE(first_non_finite(got, rows)) << "the reference is not finite in this channel";
 }
 
+TEST(Compare, TheRelativeToleranceIsOfTheSize) {
+  const char* const name = "out/vehicle_rates_setpoint.roll";
+  Tolerances tolerances;
+  tolerances.set("vehicle_rates_setpoint.roll", {1e-6, 0.01});
+  for (const double value : {-10.0, 10.0}) {
+    Trace want = sample_trace(3), got = want;
+    set(want, 1, name, value);
+    set(got, 1, name, value * 1.009);
+    EXPECT_TRUE(compare(got, want, tolerances).agrees()) << value;
+    set(got, 1, name, value * 1.011);
+    EXPECT_FALSE(compare(got, want, tolerances).agrees()) << value;
+  }
+}
+
 }  // namespace
 }  // namespace attest

@@ -96,5 +96,33 @@ TEST(Events, AreALevelOfCompare) {
   EXPECT_THAT(late.event, testing::HasSubstr("expected moving"));
 }
 
+// What stands in a topic that is not published says nothing, nor does the step from it.
+TEST(Events, AStepFromAnUnpublishedTickIsNoEvent) {
+  const char* const status_published = "out/mc_att_ctrl_status.published";
+  Trace want = moving(20, 20), got = want;
+  set(want, 7, status_published, 0);
+  set(got, 8, status_published, 0);
+  set(got, 8, integral, 0.2);
+  EXPECT_FALSE(first_event_difference(got, want));
+  want = got = moving(20, 20);
+  set(got, 8, integral, 0.2);
+  EXPECT_TRUE(first_event_difference(got, want)) << "published, the step is an event";
+}
+
+// By less than what right ports differ by.
+TEST(Events, WhatIsTooNearToItsEdgeToTellAgreesWithEither) {
+  Trace want = moving(20, 20), got = want;
+  for (std::size_t tick = 6; tick < 14; ++tick) {
+    set(want, tick, "out/actuator_controls_0.control[0]", 0.51);
+    set(got, tick, "out/actuator_controls_0.control[0]", 0.5005);
+  }
+  EXPECT_FALSE(first_event_difference(got, want));
+  EXPECT_FALSE(first_event_difference(want, got));
+  for (std::size_t tick = 6; tick < 14; ++tick) {
+    set(got, tick, "out/actuator_controls_0.control[0]", 0.49);
+  }
+  EXPECT_TRUE(first_event_difference(got, want));
+}
+
 }  // namespace
 }  // namespace attest

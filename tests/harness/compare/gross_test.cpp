@@ -108,5 +108,20 @@ TEST(Gross, WhereTheReferenceIsNotFiniteOneTickLaterIsRight) {
   EXPECT_EQ(first_non_finite_event(got, want)->tick, 9u);
 }
 
+// A port may turn the other way, a tick sooner or later.
+TEST(Gross, BesideAHalfTurnAnyValueIsRight) {
+  Trace want = constant(2, 0.4, 0.2);
+  for (std::size_t tick : {8, 9}) {
+    set(want, tick, "in/updated.vehicle_attitude_setpoint", 1);
+    set(want, tick, "in/vehicle_attitude_setpoint.q_d[0]", tick == 8 ? 0 : 1);
+    set(want, tick, "in/vehicle_attitude_setpoint.q_d[3]", tick == 8 ? 1 : 0);
+  }
+  for (std::size_t tick = 6; tick <= 10; ++tick) {
+    Trace got = want;
+    set(got, tick, roll_rate, -2);
+    EXPECT_EQ(first_gross_difference(got, want).has_value(), tick < 7 || tick > 9) << tick;
+  }
+}
+
 }  // namespace
 }  // namespace attest

@@ -2,23 +2,16 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/casefile/stimulus.hpp"
-#include "harness/loop/open_loop.hpp"
-#include "harness/port/port.hpp"
+#include "harness/golden/make_golden.hpp"
+#include "harness/port/builtin.hpp"
 
 namespace attest {
 
 std::vector<GoldenTrace> answers_of_reference(const Case& the_case) {
-  const auto port = open_port("builtin");
-  std::vector<GoldenTrace> traces;
-  for (const RunConfiguration& configuration : the_case.configurations()) {
-    Trace trace = stimulate(the_case, configuration.rate);
-    const auto unit = (*port)->create(the_case.profile);
-    const auto fault = drive(*unit, trace);
-    EXPECT_FALSE(fault) << fault->what;
-    traces.push_back({configuration, std::move(trace)});
-  }
-  return traces;
+  VehicleModels none("");
+  auto made = make_golden(the_case, *open_builtin(), none, [] { return false; });
+  EXPECT_TRUE(made) << made.error().to_string();
+  return made ? std::move(made->traces) : std::vector<GoldenTrace>();
 }
 
 void bless(const std::filesystem::path& golden_root, const Case& the_case) {

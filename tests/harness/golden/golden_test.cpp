@@ -8,6 +8,7 @@
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/compare/compare.hpp"
+#include "harness/core/file.hpp"
 #include "tests/harness/casefile/case_files.hpp"
 #include "tests/harness/golden/blessed.hpp"
 
@@ -175,6 +176,17 @@ TEST_F(TwoProfiles, AProvenanceOfTheFirstThatWasEditedIsAnErrorOfTheOther) {
   EXPECT_THAT(golden.error().message, HasSubstr("was changed after it was blessed"));
 }
 
+TEST_F(TwoProfiles, AFileOfTheFirstThatTheOtherDoesNotListIsAnError) {
+  const fs::path file = golden_folder(root(), other_) / provenance_name;
+  auto provenance = read_provenance(file);
+  ASSERT_TRUE(provenance);
+  ASSERT_EQ(provenance->base_sha256.erase("100hz.csv"), 1u);
+  ASSERT_TRUE(write_file(file, sealed(to_toml(*provenance))));
+  const auto read = Golden::open(root(), other_)->read(at(100));
+  ASSERT_FALSE(read);
+  EXPECT_THAT(read.error().message, HasSubstr("is not the file that was blessed"));
+}
+
 TEST_F(TwoProfiles, WithoutTheFirstTheOtherIsAnError) {
   fs::remove_all(golden_folder(root(), first_));
   EXPECT_FALSE(Golden::open(root(), other_));
@@ -226,6 +238,53 @@ TEST_F(GoldenTest, AFolderThatCannotBeMadeIsAnError) {
       NewGolden::write(root(), a_case(), answers_of_reference(a_case()), {}, "a test");
   ASSERT_FALSE(written);
   EXPECT_THAT(written.error().message, HasSubstr("cannot be made"));
+}
+
+class GoldenOfAFlight : public GoldenTest {
+ protected:
+  void SetUp() override {
+    vehicle_.file = root().parent_path() / "bee.toml";
+    for (const fs::path& file : vehicle_.files()) ASSERT_TRUE(write_file(file, "of a bee\n"));
+  }
+
+  void bless_with(const std::vector<fs::path>& vehicle_files) {
+    auto traces = answers_of_reference(a_case());
+    for (std::size_t i = 0; i < traces.size(); ++i) {
+      traces[i].is_whole = false;
+      traces[i].horizon_s = 0.1 * static_cast<double>(i + 1);
+      traces[i].metrics = {{"settles", static_cast<double>(i)}};
+    }
+    auto golden = NewGolden::write(root(), a_case(), traces, vehicle_files, "a test");
+    ASSERT_TRUE(golden) << golden.error().to_string();
+    ASSERT_TRUE(golden->put_in_place());
+  }
+
+  Result<ReferenceFlight> read_at(std::int64_t hertz) const {
+    return Golden::open(root(), a_case())->read_flight(at(hertz), vehicle_);
+  }
+
+  Vehicle vehicle_;
+};
+
+TEST_F(GoldenOfAFlight, EachConfigurationHasItsHorizonAndItsMetrics) {
+  bless_with(vehicle_.files());
+  const auto slow = read_at(100), fast = read_at(333);
+  ASSERT_TRUE(slow) << slow.error().to_string();
+  ASSERT_TRUE(fast) << fast.error().to_string();
+  EXPECT_EQ(slow->horizon_s, 0.1);
+  EXPECT_EQ(fast->horizon_s, 0.2);
+  EXPECT_EQ(slow->metrics.at("settles"), 0);
+  EXPECT_EQ(fast->metrics.at("settles"), 1);
+}
+
+TEST_F(GoldenOfAFlight, OfAVehicleThatItDoesNotListOrThatChangedItIsStale) {
+  bless_with({vehicle_.files()[0]});
+  ASSERT_FALSE(read_at(100));
+  EXPECT_THAT(read_at(100).error().message, HasSubstr("bee.xml has changed since it was blessed"));
+  bless_with(vehicle_.files());
+  ASSERT_TRUE(write_file(vehicle_.file, "of another bee\n"));
+  ASSERT_FALSE(read_at(100));
+  EXPECT_THAT(read_at(100).error().message, HasSubstr("bee.toml has changed since it was blessed"));
 }
 
 }  // namespace

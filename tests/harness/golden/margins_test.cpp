@@ -87,5 +87,12 @@ TEST(Margins, SticksAndTheRecovery) {
                    .is_safe(Decision::recovery_latch));
 }
 
+// 750 of the last of 20 bits are more than what floats need, of 40 less.
+TEST(Margins, OfAPortInFixedPointAreAtLeastSomeOfItsLastBits) {
+  EXPECT_EQ(least_margin(Decision::integrator_gate, std::nullopt), 1e-5);
+  EXPECT_DOUBLE_EQ(least_margin(Decision::integrator_gate, 20), 750.0 / (1 << 20));
+  EXPECT_EQ(least_margin(Decision::integrator_gate, 40), 1e-5);
+}
+
 }  // namespace
 }  // namespace attest

@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "harness/trace/csv.hpp"
+#include "harness/trace/trace_file.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
 
 namespace attest {
@@ -51,6 +53,25 @@ TEST(Recorded, ADefinitionThatDoesNotFitIsAnError) {
   const auto six = read_recorded(mixers / "4x.csv", "", "R: 6x 10000 10000 10000 0");
   ASSERT_FALSE(six);
   EXPECT_THAT(six.error().message, HasSubstr("has 4 rotors"));
+}
+
+TEST(Recorded, TheProfileThatTheUserNamesGoesBeforeThatOfTheFolder) {
+  const auto read = read_recorded(recorded / "px4-v1.3.4" / "fuzz_250hz.csv", "px4-v1.5.5");
+  ASSERT_TRUE(read) << read.error().to_string();
+  EXPECT_EQ(read->subject.profile, "px4-v1.5.5");
+}
+
+// A parameter of another profile is left out with a note; one of none is a mistake.
+TEST(Recorded, AParameterOfNoProfileIsAnError) {
+  const TemporaryDirectory folder;
+  auto trace = open_trace(recorded / "px4-v1.5.5" / "fuzz_250hz.csv", TraceNeed::outputs);
+  ASSERT_TRUE(trace) << trace.error().to_string();
+  trace->parameters.push_back({0, "MC_ROLL_Q", 1});
+  const auto file = folder.path() / "trace.csv";
+  ASSERT_TRUE(write_csv(file, *trace, all_columns(*trace)));
+  const auto read = read_recorded(file);
+  ASSERT_FALSE(read);
+  EXPECT_THAT(read.error().message, HasSubstr("unknown parameter `MC_ROLL_Q`"));
 }
 
 }  // namespace

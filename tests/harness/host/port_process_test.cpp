@@ -173,5 +173,43 @@ TEST(PortProcess, WaitingEndsWhenTheAnswerDoesNotMatter) {
   EXPECT_EQ((*host)->drive(unit, trace)->kind, Kind::timeout);
 }
 
+TEST(PortProcess, AFlightOfAFixedStepBeginsOnePeriodAfterZero) {
+  const auto hover = parse_case(source / "cases/px4-v1.5.5/flight/hover.toml");
+  ASSERT_TRUE(hover);
+  const auto iris = *VehicleModel::load(source / "models", "iris");
+  FlightPlan plan{{Rate::hz(50), PlantConfiguration{"iris", PlantKind::ode}},
+                  case_timing(*hover, Rate::hz(50))};
+  plan.timing.resize(3);
+  for (const bool from_one_period_on : {false, true}) {
+    plan.from_one_period_on = from_one_period_on;
+    const auto flown = host_of("builtin", false, {&*hover, iris.get()})->fly(plan);
+    ASSERT_TRUE(flown) << flown.error().to_string();
+    EXPECT_EQ(flown->trace.samples[0].in.timestamp, from_one_period_on ? 20'000u : 5'000'000u);
+  }
+}
+
+TEST(PortProcess, DeathInTheMiddleOfAnAnswerIsACrash) {
+  Trace trace = pitching();
+  const auto fault = host_of("dies_in_answer")->drive(unit, trace);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->kind, Kind::crash);
+  EXPECT_THAT(fault->what, HasSubstr("exited with status 3"));
+}
+
+TEST(PortSaysTest, EachThingThatAPortSaysOtherwiseIsTold) {
+  const PortSays said{"a", "1", {"rates"}, 22, Rate::hz(250), true, true, {}};
+  EXPECT_EQ(change(said, said), "");
+  std::vector<PortSays> others(8, said);
+  others[0].name = "b";
+  others[1].version = "2";
+  others[2].unsupported_groups = {"rates", "tpa"};
+  others[3].fraction_bits = 20;
+  others[4].fraction_bits.reset();
+  others[5].fixed_step = Rate::hz(500);
+  others[6].has_mixer = false;
+  others[7].has_battery_status = false;
+  for (const PortSays& now : others) EXPECT_NE(change(said, now), "");
+}
+
 }  // namespace
 }  // namespace attest

@@ -74,5 +74,16 @@ TEST_F(ActuatorsTest, FlagsAreBits) {
   EXPECT_EQ(actuators_.limits().lower_limit, 1);
 }
 
+// Yaw alone asks two rotors to stop: only the yaw flag is set.
+TEST_F(ActuatorsTest, YawThatIsNotFittedHasAFlagOfItsOwn) {
+  attest_outputs out = controls(0, 0.5f);
+  out.actuator_controls_0.control[2] = 1;
+  actuators_.mix(out, true);
+  EXPECT_EQ(actuators_.limits().yaw, 4);
+  actuators_.mix(controls(0.5f, 1), true);  // roll beyond the upper limit, without yaw
+  EXPECT_EQ(actuators_.limits().upper_limit, 2);
+  EXPECT_EQ(actuators_.limits().yaw, 0);
+}
+
 }  // namespace
 }  // namespace attest

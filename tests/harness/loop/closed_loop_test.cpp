@@ -289,5 +289,38 @@ TEST_F(ClosedLoopTest, TheBatteryScalesTheRotors) {
   EXPECT_EQ(notes_.at(1), fmt::format("0 hold {:g}", 400 * (full - 1.5) / full));
 }
 
+// A phase in ticks is one of the unit's ticks.
+TEST(TaskTimes, APhaseInTicksIsInThoseOfTheUnit) {
+  TaskTiming timing;
+  timing.rate = Rate::hz(100);
+  timing.phase = {2, Span::In::ticks};
+  const auto times = task_times(timing, {Rate::hz(250), Nanoseconds(30'000'000)});
+  ASSERT_FALSE(times.empty());
+  EXPECT_EQ(times[0], Nanoseconds(8'000'000));
+}
+
+// A sample of 8 ms that arrives when the flight is over steps nobody.
+TEST_F(ClosedLoopTest, ATriggeredUnitDoesNotRunAtTheEnd) {
+  case_.unit.on_estimate = true;
+  case_.flight->estimator.delay = seconds(0.004);
+  fly();
+  EXPECT_THAT(unit_.timestamps_sample, ElementsAre(0, 4000));
+}
+
+// Without current the estimate of the cells' voltage is raised by what the throttle lets it sag.
+TEST_F(ClosedLoopTest, TheBatteryTaskTakesTheThrottle) {
+  const auto scale_at_end = [&] {
+    Trace trace;
+    case_.flight->battery.emplace().timing.rate = Rate::hz(250);
+    case_.duration = seconds(2);
+    fly(&trace);
+    return trace.samples.back().in.battery_status.scale;
+  };
+  unit_.thrust = 0;
+  const float idle = scale_at_end();
+  unit_.thrust = 1;
+  EXPECT_NE(scale_at_end(), idle);
+}
+
 }  // namespace
 }  // namespace attest

@@ -63,5 +63,15 @@ TEST(Estimator, NoiseIsOfItsSeed) {
   EXPECT_NE(roll_rate(3), roll_rate(4));
 }
 
+TEST(Estimator, EachAxisHasNoiseOfItsOwn) {
+  Estimator options;
+  options.rate_noise_rad_s = 0.1;
+  NoisyEstimator estimator(options);
+  const ControlState told = estimator.sample(PlantState{});
+  EXPECT_NE(told.roll_rate, told.pitch_rate);
+  EXPECT_NE(told.pitch_rate, told.yaw_rate);
+  EXPECT_NE(told.roll_rate, told.yaw_rate);
+}
+
 }  // namespace
 }  // namespace attest

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/casefile/parse.hpp"
+#include "harness/core/json_text.hpp"
 #include "harness/measure/stress_json.hpp"
 #include "tests/harness/verify/small_suite.hpp"
 
@@ -112,7 +113,7 @@ TEST(StressJson, IsReadAsItWasWritten) {
   stress.privileges = {{"mlockall", false, "no \xff"}};
   stress.slow = {ns(20), 2, {{7, ns(300), ns(290)}}, Rhythm{1000, 7, 1e-5}};
   const nlohmann::json json = to_json(stress);
-  const std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  const std::string text = text_of(json);
   const auto read = stress_from_json(nlohmann::json::parse(text));
   ASSERT_TRUE(read) << read.error().to_string();
   EXPECT_EQ(read->misses, stress.misses);

@@ -13,7 +13,7 @@ using testing::HasSubstr;
 class CsvErrors : public testing::Test {
  protected:
   // The error without the directory: "a.csv:2:1: ...".
-  std::string error_of(std::string_view text, CsvNeed need = CsvNeed::inputs_and_outputs) {
+  std::string error_of(std::string_view text, TraceNeed need = TraceNeed::inputs_and_outputs) {
     const auto trace = read_csv(directory_.write("a.csv", text), need);
     if (trace) return "";
     const std::string whole = trace.error().to_string();
@@ -34,10 +34,10 @@ class CsvErrors : public testing::Test {
 
 TEST_F(CsvErrors, UnreadableFile) {
   const std::string missing = (directory_.path() / "missing.csv").string();
-  EXPECT_EQ(read_csv(missing, CsvNeed::inputs).error().to_string(),
+  EXPECT_EQ(read_csv(missing, TraceNeed::inputs).error().to_string(),
             missing + ": cannot open the file: No such file or directory");
   const std::string here = directory_.path().string();
-  EXPECT_EQ(read_csv(here, CsvNeed::inputs).error().to_string(),
+  EXPECT_EQ(read_csv(here, TraceNeed::inputs).error().to_string(),
             here + ": not a regular file but a directory");
 }
 
@@ -80,12 +80,12 @@ TEST_F(CsvErrors, MissingInput) {
   constexpr const char* message =
       "a.csv:1: no column in/battery_status.scale; add the column, or an entry "
       "\"in/battery_status.scale\" under [constants] in a provenance.toml beside the file";
-  EXPECT_EQ(error_of(sheet.text(), CsvNeed::inputs), message);
-  EXPECT_EQ(error_of(sheet.text(), CsvNeed::inputs_and_outputs), message);
-  EXPECT_EQ(error_of(sheet.text(), CsvNeed::outputs), "");
+  EXPECT_EQ(error_of(sheet.text(), TraceNeed::inputs), message);
+  EXPECT_EQ(error_of(sheet.text(), TraceNeed::inputs_and_outputs), message);
+  EXPECT_EQ(error_of(sheet.text(), TraceNeed::outputs), "");
   sheet.remove("in/control_state.q[2]");
   sheet.remove("in/updated.battery_status");
-  EXPECT_THAT(error_of(sheet.text(), CsvNeed::inputs),
+  EXPECT_THAT(error_of(sheet.text(), TraceNeed::inputs),
               HasSubstr("a.csv:1: no column in/control_state.q[2] (nor 2 others); add"));
 }
 
@@ -106,13 +106,13 @@ TEST_F(CsvErrors, MissingOutputs) {
       sheet.remove(name);
   }
   constexpr const char* message = "a.csv:1: no column out/...; add at least one output of the unit";
-  EXPECT_EQ(error_of(sheet.text(), CsvNeed::outputs), message);
-  EXPECT_EQ(error_of(sheet.text(), CsvNeed::inputs_and_outputs), message);
-  EXPECT_EQ(error_of(sheet.text(), CsvNeed::inputs), "");
+  EXPECT_EQ(error_of(sheet.text(), TraceNeed::outputs), message);
+  EXPECT_EQ(error_of(sheet.text(), TraceNeed::inputs_and_outputs), message);
+  EXPECT_EQ(error_of(sheet.text(), TraceNeed::inputs), "");
 }
 
 TEST_F(CsvErrors, ShortRow) {
-  EXPECT_EQ(error_of("timestamp,out/vehicle_rates_setpoint.yaw\n1,2\n3\n", CsvNeed::outputs),
+  EXPECT_EQ(error_of("timestamp,out/vehicle_rates_setpoint.yaw\n1,2\n3\n", TraceNeed::outputs),
             "a.csv:3:2: row has 1 of 2 cells, out/vehicle_rates_setpoint.yaw is missing; complete "
             "or remove the row");
   const std::string text = Sheet::recorded().text();
@@ -122,16 +122,17 @@ TEST_F(CsvErrors, ShortRow) {
 }
 
 TEST_F(CsvErrors, LongRow) {
-  EXPECT_EQ(error_of("timestamp,out/vehicle_rates_setpoint.yaw\n1,2\n30,4,5,6\n", CsvNeed::outputs),
-            "a.csv:3:6: row has 4 cells, the header has 2; remove what is too much");
-  EXPECT_EQ(error_of("timestamp,out/vehicle_rates_setpoint.yaw\n1,2,\n", CsvNeed::outputs),
+  EXPECT_EQ(
+      error_of("timestamp,out/vehicle_rates_setpoint.yaw\n1,2\n30,4,5,6\n", TraceNeed::outputs),
+      "a.csv:3:6: row has 4 cells, the header has 2; remove what is too much");
+  EXPECT_EQ(error_of("timestamp,out/vehicle_rates_setpoint.yaw\n1,2,\n", TraceNeed::outputs),
             "a.csv:2:5: row has 3 cells, the header has 2; remove what is too much");
 }
 
 TEST_F(CsvErrors, RowOfTheWrongLengthIsNotBlamedOnItsShiftedCells) {
   EXPECT_EQ(error_of("timestamp,in/actuator_armed.armed,out/vehicle_rates_setpoint.yaw\n"
                      "1,0.5\n",
-                     CsvNeed::outputs),
+                     TraceNeed::outputs),
             "a.csv:2:6: row has 2 of 3 cells, out/vehicle_rates_setpoint.yaw is missing; complete "
             "or remove the row");
 }
@@ -151,10 +152,10 @@ TEST_F(CsvErrors, NotANumber) {
 }
 
 TEST_F(CsvErrors, NotANumberInTheFirstAndLastCellOfARow) {
-  EXPECT_EQ(error_of("out/vehicle_rates_setpoint.yaw,timestamp\nx,1\n", CsvNeed::outputs),
+  EXPECT_EQ(error_of("out/vehicle_rates_setpoint.yaw,timestamp\nx,1\n", TraceNeed::outputs),
             "a.csv:2:1: `x` is not a number for out/vehicle_rates_setpoint.yaw; write a decimal "
             "number, nan, inf or -inf");
-  EXPECT_EQ(error_of("timestamp,out/vehicle_rates_setpoint.yaw\n1,\r\n", CsvNeed::outputs),
+  EXPECT_EQ(error_of("timestamp,out/vehicle_rates_setpoint.yaw\n1,\r\n", TraceNeed::outputs),
             "a.csv:2:3: an empty cell is not a number for out/vehicle_rates_setpoint.yaw; write a "
             "decimal number, nan, inf or -inf");
 }
@@ -202,7 +203,7 @@ TEST_F(CsvErrors, TimestampsThatDoNotIncrease) {
             "a.csv:3:1: timestamp 5004000 is not after the 5004000 of the row above; timestamps "
             "must increase");
   EXPECT_EQ(
-      error_of("out/vehicle_rates_setpoint.yaw,timestamp\n1,7\n1,8\n10,6\n", CsvNeed::outputs),
+      error_of("out/vehicle_rates_setpoint.yaw,timestamp\n1,7\n1,8\n10,6\n", TraceNeed::outputs),
       "a.csv:4:4: timestamp 6 is not after the 8 of the row above; timestamps must increase");
 }
 
@@ -215,8 +216,9 @@ TEST_F(CsvErrors, NoRows) {
 }
 
 TEST_F(CsvErrors, EmptyLineBetweenRows) {
-  EXPECT_EQ(error_of("timestamp,out/vehicle_rates_setpoint.yaw\n1,2\n\n\n3,4\n", CsvNeed::outputs),
-            "a.csv:3:1: empty line between rows; remove it");
+  EXPECT_EQ(
+      error_of("timestamp,out/vehicle_rates_setpoint.yaw\n1,2\n\n\n3,4\n", TraceNeed::outputs),
+      "a.csv:3:1: empty line between rows; remove it");
 }
 
 TEST_F(CsvErrors, ColumnThatIsAlsoAConstant) {
@@ -265,7 +267,7 @@ TEST_F(CsvErrors, TruncationAtAnyByteReadsOrFails) {
   std::size_t readable = 0;
   for (std::size_t size = 0; size <= text.size(); ++size) {
     const auto trace =
-        read_csv(directory_.write("a.csv", text.substr(0, size)), CsvNeed::inputs_and_outputs);
+        read_csv(directory_.write("a.csv", text.substr(0, size)), TraceNeed::inputs_and_outputs);
     if (trace) {
       ++readable;
       EXPECT_FALSE(trace->samples.empty());

@@ -15,7 +15,7 @@ using testing::ElementsAre;
 
 class CsvReader : public testing::Test {
  protected:
-  Trace read(std::string_view text, CsvNeed need = CsvNeed::inputs_and_outputs) {
+  Trace read(std::string_view text, TraceNeed need = TraceNeed::inputs_and_outputs) {
     auto trace = read_csv(directory_.write("a.csv", text), need);
     EXPECT_TRUE(trace) << trace.error().to_string();
     return trace ? *std::move(trace) : Trace{};
@@ -63,8 +63,8 @@ TEST_F(CsvReader, TakesWhatIsNeededAndNoMore) {
   for (const char* i : {"0", "1", "2", "3", "7"}) {
     inputs.remove("out/actuator_controls_0.control[" + std::string(i) + "]");
   }
-  EXPECT_EQ(read(inputs.text(), CsvNeed::inputs).samples.size(), 3u);
-  EXPECT_EQ(read("out/vehicle_rates_setpoint.yaw,timestamp\n0.5,1\n", CsvNeed::outputs)
+  EXPECT_EQ(read(inputs.text(), TraceNeed::inputs).samples.size(), 3u);
+  EXPECT_EQ(read("out/vehicle_rates_setpoint.yaw,timestamp\n0.5,1\n", TraceNeed::outputs)
                 .samples[0]
                 .out.vehicle_rates_setpoint.yaw,
             0.5f);
@@ -205,7 +205,7 @@ TEST_F(CsvReader, ReadsFilesLongerThanItsBuffer) {
   for (std::size_t i = 1; i <= rows; ++i) {
     text += std::to_string(i) + "," + std::to_string(i % 1000) + ".5\r\n";
   }
-  const Trace trace = read(text, CsvNeed::outputs);
+  const Trace trace = read(text, TraceNeed::outputs);
   ASSERT_EQ(trace.samples.size(), rows);
   for (std::size_t i = 1; i <= rows; ++i) {
     ASSERT_EQ(trace.samples[i - 1].in.timestamp, i);

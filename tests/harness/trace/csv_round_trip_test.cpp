@@ -94,7 +94,7 @@ Trace written_and_read(const Trace& trace, const CsvColumns& columns,
                        const TemporaryDirectory& directory) {
   const std::filesystem::path path = directory.path() / "a.csv";
   RC_ASSERT(write_csv(path, trace, columns).has_value());
-  auto read = read_csv(path, CsvNeed::inputs_and_outputs);
+  auto read = read_csv(path, TraceNeed::inputs_and_outputs);
   RC_ASSERT(read.has_value());
   return *std::move(read);
 }
@@ -138,13 +138,13 @@ RC_GTEST_PROP(CsvRoundTrip, KeepsEveryBitWhenConstantsAreDivided, ()) {
 TEST(CsvRoundTrip, WritesWhatWasReadOfARecordedTrace) {
   const TemporaryDirectory directory;
   const auto trace =
-      read_csv(directory.write("recorded.csv", Sheet::recorded().text()), CsvNeed::inputs);
+      read_csv(directory.write("recorded.csv", Sheet::recorded().text()), TraceNeed::inputs);
   ASSERT_TRUE(write_csv(directory.path() / "b.csv", *trace, all_columns(*trace)));
   const std::string text = read_file(directory.path() / "b.csv").value();
   const std::string recorded = Sheet::recorded().text();
   EXPECT_EQ(text.substr(0, text.find('\n')), recorded.substr(0, recorded.find('\n')));
   // Numbers may be shorter: the recorded ones are shortest in `in/` only.
-  EXPECT_TRUE(same_samples(*trace, *read_csv(directory.path() / "b.csv", CsvNeed::inputs)));
+  EXPECT_TRUE(same_samples(*trace, *read_csv(directory.path() / "b.csv", TraceNeed::inputs)));
 }
 
 }  // namespace

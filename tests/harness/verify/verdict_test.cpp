@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "harness/core/json_text.hpp"
 #include "harness/verify/run_result.hpp"
 #include "harness/verify/verdict_json.hpp"
 
@@ -69,7 +70,7 @@ TEST(RunResult, Counts) {
 // --- verdict_json ---
 
 CaseResult through_json(const CaseResult& result) {
-  const std::string line = to_json(result).dump();
+  const std::string line = text_of(to_json(result));
   EXPECT_EQ(line.find('\n'), std::string::npos);
   const Result<CaseResult> back = case_result_from_json(json::parse(line));
   EXPECT_TRUE(back) << back.error().message;

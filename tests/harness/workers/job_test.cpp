@@ -2,11 +2,16 @@
 #include "harness/workers/job.hpp"
 
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
+
+#include "tests/harness/core/temporary_directory.hpp"
 
 namespace attest {
 
@@ -127,6 +132,33 @@ TEST(Jobs, AWorkerThatDiesIsAnError) {
   ASSERT_EQ(outcome.errors.size(), 1u);
   EXPECT_THAT(outcome.errors[0].message, HasSubstr("was killed by signal 6"));
   EXPECT_THAT(outcome.errors[0].message, HasSubstr("an assertion"));
+}
+
+// What it did not answer may be answered otherwise by another process.
+TEST(Jobs, AWorkerThatDiesIsNotStartedAgain) {
+  const TemporaryDirectory directory;
+  const auto marker = directory.path() / "has_died";
+  const Task dies_once = [marker]() -> Result<std::string> {
+    if (std::filesystem::exists(marker)) return "b";
+    std::ofstream(marker) << "";
+    std::abort();
+  };
+  const auto outcome = run_jobs(jobs_of({{says("a"), dies_once}}), with(1));
+  EXPECT_THAT(outcome.results, ElementsAre("a"));
+  EXPECT_EQ(outcome.errors.size(), 1u);
+}
+
+TEST(Jobs, AProcessThatCannotBeStartedIsAnErrorOfItsJob) {
+  rlimit files{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &files), 0);
+  rlimit none = files;
+  none.rlim_cur = 3;
+  ::setrlimit(RLIMIT_NOFILE, &none);
+  const auto outcome = run_jobs(jobs_of({{says("a")}, {says("b")}}), with(2));
+  ::setrlimit(RLIMIT_NOFILE, &files);
+  EXPECT_THAT(outcome.results, IsEmpty());
+  ASSERT_EQ(outcome.errors.size(), 2u);
+  EXPECT_THAT(outcome.errors[0].message, HasSubstr("`ulimit -n`"));
 }
 
 // It would be started for ever.

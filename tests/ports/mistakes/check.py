@@ -17,7 +17,6 @@ import concurrent.futures
 import json
 import os
 import pathlib
-import re
 import shutil
 import subprocess
 import sys
@@ -26,6 +25,9 @@ import threading
 from typing import NamedTuple
 
 HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1]))
+from patches import Broken, Patch, apply, execute, patches  # noqa: E402
+
 CONTROLLER = HERE.parents[2] / "controller"
 STYLES = {
     "c_starter": CONTROLLER / "starters" / "c",
@@ -41,20 +43,20 @@ TIMEOUT_S = 300
 COMPILES_AT_ONCE = threading.Semaphore(2)
 
 
-class BrokenPatch(Exception):
-    """A patch does not apply, or its port does not compile."""
-
-
 class Candidate(NamedTuple):
     """A port to judge: right if it has no patch."""
 
     style: str
-    patch: pathlib.Path | None
-    passes: str | None  # why no case tells it from the law yet
+    patch: Patch | None
 
     @property
     def name(self) -> str:
-        return self.patch.stem if self.patch else "(the right port)"
+        return self.patch.name if self.patch else "(the right port)"
+
+    @property
+    def passes(self) -> str | None:
+        """Why no case tells it from the law yet."""
+        return self.patch and self.patch.marked
 
 
 class Judged(NamedTuple):
@@ -81,18 +83,9 @@ class Judged(NamedTuple):
 def candidates() -> list[Candidate]:
     found = []
     for style in STYLES:
-        found.append(Candidate(style, None, None))
-        for patch in sorted((HERE / style).glob("*.patch")):
-            head = patch.read_text().split("\n--- ", 1)[0]
-            marked = re.search(r"^Passes: (.+)", head, re.MULTILINE | re.DOTALL)
-            found.append(Candidate(style, patch, marked and marked[1]))
+        found.append(Candidate(style, None))
+        found += [Candidate(style, patch) for patch in patches(HERE / style, "Passes")]
     return found
-
-
-def execute(command: list, folder: pathlib.Path, what: str) -> None:
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        raise BrokenPatch(f"{what}\n{done.stdout}{done.stderr}")
 
 
 def build(candidate: Candidate, folder: pathlib.Path) -> pathlib.Path:
@@ -101,8 +94,7 @@ def build(candidate: Candidate, folder: pathlib.Path) -> pathlib.Path:
         if source.suffix in SOURCES:
             shutil.copy(source, folder)
     if candidate.patch:
-        patch = ["patch", "-p1", "--silent", "--no-backup-if-mismatch", "-i", candidate.patch]
-        execute(patch, folder, f"{candidate.patch} does not apply")
+        apply(candidate.patch, folder)
     sources = sorted(path.name for path in folder.iterdir() if path.suffix in (".c", ".cpp"))
     compiler = "c++" if sources[0].endswith(".cpp") else "cc"
     flags = ["-O1", "-ffp-contract=off", "-fPIC", "-shared", "-fvisibility=hidden"]
@@ -130,11 +122,11 @@ def first_failure(attest: pathlib.Path, library: pathlib.Path, selection: list[s
     if done.returncode == 0:
         return None
     if done.returncode != 1:
-        raise BrokenPatch(f"attest run exited with {done.returncode}:\n{done.stdout}{done.stderr}")
+        raise Broken(f"attest run exited with {done.returncode}:\n{done.stdout}{done.stderr}")
     results = json.loads(report.read_text())["results"]
     failed = [r["id"] for r in results if r["verdict"] in ("fail", "non-finite")]
     if not failed:
-        raise BrokenPatch(f"attest run failed for another reason than its outputs:\n{done.stdout}")
+        raise Broken(f"attest run failed for another reason than its outputs:\n{done.stdout}")
     return failed[0]
 
 
@@ -150,7 +142,7 @@ def judge(attest: pathlib.Path, all_groups: list[str], candidate: Candidate) -> 
             if not caught_by and not candidate.passes:
                 rates = ["--rate", FLIGHT_RATES]
                 caught_by = first_failure(attest, library, selection(flights=True) + rates)
-    except BrokenPatch as error:
+    except Broken as error:
         return Judged(candidate, None, str(error))
     return Judged(candidate, caught_by, None)
 

@@ -1,0 +1,35 @@
+// New goldens of cases, written beside the old ones, to be put in their places together.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "harness/casefile/select.hpp"
+#include "harness/golden/golden.hpp"
+
+namespace attest {
+
+struct BlessingOptions {
+  std::filesystem::path golden, models;  // folders of the suite
+  std::string reason;                    // kept in the provenance
+  // A line about each case whose golden changes.
+  std::function<void(const std::string& line)> on_change = [](const std::string&) {};
+  std::function<bool()> stop = [] { return false; };  // true: end with an error
+};
+
+// Those not put in place are removed with this.
+struct PendingGoldens {
+  std::vector<NewGolden> goldens;
+  std::size_t unchanged = 0;  // cases
+};
+
+// For who holds the GoldenLock of the folder. A file is done with all its profiles, whichever of
+// them is selected, because the goldens of the others rest on that of the first. Errors: those of
+// make_golden() and NewGolden::write().
+Result<PendingGoldens> write_beside(const std::vector<SelectedCase>& cases,
+                                    const BlessingOptions& options);
+
+}  // namespace attest

@@ -1,0 +1,47 @@
+#include "harness/golden/suite_margins.hpp"
+
+#include <cmath>
+
+#include "harness/casefile/stimulus.hpp"
+
+namespace attest {
+namespace {
+
+bool is_nearer(const VectorMargin& one, const VectorMargin& nearest) {
+  if (std::isinf(one.margin.distance)) return false;
+  if (nearest.the_case == nullptr) return true;
+  const bool largest = one.decision == Decision::quaternion_norm;
+  return largest ? one.margin.distance > nearest.margin.distance
+                 : one.margin.distance < nearest.margin.distance;
+}
+
+// On purpose, and both branches are right.
+bool stands_on(const EitherBranch& branches, Decision decision) {
+  return (branches.yaw_wrap && decision == Decision::yaw_wrap) ||
+         (branches.shorter_rotation && decision == Decision::shorter_rotation);
+}
+
+void add(const Case& the_case, const RunConfiguration& configuration, SuiteMargins& all) {
+  const Margins found = margins(stimulate(the_case, configuration.rate), subject_of(the_case));
+  ++all.vectors;
+  for (std::size_t i = 0; i < decision_count; ++i) {
+    const auto decision = static_cast<Decision>(i);
+    if (stands_on(the_case.either_branch, decision)) continue;
+    const VectorMargin one{&the_case, configuration, decision, found[decision]};
+    if (is_nearer(one, all.nearest[i])) all.nearest[i] = one;
+    if (!found.is_safe(decision)) all.too_near.push_back(one);
+  }
+}
+
+}  // namespace
+
+SuiteMargins suite_margins(const std::vector<SelectedCase>& cases) {
+  SuiteMargins all;
+  for (const auto& [the_case, configurations] : cases) {
+    if (the_case.flight || the_case.exact_only) continue;
+    for (const RunConfiguration& configuration : configurations) add(the_case, configuration, all);
+  }
+  return all;
+}
+
+}  // namespace attest

@@ -1,0 +1,170 @@
+#!/usr/bin/env python3
+"""Checks the tests of the harness: each mutation here is a mistake that they must notice.
+
+    check.py [--only NAME]... [--room ROOM]... [--applies]
+
+A folder here is named after a room of harness/. Each of its patches is applied to a copy of the
+tree, the room's tests are built and run, and the mistake is noticed if they fail. The text at the
+head of a patch says what is mistaken. A line `Survives: why` there marks a mistake that the tests
+need not notice, and is an error once they do.
+
+Prints a table and the score. Exits 1 if fewer than 95% are noticed, an unmarked mistake survives or
+a marked one is noticed; 2 if a patch does not apply or the code does not compile. --applies only
+looks whether each patch applies.
+"""
+
+import argparse
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+from typing import NamedTuple
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+sys.path.insert(0, str(HERE.parent))
+from patches import Broken, Patch, apply, execute, patches  # noqa: E402
+
+COPY = ROOT / "build" / "mutate"
+BOUND = 0.95
+# The tests of a room take seconds: what takes longer never ends.
+TIMEOUT_S = 120
+
+
+class Mutation(NamedTuple):
+    room: str
+    patch: Patch
+
+    @property
+    def tests(self) -> str:
+        return f"attest_{self.room}_tests"
+
+
+def mutations(args: argparse.Namespace) -> list[Mutation]:
+    """What is asked for, those of one file after each other: it is compiled back only once."""
+    found = [
+        Mutation(folder.name, patch)
+        for folder in sorted(HERE.iterdir())
+        if folder.is_dir()
+        for patch in patches(folder, "Survives")
+    ]
+    found = [m for m in found if not args.only or m.patch.name in args.only]
+    found = [m for m in found if not args.room or m.room in args.room]
+    return sorted(found, key=lambda m: (m.room, m.patch.files()))
+
+
+def copy_tree() -> None:
+    """The files of the project as they are now. What has not changed keeps its time, so that only
+    what has changed is compiled again."""
+    listed = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"]
+    names = subprocess.run(listed, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    for name in filter(None, names.split("\0")):
+        source, target = ROOT / name, COPY / name
+        if not source.exists():
+            target.unlink(missing_ok=True)
+        elif not target.exists() or source.read_bytes() != target.read_bytes():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(source, target)
+
+
+def build(targets: list[str]) -> None:
+    command = ["cmake", "--build", "--preset", "mutate", "--target", *targets]
+    execute(command, COPY, f"{' '.join(targets)} cannot be built")
+
+
+def first_failure(tests: str) -> str | None:
+    """The name of the first test that fails, None if all pass."""
+    folder = COPY / "build" / "mutate" / "tests"
+    binary = next(path for path in folder.rglob(tests) if path.is_file())
+    environment = os.environ | {"GTEST_FAIL_FAST": "1", "GTEST_BRIEF": "1"}
+    try:
+        done = subprocess.run(
+            [binary],
+            cwd=binary.parent,
+            env=environment,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            timeout=TIMEOUT_S,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return f"{tests} does not end"
+    if done.returncode == 0:
+        return None
+    failed = [line for line in done.stdout.splitlines() if line.startswith("[  FAILED  ]")]
+    return failed[0].split()[3].rstrip(",") if failed else f"{tests} ends with {done.returncode}"
+
+
+def judge(mutation: Mutation) -> str | None:
+    """The test that notices the mutation, None if it survives."""
+    files = [COPY / name for name in mutation.patch.files()]
+    originals = [file.read_bytes() for file in files]
+    try:
+        apply(mutation.patch, COPY)
+        build([mutation.tests])
+        return first_failure(mutation.tests)
+    finally:
+        for file, original in zip(files, originals):
+            file.write_bytes(original)
+
+
+def check_tests(rooms: list[str]) -> None:
+    """Without a mutation all tests have to pass: a test that always fails notices everything."""
+    for room in rooms:
+        failed = first_failure(f"attest_{room}_tests")
+        if failed:
+            raise Broken(f"{failed} fails without a mutation")
+
+
+def check_all(chosen: list[Mutation]) -> int:
+    copy_tree()
+    execute(["cmake", "--preset", "mutate"], COPY, "the copy cannot be configured")
+    rooms = sorted({mutation.room for mutation in chosen})
+    print(f"building the tests of {', '.join(rooms)}", file=sys.stderr, flush=True)
+    build([f"attest_{room}_tests" for room in rooms])
+    check_tests(rooms)
+    print("| room | mutation | noticed by |\n|---|---|---|")
+    noticed, wrong = 0, 0
+    for mutation in chosen:
+        test = judge(mutation)
+        marked = mutation.patch.marked
+        noticed += test is not None
+        wrong += (test is not None) == (marked is not None)
+        remark = test or ("nothing, as marked" if marked else "NOTHING")
+        remark += ": SHOULD SURVIVE" if test and marked else ""
+        print(f"| {mutation.room} | {mutation.patch.name} | {remark} |", flush=True)
+    share = noticed / len(chosen)
+    print(f"\n{noticed} of {len(chosen)} mutations are noticed: {100 * share:.0f}% (bound 95%)")
+    return 0 if share >= BOUND and wrong == 0 else 1
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--only", action="append", default=[], metavar="NAME")
+    parser.add_argument("--room", action="append", default=[], metavar="ROOM")
+    parser.add_argument("--applies", action="store_true", help="only look whether they apply")
+    return parser.parse_args()
+
+
+def main() -> int:
+    args = arguments()
+    chosen = mutations(args)
+    if not chosen:
+        print("no such mutation", file=sys.stderr)
+        return 2
+    try:
+        if not args.applies:
+            return check_all(chosen)
+        for mutation in chosen:
+            apply(mutation.patch, ROOT, "--dry-run")
+    except Broken as broken:
+        print(broken, file=sys.stderr)
+        return 2
+    print(f"{len(chosen)} mutations apply")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
