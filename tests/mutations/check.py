@@ -97,14 +97,33 @@ def first_failure(tests: str) -> str | None:
     return failed[0].split()[3].rstrip(",") if failed else f"{tests} ends with {done.returncode}"
 
 
-def judge(mutation: Mutation) -> str | None:
-    """The test that notices the mutation, None if it survives."""
+class Judged(NamedTuple):
+    mutation: Mutation
+    noticed_by: str | None = None  # a test; None if it survives
+    broken: str | None = None  # why it could not be judged
+
+    @property
+    def good(self) -> bool:
+        return (self.noticed_by is None) == (self.mutation.patch.marked is not None)
+
+    @property
+    def remark(self) -> str:
+        if self.broken:
+            return "BROKEN"
+        if self.noticed_by:
+            return self.noticed_by if self.good else f"{self.noticed_by}: SHOULD SURVIVE"
+        return "nothing, as marked" if self.good else "NOTHING"
+
+
+def judge(mutation: Mutation) -> Judged:
     files = [COPY / name for name in mutation.patch.files()]
     originals = [file.read_bytes() for file in files]
     try:
         apply(mutation.patch, COPY)
         build([mutation.tests])
-        return first_failure(mutation.tests)
+        return Judged(mutation, noticed_by=first_failure(mutation.tests))
+    except Broken as broken:
+        return Judged(mutation, broken=str(broken))
     finally:
         for file, original in zip(files, originals):
             file.write_bytes(original)
@@ -126,18 +145,19 @@ def check_all(chosen: list[Mutation]) -> int:
     build([f"attest_{room}_tests" for room in rooms])
     check_tests(rooms)
     print("| room | mutation | noticed by |\n|---|---|---|")
-    noticed, wrong = 0, 0
+    done = []
     for mutation in chosen:
-        test = judge(mutation)
-        marked = mutation.patch.marked
-        noticed += test is not None
-        wrong += (test is not None) == (marked is not None)
-        remark = test or ("nothing, as marked" if marked else "NOTHING")
-        remark += ": SHOULD SURVIVE" if test and marked else ""
-        print(f"| {mutation.room} | {mutation.patch.name} | {remark} |", flush=True)
-    share = noticed / len(chosen)
-    print(f"\n{noticed} of {len(chosen)} mutations are noticed: {100 * share:.0f}% (bound 95%)")
-    return 0 if share >= BOUND and wrong == 0 else 1
+        judged = judge(mutation)
+        done.append(judged)
+        print(f"| {mutation.room} | {mutation.patch.name} | {judged.remark} |", flush=True)
+        if judged.broken:
+            print(judged.broken, file=sys.stderr, flush=True)
+    if any(judged.broken for judged in done):
+        return 2
+    noticed = sum(judged.noticed_by is not None for judged in done)
+    share = noticed / len(done)
+    print(f"\n{noticed} of {len(done)} mutations are noticed: {100 * share:.1f}% (bound 95%)")
+    return 0 if share >= BOUND and all(judged.good for judged in done) else 1
 
 
 def arguments() -> argparse.Namespace:

@@ -176,5 +176,15 @@ TEST(Battery, IsEmptyAtZero) {
   EXPECT_GE(battery.voltage_V(), 0);
 }
 
+TEST(Vehicle, PowerGoesWithTheCubeOfTheSpeed) {
+  Vehicle vehicle;
+  vehicle.mass_kg = 1;
+  vehicle.rotors.resize(2);
+  vehicle.thrust_coefficient = gravity_m_s2 / 2 / (400.0 * 400.0);  // hovers at 400 rad/s
+  const std::array hover{400.0, 400.0}, faster{800.0, 400.0};
+  EXPECT_DOUBLE_EQ(vehicle.power_ratio(hover), 1);
+  EXPECT_DOUBLE_EQ(vehicle.power_ratio(faster), (8 + 1) / 2.0);
+}
+
 }  // namespace
 }  // namespace attest

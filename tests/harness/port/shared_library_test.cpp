@@ -72,6 +72,8 @@ TEST(SharedLibrary, OneThatIsNoPortIsAnError) {
 TEST(SharedLibrary, AnotherAbiVersionIsAnErrorThatNamesBoth) {
   EXPECT_THAT(error_of(test_port("wrong_abi")),
               HasSubstr("its ABI version is 99, this attest speaks 1"));
+  EXPECT_THAT(error_of(test_port("older_abi")),
+              HasSubstr("its ABI version is 0, this attest speaks 1"));
 }
 
 }  // namespace

@@ -197,5 +197,19 @@ TEST(DeadlineMisses, OfShortStepsAreNeverThePorts) {
   }
 }
 
+// A release is passed over when the next one is due, at 2 ms here: by neither of the two alone.
+TEST(DeadlineMisses, AReleaseIsPassedOverByThePortIfItsStepAloneReachesTheNext) {
+  const auto late = [](Nanoseconds execution) {
+    return misses([=](std::int64_t k) {
+      return k == 5 ? Delays{execution, us(500)} : short_step();
+    });
+  };
+  const DeadlineMisses together = late(us(1600));
+  EXPECT_EQ(together.late, 1u);
+  EXPECT_EQ(together.skipped, 1u);
+  EXPECT_EQ(together.by_port, 1u);  // the deadline, not the release
+  EXPECT_EQ(late(us(2100)).by_port, 2u);
+}
+
 }  // namespace
 }  // namespace attest

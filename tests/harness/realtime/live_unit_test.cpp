@@ -12,30 +12,13 @@
 
 #include "harness/realtime/allocations.hpp"
 #include "tests/harness/realtime/flights.hpp"
+#include "tests/harness/realtime/scripted_clock.hpp"
 #include "tests/harness/times.hpp"
 
 namespace attest {
 namespace {
 
 using testing::ElementsAre;
-
-// Wakes up late by `latency` of its next release; time passes nowhere else by itself.
-class ScriptedClock final : public Clock {
- public:
-  Nanoseconds now() override { return now_; }
-  Nanoseconds wait_until(Nanoseconds deadline) override {
-    deadlines.push_back(deadline);
-    now_ = std::max(now_, deadline + latency(deadline));
-    return now_;
-  }
-  void pass(Nanoseconds time) { now_ += time; }
-
-  std::function<Nanoseconds(Nanoseconds)> latency = [](Nanoseconds) { return Nanoseconds(0); };
-  std::vector<Nanoseconds> deadlines;
-
- private:
-  Nanoseconds now_{0};
-};
 
 // Takes as long as the test says, by its own steps.
 class SlowUnit final : public Unit {

@@ -113,5 +113,20 @@ TEST(Cyclictest, GarbageIsRefused) {
   }
 }
 
+// However late the machine is at times: that a clock that spins wakes after its deadline by as long
+// as it spins, each time, is no accident.
+TEST(Pacer, SpinsBeforeTheDeadlineAndNotAfterIt) {
+  const Nanoseconds spin = ms(3);
+  Pacer pacer(Pacer::now_monotonic(), {spin});
+  Nanoseconds least = Nanoseconds::max();
+  for (int i = 0; i < 50 && least >= spin; ++i) {
+    const Nanoseconds deadline = pacer.now() + 2 * spin;
+    const Nanoseconds woke = pacer.wait_until(deadline);
+    EXPECT_GE(woke, deadline);
+    least = std::min(least, woke - deadline);
+  }
+  EXPECT_LT(least, spin);
+}
+
 }  // namespace
 }  // namespace attest

@@ -45,5 +45,13 @@ TEST(PaintedStack, WorkSeesItsVariables) {
   EXPECT_EQ(sum, 5050);
 }
 
+// The frame in which attest makes the call is no part of it.
+TEST(PaintedStack, WorkThatDoesNothingUsesNothing) {
+  auto stack = PaintedStack::make();
+  ASSERT_TRUE(stack);
+  stack->run([] {});
+  EXPECT_LE(stack->used(), 64u);
+}
+
 }  // namespace
 }  // namespace attest

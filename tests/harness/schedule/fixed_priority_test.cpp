@@ -228,5 +228,28 @@ RC_GTEST_PROP(FixedPriority, WithATriggerNoResponseIsLongerThanTheAnalysed, ()) 
   }
 }
 
+TEST(ScheduledTask, TheWorstExecutionIsTheLongest) {
+  ScheduledTask task;
+  task.execution = {ms(1), ms(3), ms(2)};
+  EXPECT_EQ(task.worst_execution(), ms(3));
+}
+
+// `a` on the other CPU answers in 3 or 4, so `b` comes every 9 to 11: within 10 of the release of
+// the third task twice.
+TEST(ResponseTime, AHigherTaskThatMayBeLateDisturbsTwice) {
+  auto tasks = triggered(150, 0);
+  tasks[0].cpu = tasks[2].cpu = 1;
+  tasks[2].priority = 200;
+  ScheduledTask lowest = tasks[1];
+  lowest.released_by.reset();
+  lowest.rate = Rate::hz(25);
+  lowest.execution = {ms(8)};
+  lowest.priority = 1;
+  tasks.push_back(lowest);
+  EXPECT_EQ(response_time(tasks, 3), ms(12));
+  tasks[2].execution = {ms(0)};  // `a` answers in 3 always
+  EXPECT_EQ(response_time(tasks, 3), ms(10));
+}
+
 }  // namespace
 }  // namespace attest

@@ -151,5 +151,34 @@ TEST(Channels, ParameterColumnsHaveAPrefix) {
   EXPECT_FALSE(parameter_of("MC_ROLL_P"));
 }
 
+TEST(Channels, OutputsHaveTheQuantityOfTheirTopic) {
+  for (const Channel& c : channels()) {
+    if (!c.is_output() || c.type != ChannelType::f32) continue;
+    const bool is_thrust = c.name == "out/vehicle_rates_setpoint.thrust";
+    if (c.name.starts_with("out/vehicle_rates_setpoint.")) {
+      EXPECT_EQ(c.quantity, is_thrust ? Quantity::thrust : Quantity::rate) << c.name;
+    }
+    if (c.name.starts_with("out/actuator_controls_0.")) {
+      EXPECT_EQ(c.quantity, Quantity::control) << c.name;
+    }
+    if (c.name.starts_with("out/mc_att_ctrl_status.")) {
+      EXPECT_EQ(c.quantity, Quantity::integral) << c.name;
+    }
+  }
+}
+
+TEST(SampleOutputs, OfAllModulesAreClearedAndCopied) {
+  Sample full{}, other{};
+  for (const Channel& c : channels()) set_value(c, full, 1);
+  other.copy_outputs(full);
+  for (const Channel& c : channels()) {
+    EXPECT_EQ(value_of(c, other), c.is_output() ? 1 : 0) << c.name;
+  }
+  full.clear_outputs();
+  for (const Channel& c : channels()) {
+    EXPECT_EQ(value_of(c, full), c.is_output() ? 0 : 1) << c.name;
+  }
+}
+
 }  // namespace
 }  // namespace attest

@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "harness/core/file.hpp"
 #include "harness/trace/csv.hpp"
+#include "harness/trace/provenance.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
 #include "tests/harness/trace/sheet.hpp"
 
@@ -211,6 +213,32 @@ TEST_F(CsvReader, ReadsFilesLongerThanItsBuffer) {
     ASSERT_EQ(trace.samples[i - 1].in.timestamp, i);
     ASSERT_EQ(trace.samples[i - 1].out.vehicle_rates_setpoint.yaw,
               static_cast<float>(i % 1000) + 0.5f);
+  }
+}
+
+// A file that leaves to its base what is the same.
+TEST_F(CsvReader, ABaseHasTheSameTicks) {
+  const TemporaryDirectory directory;
+  const auto first = directory.path() / "first", other = directory.path() / "other";
+  for (const auto& folder : {first, other}) std::filesystem::create_directory(folder);
+  Provenance provenance;
+  ASSERT_TRUE(write_file(first / provenance_name, to_toml(provenance)));
+  provenance.base = "../first";
+  ASSERT_TRUE(write_file(other / provenance_name, to_toml(provenance)));
+  const auto write = [](const std::filesystem::path& folder, const std::string& text) {
+    return write_file(folder / "250hz.csv", text).has_value();
+  };
+  ASSERT_TRUE(write(first, "timestamp,out/vehicle_rates_setpoint.yaw\n1,0.5\n5,0.6\n"));
+  ASSERT_TRUE(write(other, "timestamp,out/vehicle_rates_setpoint.roll\n1,0.1\n5,0.2\n"));
+  const auto read = read_csv(other / "250hz.csv", TraceNeed::outputs);
+  ASSERT_TRUE(read) << read.error().to_string();
+  EXPECT_EQ(read->samples[1].out.vehicle_rates_setpoint.roll, 0.2f);
+  EXPECT_EQ(read->samples[1].out.vehicle_rates_setpoint.yaw, 0.6f);
+  for (const char* ticks : {"1,0.1\n6,0.2\n", "1,0.1\n", "1,0.1\n5,0.2\n9,0.3\n"}) {
+    ASSERT_TRUE(write(other, std::string("timestamp,out/vehicle_rates_setpoint.roll\n") + ticks));
+    const auto refused = read_csv(other / "250hz.csv", TraceNeed::outputs);
+    ASSERT_FALSE(refused) << ticks;
+    EXPECT_THAT(refused.error().message, testing::HasSubstr("has other ticks than its base"));
   }
 }
 
