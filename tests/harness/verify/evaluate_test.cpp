@@ -69,6 +69,7 @@ TEST_F(EvaluateTest, ACaseOnAThresholdIsForTheExactLevel) {
   ASSERT_TRUE(result);
   EXPECT_EQ(result->verdict, Verdict::skip);
   EXPECT_THAT(result->reason, HasSubstr("exact level only"));
+  EXPECT_EQ(verdict_of(test_port("sign_flip"), Level::events), Verdict::skip);
   EXPECT_EQ(verdict_of(test_port("sign_flip"), Level::exact), Verdict::fail);
   EXPECT_EQ(verdict_of("builtin", Level::exact), Verdict::pass);
 }
@@ -154,6 +155,19 @@ TEST_F(EvaluateTest, ARecordedTraceIsGivenToThePort) {
   const CaseResult result = judge("builtin");
   ASSERT_TRUE(result.first);
   EXPECT_EQ(result.first->tick, 5u);
+}
+
+TEST_F(EvaluateTest, AtTheEventsLevelAControllerIsJudgedByItsEvents) {
+  suite_.add("pitch", pitching);
+  Trace answers = answers_of_reference(suite_[0])[0].trace;
+  for (Sample& sample : answers.samples) sample.out.vehicle_rates_setpoint.pitch += 0.01f;
+  Reciting port(answers);
+  const auto golden = Golden::open(suite_.golden(), suite_[0]);
+  const auto verdict_at = [&](Level level) {
+    return evaluate_case(suite_[0], Rate::hz(100), *golden, port, level)->verdict;
+  };
+  EXPECT_EQ(verdict_at(Level::events), Verdict::pass);
+  EXPECT_EQ(verdict_at(Level::numeric), Verdict::fail);
 }
 
 }  // namespace

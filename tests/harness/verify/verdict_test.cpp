@@ -167,6 +167,8 @@ TEST(MetricResult, IsWithinItsBoundsAndNearTheReference) {
   };
   EXPECT_TRUE(within(1.05, 1));
   EXPECT_FALSE(within(1.2, 1));
+  EXPECT_TRUE(within(0.95, 1));
+  EXPECT_FALSE(within(0.8, 1));
   EXPECT_FALSE(within(2.05, 2));  // beyond the case's own bound
   EXPECT_FALSE(within(std::nan(""), 1));
   EXPECT_FALSE(within(1, std::nan("")));

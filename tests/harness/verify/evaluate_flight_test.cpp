@@ -1,0 +1,151 @@
+// Flights of the reference, changed afterwards as a test wants them.
+#include <functional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/casefile/parse.hpp"
+#include "harness/host/host_here.hpp"
+#include "harness/loop/case_timing.hpp"
+#include "harness/plant/vehicle_models.hpp"
+#include "harness/port/builtin.hpp"
+#include "harness/verify/evaluate.hpp"
+
+namespace attest {
+namespace {
+
+using testing::HasSubstr;
+
+const std::filesystem::path source = ATTEST_SOURCE_DIR;
+const RunConfiguration at_50{Rate::hz(50), PlantConfiguration{"iris", PlantKind::ode}};
+
+class ChangedFlight final : public PortHost {
+ public:
+  using Change = std::function<void(Trace&)>;
+
+  ChangedFlight(const Course& course, Change change)
+      : reference_(open_builtin(), {}, course), change_(std::move(change)) {
+    says_.name = "changed";
+  }
+
+  const PortSays& says() const override { return says_; }
+  Result<Flown> fly(const FlightPlan& plan) override {
+    auto flown = reference_.fly(plan);
+    if (flown) change_(flown->trace);
+    return flown;
+  }
+  std::optional<PortFault> drive(const Subject&, Trace&) override { return std::nullopt; }
+  Result<StepTimes> time_steps(const std::string&, const Trace&, bool) override {
+    return fail("no times");
+  }
+  bool supports(const std::string&) override { return true; }
+
+  PortSays says_;
+
+ private:
+  HostHere reference_;
+  Change change_;
+};
+
+// Tilts by 30 deg; the metric is the largest body rate, of at least 2 rad/s. It may be off by 5%,
+// which is more than the 0.1 rad/s that it may be off in any case.
+class EvaluateFlight : public testing::Test {
+ protected:
+  EvaluateFlight()
+      : case_(*parse_case(source / "cases/px4-v1.5.5/flight/tilt_step_30.toml")),
+        iris_(*VehicleModel::load(source / "models", "iris")) {
+    case_.duration = {100, Span::In::ticks};
+    metric_.name = "turns";
+    metric_.measure = Measure::peak_rate_rad_s;
+  }
+
+  CaseResult result_of(const ChangedFlight::Change& change, std::optional<int> bits = {}) {
+    case_.flight->metrics = {metric_};
+    ChangedFlight host({&case_, iris_.get()}, change);
+    host.says_.fraction_bits = bits;
+    auto result = evaluate_timed_flight(case_, at_50, *iris_, case_timing(case_, at_50.rate), host);
+    EXPECT_TRUE(result) << result.error().to_string();
+    return result ? *std::move(result) : CaseResult{};
+  }
+  // With body rates larger by that factor from a tick on.
+  CaseResult with_rates(float factor, std::size_t from = 0) {
+    return result_of([=](Trace& flown) {
+      for (std::size_t tick = from; tick < flown.plant.size(); ++tick) {
+        for (float& rate : flown.plant[tick].rate_rad_s) rate *= factor;
+      }
+    });
+  }
+  double reference() { return with_rates(1).metrics.at(0).value; }
+
+  Case case_;
+  std::shared_ptr<const VehicleModel> iris_;
+  Metric metric_;
+};
+
+TEST_F(EvaluateFlight, AMetricMayBeOffByTheLargerOfItsTolerances) {
+  ASSERT_GT(reference(), 2);
+  EXPECT_EQ(with_rates(1.04f).verdict, Verdict::pass);
+  EXPECT_EQ(with_rates(0.96f).verdict, Verdict::pass);
+  const CaseResult off = with_rates(1.06f);
+  EXPECT_EQ(off.verdict, Verdict::fail);
+  EXPECT_THAT(off.reason, HasSubstr("metric turns: peak_rate_rad_s is"));
+  EXPECT_EQ(with_rates(0.94f).verdict, Verdict::fail);
+}
+
+// A ratio of a few tenths, for which 0.1 would be much.
+TEST_F(EvaluateFlight, ARatioMayBeOffByAShareOfItself) {
+  case_.duration = {150, Span::In::ticks};
+  metric_.window.from_s = 2;
+  metric_.versus = Window{};
+  ASSERT_LT(reference(), 0.9);
+  ASSERT_GT(reference(), 0.001);
+  EXPECT_EQ(with_rates(1.04f, 100).verdict, Verdict::pass);
+  EXPECT_EQ(with_rates(1.06f, 100).verdict, Verdict::fail);
+}
+
+TEST_F(EvaluateFlight, AtRecordedTimesABoundThatTheReferenceKeepsBindsAPort) {
+  const double value = reference();
+  metric_.max = 1.02 * value;
+  EXPECT_EQ(with_rates(1.04f).verdict, Verdict::fail);
+  metric_.max = 0.5 * value;
+  EXPECT_EQ(with_rates(1.04f).verdict, Verdict::pass);
+  metric_.max = 1e9;
+  metric_.min = 0.98 * value;
+  EXPECT_EQ(with_rates(0.96f).verdict, Verdict::fail);
+  metric_.min = 2 * value;
+  EXPECT_EQ(with_rates(0.96f).verdict, Verdict::pass);
+}
+
+TEST_F(EvaluateFlight, AMissedMetricDoesNotHideThatAnOutputIsNoNumber) {
+  const CaseResult result = result_of([](Trace& flown) {
+    flown.samples[40].out.vehicle_rates_setpoint.roll = std::numeric_limits<float>::quiet_NaN();
+    for (PlantSample& sample : flown.plant) sample.rate_rad_s = {9, 9, 9};
+  });
+  EXPECT_EQ(result.verdict, Verdict::non_finite);
+  EXPECT_THAT(result.reason, HasSubstr("metric turns"));
+}
+
+// From 30 bits on it is held to the golden's rows like floats. What is changed here is the state
+// that the port was given and its answers to that, which are right.
+TEST_F(EvaluateFlight, APortInFixedPointIsHeldToTheGoldenFrom30BitsOn) {
+  const auto other_rate = [](Trace& flown) {
+    flown.samples[10].in.control_state.roll_rate += 0.01f;
+    HostHere law(open_builtin());
+    EXPECT_FALSE(law.drive({"px4-v1.5.5"}, flown));
+  };
+  EXPECT_EQ(result_of(other_rate).verdict, Verdict::fail);
+  EXPECT_EQ(result_of(other_rate, 30).verdict, Verdict::fail);
+  EXPECT_EQ(result_of(other_rate, 29).verdict, Verdict::pass);
+}
+
+// Beyond the horizon, where the golden says nothing.
+TEST_F(EvaluateFlight, AWrongAnswerIsFoundAtAnyTick) {
+  const CaseResult result =
+      result_of([](Trace& flown) { flown.samples[95].out.vehicle_rates_setpoint.roll += 0.1f; });
+  EXPECT_EQ(result.verdict, Verdict::fail);
+  ASSERT_TRUE(result.first);
+  EXPECT_EQ(result.first->tick, 95u);
+}
+
+}  // namespace
+}  // namespace attest

@@ -1,0 +1,57 @@
+#include "harness/verify/judge.hpp"
+
+#include <gtest/gtest.h>
+
+#include "harness/verify/fixed_step.hpp"
+#include "tests/harness/casefile/case_files.hpp"
+
+namespace attest {
+namespace {
+
+constexpr const char* roll = "out/vehicle_rates_setpoint.roll";
+
+// Its rates are 1, 2, 3, ... at its ticks.
+Trace counting(std::size_t ticks, float factor = 1) {
+  Trace trace;
+  trace.samples.resize(ticks);
+  for (std::size_t i = 0; i < ticks; ++i) {
+    trace.samples[i].in.timestamp = 4000 * (i + 1);
+    trace.samples[i].out.vehicle_rates_setpoint.roll = factor * static_cast<float>(i + 1);
+  }
+  return trace;
+}
+
+TEST(LeaveOutFrom, TheTicksBeforeAreAsTheyWereAnswered) {
+  Trace answered = counting(4, -1);
+  leave_out_from(2, counting(4), answered);
+  std::vector<float> rates;
+  for (const Sample& sample : answered.samples) {
+    rates.push_back(sample.out.vehicle_rates_setpoint.roll);
+  }
+  EXPECT_EQ(rates, (std::vector<float>{-1, -2, 3, 4}));
+}
+
+TEST(TolerancesOf, TheLsbOfAPortIsAllowedBesideTheToleranceOfTheCase) {
+  const Case strict =
+      case_of("[tolerance]\nwhy = \"x\"\nvehicle_rates_setpoint = { absolute = 1e-9 }\n");
+  const std::size_t channel = *find_channel(roll);
+  const auto absolute = [&](std::optional<int> bits) {
+    return tolerances_of(strict, Level::numeric, bits, 100).of(channel).absolute;
+  };
+  EXPECT_EQ(absolute(std::nullopt), 1e-9);
+  EXPECT_GT(absolute(22), 1.0 / (1 << 22));
+}
+
+TEST(HasOtherSteps, ARecordingOfAFixedStepBeginsOnePeriodAfterZero) {
+  PortSays port;
+  port.fixed_step = Rate::hz(250);
+  CaseResult result;
+  Trace recorded = counting(3);
+  EXPECT_FALSE(has_other_steps(port, recorded, result));
+  for (Sample& sample : recorded.samples) sample.in.timestamp -= 4000;
+  EXPECT_TRUE(has_other_steps(port, recorded, result));
+  EXPECT_EQ(result.verdict, Verdict::unsupported);
+}
+
+}  // namespace
+}  // namespace attest
