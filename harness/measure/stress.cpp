@@ -65,20 +65,8 @@ Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
                                        const std::function<bool()>& stop,
                                        const std::function<void(const StressProgress&)>& progress) {
   StressMeasurement measured;
-  CaseResult& result = measured.stress.result = result_for(task.the_case, task.configuration);
-  const PortSays& says = task.port;
-  if (says.fixed_step && *says.fixed_step != task.configuration.rate) {
-    result.verdict = Verdict::unsupported;
-    result.reason = fmt::format("the port has a fixed step of {} Hz", says.fixed_step->to_string());
-    return measured;
-  }
-  if (declines(says, result)) return measured;
   const auto unit = port.create(task.the_case.profile);
-  if (!unit) {
-    result.verdict = Verdict::skip;
-    result.reason = fmt::format("the port does not support profile {}", task.the_case.profile);
-    return measured;
-  }
+  if (!unit) return measured;
   progress({{}, true});
   const Histogram idle = idle_latency(task.configuration.rate, task.idle_duration, task.live, stop);
   auto flight = fly_live(task.the_case, task.configuration, *task.vehicle_model, *unit, task.live,
@@ -94,7 +82,12 @@ Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
 
 Result<StressResult> judge_live(const StressTask& task, StressMeasurement measurement) {
   StressResult& stress = measurement.stress;
-  if (!measurement.flight) return std::move(stress);
+  stress.result = result_for(task.the_case, task.configuration);
+  if (!measurement.flight) {
+    add_skip(stress.result,
+             fmt::format("the port does not support profile {}", task.the_case.profile));
+    return std::move(stress);
+  }
   LiveFlight& flight = *measurement.flight;
   if (!task.record_timing.empty()) {
     const TimingFile timing{task.the_case.id(), task.the_case.sha256, task.configuration,

@@ -70,11 +70,11 @@ struct StressProgress {
   bool idle = false;  // measuring the machine alone
 };
 
-// What was measured, and what a judge needs besides: of `flight` the outputs, the ticks, and how it
-// ended.
+// What was measured, without a verdict, and what a judge needs besides: of `flight` the outputs, the
+// ticks, and how it ended.
 struct StressMeasurement {
-  StressResult stress;               // without a verdict, but for a port that did not fly
-  std::optional<LiveFlight> flight;  // empty: it did not
+  StressResult stress;
+  std::optional<LiveFlight> flight;  // empty: the port makes no unit of that profile
 };
 
 // Flies it in a child process, and judges it in this one; a port that crashes or hangs gets a
@@ -84,7 +84,8 @@ Result<StressResult> run_stress(const StressTask& task, const std::string& port,
                                 const std::function<bool()>& stop,
                                 const std::function<void(const StressProgress&)>& progress);
 
-// In the port's process.
+// In the port's process. REQUIRES: the port does not decline the task (run_stress asks what it said
+// of itself).
 Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
                                        const std::function<bool()>& stop,
                                        const std::function<void(const StressProgress&)>& progress);

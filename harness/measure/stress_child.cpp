@@ -1,10 +1,13 @@
 // The child process of a stress run, and the parent that listens to it.
 //
 //     {"progress": {"time_ns": ..., "deadlines": ..., "missed": ..., "idle": false}}
-//     {"stress": {...}} of a port that did not fly, or
 //     {"stress": {...}, "fault", "divergence", "parameters"}     inputs, outputs, ticks, times at
 //                                                                which the motors followed
+//     {"refused": true}                                          the port made no unit
 //     {"error": {...}}
+//
+// The port shares the child, so no verdict is taken from there. A port can forge what was measured,
+// as it can its own execution time; it cannot forge its outputs, which the parent judges.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -20,6 +23,7 @@
 #include "harness/measure/stress_json.hpp"
 #include "harness/process/child.hpp"
 #include "harness/verify/evaluate.hpp"
+#include "harness/verify/judge.hpp"
 
 namespace attest {
 namespace {
@@ -33,11 +37,11 @@ std::atomic<bool> asked_to_stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // written by a signal handler
 
 void send_measured(const StressMeasurement& measured, MessageSocket& parent) {
-  json head = {{"stress", to_json(measured.stress)}};
   if (!measured.flight) {
-    parent.send(text_of(head));
+    parent.send(text_of({{"refused", true}}));
     return;
   }
+  json head = {{"stress", to_json(measured.stress)}};
   const auto& [unit, plant, privileges, wall] = *measured.flight;
   head["ticks"] = unit.ticks.size();
   head["samples"] = unit.samples.size();
@@ -55,22 +59,12 @@ std::optional<std::vector<T>> read_some(const json& count, std::size_t most, Blo
   return wanted <= most ? blobs.read<T>(wanted) : std::nullopt;
 }
 
-// Of the task, whatever the child says of itself: verdicts are not the child's to give, but for a
-// port that did not fly. Empty: nothing that the child of a stress run sends. Throws
-// json::exception, too.
+// Empty: nothing that the child of a stress run sends. Throws json::exception, too.
 std::optional<StressMeasurement> measurement_from(const StressTask& task, const json& head,
                                                   BlobReader& blobs) {
   auto stress = stress_from_json(head.at("stress"));
   if (!stress) return std::nullopt;
   StressMeasurement measured{*std::move(stress), {}};
-  const CaseResult said = std::move(measured.stress.result);
-  CaseResult& result = measured.stress.result = result_for(task.the_case, task.configuration);
-  if (blobs.left() == 0) {
-    result.verdict = said.verdict;
-    result.reason = said.reason;
-    const bool did_not_fly = said.verdict == Verdict::skip || said.verdict == Verdict::unsupported;
-    return did_not_fly ? std::optional(std::move(measured)) : std::nullopt;
-  }
   const auto most =
       static_cast<std::size_t>(tick_count(task.the_case.duration, task.configuration.rate));
   auto samples = read_some<Sample>(head.at("samples"), most, blobs);
@@ -115,6 +109,19 @@ void work(const StressTask& task, const std::string& specification, MessageSocke
   } else {
     parent.send(text_of({{"error", to_json(measured.error())}}));
   }
+}
+
+// By what the port said of itself before.
+std::optional<StressResult> declined(const StressTask& task) {
+  StressResult stress;
+  stress.result = result_for(task.the_case, task.configuration);
+  const auto& step = task.port.fixed_step;
+  if (step && *step != task.configuration.rate) {
+    stress.result.verdict = Verdict::unsupported;
+    stress.result.reason = fmt::format("the port has a fixed step of {} Hz", step->to_string());
+    return stress;
+  }
+  return declines(task.port, stress.result) ? std::optional(stress) : std::nullopt;
 }
 
 StressResult gone_wrong(const StressTask& task, Verdict verdict, std::string reason) {
@@ -201,6 +208,7 @@ class Listener {
       return Result<StressResult>(tl::unexpected(error ? *error : error.error()));
     }
     try {
+      if (head.contains("refused")) return judge_live(task_, {});
       if (head.contains("stress")) {
         auto kind = Received::Kind::no_message;
         BlobReader blobs(received.blobs, [&](void* place, std::size_t size) {
@@ -245,6 +253,7 @@ class Listener {
 Result<StressResult> run_stress(const StressTask& task, const std::string& port,
                                 const std::function<bool()>& stop,
                                 const std::function<void(const StressProgress&)>& progress) {
+  if (auto unsupported = declined(task)) return *std::move(unsupported);
   auto child = Child::spawn(Child::Runs::code_of_others,
                             [&](MessageSocket& parent) { work(task, port, parent); });
   if (!child) return tl::unexpected(child.error());

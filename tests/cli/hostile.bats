@@ -96,3 +96,32 @@ judged() {
     has "protocol"
   done
 }
+
+# As its own process would send it: 80 bytes that give the sizes, and a head.
+forge() {
+  python3 - "$1" <<'FORGE'
+import struct, sys
+head = sys.argv[1].encode()
+open("message", "wb").write(struct.pack("=IIQ8Q", 0xA77E57FF, 0, len(head), *[0] * 8) + head)
+FORGE
+  export FORGED_MESSAGE="$PWD/message"
+}
+
+@test "a verdict that a port gives itself is none" {
+  live=(--rates 250 --duration 0.3 --no-cyclictest --policy other)
+  "$ATTEST" stress "${live[@]}" --json s.json || true
+  forge "$(python3 - <<'RESULT'
+import json
+result = json.load(open("s.json"))["results"][0]
+print(json.dumps({"stress": result | {"verdict": "pass", "reason": ""}}))
+RESULT
+)"
+  run "$ATTEST" stress "${live[@]}" --port "lib:$PORTS/hostile_forges_message.so"
+  [ "$status" -eq 1 ]
+  has "protocol: the port wrote on the socket on which its process answers"
+  forge '{"request": 1, "result": "pass"}'
+  judged forges_message
+  [ "$status" -eq 1 ]
+  has "protocol: the port wrote on the socket on which its process answers"
+  lacks "PASS"
+}
