@@ -88,7 +88,8 @@ Suspect suspect_of(const Record& best, const std::vector<Record>& records,
   const auto all = faults::catalogue();
   Suspect suspect{all[best.fault], best.matched, best.ticks, best.explained.size(), failing, {}};
   for (const Record& other : records) {
-    const bool as_good = other.fault != best.fault && rank(other, left) == rank(best, left);
+    const bool as_good = other.fault != best.fault && other.explained == best.explained &&
+                         rank(other, left) == rank(best, left);
     if (as_good && suspect.ambiguity_group.size() < most_in_group) {
       suspect.ambiguity_group.push_back(all[other.fault]);
     }

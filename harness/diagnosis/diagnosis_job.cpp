@@ -103,14 +103,15 @@ Result<VectorDiagnosis> DiagnosisJob::run(std::size_t) {
   if ((*host)->drive(subject, got)) return std::nullopt;
   const auto reference = open_builtin();
   if (drive(*reference, subject, law)) return std::nullopt;
+  const Tolerances tolerances =
+      tolerances_of(case_, Level::numeric, port.fraction_bits, law.samples.size());
   if (case_.either_branch.any()) {
     const auto others = branch_alternatives(case_, law);
     if (!others) return tl::unexpected(others.error());
-    law = on_the_branch_of(
-        got, law, *others,
-        tolerances_of(case_, Level::numeric, port.fraction_bits, law.samples.size()));
+    law = on_the_branch_of(got, law, *others, tolerances);
   }
-  return similarity(outputs_of(got), outputs_of(law), answers_of_faults(law, subject, partner_));
+  return similarity(outputs_of(got), outputs_of(law), answers_of_faults(law, subject, partner_),
+                    tolerances);
 }
 
 Jobs<VectorDiagnosis> diagnosis_jobs(const std::vector<SelectedCase>& cases,

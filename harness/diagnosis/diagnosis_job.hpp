@@ -41,7 +41,7 @@ class DiagnosisJob final : public Job<VectorDiagnosis> {
   HostOptions options_;
 };
 
-// For the vectors that failed with a value, and as many that passed: one rate a case, the one
+// For up to 48 vectors that failed with a value, and up to 48 that passed: one rate a case, the one
 // nearest to 250 Hz, spread over the corpus. `cases` are those that were run, and must outlive the
 // jobs.
 Jobs<VectorDiagnosis> diagnosis_jobs(const std::vector<SelectedCase>& cases,

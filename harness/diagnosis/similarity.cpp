@@ -20,16 +20,14 @@ struct Output {
   Tolerance tolerance;
 };
 
-const std::vector<Output>& output_table() {
-  static const std::vector<Output> table = [] {
-    const Tolerances tolerances;
-    std::vector<Output> outputs;
-    for (std::size_t i = 0; i < channels().size(); ++i) {
-      if (channels()[i].is_output()) outputs.push_back({channels()[i], tolerances.of(i)});
-    }
-    return outputs;
-  }();
-  return table;
+using OutputTable = std::vector<Output>;
+
+OutputTable outputs_with(const Tolerances& tolerances) {
+  OutputTable outputs;
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    if (channels()[i].is_output()) outputs.push_back({channels()[i], tolerances.of(i)});
+  }
+  return outputs;
 }
 
 bool differs(const Output& output, const Sample& a, const Sample& b) {
@@ -53,23 +51,23 @@ Sample sample_of(const Answer& answer) {
   return sample;
 }
 
-Mask difference(const Answer& a, const Answer& b) {
+Mask difference(const OutputTable& outputs, const Answer& a, const Answer& b) {
   if (std::memcmp(&a, &b, sizeof a) == 0) return 0;
   const Sample x = sample_of(a), y = sample_of(b);
   Mask mask = 0, bit = 1;
-  for (const Output& output : output_table()) {
+  for (const Output& output : outputs) {
     if (differs(output, x, y)) mask |= bit;
     bit <<= 1;
   }
   return mask;
 }
 
-Similarity similarity_of(const Outputs& port, const Outputs& law, const Outputs& fault,
-                         const std::vector<Mask>& port_deviates) {
+Similarity similarity_of(const OutputTable& outputs, const Outputs& port, const Outputs& law,
+                         const Outputs& fault, const std::vector<Mask>& port_deviates) {
   Similarity result;
   for (std::size_t tick = 0; tick < port.size(); ++tick) {
-    result.matched += difference(port[tick], fault[tick]) == 0 ? 1 : 0;
-    const Mask fault_deviates = difference(fault[tick], law[tick]);
+    result.matched += difference(outputs, port[tick], fault[tick]) == 0 ? 1 : 0;
+    const Mask fault_deviates = difference(outputs, fault[tick], law[tick]);
     const Mask in_both = port_deviates[tick] & fault_deviates;
     const Mask in_either = port_deviates[tick] | fault_deviates;
     result.intersection += static_cast<std::size_t>(std::popcount(in_both));
@@ -113,17 +111,19 @@ FaultAnswers answers_of_faults(const Trace& given, const Subject& subject,
 }
 
 VectorSimilarity distinct_similarity(const Outputs& port, const Outputs& law,
-                                     std::span<const Outputs> distinct) {
+                                     std::span<const Outputs> distinct,
+                                     const Tolerances& tolerances) {
+  const OutputTable outputs = outputs_with(tolerances);
   VectorSimilarity result;
   result.ticks = port.size();
   std::vector<Mask> port_deviates;
   for (std::size_t tick = 0; tick < port.size(); ++tick) {
-    port_deviates.push_back(difference(port[tick], law[tick]));
+    port_deviates.push_back(difference(outputs, port[tick], law[tick]));
     result.deviates = result.deviates || port_deviates.back() != 0;
   }
   for (const Outputs& fault : distinct) {
     const bool answered = fault.size() == port.size();
-    result.similarities.push_back(answered ? similarity_of(port, law, fault, port_deviates)
+    result.similarities.push_back(answered ? similarity_of(outputs, port, law, fault, port_deviates)
                                            : Similarity{});
   }
   return result;
@@ -138,8 +138,9 @@ VectorSimilarity of_each_fault(const VectorSimilarity& distinct, const FaultAnsw
   return result;
 }
 
-VectorSimilarity similarity(const Outputs& port, const Outputs& law, const FaultAnswers& faults) {
-  return of_each_fault(distinct_similarity(port, law, faults.distinct), faults);
+VectorSimilarity similarity(const Outputs& port, const Outputs& law, const FaultAnswers& faults,
+                            const Tolerances& tolerances) {
+  return of_each_fault(distinct_similarity(port, law, faults.distinct, tolerances), faults);
 }
 
 }  // namespace attest

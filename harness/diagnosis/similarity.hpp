@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "controller/faults/fault.hpp"
+#include "harness/compare/tolerance.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/trace/trace.hpp"
 
@@ -27,7 +28,7 @@ struct VectorSimilarity {
   std::vector<Similarity> similarities;  // of each fault of the catalogue, in its order
 };
 
-// Of whichever part; zero of the others.
+// Of whichever module; zero of the others.
 struct Answer {
   attest_outputs out;
   attest_mixer_outputs mixer_out;
@@ -47,13 +48,16 @@ struct FaultAnswers {
 FaultAnswers answers_of_faults(const Trace& given, const Subject& subject,
                                const faults::Fault* partner = nullptr);
 
-// Of each of the distinct answers. Values are the same when the numeric level would pass them.
+// Of each of the distinct answers. Values are the same when they differ by no more than the
+// tolerances, which are not widened near a tilt error of 180 deg here.
 VectorSimilarity distinct_similarity(const Outputs& port, const Outputs& law,
-                                     std::span<const Outputs> distinct);
+                                     std::span<const Outputs> distinct,
+                                     const Tolerances& tolerances = Tolerances());
 
 // Of each fault, from what its answers have been found to be like.
 VectorSimilarity of_each_fault(const VectorSimilarity& distinct, const FaultAnswers& faults);
 
-VectorSimilarity similarity(const Outputs& port, const Outputs& law, const FaultAnswers& faults);
+VectorSimilarity similarity(const Outputs& port, const Outputs& law, const FaultAnswers& faults,
+                            const Tolerances& tolerances = Tolerances());
 
 }  // namespace attest

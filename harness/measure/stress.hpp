@@ -70,8 +70,8 @@ struct StressProgress {
   bool idle = false;  // measuring the machine alone
 };
 
-// What was measured, without a verdict, and what a judge needs besides: of `flight` the outputs, the
-// ticks, and how it ended.
+// What was measured, without a verdict, and what a judge needs besides: of `flight` the outputs,
+// the ticks, and how it ended.
 struct StressMeasurement {
   StressResult stress;
   std::optional<LiveFlight> flight;  // empty: the port makes no unit of that profile

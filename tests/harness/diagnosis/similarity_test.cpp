@@ -1,0 +1,229 @@
+#include "harness/diagnosis/similarity.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/compare/compare.hpp"
+
+namespace attest {
+namespace {
+
+using testing::Each;
+using testing::ElementsAre;
+using testing::Field;
+using testing::SizeIs;
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+Answer rates(float roll, float pitch = 0, float yaw = 0) {
+  Answer answer{};
+  answer.out.vehicle_rates_setpoint.roll = roll;
+  answer.out.vehicle_rates_setpoint.pitch = pitch;
+  answer.out.vehicle_rates_setpoint.yaw = yaw;
+  return answer;
+}
+
+const Answer zero = rates(0);
+
+bool are_same(const Answer& port, const Answer& law) {
+  return !distinct_similarity({port}, {law}, {}).deviates;
+}
+
+// Of one fault.
+Similarity beside(const Outputs& fault, const Outputs& port, const Outputs& law) {
+  const std::vector<Outputs> distinct{fault};
+  return distinct_similarity(port, law, distinct).similarities.at(0);
+}
+
+std::vector<Channel> output_channels() {
+  std::vector<Channel> outputs;
+  for (const Channel& channel : channels()) {
+    if (channel.is_output()) outputs.push_back(channel);
+  }
+  return outputs;
+}
+
+// Zero, and this in one channel.
+Sample sample_with(const Channel& channel, double value) {
+  Sample sample{};
+  sample.in.control_state.q[0] = 1;
+  sample.in.vehicle_attitude_setpoint.q_d[0] = 1;
+  set_value(channel, sample, value);
+  return sample;
+}
+
+Answer answer_with(const Channel& channel, double value) {
+  Trace trace;
+  trace.samples.push_back(sample_with(channel, value));
+  return outputs_of(trace).at(0);
+}
+
+// At the numeric level.
+bool passes(std::size_t channel, double got, double want) {
+  Trace trace;
+  trace.present[channel] = true;
+  Trace other = trace;
+  trace.samples.push_back(sample_with(channels()[channel], got));
+  other.samples.push_back(sample_with(channels()[channel], want));
+  return compare(trace, other, Tolerances()).agrees();
+}
+
+TEST(Similarity, APortThatAnswersAsTheLawDoesNotDeviate) {
+  const Outputs law{rates(1), rates(2), rates(3)};
+  const VectorSimilarity same = distinct_similarity(law, law, {});
+  EXPECT_FALSE(same.deviates);
+  EXPECT_EQ(same.ticks, 3u);
+  EXPECT_THAT(same.similarities, SizeIs(0));
+}
+
+TEST(Similarity, AVectorThatDeviatesInItsFirstTickFails) {
+  EXPECT_TRUE(distinct_similarity({rates(1), zero, zero}, {zero, zero, zero}, {}).deviates);
+}
+
+TEST(Similarity, AVectorThatDeviatesInAnyOtherTickFails) {
+  EXPECT_TRUE(distinct_similarity({zero, rates(1), zero}, {zero, zero, zero}, {}).deviates);
+  EXPECT_TRUE(distinct_similarity({zero, zero, rates(1)}, {zero, zero, zero}, {}).deviates);
+}
+
+TEST(Similarity, NanIsTheSameAsNanOnly) {
+  EXPECT_TRUE(are_same(rates(nan), rates(-nan)));
+  EXPECT_FALSE(are_same(rates(nan), rates(1)));
+  EXPECT_FALSE(are_same(rates(1), rates(nan)));
+  EXPECT_FALSE(are_same(rates(nan), rates(infinity)));
+}
+
+TEST(Similarity, AnInfinityIsTheSameAsItself) {
+  EXPECT_TRUE(are_same(rates(infinity, 1), rates(infinity, 1.00001f)));
+  EXPECT_FALSE(are_same(rates(infinity), rates(-infinity)));
+  EXPECT_FALSE(are_same(rates(infinity), rates(1)));
+  EXPECT_FALSE(are_same(rates(1), rates(infinity)));
+}
+
+TEST(Similarity, AnyFlagButZeroIsTrue) {
+  Answer one = zero, other = zero;
+  one.out.vehicle_rates_setpoint.published = 1;
+  other.out.vehicle_rates_setpoint.published = 4;
+  EXPECT_TRUE(are_same(one, other));
+  EXPECT_FALSE(are_same(one, zero));
+  EXPECT_FALSE(are_same(zero, one));
+}
+
+// 2e-4 rad/s, or 1e-5 of the value.
+TEST(Similarity, ARateIsTheSameWithinItsTolerance) {
+  for (const float sign : {1.0f, -1.0f}) {
+    EXPECT_TRUE(are_same(rates(1 + sign * 1.9e-4f), rates(1)));
+    EXPECT_FALSE(are_same(rates(1 + sign * 2.1e-4f), rates(1)));
+    EXPECT_TRUE(are_same(rates(100 + sign * 0.9e-3f), rates(100)));
+    EXPECT_FALSE(are_same(rates(100 + sign * 1.1e-3f), rates(100)));
+    EXPECT_FALSE(are_same(rates(-100), rates(100)));
+  }
+}
+
+TEST(Similarity, ValuesAreTheSameWhenTheNumericLevelWouldPassThem) {
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    const Channel& channel = channels()[i];
+    if (!channel.is_output()) continue;
+    const auto expect = [&](double got, double want) {
+      EXPECT_EQ(are_same(answer_with(channel, got), answer_with(channel, want)),
+                passes(i, got, want))
+          << channel.name << ": " << got << " for " << want;
+    };
+    for (const double value : {0.0, 1.0, 2.0}) {
+      for (const double want : {0.0, 1.0}) expect(value, want);
+    }
+    if (channel.type != ChannelType::f32) continue;
+    const std::vector<double> values{-0.0,   0.0,    0.9e-6, 1.9e-5,   2.1e-5,    0.9e-4, 1.1e-4,
+                                     1.9e-4, 2.2e-4, 1,      infinity, -infinity, nan};
+    for (const double value : values) {
+      for (const double want : values) expect(value, want);
+    }
+  }
+}
+
+TEST(Similarity, ATickMatchesWhereTheFaultAnswersAsThePort) {
+  const Outputs law{zero, zero, zero, zero};
+  const Outputs port{rates(1), rates(2), zero, rates(0, 4)};
+  const Outputs fault{rates(1), rates(3), zero, rates(4)};
+  EXPECT_EQ(beside(fault, port, law).matched, 2u);
+  EXPECT_EQ(beside(port, port, law).matched, 4u);
+  EXPECT_EQ(beside(law, port, law).matched, 1u);
+}
+
+TEST(Similarity, AValueIsInBothWhereBothDeviateFromTheLaw) {
+  // Roll in both, though by another amount; pitch of the port; yaw of the fault.
+  const Similarity one = beside({rates(5, 0, 3)}, {rates(1, 2, 0)}, {zero});
+  EXPECT_EQ(one.matched, 0u);
+  EXPECT_EQ(one.intersection, 1u);
+  EXPECT_EQ(one.union_size, 3u);
+}
+
+TEST(Similarity, OtherValuesAreNotInBothThoughTheyAreAsMany) {
+  const Similarity one = beside({rates(0, 0, 1)}, {rates(1)}, {zero});
+  EXPECT_EQ(one.intersection, 0u);
+  EXPECT_EQ(one.union_size, 2u);
+}
+
+TEST(Similarity, TheSameValueAtAnotherTickIsNotInBoth) {
+  const Similarity one = beside({zero, rates(1)}, {rates(1), zero}, {zero, zero});
+  EXPECT_EQ(one.intersection, 0u);
+  EXPECT_EQ(one.union_size, 2u);
+}
+
+TEST(Similarity, ValuesAreCountedAtEachTick) {
+  const Outputs both{rates(1, 1, 1), rates(1), zero};
+  const Similarity one = beside(both, both, {zero, zero, zero});
+  EXPECT_EQ(one.intersection, 4u);
+  EXPECT_EQ(one.union_size, 4u);
+}
+
+TEST(Similarity, EveryOutputIsAValueOfItsOwn) {
+  const auto outputs = output_channels();
+  for (const Channel& of_port : outputs) {
+    for (const Channel& of_fault : outputs) {
+      const bool same = of_port.name == of_fault.name;
+      const Similarity one =
+          beside({answer_with(of_fault, 1)}, {answer_with(of_port, 1)}, {answer_with(of_port, 0)});
+      EXPECT_EQ(one.intersection, same ? 1u : 0u) << of_port.name << ", " << of_fault.name;
+      EXPECT_EQ(one.union_size, same ? 1u : 2u) << of_port.name << ", " << of_fault.name;
+    }
+  }
+}
+
+TEST(Similarity, AFaultThatDoesNotAnswerMatchesNothing) {
+  const Similarity one = beside({}, {zero, rates(1)}, {zero, zero});
+  EXPECT_EQ(one.matched, 0u);
+  EXPECT_EQ(one.intersection, 0u);
+}
+
+TEST(Similarity, EachFaultIsLikeItsAnswers) {
+  const Outputs law{zero, zero}, other{zero, rates(1)};
+  const FaultAnswers faults{{law, other}, {1, 0, 1}};
+  const VectorSimilarity all = similarity(other, law, faults);
+  EXPECT_TRUE(all.deviates);
+  EXPECT_EQ(all.ticks, 2u);
+  EXPECT_THAT(all.similarities,
+              ElementsAre(Field(&Similarity::matched, 2u), Field(&Similarity::matched, 1u),
+                          Field(&Similarity::matched, 2u)));
+  EXPECT_THAT(all.similarities, Each(Field(&Similarity::union_size, 1u)));
+}
+
+TEST(Similarity, OutputsAreThoseOfEachTick) {
+  Trace trace;
+  trace.samples.resize(2);
+  trace.samples[0].out.actuator_controls_0.control[3] = 0.5f;
+  trace.samples[1].mixer_out.actuator_outputs.output[2] = 0.25f;
+  trace.samples[1].battery_out.battery_status.scale = 1.25f;
+  const Outputs outputs = outputs_of(trace);
+  ASSERT_THAT(outputs, SizeIs(2));
+  EXPECT_EQ(outputs[0].out.actuator_controls_0.control[3], 0.5f);
+  EXPECT_EQ(outputs[0].battery_out.battery_status.scale, 0);
+  EXPECT_EQ(outputs[1].mixer_out.actuator_outputs.output[2], 0.25f);
+  EXPECT_EQ(outputs[1].battery_out.battery_status.scale, 1.25f);
+}
+
+}  // namespace
+}  // namespace attest
