@@ -18,7 +18,8 @@ Nanoseconds nanoseconds(double microseconds) {
   return Nanoseconds(static_cast<std::int64_t>(std::min(microseconds, longest_us) * 1000));
 }
 
-// What the histograms and counters of a flight say.
+}  // namespace
+
 void summarise(const LiveFlight& flight, const Rate& rate, const RealtimeBudget& budget,
                StressResult& stress) {
   const LiveUnitRecord& unit = flight.unit;
@@ -45,8 +46,6 @@ void summarise(const LiveFlight& flight, const Rate& rate, const RealtimeBudget&
   stress.privileges = flight.privileges;
   stress.slow = slow_ticks(unit.ticks, unit.execution.percentile(0.5));
 }
-
-}  // namespace
 
 Percentiles percentiles_of(const Histogram& histogram) {
   const auto percentile = [&](double part) -> std::optional<Nanoseconds> {

@@ -90,6 +90,11 @@ Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
                                        const std::function<bool()>& stop,
                                        const std::function<void(const StressProgress&)>& progress);
 
+// What the histograms and counters of a flight say: all of a StressResult but its verdict, what the
+// idle machine does, and cyclictest.
+void summarise(const LiveFlight& flight, const Rate& rate, const RealtimeBudget& budget,
+               StressResult& stress);
+
 // Writes the timing of the flight, too, where the task says so. Errors: it cannot be written.
 Result<StressResult> judge_live(const StressTask& task, StressMeasurement measurement);
 

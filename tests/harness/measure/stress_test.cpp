@@ -6,13 +6,17 @@
 
 #include "harness/casefile/parse.hpp"
 #include "harness/core/json_text.hpp"
+#include "harness/loop/timing_file.hpp"
 #include "harness/measure/stress_json.hpp"
+#include "tests/harness/core/temporary_directory.hpp"
+#include "tests/harness/times.hpp"
 #include "tests/harness/verify/small_suite.hpp"
 
 namespace attest {
 namespace {
 
 using testing::HasSubstr;
+using testing::StartsWith;
 
 const std::filesystem::path source = ATTEST_SOURCE_DIR;
 
@@ -94,6 +98,121 @@ TEST(Stress, APortThatHangsAnywhereHasAVerdict) {
     EXPECT_EQ(stress->result.verdict, Verdict::timeout) << stress->result.reason;
     EXPECT_THAT(stress->result.reason, HasSubstr("the port did not come back"));
   }
+}
+
+// Makes no unit.
+class PortWithoutUnits final : public Port {
+ public:
+  std::string name() const override { return "without units"; }
+  std::string version() const override { return "1"; }
+  std::unique_ptr<Unit> create(const std::string& profile) override {
+    asked_for.push_back(profile);
+    return nullptr;
+  }
+
+  std::vector<std::string> asked_for;
+};
+
+StressMeasurement measured_without_units(const StressTask& task, PortWithoutUnits& port) {
+  auto measured = measure_live(
+      task, port, [] { return false; }, [](const StressProgress&) {});
+  EXPECT_TRUE(measured) << measured.error().to_string();
+  return *std::move(measured);
+}
+
+TEST(MeasureLive, APortThatDoesNotSupportTheProfileIsSkipped) {
+  PortWithoutUnits port;
+  const StressMeasurement measured = measured_without_units(hover_task(), port);
+  EXPECT_EQ(measured.stress.result.verdict, Verdict::skip);
+  EXPECT_EQ(measured.stress.result.reason, "the port does not support profile px4-v1.5.5");
+  EXPECT_EQ(measured.stress.result.id(), "px4-v1.5.5/flight/hover@250hz-iris-mujoco");
+  EXPECT_FALSE(measured.flight);
+  EXPECT_THAT(port.asked_for, testing::ElementsAre("px4-v1.5.5"));
+}
+
+TEST(MeasureLive, APortThatDeclinesTheFlightIsNotAskedForAUnit) {
+  StressTask other_step = hover_task(), other_group = hover_task();
+  other_step.port.fixed_step = Rate::hz(500);
+  other_group.port.unsupported_groups = {"flight"};
+  for (const StressTask& task : {other_step, other_group}) {
+    PortWithoutUnits port;
+    const StressMeasurement measured = measured_without_units(task, port);
+    EXPECT_EQ(measured.stress.result.verdict, Verdict::unsupported);
+    EXPECT_FALSE(measured.flight);
+    EXPECT_TRUE(port.asked_for.empty());
+  }
+}
+
+// Of a flight without a step: its outputs cannot be judged.
+StressMeasurement measured_flight() {
+  StressMeasurement measured;
+  measured.flight.emplace();
+  measured.stress.ticks = 75;
+  measured.stress.deadlines = 100;
+  measured.stress.wall = ms(250);
+  return measured;
+}
+
+TEST(JudgeLive, AMeasurementWithoutAFlightKeepsItsVerdict) {
+  StressMeasurement measured;
+  measured.stress.result.verdict = Verdict::unsupported;
+  measured.stress.overruns = 1;
+  const auto stress = judge_live(hover_task(), std::move(measured));
+  ASSERT_TRUE(stress) << stress.error().to_string();
+  EXPECT_EQ(stress->result.verdict, Verdict::unsupported);
+}
+
+TEST(JudgeLive, OutputsAndTimingAreJudgedTogether) {
+  StressTask task = hover_task();
+  task.the_case.flight->realtime = {500, 100, 50};
+  StressMeasurement measured = measured_flight();
+  measured.stress.overruns = 1;
+  const auto stress = judge_live(task, std::move(measured));
+  ASSERT_TRUE(stress) << stress.error().to_string();
+  EXPECT_EQ(stress->result.verdict, Verdict::fail);
+  EXPECT_THAT(stress->result.reason,
+              StartsWith("1 overruns of the execution time of 50 us: 10000"));
+  EXPECT_THAT(stress->result.reason, HasSubstr("outputs not judged: no step was over"));
+  EXPECT_EQ(stress->result.ticks, 75u);
+  EXPECT_DOUBLE_EQ(stress->result.elapsed_s, 0.25);
+}
+
+TEST(JudgeLive, AFaultOfThePortIsTheVerdict) {
+  StressMeasurement measured = measured_flight();
+  measured.flight->unit.fault =
+      PortFault{PortFault::Kind::protocol, 3, "it wrote beyond its struct"};
+  measured.stress.overruns = 1;
+  const auto stress = judge_live(hover_task(), std::move(measured));
+  ASSERT_TRUE(stress) << stress.error().to_string();
+  EXPECT_EQ(stress->result.verdict, Verdict::protocol);
+  EXPECT_EQ(stress->result.reason, "it wrote beyond its struct");
+}
+
+TEST(JudgeLive, WritesTheTimesOfTheFlightWhereTheTaskSaysSo) {
+  const TemporaryDirectory directory;
+  StressTask task = hover_task();
+  task.record_timing = directory.path() / "timing.json";
+  StressMeasurement measured = measured_flight();
+  LiveTick tick;
+  tick.sampled = us(1);
+  tick.begins = us(2);
+  measured.flight->unit.ticks = {tick};
+  measured.flight->plant.commanded = {us(3)};
+  ASSERT_TRUE(judge_live(task, std::move(measured)));
+  const auto read = read_timing(task.record_timing);
+  ASSERT_TRUE(read) << read.error().to_string();
+  EXPECT_EQ(read->case_id, "px4-v1.5.5/flight/hover");
+  EXPECT_EQ(read->case_sha256, task.the_case.sha256);
+  EXPECT_EQ(read->configuration, task.configuration);
+  EXPECT_DOUBLE_EQ(read->duration_s, 0.3);
+  EXPECT_EQ(read->ticks, (LoopTiming{{us(1), us(2), us(3)}}));
+}
+
+TEST(JudgeLive, TimesThatCannotBeWrittenAreAnError) {
+  const TemporaryDirectory directory;
+  StressTask task = hover_task();
+  task.record_timing = directory.path() / "no_such_folder" / "timing.json";
+  EXPECT_FALSE(judge_live(task, measured_flight()));
 }
 
 TEST(StressJson, IsReadAsItWasWritten) {

@@ -1,0 +1,56 @@
+// Hosts that a test makes: what a port answers, and how long it takes, is given then.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "harness/host/port_process.hpp"
+
+namespace attest {
+
+// Answers as the test says. REQUIRES: what is asked was given.
+class GivenHost final : public PortHost {
+ public:
+  struct Answers {
+    PortSays says;
+    std::function<std::optional<PortFault>(const Subject&, Trace&)> drive;
+    std::function<Result<Flown>(const FlightPlan&)> fly;
+    std::function<Result<StepTimes>(const std::string&, const Trace&, bool)> time_steps;
+    std::function<bool()> is_spent = [] { return false; };
+  };
+
+  explicit GivenHost(Answers answers) : answers_(std::move(answers)) {}
+
+  const PortSays& says() const override { return answers_.says; }
+  std::optional<PortFault> drive(const Subject& subject, Trace& trace) override {
+    return answers_.drive(subject, trace);
+  }
+  Result<Flown> fly(const FlightPlan& plan) override { return answers_.fly(plan); }
+  Result<StepTimes> time_steps(const std::string& profile, const Trace& inputs,
+                               bool with_stack) override {
+    return answers_.time_steps(profile, inputs, with_stack);
+  }
+  bool supports(const std::string&) override { return true; }
+  bool is_spent() const override { return answers_.is_spent(); }
+
+ private:
+  Answers answers_;
+};
+
+// As long as this lives start_host() does what it says: what is tested starts its host itself.
+class StartedHosts {
+ public:
+  using Start = std::function<Result<std::unique_ptr<PortHost>>(const HostOptions&, const Course&)>;
+
+  explicit StartedHosts(Start start);
+  ~StartedHosts();
+  StartedHosts(const StartedHosts&) = delete;
+  StartedHosts& operator=(const StartedHosts&) = delete;
+
+ private:
+  Start start_;
+};
+
+}  // namespace attest

@@ -1,0 +1,123 @@
+// What is written of the slowest step, of times that are made by hand.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/casefile/stimulus.hpp"
+#include "harness/host/host_here.hpp"
+#include "harness/measure/vector_times.hpp"
+#include "harness/trace/csv.hpp"
+#include "harness/verify/evaluate.hpp"
+#include "tests/harness/casefile/case_files.hpp"
+#include "tests/harness/core/temporary_directory.hpp"
+#include "tests/harness/measure/given_host.hpp"
+#include "tests/harness/times.hpp"
+
+namespace attest {
+namespace {
+
+std::vector<double> values(const Sample& sample, std::string_view prefix) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    if (!channels_of(Module::mc_att_control, prefix)[i]) continue;
+    values.push_back(value_of(channels()[i], sample));
+  }
+  return values;
+}
+
+// Two parameters change: one at tick 3, one at tick 4.
+class WriteSlowest : public testing::Test {
+ protected:
+  WriteSlowest() {
+    moving_.the_case = case_of(
+        "[parameters]\n"
+        "MC_PITCHRATE_P = { signal = \"step\", from = 0.125, to = 0.25, at_ticks = 3 }\n"
+        "MC_ROLLRATE_P = { signal = \"step\", from = 0.125, to = 0.5, at_ticks = 4 }\n"
+        "[control_state]\n"
+        "pitch_rate = { signal = \"step\", from = 0, to = 0.5, at_ticks = 2 }\n");
+    SelectedCase level{case_of(""), {}};
+    level.the_case.name = "level";
+    cases_ = {level, moving_};
+    times_.vectors = {timed(level, Rate::hz(100), {us(1), us(7)}), VectorTimes{},
+                      timed(moving_, Rate::hz(100), {us(8), us(1)}),
+                      timed(moving_, Rate::hz(250), {us(1), us(2), us(1), us(9), us(3)})};
+  }
+
+  static VectorTimes timed(const SelectedCase& selected, const Rate& rate,
+                           std::vector<Nanoseconds> steps) {
+    return {result_for(selected.the_case, {rate, {}}), std::move(steps), {}};
+  }
+
+  Result<void> write() {
+    HostOptions here;
+    here.in_process = true;
+    return write_slowest(times_, cases_, here, file_);
+  }
+
+  Trace written() {
+    const auto done = write();
+    EXPECT_TRUE(done) << done.error().to_string();
+    auto read = read_csv(file_, TraceNeed::inputs_and_outputs);
+    EXPECT_TRUE(read) << read.error().to_string();
+    return read ? *std::move(read) : Trace{};
+  }
+
+  SelectedCase moving_;
+  std::vector<SelectedCase> cases_;
+  CorpusTimes times_;
+  TemporaryDirectory directory_;
+  std::filesystem::path file_ = directory_.path() / "worst.csv";
+};
+
+TEST_F(WriteSlowest, WritesTheVectorUpToItsSlowestStep) {
+  const Trace trace = written();
+  const Trace inputs = stimulate(moving_.the_case, Rate::hz(250));
+  ASSERT_EQ(trace.samples.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(values(trace.samples[i], "in/"), values(inputs.samples[i], "in/")) << i;
+  }
+}
+
+TEST_F(WriteSlowest, TheParametersThatChangeAtTheSlowestStepAreIncluded) {
+  const std::vector<ParameterChange> up_to_tick_3 = {
+      {0, "MC_PITCHRATE_P", 0.125f}, {0, "MC_ROLLRATE_P", 0.125f}, {3, "MC_PITCHRATE_P", 0.25f}};
+  EXPECT_EQ(written().parameters, up_to_tick_3);
+}
+
+TEST_F(WriteSlowest, WritesWhatThePortAnswers) {
+  Trace answered = stimulate(moving_.the_case, Rate::hz(250));
+  ASSERT_FALSE((*open_host_here("builtin"))->drive({"px4-v1.5.5"}, answered));
+  const Trace trace = written();
+  ASSERT_EQ(trace.samples.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(values(trace.samples[i], "out/"), values(answered.samples[i], "out/")) << i;
+  }
+  EXPECT_NE(trace.samples[3].out.actuator_controls_0.control[1], 0);
+}
+
+TEST_F(WriteSlowest, NothingThatWasTimedIsAnError) {
+  times_.vectors = {VectorTimes{}};
+  EXPECT_FALSE(write());
+  EXPECT_FALSE(std::filesystem::exists(file_));
+}
+
+TEST_F(WriteSlowest, APortThatGoesWrongNowIsAnError) {
+  const StartedHosts started([](const HostOptions&, const Course&) {
+    GivenHost::Answers answers;
+    answers.drive = [](const Subject&, Trace&) {
+      return PortFault{PortFault::Kind::crash, 2, "it died"};
+    };
+    return std::make_unique<GivenHost>(answers);
+  });
+  const auto done = write();
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().message, "it died");
+  EXPECT_FALSE(std::filesystem::exists(file_));
+}
+
+TEST_F(WriteSlowest, AFileThatCannotBeWrittenIsAnError) {
+  file_ = directory_.path() / "no_such_folder" / "worst.csv";
+  EXPECT_FALSE(write());
+}
+
+}  // namespace
+}  // namespace attest
