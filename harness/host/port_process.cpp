@@ -193,6 +193,7 @@ Result<std::unique_ptr<PortProcess>> start_process(const HostOptions& options,
 }  // namespace
 
 Result<std::unique_ptr<PortHost>> start_host(const HostOptions& options, const Course& course) {
+  if (options.start) return options.start(options, course);
   if (options.in_process) return open_host_here(options.port, options.said, course);
   auto process = start_process(options, course);
   if (!process) return tl::unexpected(process.error());

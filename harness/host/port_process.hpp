@@ -16,6 +16,10 @@ namespace attest {
 // For each answer of a port [s]; they take milliseconds.
 inline constexpr double default_timeout_s = 10;
 
+struct HostOptions;
+using StartHost =
+    std::function<Result<std::unique_ptr<PortHost>>(const HostOptions&, const Course&)>;
+
 struct HostOptions {
   std::string port = "builtin";  // as for open_port
   // What the port said before the run, which it is held to; empty: what it says when it is loaded.
@@ -27,6 +31,8 @@ struct HostOptions {
   std::string hangs = {};
   // Looked at while an answer is awaited; true: the answer does not matter any more.
   std::function<bool()> stop = [] { return false; };
+  // Makes a host of another kind in place of a process; empty: a process, or `in_process`.
+  StartHost start = {};
 };
 
 // Starts a process, which loads the port and waits for requests. REQUIRES: the caller has nothing

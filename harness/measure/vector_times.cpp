@@ -28,11 +28,11 @@ class Stopwatches {
       const bool with_stack = options_.stack && repeat + 1 == options_.repeats;
       auto timed = host_->time_steps(the_case.profile, inputs, with_stack);
       if (!timed) return tl::unexpected(timed.error());
-      clock_ = timed->clock;
       if (timed->fault) {
         judge(*timed->fault, times.result);
         return VectorTimes{std::move(times.result), {}, {}};
       }
+      clock_ = timed->clock;
       keep_quickest(std::move(timed->steps), times.steps);
       times.stack_bytes = timed->stack_bytes;
     }

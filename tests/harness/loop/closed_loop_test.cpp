@@ -307,8 +307,10 @@ TEST_F(ClosedLoopTest, ATriggeredUnitDoesNotRunAtTheEnd) {
   EXPECT_THAT(unit_.timestamps_sample, ElementsAre(0, 4000));
 }
 
-// Without current the estimate of the cells' voltage is raised by what the throttle lets it sag.
+// The voltage is the same whatever the rotors take: what is left is the sag that the estimate
+// expects of the throttle.
 TEST_F(ClosedLoopTest, TheBatteryTaskTakesTheThrottle) {
+  vehicle_.battery = {3, 12, 0, 0, 1, 1, 10};
   const auto scale_at_end = [&] {
     Trace trace;
     case_.flight->battery.emplace().timing.rate = Rate::hz(250);

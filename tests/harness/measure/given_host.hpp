@@ -1,4 +1,5 @@
-// Hosts that a test makes: what a port answers, and how long it takes, is given then.
+// A host that a test makes, for HostOptions::start: what a port answers, and how long it takes, is
+// given then.
 #pragma once
 
 #include <functional>
@@ -37,20 +38,6 @@ class GivenHost final : public PortHost {
 
  private:
   Answers answers_;
-};
-
-// As long as this lives start_host() does what it says: what is tested starts its host itself.
-class StartedHosts {
- public:
-  using Start = std::function<Result<std::unique_ptr<PortHost>>(const HostOptions&, const Course&)>;
-
-  explicit StartedHosts(Start start);
-  ~StartedHosts();
-  StartedHosts(const StartedHosts&) = delete;
-  StartedHosts& operator=(const StartedHosts&) = delete;
-
- private:
-  Start start_;
 };
 
 }  // namespace attest

@@ -100,47 +100,23 @@ TEST(Stress, APortThatHangsAnywhereHasAVerdict) {
   }
 }
 
-// Makes no unit.
-class PortWithoutUnits final : public Port {
- public:
-  std::string name() const override { return "without units"; }
-  std::string version() const override { return "1"; }
-  std::unique_ptr<Unit> create(const std::string& profile) override {
-    asked_for.push_back(profile);
-    return nullptr;
-  }
-
-  std::vector<std::string> asked_for;
-};
-
-StressMeasurement measured_without_units(const StressTask& task, PortWithoutUnits& port) {
-  auto measured = measure_live(
-      task, port, [] { return false; }, [](const StressProgress&) {});
-  EXPECT_TRUE(measured) << measured.error().to_string();
-  return *std::move(measured);
-}
-
-TEST(MeasureLive, APortThatDoesNotSupportTheProfileIsSkipped) {
-  PortWithoutUnits port;
-  const StressMeasurement measured = measured_without_units(hover_task(), port);
-  EXPECT_EQ(measured.stress.result.verdict, Verdict::skip);
-  EXPECT_EQ(measured.stress.result.reason, "the port does not support profile px4-v1.5.5");
-  EXPECT_EQ(measured.stress.result.id(), "px4-v1.5.5/flight/hover@250hz-iris-mujoco");
-  EXPECT_FALSE(measured.flight);
-  EXPECT_THAT(port.asked_for, testing::ElementsAre("px4-v1.5.5"));
-}
-
-TEST(MeasureLive, APortThatDeclinesTheFlightIsNotAskedForAUnit) {
+TEST(Stress, APortThatDeclinesTheFlightIsNotStarted) {
   StressTask other_step = hover_task(), other_group = hover_task();
   other_step.port.fixed_step = Rate::hz(500);
   other_group.port.unsupported_groups = {"flight"};
   for (const StressTask& task : {other_step, other_group}) {
-    PortWithoutUnits port;
-    const StressMeasurement measured = measured_without_units(task, port);
-    EXPECT_EQ(measured.stress.result.verdict, Verdict::unsupported);
-    EXPECT_FALSE(measured.flight);
-    EXPECT_TRUE(port.asked_for.empty());
+    const auto stress = stressed("lib:nowhere.so", task);
+    ASSERT_TRUE(stress) << stress.error().to_string();
+    EXPECT_EQ(stress->result.verdict, Verdict::unsupported);
+    EXPECT_EQ(stress->result.id(), "px4-v1.5.5/flight/hover@250hz-iris-mujoco");
   }
+}
+
+TEST(Stress, APortThatDoesNotSupportTheProfileIsSkipped) {
+  const auto stress = stressed(test_port("refuses_profile"));
+  ASSERT_TRUE(stress) << stress.error().to_string();
+  EXPECT_EQ(stress->result.verdict, Verdict::skip);
+  EXPECT_EQ(stress->result.reason, "the port does not support profile px4-v1.5.5");
 }
 
 // Of a flight without a step: its outputs cannot be judged.
@@ -153,13 +129,15 @@ StressMeasurement measured_flight() {
   return measured;
 }
 
-TEST(JudgeLive, AMeasurementWithoutAFlightKeepsItsVerdict) {
+// The port shares the process that measures.
+TEST(JudgeLive, AVerdictOfTheMeasurementIsNotBelieved) {
   StressMeasurement measured;
-  measured.stress.result.verdict = Verdict::unsupported;
-  measured.stress.overruns = 1;
+  measured.stress.result.verdict = Verdict::pass;
+  measured.stress.result.name = "another";
   const auto stress = judge_live(hover_task(), std::move(measured));
   ASSERT_TRUE(stress) << stress.error().to_string();
-  EXPECT_EQ(stress->result.verdict, Verdict::unsupported);
+  EXPECT_EQ(stress->result.verdict, Verdict::skip);
+  EXPECT_EQ(stress->result.name, "hover");
 }
 
 TEST(JudgeLive, OutputsAndTimingAreJudgedTogether) {

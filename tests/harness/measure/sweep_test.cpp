@@ -57,9 +57,13 @@ class Sweep : public testing::Test {
  protected:
   Sweep() { case_.flight->metrics = {sink_within(-unbounded, 1)}; }
 
-  SweepJob job() const { return {case_, plant_configuration_, rates_, nullptr, HostOptions{}}; }
+  SweepJob job(const StartHost& start) const {
+    HostOptions host;
+    host.start = start;
+    return {case_, plant_configuration_, rates_, nullptr, host};
+  }
 
-  StartedHosts::Start start() {
+  StartHost start() {
     return [this](const HostOptions&, const Course&) -> Result<std::unique_ptr<PortHost>> {
       GivenHost::Answers answers;
       answers.says = says_;
@@ -72,8 +76,7 @@ class Sweep : public testing::Test {
   }
 
   Result<SweepResult> run(std::size_t task) {
-    const StartedHosts started(start());
-    SweepJob sweep = job();
+    SweepJob sweep = job(start());
     if (auto opened = sweep.open(); !opened) return tl::unexpected(opened.error());
     auto found = sweep.run(task);
     sweep.close();
@@ -98,7 +101,7 @@ class Sweep : public testing::Test {
   std::vector<FlightPlan> plans_;
 };
 
-TEST_F(Sweep, HasATaskForTheRateAndOneForTheDelayAtEachRate) { EXPECT_EQ(job().size(), 3u); }
+TEST_F(Sweep, HasATaskForTheRateAndOneForTheDelayAtEachRate) { EXPECT_EQ(job({}).size(), 3u); }
 
 TEST_F(Sweep, TheLowestRateIsTheLastThatHolds) {
   for (const int lowest : {3, 137, 166, 799, 800, 801, 1000}) {
@@ -259,13 +262,12 @@ TEST_F(Sweep, APortWithAFixedStepFliesAtItsRateOnlyFromOnePeriodOn) {
 TEST_F(Sweep, TheHostIsStartedForTheCaseAndSpentWithIt) {
   bool is_spent = false;
   std::string course;
-  const StartedHosts started([&](const HostOptions&, const Course& given) {
+  SweepJob sweep = job([&](const HostOptions&, const Course& given) {
     course = given.the_case->id();
     GivenHost::Answers answers;
     answers.is_spent = [&] { return is_spent; };
     return std::make_unique<GivenHost>(answers);
   });
-  SweepJob sweep = job();
   ASSERT_TRUE(sweep.open());
   EXPECT_EQ(course, case_.id());
   EXPECT_FALSE(sweep.is_spent());
@@ -274,9 +276,8 @@ TEST_F(Sweep, TheHostIsStartedForTheCaseAndSpentWithIt) {
 }
 
 TEST_F(Sweep, AHostThatCannotBeStartedIsAnError) {
-  const StartedHosts started(
-      [](const HostOptions&, const Course&) { return fail("no such port"); });
-  const auto opened = job().open();
+  const auto opened =
+      job([](const HostOptions&, const Course&) { return fail("no such port"); }).open();
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().message, "no such port");
 }

@@ -57,8 +57,8 @@ struct Question {
 class TimeCorpus : public testing::Test {
  protected:
   Result<CorpusTimes> timed(const std::vector<SelectedCase>& cases) {
-    const StartedHosts started([this](const HostOptions&, const Course&) { return start(); });
     HostOptions host;
+    host.start = [this](const HostOptions&, const Course&) { return start(); };
     host.stop = [this] { return stops_after_ && results_.size() == *stops_after_; };
     return time_corpus(cases, options_, host,
                        [this](const CaseResult& result) { results_.push_back(result); });
@@ -247,6 +247,17 @@ TEST(CorpusTimesTest, KnowsTheVectorsOfTheSlowestStepAndOfTheMostStack) {
   EXPECT_EQ(times.with_most_stack(), nullptr);
   times.vectors = {with_stack_of({}), with_stack_of(200), with_stack_of(300), with_stack_of(100)};
   EXPECT_EQ(times.with_most_stack(), &times.vectors[2]);
+}
+
+// A port that has died cannot say how long its clock takes.
+TEST_F(TimeCorpus, TheClockIsThatOfAnAnswerWithoutAFault) {
+  StepTimes died;
+  died.fault = PortFault{PortFault::Kind::crash, 0, "it died"};
+  answers_ = {steps({us(5)}), died};
+  answers_[0]->clock = ns(25);
+  const auto times = timed({open_loop("level"), open_loop("other")});
+  ASSERT_TRUE(times) << times.error().to_string();
+  EXPECT_EQ(times->clock, ns(25));
 }
 
 }  // namespace

@@ -47,9 +47,10 @@ class WriteSlowest : public testing::Test {
     return {result_for(selected.the_case, {rate, {}}), std::move(steps), {}};
   }
 
-  Result<void> write() {
+  Result<void> write(const StartHost& start = {}) {
     HostOptions here;
     here.in_process = true;
+    here.start = start;
     return write_slowest(times_, cases_, here, file_);
   }
 
@@ -101,14 +102,13 @@ TEST_F(WriteSlowest, NothingThatWasTimedIsAnError) {
 }
 
 TEST_F(WriteSlowest, APortThatGoesWrongNowIsAnError) {
-  const StartedHosts started([](const HostOptions&, const Course&) {
+  const auto done = write([](const HostOptions&, const Course&) {
     GivenHost::Answers answers;
     answers.drive = [](const Subject&, Trace&) {
       return PortFault{PortFault::Kind::crash, 2, "it died"};
     };
     return std::make_unique<GivenHost>(answers);
   });
-  const auto done = write();
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().message, "it died");
   EXPECT_FALSE(std::filesystem::exists(file_));

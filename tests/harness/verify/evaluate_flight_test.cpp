@@ -138,10 +138,10 @@ TEST_F(EvaluateFlight, APortInFixedPointIsHeldToTheGoldenFrom30BitsOn) {
   EXPECT_EQ(result_of(other_rate, 29).verdict, Verdict::pass);
 }
 
-// Beyond the horizon, where the golden says nothing.
+// Beyond the horizon, where the golden says nothing: of a port with 22 bits that is every tick.
 TEST_F(EvaluateFlight, AWrongAnswerIsFoundAtAnyTick) {
-  const CaseResult result =
-      result_of([](Trace& flown) { flown.samples[95].out.vehicle_rates_setpoint.roll += 0.1f; });
+  const CaseResult result = result_of(
+      [](Trace& flown) { flown.samples[95].out.vehicle_rates_setpoint.roll += 0.1f; }, 22);
   EXPECT_EQ(result.verdict, Verdict::fail);
   ASSERT_TRUE(result.first);
   EXPECT_EQ(result.first->tick, 95u);
