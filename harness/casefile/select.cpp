@@ -25,7 +25,6 @@ bool matches(const std::string& pattern, const std::string& text) {
 // case at all is an error.
 bool matches_any(const std::vector<std::string>& filters, const Case& the_case,
                  const RunConfiguration& configuration, std::set<std::string>& matching) {
-  if (filters.empty()) return true;
   const std::string in_group = the_case.group + "/" + the_case.name;
   std::vector<std::string> names = {the_case.name};
   for (const std::string& name : {the_case.id(), in_group}) {
@@ -84,8 +83,10 @@ std::vector<RunConfiguration> selected_setups(const Case& the_case, const Select
                                               std::set<std::string>& matching) {
   std::vector<RunConfiguration> configurations = the_case.configurations();
   std::erase_if(configurations, [&](const RunConfiguration& configuration) {
-    return !is_selected(configuration, selection) ||
-           !matches_any(selection.filters, the_case, configuration, matching);
+    if (!is_selected(configuration, selection)) return true;
+    const bool is_meant = selection.filters.empty() ||
+                          matches_any(selection.filters, the_case, configuration, matching);
+    return !is_meant || matches_any(selection.excludes, the_case, configuration, matching);
   });
   return configurations;
 }
@@ -94,8 +95,10 @@ std::vector<RunConfiguration> selected_setups(const Case& the_case, const Select
 struct Known {
   std::set<Rate> rates;
   std::set<std::string> profiles, vehicles, plants;
+  std::vector<std::string> names;
 
   void add(const Case& the_case) {
+    names.push_back(the_case.name);
     profiles.insert(the_case.profiles.begin(), the_case.profiles.end());
     for (const RunConfiguration& configuration : the_case.configurations()) {
       rates.insert(configuration.rate);
@@ -146,17 +149,37 @@ void add_selected(const Case& parsed, const Selection& selection, std::set<std::
   }
 }
 
-// Each filter must select something: a misspelt one would otherwise leave out, silently, what its
-// author wants to run.
-Result<void> check_filters(const Selection& selection, const std::set<std::string>& matching) {
-  std::vector<std::string> idle;
-  for (const std::string& filter : selection.filters) {
-    if (!matching.contains(filter)) idle.push_back(filter);
+// " with --group attitude, --rate 250": what narrows the selection beside the patterns.
+std::string scope_of(const Selection& selection) {
+  std::vector<std::string> rates;
+  for (const Rate& rate : selection.rates) rates.push_back(rate.to_string());
+  const std::pair<const char*, const std::vector<std::string>&> lists[] = {
+      {"--group", selection.groups},
+      {"--profile", selection.profiles},
+      {"--rate", rates},
+      {"--vehicle", selection.vehicles},
+      {"--plant", selection.plants}};
+  std::vector<std::string> options;
+  for (const auto& [option, values] : lists) {
+    if (!values.empty()) options.push_back(fmt::format("{} {}", option, fmt::join(values, ",")));
   }
-  if (idle.empty() && !selection.filters.empty()) return {};
-  if (idle.empty()) return fail("no case matches the selection; `attest list` shows them all");
-  return fail(
-      fmt::format("no case matches `{}`; `attest list` shows them all", fmt::join(idle, "` or `")));
+  return options.empty() ? "" : fmt::format(" with {}", fmt::join(options, ", "));
+}
+
+// Each pattern must match something: a misspelt one would otherwise leave out, silently, what its
+// author wants to run, or run what is to be left out.
+Result<void> check_patterns(const Selection& selection, const std::set<std::string>& matching,
+                            const std::vector<std::string>& names) {
+  std::vector<std::string> idle;
+  for (const auto& patterns : {selection.filters, selection.excludes}) {
+    for (const std::string& pattern : patterns) {
+      if (!matching.contains(pattern)) idle.push_back(pattern);
+    }
+  }
+  if (idle.empty()) return {};
+  return fail(fmt::format("no case{} matches `{}`{}; `attest list` shows them all",
+                          scope_of(selection), fmt::join(idle, "` or `"),
+                          suggestion(idle.front(), names)));
 }
 
 }  // namespace
@@ -190,10 +213,11 @@ Result<std::vector<SelectedCase>> select_cases(const fs::path& folder, const Sel
   if (auto checked = check_known(selection, known); !checked) {
     return tl::unexpected(checked.error());
   }
-  if (selected.empty() || !selection.filters.empty()) {
-    if (auto checked = check_filters(selection, matching); !checked) {
-      return tl::unexpected(checked.error());
-    }
+  if (auto checked = check_patterns(selection, matching, known.names); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  if (selected.empty()) {
+    return fail("no case matches the selection; `attest list` shows them all");
   }
   std::sort(selected.begin(), selected.end(), [](const SelectedCase& a, const SelectedCase& b) {
     return a.the_case.id() < b.the_case.id();

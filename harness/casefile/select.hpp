@@ -26,6 +26,7 @@ struct Selection {
   // that id without the configuration, or with its rate only, or one of these without profile, or
   // the name alone.
   std::vector<std::string> filters;
+  std::vector<std::string> excludes;  // patterns as above, of what is left out
   std::vector<std::string> groups;
   std::vector<std::string> profiles;
   std::vector<Rate> rates;
@@ -42,7 +43,8 @@ struct SelectedCase {
 
 // Reads the case files below `folder` that can match and keeps what is selected, in the order of
 // their ids. Errors: a malformed case file, an unknown group, profile, rate, vehicle or plant,
-// a filter that selects nothing, nothing selected; each says what there is.
+// a filter that selects nothing or an exclusion that leaves nothing out, nothing selected; each
+// says what there is.
 Result<std::vector<SelectedCase>> select_cases(const std::filesystem::path& folder,
                                                const Selection& selection);
 

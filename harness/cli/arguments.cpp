@@ -1,18 +1,15 @@
 #include "harness/cli/arguments.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
 #include <memory>
 #include <string>
-#include <thread>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "harness/cli/command.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/timing_arguments.hpp"
-#include "harness/core/suggestion.hpp"
+#include "harness/cli/wrong_arguments.hpp"
 #include "harness/core/version.hpp"
 #include "harness/report/report_format.hpp"
 
@@ -24,7 +21,7 @@ constexpr const char* description =
     "reference, at every loop rate, and if not: at which tick, on which signal, in which stage.\n";
 
 constexpr const char* footer =
-    "\nFirst steps:\n"
+    "\nFirst steps (`attest help COMMAND` has more):\n"
     "  attest run                                     the built-in reference, all cases and rates\n"
     "  attest run --port lib:./libmine.so             your port\n"
     "  attest run --port lib:./libmine.so --level exact --filter 'attitude/*@250hz'\n"
@@ -36,7 +33,6 @@ constexpr const char* footer =
 
 void add_run(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<RunOptions>();
-  options->jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   CLI::App* command = app.add_subcommand(
       "run", "Run a port through the cases and compare it with the golden traces");
   add_port(*command, options->host.port);
@@ -46,38 +42,54 @@ void add_run(CLI::App& app, const Globals& globals, Action& action) {
                    "How strictly: `exact` (float32 bits), `numeric` (a tolerance a channel) or "
                    "`events` (what happens, within a tick, and no value of another sign or size); "
                    "flights are judged the same way at each")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->group(option_group::strictness);
   CLI::Option* const expected =
       command
           ->add_option(
               "--expected-failures", options->expected_failures,
               "Failures that are accepted, with reasons (TOML), by group or case; one that "
               "passes fails the run")
-          ->type_name("F");
+          ->type_name("F")
+          ->group(option_group::strictness);
   command
       ->add_option("--timing", options->timing,
                    "Only the flight of `stress --record-timing`, at the very times it had, beside "
                    "the reference at these times")
-      ->type_name("F");
-  command->add_flag("--diagnose,!--no-diagnose", options->diagnose,
-                    "When something fails, name the mistakes it looks like (on by default)");
-  command->add_option("--jobs,-j", options->jobs, "Cases at a time")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+      ->type_name("F")
+      ->group(option_group::selection);
+  command
+      ->add_flag("--diagnose,!--no-diagnose", options->diagnose,
+                 "When something fails, name the mistakes it looks like (on by default)")
+      ->group(option_group::reports);
+  add_jobs(*command, options->jobs, "Cases at a time");
   command->add_option("--shard", options->select.shard, "Only part I of N of the cases")
       ->type_name("I/N")
-      ->capture_default_str();
-  command->add_flag("--fail-fast", options->fail_fast, "Stop after the first failing case");
+      ->capture_default_str()
+      ->group(option_group::selection);
+  command->add_flag("--fail-fast", options->fail_fast, "Stop after the first failing case")
+      ->group(option_group::execution);
   add_timeout(*command, options->host.timeout_s);
-  command->add_flag(
-      "--in-process", options->host.in_process,
-      "Run the port in attest's own process, for a debugger or a sanitizer; the result is "
-      "partial");
+  command
+      ->add_flag(
+          "--in-process", options->host.in_process,
+          "Run the port in attest's own process, for a debugger or a sanitizer; the result is "
+          "partial")
+      ->group(option_group::execution);
   for (const ReportFormat& format : report_formats()) {
     command->add_option(format.option, options->reports[format.option], format.help)
-        ->type_name("FILE");
+        ->type_name("FILE")
+        ->group(option_group::reports);
   }
   command->get_option("--write-expected")->excludes(expected);
+  add_examples(
+      *command,
+      {{"attest run", "the built-in reference, all cases at all rates"},
+       {"attest run --port lib:./libmine.so", "your port"},
+       {"attest run --port lib:./libmine.so --level exact --filter 'attitude/*@250hz'",
+        "some cases, to the bit"},
+       {"attest run --port lib:./libmine.so --exclude 'flight*/*' --junit attest.junit.xml",
+        "without the flights, with a report for CI"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return run_command(*options, globals); };
   });
@@ -106,6 +118,11 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
                    "Definition of the mixer of a mixer trace; default: from its name")
       ->type_name("TEXT");
   add_timeout(*command, options->host.timeout_s);
+  add_examples(
+      *command,
+      {{"attest replay TRACE.csv --port lib:./libmine.so",
+        "a trace that was recorded from the firmware, or written by `attest sim`"},
+       {"attest replay TRACE.csv --param MC_ROLL_P=7", "with another value of a parameter"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return replay_command(*options, globals); };
   });
@@ -123,14 +140,16 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
       ->add_option("--timing", options->timing,
                    "Instead: the flight of `stress --record-timing`, at the very times it had")
       ->type_name("F");
-  command->add_option("--vehicle", options->vehicle, "One of `attest list --vehicles`")
-      ->type_name("VEHICLE");
-  command->add_option("--plant", options->plant, "`mujoco` or `ode`")->type_name("PLANT");
+  add_plant(*command, options->vehicle, options->plant);
   add_port(*command, options->host.port);
   command->add_option("--out", options->out, "The flown trace (CSV)")
       ->type_name("F.csv")
       ->required();
   add_timeout(*command, options->host.timeout_s);
+  add_examples(*command, {{"attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv",
+                           "hover on the first vehicle and plant of the case"},
+                          {"attest sim gust --rate 500 --vehicle hexa --plant ode --out flown.csv",
+                           "another vehicle on the other plant"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return sim_command(*options, globals); };
   });
@@ -138,7 +157,6 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
 
 void add_faults(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<FaultOptions>();
-  options->jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   CLI::App* command = app.add_subcommand(
       "faults", "How good the suite is: which wrong controllers of the catalogue it catches");
   CLI::Option* const ids =
@@ -158,9 +176,10 @@ void add_faults(CLI::App& app, const Globals& globals, Action& action) {
       ->add_flag("--diagnose", options->diagnose,
                  "How good diagnosis is, instead: is each fault recognised?")
       ->excludes(bits, ids);
-  command->add_option("--jobs,-j", options->jobs, "Faults at a time")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  add_jobs(*command, options->jobs, "Faults at a time");
+  add_examples(*command, {{"attest faults", "which wrong controllers the whole suite catches"},
+                          {"attest faults --list --profile px4-v1.3.4",
+                           "the catalogue of one version of the law"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return faults_command(*options, globals); };
   });
@@ -176,6 +195,8 @@ void add_compare(CLI::App& app, const Globals& globals, Action& action) {
       ->required();
   command->add_option("--level", options->level, "`exact`, `numeric` or `events`")
       ->capture_default_str();
+  add_examples(*command, {{"attest compare flown.csv reference.csv",
+                           "is the first the same as the second, within the tolerances?"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return compare_command(*options, globals); };
   });
@@ -194,6 +215,10 @@ void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
                  "where right controllers differ")
       ->excludes(folder);
   add_selection(*command, options->select);
+  add_examples(
+      *command,
+      {{"attest vectors DIR --group attitude --rate 250", "the inputs of some cases, a file each"},
+       {"attest vectors --lint", "is a case too near to a decision of the law?"}});
   command->callback([options, &globals, &action] {
     if (!options->lint && options->folder.empty()) throw CLI::RequiredError("folder");
     action = [=, &globals] {
@@ -212,6 +237,10 @@ void add_list(CLI::App& app, const Globals& globals, Action& action) {
   command->add_flag("--channels", options->channels, "The signals: trace columns and ABI members");
   command->add_flag("--flight-modes", options->modes, "Flight modes and the flags they set");
   command->add_flag("--vehicles", options->vehicles, "The vehicles that fly, with their numbers");
+  add_examples(*command,
+               {{"attest list --filter 'tpa/*'", "the cases of a group, with why each exists"},
+                {"attest list --parameters --profile px4-v1.3.4",
+                 "the parameters of one version of the law"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return list_command(*options, globals); };
   });
@@ -227,6 +256,8 @@ void add_bless(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("--reason", options->reason, "Why, for provenance.toml (required)")
       ->type_name("TEXT");
   command->add_flag("--yes", options->yes, "Do not ask");
+  add_examples(*command, {{"attest bless --filter 'px4-v1.5.5/tpa/*' --reason \"...\"",
+                           "shows what changes, and asks"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return bless_command(*options, globals); };
   });
@@ -238,37 +269,32 @@ void add_doctor(CLI::App& app, const Globals& globals, Action& action) {
       "doctor", "Check the machine, the suite, the reference and a port, and say what is wrong");
   add_port(*command, options->host.port);
   add_timeout(*command, options->host.timeout_s);
+  add_examples(*command, {{"attest doctor --port lib:./libmine.so",
+                           "the machine, the suite, the reference and your port"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return doctor_command(*options, globals); };
   });
 }
 
-// CLI11 says no more than that a command is required. Empty: the first word is one, or an option.
-std::string unknown_command(const CLI::App& app, int argc, char** argv) {
-  const std::string word = argc > 1 ? argv[1] : "";
-  if (word.empty() || word.starts_with('-')) return "";
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
-  if (std::find(names.begin(), names.end(), word) != names.end()) return "";
-  return fmt::format("unknown command `{}`{}; attest --help shows them", word,
-                     suggestion(word, names));
+int show_help(const CLI::App& app, const std::string& name) {
+  if (name.empty()) {  // app.help() would be that of this command
+    fmt::print("{}",
+               app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal));
+    return exit_ok;
+  }
+  const std::string wrong = unknown_command(app, name);
+  if (!wrong.empty()) return report_error({wrong});
+  fmt::print("{}", app.get_subcommand(name)->help("attest"));
+  return exit_ok;
 }
 
-// What no option means: nothing at all, as of a variable that is not set, or a number that is none,
-// which passes every check of a range. Empty: no option says so.
-std::string wrong_value(const CLI::App& app) {
-  for (const CLI::App* command : app.get_subcommands()) {
-    for (const CLI::Option* option : command->get_options()) {
-      const bool is_number = option->get_type_name().starts_with("FLOAT");
-      for (const std::string& text : option->results()) {
-        if (text.empty()) return option->get_name() + ": is empty; is a variable not set?";
-        if (is_number && !std::isfinite(std::strtod(text.c_str(), nullptr))) {
-          return fmt::format("{}: {} is no number that it can have", option->get_name(), text);
-        }
-      }
-    }
-  }
-  return "";
+void add_help(CLI::App& app, Action& action) {
+  auto name = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("help", "Show the options and examples of a command");
+  command->add_option("command", *name, "Which; none: all commands")->type_name("COMMAND");
+  add_examples(*command, {{"attest help run", "the same as `attest run --help`"}});
+  command->callback(
+      [name, &app, &action] { action = [=, &app] { return show_help(app, *name); }; });
 }
 
 }  // namespace
@@ -276,7 +302,6 @@ std::string wrong_value(const CLI::App& app) {
 int run_command_line(int argc, char** argv) {
   CLI::App app(description, "attest");
   app.set_version_flag("--version", fmt::format("attest {}", version));
-  app.footer(footer);
   app.require_subcommand(1);
   app.fallthrough();
 
@@ -296,14 +321,23 @@ int run_command_line(int argc, char** argv) {
   add_vectors(app, globals, action);
   add_bless(app, globals, action);
   add_doctor(app, globals, action);
+  add_help(app, action);
+  app.footer(footer);  // last, as a command takes over what there is
 
-  if (const std::string wrong = unknown_command(app, argc, argv); !wrong.empty()) {
-    return report_error({wrong});
+  const std::string word = argc > 1 ? argv[1] : "";
+  if (!word.empty() && !word.starts_with('-')) {
+    const std::string wrong = unknown_command(app, word);
+    if (!wrong.empty()) return report_error({wrong});
   }
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {
     return app.exit(success);
+  } catch (const CLI::ExtrasError& error) {
+    const std::string wrong = unknown_option(app, argc, argv);
+    if (!wrong.empty()) return report_error({wrong});
+    app.exit(error);
+    return exit_usage;
   } catch (const CLI::ParseError& error) {
     app.exit(error);
     return exit_usage;

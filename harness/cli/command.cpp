@@ -17,11 +17,9 @@ int report_error(const Error& error) {
 
 std::string SelectionOptions::narrowing() const {
   std::vector<std::string> options;
-  const std::pair<const char*, const std::vector<std::string>&> lists[] = {{"--filter", filters},
-                                                                           {"--group", groups},
-                                                                           {"--rate", rates},
-                                                                           {"--vehicle", vehicles},
-                                                                           {"--plant", plants}};
+  const std::pair<const char*, const std::vector<std::string>&> lists[] = {
+      {"--filter", filters}, {"--exclude", excludes}, {"--group", groups},
+      {"--rate", rates},     {"--vehicle", vehicles}, {"--plant", plants}};
   for (const auto& [option, values] : lists) {
     if (!values.empty()) options.push_back(fmt::format("{} {}", option, fmt::join(values, ",")));
   }
@@ -30,16 +28,19 @@ std::string SelectionOptions::narrowing() const {
 }
 
 bool SelectionOptions::selects_all_configurations() const {
-  const bool of_setups = std::any_of(filters.begin(), filters.end(), [](const std::string& filter) {
-    return filter.find('@') != std::string::npos;
-  });
-  return !of_setups && rates.empty() && vehicles.empty() && plants.empty() && shard == "1/1";
+  const auto names_one = [](const std::string& pattern) {
+    return pattern.find('@') != std::string::npos;
+  };
+  const bool of_some = std::any_of(filters.begin(), filters.end(), names_one) ||
+                       std::any_of(excludes.begin(), excludes.end(), names_one);
+  return !of_some && rates.empty() && vehicles.empty() && plants.empty() && shard == "1/1";
 }
 
 Result<std::vector<SelectedCase>> SelectionOptions::cases_in(
     const std::filesystem::path& folder) const {
   Selection selection;
   selection.filters = filters;
+  selection.excludes = excludes;
   selection.groups = groups;
   selection.profiles = profiles;
   selection.vehicles = vehicles;

@@ -31,15 +31,15 @@ struct Globals {
 // "attest: error: <file:line: message>" on stderr; the exit code for it.
 int report_error(const Error& error);
 
-// --filter, --group, --profile, --rate, --vehicle, --plant and --shard, as text until they are
-// used.
+// --filter, --exclude, --group, --profile, --rate, --vehicle, --plant and --shard, as text until
+// they are used.
 struct SelectionOptions {
-  std::vector<std::string> filters, groups, profiles, rates, vehicles, plants;
+  std::vector<std::string> filters, excludes, groups, profiles, rates, vehicles, plants;
   std::string shard = "1/1";
 
   bool selects_all() const {
-    return filters.empty() && groups.empty() && profiles.empty() && rates.empty() &&
-           vehicles.empty() && plants.empty() && shard == "1/1";
+    return filters.empty() && excludes.empty() && groups.empty() && profiles.empty() &&
+           rates.empty() && vehicles.empty() && plants.empty() && shard == "1/1";
   }
 
   // What of these selects less than all of the cases of a profile: "--group tpa --rate 250".

@@ -228,6 +228,7 @@ int run_command(const RunOptions& options, const Globals& globals) {
   if (!checked) return report_error(checked.error());
   auto plan = make_plan(options, *suite);
   if (!plan) return report_error(plan.error());
+  plan->run.suite_folder = globals.suite;
   auto reports = open_reports(options);
   if (!reports) return report_error(reports.error());
 

@@ -178,6 +178,7 @@ int stress_command(const StressOptions& options, const Globals& globals) {
 
   note_interrupts();
   StressRun run;
+  run.suite_folder = globals.suite;
   run.port = options.host.port;
   run.description = plan->port;
   run.live = plan->tasks.front().live;

@@ -1,53 +1,10 @@
 #include "harness/cli/timing_arguments.hpp"
 
-#include <algorithm>
 #include <memory>
-#include <thread>
 
 #include <CLI/CLI.hpp>
 
 namespace attest::cli {
-
-void add_port(CLI::App& command, std::string& port) {
-  command.add_option("--port", port, "`builtin` (the reference), `lib:PATH` or `fault:ID`")
-      ->type_name("PORT")
-      ->capture_default_str();
-}
-
-void add_timeout(CLI::App& command, double& timeout_s) {
-  command
-      .add_option(
-          "--timeout", timeout_s,
-          "Limit for each answer of the port [s]; a port that gives no answer in time has the "
-          "verdict `timeout`")
-      ->check(CLI::Range(0.1, 86400.0))
-      ->capture_default_str();
-}
-
-void add_selection(CLI::App& command, SelectionOptions& options) {
-  command
-      .add_option("--filter", options.filters,
-                  "Only cases whose id matches this shell pattern; quote it. Ids are "
-                  "PROFILE/GROUP/NAME@CONFIGURATION; profile and configuration may be left out")
-      ->type_name("GLOB")
-      ->allow_extra_args(false);
-  command.add_option("--group", options.groups, "Only this group of cases")
-      ->type_name("GROUP")
-      ->allow_extra_args(false);
-  command.add_option("--profile", options.profiles, "Only this version of the law")
-      ->type_name("PROFILE")
-      ->allow_extra_args(false);
-  command.add_option("--rate", options.rates, "Only these loop rates [Hz], separated by commas")
-      ->type_name("HZ,...")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command.add_option("--vehicle", options.vehicles, "Only flights of this vehicle")
-      ->type_name("VEHICLE")
-      ->allow_extra_args(false);
-  command.add_option("--plant", options.plants, "Only flights on this plant: `mujoco` or `ode`")
-      ->type_name("PLANT")
-      ->allow_extra_args(false);
-}
 
 namespace {
 
@@ -57,10 +14,7 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
                                          "Let a port fly in real time, at each loop rate: latency, "
                                          "execution time, response time, misses");
   add_port(*command, options->host.port);
-  command->add_option("--rates", options->rates, "Loop rates [Hz], separated by commas")
-      ->type_name("HZ,...")
-      ->delimiter(',')
-      ->allow_extra_args(false)
+  add_rates(*command, options->rates, "Loop rates [Hz], separated by commas")
       ->default_str("250,500,1000,2000,4000,8000");
   command->add_option("--duration", options->duration_s, "Of the flight at each rate [s]")
       ->check(CLI::Range(0.1, 3600.0))
@@ -68,9 +22,7 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("--case", options->case_name, "A flight: its name or id, or a case file")
       ->type_name("CASE")
       ->capture_default_str();
-  command->add_option("--vehicle", options->vehicle, "One of `attest list --vehicles`")
-      ->type_name("VEHICLE");
-  command->add_option("--plant", options->plant, "`mujoco` or `ode`")->type_name("PLANT");
+  add_plant(*command, options->vehicle, options->plant);
   command->add_option("--load", options->load, "So many workers that keep the machine busy")
       ->check(CLI::Range(0, 1024))
       ->type_name("N")
@@ -105,12 +57,23 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
   command
       ->add_option("--record-timing", options->record_timing,
                    "Write when everything happened, for `run --timing`; one rate only")
-      ->type_name("F");
-  command->add_option("--json", options->json, "Write all that was measured")->type_name("F");
-  command->add_option("--junit", options->junit, "Write a report for CI servers")->type_name("F");
+      ->type_name("F")
+      ->group(option_group::reports);
+  command->add_option("--json", options->json, "Write all that was measured")
+      ->type_name("F")
+      ->group(option_group::reports);
+  command->add_option("--junit", options->junit, "Write a report for CI servers")
+      ->type_name("F")
+      ->group(option_group::reports);
   command->add_flag("--cyclictest,!--no-cyclictest", options->cyclictest,
                     "Let cyclictest measure the idle machine too, where it is installed");
   add_timeout(*command, options->host.timeout_s);
+  add_examples(*command,
+               {{"attest stress --port lib:./libmine.so", "at 250 Hz to 8 kHz, 10 s each"},
+                {"attest stress --port lib:./libmine.so --rate 1000 --load 2 --load-kind cache",
+                 "beside two processes that use up the caches"},
+                {"attest stress --rate 500 --duration 5 --record-timing t.json",
+                 "keep the times, to fly them again with `attest run --timing t.json`"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return stress_command(*options, globals); };
   });
@@ -118,17 +81,13 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
 
 void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<SweepOptions>();
-  options->jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   CLI::App* command = app.add_subcommand(
       "sweep-rate",
       "Where each vehicle stops holding: lowest loop rate, largest delay of the motor commands");
   command->add_option("--case", options->case_name, "A flight, whose metrics say what holding is")
       ->type_name("CASE")
       ->capture_default_str();
-  command->add_option("--rates", options->rates, "Rates to find the largest delay at [Hz]")
-      ->type_name("HZ,...")
-      ->delimiter(',')
-      ->allow_extra_args(false)
+  add_rates(*command, options->rates, "Rates to find the largest delay at [Hz]")
       ->default_str("50,100,250,500,1000");
   command->add_option("--vehicle", options->vehicles, "Only this vehicle")
       ->type_name("VEHICLE")
@@ -137,11 +96,13 @@ void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("PLANT")
       ->allow_extra_args(false);
   add_port(*command, options->host.port);
-  command->add_option("--csv", options->csv, "Write the table")->type_name("F.csv");
+  command->add_option("--csv", options->csv, "Write the table")
+      ->type_name("F.csv")
+      ->group(option_group::reports);
   add_timeout(*command, options->host.timeout_s);
-  command->add_option("--jobs,-j", options->jobs, "Vehicles at a time")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  add_jobs(*command, options->jobs, "Vehicles at a time");
+  add_examples(*command, {{"attest sweep-rate --port lib:./libmine.so --vehicle iris",
+                           "the lowest rate at which the Iris holds, and the largest delay"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return sweep_rate_command(*options, globals); };
   });
@@ -158,15 +119,16 @@ void add_schedule(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("--case", options->case_name, "A flight: its name or id, or a case file")
       ->type_name("CASE")
       ->capture_default_str();
-  command->add_option("--vehicle", options->vehicle, "One of `attest list --vehicles`")
-      ->type_name("VEHICLE");
-  command->add_option("--plant", options->plant, "`mujoco` or `ode`")->type_name("PLANT");
+  add_plant(*command, options->vehicle, options->plant);
   add_port(*command, options->host.port);
   command
       ->add_option("--record-timing", options->record_timing,
                    "Write when everything happens, for `run --timing` and `sim --timing`")
-      ->type_name("F");
+      ->type_name("F")
+      ->group(option_group::reports);
   add_timeout(*command, options->host.timeout_s);
+  add_examples(*command, {{"attest schedule TASKS.toml --port lib:./libmine.so",
+                           "worst response times of the tasks, and the flight that they allow"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return schedule_command(*options, globals); };
   });
@@ -205,10 +167,17 @@ void add_time(CLI::App& app, const Globals& globals, Action& action) {
       "Measure the most stack that a step uses, in one more run of each vector (on by "
       "default)");
   command->add_option("--json", options->json, "Write all times and stack use, by vector")
-      ->type_name("F");
+      ->type_name("F")
+      ->group(option_group::reports);
   add_timeout(*command, options->host.timeout_s);
-  command->add_flag("--in-process", options->host.in_process,
-                    "Run the port in attest's own process: for valgrind, perf or a debugger");
+  command
+      ->add_flag("--in-process", options->host.in_process,
+                 "Run the port in attest's own process: for valgrind, perf or a debugger")
+      ->group(option_group::execution);
+  add_examples(*command, {{"attest time --port lib:./libmine.so --worst slowest.csv",
+                           "the slowest step of the corpus, written for `attest replay`"},
+                          {"attest time --port lib:./libmine.so --budget 20 --rate 250",
+                           "fail if a step takes more than 20 us"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return time_command(*options, globals); };
   });

@@ -93,12 +93,18 @@ std::string first_deviation(const Deviation& deviation, Level level) {
       values(channel, deviation), distance(channel, deviation, level), name_of(channel.stage));
 }
 
+// "attest", with the suite if it was named.
+std::string attest_with_suite(const RunResult& run) {
+  if (run.suite_folder.empty()) return "attest";
+  return "attest --suite " + shell_word(run.suite_folder);
+}
+
 // To watch the flight that failed.
 std::string sim_command(const CaseResult& result, const RunResult& run) {
   return one_line(
-      fmt::format("attest sim {} --rate {} --vehicle {} --plant {} --port {} "
+      fmt::format("{} sim {} --rate {} --vehicle {} --plant {} --port {} "
                   "--out flown.csv",
-                  shell_word(result.case_id()), result.rate.to_string(),
+                  attest_with_suite(run), shell_word(result.case_id()), result.rate.to_string(),
                   shell_word(result.plant_configuration->vehicle),
                   name_of(result.plant_configuration->plant), shell_word(run.port)));
 }
@@ -124,16 +130,16 @@ std::string metric_bounds(const MetricResult& metric) {
 
 std::string reproduce_command(const CaseResult& result, const RunResult& run) {
   if (run.command == "stress") {
-    return one_line(fmt::format("attest stress --port {} --case {} --rates {}",
+    return one_line(fmt::format("{} stress --port {} --case {} --rate {}", attest_with_suite(run),
                                 shell_word(run.port), shell_word(result.case_id()),
                                 result.rate.to_string()));
   }
   if (!run.timing.empty()) {
-    return one_line(fmt::format("attest run --port {} --timing {}", shell_word(run.port),
-                                shell_word(run.timing)));
+    return one_line(fmt::format("{} run --port {} --timing {}", attest_with_suite(run),
+                                shell_word(run.port), shell_word(run.timing)));
   }
-  std::string out = fmt::format("attest run --port {} --filter {}", shell_word(run.port),
-                                shell_quoted(result.id()));
+  std::string out = fmt::format("{} run --port {} --filter {}", attest_with_suite(run),
+                                shell_word(run.port), shell_quoted(result.id()));
   if (run.level != Level::numeric) out += fmt::format(" --level {}", name_of(run.level));
   return one_line(out);
 }

@@ -174,6 +174,7 @@ std::string render_stress_end(const StressRun& run, TerminalStyle style) {
 RunResult run_of(const StressRun& run) {
   RunResult all;
   all.attest_version = version;
+  all.suite_folder = run.suite_folder;
   all.port = run.port;
   all.port_name = run.description.name;
   all.port_version = run.description.version;

@@ -12,6 +12,7 @@
 namespace attest {
 
 struct StressRun {
+  std::string suite_folder;     // as --suite gives it; empty: the suite was found
   std::string port;             // as given
   PortDescription description;  // as it says
   std::string load;             // "none"

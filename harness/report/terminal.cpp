@@ -232,6 +232,7 @@ std::string verdict_counts(const RunResult& run, Wanted wanted) {
 std::string setting(const RunResult& run) {
   std::vector<std::string> profiles;
   for (const CaseResult& result : run.results) {
+    if (result.verdict == Verdict::skip) continue;
     const std::string profile = one_line(result.profile);
     if (std::find(profiles.begin(), profiles.end(), profile) == profiles.end()) {
       profiles.push_back(profile);

@@ -36,6 +36,7 @@ struct RunResult {
   bool all_configurations = false;  // of each case that was selected, all were
   // "profile/group" -> how many cases the suite has at each rate, selected or not.
   std::map<std::string, std::map<Rate, std::size_t>> suite;
+  std::string suite_folder;  // as --suite gives it; empty: the suite was found
   std::string cases_version = "unversioned", golden_version = "unversioned";  // of the suite
   std::string suite_sha256;                                                   // of its content
   bool suite_is_released = false;  // that content is the one this attest was released with

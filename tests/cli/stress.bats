@@ -123,7 +123,7 @@ CHECK
     "${open[@]}" --junit s.xml
   [ "$status" -eq 1 ]
   has "look first at the rate law"
-  grep -q "attest stress --port .*sign_flip.so --case px4-v1.5.5/flight/hover --rates 250" s.xml
+  grep -q "attest stress --port .*sign_flip.so --case px4-v1.5.5/flight/hover --rate 250" s.xml
 }
 
 @test "a rate that is not judged is named, and is no pass of the whole" {

@@ -127,10 +127,28 @@ TEST_F(SelectTest, NamesThatAreNotThereAreErrorsThatSayWhatIs) {
   selection = {};
   selection.rates = {Rate::hz(251)};
   EXPECT_THAT(select(selection)[0], HasSubstr("no selected case runs at 251 Hz; there are 10, 50"));
-  EXPECT_THAT(filter("rol")[0], HasSubstr("no case matches `rol`"));
+  EXPECT_THAT(filter("rol")[0], HasSubstr("no case matches `rol`; did you mean `roll`?"));
   selection = {};
   selection.filters = {"roll", "pich", "slow"};
   EXPECT_THAT(select(selection)[0], HasSubstr("no case matches `pich`;"));
+}
+
+TEST_F(SelectTest, WhatIsExcludedIsLeftOut) {
+  Selection selection;
+  selection.excludes = {"attitude/*", "rates/*@10hz"};
+  EXPECT_THAT(select(selection), ElementsAre("rates/roll:11", "rates/slow:1"));
+  selection.filters = {"roll"};
+  selection.excludes = {"attitude/*"};
+  EXPECT_THAT(select(selection), ElementsAre("rates/roll:11"));
+  selection.excludes = {"roll"};
+  EXPECT_THAT(select(selection)[0], HasSubstr("no case matches the selection"));
+}
+
+TEST_F(SelectTest, AnExclusionThatLeavesNothingOutIsAnError) {
+  Selection selection;
+  selection.groups = {"rates"};
+  selection.excludes = {"pitch"};
+  EXPECT_THAT(select(selection)[0], HasSubstr("no case with --group rates matches `pitch`"));
 }
 
 TEST_F(SelectTest, AMalformedCaseIsAnErrorUnlessItCannotMatch) {

@@ -132,5 +132,12 @@ TEST(ReproduceCommand, QuotesThePort) {
               HasSubstr("--port 'lib:./it'\\''s mine.so' --filter"));
 }
 
+TEST(FailureText, TheCommandThatReproducesItHasTheSuiteThatWasNamed) {
+  RunResult run = sample_run();
+  run.suite_folder = "my suite";
+  EXPECT_THAT(reproduce_command(passed("attitude", "roll_30", Rate::hz(250)), run),
+              testing::StartsWith("attest --suite 'my suite' run --port"));
+}
+
 }  // namespace
 }  // namespace attest

@@ -170,5 +170,15 @@ TEST(Colour, AFileHasNeitherColourNorWidth) {
   std::fclose(file);
 }
 
+// A port that does not support a profile has only skips there.
+TEST(Summary, NamesTheProfilesThatRan) {
+  RunResult run = passing_run();
+  CaseResult skipped = run.results.front();
+  skipped.profile = "px4-v1.3.4";
+  skipped.verdict = Verdict::skip;
+  run.results.push_back(skipped);
+  EXPECT_THAT(summary(run), HasSubstr("(px4-v1.5.5, "));
+}
+
 }  // namespace
 }  // namespace attest

@@ -1,0 +1,78 @@
+#include "harness/cli/shared_arguments.hpp"
+
+#include <algorithm>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace attest::cli {
+
+void add_examples(CLI::App& command, std::initializer_list<Example> examples) {
+  std::string text = "\nExamples:\n";
+  for (const auto& [line, what] : examples) text += fmt::format("  {}\n      {}\n", line, what);
+  command.footer(text);
+}
+
+void add_port(CLI::App& command, std::string& port) {
+  command.add_option("--port", port, "`builtin` (the reference), `lib:PATH` or `fault:ID`")
+      ->type_name("PORT")
+      ->capture_default_str();
+}
+
+void add_timeout(CLI::App& command, double& timeout_s) {
+  command
+      .add_option(
+          "--timeout", timeout_s,
+          "Limit for each answer of the port [s]; a port that gives no answer in time has the "
+          "verdict `timeout`")
+      ->check(CLI::Range(0.1, 86400.0))
+      ->capture_default_str()
+      ->group(option_group::execution);
+}
+
+void add_jobs(CLI::App& command, int& jobs, const char* what) {
+  jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  command.add_option("--jobs,-j", jobs, what)
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str()
+      ->group(option_group::execution);
+}
+
+CLI::Option* add_rates(CLI::App& command, std::vector<std::string>& rates, const char* what) {
+  return command.add_option("--rate,--rates", rates, what)
+      ->type_name("HZ,...")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+}
+
+void add_plant(CLI::App& command, std::string& vehicle, std::string& plant) {
+  command.add_option("--vehicle", vehicle, "One of `attest list --vehicles`; default: the case's")
+      ->type_name("VEHICLE");
+  command.add_option("--plant", plant, "`mujoco` or `ode`; default: the case's first")
+      ->type_name("PLANT");
+}
+
+void add_selection(CLI::App& command, SelectionOptions& options) {
+  const auto add = [&](const char* name, std::vector<std::string>& values, const char* what,
+                       const char* type) {
+    command.add_option(name, values, what)
+        ->type_name(type)
+        ->allow_extra_args(false)
+        ->group(option_group::selection);
+  };
+  add("--filter", options.filters,
+      "Only cases whose id matches this shell pattern; quote it. Ids are "
+      "PROFILE/GROUP/NAME@CONFIGURATION; profile and configuration may be left out",
+      "GLOB");
+  add("--exclude", options.excludes, "Without the cases whose id matches this shell pattern",
+      "GLOB");
+  add("--group", options.groups, "Only this group of cases", "GROUP");
+  add("--profile", options.profiles, "Only this version of the law", "PROFILE");
+  add_rates(command, options.rates, "Only these loop rates [Hz], separated by commas")
+      ->group(option_group::selection);
+  add("--vehicle", options.vehicles, "Only flights of this vehicle", "VEHICLE");
+  add("--plant", options.plants, "Only flights on this plant: `mujoco` or `ode`", "PLANT");
+}
+
+}  // namespace attest::cli

@@ -1,0 +1,43 @@
+// Options that several commands have.
+#pragma once
+
+#include <functional>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "harness/cli/command.hpp"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace attest::cli {
+
+// The work of the command that was chosen; its result is the exit code.
+using Action = std::function<int()>;
+
+// The headings of --help.
+namespace option_group {
+inline constexpr const char* selection = "Which cases";
+inline constexpr const char* strictness = "How strictly";
+inline constexpr const char* reports = "Reports";
+inline constexpr const char* execution = "Execution";
+}  // namespace option_group
+
+// A command line, and what it does.
+struct Example {
+  const char* line;
+  const char* what;
+};
+void add_examples(CLI::App& command, std::initializer_list<Example> examples);
+
+void add_selection(CLI::App& command, SelectionOptions& options);  // --filter and its kin
+CLI::Option* add_rates(CLI::App& command, std::vector<std::string>& rates, const char* what);
+void add_plant(CLI::App& command, std::string& vehicle, std::string& plant);
+void add_port(CLI::App& command, std::string& port);
+void add_timeout(CLI::App& command, double& timeout_s);
+void add_jobs(CLI::App& command, int& jobs, const char* what);  // default: one a CPU
+
+}  // namespace attest::cli

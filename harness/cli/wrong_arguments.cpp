@@ -1,0 +1,62 @@
+#include "harness/cli/wrong_arguments.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "harness/core/suggestion.hpp"
+
+namespace attest::cli {
+
+std::string unknown_command(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
+  if (std::find(names.begin(), names.end(), word) != names.end()) return "";
+  return fmt::format("unknown command `{}`{}; attest --help shows them", word,
+                     suggestion(word, names));
+}
+
+std::string unknown_option(const CLI::App& app, int argc, char** argv) {
+  std::vector<std::string> names;
+  std::string command;
+  const auto add = [&](const CLI::App& one) {
+    for (const CLI::Option* option : one.get_options()) {
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+      for (const std::string& name : option->get_fnames()) names.push_back("--" + name);
+    }
+  };
+  add(app);
+  for (const CLI::App* chosen : app.get_subcommands()) {
+    add(*chosen);
+    command = " " + chosen->get_name();
+  }
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
+    if (!word.starts_with("--")) continue;
+    if (std::find(names.begin(), names.end(), word) != names.end()) continue;
+    return fmt::format("unknown option `{}`{}; attest{} --help shows them", word,
+                       suggestion(word, names), command);
+  }
+  return "";
+}
+
+std::string wrong_value(const CLI::App& app) {
+  for (const CLI::App* command : app.get_subcommands()) {
+    for (const CLI::Option* option : command->get_options()) {
+      const bool is_number = option->get_type_name().starts_with("FLOAT");
+      for (const std::string& text : option->results()) {
+        if (text.empty()) return option->get_name() + ": is empty; is a variable not set?";
+        if (is_number && !std::isfinite(std::strtod(text.c_str(), nullptr))) {
+          return fmt::format("{}: {} is not a finite number", option->get_name(), text);
+        }
+      }
+    }
+  }
+  return "";
+}
+
+}  // namespace attest::cli

@@ -1,0 +1,69 @@
+load common
+
+commands=(run replay sim stress sweep-rate schedule time compare faults list vectors bless doctor)
+
+@test "each command shows examples of itself, with options that it has" {
+  for command in "${commands[@]}"; do
+    run "$ATTEST" "$command" --help
+    [ "$status" -eq 0 ]
+    has "Examples:"
+    lacks "First steps"
+    examples=$(sed -n '/^Examples:/,$p' <<<"$output" | grep '^  attest')
+    [ -n "$examples" ]
+    while read -r line; do
+      [[ $line == "attest $command"* ]]
+      for option in $(grep -oE -- '--[a-z-]+' <<<"$line"); do
+        grep -qE -- "^ +(-j,)?([a-z,-]*,)?$option([ ,=]|$)" <<<"$output" || {
+          echo "$command: $option"
+          false
+        }
+      done
+    done <<<"$examples"
+  done
+}
+
+@test "help COMMAND is the help of the command" {
+  for command in "${commands[@]}"; do
+    [ "$("$ATTEST" help "$command")" = "$("$ATTEST" "$command" --help)" ]
+  done
+  [ "$("$ATTEST" help)" = "$("$ATTEST" --help)" ]
+  run "$ATTEST" help rnu
+  [ "$status" -eq 2 ]
+  has 'unknown command `rnu`; did you mean `run`?'
+}
+
+@test "a misspelt option, case or rate is told what may be meant" {
+  run "$ATTEST" run --fitler 'rates/*'
+  [ "$status" -eq 2 ]
+  has 'unknown option `--fitler`; did you mean `--filter`?; attest run --help shows them'
+  run "$ATTEST" sim hoover --rate 250 --out f.csv
+  [ "$status" -eq 2 ]
+  has 'no case matches `hoover`; did you mean `hover`?'
+  run "$ATTEST" run --group attitude --filter 'rates/*'
+  [ "$status" -eq 2 ]
+  has 'no case with --group attitude matches `rates/*`'
+}
+
+@test "--rate and --rates are one option" {
+  for option in --rate --rates; do
+    run "$ATTEST" run --group tpa --profile px4-v1.5.5 "$option" 250,500
+    [ "$status" -eq 0 ]
+    has "2 rates)"
+  done
+}
+
+@test "excluded cases are not run, and the result is partial" {
+  run "$ATTEST" run --group rates --profile px4-v1.5.5 --rate 250 --exclude '*_alone' --json r.json
+  [ "$status" -eq 0 ]
+  lacks "conformant"
+  grep -q '"conformant": false' r.json
+  [ "$(grep -c '"id": .*_alone' r.json)" -eq 0 ]
+  has "--exclude"
+}
+
+@test "a suite that was named is in the command that reproduces a failure" {
+  blessed_suite
+  run "$ATTEST" --suite suite run --port "lib:$PORTS/port_sign_flip.so" --no-diagnose
+  [ "$status" -eq 1 ]
+  has "reproduce: attest --suite suite run --port"
+}
