@@ -13,6 +13,7 @@
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/version.hpp"
 #include "harness/golden/golden.hpp"
+#include "harness/host/first_steps.hpp"
 #include "harness/host/port_process.hpp"
 #include "harness/process/child.hpp"
 #include "harness/verify/recorded_check.hpp"
@@ -112,6 +113,12 @@ void examine_port(const DoctorOptions& options, Examination& examination) {
                                                fmt::join(known, ", ")));
   }
   examination.good("port", fmt::format("{}, profiles {}", who, fmt::join(port->profiles, ", ")));
+  for (const std::string& profile : port->profiles) {
+    const std::string wrong = wrong_in_first_steps(options.host, profile);
+    examination.check(
+        wrong.empty(), "steps",
+        fmt::format("{} of {}{}{}", first_steps, profile, wrong.empty() ? "" : ": ", wrong));
+  }
 }
 
 }  // namespace

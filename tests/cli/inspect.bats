@@ -47,6 +47,18 @@ load common
   lacks "BAD"
 }
 
+@test "doctor lets a port do its first steps" {
+  run "$ATTEST" doctor --port "lib:$STARTER"
+  [ "$status" -eq 0 ]
+  has "100 of px4-v1.5.5"
+  has "100 of px4-v1.3.4"
+  for port in crash exits throws step_fails; do
+    run "$ATTEST" doctor --port "lib:$PORTS/port_$port.so"
+    [ "$status" -eq 2 ]
+    grep -q '^BAD    steps .*100 of px4-v1.5.5: ' <<<"$output"
+  done
+}
+
 @test "doctor says what is wrong with a port and with a suite" {
   run "$ATTEST" doctor --port "lib:$PORTS/port_wrong_abi.so"
   [ "$status" -eq 2 ]
