@@ -70,9 +70,17 @@ class ProfileSet {
   std::uint32_t bits_ = 0;
 };
 
+// `first` and all that are newer.
+constexpr ProfileSet profiles_from(Profile first) {
+  std::size_t count = 0;
+  while (every_profile[count] != first) ++count;
+  return ProfileSet(std::span(every_profile).first(count + 1));
+}
+
 inline constexpr ProfileSet all_profiles{std::span(every_profile)};
-inline constexpr ProfileSet from_v1_5_5{Profile::px4_v1_5_5};
+inline constexpr ProfileSet from_v1_5_5 = profiles_from(Profile::px4_v1_5_5);
 inline constexpr ProfileSet only_v1_3_4{Profile::px4_v1_3_4};
+static_assert(!from_v1_5_5.contains(Profile::px4_v1_3_4));
 
 // Of every_profile.
 std::span<const std::string_view> profile_names();

@@ -37,9 +37,10 @@ std::vector<Rate> default_rates(Module module) {
       return {Rate::hz(250)};
     case Module::battery_status:
       return {Rate::hz(100)};
-    default:
+    case Module::mc_att_control:
       return standard_rates();
   }
+  return {};
 }
 
 std::vector<Rate> parse_rates(const TomlTable& root, Module module) {

@@ -275,7 +275,7 @@ void parse_flight(const TomlTable& root, const std::filesystem::path& models, Ca
       flight.floor &&
       std::any_of(flight.plant_configurations.begin(), flight.plant_configurations.end(),
                   [](const PlantConfiguration& plant_configuration) {
-                    return plant_configuration.plant == PlantKind::ode;
+                    return !has_floor(plant_configuration.plant);
                   });
   if (needs_contact) {
     table.error("floor", "needs `plants = [\"mujoco\"]`: the ode plant has no ground contact");

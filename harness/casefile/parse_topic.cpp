@@ -245,11 +245,7 @@ TopicStimulus baseline_topic(std::string_view name, std::uint32_t updated_bit, b
   return topic;
 }
 
-std::vector<TopicStimulus> baseline_topics(Module module, bool is_flight) {
-  if (module == Module::mixer) {
-    return {baseline_topic("actuator_controls_0", 0, false), baseline_topic("mixer", 0, false)};
-  }
-  if (module == Module::battery_status) return {baseline_topic("battery", 0, false)};
+std::vector<TopicStimulus> controller_topics(bool is_flight) {
   std::vector<TopicStimulus> topics{baseline_topic(control_state, 0, is_flight)};
   std::uint32_t bit = 1;
   for (const std::string_view name : updated_topics()) {
@@ -259,6 +255,18 @@ std::vector<TopicStimulus> baseline_topics(Module module, bool is_flight) {
     bit <<= 1;
   }
   return topics;
+}
+
+std::vector<TopicStimulus> baseline_topics(Module module, bool is_flight) {
+  switch (module) {
+    case Module::mixer:
+      return {baseline_topic("actuator_controls_0", 0, false), baseline_topic("mixer", 0, false)};
+    case Module::battery_status:
+      return {baseline_topic("battery", 0, false)};
+    case Module::mc_att_control:
+      return controller_topics(is_flight);
+  }
+  return {};
 }
 
 void parse_topic(const TomlTable& table, TopicStimulus& topic) {

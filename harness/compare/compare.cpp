@@ -37,8 +37,9 @@ bool same_bits(float a, float b) {
 
 bool truth(std::uint8_t flag) { return flag != 0; }
 
-// In any byte, of any part.
+// In any byte, of any module.
 bool outputs_differ(const Sample& a, const Sample& b) {
+  static_assert(sample_has_three_modules);
   return std::memcmp(&a.out, &b.out, sizeof a.out) != 0 ||
          std::memcmp(&a.mixer_out, &b.mixer_out, sizeof a.mixer_out) != 0 ||
          std::memcmp(&a.battery_out, &b.battery_out, sizeof a.battery_out) != 0;

@@ -33,7 +33,10 @@ Result<Comparison> compare_whole(const std::filesystem::path& got,
 
 Result<Comparison> compare_files(const std::filesystem::path& got,
                                  const std::filesystem::path& want, const Tolerances& tolerances) {
-  if (tolerances.level() == Level::events) return compare_whole(got, want, tolerances);
+  const bool in_one_go = is_streamed(got) && is_streamed(want);
+  if (!in_one_go || tolerances.level() == Level::events) {
+    return compare_whole(got, want, tolerances);
+  }
   auto got_reader = TraceReader::open(got, TraceNeed::outputs);
   if (!got_reader) return tl::unexpected(got_reader.error());
   auto want_reader = TraceReader::open(want, TraceNeed::outputs);

@@ -44,6 +44,7 @@ bool differs(const Output& output, const Sample& a, const Sample& b) {
 }
 
 Sample sample_of(const Answer& answer) {
+  static_assert(sample_has_three_modules);
   Sample sample{};
   sample.out = answer.out;
   sample.mixer_out = answer.mixer_out;

@@ -209,10 +209,11 @@ Result<ReferenceFlight> Golden::read_flight(const RunConfiguration& configuratio
     auto hash = sha256_of_file(file);
     if (!hash) return tl::unexpected(hash.error());
     if (blessed != provenance_.models.end() && blessed->second == *hash) continue;
+    const char* const why = blessed == provenance_.models.end() ? "is new" : "has changed";
     return fail_at((folder_ / provenance_name).string(),
-                   fmt::format("the golden is stale: {} has changed since it was blessed; `attest "
+                   fmt::format("the golden is stale: {} {} since it was blessed; `attest "
                                "bless --filter '{}' --reason \"...\"` makes it anew",
-                               file.string(), provenance_.case_id));
+                               file.string(), why, provenance_.case_id));
   }
   auto rows = read(configuration);
   if (!rows) return tl::unexpected(rows.error());

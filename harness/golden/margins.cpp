@@ -280,19 +280,29 @@ void gather(const Margins& at_tick, Margins& all) {
   }
 }
 
-}  // namespace
-
-Margins margins(const Trace& given, const Subject& subject) {
-  if (subject.module == Module::mixer) return mixer_margins(given, subject.mixer);
-  if (subject.module == Module::battery_status) return {};
-  if (!reference::profile_from_name(subject.profile)) return {};
-  MarginMeter meter(subject.profile);
+Margins controller_margins(const Trace& given, const std::string& profile) {
+  if (!reference::profile_from_name(profile)) return {};
+  MarginMeter meter(profile);
   PendingChanges changes(given.parameters);
   Margins all;
   for (std::size_t tick = 0; tick < given.samples.size(); ++tick) {
     gather(meter.step(changes.take_until(tick), given.samples[tick].in), all);
   }
   return all;
+}
+
+}  // namespace
+
+Margins margins(const Trace& given, const Subject& subject) {
+  switch (subject.module) {
+    case Module::mixer:
+      return mixer_margins(given, subject.mixer);
+    case Module::battery_status:
+      return {};
+    case Module::mc_att_control:
+      return controller_margins(given, subject.profile);
+  }
+  return {};
 }
 
 }  // namespace attest

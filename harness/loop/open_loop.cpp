@@ -143,9 +143,10 @@ std::optional<PortFault> drive(Port& port, const Subject& subject, Trace& trace)
       }
       return drive_created([&] { return port.create_battery_status(subject.profile); }, subject,
                            trace);
-    default:
+    case Module::mc_att_control:
       return drive_created([&] { return port.create(subject.profile); }, subject, trace);
   }
+  return std::nullopt;
 }
 
 }  // namespace attest

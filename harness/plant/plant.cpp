@@ -3,6 +3,7 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/core/suggestion.hpp"
 #include "harness/plant/mujoco_plant.hpp"
@@ -20,11 +21,13 @@ class LoadedModel final : public VehicleModel {
 
   Result<std::unique_ptr<Plant>> make_plant(PlantKind kind,
                                             const PlantOptions& options) const override {
+    if (options.floor && !has_floor(kind)) {
+      return fail(fmt::format("the {} plant has no floor; fly this on mujoco", name_of(kind)));
+    }
     switch (kind) {
       case PlantKind::mujoco:
         return model_->make_plant(vehicle_, options);
       case PlantKind::ode:
-        if (options.floor) return fail("the ode plant has no floor; fly this on mujoco");
         return make_ode_plant(vehicle_, {});
     }
     return fail("a plant that nobody makes");
@@ -47,12 +50,24 @@ std::string_view name_of(PlantKind kind) {
   return "";
 }
 
+bool has_floor(PlantKind kind) {
+  switch (kind) {
+    case PlantKind::mujoco:
+      return true;
+    case PlantKind::ode:
+      return false;
+  }
+  return false;
+}
+
 Result<PlantKind> parse_plant_kind(std::string_view name) {
+  std::vector<std::string> names;
   for (const PlantKind kind : plant_kinds) {
     if (name == name_of(kind)) return kind;
+    names.emplace_back(name_of(kind));
   }
-  return fail(fmt::format("unknown plant `{}`{}; there are mujoco and ode", name,
-                          suggestion(name, {"mujoco", "ode"})));
+  return fail(fmt::format("unknown plant `{}`{}; there are {}", name, suggestion(name, names),
+                          fmt::join(names, " and ")));
 }
 
 Result<std::shared_ptr<const VehicleModel>> VehicleModel::load(const std::filesystem::path& models,

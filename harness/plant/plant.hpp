@@ -72,6 +72,7 @@ class Plant {
 enum class PlantKind { mujoco, ode };
 inline constexpr std::array<PlantKind, 2> plant_kinds{PlantKind::mujoco, PlantKind::ode};
 std::string_view name_of(PlantKind kind);  // "mujoco"
+bool has_floor(PlantKind kind);            // ground contact
 Result<PlantKind> parse_plant_kind(std::string_view name);
 
 struct PlantOptions {
@@ -94,7 +95,7 @@ class VehicleModel {
 
   virtual const Vehicle& vehicle() const = 0;
 
-  // Errors: the ode plant has no floor. The vehicle model must outlive the plant.
+  // Errors: that plant has no floor. The vehicle model must outlive the plant.
   virtual Result<std::unique_ptr<Plant>> make_plant(PlantKind kind,
                                                     const PlantOptions& options) const = 0;
 };

@@ -76,17 +76,15 @@ std::string failure(const Together& group, const RunResult& run, TerminalStyle s
 
 // Which stage is to blame for most: one line for a log with hundreds of failures.
 std::string stages(const RunResult& run) {
-  constexpr std::array order{Stage::input,      Stage::attitude_law, Stage::rate_law,
-                             Stage::integrator, Stage::mixer,        Stage::battery_status};
-  std::array<std::size_t, order.size()> counts{};
+  std::array<std::size_t, stage_count> counts{};
   for (const CaseResult& result : run.results) {
     if (!fails_a_run(result.verdict) || !result.first) continue;
     ++counts[static_cast<std::size_t>(channels()[result.first->channel].stage)];
   }
   std::vector<std::string> parts;
-  for (const Stage stage : order) {
-    const std::size_t count = counts[static_cast<std::size_t>(stage)];
-    if (count > 0) parts.push_back(fmt::format("{} in {}", name_of(stage), count));
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] == 0) continue;
+    parts.push_back(fmt::format("{} in {}", name_of(static_cast<Stage>(i)), counts[i]));
   }
   if (parts.empty()) return {};
   return fmt::format("first stage to differ: {}\n\n", fmt::join(parts, ", "));

@@ -182,6 +182,7 @@ void store(Sample& sample, std::size_t offset, T value) {
 void Sample::clear_outputs() { copy_outputs({}); }
 
 void Sample::copy_outputs(const Sample& from) {
+  static_assert(sample_has_three_modules);
   out = from.out;
   mixer_out = from.mixer_out;
   battery_out = from.battery_out;

@@ -38,6 +38,12 @@ struct Sample {
   void copy_outputs(const Sample& from);
 };
 
+// False when a module was added behind the others: then the code that asserts this has to name its
+// outputs, too.
+inline constexpr bool sample_has_three_modules =
+    sizeof(Sample) - offsetof(Sample, battery_out) - sizeof(attest_battery_outputs) <
+    alignof(Sample);
+
 enum class ChannelType : std::uint8_t { u64, f32, u8, bit };
 
 // What a channel carries, which decides its tolerance (compare/tolerance.hpp) and its unit.
@@ -66,6 +72,7 @@ enum class Stage : std::uint8_t {
   mixer,
   battery_status
 };
+inline constexpr auto stage_count = static_cast<std::size_t>(Stage::battery_status) + 1;
 
 struct Channel {
   std::string_view name;  // with its prefix

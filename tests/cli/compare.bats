@@ -31,3 +31,13 @@ load common
   [ "$status" -eq 1 ]
   has "tick 0 is at"
 }
+
+@test "mixer recordings are compared too" {
+  trace=$SOURCE/golden/recorded/mixer-v1.5.5/4+.csv
+  run "$ATTEST" compare "$trace" "$trace"
+  [ "$status" -eq 0 ]
+  sed 's/-0.60356307/-0.60356302/' "$SOURCE/golden/recorded/mixer-v1.5.5/4x.csv" >other.csv
+  run "$ATTEST" compare other.csv "$SOURCE/golden/recorded/mixer-v1.5.5/4x.csv" --level exact
+  [ "$status" -eq 1 ]
+  has "output[1]"
+}

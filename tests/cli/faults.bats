@@ -47,3 +47,18 @@ load common
   run "$ATTEST" faults --diagnose tpa-missing
   [ "$status" -eq 2 ]
 }
+
+@test "the schema of the report knows every stage" {
+  for fault in mixer-roll-left battery-status-pack; do
+    "$ATTEST" run --group mixer --group battery_status --port "fault:$fault" --no-diagnose \
+      --json "$fault.json" || true
+    python3 - "$fault.json" <<'CHECK'
+import json, os, sys
+import jsonschema
+schema = json.load(open(os.environ["SOURCE"] + "/harness/report/report.schema.json"))
+report = json.load(open(sys.argv[1]))
+assert any("first" in result for result in report["results"])
+jsonschema.Draft7Validator(schema).validate(report)
+CHECK
+  done
+}

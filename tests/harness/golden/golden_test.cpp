@@ -280,7 +280,7 @@ TEST_F(GoldenOfAFlight, EachConfigurationHasItsHorizonAndItsMetrics) {
 TEST_F(GoldenOfAFlight, OfAVehicleThatItDoesNotListOrThatChangedItIsStale) {
   bless_with({vehicle_.files()[0]});
   ASSERT_FALSE(read_at(100));
-  EXPECT_THAT(read_at(100).error().message, HasSubstr("bee.xml has changed since it was blessed"));
+  EXPECT_THAT(read_at(100).error().message, HasSubstr("bee.xml is new since it was blessed"));
   bless_with(vehicle_.files());
   ASSERT_TRUE(write_file(vehicle_.file, "of another bee\n"));
   ASSERT_FALSE(read_at(100));

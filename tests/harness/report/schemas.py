@@ -37,7 +37,7 @@ WRONG_REPORT = {
     "a time in a result": lambda r: r["results"][3].update(elapsed_s=0.1),
     "a port without a version": lambda r: r["port"].pop("version"),
     "a channel by index": lambda r: r["results"][3]["first"].update(channel=17),
-    "an unknown stage": lambda r: r["results"][3]["first"].update(stage="mixer"),
+    "an unknown stage": lambda r: r["results"][3]["first"].update(stage="mixer law"),
     "a null for NaN": lambda r: r["results"][3]["first"].update(got=None),
     "another word for NaN": lambda r: r["results"][3]["first"].update(got="NaN"),
     "bits of one value only": lambda r: r["results"][3]["first"].pop("want_bits"),
