@@ -38,7 +38,7 @@ struct TiltError {
   Scalar cosine;
 };
 
-// The stages of the law, in the order they run. Each is a pure function of what it names.
+// The stages of the law. Each is a pure function of what it names.
 template <typename Scalar>
 struct AttitudeStages {
   using Vector = Vector3<Scalar>;

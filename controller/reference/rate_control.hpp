@@ -42,7 +42,7 @@ struct RateInput {
   bool flying;  // armed as a rotary wing; otherwise the integral starts from zero
 };
 
-// The stages of the law, in the order they run. Each is a pure function of what it names.
+// The stages of the law. Each is a pure function of what it names.
 template <typename Scalar>
 struct RateStages {
   using Vector = Vector3<Scalar>;

@@ -1,5 +1,5 @@
-// A host in a process of its own, which has nothing of a judge: no golden, no tolerance, no
-// verdict. Whatever the port does there ends there.
+// A host in a process of its own, which is started before the golden of its case is read. It is a
+// fork, so the case with its tolerances is in its memory. Whatever the port does there ends there.
 #pragma once
 
 #include <cstdint>
