@@ -79,14 +79,17 @@ bool is_selected(const RunConfiguration& configuration, const Selection& selecti
          contains(selection.plants, std::string(name_of(configuration.plant_configuration->plant)));
 }
 
-std::vector<RunConfiguration> selected_setups(const Case& the_case, const Selection& selection,
-                                              std::set<std::string>& matching) {
+std::vector<RunConfiguration> selected_configurations(const Case& the_case,
+                                                      const Selection& selection,
+                                                      std::set<std::string>& matching) {
   std::vector<RunConfiguration> configurations = the_case.configurations();
   std::erase_if(configurations, [&](const RunConfiguration& configuration) {
     if (!is_selected(configuration, selection)) return true;
+    // Both, so that each pattern is known to match something.
+    const bool is_excluded = matches_any(selection.excludes, the_case, configuration, matching);
     const bool is_meant = selection.filters.empty() ||
                           matches_any(selection.filters, the_case, configuration, matching);
-    return !is_meant || matches_any(selection.excludes, the_case, configuration, matching);
+    return is_excluded || !is_meant;
   });
   return configurations;
 }
@@ -143,7 +146,7 @@ void add_selected(const Case& parsed, const Selection& selection, std::set<std::
   for (const std::string& profile : parsed.profiles) {
     if (!contains(selection.profiles, profile)) continue;
     Case the_case = parsed.in_profile(profile);
-    auto configurations = selected_setups(the_case, selection, matching);
+    auto configurations = selected_configurations(the_case, selection, matching);
     if (!configurations.empty())
       selected.push_back({std::move(the_case), std::move(configurations)});
   }

@@ -43,8 +43,7 @@ struct SelectedCase {
 
 // Reads the case files below `folder` that can match and keeps what is selected, in the order of
 // their ids. Errors: a malformed case file, an unknown group, profile, rate, vehicle or plant,
-// a filter that selects nothing or an exclusion that leaves nothing out, nothing selected; each
-// says what there is.
+// a filter or an exclusion that matches nothing, nothing selected; each says what there is.
 Result<std::vector<SelectedCase>> select_cases(const std::filesystem::path& folder,
                                                const Selection& selection);
 

@@ -102,6 +102,11 @@ int bless_command(const BlessOptions& options, const Globals& globals) {
   if (options.reason.empty()) {
     return report_error({"say why with --reason \"...\"; it is kept in provenance.toml"});
   }
+  if (!options.select.excludes.empty()) {
+    return report_error(
+        {"bless does each file with all its profiles and rates; select with "
+         "--filter or --group instead of --exclude"});
+  }
   if (!options.yes && !::isatty(STDIN_FILENO)) {
     return report_error({"nobody is there to ask; pass --yes to replace goldens unasked"});
   }

@@ -1,6 +1,5 @@
 #include "harness/cli/command.hpp"
 
-#include <algorithm>
 #include <cstdio>
 #include <utility>
 
@@ -25,15 +24,6 @@ std::string SelectionOptions::narrowing() const {
   }
   if (shard != "1/1") options.push_back("--shard " + shard);
   return fmt::format("{}", fmt::join(options, " "));
-}
-
-bool SelectionOptions::selects_all_configurations() const {
-  const auto names_one = [](const std::string& pattern) {
-    return pattern.find('@') != std::string::npos;
-  };
-  const bool of_some = std::any_of(filters.begin(), filters.end(), names_one) ||
-                       std::any_of(excludes.begin(), excludes.end(), names_one);
-  return !of_some && rates.empty() && vehicles.empty() && plants.empty() && shard == "1/1";
 }
 
 Result<std::vector<SelectedCase>> SelectionOptions::cases_in(

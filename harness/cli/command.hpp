@@ -45,9 +45,6 @@ struct SelectionOptions {
   // What of these selects less than all of the cases of a profile: "--group tpa --rate 250".
   std::string narrowing() const;
 
-  // Each selected case at all its rates, on all its vehicles and plants?
-  bool selects_all_configurations() const;
-
   // The cases below `folder` that are selected. Errors: those of select_cases, and text that is no
   // rate or shard.
   Result<std::vector<SelectedCase>> cases_in(const std::filesystem::path& folder) const;

@@ -84,7 +84,10 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
   auto cases = options.select.cases_in(suite.cases());
   if (!cases) return tl::unexpected(cases.error());
   std::set<Rate> rates;
+  bool all_configurations = options.select.shard == "1/1";
   for (const SelectedCase& selected : *cases) {
+    all_configurations &=
+        selected.configurations.size() == selected.the_case.configurations().size();
     for (const RunConfiguration& configuration : selected.configurations)
       rates.insert(configuration.rate);
     plan.results += selected.configurations.size();
@@ -97,7 +100,7 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
   if (!jobs) return tl::unexpected(jobs.error());
   plan.jobs = *std::move(jobs);
   plan.run.selection = options.select.narrowing();
-  plan.run.all_configurations = options.select.selects_all_configurations();
+  plan.run.all_configurations = all_configurations;
   plan.run.rates.assign(rates.begin(), rates.end());
   plan.cases = std::move(*cases);
   return {};
@@ -253,7 +256,8 @@ int run_command(const RunOptions& options, const Globals& globals) {
   run.results = std::move(outcome.results);
   run.errors = std::move(outcome.errors);
   run.stopped_early = outcome.stopped_early;
-  const bool is_complete = options.select.selects_all() && !run.stopped_early && run.errors.empty();
+  const bool is_complete = options.timing.empty() && options.select.selects_all() &&
+                           !run.stopped_early && run.errors.empty();
   if (plan->expected) plan->expected->apply(is_complete, run);
   std::optional<Diagnosis> diagnosis;
   if (options.diagnose && run.failed()) diagnosis = diagnosed(*plan, options.jobs);

@@ -33,8 +33,8 @@ Result<Comparison> compare_whole(const std::filesystem::path& got,
 
 Result<Comparison> compare_files(const std::filesystem::path& got,
                                  const std::filesystem::path& want, const Tolerances& tolerances) {
-  const bool in_one_go = is_streamed(got) && is_streamed(want);
-  if (!in_one_go || tolerances.level() == Level::events) {
+  const bool are_streamed = is_streamed(got) && is_streamed(want);
+  if (!are_streamed || tolerances.level() == Level::events) {
     return compare_whole(got, want, tolerances);
   }
   auto got_reader = TraceReader::open(got, TraceNeed::outputs);

@@ -7,8 +7,9 @@
 
 namespace attest {
 
-// As compare(), in memory that does not grow with the traces; but at the events level, which looks
-// ahead and reads them whole. Errors: those of read_csv.
+// As compare(). CSV traces of a controller are read tick by tick, in memory that does not grow with
+// them; at the events level, which looks ahead, and in other formats they are read whole. Errors:
+// those of open_trace.
 Result<Comparison> compare_files(const std::filesystem::path& got,
                                  const std::filesystem::path& want, const Tolerances& tolerances);
 

@@ -33,7 +33,7 @@ Result<void> write_file_beside(const Case& first, Blessing& blessing, PendingGol
     if (!made) return tl::unexpected(made.error());
     const bool is_first = the_case.is_of_first_profile();
     if (is_first) of_first = *made;
-    std::string line = change_of_golden(the_case, made->traces, blessing.options.golden);
+    std::string line = change_of_golden(the_case, *made, blessing.options.golden);
     if (line.empty() && base_changes && !the_case.flight)
       line = fmt::format("{}: its base changes", the_case.id());
     if (line.empty()) {

@@ -26,10 +26,6 @@ std::string file_name(const RunConfiguration& configuration,
   return fmt::format("{}.{}.csv", configuration.label(), branch_alternative);
 }
 
-std::string metric_key(const RunConfiguration& configuration, const std::string& metric) {
-  return fmt::format("{}.{}", configuration.label(), metric);
-}
-
 std::string how_to_bless(const Case& the_case) {
   return fmt::format("`attest bless --filter '{}' --reason \"...\"` makes it", the_case.id());
 }
@@ -108,6 +104,10 @@ Result<void> write_folder(const fs::path& folder, const Case& the_case,
 }
 
 }  // namespace
+
+std::string metric_key(const RunConfiguration& configuration, const std::string& metric) {
+  return fmt::format("{}.{}", configuration.label(), metric);
+}
 
 bool keeps_every_tick(std::size_t ticks) {
   constexpr std::size_t most = 1000;

@@ -53,6 +53,9 @@ class Golden {
   Provenance provenance_;
 };
 
+// Of Provenance::metrics.
+std::string metric_key(const RunConfiguration& configuration, const std::string& metric);
+
 std::filesystem::path golden_folder(const std::filesystem::path& golden_root, const Case& the_case);
 
 // Of a longer case the golden keeps some ticks, so that it fits into a repository.

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <system_error>
 
 #include <fmt/format.h>
+
+#include "harness/core/file.hpp"
 
 namespace attest {
 namespace {
@@ -51,49 +55,110 @@ Change change_between(const Trace& old_trace, const Trace& new_trace) {
   return change;
 }
 
+// What a provenance says of flights, beside their traces.
+struct Measured {
+  std::map<std::string, double> horizon_s, metrics;
+  std::map<std::string, std::string> models;
+
+  bool operator==(const Measured&) const = default;
+};
+
+Measured measured_in(const MadeGolden& made) {
+  Measured all;
+  for (const GoldenTrace& trace : made.traces) {
+    if (trace.horizon_s) all.horizon_s[trace.configuration.label()] = *trace.horizon_s;
+    for (const auto& [metric, value] : trace.metrics) {
+      all.metrics[metric_key(trace.configuration, metric)] = value;
+    }
+  }
+  for (const auto& file : made.vehicle_files) {
+    all.models[file.filename().string()] = sha256_of_file(file).value_or("");
+  }
+  return all;
+}
+
+// All traces of a case.
+class Changes {
+ public:
+  void add(const Trace& old_trace, const Trace& trace) {
+    const Change change = change_between(old_trace, trace);
+    if (change.ticks == 0) return;
+    ++traces_;
+    total_.channels |= change.channels;
+    total_.ticks += change.ticks;
+    if (change.max_deviation <= total_.max_deviation) return;
+    total_.max_deviation = change.max_deviation;
+    total_.max_channel = change.max_channel;
+  }
+  void add_replaced() { ++replaced_; }
+
+  bool empty() const { return traces_ + replaced_ == 0; }
+  std::string to_string(std::size_t of) const {
+    std::string out;
+    if (traces_ > 0) {
+      out = fmt::format("{} of {} traces, {} ticks, {} channels; at most by {:.3g} in {}", traces_,
+                        of, total_.ticks, total_.channels.count(), total_.max_deviation,
+                        channels()[total_.max_channel].name);
+    }
+    if (replaced_ == 0) return out;
+    return fmt::format("{}{}{} of {} traces are replaced", out, out.empty() ? "" : "; ", replaced_,
+                       of);
+  }
+
+ private:
+  std::size_t traces_ = 0, replaced_ = 0;
+  Change total_;
+};
+
+Changes changes_of(const Golden& golden, const std::vector<GoldenTrace>& traces) {
+  Changes changes;
+  for (const GoldenTrace& made : traces) {
+    const auto old_trace = golden.read(made.configuration);
+    const auto old_others = golden.read_branch_alternatives(made.configuration);
+    if (!old_trace || !old_others || old_others->size() != made.branch_alternatives.size()) {
+      changes.add_replaced();
+      continue;
+    }
+    changes.add(*old_trace, made.trace);
+    for (const auto& [branch, other] : made.branch_alternatives) {
+      const auto old_other = old_others->find(branch);
+      if (old_other != old_others->end()) changes.add(old_other->second, other);
+    }
+  }
+  return changes;
+}
+
 }  // namespace
 
-std::string change_of_golden(const Case& the_case, const std::vector<GoldenTrace>& traces,
+std::string change_of_golden(const Case& the_case, const MadeGolden& made,
                              const std::filesystem::path& golden_root) {
   Case as_blessed = the_case;
   const auto path = golden_folder(golden_root, the_case) / provenance_name;
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) {
+    return fmt::format("{}: new, {} traces", the_case.id(), made.traces.size());
+  }
   const auto provenance = read_provenance(path);
-  if (!provenance) return fmt::format("{}: new, {} traces", the_case.id(), traces.size());
+  if (!provenance) {
+    return fmt::format("{}: replaced; {}", the_case.id(), provenance.error().to_string());
+  }
   as_blessed.sha256 = provenance->case_sha256;  // what it was made from does not matter here
   const auto golden = Golden::open(golden_root, as_blessed);
   if (!golden) return fmt::format("{}: replaced; {}", the_case.id(), golden.error().to_string());
 
-  std::size_t changed = 0;
-  Change total;
-  const auto add = [&](const Trace& old_trace, const Trace& trace) {
-    const Change change = change_between(old_trace, trace);
-    if (change.ticks == 0) return;
-    ++changed;
-    total.channels |= change.channels;
-    total.ticks += change.ticks;
-    if (change.max_deviation <= total.max_deviation) return;
-    total.max_deviation = change.max_deviation;
-    total.max_channel = change.max_channel;
-  };
-  for (const GoldenTrace& made : traces) {
-    const auto old_trace = golden->read(made.configuration);
-    const auto old_others = golden->read_branch_alternatives(made.configuration);
-    if (!old_trace || !old_others || old_others->size() != made.branch_alternatives.size()) {
-      ++changed;
-      continue;
-    }
-    add(*old_trace, made.trace);
-    for (const auto& [branch, other] : made.branch_alternatives) {
-      const auto old_other = old_others->find(branch);
-      if (old_other != old_others->end()) add(old_other->second, other);
-    }
+  const Changes changes = changes_of(*golden, made.traces);
+  if (!changes.empty()) {
+    return fmt::format("{}: {}", the_case.id(), changes.to_string(made.traces.size()));
   }
-  const bool same_case = provenance->case_sha256 == the_case.sha256;
-  if (changed == 0 && same_case) return "";
-  if (changed == 0) return fmt::format("{}: no value changes, the case file did", the_case.id());
-  return fmt::format("{}: {} of {} traces, {} ticks, {} channels; at most by {:.3g} in {}",
-                     the_case.id(), changed, traces.size(), total.ticks, total.channels.count(),
-                     total.max_deviation, channels()[total.max_channel].name);
+  if (provenance->case_sha256 != the_case.sha256) {
+    return fmt::format("{}: no value changes, the case file did", the_case.id());
+  }
+  const Measured before{provenance->horizon_s, provenance->metrics, provenance->models};
+  const Measured now = measured_in(made);
+  if (before == now) return "";
+  return fmt::format(
+      "{}: no value changes, {}", the_case.id(),
+      before.models == now.models ? "horizons or metrics did" : "the vehicle's files did");
 }
 
 }  // namespace attest

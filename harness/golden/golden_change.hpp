@@ -3,15 +3,15 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
-#include "harness/golden/golden.hpp"
+#include "harness/golden/make_golden.hpp"
 
 namespace attest {
 
-// One line: how many traces, ticks and channels differ from `traces`, and the largest deviation;
-// values differ as at the exact level. Empty when the golden is what would be written now.
-std::string change_of_golden(const Case& the_case, const std::vector<GoldenTrace>& traces,
+// One line: how many traces, ticks and channels differ from `made`, and the largest deviation,
+// where values differ as at the exact level; or that only the case, the vehicle's files, metrics or
+// horizons did. Empty when the golden is what would be written now.
+std::string change_of_golden(const Case& the_case, const MadeGolden& made,
                              const std::filesystem::path& golden_root);
 
 }  // namespace attest

@@ -27,7 +27,7 @@ struct Recorded {
 Result<Recorded> read_recorded(const std::filesystem::path& file, const std::string& profile = "",
                                const std::string& mixer = "");
 
-// Errors: the part has no such parameter in that profile, or not of that value.
+// Errors: the module has no such parameter in that profile, or not of that value.
 Result<void> check_parameter(const Subject& subject, const ParameterChange& change);
 
 }  // namespace attest

@@ -1,7 +1,5 @@
 #include "harness/host/first_steps.hpp"
 
-#include <fmt/format.h>
-
 #include "harness/loop/open_loop.hpp"
 #include "harness/trace/channels.hpp"
 
@@ -38,10 +36,8 @@ std::string wrong_in_first_steps(const HostOptions& options, const std::string& 
   if (!host) return host.error().to_string();
   Trace trace = level_vehicle((*host)->says().fixed_step.value_or(Rate::hz(250)));
   const auto fault = (*host)->drive({profile}, trace);
-  if (!fault) return "";
-  const bool has_a_tick =
-      fault->kind != PortFault::Kind::crash && fault->kind != PortFault::Kind::timeout;
-  return has_a_tick ? fmt::format("at tick {}: {}", fault->tick, fault->what) : fault->what;
+  if (!fault || fault->kind == PortFault::Kind::unsupported) return "";
+  return fault->what;
 }
 
 }  // namespace attest

@@ -57,7 +57,8 @@ class PortHost {
   // Whether the port makes a unit of that profile; also false of a port that went wrong.
   virtual bool supports(const std::string& profile) = 0;
 
-  // Its process has ended: further requests need a new host.
+  // It crashed or broke the protocol: further requests need a new host. One that was too late is
+  // not asked again, and each further request ends with that fault.
   virtual bool is_spent() const { return false; }
 };
 

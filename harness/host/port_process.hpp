@@ -32,6 +32,7 @@ struct HostOptions {
   // Looked at while an answer is awaited; true: the answer does not matter any more.
   std::function<bool()> stop = [] { return false; };
   // Makes a host of another kind in place of a process; empty: a process, or `in_process`.
+  // describe_port() does not look at it.
   StartHost start = {};
 };
 

@@ -57,7 +57,7 @@ Result<LoopTiming> ticks_of(const json& values, const std::string& file) {
   return ticks;
 }
 
-Result<RunConfiguration> setup_of(const json& root) {
+Result<RunConfiguration> configuration_of(const json& root) {
   auto rate = Rate::parse(root.value("rate", ""));
   if (!rate) return tl::unexpected(rate.error());
   auto plant = parse_plant_kind(root.value("plant", ""));
@@ -81,7 +81,7 @@ Result<TimingFile> read_timing(const std::filesystem::path& path) {
   if (!complete) {
     return fail_at(file, "is no timing file; `attest stress --record-timing` writes them");
   }
-  auto configuration = setup_of(root);
+  auto configuration = configuration_of(root);
   if (!configuration) return fail_at(file, configuration.error().message);
   auto ticks = ticks_of(root["ticks_ns"], file);
   if (!ticks) return tl::unexpected(ticks.error());

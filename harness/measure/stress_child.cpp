@@ -59,9 +59,10 @@ std::optional<std::vector<T>> read_some(const json& count, std::size_t most, Blo
   return wanted <= most ? blobs.read<T>(wanted) : std::nullopt;
 }
 
-// Empty: nothing that the child of a stress run sends. Throws json::exception, too.
-std::optional<StressMeasurement> measurement_from(const StressTask& task, const json& head,
-                                                  BlobReader& blobs) {
+// Empty: nothing that the child of a stress run sends. Only one that was asked to stop may have
+// flown less than the whole flight. Throws json::exception, too.
+std::optional<StressMeasurement> measurement_from(const StressTask& task, bool was_asked_to_stop,
+                                                  const json& head, BlobReader& blobs) {
   auto stress = stress_from_json(head.at("stress"));
   if (!stress) return std::nullopt;
   StressMeasurement measured{*std::move(stress), {}};
@@ -82,6 +83,10 @@ std::optional<StressMeasurement> measurement_from(const StressTask& task, const 
   flight.unit.changes = changes_from(head.at("parameters"));
   flight.unit.fault = fault_from(head);
   flight.plant.divergence = divergence_from(head);
+  const bool may_be_short = was_asked_to_stop || flight.unit.fault || flight.plant.divergence ||
+                            task.the_case.unit.on_estimate;
+  const std::size_t releases = flight.unit.ticks.size() + measured.stress.misses.skipped;
+  if (releases < most && !may_be_short) return std::nullopt;
   return measured;
 }
 
@@ -140,12 +145,11 @@ class Listener {
       : task_(task), child_(child), progress_(progress) {}
 
   Result<StressResult> listen(const std::function<bool()>& stop) {
-    bool stopping = false;
     Patience patience;
     patience.given_up = [&] {
-      if (!stopping && stop()) {
+      if (!is_stopping_ && stop()) {
         child_.ask_to_stop();
-        stopping = true;
+        is_stopping_ = true;
       }
       return hangs();
     };
@@ -216,7 +220,7 @@ class Listener {
           if (came != Received::Kind::message) kind = came;
           return came == Received::Kind::message;
         });
-        auto measured = measurement_from(task_, head, blobs);
+        auto measured = measurement_from(task_, is_stopping_, head, blobs);
         if (!measured) return end_of(kind);
         return judge_live(task_, *std::move(measured));
       }
@@ -243,6 +247,7 @@ class Listener {
   const std::function<void(const StressProgress&)>& progress_;
   const Clock::time_point began_ = Clock::now();
   Clock::time_point heard_ = Clock::now();
+  bool is_stopping_ = false;
   bool is_made_ = false;  // the unit: the first progress comes after that
   bool idle_ = true;
   Nanoseconds flown_{0};

@@ -15,7 +15,7 @@
 
 namespace attest {
 
-// One of the two figures is there. Below 0: nothing holds, or the port went wrong (`result`).
+// One of the two figures is there. Below 0: nothing holds, or `result` is no pass.
 struct SweepResult {
   CaseResult result;                       // a verdict other than pass: the port went wrong
   std::optional<double> lowest_rate_hz;    //

@@ -128,7 +128,8 @@ Result<Child> Child::spawn(Runs runs, const std::function<void(MessageSocket&)>&
 Child::Child(Child&& other) noexcept
     : process_(std::move(other.process_)),
       socket_(std::move(other.socket_)),
-      output_(std::exchange(other.output_, -1)) {}
+      output_(std::exchange(other.output_, -1)),
+      has_exited_well_(other.has_exited_well_) {}
 
 Child& Child::operator=(Child&& other) noexcept {
   if (this == &other) return *this;
@@ -136,6 +137,7 @@ Child& Child::operator=(Child&& other) noexcept {
   process_ = std::move(other.process_);
   socket_ = std::move(other.socket_);
   output_ = std::exchange(other.output_, -1);
+  has_exited_well_ = other.has_exited_well_;
   return *this;
 }
 

@@ -1,5 +1,5 @@
-// A CaseResult as JSON and back: what a worker process sends to the
-// judge, and one entry of the JSON report.
+// A CaseResult as JSON and back: what a worker process sends to the command, and one entry of the
+// JSON report.
 //
 //     {"id": "px4-v1.5.5/attitude/roll_30@250hz", "profile": ..., "group": ..., "name": ...,
 //      "rate": "250", "verdict": "fail", "reason": "...", "ticks": 500, "deviating_ticks": 3,

@@ -37,11 +37,12 @@ class Pool {
     const auto most = static_cast<std::size_t>(std::max(options_.processes, 1));
     while (workers_.size() < most && next_ < end_) {
       const std::size_t work = next_++;
-      if (work_[work].tasks > 0) start(work, 0);
+      if (work_[work].tasks == 0 || start(work, 0)) continue;
+      if (!workers_.empty()) return;  // the next may start when one of these has ended
     }
   }
 
-  void start(std::size_t work, std::size_t first) {
+  bool start(std::size_t work, std::size_t first) {
     auto child = Child::spawn(Child::Runs::our_code, [&](MessageSocket& parent) {
       work_[work].run(first, [&](const std::string& answer, std::size_t tasks) {
         parent.send(answer, {{&tasks, sizeof tasks}});
@@ -52,6 +53,7 @@ class Pool {
     } else {
       fail(work, child.error());
     }
+    return child.has_value();
   }
 
   void fail(std::size_t work, const Error& error) {

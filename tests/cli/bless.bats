@@ -200,3 +200,9 @@ nothing_half_done() {
   run "$ATTEST" --suite suite run
   [ "$status" -eq 0 ]
 }
+
+@test "an exclusion cannot split a file, so bless refuses it" {
+  run "$ATTEST" bless --exclude 'px4-v1.3.4/*' --yes --reason x
+  [ "$status" -eq 2 ]
+  has "select with --filter or --group"
+}

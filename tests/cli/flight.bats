@@ -189,6 +189,10 @@ CHECK
   [ "$status" -eq 2 ]
   has "hexa.toml has changed since it was blessed"
   has "attest bless"
+  run "$ATTEST" --suite suite bless --yes --reason "the vehicle has a comment"
+  [ "$status" -eq 0 ]
+  has "no value changes, the vehicle's files did"
+  "$ATTEST" --suite suite run
 }
 
 @test "bless refuses a flight that misses its own bounds, or is lost" {

@@ -125,3 +125,10 @@ RESULT
   has "protocol: the port wrote on the socket on which its process answers"
   lacks "PASS"
 }
+
+@test "a live flight that a port ends early is not judged by its beginning" {
+  run "$ATTEST" stress --rate 250 --duration 1 --no-cyclictest --policy other \
+    --port "lib:$PORTS/hostile_stops_early.so"
+  [ "$status" -eq 1 ]
+  has "protocol"
+}

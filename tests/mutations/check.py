@@ -58,8 +58,13 @@ def copy_tree() -> None:
     """The files of the project as they are now. What has not changed keeps its time, so that only
     what has changed is compiled again."""
     listed = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"]
-    names = subprocess.run(listed, cwd=ROOT, capture_output=True, text=True, check=True).stdout
-    for name in filter(None, names.split("\0")):
+    listing = subprocess.run(listed, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    names = set(filter(None, listing.split("\0")))
+    for old in COPY.rglob("*"):
+        inside = old.relative_to(COPY)
+        if inside.parts[0] != "build" and old.is_file() and str(inside) not in names:
+            old.unlink()
+    for name in sorted(names):
         source, target = ROOT / name, COPY / name
         if not source.exists():
             target.unlink(missing_ok=True)

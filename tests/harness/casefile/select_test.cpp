@@ -142,6 +142,10 @@ TEST_F(SelectTest, WhatIsExcludedIsLeftOut) {
   EXPECT_THAT(select(selection), ElementsAre("rates/roll:11"));
   selection.excludes = {"roll"};
   EXPECT_THAT(select(selection)[0], HasSubstr("no case matches the selection"));
+  // There are such cases, though the filter does not select them.
+  selection.filters = {"rates/*"};
+  selection.excludes = {"attitude/*"};
+  EXPECT_THAT(select(selection), ElementsAre("rates/roll:11", "rates/slow:2"));
 }
 
 TEST_F(SelectTest, AnExclusionThatLeavesNothingOutIsAnError) {

@@ -9,6 +9,7 @@
 #include "harness/casefile/stimulus.hpp"
 #include "harness/compare/compare.hpp"
 #include "harness/core/file.hpp"
+#include "harness/golden/golden_change.hpp"
 #include "tests/harness/casefile/case_files.hpp"
 #include "tests/harness/golden/blessed.hpp"
 
@@ -285,6 +286,30 @@ TEST_F(GoldenOfAFlight, OfAVehicleThatItDoesNotListOrThatChangedItIsStale) {
   ASSERT_TRUE(write_file(vehicle_.file, "of another bee\n"));
   ASSERT_FALSE(read_at(100));
   EXPECT_THAT(read_at(100).error().message, HasSubstr("bee.toml has changed since it was blessed"));
+}
+
+TEST_F(GoldenOfAFlight, WhatBlessingWouldChangeIsTold) {
+  const auto now = [&] {
+    MadeGolden made{answers_of_reference(a_case()), vehicle_.files()};
+    for (std::size_t i = 0; i < made.traces.size(); ++i) {
+      made.traces[i].is_whole = false;
+      made.traces[i].horizon_s = 0.1 * static_cast<double>(i + 1);
+      made.traces[i].metrics = {{"settles", static_cast<double>(i)}};
+    }
+    return made;
+  };
+  EXPECT_THAT(change_of_golden(a_case(), now(), root()), HasSubstr("new, 2 traces"));
+  bless_with(vehicle_.files());
+  EXPECT_EQ(change_of_golden(a_case(), now(), root()), "");
+  MadeGolden other = now();
+  other.traces[0].trace.samples[3].out.vehicle_rates_setpoint.roll += 1;
+  EXPECT_THAT(change_of_golden(a_case(), other, root()),
+              HasSubstr("1 of 2 traces, 1 ticks, 1 channels; at most by 1 in"));
+  other = now();
+  other.traces[1].horizon_s = 0.3;
+  EXPECT_THAT(change_of_golden(a_case(), other, root()), HasSubstr("horizons or metrics did"));
+  ASSERT_TRUE(write_file(vehicle_.file, "of another bee\n"));
+  EXPECT_THAT(change_of_golden(a_case(), now(), root()), HasSubstr("the vehicle's files did"));
 }
 
 }  // namespace
