@@ -6,6 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "harness/port/port.hpp"
+
 namespace attest::cli {
 
 void add_examples(CLI::App& command, std::initializer_list<Example> examples) {
@@ -15,7 +17,7 @@ void add_examples(CLI::App& command, std::initializer_list<Example> examples) {
 }
 
 void add_port(CLI::App& command, std::string& port) {
-  command.add_option("--port", port, "`builtin` (the reference), `lib:PATH` or `fault:ID`")
+  command.add_option("--port", port, fmt::format("{}; `builtin` is the reference", port_kinds))
       ->type_name("PORT")
       ->capture_default_str();
 }

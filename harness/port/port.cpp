@@ -42,8 +42,7 @@ Result<std::unique_ptr<Port>> open_port(const std::string& specification) {
     return open_fault(std::string_view(specification).substr(fault_prefix.size()));
   }
   if (const auto library = library_of(specification)) return open_shared_library(*library);
-  return fail(
-      fmt::format("unknown port `{}`; use `builtin`, `lib:PATH` or `fault:ID`", specification));
+  return fail(fmt::format("unknown port `{}`; use {}", specification, port_kinds));
 }
 
 }  // namespace attest

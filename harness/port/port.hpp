@@ -83,6 +83,9 @@ Result<int> parse_fraction_bits(std::string_view arithmetic);
 // The file of "lib:PATH"; empty for a port of another kind.
 std::optional<std::string> library_of(const std::string& specification);
 
+// For help and messages.
+inline constexpr const char* port_kinds = "`builtin`, `lib:PATH` or `fault:ID`";
+
 // Opens "builtin", "lib:PATH" or "fault:ID". Loading a library runs its code: a program that must
 // survive a bad port does this in a child process. Errors: unknown kind, missing library, missing
 // symbol, wrong ABI version, incomplete function table.

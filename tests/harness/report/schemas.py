@@ -43,7 +43,7 @@ WRONG_REPORT = {
     "bits of one value only": lambda r: r["results"][3]["first"].pop("want_bits"),
     "bits in capitals": lambda r: r["results"][3]["first"].update(got_bits="0xBF800000"),
     "a vehicle without a plant": lambda r: r["results"][-1].pop("plant"),
-    "an unknown plant": lambda r: r["results"][-1].update(plant="gazebo"),
+    "a plant without a name": lambda r: r["results"][-1].update(plant=""),
     "metrics of no flight": lambda r: r["results"][3].update(metrics=r["results"][-1]["metrics"]),
     "an unknown measure": lambda r: r["results"][-1]["metrics"][0].update(measure="grace"),
     "an error without a place": lambda r: r["errors"][0].pop("line"),
