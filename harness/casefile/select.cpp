@@ -152,20 +152,15 @@ void add_selected(const Case& parsed, const Selection& selection, std::set<std::
   }
 }
 
-// " with --group attitude, --rate 250": what narrows the selection beside the patterns.
+// " with --group attitude, --rate 250": the options that select in addition to the patterns.
 std::string scope_of(const Selection& selection) {
   std::vector<std::string> rates;
   for (const Rate& rate : selection.rates) rates.push_back(rate.to_string());
-  const std::pair<const char*, const std::vector<std::string>&> lists[] = {
-      {"--group", selection.groups},
-      {"--profile", selection.profiles},
-      {"--rate", rates},
-      {"--vehicle", selection.vehicles},
-      {"--plant", selection.plants}};
-  std::vector<std::string> options;
-  for (const auto& [option, values] : lists) {
-    if (!values.empty()) options.push_back(fmt::format("{} {}", option, fmt::join(values, ",")));
-  }
+  const auto options = as_options({{"--group", selection.groups},
+                                   {"--profile", selection.profiles},
+                                   {"--rate", rates},
+                                   {"--vehicle", selection.vehicles},
+                                   {"--plant", selection.plants}});
   return options.empty() ? "" : fmt::format(" with {}", fmt::join(options, ", "));
 }
 
@@ -197,6 +192,15 @@ Result<Shard> Shard::parse(const std::string& text) {
     if (bad_count == std::errc{} && rest == end && in_range) return shard;
   }
   return fail(fmt::format("`{}` is not a shard; write I/N with I from 1 to N, such as 2/4", text));
+}
+
+std::vector<std::string> as_options(
+    std::initializer_list<std::pair<const char*, const std::vector<std::string>&>> lists) {
+  std::vector<std::string> options;
+  for (const auto& [option, values] : lists) {
+    if (!values.empty()) options.push_back(fmt::format("{} {}", option, fmt::join(values, ",")));
+  }
+  return options;
 }
 
 Result<std::vector<SelectedCase>> select_cases(const fs::path& folder, const Selection& selection) {

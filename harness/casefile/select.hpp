@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "harness/casefile/case.hpp"
@@ -40,6 +42,10 @@ struct SelectedCase {
   std::vector<RunConfiguration>
       configurations;  // in the order of Case::configurations(), not empty
 };
+
+// `--group attitude,rates` for each list that is not empty.
+std::vector<std::string> as_options(
+    std::initializer_list<std::pair<const char*, const std::vector<std::string>&>> lists);
 
 // Reads the case files below `folder` that can match and keeps what is selected, in the order of
 // their ids. Errors: a malformed case file, an unknown group, profile, rate, vehicle or plant,

@@ -7,11 +7,11 @@
 #include <fmt/format.h>
 
 #include "harness/cli/command.hpp"
+#include "harness/cli/run_arguments.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/timing_arguments.hpp"
 #include "harness/cli/wrong_arguments.hpp"
 #include "harness/core/version.hpp"
-#include "harness/report/report_format.hpp"
 
 namespace attest::cli {
 namespace {
@@ -30,70 +30,6 @@ constexpr const char* footer =
     "  attest stress --port lib:./libmine.so          in real time, at 250 Hz to 8 kHz\n"
     "\n"
     "Exit codes: 0 nothing failed, 1 something did not conform, 2 usage or environment.\n";
-
-void add_run(CLI::App& app, const Globals& globals, Action& action) {
-  auto options = std::make_shared<RunOptions>();
-  CLI::App* command = app.add_subcommand(
-      "run", "Run a port through the cases and compare it with the golden traces");
-  add_port(*command, options->host.port);
-  add_selection(*command, options->select);
-  command
-      ->add_option("--level", options->level,
-                   "How strictly: `exact` (float32 bits), `numeric` (a tolerance a channel) or "
-                   "`events` (what happens, within a tick, and no value of another sign or size); "
-                   "flights are judged the same way at each")
-      ->capture_default_str()
-      ->group(option_group::strictness);
-  CLI::Option* const expected =
-      command
-          ->add_option(
-              "--expected-failures", options->expected_failures,
-              "Failures that are accepted, with reasons (TOML), by group or case; one that "
-              "passes fails the run")
-          ->type_name("F")
-          ->group(option_group::strictness);
-  command
-      ->add_option("--timing", options->timing,
-                   "Only the flight of `stress --record-timing`, at the very times it had, beside "
-                   "the reference at these times")
-      ->type_name("F")
-      ->group(option_group::selection);
-  command
-      ->add_flag("--diagnose,!--no-diagnose", options->diagnose,
-                 "When something fails, name the mistakes it looks like (on by default)")
-      ->group(option_group::reports);
-  add_jobs(*command, options->jobs, "Cases at a time");
-  command->add_option("--shard", options->select.shard, "Only part I of N of the cases")
-      ->type_name("I/N")
-      ->capture_default_str()
-      ->group(option_group::selection);
-  command->add_flag("--fail-fast", options->fail_fast, "Stop after the first failing case")
-      ->group(option_group::execution);
-  add_timeout(*command, options->host.timeout_s);
-  command
-      ->add_flag(
-          "--in-process", options->host.in_process,
-          "Run the port in attest's own process, for a debugger or a sanitizer; the result is "
-          "partial")
-      ->group(option_group::execution);
-  for (const ReportFormat& format : report_formats()) {
-    command->add_option(format.option, options->reports[format.option], format.help)
-        ->type_name("FILE")
-        ->group(option_group::reports);
-  }
-  command->get_option("--write-expected")->excludes(expected);
-  add_examples(
-      *command,
-      {{"attest run", "the built-in reference, all cases at all rates"},
-       {"attest run --port lib:./libmine.so", "your port"},
-       {"attest run --port lib:./libmine.so --level exact --filter 'attitude/*@250hz'",
-        "some cases, to the bit"},
-       {"attest run --port lib:./libmine.so --exclude 'flight*/*' --junit attest.junit.xml",
-        "without the flights, with a report for CI"}});
-  command->callback([options, &globals, &action] {
-    action = [=, &globals] { return run_command(*options, globals); };
-  });
-}
 
 void add_replay(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<ReplayOptions>();
@@ -311,7 +247,7 @@ int run_command_line(int argc, char** argv) {
   app.add_flag("-q,--quiet", globals.quiet, "No progress and no summary, only what went wrong");
 
   Action action;
-  add_run(app, globals, action);
+  add_run_command(app, globals, action);
   add_replay(app, globals, action);
   add_sim(app, globals, action);
   add_timing_commands(app, globals, action);

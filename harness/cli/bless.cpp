@@ -79,6 +79,7 @@ Result<int> bless_selected(const BlessOptions& options, const Globals& globals) 
   blessing.on_change = [](const std::string& line) { fmt::print("{}\n", line); };
   blessing.stop = interrupted;
   auto pending = write_beside(*cases, blessing);
+  if (auto go_on = check_not_interrupted(); !go_on) return tl::unexpected(go_on.error());
   if (!pending) return tl::unexpected(pending.error());
 
   if (pending->unchanged > 0) fmt::print("{} unchanged\n", pending->unchanged);

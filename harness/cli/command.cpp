@@ -15,13 +15,12 @@ int report_error(const Error& error) {
 }
 
 std::string SelectionOptions::narrowing() const {
-  std::vector<std::string> options;
-  const std::pair<const char*, const std::vector<std::string>&> lists[] = {
-      {"--filter", filters}, {"--exclude", excludes}, {"--group", groups},
-      {"--rate", rates},     {"--vehicle", vehicles}, {"--plant", plants}};
-  for (const auto& [option, values] : lists) {
-    if (!values.empty()) options.push_back(fmt::format("{} {}", option, fmt::join(values, ",")));
-  }
+  auto options = as_options({{"--filter", filters},
+                             {"--exclude", excludes},
+                             {"--group", groups},
+                             {"--rate", rates},
+                             {"--vehicle", vehicles},
+                             {"--plant", plants}});
   if (shard != "1/1") options.push_back("--shard " + shard);
   return fmt::format("{}", fmt::join(options, " "));
 }

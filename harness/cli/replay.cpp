@@ -86,17 +86,9 @@ class Replay {
   }
 
  private:
-  // The process of the port: once, before any recorded answer is read; again after a crash.
-  Result<void> start() {
-    if (host_ && !host_->is_spent()) return {};
-    auto host = start_host(options_.host);
-    if (!host) return tl::unexpected(host.error());
-    host_ = *std::move(host);
-    return {};
-  }
-
   Result<void> replay(const std::string& file) {
-    if (auto started = start(); !started) return started;
+    // Before the recorded outputs are read: the port's process is a copy of this one.
+    if (auto started = ensure_host(host_, options_.host); !started) return started;
     const auto recorded = recorded_in(file, options_);
     if (!recorded) return tl::unexpected(recorded.error());
     const CaseResult result =

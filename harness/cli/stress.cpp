@@ -66,10 +66,10 @@ Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& su
   if (!options.record_timing.empty() && options.rates.size() != 1) {
     return fail("--record-timing records one rate; name it with --rates");
   }
-  auto port = describe_port(options.host);
+  Case& the_case = chosen->the_case;
+  auto port = describe_port(options.host, {the_case.profile});
   if (!port) return tl::unexpected(port.error());
 
-  Case& the_case = chosen->the_case;
   the_case.duration = {options.duration_s, Span::In::seconds};
   set_budget(options, the_case.flight->realtime);
   StressPlan plan;

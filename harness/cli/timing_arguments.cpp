@@ -8,6 +8,70 @@ namespace attest::cli {
 
 namespace {
 
+// The machine on which it flies: load, scheduling, CPUs.
+void add_machine(CLI::App& command, StressOptions& options) {
+  command.add_option("--load", options.load, "Number of processes that keep the machine busy")
+      ->check(CLI::Range(0, 1024))
+      ->type_name("N")
+      ->capture_default_str()
+      ->group(option_group::execution);
+  command.add_option("--load-kind", options.load_kind, "What they use: `cpu`, `cache` or `io`")
+      ->type_name("KIND")
+      ->capture_default_str()
+      ->group(option_group::execution);
+  command
+      .add_option("--policy", options.policy,
+                  "Scheduling policy of unit and plant: `fifo` (where it is permitted) or `other`")
+      ->capture_default_str()
+      ->group(option_group::execution);
+  command.add_option("--cpus", options.cpus, "2: unit and plant on one each; 1: both on one")
+      ->check(CLI::Range(1, 2))
+      ->capture_default_str()
+      ->group(option_group::execution);
+  command
+      .add_option("--spin", options.spin_us,
+                  "Wake up this long before the release and spin until it [us]")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str()
+      ->group(option_group::execution);
+  command
+      .add_flag("--cyclictest,!--no-cyclictest", options.cyclictest,
+                "Let cyclictest measure the idle machine too, where it is installed")
+      ->group(option_group::execution);
+}
+
+void add_budgets(CLI::App& command, StressOptions& options) {
+  command
+      .add_option("--misses-per-million", options.misses_per_million,
+                  "Deadline misses allowed, and overruns; replaces the bound of the case")
+      ->check(CLI::NonNegativeNumber)
+      ->group(option_group::strictness);
+  command
+      .add_option("--p99-latency", options.p99_latency_us,
+                  "Wake-up latency that 1% of the steps may exceed [us]; replaces that of the case")
+      ->check(CLI::NonNegativeNumber)
+      ->group(option_group::strictness);
+  command
+      .add_option("--budget", options.execution_us,
+                  "Execution time [us]; a longer step is an overrun, and counts like a miss")
+      ->check(CLI::NonNegativeNumber)
+      ->group(option_group::strictness);
+}
+
+void add_stress_reports(CLI::App& command, StressOptions& options) {
+  command
+      .add_option("--record-timing", options.record_timing,
+                  "Write the times of all ticks, for `run --timing`; one rate only")
+      ->type_name("F")
+      ->group(option_group::reports);
+  command.add_option("--json", options.json, "Write all that was measured")
+      ->type_name("F")
+      ->group(option_group::reports);
+  command.add_option("--junit", options.junit, "Write a report for CI servers")
+      ->type_name("F")
+      ->group(option_group::reports);
+}
+
 void add_stress(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<StressOptions>();
   CLI::App* command = app.add_subcommand("stress",
@@ -23,55 +87,14 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("CASE")
       ->capture_default_str();
   add_plant(*command, options->vehicle, options->plant);
-  command->add_option("--load", options->load, "So many workers that keep the machine busy")
-      ->check(CLI::Range(0, 1024))
-      ->type_name("N")
-      ->capture_default_str();
-  command->add_option("--load-kind", options->load_kind, "What they do: `cpu`, `cache` or `io`")
-      ->type_name("KIND")
-      ->capture_default_str();
-  command
-      ->add_option("--policy", options->policy,
-                   "Of the two threads: `fifo` (where it is permitted) or `other`")
-      ->capture_default_str();
-  command->add_option("--cpus", options->cpus, "2: unit and plant on one each; 1: both on one")
-      ->check(CLI::Range(1, 2))
-      ->capture_default_str();
-  command
-      ->add_option("--spin", options->spin_us, "Wake up so long before the release and spin [us]")
-      ->check(CLI::Range(0.0, 1e6))
-      ->capture_default_str();
-  command
-      ->add_option(
-          "--misses-per-million", options->misses_per_million,
-          "Deadlines that may be missed, and steps that may overrun, instead of the case's")
-      ->check(CLI::NonNegativeNumber);
-  command
-      ->add_option("--p99-latency", options->p99_latency_us,
-                   "Wake-up latency that 1% of the steps may exceed [us], instead of the case's")
-      ->check(CLI::NonNegativeNumber);
-  command
-      ->add_option("--budget", options->execution_us,
-                   "Execution time [us]; a longer step is an overrun, and counts like a miss")
-      ->check(CLI::NonNegativeNumber);
-  command
-      ->add_option("--record-timing", options->record_timing,
-                   "Write when everything happened, for `run --timing`; one rate only")
-      ->type_name("F")
-      ->group(option_group::reports);
-  command->add_option("--json", options->json, "Write all that was measured")
-      ->type_name("F")
-      ->group(option_group::reports);
-  command->add_option("--junit", options->junit, "Write a report for CI servers")
-      ->type_name("F")
-      ->group(option_group::reports);
-  command->add_flag("--cyclictest,!--no-cyclictest", options->cyclictest,
-                    "Let cyclictest measure the idle machine too, where it is installed");
+  add_machine(*command, *options);
+  add_budgets(*command, *options);
+  add_stress_reports(*command, *options);
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command,
                {{"attest stress --port lib:./libmine.so", "at 250 Hz to 8 kHz, 10 s each"},
                 {"attest stress --port lib:./libmine.so --rate 1000 --load 2 --load-kind cache",
-                 "beside two processes that use up the caches"},
+                 "while two processes fill the caches"},
                 {"attest stress --rate 500 --duration 5 --record-timing t.json",
                  "keep the times, to fly them again with `attest run --timing t.json`"}});
   command->callback([options, &globals, &action] {

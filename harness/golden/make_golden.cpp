@@ -37,7 +37,7 @@ Result<MadeGolden> make_golden(const Case& the_case, Port& reference, VehicleMod
   std::set<std::filesystem::path> files;
   // A provenance speaks of all of them.
   for (const RunConfiguration& configuration : the_case.configurations()) {
-    if (stop()) return fail("interrupted; no golden was changed");
+    if (stop()) return fail("interrupted");
     if (!configuration.plant_configuration) {
       auto trace = open_loop_trace(the_case, configuration, reference);
       if (!trace) return tl::unexpected(trace.error());

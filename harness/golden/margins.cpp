@@ -177,8 +177,8 @@ void note_norm(const float (&q)[4], Notes& notes) {
   // Zeros and what is not finite are answered alike by all.
   if (squared == 0 || !std::isfinite(squared)) return;
   Margin& worst = notes.margins.of[static_cast<std::size_t>(Decision::quaternion_norm)];
-  const double off = std::abs(std::sqrt(squared) - 1);
-  if (std::isinf(worst.distance) || off > worst.distance) worst = {off, notes.tick};
+  const Margin off{std::abs(std::sqrt(squared) - 1), notes.tick};
+  if (is_nearer(Decision::quaternion_norm, off, worst)) worst = off;
 }
 
 struct DecisionTraits {
@@ -225,12 +225,14 @@ std::string_view name_of(Decision decision) { return traits_of(decision).name; }
 
 double least_margin(Decision decision) { return traits_of(decision).least_margin; }
 
+bool is_nearer(Decision decision, const Margin& one, const Margin& other) {
+  if (std::isinf(one.distance) || std::isinf(other.distance)) return !std::isinf(one.distance);
+  const bool larger_is_nearer = decision == Decision::quaternion_norm;
+  return larger_is_nearer ? one.distance > other.distance : one.distance < other.distance;
+}
+
 bool Margins::is_safe(Decision decision) const {
-  const double distance = (*this)[decision].distance;
-  if (decision == Decision::quaternion_norm) {
-    return std::isinf(distance) || distance <= least_margin(decision);
-  }
-  return distance >= least_margin(decision);
+  return !is_nearer(decision, (*this)[decision], {least_margin(decision)});
 }
 
 double least_margin(Decision decision, std::optional<int> fraction_bits) {
@@ -268,15 +270,9 @@ const Margins& MarginMeter::step(std::span<const ParameterChange> changes,
 
 namespace {
 
-// The least of each; of the norm, for which far is near, the most.
-void gather(const Margins& at_tick, Margins& all) {
+void keep_nearest(const Margins& at_tick, Margins& all) {
   for (std::size_t i = 0; i < decision_count; ++i) {
-    const Margin& one = at_tick.of[i];
-    Margin& kept = all.of[i];
-    if (std::isinf(one.distance)) continue;
-    const bool is_norm = static_cast<Decision>(i) == Decision::quaternion_norm;
-    const bool is_nearer = is_norm ? one.distance > kept.distance : one.distance < kept.distance;
-    if (std::isinf(kept.distance) || is_nearer) kept = one;
+    if (is_nearer(static_cast<Decision>(i), at_tick.of[i], all.of[i])) all.of[i] = at_tick.of[i];
   }
 }
 
@@ -286,7 +282,7 @@ Margins controller_margins(const Trace& given, const std::string& profile) {
   PendingChanges changes(given.parameters);
   Margins all;
   for (std::size_t tick = 0; tick < given.samples.size(); ++tick) {
-    gather(meter.step(changes.take_until(tick), given.samples[tick].in), all);
+    keep_nearest(meter.step(changes.take_until(tick), given.samples[tick].in), all);
   }
   return all;
 }

@@ -51,9 +51,13 @@ inline constexpr double decision_lsb = 750;
 double least_margin(Decision decision, std::optional<int> fraction_bits);
 
 struct Margin {
-  double distance = std::numeric_limits<double>::infinity();
+  double distance = std::numeric_limits<double>::infinity();  // infinite: never measured
   std::size_t tick = 0;
 };
+
+// Whether `one` is nearer to the decision than `other`: the smaller distance; of the norm, the
+// larger. A distance that was never measured is nearer than no other.
+bool is_nearer(Decision decision, const Margin& one, const Margin& other);
 
 struct Margins {
   std::array<Margin, decision_count> of{};

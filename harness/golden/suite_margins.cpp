@@ -1,19 +1,9 @@
 #include "harness/golden/suite_margins.hpp"
 
-#include <cmath>
-
 #include "harness/casefile/stimulus.hpp"
 
 namespace attest {
 namespace {
-
-bool is_nearer(const VectorMargin& one, const VectorMargin& nearest) {
-  if (std::isinf(one.margin.distance)) return false;
-  if (nearest.the_case == nullptr) return true;
-  const bool largest = one.decision == Decision::quaternion_norm;
-  return largest ? one.margin.distance > nearest.margin.distance
-                 : one.margin.distance < nearest.margin.distance;
-}
 
 // On purpose, and both branches are right.
 bool stands_on(const EitherBranch& branches, Decision decision) {
@@ -28,7 +18,7 @@ void add(const Case& the_case, const RunConfiguration& configuration, SuiteMargi
     const auto decision = static_cast<Decision>(i);
     if (stands_on(the_case.either_branch, decision)) continue;
     const VectorMargin one{&the_case, configuration, decision, found[decision]};
-    if (is_nearer(one, all.nearest[i])) all.nearest[i] = one;
+    if (is_nearer(decision, one.margin, all.nearest[i].margin)) all.nearest[i] = one;
     if (!found.is_safe(decision)) all.too_near.push_back(one);
   }
 }

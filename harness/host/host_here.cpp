@@ -1,21 +1,10 @@
 #include "harness/host/host_here.hpp"
 
-#include <algorithm>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "harness/host/step_timer.hpp"
 
 namespace attest {
-namespace {
-
-PortFault no_unit_of(const std::string& profile) {
-  return {PortFault::Kind::profile, 0,
-          fmt::format("the port does not support profile {}", profile)};
-}
-
-}  // namespace
 
 HostHere::HostHere(std::unique_ptr<Port> port, std::optional<PortSays> said, Course course)
     : port_(std::move(port)),
@@ -27,14 +16,7 @@ std::optional<PortFault> HostHere::held(std::optional<PortFault> fault,
   if (const std::string told = change(says_, PortSays::asked(*port_)); !told.empty()) {
     return PortFault{PortFault::Kind::protocol, 0, told};
   }
-  const bool is_refused = fault && fault->kind == PortFault::Kind::profile;
-  const auto& made = says_.profiles;
-  if (is_refused && std::find(made.begin(), made.end(), profile) != made.end()) {
-    return PortFault{
-        PortFault::Kind::protocol, 0,
-        fmt::format("create(\"{}\") returned NULL; it made a unit when the port was asked first",
-                    profile)};
-  }
+  if (fault && fault->kind == PortFault::Kind::profile) return no_unit_of(profile, says_);
   return fault;
 }
 
@@ -48,7 +30,7 @@ Result<Flown> HostHere::fly(const FlightPlan& plan) {
     const auto unit = port_->create(whole.profile);
     if (!unit) {
       Flown none;
-      none.fault = held(no_unit_of(whole.profile), whole.profile);
+      none.fault = held(no_unit_of(whole.profile, says_), whole.profile);
       return none;
     }
     auto flown = attest::fly(plan.from_one_period_on ? whole.from_one_period_on() : whole,
@@ -67,7 +49,7 @@ Result<StepTimes> HostHere::time_steps(const std::string& profile, const Trace& 
   Trace trace = inputs;
   times.fault = ports_.run([&]() -> std::optional<PortFault> {
     const auto unit = port_->create(profile);
-    if (!unit) return held(no_unit_of(profile), profile);
+    if (!unit) return held(no_unit_of(profile, says_), profile);
     TimedUnit timed(*unit, *clock_, times.steps);
     return held(attest::drive(timed, trace), profile);
   });
@@ -86,7 +68,7 @@ Result<void> HostHere::measure_stack(const std::string& profile, Trace trace, St
   }
   times.fault = ports_.run([&]() -> std::optional<PortFault> {
     const auto unit = port_->create(profile);
-    if (!unit) return held(no_unit_of(profile), profile);
+    if (!unit) return held(no_unit_of(profile, says_), profile);
     stack_->repaint();
     UnitOnStack on_stack(*unit, *stack_);
     return held(attest::drive(on_stack, trace), profile);

@@ -200,6 +200,14 @@ Result<std::unique_ptr<PortHost>> start_host(const HostOptions& options, const C
   return *std::move(process);
 }
 
+Result<void> ensure_host(std::unique_ptr<PortHost>& host, const HostOptions& options) {
+  if (host && !host->is_spent()) return {};
+  auto started = start_host(options);
+  if (!started) return tl::unexpected(started.error());
+  host = *std::move(started);
+  return {};
+}
+
 Result<PortDescription> describe_port(const HostOptions& options,
                                       const std::vector<std::string>& profiles) {
   PortDescription description;

@@ -42,6 +42,9 @@ struct HostOptions {
 // error: each request ends with that fault.
 Result<std::unique_ptr<PortHost>> start_host(const HostOptions& options, const Course& course = {});
 
+// Starts one in place of `host` if that is null or its process has ended. Errors as start_host().
+Result<void> ensure_host(std::unique_ptr<PortHost>& host, const HostOptions& options);
+
 // What a port says of itself, asked in a process of its own.
 struct PortDescription : PortSays {
   std::string hangs;       // why it says nothing: no answer in time when it was loaded

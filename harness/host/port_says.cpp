@@ -1,5 +1,7 @@
 #include "harness/host/port_says.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -35,6 +37,17 @@ std::string change(const PortSays& said, const PortSays& now) {
     if (!told.empty()) return told;
   }
   return "";
+}
+
+PortFault no_unit_of(const std::string& profile, const PortSays& said) {
+  const auto& made = said.profiles;
+  if (std::find(made.begin(), made.end(), profile) == made.end()) {
+    return {PortFault::Kind::profile, 0,
+            fmt::format("the port does not support profile {}", profile)};
+  }
+  return {PortFault::Kind::protocol, 0,
+          fmt::format("create(\"{}\") returned NULL; it made a unit when the port was asked first",
+                      profile)};
 }
 
 PortSays PortSays::asked(const Port& port) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/loop/unit_driver.hpp"
 #include "harness/port/port.hpp"
 
 namespace attest {
@@ -25,5 +26,9 @@ struct PortSays {
 // "its attest.arithmetic is `fixed:20`, it was `none` when the port was asked first; ..."; empty
 // when both say the same. The profiles are not compared.
 std::string change(const PortSays& said, const PortSays& now);
+
+// The fault of a port whose create(profile) returned NULL: it does not support the profile, or it
+// breaks the rules of the ABI, because it made a unit of that profile when it was asked first.
+PortFault no_unit_of(const std::string& profile, const PortSays& said);
 
 }  // namespace attest

@@ -83,8 +83,7 @@ Result<StressResult> judge_live(const StressTask& task, StressMeasurement measur
   StressResult& stress = measurement.stress;
   stress.result = result_for(task.the_case, task.configuration);
   if (!measurement.flight) {
-    add_skip(stress.result,
-             fmt::format("the port does not support profile {}", task.the_case.profile));
+    judge(no_unit_of(task.the_case.profile, task.port), stress.result);
     return std::move(stress);
   }
   LiveFlight& flight = *measurement.flight;

@@ -20,7 +20,9 @@ class Stopwatches {
       : options_(options), host_options_(host) {}
 
   Result<VectorTimes> time(const Case& the_case, const RunConfiguration& configuration) {
-    if (auto started = start(); !started) return tl::unexpected(started.error());
+    if (auto started = ensure_host(host_, host_options_); !started) {
+      return tl::unexpected(started.error());
+    }
     VectorTimes times{result_for(the_case, configuration), {}, {}};
     if (declines(host_->says(), times.result)) return times;
     const Trace inputs = stimulate(the_case, configuration.rate);
@@ -43,14 +45,6 @@ class Stopwatches {
   Nanoseconds clock() const { return clock_; }
 
  private:
-  Result<void> start() {
-    if (host_ && !host_->is_spent()) return {};
-    auto started = start_host(host_options_);
-    if (!started) return tl::unexpected(started.error());
-    host_ = *std::move(started);
-    return {};
-  }
-
   static void keep_quickest(std::vector<Nanoseconds> steps, std::vector<Nanoseconds>& quickest) {
     if (quickest.empty()) {
       quickest = std::move(steps);

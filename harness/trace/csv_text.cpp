@@ -1,29 +1,13 @@
 #include "harness/trace/csv_text.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cstring>
 
 namespace attest {
 
 void CsvText::name(std::string_view text) {
-  begin_cell();
+  end_cell(begin_cell());
   append(text);
-}
-
-void CsvText::number(float value) {
-  begin_cell();
-  if (value != value) return append("nan");  // to_chars would tell the sign of a NaN
-  char* const first = block_.data() + used_;
-  used_ +=
-      static_cast<std::size_t>(std::to_chars(first, first + longest_number, value).ptr - first);
-}
-
-void CsvText::integer(std::uint64_t value) {
-  begin_cell();
-  char* const first = block_.data() + used_;
-  used_ +=
-      static_cast<std::size_t>(std::to_chars(first, first + longest_number, value).ptr - first);
 }
 
 void CsvText::end_row() {
@@ -34,12 +18,6 @@ void CsvText::end_row() {
 Result<void> CsvText::finish() {
   flush();
   return status_;
-}
-
-void CsvText::begin_cell() {
-  if (block_.size() - used_ < longest_number + 1) flush();
-  if (!is_first_in_row_) block_[used_++] = ',';
-  is_first_in_row_ = false;
 }
 
 void CsvText::append(std::string_view text) {

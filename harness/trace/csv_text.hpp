@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -30,7 +31,9 @@ class CsvText {
   // Longer than any number: 20 digits of a u64.
   static constexpr std::size_t longest_number = 32;
 
-  void begin_cell();
+  // Returns where the cell starts, with room for a number. end_cell() takes the cell's end.
+  char* begin_cell();
+  void end_cell(const char* end) { used_ = static_cast<std::size_t>(end - block_.data()); }
   void append(std::string_view text);
   void flush();
 
@@ -40,5 +43,30 @@ class CsvText {
   std::size_t used_ = 0;
   std::array<char, std::size_t{64} * 1024> block_;
 };
+
+// Inline, because they are called for every cell.
+
+inline char* CsvText::begin_cell() {
+  if (block_.size() - used_ < longest_number + 1) flush();
+  char* at = block_.data() + used_;
+  if (!is_first_in_row_) *at++ = ',';
+  is_first_in_row_ = false;
+  return at;
+}
+
+inline void CsvText::number(float value) {
+  char* const first = begin_cell();
+  // to_chars would write the sign of a NaN.
+  if (value != value) {
+    end_cell(first);
+    return append("nan");
+  }
+  end_cell(std::to_chars(first, first + longest_number, value).ptr);
+}
+
+inline void CsvText::integer(std::uint64_t value) {
+  char* const first = begin_cell();
+  end_cell(std::to_chars(first, first + longest_number, value).ptr);
+}
 
 }  // namespace attest

@@ -248,14 +248,19 @@ class GoldenOfAFlight : public GoldenTest {
     for (const fs::path& file : vehicle_.files()) ASSERT_TRUE(write_file(file, "of a bee\n"));
   }
 
-  void bless_with(const std::vector<fs::path>& vehicle_files) {
+  // The horizons are 0.1 s, 0.2 s; the metrics 0, 1.
+  std::vector<GoldenTrace> flown() const {
     auto traces = answers_of_reference(a_case());
     for (std::size_t i = 0; i < traces.size(); ++i) {
       traces[i].is_whole = false;
       traces[i].horizon_s = 0.1 * static_cast<double>(i + 1);
       traces[i].metrics = {{"settles", static_cast<double>(i)}};
     }
-    auto golden = NewGolden::write(root(), a_case(), traces, vehicle_files, "a test");
+    return traces;
+  }
+
+  void bless_with(const std::vector<fs::path>& vehicle_files) {
+    auto golden = NewGolden::write(root(), a_case(), flown(), vehicle_files, "a test");
     ASSERT_TRUE(golden) << golden.error().to_string();
     ASSERT_TRUE(golden->put_in_place());
   }
@@ -289,27 +294,19 @@ TEST_F(GoldenOfAFlight, OfAVehicleThatItDoesNotListOrThatChangedItIsStale) {
 }
 
 TEST_F(GoldenOfAFlight, WhatBlessingWouldChangeIsTold) {
-  const auto now = [&] {
-    MadeGolden made{answers_of_reference(a_case()), vehicle_.files()};
-    for (std::size_t i = 0; i < made.traces.size(); ++i) {
-      made.traces[i].is_whole = false;
-      made.traces[i].horizon_s = 0.1 * static_cast<double>(i + 1);
-      made.traces[i].metrics = {{"settles", static_cast<double>(i)}};
-    }
-    return made;
-  };
-  EXPECT_THAT(change_of_golden(a_case(), now(), root()), HasSubstr("new, 2 traces"));
+  const MadeGolden made{flown(), vehicle_.files()};
+  EXPECT_THAT(change_of_golden(a_case(), made, root()), HasSubstr("new, 2 traces"));
   bless_with(vehicle_.files());
-  EXPECT_EQ(change_of_golden(a_case(), now(), root()), "");
-  MadeGolden other = now();
+  EXPECT_EQ(change_of_golden(a_case(), made, root()), "");
+  MadeGolden other = made;
   other.traces[0].trace.samples[3].out.vehicle_rates_setpoint.roll += 1;
   EXPECT_THAT(change_of_golden(a_case(), other, root()),
               HasSubstr("1 of 2 traces, 1 ticks, 1 channels; at most by 1 in"));
-  other = now();
+  other = made;
   other.traces[1].horizon_s = 0.3;
   EXPECT_THAT(change_of_golden(a_case(), other, root()), HasSubstr("horizons or metrics did"));
   ASSERT_TRUE(write_file(vehicle_.file, "of another bee\n"));
-  EXPECT_THAT(change_of_golden(a_case(), now(), root()), HasSubstr("the vehicle's files did"));
+  EXPECT_THAT(change_of_golden(a_case(), made, root()), HasSubstr("the vehicle's files did"));
 }
 
 }  // namespace

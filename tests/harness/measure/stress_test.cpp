@@ -119,6 +119,15 @@ TEST(Stress, APortThatDoesNotSupportTheProfileIsSkipped) {
   EXPECT_EQ(stress->result.reason, "the port does not support profile px4-v1.5.5");
 }
 
+TEST(Stress, APortThatMadeAUnitBeforeMustMakeOneAgain) {
+  StressTask task = hover_task();
+  task.port.profiles = {task.the_case.profile};
+  const auto stress = stressed(test_port("refuses_profile"), task);
+  ASSERT_TRUE(stress) << stress.error().to_string();
+  EXPECT_EQ(stress->result.verdict, Verdict::protocol);
+  EXPECT_THAT(stress->result.reason, HasSubstr("it made a unit when the port was asked first"));
+}
+
 // Of a flight without a step: its outputs cannot be judged.
 StressMeasurement measured_flight() {
   StressMeasurement measured;

@@ -1,0 +1,88 @@
+#include "harness/cli/run_arguments.hpp"
+
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include "harness/cli/command.hpp"
+#include "harness/report/report_format.hpp"
+
+namespace attest::cli {
+namespace {
+
+void add_strictness(CLI::App& command, RunOptions& options) {
+  command
+      .add_option("--level", options.level,
+                  "How strictly: `exact` (float32 bits), `numeric` (a tolerance a channel) or "
+                  "`events` (what happens, within a tick, and no value of another sign or size); "
+                  "flights are judged the same way at each level")
+      ->capture_default_str()
+      ->group(option_group::strictness);
+  command
+      .add_option("--expected-failures", options.expected_failures,
+                  "Failures that are accepted, with reasons (TOML), by group or case; one that "
+                  "passes fails the run")
+      ->type_name("F")
+      ->group(option_group::strictness);
+}
+
+void add_execution(CLI::App& command, RunOptions& options) {
+  add_jobs(command, options.jobs, "Cases at a time");
+  command.add_flag("--fail-fast", options.fail_fast, "Stop after the first failing case")
+      ->group(option_group::execution);
+  add_timeout(command, options.host.timeout_s);
+  command
+      .add_flag("--in-process", options.host.in_process,
+                "Run the port in attest's own process, for a debugger or a sanitizer; the result "
+                "is partial")
+      ->group(option_group::execution);
+}
+
+void add_reports(CLI::App& command, RunOptions& options) {
+  command
+      .add_flag("--diagnose,!--no-diagnose", options.diagnose,
+                "When something fails, name the mistakes it looks like (on by default)")
+      ->group(option_group::reports);
+  for (const ReportFormat& format : report_formats()) {
+    command.add_option(format.option, options.reports[format.option], format.help)
+        ->type_name("FILE")
+        ->group(option_group::reports);
+  }
+  command.get_option("--write-expected")->excludes(command.get_option("--expected-failures"));
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand(
+      "run", "Run a port through the cases and compare it with the golden traces");
+  add_port(*command, options->host.port);
+  add_selection(*command, options->select);
+  command->add_option("--shard", options->select.shard, "Only part I of N of the cases")
+      ->type_name("I/N")
+      ->capture_default_str()
+      ->group(option_group::selection);
+  command
+      ->add_option("--timing", options->timing,
+                   "Only the flight of `stress --record-timing`, replayed at the recorded times "
+                   "and compared with the reference at these times")
+      ->type_name("F")
+      ->group(option_group::selection);
+  add_strictness(*command, *options);
+  add_execution(*command, *options);
+  add_reports(*command, *options);
+  add_examples(
+      *command,
+      {{"attest run", "the built-in reference, all cases at all rates"},
+       {"attest run --port lib:./libmine.so", "your port"},
+       {"attest run --port lib:./libmine.so --level exact --filter 'attitude/*@250hz'",
+        "some cases, to the bit"},
+       {"attest run --port lib:./libmine.so --exclude 'flight*/*' --junit attest.junit.xml",
+        "without the flights, with a report for CI"}});
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return run_command(*options, globals); };
+  });
+}
+
+}  // namespace attest::cli

@@ -1,0 +1,11 @@
+// The arguments of `attest run`.
+#pragma once
+
+#include "harness/cli/shared_arguments.hpp"
+
+namespace attest::cli {
+
+// REQUIRES: `globals` and `action` live as long as `app`.
+void add_run_command(CLI::App& app, const Globals& globals, Action& action);
+
+}  // namespace attest::cli
