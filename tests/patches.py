@@ -1,5 +1,6 @@
-"""Mistakes kept as patches. The text at the head of a patch says what the mistake is; a line
-`<marker>: why` there marks one that is known not to be noticed, and is an error once it is."""
+"""Mistakes that are kept as patches. The text at the head of a patch describes the mistake. A line
+`<marker>: why` there marks a mistake that is known not to be noticed. It is an error if a marked
+mistake is noticed."""
 
 import pathlib
 import re
@@ -8,7 +9,7 @@ from typing import NamedTuple
 
 
 class Broken(Exception):
-    """A patch does not apply, or what it is applied to does not compile."""
+    """A patch does not apply, or the patched code does not compile."""
 
 
 class Patch(NamedTuple):
@@ -20,12 +21,12 @@ class Patch(NamedTuple):
         return self.path.stem
 
     def files(self) -> list[str]:
-        """The files that it changes, from the root of what it is applied to."""
+        """The files that it changes, relative to the root of the patched tree."""
         return re.findall(r"^\+\+\+ b/(.+)$", self.path.read_text(), re.MULTILINE)
 
 
 def patches(folder: pathlib.Path, marker: str) -> list[Patch]:
-    """All in a folder, by name."""
+    """All patches of a folder, sorted by name."""
     found = []
     for path in sorted(folder.glob("*.patch")):
         head = path.read_text().split("\n--- ", 1)[0]

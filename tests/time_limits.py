@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every test of a build has a time limit: one that hangs fails, and does not hold up the others.
+"""Every test of a build has a time limit: a test that hangs fails and does not block the rest.
 
 Usage: time_limits.py CTEST BUILD_DIR
 """
@@ -10,10 +10,10 @@ import sys
 
 
 def without_limit(tests: list[dict]) -> list[str]:
-    """The names of the tests that have no TIMEOUT, or one of 0, which is none."""
+    """The names of the tests without a TIMEOUT, or with TIMEOUT 0, which means no limit."""
     found = []
     for test in tests:
-        if test["name"].endswith("_NOT_BUILT"):  # not a test, and ctest fails it
+        if test["name"].endswith("_NOT_BUILT"):  # not a test; ctest reports it as failed
             continue
         properties = {one["name"]: one["value"] for one in test.get("properties", [])}
         if not properties.get("TIMEOUT", 0) > 0:

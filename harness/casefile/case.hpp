@@ -1,7 +1,8 @@
 // A case: a situation that a controller must handle like the reference, as plain data.
 //
-// Read from cases/<profile>/<group>/<behaviour>.toml (parse.hpp, SCHEMA.md), made into the inputs
-// of a unit at one loop rate by stimulus.hpp. A file that names several profiles is a case of each.
+// parse.hpp reads it from cases/<profile>/<group>/<behaviour>.toml (SCHEMA.md). stimulus.hpp makes
+// it into the inputs of a unit at one loop rate. A file that names several profiles is a case of
+// each.
 #pragma once
 
 #include <array>
@@ -29,19 +30,19 @@ struct Publication {
     never,
   };
   When when = When::automatic;
-  std::optional<Rate> rate;  // periodic: this, or
+  std::optional<Rate> rate;  // periodic: used instead of `period` if it is set
   Span period;
   Span phase;
   std::vector<Span> times;
-  // Of every kind: a sample is seen `delay` after its release.
+  // For all of these: the unit sees a sample `delay` after its release.
   Span delay{0, Span::In::seconds};
-  // periodic: late by up to this fraction of a period, and samples that are never released.
+  // periodic: releases are late by up to this fraction of a period, and `drops` are left out.
   double jitter = 0;
   std::uint64_t seed = 1;
-  std::vector<std::int64_t> drops;
+  std::vector<std::int64_t> drops;  // indices of releases, from 0
 };
 
-// What a field is in place of its signal while another signal is not 0.
+// A field follows `signal` instead of its own signal while `when` is not 0.
 struct Replacement {
   Signal when;
   Signal signal;
@@ -50,8 +51,8 @@ struct Replacement {
 struct FieldStimulus {
   std::size_t channel;  // index into channels(), an input
   Signal signal;
-  bool of_hover = false;  // a flight's: in units of the vehicle's hover thrust
-  double scale = 1;       // what the signal is multiplied with
+  bool of_hover = false;  // in a flight: in units of the vehicle's hover thrust
+  double scale = 1;       // factor of the signal
   std::optional<Replacement> replacement = std::nullopt;
 };
 
@@ -68,20 +69,21 @@ struct TopicStimulus {
   std::vector<AttitudeStimulus> attitudes;
 };
 
-// A parameter and its value over time; a varying one is sent with parameter_update at the ticks
-// where its value changes.
+// A parameter and its value over time. At each tick where the value changes, it is sent with
+// parameter_update.
 struct ParameterStimulus {
   std::string name;
   Signal signal;
 };
 
-// Something else holds the processor, as in Stall.
+// Other work holds the processor, as in Stall (schedule/ticks.hpp).
 struct UnitStall {
   Span every, length;
   bool catches_up = false;
 };
 
-// The unit's own ticks: late by jitter or stalls, or missing, as in TickSchedule.
+// The unit's own ticks: late by jitter or stalls, or missing, as in TickSchedule
+// (schedule/ticks.hpp).
 struct UnitTiming {
   Span start{5.0, Span::In::seconds};  // timestamp of the first tick
   double jitter = 0;
@@ -90,7 +92,7 @@ struct UnitTiming {
   std::vector<std::int64_t> drop_ticks;
   std::int64_t drop_every = 0;
   std::optional<UnitStall> stall;
-  // Of a flight: these times are those of the estimator's samples, and a tick begins when its
+  // Flights only: these times are those of the estimator's samples, and a tick begins when its
   // sample arrives.
   bool on_estimate = false;
 };
@@ -100,8 +102,8 @@ struct ToleranceOverride {
   Tolerance tolerance;
 };
 
-// Thresholds of the attitude law that a case stands on, where turning one way is as right as the
-// other: at such a tick a port may answer what either branch does.
+// Ties of the attitude law that a case reaches: both directions of rotation are equally correct.
+// At such a tick a port's outputs may be those of either branch.
 struct EitherBranch {
   bool yaw_wrap = false;          // a yaw error of 180 deg
   bool shorter_rotation = false;  // beyond 90 deg of tilt, a direct rotation of 180 deg
@@ -109,22 +111,22 @@ struct EitherBranch {
   bool any() const { return yaw_wrap || shorter_rotation; }
 };
 
-// How instances of the port come and go around the one that is judged.
+// The life of another instance of the port, relative to the judged one.
 enum class Instances : std::uint8_t {
   one,
-  again,     // another one has run to its end and was destroyed
-  together,  // another one is given other inputs, by turns with this one
-  crossed,   // another one was made before this one, ran, and was destroyed after this was made
+  again,     // another one ran to its end and was destroyed before
+  together,  // another one is stepped alternately with this one, with other inputs
+  crossed,   // another one was made before this one; it ran and was destroyed after this was made
 };
 
 struct Case {
   std::filesystem::path file;
-  std::string sha256;                 // of the file: a golden of another version of it is stale
+  std::string sha256;                 // of the file: a golden of another version is stale
   std::string profile;                // version of the law that this is a case of: "px4-v1.5.5"
   std::vector<std::string> profiles;  // of the file; the first is that of its folder
   std::string group;
   std::string name;  // stem of the file
-  std::string why;   // which mistake or property it is there for
+  std::string why;   // the mistake or property that it tests
   std::vector<Rate> rates;
   Span duration;
   UnitTiming unit;
@@ -132,31 +134,33 @@ struct Case {
   std::vector<TopicStimulus> topics;
   std::vector<ToleranceOverride> tolerances;
   std::string tolerance_why;
-  // On a threshold of the law, where correct arithmetic may differ: skipped at the numeric level.
+  // Compared at the exact level, skipped at the other levels: the case is on a threshold of the
+  // law, where correct arithmetic may differ.
   bool exact_only = false;
-  // Where bits are the platform's (its exp and acos) and not the law's: never compared exactly.
+  // Compared by tolerances at the exact level, too: its bits depend on the platform (exp and acos),
+  // not on the law.
   bool numeric_only = false;
   EitherBranch either_branch;
   Instances instances = Instances::one;
   std::optional<Flight> flight;            // empty: open loop, every input is scripted
-  Module module = Module::mc_att_control;  // which is given the inputs
-  std::string mixer;                       // of Module::mixer, its definition
+  Module module = Module::mc_att_control;  // the module under test
+  std::string mixer;                       // for Module::mixer: its definition
 
-  // Every way to run it: open loop one a rate, ascending; a flight by plant configuration, then
-  // rate.
+  // All run configurations. Open loop: one for each rate, ascending. A flight: ordered by plant
+  // configuration, then by rate.
   std::vector<RunConfiguration> configurations() const;
 
   std::string id() const { return profile + "/" + group + "/" + name; }
 
-  // The inputs and most answers are the same in all profiles of the file: the golden of the first
-  // holds them, those of the others hold what differs.
+  // The golden of the first profile holds all columns; those of the others hold what differs. The
+  // inputs and most outputs are the same in all profiles of a file.
   bool is_of_first_profile() const { return profiles.empty() || profile == profiles.front(); }
 
   // The same case of another profile of its file.
   Case in_profile(const std::string& other) const;
 
-  // The same case with its first timestamp at one period: for a port with a fixed step, so that
-  // each dt is the period.
+  // The same case with its first timestamp at one period, so that each dt is the period. For ports
+  // with a fixed step.
   Case from_one_period_on() const;
 };
 

@@ -1,5 +1,5 @@
-// What makes a case a flight: the vehicles and plants it is flown with, where it begins, what
-// happens to the vehicle on the way, and how the tasks around the unit run.
+// The data of a case that is a flight: its vehicles and plants, its start, its disturbances, and
+// the timing of the tasks around the unit.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace attest {
 
-// A periodic task beside the unit's. Its result reaches the unit `delay` after the task ran.
+// A periodic task other than the unit's. Its result reaches the unit `delay` after the task ran.
 struct TaskTiming {
   Rate rate = Rate::hz(50);
   Span phase{0, Span::In::seconds};
@@ -35,27 +35,27 @@ inline TaskTiming task_at(const Rate& rate) {
 struct FlightStart {
   Quaternion attitude{1, 0, 0, 0};  // body FRD to world NED
   Vector3 rate_rad_s{};             // of the body
-  double height_m = 0;              // above z = 0, where a floor would be
-  bool rotors_stopped = false;      // else they turn as in hover
+  double height_m = 0;              // above z = 0, the height of the floor
+  bool rotors_stopped = false;      // else they turn at hover speed
 };
 
-// What the unit is told of the attitude and the rates: late and noisy.
+// The estimate of attitude and rates that the unit receives: delayed and noisy.
 struct Estimator {
   Span delay{0, Span::In::seconds};
-  // Empty: it runs for each tick of the unit. Else on a clock of its own, faster than the loop's
-  // rate by this part (slower if negative), and a tick is told its last sample.
+  // Empty: the estimator runs once for each tick of the unit. Else it runs on its own clock, faster
+  // than the loop rate by this fraction (slower if negative), and a tick receives its last sample.
   std::optional<double> drift;
   double attitude_noise_deg = 0;  // standard deviation of a rotation about each body axis
   double rate_noise_rad_s = 0;    // standard deviation, each axis
   std::uint64_t seed = 1;
 };
 
-// A battery that empties: its voltage limits the rotors' speed, and battery_status is computed from
-// it as the firmware does. Without one the supply is ideal.
+// A battery that empties. Its voltage limits the rotors' speed, and battery_status is computed from
+// it as the firmware does. Without a battery the supply is ideal.
 struct BatteryFlight {
-  double charge = 1;  // at the start, of the capacity
-  std::optional<double>
-      capacity_hover_s;  // of hover, instead of the vehicle's: to empty it in a flight
+  double charge = 1;  // at the start, as a fraction of the capacity
+  // Capacity in seconds of hover, small enough to be used up in a flight. Empty: the vehicle's.
+  std::optional<double> capacity_hover_s;
   TaskTiming timing = task_at(Rate::hz(100));  // the firmware's filter counts samples of 100 Hz
 };
 
@@ -64,20 +64,20 @@ struct MotorFailure {
   Span at;
 };
 
-// What a run in real time is judged by: counts, never one maximum, which is the machine's. The
-// terms are those of the glossary in README.md, Timing.
+// The limits for a run in real time. They are counts and percentiles: a single maximum depends on
+// the machine. README.md, Timing, defines the terms.
 struct RealtimeBudget {
-  double misses_per_million = 500;     // deadlines missed; overruns too
+  double misses_per_million = 500;     // deadline misses; the same limit for overruns
   double p99_latency_us = 100;         // wake-up latency that 1% may exceed
-  std::optional<double> execution_us;  // execution time; empty: any
+  std::optional<double> execution_us;  // execution time; empty: no limit
 };
 
 struct Flight {
   std::vector<PlantConfiguration> plant_configurations;  // ascending
-  std::string lead_vehicle;       // flies at all rates of the case, the others at:
-  std::vector<Rate> other_rates;  // ascending
-  std::optional<Rate> physics;    // of MuJoCo; empty: 1 kHz, or the loop rate if that is higher
-  int physics_line = 0;           // of the case file, for messages
+  std::string lead_vehicle;                              // flies at all rates of the case
+  std::vector<Rate> other_rates;                         // of the other vehicles, ascending
+  std::optional<Rate> physics;  // of MuJoCo; empty: 1 kHz, or the loop rate if that is higher
+  int physics_line = 0;         // of the case file, for messages
   bool floor = false;
   FlightStart start;
   Estimator estimator;
@@ -85,7 +85,7 @@ struct Flight {
   Span actuator_delay{0, Span::In::seconds};  // from the unit's tick to the motors
   std::optional<BatteryFlight> battery;
   std::array<Signal, 3> wind_m_s{};  // of the air, NED
-  // From its nominal place, FRD, in units of the vehicle's arm.
+  // Offset from its nominal place, FRD, in units of the vehicle's arm.
   std::array<Signal, 3> centre_of_mass_of_arm{};
   std::optional<MotorFailure> motor_failure;
   std::vector<Metric> metrics;

@@ -13,7 +13,7 @@ struct FlightMode {
   // manual, auto, rates, attitude, rattitude, velocity: in the order of the channel table.
   std::array<std::uint8_t, 6> flags;
 
-  // The same while a VTOL is in transition: AUTO_* then does not control the velocity.
+  // The flags while a VTOL is in transition: AUTO_* then does not control the velocity.
   std::array<std::uint8_t, 6> flags_in_transition() const;
 };
 

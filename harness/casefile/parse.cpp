@@ -24,13 +24,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of the format of case files; a file with another one was written for another attest.
+// The version of the format of case files. A file with another version is for another attest.
 constexpr std::int64_t schema_version = 1;
 
-// A minute of an 8 kHz loop is half of it; a trace of a million samples fits in memory.
+// About twice the ticks of a minute at 8 kHz. A trace of a million samples fits in memory.
 constexpr std::int64_t max_ticks = 1'000'000;
 
-// A mixer has no clock, and a battery is looked at 100 times a second.
+// A mixer has no clock. The firmware measures the battery 100 times a second.
 std::vector<Rate> default_rates(Module module) {
   switch (module) {
     case Module::mixer:
@@ -96,7 +96,7 @@ Instances parse_instances(const TomlTable& root) {
   return Instances::one;
 }
 
-// What the case is for: `[mixer]` and `[battery]` say so.
+// `[mixer]` or `[battery]` names the module under test; without them it is the controller.
 void parse_module(const TomlTable& root, Case& parsed) {
   for (const char* other : {"mixer", "battery"}) {
     if (!root.has(other)) continue;
@@ -158,7 +158,7 @@ void parse_tolerances(const TomlTable& root, Case& parsed) {
   }
 }
 
-// A file is a case of each of its profiles, and stands in the folder of the first.
+// A file is a case of each of its profiles. Its folder is that of the first.
 void parse_profiles(const TomlTable& root, const std::string& folder, Case& parsed) {
   constexpr const char* key = "profiles";
   parsed.profiles = root.texts(key);
@@ -173,7 +173,7 @@ void parse_profiles(const TomlTable& root, const std::string& folder, Case& pars
   }
   const std::set<std::string> distinct(parsed.profiles.begin(), parsed.profiles.end());
   if (distinct.size() != parsed.profiles.size()) root.error(key, "names a profile twice");
-  // Of a case in a folder of a suite's own, the ports say whether they support its profile.
+  // The first profile may be unknown here: a suite may have its own, which ports may support.
   for (auto profile = parsed.profiles.begin() + 1; profile != parsed.profiles.end(); ++profile) {
     if (reference::profile_from_name(*profile)) continue;
     const auto names = reference::profile_names();
@@ -182,14 +182,14 @@ void parse_profiles(const TomlTable& root, const std::string& folder, Case& pars
   }
 }
 
-// The place of a case is its name: cases/<profile>/<group>/<name>.toml.
+// The path gives profile, group and name: cases/<profile>/<group>/<name>.toml.
 void parse_identity(const TomlTable& root, const fs::path& file, Case& parsed) {
-  // Normal, because the folder of "./roll.toml" is not called ".".
+  // Normalised, because otherwise the folder of "./roll.toml" would be named ".".
   const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
   parsed.name = file.stem().string();
   if (parsed.name.ends_with(".new") || parsed.name.ends_with(".old")) {
     root.error("group", fmt::format("a case must not be named `{}`: `attest bless` uses such names "
-                                    "for goldens in the making; rename the file",
+                                    "for unfinished goldens; rename the file",
                                     parsed.name));
   }
   parse_profiles(root, folder.parent_path().filename().string(), parsed);
@@ -217,7 +217,7 @@ void parse_duration(const TomlTable& root, Case& parsed) {
   }
 }
 
-// The models of the suite: <suite>/cases/<profile>/<group>/<name>.toml flies <suite>/models.
+// The folder of models: <suite>/cases/<profile>/<group>/<name>.toml uses <suite>/models.
 fs::path models_beside(const fs::path& file) {
   const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
   return folder.parent_path().parent_path().parent_path() / "models";

@@ -10,16 +10,16 @@
 
 namespace attest {
 
-// Reads cases/<profile>/<group>/<name>.toml, as a case of the first of its profiles. Errors, all of
-// them at once with file:line: syntax, unknown keys (with the nearest known one), values out of
-// range, a first profile or a group that is not that of the folder.
+// Reads cases/<profile>/<group>/<name>.toml as a case of the first of its profiles. Errors, all
+// reported together with file:line: syntax, unknown keys (with the nearest known one), values out
+// of range, a first profile or a group that differs from the folder's.
 Result<Case> parse_case(const std::filesystem::path& file);
 
 // The case files below a folder, in the order of their paths. Errors: no such folder, no cases.
 Result<std::vector<std::filesystem::path>> find_case_files(const std::filesystem::path& folder);
 
-// Of the parameters that a case of that module and profile may set; of a profile that is not known,
-// all that there are.
+// The names of the parameters that a case of that module and profile may set. For an unknown
+// profile: all that the module has.
 std::vector<std::string> parameter_names(Module module, const std::string& profile);
 
 }  // namespace attest

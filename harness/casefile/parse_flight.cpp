@@ -13,7 +13,8 @@ namespace {
 
 constexpr const char* default_lead = "iris";
 
-// Slow, one that does not divide a second evenly, and fast: the vehicles beside the lead.
+// For the vehicles other than the lead: a slow rate, one that does not divide a second evenly, and
+// a fast one.
 const std::vector<Rate> default_other_rates = {Rate::hz(100), Rate::hz(333), Rate::hz(1000)};
 
 std::vector<std::string> parse_vehicles(const TomlTable& table,
@@ -106,7 +107,7 @@ TaskTiming parse_timing(const TomlTable& table, TaskTiming timing) {
   timing.delay = parse_optional_span(table, "delay").value_or(timing.delay);
   timing.jitter = table.number("jitter", 0);
   if (!(timing.jitter >= 0 && timing.jitter < 1)) {
-    table.error("jitter", "is a fraction of a period: from 0 up to, but not, 1");
+    table.error("jitter", "is a fraction of a period: must be 0 or more, and less than 1");
   }
   timing.seed = static_cast<std::uint64_t>(table.integer("seed", 1));
   if (table.has("drop_ticks")) timing.drop_ticks = table.integers("drop_ticks");
@@ -153,7 +154,7 @@ Estimator parse_estimator(const TomlTable& flight) {
   return estimator;
 }
 
-// With a battery of its own the flight computes battery_status, so a script of it has no place.
+// With [flight.battery] the flight computes battery_status, so the case must not script it.
 void parse_battery(const TomlTable& root, const TomlTable& flight, Case& parsed) {
   if (!flight.has("battery")) return;
   const TomlTable table = flight.table("battery");
@@ -216,13 +217,13 @@ Metric parse_metric(const TomlTable& table, const std::string& name) {
   metric.min = table.number("min", metric.min);
   metric.max = table.number("max", metric.max);
   if (!table.has("min") && !table.has("max")) {
-    table.error("", "needs `min` or `max`: a metric without a bound says nothing");
+    table.error("", "needs `min` or `max`: every flight would pass a metric without a bound");
   }
   return metric;
 }
 
 void parse_metrics(const TomlTable& flight, std::vector<Metric>& metrics) {
-  const TomlTable table = flight.table("metrics");  // required: what else is a flight judged by?
+  const TomlTable table = flight.table("metrics");  // required: metrics judge a flight
   for (const std::string& name : table.keys()) {
     metrics.push_back(parse_metric(table.table(name), name));
   }

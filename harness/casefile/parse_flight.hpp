@@ -8,8 +8,8 @@
 
 namespace attest {
 
-// REQUIRES: `root` has a [flight]; the rates, duration and topics of `parsed` are read. Vehicles
-// are those of `models`. A battery takes battery_status from the topics.
+// REQUIRES: `root` has a [flight]; the rates, duration and topics of `parsed` are already read.
+// `models` is the folder of the vehicles. [flight.battery] removes battery_status from the topics.
 void parse_flight(const TomlTable& root, const std::filesystem::path& models, Case& parsed);
 
 }  // namespace attest

@@ -10,7 +10,7 @@
 namespace attest {
 namespace {
 
-// The one of two spellings that is there: the unit is part of the key.
+// The key that is present of two; the unit of the value is part of the key.
 struct Spelled {
   std::string key;
   bool first = true;
@@ -27,8 +27,8 @@ std::optional<Spelled> spelled(const TomlTable& table, const std::string& first,
   return Spelled{has_first ? first : second, has_first};
 }
 
-// As many ticks as the longest case has, and as many seconds as they last at the slowest rate: all
-// times stay inside 64 bits of nanoseconds.
+// The number of ticks of the longest case, and their duration at the slowest rate (0.001 Hz). So
+// all times fit into 64 bits of nanoseconds.
 constexpr double longest_in_ticks = 1e6;
 constexpr double longest_in_seconds = 1e9;
 

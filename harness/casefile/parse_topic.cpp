@@ -20,12 +20,12 @@ constexpr std::string_view control_state = "control_state";
 constexpr std::string_view control_mode = "vehicle_control_mode";
 constexpr std::string_view motor_limits = "multirotor_motor_limits";
 
-// 0..1 of the thrust that the motors have.
+// As a fraction 0..1 of the full thrust of the motors.
 constexpr std::array<std::string_view, 3> thrusts = {"in/vehicle_attitude_setpoint.thrust",
                                                      "in/vehicle_rates_setpoint.thrust",
                                                      "in/manual_control_setpoint.z"};
 
-// What a vehicle shows that hovers level and armed; all that is not named is zero.
+// The values for a vehicle that hovers level and armed. Channels that are not listed are zero.
 double baseline(std::string_view name) {
   static const std::map<std::string_view, double> values = {
       {"in/control_state.q[0]", 1},
@@ -51,7 +51,7 @@ double baseline(std::string_view name) {
 constexpr const char* not_a_flag =
     "is a flag: a constant, a step or samples of whole numbers from 0 to 255";
 
-// Flags are bytes: a signal that passes through other values has no meaning for them.
+// Flags are bytes: a signal with other values has no meaning for them.
 bool is_byte_signal(const Signal& signal) {
   const auto is_byte = [](double v) { return v >= 0 && v <= 255 && v == std::floor(v); };
   if (const auto* constant = std::get_if<Constant>(&signal)) return is_byte(constant->value);
@@ -78,8 +78,8 @@ void parse_field(const TomlTable& table, const std::string& key, FieldStimulus& 
   }
 }
 
-// `q = [w, x, y, z]` or `q = { tilt_deg = ..., ... }`; its components by themselves (`"q[1]"`) are
-// fields like any other. `first` is the field of the w component.
+// `q = [w, x, y, z]` or `q = { tilt_deg = ..., ... }`. Single components (`"q[1]"`) are fields like
+// any other. `first` is the index of the w component in the topic's fields.
 void parse_quaternion(const TomlTable& table, const std::string& key, TopicStimulus& topic,
                       std::size_t first) {
   for (std::size_t i = 0; i < 4; ++i) {
@@ -124,7 +124,8 @@ std::optional<Signal> parse_in_transition(const TomlTable& table) {
 void parse_flight_mode(const TomlTable& table, TopicStimulus& topic) {
   constexpr const char* key = "flight_mode";
   if (!table.has(key)) {
-    if (table.has("in_transition")) table.error("in_transition", "needs a `flight_mode` beside it");
+    if (table.has("in_transition"))
+      table.error("in_transition", "needs a `flight_mode` in the same table");
     return;
   }
   std::vector<Span> times{Span{}};
@@ -163,12 +164,13 @@ void parse_flight_mode(const TomlTable& table, TopicStimulus& topic) {
   }
 }
 
-// Releases that are late, missing, or seen late.
+// Reads `delay`, `jitter` and `drop_samples`: samples that arrive late, are released late, or are
+// missing.
 void parse_irregularity(const TomlTable& table, Publication& publication) {
   if (const auto delay = parse_optional_span(table, "delay")) publication.delay = *delay;
   publication.jitter = table.number("jitter", 0);
   if (!(publication.jitter >= 0 && publication.jitter < 1)) {
-    table.error("jitter", "is a fraction of a period: from 0 up to, but not, 1");
+    table.error("jitter", "is a fraction of a period: must be 0 or more, and less than 1");
   }
   publication.seed = static_cast<std::uint64_t>(table.integer("seed", 1));
   if (table.has("drop_samples")) publication.drops = table.integers("drop_samples");
@@ -282,7 +284,7 @@ void parse_topic(const TomlTable& table, TopicStimulus& topic) {
     parse_quaternion(table, std::string(name.substr(0, name.size() - 3)), topic, i);
     break;
   }
-  // What makes a step, as control_state, has no publication of its own.
+  // A topic without an updated bit, such as control_state, is new at every step.
   if (topic.updated_bit != 0) topic.publication = parse_publication(table);
 }
 

@@ -8,10 +8,10 @@
 
 namespace attest {
 
-// Every topic of a module's inputs, those the file does not mention with the values of a vehicle
-// that hovers level, armed, in STABILIZED: see SCHEMA.md. In a flight the thrust of the baseline is
-// that of the vehicle's hover, and control_state and multirotor_motor_limits are not there: the
-// plant and the mixer make them.
+// Every topic of a module's inputs. A topic that the file does not mention has the values of a
+// vehicle that hovers level, armed, in STABILIZED (SCHEMA.md). In a flight the baseline thrust is
+// the vehicle's hover thrust. control_state and multirotor_motor_limits are then left out, because
+// the plant and the mixer compute them.
 std::vector<TopicStimulus> parse_topics(const TomlTable& root, Module module, bool is_flight);
 
 }  // namespace attest

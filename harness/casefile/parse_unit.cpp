@@ -27,13 +27,13 @@ UnitTiming parse_unit(const TomlTable& root) {
   if (!root.has("unit")) return unit;
   const TomlTable table = root.table("unit");
   unit.start.amount = table.number("start_s", unit.start.amount);
-  // With the longest case (1e9 s) still inside the 285 years of microseconds that a double holds.
+  // A double holds 285 years (9e9 s) of whole microseconds. The longest case lasts 1e9 s.
   if (!(unit.start.amount >= 0 && unit.start.amount <= 8e9)) {
     table.error("start_s", "must be from 0 up to 8e9");
   }
   unit.jitter = table.number("jitter", 0);
   if (!(unit.jitter >= 0 && unit.jitter < 1)) {
-    table.error("jitter", "is a fraction of a period: from 0 up to, but not, 1");
+    table.error("jitter", "is a fraction of a period: must be 0 or more, and less than 1");
   }
   const std::string shape = table.text("jitter_shape", "uniform");
   unit.heavy_tail = shape == "heavy";
@@ -44,7 +44,7 @@ UnitTiming parse_unit(const TomlTable& root) {
   if (table.has("drop_ticks")) unit.drop_ticks = table.integers("drop_ticks");
   unit.drop_every = table.integer("drop_every", 0);
   if (table.has("drop_every") && unit.drop_every < 2) {
-    table.error("drop_every", "must be 2 or more: one in so many ticks does not happen");
+    table.error("drop_every", "must be 2 or more: the last of each so many ticks is left out");
   }
   if (table.has("stall")) unit.stall = parse_stall(table.table("stall"));
   if (table.has("trigger")) {
@@ -61,7 +61,7 @@ void check_unit(const TomlTable& root, const Case& parsed) {
   const TomlTable table = root.table("unit");
   const Rate& slowest = parsed.rates.front();
   const Rate& fastest = parsed.rates.back();
-  // Jitter brings ticks nearer together, and timestamps (us) have to increase.
+  // Jitter reduces the time between ticks, and timestamps (us) must increase.
   if (!parsed.unit.heavy_tail && parsed.unit.jitter > 0 &&
       (1 - parsed.unit.jitter) * fastest.period_s() < 1e-6) {
     table.error("jitter",
@@ -70,7 +70,7 @@ void check_unit(const TomlTable& root, const Case& parsed) {
   if (const auto& stall = parsed.unit.stall;
       stall && !(stall->length.on(slowest) < stall->every.on(slowest) &&
                  stall->length.on(fastest) < stall->every.on(fastest))) {
-    table.error("stall", "is over before the next one: `for` must be less than `every`");
+    table.error("stall", "must end before the next one begins: `for` must be less than `every`");
   }
   const std::set<std::int64_t> drops(parsed.unit.drop_ticks.begin(), parsed.unit.drop_ticks.end());
   if (drops.empty()) return;

@@ -1,4 +1,4 @@
-// Reads [unit] of a case file: when the unit's own ticks happen.
+// Reads [unit] of a case file: the timing of the unit's own ticks.
 #pragma once
 
 #include "harness/casefile/case.hpp"
@@ -6,11 +6,11 @@
 
 namespace attest {
 
-// The defaults where there is no [unit]. Errors are noted in the table.
+// Returns the defaults where there is no [unit]. Errors are recorded in the table.
 UnitTiming parse_unit(const TomlTable& root);
 
-// What jitter, stalls and dropped ticks may be depends on the rates and the duration, which
-// `parsed` has by now. Errors are noted in the table.
+// Checks jitter, stalls and dropped ticks against the rates and the duration. REQUIRES: `parsed`
+// has both. Errors are recorded in the table.
 void check_unit(const TomlTable& root, const Case& parsed);
 
 }  // namespace attest

@@ -7,8 +7,8 @@
 namespace attest {
 namespace {
 
-// Above 500 Hz the law takes every step to last 2 ms and does the same arithmetic at each rate: of
-// these, the fastest. `rates` ascend.
+// Of the rates above 500 Hz only the fastest is kept: there the law uses dt = 2 ms, so that its
+// arithmetic is the same at each rate. REQUIRES: `rates` ascend.
 std::vector<Rate> distinct_time_steps(const std::vector<Rate>& rates) {
   std::vector<Rate> distinct;
   for (const Rate& rate : rates) {

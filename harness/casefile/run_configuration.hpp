@@ -1,4 +1,5 @@
-// One way to run a case: at a loop rate, and if the case is a flight, with a vehicle on a plant.
+// The run configuration that makes a vector of a case: a loop rate; for a flight, also a vehicle
+// and a plant.
 #pragma once
 
 #include <compare>
@@ -11,7 +12,7 @@
 
 namespace attest {
 
-// What flies: in the order flights are listed.
+// The vehicle and the plant of a flight. Its order is the order in which flights are listed.
 struct PlantConfiguration {
   std::string vehicle;
   PlantKind plant = PlantKind::mujoco;

@@ -21,8 +21,8 @@ bool matches(const std::string& pattern, const std::string& text) {
   return ::fnmatch(pattern.c_str(), text.c_str(), 0) == 0;
 }
 
-// Which of the patterns match a case with a configuration. None is passed over: one that matches no
-// case at all is an error.
+// Does a pattern match this vector? Adds all patterns that do to `matching`, because a pattern that
+// matches no vector is an error.
 bool matches_any(const std::vector<std::string>& filters, const Case& the_case,
                  const RunConfiguration& configuration, std::set<std::string>& matching) {
   const std::string in_group = the_case.group + "/" + the_case.name;
@@ -50,7 +50,7 @@ bool contains(const std::vector<T>& list, const T& item) {
   return list.empty() || std::find(list.begin(), list.end(), item) != list.end();
 }
 
-// Each name asked for must exist: a misspelt group would otherwise select nothing, silently.
+// Each requested name must exist. Otherwise a misspelt group would silently select no case.
 Result<void> check_names(const std::vector<std::string>& asked, const std::set<std::string>& known,
                          const char* kind) {
   for (const std::string& name : asked) {
@@ -62,7 +62,7 @@ Result<void> check_names(const std::vector<std::string>& asked, const std::set<s
   return {};
 }
 
-// The group is in the path, so that files that cannot match need not be read.
+// The group is taken from the path, so that files that cannot match need not be read.
 std::string group_of(const fs::path& file) { return file.parent_path().filename().string(); }
 
 Result<void> check_groups(const std::vector<fs::path>& files, const Selection& selection) {
@@ -85,7 +85,7 @@ std::vector<RunConfiguration> selected_configurations(const Case& the_case,
   std::vector<RunConfiguration> configurations = the_case.configurations();
   std::erase_if(configurations, [&](const RunConfiguration& configuration) {
     if (!is_selected(configuration, selection)) return true;
-    // Both, so that each pattern is known to match something.
+    // Both are evaluated, so that each pattern that matches is recorded.
     const bool is_excluded = matches_any(selection.excludes, the_case, configuration, matching);
     const bool is_meant = selection.filters.empty() ||
                           matches_any(selection.filters, the_case, configuration, matching);
@@ -94,7 +94,7 @@ std::vector<RunConfiguration> selected_configurations(const Case& the_case,
   return configurations;
 }
 
-// What there is to choose from in the files that were read.
+// The rates, profiles, vehicles, plants and names in the files that were read.
 struct Known {
   std::set<Rate> rates;
   std::set<std::string> profiles, vehicles, plants;
@@ -112,7 +112,7 @@ struct Known {
   }
 };
 
-// Only some of these: what the case files name, and no rate that none of them has.
+// Each requested rate must be that of a vector.
 Result<void> check_rates(const std::vector<Rate>& asked, const std::set<Rate>& known) {
   for (const Rate& rate : asked) {
     if (known.count(rate)) continue;
@@ -164,8 +164,8 @@ std::string scope_of(const Selection& selection) {
   return options.empty() ? "" : fmt::format(" with {}", fmt::join(options, ", "));
 }
 
-// Each pattern must match something: a misspelt one would otherwise leave out, silently, what its
-// author wants to run, or run what is to be left out.
+// Each pattern must match a vector. Otherwise a misspelt filter would silently leave out vectors,
+// and a misspelt exclusion would run vectors that should be left out.
 Result<void> check_patterns(const Selection& selection, const std::set<std::string>& matching,
                             const std::vector<std::string>& names) {
   std::vector<std::string> idle;

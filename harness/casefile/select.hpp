@@ -1,4 +1,4 @@
-// Which cases, at which rates.
+// Selects vectors: the cases and their run configurations.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace attest {
 
-// Part I of N, I from 1: cases I, I+N, I+2N, ... of those that are selected otherwise.
+// Part I of N, I from 1: cases I, I+N, I+2N, ... of those that the other options select.
 struct Shard {
   std::size_t index = 1;
   std::size_t count = 1;
@@ -24,11 +24,13 @@ struct Shard {
 
 // Empty lists select everything.
 struct Selection {
-  // Shell patterns (* ? [..]); one must match the id `<profile>/<group>/<name>@<configuration>`, or
-  // that id without the configuration, or with its rate only, or one of these without profile, or
-  // the name alone.
+  // Shell patterns (* ? [..]). A vector is selected if a pattern matches one of:
+  // - its id `<profile>/<group>/<name>@<configuration>`
+  // - that id without the configuration, or with the rate only
+  // - one of these without the profile
+  // - the name alone
   std::vector<std::string> filters;
-  std::vector<std::string> excludes;  // patterns as above, of what is left out
+  std::vector<std::string> excludes;  // patterns as above; vectors that match are left out
   std::vector<std::string> groups;
   std::vector<std::string> profiles;
   std::vector<Rate> rates;
@@ -47,9 +49,10 @@ struct SelectedCase {
 std::vector<std::string> as_options(
     std::initializer_list<std::pair<const char*, const std::vector<std::string>&>> lists);
 
-// Reads the case files below `folder` that can match and keeps what is selected, in the order of
-// their ids. Errors: a malformed case file, an unknown group, profile, rate, vehicle or plant,
-// a filter or an exclusion that matches nothing, nothing selected; each says what there is.
+// Reads the case files below `folder` that can match and keeps the selected ones, in the order of
+// their ids. Errors: a malformed case file; an unknown group, profile, rate, vehicle or plant, with
+// the known ones; a filter or an exclusion that matches no case; an empty selection; two files of
+// one case.
 Result<std::vector<SelectedCase>> select_cases(const std::filesystem::path& folder,
                                                const Selection& selection);
 

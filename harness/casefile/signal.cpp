@@ -16,7 +16,7 @@ constexpr double turn = 2 * std::numbers::pi;
 
 double seconds(Nanoseconds time) { return static_cast<double>(time.count()) / ns_per_s; }
 
-// Reflected into [min, max], which is not empty.
+// Reflects `value` at the bounds. REQUIRES: min < max.
 double reflect(double value, double min, double max) {
   if (value > max) value = 2 * max - value;
   if (value < min) value = 2 * min - value;

@@ -1,8 +1,8 @@
 // Signals: how one field of a topic changes over the time of a case.
 //
 // All arithmetic is double; a value is rounded once, when it is written into the ABI struct. Times
-// count from the begin of the case. A time may be given in ticks of the unit, so that one case
-// exercises the same steps at every loop rate, or in seconds.
+// count from the begin of the case, in seconds or in ticks of the unit. With ticks, one case
+// exercises the same steps at every loop rate.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace attest {
 
-// The unit's loop rate and how long the case lasts: what turns ticks and cycles into seconds.
+// The unit's loop rate and the duration of the case. They convert ticks and cycles to seconds.
 struct Timeline {
   Rate rate = Rate::hz(250);
   Nanoseconds duration{0};
@@ -30,7 +30,8 @@ struct Span {
   Nanoseconds on(const Rate& unit_rate) const;
 };
 
-// How many ticks of the unit begin in `duration`, which is whole if it is in ticks.
+// The number of ticks of the unit that begin in `duration`. REQUIRES: a whole number if it is in
+// ticks.
 std::int64_t tick_count(const Span& duration, const Rate& unit_rate);
 
 struct Frequency {
@@ -73,7 +74,7 @@ struct Samples {  // values[i] from times[i] on; before the first time the first
 
 using Signal = std::variant<Constant, Step, Ramp, Sine, Chirp, RandomWalk, Samples>;
 
-// The three angles [deg] that an attitude q, body FRD to world NED, is given by.
+// The three angles [deg] that define an attitude q, body FRD to world NED.
 enum class Angles {
   // q_tilt * q_yaw: q_yaw turns by the yaw about world down, and then q_tilt by the tilt about the
   // horizontal world axis at the azimuth from north (0: roll right of a vehicle that heads north,
@@ -84,7 +85,8 @@ enum class Angles {
   roll_pitch_yaw,
 };
 
-// An attitude by its angles, each a signal of its own, times sign and norm.
+// An attitude given by its angles, each a signal of its own. The quaternion is multiplied by sign
+// and norm.
 struct AttitudeSignal {
   Angles by = Angles::tilt_azimuth_yaw;
   std::array<Signal, 3> angles_deg{};  // in the order of the name
@@ -102,13 +104,13 @@ class Sampler {
  private:
   Signal signal_;
   Timeline timeline_;
-  std::vector<double> walk_;  // of a RandomWalk, one value a step
+  std::vector<double> walk_;  // of a RandomWalk, one value per step
 };
 
 // The attitude with these angles [deg], in the order of the name.
 Quaternion attitude_from(Angles by, const std::array<double, 3>& angles_deg);
 
-// A signal that may have another value at another time.
+// False for constants.
 bool varies(const Signal& signal);
 
 }  // namespace attest

@@ -47,7 +47,7 @@ class Publisher {
     plan_releases(topic.publication);
   }
 
-  // Publishes what was released since the last tick, if anything.
+  // Publishes the latest sample that was released since the last tick, if there is one.
   void tick(Nanoseconds now, Sample& sample) {
     const Nanoseconds visible = now - delay_;
     if (visible < Nanoseconds(0)) return;
@@ -98,7 +98,7 @@ class Publisher {
     using When = Publication::When;
     switch (publication.when) {
       case When::automatic:
-        // What never changes is published once, as the first tick begins.
+        // A topic that never changes is published once, when the first tick begins.
         every_tick_ = varies_ || topic_.updated_bit == 0;
         if (!every_tick_) releases_.times = {Nanoseconds(0)};
         break;
@@ -118,8 +118,8 @@ class Publisher {
     }
   }
 
-  // A period of whole ticks is every n-th tick of the unit: at 333 Hz, too, a release and the tick
-  // that it belongs to are at the same nanosecond.
+  // A period of n whole ticks becomes every n-th tick of the unit. So also at 333 Hz a release and
+  // its tick are at the same nanosecond.
   void plan_periodic(const Publication& publication) {
     const Rate& unit_rate = timeline_.rate;
     const auto& [rate, period, phase] =
@@ -140,7 +140,7 @@ class Publisher {
     }
   }
 
-  // Late by jitter, or missing: each release is written down.
+  // With jitter or missing releases, the time of each release is listed.
   void plan_irregular(const Publication& publication) {
     const Rate& unit_rate = timeline_.rate;
     const Rate rate =
@@ -169,7 +169,7 @@ class Publisher {
   std::optional<Nanoseconds> published_;
 };
 
-// Parameters in force, and what of them changes.
+// The parameters in force, and their changes.
 class ParameterPublisher {
  public:
   ParameterPublisher(const std::vector<ParameterStimulus>& parameters, const Timeline& timeline) {
@@ -261,13 +261,13 @@ void Stimulus::tick(std::size_t tick, Nanoseconds now, Sample& sample,
   sample.in.updated = 0;
   for (Publisher& publisher : impl_->publishers) publisher.tick(now, sample);
   impl_->parameters.tick(tick, now, sample, changes);
-  // Only the controller is told what is new.
+  // Only the controller has updated bits.
   if (impl_->module != Module::mc_att_control) sample.in.updated = 0;
 }
 
 namespace {
 
-// A mixer has outputs for as many rotors as it has.
+// A mixer has one output for each of its rotors.
 ChannelSet channels_of(const Case& the_case) {
   ChannelSet channels = attest::channels_of(the_case.module);
   if (the_case.module != Module::mixer) return channels;

@@ -13,8 +13,8 @@ namespace {
 
 Nanoseconds micros(double us) { return Nanoseconds(std::llround(us * 1000)); }
 
-// One number, or several that the jobs take by turns. A timestamp is a microsecond, so that no two
-// jobs of a unit may be nearer.
+// One number, or several that successive jobs use in turn. At least 1 us, because timestamps are
+// in microseconds and each job of the unit needs its own.
 std::vector<Nanoseconds> parse_execution(const TomlTable& table) {
   constexpr const char* key = "execution_us";
   std::vector<double> numbers;
@@ -32,7 +32,7 @@ std::vector<Nanoseconds> parse_execution(const TomlTable& table) {
   return execution;
 }
 
-// When it is released. `released_by` is not set here.
+// Rate and phase of the releases. `released_by` is not set here.
 void parse_release(const TomlTable& table, ScheduledTask& task) {
   const auto rate = Rate::parse(fmt::format("{}", table.number("rate_hz")));
   if (!rate && table.has("rate_hz")) table.error("rate_hz", rate.error().message);
@@ -61,7 +61,7 @@ std::optional<std::size_t> find_task(const std::vector<ScheduledTask>& tasks,
   return static_cast<std::size_t>(found - tasks.begin());
 }
 
-// `trigger = "estimator"` of the unit, in place of a rate.
+// `trigger = "estimator"` of the unit, instead of a rate.
 void parse_trigger(const TomlTable& table, const std::string& name, TaskSet& set) {
   constexpr const char* key = "trigger";
   if (!table.has(key)) return;
@@ -76,8 +76,8 @@ void parse_trigger(const TomlTable& table, const std::string& name, TaskSet& set
   unit.rate = set.tasks[*set.estimator].rate;
 }
 
-// Any name may be that of a task. When one of those that mean something is missing, one that is
-// nearly the same is taken for a misspelling, and the answer is true.
+// A task may have any name, but `unit` and `estimator` have a meaning. If `meant` is missing, a
+// name that is nearly the same is reported as a misspelling of it; then this returns true.
 bool is_misspelt(const TomlTable& tasks, const std::string& meant) {
   const std::vector<std::string> names = tasks.keys();
   if (std::find(names.begin(), names.end(), meant) != names.end()) return false;

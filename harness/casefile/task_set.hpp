@@ -1,5 +1,5 @@
-// The tasks of a flight controller as a file (SCHEMA.md): what runs beside the unit, and for how
-// long.
+// The file that describes the tasks of a flight controller (SCHEMA.md): the unit's task, the other
+// tasks, and their execution times.
 #pragma once
 
 #include <filesystem>
@@ -14,10 +14,10 @@ namespace attest {
 struct TaskSet {
   std::vector<ScheduledTask> tasks;
   std::size_t unit = 0;                  // index of the task `unit`
-  std::optional<std::size_t> estimator;  // and of `estimator`, if there is one
+  std::optional<std::size_t> estimator;  // index of the task `estimator`, if there is one
 };
 
-// Errors, with file and line: no task `unit`, values that make no sense.
+// Errors, with file and line: no task `unit`; values out of range.
 Result<TaskSet> read_task_set(const std::filesystem::path& path);
 
 }  // namespace attest

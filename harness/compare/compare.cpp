@@ -17,7 +17,7 @@
 namespace attest {
 namespace {
 
-// Floats in their order as consecutive integers, -0 and +0 one step apart.
+// Maps floats to consecutive integers in the same order, -0 and +0 one step apart.
 std::int64_t ordinal(float value) {
   const auto bits = std::bit_cast<std::uint32_t>(value);
   const auto magnitude = static_cast<std::int64_t>(bits & 0x7fffffffu);
@@ -29,7 +29,7 @@ std::int64_t ulp_distance(float a, float b) {
   return std::abs(ordinal(a) - ordinal(b));
 }
 
-// Bits, where every NaN is the same.
+// Compares bits; every NaN equals every NaN.
 bool same_bits(float a, float b) {
   if (std::isnan(a) || std::isnan(b)) return std::isnan(a) && std::isnan(b);
   return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
@@ -37,7 +37,7 @@ bool same_bits(float a, float b) {
 
 bool truth(std::uint8_t flag) { return flag != 0; }
 
-// In any byte, of any module.
+// Compares all bytes, of all modules.
 bool outputs_differ(const Sample& a, const Sample& b) {
   static_assert(sample_has_three_modules);
   return std::memcmp(&a.out, &b.out, sizeof a.out) != 0 ||
@@ -136,7 +136,7 @@ double TickComparer::tolerance_at(std::size_t channel, const attest_inputs& in, 
                       in.vehicle_control_mode.flag_control_attitude_enabled != 0;
   if (!widens || difference <= tolerance) return tolerance;
   const double wider = tolerances_.widening(tilt_error(in, setpoint_), gain_.value());
-  // No attitude, or a time constant of zero: nothing that floats could be near to.
+  // Not finite without an attitude, or with a time constant of zero: then nothing is added.
   return std::isfinite(wider) ? tolerance + wider : tolerance;
 }
 
@@ -170,11 +170,11 @@ Deviation deviation_at(std::size_t tick, std::size_t channel, const Trace& got,
           0};
 }
 
-// At the events level, where what happens at one tick is looked for at others.
+// The events level, which searches the neighbouring ticks, too.
 void compare_events(const Trace& got, const Trace& want, Comparison& result) {
   if (!tells_events(want.present)) {
     result = {};
-    result.mismatch = "these outputs tell no events; compare at the numeric level";
+    result.mismatch = "these outputs define no events; compare at the numeric level";
     return;
   }
   const auto non_finite = first_non_finite_event(got, want);
@@ -217,7 +217,7 @@ std::optional<Deviation> first_non_finite(const Trace& got, const Trace& want) {
   for (std::size_t tick = 0; tick < got.samples.size(); ++tick) {
     for (std::size_t i = judged._Find_first(); i < judged.size(); i = judged._Find_next(i)) {
       if (std::isfinite(float_of(channels()[i], got.samples[tick]))) continue;
-      // The last row up to then.
+      // Shown next to it: the last row of `want` up to that time.
       const auto after = std::upper_bound(
           want.samples.begin(), want.samples.end(), got.samples[tick].in.timestamp,
           [](std::uint64_t time, const Sample& sample) { return time < sample.in.timestamp; });
@@ -230,7 +230,7 @@ std::optional<Deviation> first_non_finite(const Trace& got, const Trace& want) {
 
 namespace {
 
-// The parameters in force at each tick, walking forward.
+// The parameters in force at each tick, for ticks in ascending order.
 class ParametersInForce {
  public:
   explicit ParametersInForce(const Trace& trace) : pending_(trace.parameters) {}

@@ -1,8 +1,8 @@
-// Is what a port answered what the golden says? Strict on length, timestamps, publication flags and
-// non-finite values; bits at the exact level, a tolerance a channel at the numeric level.
+// Compares a port's outputs with the golden. Strict on length, timestamps, publication flags and
+// non-finite values. The exact level compares bits; the numeric level has a tolerance per channel.
 //
-// Only outputs that the golden recorded are compared, each tick with the same tick: rates are never
-// compared with each other, nothing is interpolated.
+// Only outputs that the golden recorded are compared, each tick with the same tick. Traces of
+// different rates are not compared, and values are not interpolated.
 #pragma once
 
 #include <cstddef>
@@ -18,19 +18,19 @@
 
 namespace attest {
 
-// One value that is not what it should be.
+// One value that is outside its tolerance.
 struct Deviation {
   std::size_t tick = 0;  // 0 is the first step
   std::uint64_t timestamp_us = 0;
   std::size_t channel = 0;  // index into channels()
   double got = 0;
   double want = 0;
-  std::int64_t ulp = 0;  // distance in float32 steps; 0 where that means nothing (flags, NaN)
+  std::int64_t ulp = 0;  // distance in float32 steps; 0 where it is not defined (flags, NaN)
   double tolerance = 0;  // allowed |got - want|; 0 at the exact level
 };
 
-// How near a passing channel came to failing: tolerance / |got - want|, 1 is the edge. Infinite
-// when nothing but the sign of a zero differed; there is none when every value agreed to the bit.
+// How near a passing channel came to failing: tolerance / |got - want|; 1 is the limit. Infinite
+// when only the sign of a zero differed. Absent when all values have the same bits.
 struct Headroom {
   double ratio = 0;
   std::size_t tick = 0;
@@ -42,30 +42,30 @@ struct Comparison {
   std::size_t deviating_ticks = 0;
   std::optional<Deviation> first;    // lowest tick, then the order of channels()
   std::optional<Headroom> tightest;  // numeric level, among the values within tolerance
-  std::string mismatch;              // what makes the traces incomparable; empty if nothing
-  std::string event;  // at the events level: what happens otherwise, at the first deviation
-  bool got_non_finite = false;  // a NaN or Inf where none belongs, at any tick
+  std::string mismatch;              // why the traces cannot be compared; empty if they can
+  std::string event;                 // at the events level: the difference at the first deviation
+  bool got_non_finite = false;       // at any tick, a NaN or Inf where the golden is finite
 
   bool agrees() const { return !first && mismatch.empty(); }
 };
 
 Comparison compare(const Trace& got, const Trace& want, const Tolerances& tolerances);
 
-// The first NaN or Inf of `got` in a channel in which `want` has neither, at none of its ticks. For
-// a flight, of whose ticks the golden has some.
+// The first NaN or Inf of `got` in a channel that is finite at all ticks of `want`. For flights,
+// whose golden keeps only some of the ticks.
 std::optional<Deviation> first_non_finite(const Trace& got, const Trace& want);
 
-// The same tick by tick, for traces that are not in memory. At the events level only whether the
-// traces can be compared at all.
+// Compares tick by tick, for traces that are not in memory. At the events level it only finds out
+// whether the traces can be compared.
 class TickComparer {
  public:
-  // What the two have recorded. REQUIRES: the tolerances outlive this.
+  // `got` and `want`: the recorded channels of both. REQUIRES: the tolerances outlive this.
   TickComparer(const ChannelSet& got, const ChannelSet& want, const Tolerances& tolerances);
 
   // The next tick of both; `changes` are the parameters that `want` sets at it.
   void add(const Sample& got, const Sample& want, std::span<const ParameterChange> changes);
 
-  // How long both were in all: the longer one's rest is not added.
+  // Takes the lengths of both traces. REQUIRES: add() was called for each tick that both have.
   Comparison finish(std::size_t got_ticks, std::size_t want_ticks);
 
  private:
@@ -77,14 +77,14 @@ class TickComparer {
 
   const Tolerances& tolerances_;
   std::vector<std::size_t> chosen_;  // channels that both have and that are compared
-  std::string not_recorded_;         // what is wrong with the channels
+  std::string not_recorded_;         // the error of the channels
   std::size_t tick_ = 0;             // the next
-  attest_inputs setpoint_{};         // as of the last attitude setpoint
+  attest_inputs setpoint_{};         // the inputs with the last new attitude setpoint
   AttitudeGain gain_;
   Comparison result_;
 };
 
-// Index of the first tick whose inputs (in/..., parameters in force and timestamp, by bits) differ;
+// Index of the first tick whose inputs differ by bits (in/..., parameters in force, timestamp);
 // empty when all agree.
 std::optional<std::size_t> first_input_difference(const Trace& a, const Trace& b);
 

@@ -6,7 +6,7 @@
 namespace attest {
 namespace {
 
-// A file, the tick it is at, and how many there were.
+// A file, its current tick, and the number of ticks read.
 struct Side {
   TraceReader reader;
   Sample sample{};
@@ -44,7 +44,7 @@ Result<Comparison> compare_files(const std::filesystem::path& got,
   Side a{std::move(*got_reader)}, b{std::move(*want_reader)};
   TickComparer comparer(a.reader.present(), b.reader.present(), tolerances);
   while (true) {
-    // Both to their end, so that a mistake anywhere in a file is told.
+    // Both are read to their end, so that an error anywhere in a file is reported.
     const auto more_a = a.next(), more_b = b.next();
     if (!more_a) return tl::unexpected(more_a.error());
     if (!more_b) return tl::unexpected(more_b.error());

@@ -1,4 +1,4 @@
-// Two trace files beside each other, however long.
+// Compares two trace files of any length.
 #pragma once
 
 #include <filesystem>
@@ -7,9 +7,9 @@
 
 namespace attest {
 
-// As compare(). CSV traces of a controller are read tick by tick, in memory that does not grow with
-// them; at the events level, which looks ahead, and in other formats they are read whole. Errors:
-// those of open_trace.
+// Same as compare(). CSV traces (csv.hpp) are read tick by tick, in memory that does not grow with
+// their length. Other formats are read whole; so is every trace at the events level, which looks
+// ahead. Errors: those of open_trace.
 Result<Comparison> compare_files(const std::filesystem::path& got,
                                  const std::filesystem::path& want, const Tolerances& tolerances);
 

@@ -7,7 +7,7 @@
 namespace attest {
 namespace {
 
-// The ticks of a flown trace that have a row, and the rows.
+// The rows of a golden, and the ticks of a flown trace that they are compared with.
 struct Rows {
   Trace got, want;
   std::vector<std::size_t> ticks;  // in the flown trace
@@ -21,7 +21,7 @@ std::size_t tick_at(const Trace& trace, std::uint64_t timestamp) {
   return static_cast<std::size_t>(found - trace.samples.begin());
 }
 
-// Changes by row instead of by tick.
+// Adds the changes of the flight, with rows instead of ticks.
 void take_parameters(const Trace& flown, Rows& rows) {
   for (const ParameterChange& change : flown.parameters) {
     const auto row = std::lower_bound(rows.ticks.begin(), rows.ticks.end(), change.tick);
@@ -51,7 +51,7 @@ Rows rows_of(const Trace& flown, const Trace& golden, double horizon_s) {
     rows.ticks.push_back(tick);
     rows.got.samples.push_back(flown.samples[tick]);
     rows.want.samples.push_back(sample);
-    // A row shows the setpoint in force, whenever it was published.
+    // A row holds the setpoint in force, which may have been published at an earlier tick.
     rows.want.samples.back().in.updated |= ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT;
   }
   take_parameters(flown, rows);

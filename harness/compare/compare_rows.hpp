@@ -1,14 +1,15 @@
-// A flown trace beside a golden that kept some of its ticks: two right controllers part in the last
-// bits, and a flight amplifies that, so it is compared up to a horizon only.
+// Compares a flown trace with a golden that kept some of its ticks, up to a horizon. Two correct
+// controllers differ in the last bits, and a flight amplifies that.
 #pragma once
 
 #include "harness/compare/compare.hpp"
 
 namespace attest {
 
-// Each row of `want` within `horizon_s` of the first with the tick of `got` at the same timestamp.
-// Ticks in the result are those of `got`, `ticks` counts rows. Rows after the end of `got` are left
-// out: that a flight ended is said otherwise. A row that falls between ticks is a mismatch.
+// Compares each row of `want` within `horizon_s` of the first with the tick of `got` at the same
+// timestamp. Ticks in the result are those of `got`; `ticks` counts rows. Rows after the end of
+// `got` are left out, because the caller reports that a flight ended. A row between two ticks is a
+// mismatch.
 Comparison compare_rows(const Trace& got, const Trace& want, double horizon_s,
                         const Tolerances& tolerances);
 

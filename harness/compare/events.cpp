@@ -12,11 +12,11 @@ namespace {
 
 enum class State { no, yes, unclear };
 
-// A state a tick, of one output.
+// A kind of state of one output; it has one value per tick.
 struct Kind {
   const char* channel;
   State (*at)(const Trace& trace, std::size_t tick, const Channel& channel);
-  const char* yes;  // how it is said
+  const char* yes;  // the text for messages
   const char* no;
 };
 
@@ -29,8 +29,8 @@ State finite(const Trace& trace, std::size_t tick, const Channel& channel) {
   return std::isfinite(float_of(channel, trace.samples[tick])) ? State::yes : State::no;
 }
 
-// By a step of more than a part of the integrals' tolerance, which is what right ports may differ
-// by altogether.
+// An integral moves if its step is above a fraction of the integrals' tolerance. That tolerance is
+// the deviation that correct ports may have in all.
 State moving(const Trace& trace, std::size_t tick, const Channel& channel) {
   constexpr double still = 1e-6, surely = 4e-6;
   const auto is_told = [&](std::size_t at) {
@@ -76,8 +76,8 @@ std::vector<State> states(const Kind& kind, const Trace& trace, const Channel& c
   return all;
 }
 
-// `state` within a tick of `tick`, or something unclear there: what was before the first tick and
-// will be after the last is not known.
+// True if `state` or an unclear state is within a tick of `tick`. Also true at the first and the
+// last tick, because the states before and after the trace are unknown.
 bool has_near(const std::vector<State>& states, std::size_t tick, State state) {
   if (tick == 0 || tick + 1 == states.size()) return true;
   for (std::size_t i = tick - 1; i <= tick + 1; ++i) {

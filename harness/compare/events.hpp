@@ -1,9 +1,9 @@
-// What happens in a trace, rather than what its values are: for ports that are the same controller
-// a tick later, or in coarser numbers.
+// Compares the events of traces instead of their values. For ports that are a tick late, or compute
+// with coarse numbers.
 //
 // Events are the changes of these states: a topic is published; an integral moves; a control
-// exceeds the thrust; a rates setpoint is finite. Where a value is too near to the edge of a state
-// to say, nothing is expected.
+// exceeds the thrust; a rates setpoint is finite. Where a value is too near to the threshold of a
+// state, every state is accepted.
 #pragma once
 
 #include <optional>
@@ -16,17 +16,17 @@ namespace attest {
 struct EventDifference {
   std::size_t tick = 0;
   std::size_t channel = 0;
-  std::string what;  // "the integral moves, expected still"
+  std::string what;  // "mc_att_ctrl_status.yaw_rate_integ is moving, expected still within a tick"
 };
 
-// A mixer and a battery estimate are judged by their values.
+// Only the controller has events. Mixer and battery estimate are judged by their values.
 inline bool has_events(Module module) { return module == Module::mc_att_control; }
 
-// Is there a channel that an event is told from?
+// True if a channel of `present` defines an event.
 bool tells_events(const ChannelSet& present);
 
-// The first tick at which `got` is in a state that `want` is in neither at that tick, nor the one
-// before or after it, or the other way round. REQUIRES: as many ticks in both.
+// The first tick at which only one of the traces is in a state: the other is not in it at that
+// tick, the tick before or the tick after. REQUIRES: as many ticks in both.
 std::optional<EventDifference> first_event_difference(const Trace& got, const Trace& want);
 
 }  // namespace attest

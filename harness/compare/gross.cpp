@@ -10,7 +10,7 @@
 namespace attest {
 namespace {
 
-// Of the slack. Integrals are limited to 0.3 by default, controls and thrust to 1.
+// The floor of the slack. By default integrals are limited to 0.3, controls and thrust to 1.
 double floor_of(Quantity quantity) {
   switch (quantity) {
     case Quantity::rate:
@@ -56,7 +56,7 @@ double similarity_of(const float (&q)[4], const float (&q_d)[4]) {
   return std::abs(product) / std::sqrt(of_q * of_q_d);
 }
 
-// The ticks at which the law is about to turn the other way, or has no attitude to go by.
+// The ticks at which the law is near the change of its direction of rotation, or has no attitude.
 std::vector<bool> half_turns_in(const Trace& want) {
   constexpr double near = 0.1;  // cos of half an angle that is 11 deg short of a half turn
   std::vector<bool> is_half_turn;
@@ -77,7 +77,7 @@ struct Bounds {
   bool hold(double value) const { return value >= low && value <= high; }
 };
 
-// Empty where a value of the three is not finite, or not published.
+// Empty where one of the three values is not finite or not published.
 std::optional<Bounds> bounds_at(const Trace& want, std::size_t tick, const Channel& channel) {
   std::array<double, 3> values{};
   for (std::size_t i = 0; i < 3; ++i) {

@@ -29,11 +29,11 @@ constexpr std::array<std::pair<Measure, std::string_view>, 8> names = {{
 
 double square(double value) { return value * value; }
 
-// std::max drops a NaN that comes second; here a NaN stays.
+// As std::max, but a NaN in `b` stays: std::max would drop it.
 double larger(double a, double b) { return std::isnan(b) || b > a ? b : a; }
 
-// The angle between two attitudes, whatever the signs and norms of their quaternions. By atan2,
-// because acos has no resolution where the angle is small.
+// The angle between two attitudes, independent of the signs and norms of their quaternions. It uses
+// atan2, because acos has no resolution where the angle is small.
 double angle_deg(const std::array<float, 4>& q, const float (&q_d)[4]) {
   const auto at = [&](std::size_t i) { return static_cast<double>(q[i]); };
   const auto to = [&](std::size_t i) { return static_cast<double>(q_d[i]); };
@@ -45,7 +45,7 @@ double angle_deg(const std::array<float, 4>& q, const float (&q_d)[4]) {
   return 2 * std::atan2(vector, std::abs(w)) * 180 / std::numbers::pi;
 }
 
-// Where neither attitude nor manual flight is enabled the rates come from outside.
+// The rates setpoint is an input where neither attitude nor manual flight is enabled.
 bool is_offboard_rates(const attest_inputs& in) {
   return in.vehicle_control_mode.flag_control_attitude_enabled == 0 &&
          in.vehicle_control_mode.flag_control_manual_enabled == 0;
@@ -116,7 +116,7 @@ class Flown {
 
  private:
   double seconds(std::size_t tick) const {
-    // Divided, so that 28000 us are 0.028 s to the bit, as a window says it.
+    // Divided, so that 28000 us give the same bits as the 0.028 s of a window.
     const auto since = trace_.samples[tick].in.timestamp - trace_.samples[0].in.timestamp;
     return static_cast<double>(since) / 1e6;
   }

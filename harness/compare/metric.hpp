@@ -1,5 +1,5 @@
-// What a flight is judged by as a whole: one number each, over a window of its time. Two right
-// controllers part in the last bits, and a flight may amplify that; a metric is what does not mind.
+// Metrics judge a flight as a whole: one number each, over a window of its time. Two correct
+// controllers differ in the last bits, and a flight may amplify that. Metrics stay nearly the same.
 #pragma once
 
 #include <limits>
@@ -13,21 +13,21 @@
 
 namespace attest {
 
-// Attitude error: the angle of the rotation from the true attitude to q_d. All are of the truth
-// (Trace::plant), not of the estimate.
+// Attitude error: the angle of the rotation from the true attitude to q_d. Attitudes and rates are
+// true ones (Trace::plant), not estimates.
 enum class Measure {
   settling_time_s,         // from the window's begin until the attitude error stays within the band
   overshoot_deg,           // largest attitude error after it was first within the band
   rms_attitude_error_deg,  //
   rms_rate_error_rad_s,    // of the three axes together, against the rates setpoint in force
   peak_rate_rad_s,         // largest |body rate|
-  saturation_duty,         // part of the ticks in which the mixer gave something up, 0..1
+  saturation_duty,         // fraction of the ticks with the mixer in saturation, 0..1
   peak_integral,           // largest |integral| of the three axes
-  sink_m,                  // how far it went down
+  sink_m,                  // descent from the first tick of the window to the last
 };
 
 std::string_view name_of(Measure measure);
-Result<Measure> parse_measure(std::string_view name);  // the error says which there are
+Result<Measure> parse_measure(std::string_view name);  // the error lists the known ones
 
 // A stretch of time since the first tick [s].
 struct Window {
@@ -36,17 +36,17 @@ struct Window {
 };
 
 struct Metric {
-  std::string name;  // as the case calls it: "settles"
+  std::string name;  // its key in the case: "settles"
   Measure measure = Measure::settling_time_s;
   Window window;
-  double band_deg = 2;           // settling and overshoot: what counts as having arrived
+  double band_deg = 2;           // settling and overshoot: attitude error that counts as arrived
   std::optional<Window> versus;  // the value is divided by that of this window
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
 };
 
-// Infinite when it never settles; NaN when the window has no tick, or one with a NaN in what is
-// measured. REQUIRES: a flown trace.
+// Infinite when the flight does not settle. NaN when the window has no tick, or a measured value is
+// NaN. REQUIRES: a flown trace.
 double measured(const Metric& metric, const Trace& flown);
 
 }  // namespace attest

@@ -1,5 +1,5 @@
-// How far the thrust axis is from where it should point: the one quantity of a sample that a
-// tolerance depends on.
+// The tilt error: the angle between the thrust axis and its setpoint. It is the only quantity of a
+// sample on which a tolerance depends.
 #pragma once
 
 #include "harness/trace/trace.hpp"
@@ -7,12 +7,12 @@
 namespace attest {
 
 // Angle [rad] between the body z axes of the attitude in `state` and of the setpoint in `setpoint`
-// (the sample in which the setpoint was last published), in double. Not a number when either
-// quaternion is not finite or zero.
+// (the sample in which the setpoint was last published), in double. NaN when a quaternion is zero
+// or not finite.
 double tilt_error(const attest_inputs& state, const attest_inputs& setpoint);
 
-// The larger of the roll and pitch attitude gains [1/s], without their signs, as parameters are
-// set.
+// The larger of the roll and pitch attitude gains [1/s], without their signs. It follows the
+// parameter changes.
 class AttitudeGain {
  public:
   void set(const ParameterChange& change);

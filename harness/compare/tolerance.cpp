@@ -24,11 +24,11 @@ Tolerance default_of(Quantity quantity) {
     case Quantity::scale:
       return Tolerances::scale;
     default:
-      return {};  // time and flags agree or do not
+      return {};  // time and flags have no tolerance
   }
 }
 
-// Of a fixed-point port.
+// For a fixed-point port.
 double lsb_of(Quantity quantity) {
   switch (quantity) {
     case Quantity::rate:
@@ -115,11 +115,11 @@ Tolerances Tolerances::scaled(double factor) const {
 }
 
 double Tolerances::widening(double tilt_rad, double gain) const {
-  // Measured over correct builds: 3e-6 rad/s at one radian from 180 deg with the default gain.
+  // Measured with correct builds: 3e-6 rad/s at one radian from 180 deg with the default gain.
   constexpr double noise_rad_s = 3e-6;
   constexpr double default_gain = 6.5;
-  // 0.1 deg, where the widening is as large as a wrong port's smallest error: nearer vectors belong
-  // to the exact level.
+  // 0.1 deg: there the widening is as large as the smallest error of a wrong port. Vectors nearer
+  // to 180 deg belong to the exact level.
   constexpr double nearest_rad = 1.7e-3;
   const double distance = std::max(std::numbers::pi - tilt_rad, nearest_rad);
   return scale_ * noise_rad_s * (gain / default_gain) / distance;

@@ -1,4 +1,4 @@
-// How strictly outputs are compared.
+// Levels and tolerances for the comparison of outputs.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace attest {
 enum class Level {
   exact,    // the bits of float32, any NaN equals any NaN
   numeric,  // |got - want| <= max(absolute, relative * |want|)
-  events,   // what happens, within a tick: see events.hpp
+  events,   // the same events within a tick (events.hpp), values of about the same size (gross.hpp)
 };
 
 std::string_view name_of(Level level);
@@ -24,17 +24,17 @@ struct Tolerance {
   double relative = 0;
 };
 
-// The tolerance of every channel, and how that of the rates setpoint widens near a tilt of 180 deg.
+// The tolerance of every channel. That of the rates setpoint widens near a tilt of 180 deg.
 class Tolerances {
  public:
-  // Defaults, with room on both sides: correct builds (other optimisation, FMA, double, another
-  // atan2, a quaternion form) were measured to stay within 5e-6 rad/s, 8e-7 and 5e-7 over 10 s of
-  // open loop; wrong controllers to differ by more than 1e-3 somewhere.
+  // Defaults of rate, control and integral, far from both of these measurements, over 10 s of open
+  // loop. Correct builds (other optimisation, FMA, double, another atan2, a quaternion form) stay
+  // within 5e-6 rad/s, 8e-7 and 5e-7. Wrong controllers deviate by more than 1e-3 at some tick.
   static constexpr Tolerance rate{2e-4, 1e-5};
   static constexpr Tolerance control{1e-4, 1e-5};
   static constexpr Tolerance integral{2e-5, 1e-5};
   static constexpr Tolerance passed_through{1e-6, 1e-6};  // thrust: copied, at most scaled
-  // Of mixer and battery estimate, of which right builds stay within 1.2e-6 and 2.4e-7.
+  // For mixer and battery estimate: correct builds stay within 1.2e-6 and 2.4e-7.
   static constexpr Tolerance motor{2e-5, 0};
   static constexpr Tolerance scale{2e-5, 0};
 
@@ -47,27 +47,31 @@ class Tolerances {
   // "out/"): "vehicle_rates_setpoint" or "actuator_controls_0.control[2]". False: no such channel.
   bool set(std::string_view prefix, Tolerance tolerance);
 
-  // What a right port in fixed point with so many bits behind the point differs by: at least so
-  // many of its last bits (LSB). Measured at 20 to 24 bits, of a port that rounds: up to 740 LSB in
-  // the rates setpoints, near a half turn, 750 in the controls, 60 in the integrals; controls of
-  // which D is most by part of themselves, as 1 / dt is up to 500 and dt has an error of half an
-  // LSB; 13 in the motors, where roll and pitch are fitted. A battery's filter gathers a hundred
-  // roundings, each up to one LSB where a port truncates. At the numeric level only.
+  // Widens the tolerances for a port in fixed point with so many bits behind the point: each
+  // becomes at least the number of LSB (last bits) below. At the numeric level only. Measured at 20
+  // to 24 bits, with a correct port that rounds:
+  // - rates setpoints: up to 740 LSB, near a half turn
+  // - controls: 750 LSB, or a fraction of a control that is mostly D, because 1 / dt is up to 500
+  //   and dt has an error of half an LSB
+  // - integrals: 60 LSB
+  // - motors: 13 LSB, where the mixer fits roll and pitch into the motor range
+  // - battery estimate: its filter adds up a hundred roundings, each up to one LSB if a port
+  //   truncates.
   //
-  // Where the integrals move slowly, what they gain at a tick may be less than an LSB, so that all
-  // roundings go the same way: an LSB for each of `ticks`. Measured at 22 bits: 255 LSB after 4,000
-  // ticks of a flight.
+  // Integrals and controls get one more LSB for each of `ticks`: where an integral moves slowly,
+  // its step may be less than an LSB, so that all roundings go in the same direction. Measured at
+  // 22 bits: 255 LSB after 4,000 ticks of a flight.
   static constexpr double rate_lsb = 2560, control_lsb = 2560, integral_lsb = 256;
   static constexpr double motor_lsb = 64, scale_lsb = 512;
   static constexpr double control_relative_lsb = 1024;
   void allow_lsb(int fraction_bits, std::size_t ticks = 0);
 
-  // All of them times `factor`, widening included.
+  // All tolerances times `factor`, widening included.
   Tolerances scaled(double factor) const;
 
   // Addition to the rates setpoint's absolute tolerance at this tilt error [rad]. The direction of
-  // the tilt axis becomes undefined at 180 deg and float noise in it grows as 1/(pi - tilt);
-  // `gain` is the attitude gain [1/s], 6.5 by default.
+  // the tilt axis becomes undefined at 180 deg, and float noise in it grows as 1/(pi - tilt).
+  // `gain` is the attitude gain [1/s], 6.5 by default in the law.
   double widening(double tilt_rad, double gain) const;
 
  private:

@@ -1,5 +1,5 @@
-// An Error as JSON and back: {"message": ..., "file": ..., "line": 12, "column": 3}, empty and 0
-// where unknown. And a value or an error as text: {"result": ...} or {"error": {...}}.
+// Converts an Error to JSON and back: {"message": ..., "file": ..., "line": 12, "column": 3}, empty
+// and 0 where unknown. Converts a value or an error to text: {"result": ...} or {"error": {...}}.
 #pragma once
 
 #include <string>
@@ -12,13 +12,13 @@ namespace attest {
 
 nlohmann::json to_json(const Error& error);
 
-// Errors: no object, or one without a message.
+// Errors: not an object, or an object without a message.
 Result<Error> error_from_json(const nlohmann::json& json);
 
 // Text that is not UTF-8 is repaired with U+FFFD.
 std::string encode(const Result<nlohmann::json>& result);
 
-// The inverse. Errors: the one that was encoded, or that it is neither.
+// The inverse of encode(). Errors: the encoded one; text that is neither a result nor an error.
 Result<nlohmann::json> decode(const std::string& text);
 
 }  // namespace attest

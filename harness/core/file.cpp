@@ -21,14 +21,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A limit of the environment, which the text of errno does not name.
+// The limit that caused the error; the text of errno does not name it.
 std::string_view limit_of(int error) {
   if (error == EFBIG) return " (`ulimit -f` limits the size of files)";
   if (error == EMFILE) return " (`ulimit -n` limits how many are open)";
   return "";
 }
 
-// REQUIRES: a system call has just failed.
+// REQUIRES: a system call has just failed and set errno.
 tl::unexpected<Error> system_failure(const fs::path& path, std::string_view what) {
   const int error = errno;
   const std::string reason = std::generic_category().message(error);
@@ -56,7 +56,7 @@ class Descriptor {
   int descriptor_;
 };
 
-// Calls use(block) for each block of the file, until it says no more.
+// Calls use(block) for each block of the file, until it returns an error.
 template <typename Use>
 Result<void> for_each_block(const fs::path& path, Use use) {
   const auto opened = open_regular_file(path);
@@ -74,7 +74,7 @@ Result<void> for_each_block(const fs::path& path, Use use) {
   }
 }
 
-// OpenSSL fails here only for want of memory or with a broken installation: nothing to report to.
+// OpenSSL fails here only without memory or with a broken installation, so the process aborts.
 void must(int ok) {
   if (ok != 1) std::abort();
 }
@@ -105,7 +105,7 @@ class Sha256 {
 }  // namespace
 
 Result<int> open_regular_file(const fs::path& path) {
-  // A pipe that is opened without O_NONBLOCK waits for somebody who writes.
+  // Without O_NONBLOCK, opening a pipe waits for a writer.
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (file < 0) return system_failure(path, "cannot open the file");
   struct stat status;
@@ -152,8 +152,8 @@ Result<std::string> sha256_of_file(const fs::path& path) {
 
 namespace {
 
-// Is there something at `path` that must be written to where it is: a terminal, pipe or device?
-// /dev/stdout may lead to an ordinary file, whose other writers would lose it in a rename.
+// True if `path` must be written to directly: a terminal, pipe or device. Also /dev/stdout, which
+// may lead to an ordinary file: a rename would take that file away from its other writers.
 bool is_written_in_place(const fs::path& path, const struct stat& status) {
   if (!S_ISREG(status.st_mode)) return true;
   std::error_code ignored;
@@ -169,9 +169,10 @@ std::string random_suffix() {
   return suffix;
 }
 
-constexpr mode_t new_file_mode = 0644;  // less the umask, as for any new file
+constexpr mode_t new_file_mode = 0644;  // the umask applies, as for any new file
 
-// Gives `create` names beside `target` until one is not taken: what it answers, or -1 with errno.
+// Calls `create` with names in the folder of `target` until one is free. Returns the result of
+// `create`, or -1 with errno.
 template <typename Create>
 int named_beside(const fs::path& target, fs::path& temporary, Create create) {
   constexpr int attempts = 100;
@@ -184,9 +185,9 @@ int named_beside(const fs::path& target, fs::path& temporary, Create create) {
   return -1;
 }
 
-// A new file in the folder of `target`; its descriptor, or -1 with errno. It has no name, so that
-// nothing of it is left when this process is killed; `temporary` is its name where the file system
-// cannot do that.
+// Creates a new file in the folder of `target`. Returns its descriptor, or -1 with errno. It has no
+// name, so that it disappears when this process is killed. If the file system does not support
+// that, the file gets the name `temporary`.
 int create_beside(const fs::path& target, fs::path& temporary) {
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   const int nameless = ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, new_file_mode);
@@ -196,7 +197,7 @@ int create_beside(const fs::path& target, fs::path& temporary) {
   });
 }
 
-// Gives a nameless file a name beside `target`.
+// Gives a file without a name a name in the folder of `target`.
 int name_beside(int file, const fs::path& target, fs::path& temporary) {
   const std::string source = fmt::format("/proc/self/fd/{}", file);
   return named_beside(target, temporary, [&](const fs::path& name) {
@@ -238,7 +239,7 @@ Result<AtomicFile> AtomicFile::open(const fs::path& path) {
     if (file < 0) return system_failure(path, "cannot write the file");
     return AtomicFile(path, "", "", file);
   }
-  // A symbolic link stays, and what it points to is replaced.
+  // A symbolic link stays; the file that it points to is replaced.
   std::error_code failed;
   fs::path target = exists ? fs::canonical(path, failed) : path;
   if (failed) return fail_at(path.string(), "cannot find the file: " + failed.message());
@@ -260,7 +261,7 @@ Result<void> AtomicFile::write(std::string_view bytes) {
 
 Result<void> AtomicFile::commit() {
   const bool in_place = target_.empty();
-  // A pipe or terminal has nothing to flush.
+  // Pipes and terminals cannot be flushed to disk.
   if (!in_place && ::fsync(descriptor_) != 0) {
     return system_failure(path_, "cannot write the file");
   }

@@ -1,4 +1,4 @@
-// Whole files: read, hashed, and written so that a reader never sees half of one.
+// Whole files: reads them, hashes them, and writes them so that a reader never sees a partial file.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,15 @@
 
 namespace attest {
 
-// Opens a regular file for reading; the caller closes the descriptor. Everything that attest reads
-// is opened here. Errors: anything else, which may have no end (a device), nobody who writes (a
+// Opens a regular file for reading; the caller closes the descriptor. All files that attest reads
+// are opened here. Errors: other kinds of file, which may have no end (a device), no writer (a
 // pipe) or no bytes (a directory). Opening never waits.
 Result<int> open_regular_file(const std::filesystem::path& path);
 
-// More than any text that a person writes. What a program wrote may need more.
+// More than any text that a person writes. A file written by a program may need a higher limit.
 inline constexpr std::uintmax_t most_text_bytes = std::uintmax_t{64} << 20;
 
-// The whole file. Errors: those of open_regular_file(), unreadable, more than `most_bytes`.
+// Reads the whole file. Errors: those of open_regular_file(), unreadable, more than `most_bytes`.
 Result<std::string> read_file(const std::filesystem::path& path,
                               std::uintmax_t most_bytes = most_text_bytes);
 
@@ -26,10 +26,10 @@ Result<std::string> read_file(const std::filesystem::path& path,
 std::string sha256(std::string_view bytes);
 Result<std::string> sha256_of_file(const std::filesystem::path& path);
 
-// A file that is written beside its place and renamed at commit(). Opening it early shows an
-// unwritable path before the work, not after; without commit() nothing is left behind, nor when the
-// process is killed, where the file system has files without a name. What is not an ordinary file
-// (/dev/stdout, /dev/null, a pipe) is written to directly.
+// A file that is written in the same folder as its target and renamed at commit(). Open it early,
+// to find an unwritable path before the work. Without commit() it leaves no file behind. If the
+// file system supports files without a name, this is also so when the process is killed. Other
+// kinds of file (/dev/stdout, /dev/null, a pipe) are written to directly.
 class AtomicFile {
  public:
   static Result<AtomicFile> open(const std::filesystem::path& path);
@@ -49,11 +49,11 @@ class AtomicFile {
 
   std::filesystem::path path_;       // as given, for messages
   std::filesystem::path target_;     // with symbolic links followed; empty: written directly
-  std::filesystem::path temporary_;  // what it is called until then; empty: nothing
+  std::filesystem::path temporary_;  // its name until commit(); empty: it has no name
   int descriptor_;                   // -1 once committed
 };
 
-// The whole of a file through the above. An empty path is no file: nothing is written.
+// Writes a whole file with AtomicFile. For an empty path it does nothing.
 Result<void> write_file(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace attest

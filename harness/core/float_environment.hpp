@@ -1,6 +1,6 @@
-// A port may change the floating point environment of the process it is loaded into (a library
-// linked with -ffast-math sets flush-to-zero when it is loaded). The harness computes and compares
-// in the default environment and gives the port its own back.
+// A port may change the floating point environment of its process: a library linked with
+// -ffast-math sets flush-to-zero when it is loaded. The harness computes and compares in the
+// default environment and restores that of the port for its calls.
 #pragma once
 
 #include <cfenv>
@@ -21,8 +21,8 @@ class DefaultFloatEnvironment {
   std::fenv_t saved_;
 };
 
-// The environment that a port has made itself, kept between calls of it that are made one by one
-// amid our own computation.
+// Keeps the environment of a port between single calls of it, with computation of the harness
+// between them.
 class PortFloatEnvironment {
  public:
   PortFloatEnvironment() { std::fegetenv(&ports_); }

@@ -1,6 +1,6 @@
-// Frames, in one place. Everything in the harness is FRD (body: forward, right, down) in NED
-// (world: north, east, down); FLU (forward, left, up) in ENU (east, north, up) exists inside
-// mujoco_plant only. Double precision; no allocation.
+// All conversions between frames. The harness uses FRD (body: forward, right, down) and NED (world:
+// north, east, down). Only mujoco_plant uses FLU (forward, left, up) and ENU (east, north, up)
+// inside. Double precision; no allocation.
 #pragma once
 
 #include <array>
@@ -16,14 +16,14 @@ struct Quaternion {
   friend bool operator==(const Quaternion&, const Quaternion&) = default;
 };
 
-// Each is its own inverse.
+// Each of these mappings is its own inverse.
 constexpr Vector3 frd_from_flu(const Vector3& v) { return {v[0], -v[1], -v[2]}; }
 constexpr Vector3 flu_from_frd(const Vector3& v) { return {v[0], -v[1], -v[2]}; }
 constexpr Vector3 ned_from_enu(const Vector3& v) { return {v[1], v[0], -v[2]}; }
 constexpr Vector3 enu_from_ned(const Vector3& v) { return {v[1], v[0], -v[2]}; }
 
-// An attitude, body FRD to world NED, as body FLU to world ENU, and back. Both turn by 180 deg: the
-// body about x, the world about the line between north and east.
+// Converts an attitude from body FRD, world NED to body FLU, world ENU, and back. Both frames turn
+// by 180 deg: the body about x, the world about the line between north and east.
 Quaternion flu_to_enu(const Quaternion& frd_to_ned);
 Quaternion frd_to_ned(const Quaternion& flu_to_enu);
 

@@ -1,5 +1,5 @@
-// JSON as text. A port chooses its words, which may not be UTF-8: bytes that are not are replaced
-// by U+FFFD, so that no text is refused.
+// JSON as text. Bytes that are not UTF-8 are replaced by U+FFFD, so that every text is accepted:
+// the texts of a port may have any bytes.
 #pragma once
 
 #include <string>

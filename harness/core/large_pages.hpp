@@ -6,8 +6,8 @@
 
 namespace attest {
 
-// Asks the system for large pages there: a trace of some megabytes is then mapped in a few steps
-// instead of thousands. A hint, without effect where there are none.
+// Asks the system for large pages. A trace of some megabytes is then mapped in a few steps instead
+// of thousands. This is a hint; without large pages it has no effect.
 void advise_large_pages(void* begin, std::size_t bytes);
 
 template <typename T>

@@ -1,7 +1,7 @@
 // A value, or an error that a person can act on.
 //
-// Three kinds of failure, three channels: bad input is an Error with its place; a bug of ours
-// aborts; a fault of a port under test is a verdict (suite/verdict.hpp), never an Error.
+// Each kind of failure has its own channel. Bad input is an Error with its place. A bug of attest
+// aborts. A failure of a port under test is a verdict (verify/verdict.hpp), never an Error.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ struct Error {
   int line = 0;
   int column = 0;
 
-  // "file:line:column: message", leaving out what is unknown.
+  // "file:line:column: message", without the unknown parts.
   std::string to_string() const;
 };
 

@@ -10,8 +10,8 @@ namespace {
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-// Edits that turn `a` into `b`: insertions, deletions, substitutions, swaps of two neighbours.
-// Letters of different case are the same: mc_roll_p is meant as MC_ROLL_P.
+// The number of edits that turn `a` into `b`: insertions, deletions, substitutions, swaps of two
+// neighbours. Ignores case, so that mc_roll_p suggests MC_ROLL_P.
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> two_above(b.size() + 1);
   std::vector<std::size_t> above(b.size() + 1);
@@ -35,7 +35,8 @@ std::size_t distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string suggestion(std::string_view unknown, const std::vector<std::string>& candidates) {
-  // Longer names are misspelt in more places. Beyond 200 bytes it is not a name but another file.
+  // Longer names may have more edits. Text of more than 200 bytes is not a name; the file is
+  // probably of another kind.
   constexpr std::size_t longest_name = 200;
   if (unknown.size() > longest_name) return "";
   const std::size_t allowed = (unknown.size() + 1) / 3;

@@ -1,4 +1,4 @@
-// "did you mean ...?"
+// Suggests the name that a misspelt one may stand for.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace attest {
 
-// "; did you mean `thrust`?", or empty when no candidate is near enough to be meant.
+// "; did you mean `thrust`?"; empty when no candidate is near enough.
 std::string suggestion(std::string_view unknown, const std::vector<std::string>& candidates);
 
 }  // namespace attest

@@ -6,10 +6,10 @@
 
 namespace attest {
 
-// int64 on every platform we build for: +-292 years.
+// int64 on every platform of attest: +-292 years.
 using Nanoseconds = std::chrono::nanoseconds;
 
-// For printing, and for what computes in seconds.
+// For printing, and for computations in seconds.
 constexpr double in_seconds(Nanoseconds time) { return static_cast<double>(time.count()) * 1e-9; }
 
 // The `timestamp` of a sample: microseconds, rounded down, as the firmware's clock gives them.

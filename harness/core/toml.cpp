@@ -25,7 +25,7 @@ struct Place {
   friend auto operator<=>(const Place&, const Place&) = default;
 };
 
-// toml++ gives line 0 to what it did not read from the text.
+// toml++ gives line 0 to nodes that it did not read from the text.
 Place place_of(const toml::source_region& region) {
   return {std::max(1, static_cast<int>(region.begin.line)),
           std::max(1, static_cast<int>(region.begin.column))};
@@ -41,8 +41,8 @@ struct Complaint {
 using Names = std::set<std::string, std::less<>>;
 
 struct Asked {
-  Names read;  // value or error asked for
-  Names seen;  // only looked at: known to the reader, but without effect
+  Names read;  // read, or with a recorded error
+  Names seen;  // only looked at: a known key, but without effect
 };
 
 TomlKind kind_of(const toml::node& node) {

@@ -1,8 +1,8 @@
-// Strict reading of TOML files: each key that a file has must have been asked for, and each error
-// names file, line and column. toml++ stays inside toml.cpp.
+// Strict reading of TOML files: each key of a file must be read, and each error names file, line
+// and column. Only toml.cpp uses toml++.
 //
-// Errors are collected while reading, so that the reader reads straight on and a file's author sees
-// all mistakes at once:
+// Errors are collected, so that the reading code need not stop at each one and a file's author sees
+// all errors together:
 //
 //     auto file = TomlFile::read(path);              // syntax errors
 //     if (!file) return tl::unexpected(file.error());
@@ -26,24 +26,23 @@ namespace attest {
 
 enum class TomlKind { absent, boolean, integer, number, text, array, table };
 
-// A view of one table. Copies, and views of the same table got another way, share what was asked
-// for.
+// A view of one table. All views of the same table share the record of the keys that were read.
 class TomlTable {
  public:
-  // A date or time without quotes counts as text, so that text() can say what is wrong with it.
-  // Looking is not asking: a key that was looked at but never read is an error in finish().
+  // A date or time without quotes counts as text, so that text() can report the error. kind() and
+  // has() do not count as reading: a key that was only looked at is an error in finish().
   TomlKind kind(std::string_view key) const;
   bool has(std::string_view key) const { return kind(key) != TomlKind::absent; }
 
-  // Where the key stands, from 1; 0 when it is absent. Does not count as asking.
+  // The line of the key's value, from 1; 0 when the key is absent. Does not count as reading.
   int line(std::string_view key) const;
 
-  // Keys in the order of the file. Does not count as asking for them.
+  // Keys in the order of the file. Does not count as reading.
   std::vector<std::string> keys() const;
 
-  // Required keys: absent or of another type is an error and gives an empty value. A table() that
-  // is absent gives an empty table whose own missing keys are not reported again.
-  // An integer is accepted where a number is asked for; nan and inf are numbers.
+  // Required keys. A key that is absent or of another type is an error, and the value is empty. An
+  // absent table() is an empty table, whose own missing keys are not reported again.
+  // number() accepts an integer; nan and inf are numbers.
   std::string text(std::string_view key) const;
   double number(std::string_view key) const;
   std::int64_t integer(std::string_view key) const;
@@ -52,13 +51,13 @@ class TomlTable {
   std::vector<std::int64_t> integers(std::string_view key) const;
   TomlTable table(std::string_view key) const;
 
-  // Optional keys: absent gives the fallback.
+  // Optional keys: an absent key gives the fallback.
   std::string text(std::string_view key, std::string fallback) const;
   double number(std::string_view key, double fallback) const;
   std::int64_t integer(std::string_view key, std::int64_t fallback) const;
   bool boolean(std::string_view key, bool fallback) const;
 
-  // Records an error at the key's place (at the table's when the key is absent). Counts as asking.
+  // Records an error at the key's place (at the table's when the key is absent). Counts as reading.
   void error(std::string_view key, std::string message) const;
 
   struct Impl;
@@ -76,9 +75,9 @@ class TomlFile {
 
   TomlTable root() const;
 
-  // The first error in file order: of those recorded, and of keys nobody asked for ("unknown key
-  // `thurst`; did you mean `thrust`?"). Later errors are appended to its message, one a line, each
-  // with its own place. Keys of a table that nobody asked for are not listed: the table is.
+  // The first error in file order, of those recorded and of keys that were not read ("unknown key
+  // `thurst`; did you mean `thrust`?"). Later errors are appended to its message, one per line,
+  // each with its own place. For a table that was not read, only the table is listed, not its keys.
   Result<void> finish() const;
 
   struct Document;

@@ -9,7 +9,7 @@
 namespace attest {
 namespace {
 
-// Where the search ended, or the end of the text.
+// The offset that a search found, or the end of the text.
 std::size_t or_end(std::size_t found, std::string_view text) {
   return std::min(found, text.size());
 }
@@ -38,7 +38,7 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
   return end;
 }
 
-// The offset of what is a level too deep.
+// The offset at which the nesting is too deep; empty if it never is.
 std::optional<std::size_t> find_too_deep(std::string_view text) {
   constexpr std::string_view ends_a_key = "=,{}[]\n";
   int parts = 1, values = 0;
@@ -69,7 +69,7 @@ Result<void> check_depth(std::string_view text, const std::string& name) {
   if (!deep) return {};
   const std::string_view before = text.substr(0, *deep);
   const std::string_view line = before.substr(before.rfind('\n') + 1);  // npos + 1 is 0
-  // In characters, as toml++ counts: a UTF-8 sequence is one.
+  // The column is in characters, as in toml++: a UTF-8 sequence is one.
   const auto is_first_byte = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; };
   return fail_at(
       name,

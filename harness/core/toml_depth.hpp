@@ -1,4 +1,4 @@
-// How deep the tables of a TOML text are, looked at before it is parsed.
+// Checks how deeply a TOML text is nested, before it is parsed.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace attest {
 
-// More than any file of attest has, of the parts of a key and of values in each other. toml++
-// bounds nested values only: a key of 50,000 parts becomes as many tables, and destroying them
-// recursively overflows the stack.
+// The limit for the parts of a key and for nested values; all files of attest have fewer. toml++
+// limits nested values only. A key of 50,000 parts becomes as many tables, and their recursive
+// destruction overflows the stack.
 inline constexpr int most_levels = 32;
 
-// Errors: a dotted key, or the name of a table, of more parts than that, or values nested more
-// deeply; `name` stands for the file. Text that is not valid TOML is followed as far as the parser
-// follows it.
+// Errors: a dotted key or a table name with more parts than that; values nested more deeply. `name`
+// stands for the file in messages. Text that is not valid TOML is checked as far as the parser
+// reads it.
 Result<void> check_depth(std::string_view text, const std::string& name);
 
 }  // namespace attest

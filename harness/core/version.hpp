@@ -1,4 +1,4 @@
-// Which attest this is and what built it.
+// The version of attest and the compiler that built it.
 #pragma once
 
 #include <string>

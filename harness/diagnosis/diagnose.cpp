@@ -9,7 +9,8 @@ namespace {
 constexpr std::size_t most_suspects = 3;
 constexpr std::size_t most_in_group = 4;
 
-// Of the vectors that pass a suspect has to pass this part: one mistake may hide another.
+// The share of the passing vectors that a suspect must match. It is below 1 because one mistake may
+// hide another.
 constexpr double passing_part = 0.95;
 
 // One fault over all vectors.
@@ -55,7 +56,7 @@ std::vector<Record> records_of(const std::vector<VectorSimilarity>& vectors) {
   return records;
 }
 
-// Those that deviate where the port does not.
+// Drops the faults that deviate where the port does not.
 void drop_contradicted(std::size_t passing, std::vector<Record>& records) {
   const double enough = passing_part * static_cast<double>(passing);
   std::erase_if(records, [enough](const Record& record) {
@@ -101,7 +102,7 @@ Suspect suspect_of(const Record& best, const std::vector<Record>& records,
 
 std::optional<Diagnosis> diagnose(const std::vector<VectorSimilarity>& vectors) {
   Diagnosis diagnosis;
-  std::vector<std::size_t> left = failing(vectors);  // that nothing explains yet
+  std::vector<std::size_t> left = failing(vectors);  // not explained yet
   if (left.empty()) return std::nullopt;
   diagnosis.vectors = vectors.size();
   diagnosis.failing = left.size();

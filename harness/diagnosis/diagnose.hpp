@@ -1,5 +1,5 @@
-// What mistake a port's failures look like: the catalogue run against the vectors that failed, and
-// some that did not.
+// The faults of the catalogue that a port's failures resemble: the catalogue runs on the vectors
+// that failed, and on some that passed.
 #pragma once
 
 #include <cstddef>
@@ -11,37 +11,36 @@
 
 namespace attest {
 
-// A fault that answers as the port does.
+// A fault whose outputs match the port's.
 struct Suspect {
   const faults::Fault* fault = nullptr;
-  std::size_t matched = 0, ticks = 0;      // over the vectors that fail
-  std::size_t explained = 0, failing = 0;  // vectors that it matches at every tick
-  std::vector<const faults::Fault*>
-      ambiguity_group;                  // faults that match as well: not told apart here
-  const faults::Fault* with = nullptr;  // matches together with this one
+  std::size_t matched = 0, ticks = 0;                 // over the vectors that fail
+  std::size_t explained = 0, failing = 0;             // vectors that it matches at every tick
+  std::vector<const faults::Fault*> ambiguity_group;  // faults that match equally well
+  const faults::Fault* with = nullptr;                // the match is of both together
 };
 
 struct Diagnosis {
   std::size_t vectors = 0, failing = 0;
   std::size_t unexplained = 0;  // failing vectors that no suspect matches at every tick
-  // Best first; the second explains what the first does not, and so on. Empty when no fault of the
-  // catalogue explains a vector.
+  // Best first. Each further suspect explains vectors that those before it do not. Empty when no
+  // fault of the catalogue explains a vector.
   std::vector<Suspect> suspects;
-  // Of the first suspect, or else of the fault whose deviations lie where the port's do.
+  // Of the first suspect; without a suspect, of `nearest`.
   faults::Stage stage = faults::Stage::input;
-  const faults::Fault* nearest = nullptr;  // in where it deviates
-  double jaccard_index = 0;  // of the nearest: 0 .. 1, values both deviate at of either's
+  const faults::Fault* nearest = nullptr;  // deviates most nearly where the port does
+  double jaccard_index = 0;  // of the nearest, 0 .. 1: values at which both deviate / either does
 };
 
-// Empty when nothing fails.
+// Empty when no vector fails.
 std::optional<Diagnosis> diagnose(const std::vector<VectorSimilarity>& vectors);
 
-// Whether a second mistake beside the first suspect is to be looked for: some failing vectors are
+// Whether to search for a second mistake in addition to the first suspect: some failing vectors are
 // left that no suspect explains.
 bool wants_partner(const Diagnosis& diagnosis);
 
-// `vectors` are the same, of faults together with the first suspect: names the second mistake when
-// the two explain more than all suspects did alone.
+// `vectors` are the same vectors, with each fault combined with the first suspect. Names the second
+// mistake if the two explain more than all suspects did alone.
 void add_partner(const std::vector<VectorSimilarity>& vectors, Diagnosis& diagnosis);
 
 }  // namespace attest

@@ -10,7 +10,7 @@
 namespace attest {
 namespace {
 
-// A vector, and what each of the distinct answers to it is like.
+// A vector, and the similarity of all faults to each of its distinct outputs.
 struct Answered {
   FaultAnswers faults;
   std::vector<VectorSimilarity> of_distinct;

@@ -1,4 +1,4 @@
-// How good diagnosis is: each fault of the catalogue, taken for a port, is diagnosed.
+// The quality of the diagnosis: each fault of the catalogue is diagnosed as if it were a port.
 #pragma once
 
 #include <string>
@@ -11,15 +11,15 @@ namespace attest {
 
 struct SelfDiagnosis {
   const faults::Fault* fault = nullptr;
-  std::optional<Diagnosis> diagnosis;  // empty: none of the vectors tells it from the law
+  std::optional<Diagnosis> diagnosis;  // empty: it agrees with the law on all vectors
 
-  // Named first, or as good as the one that is.
+  // Whether the fault is the first suspect, or in its ambiguity group.
   bool is_named() const;
   bool is_stage_named() const;
 };
 
-// Of the faults that the profile can tell, on one vector a case, at 250 Hz where there is one.
-// `cases` are open loop, all of that profile.
+// For the faults that are detectable in the profile, on one vector per case, at 250 Hz where there
+// is one. `cases` are open loop, all of that profile.
 std::vector<SelfDiagnosis> diagnose_catalogue(const std::vector<SelectedCase>& cases,
                                               faults::Profile profile);
 

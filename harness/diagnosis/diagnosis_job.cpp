@@ -18,7 +18,7 @@
 namespace attest {
 namespace {
 
-// Enough to tell the mistakes of the catalogue apart, in a second or two.
+// Enough to distinguish the faults of the catalogue, in a second or two.
 constexpr std::size_t most_vectors = 48;
 
 struct Vector {
@@ -60,7 +60,7 @@ void add_spread(const std::vector<Vector>& vectors, const HostOptions& options,
 
 using nlohmann::json;
 
-// Rows of numbers: there are hundreds.
+// Rows of numbers, because there are hundreds.
 json to_json(const VectorDiagnosis& diagnosis) {
   if (!diagnosis) return nullptr;
   json rows = json::array();

@@ -1,4 +1,4 @@
-// Runs a port on some vectors of the corpus, and every wrong controller of the catalogue, too.
+// Runs a port, and every fault of the catalogue, on some vectors of the corpus.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@
 
 namespace attest {
 
-// Empty when the port went wrong.
+// Empty when the port declines the case or fails.
 using VectorDiagnosis = std::optional<VectorSimilarity>;
 
 template <>
@@ -26,7 +26,7 @@ struct Codec<VectorDiagnosis> {
 // One vector.
 class DiagnosisJob final : public Job<VectorDiagnosis> {
  public:
-  // Open loop. The case must outlive this. With a `partner` each fault is tried together with it.
+  // Open loop. The case must outlive this. With a `partner`, each fault is combined with it.
   DiagnosisJob(const Case& the_case, const Rate& rate, const faults::Fault* partner,
                HostOptions options)
       : case_(the_case), rate_(rate), partner_(partner), options_(std::move(options)) {}
@@ -41,9 +41,9 @@ class DiagnosisJob final : public Job<VectorDiagnosis> {
   HostOptions options_;
 };
 
-// For up to 48 vectors that failed with a value, and up to 48 that passed: one rate a case, the one
-// nearest to 250 Hz, spread over the corpus. `cases` are those that were run, and must outlive the
-// jobs.
+// For up to 48 vectors that failed with a value, and up to 48 that passed. One vector per case, at
+// the rate nearest to 250 Hz, spread over the corpus. `cases` are those that were run, and must
+// outlive the jobs.
 Jobs<VectorDiagnosis> diagnosis_jobs(const std::vector<SelectedCase>& cases,
                                      const std::vector<CaseResult>& results,
                                      const HostOptions& options,

@@ -14,7 +14,7 @@
 namespace attest {
 namespace {
 
-// A case at a rate, by how likely it is to catch: own group, then 250 Hz, then in order.
+// A vector. The likeliest to catch the fault come first: own group, then 250 Hz, then in order.
 struct Attempt {
   const Case* the_case;
   Rate rate;
@@ -59,7 +59,7 @@ Result<FaultCatch> FaultJob::run(std::size_t) {
   if (!port) return tl::unexpected(port.error());
   HostHere host(*std::move(port));
   FaultCatch found;
-  // Of a module that the profile's cases do not have.
+  // The fault is of a module that the profile's cases do not have.
   const bool has_group = std::any_of(cases_.begin(), cases_.end(), [&](const SelectedCase& one) {
     return one.the_case.group == fault_.group;
   });
@@ -73,7 +73,7 @@ Result<FaultCatch> FaultJob::run(std::size_t) {
       golden.emplace(std::move(*next));
       opened = the_case;
     }
-    // Rounding tells a fault from the law that is equivalent to it.
+    // A fault that is equivalent to the law still differs from it by rounding.
     if (the_case->exact_only && !fault_.is_detectable(profile_)) continue;
     const Level level = the_case->exact_only ? Level::exact : Level::numeric;
     const auto result = evaluate_case(*the_case, rate, *golden, host, level);

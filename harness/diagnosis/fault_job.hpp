@@ -1,5 +1,5 @@
-// One wrong controller of the catalogue against the corpus, until something catches it: how good
-// the suite is, not how good a port is.
+// Runs one fault of the catalogue on the corpus until a case catches it. This measures the quality
+// of the suite.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ namespace attest {
 
 // The first case that caught a fault.
 struct FaultCatch {
-  Verdict verdict = Verdict::pass;  // pass: it survived all
+  Verdict verdict = Verdict::pass;  // pass: no case caught it
   std::string by;                   // id of the case, with its rate
   std::optional<std::size_t> tick;  // that deviates first
 
@@ -45,7 +45,7 @@ class FaultJob final : public Job<FaultCatch> {
 
   std::size_t size() const override { return 1; }
 
-  // Cases of the fault's own group come first, and of each group 250 Hz. Cases on a threshold are
+  // Cases of the fault's own group come first, and in each group 250 Hz. Cases on a threshold are
   // judged at the exact level, the others at the numeric one.
   Result<FaultCatch> run(std::size_t task) override;
 

@@ -20,7 +20,7 @@ void set_quaternion(float (&q)[4], double w, double x, double y, double z) {
   for (int i = 0; i < 4; ++i) q[i] = static_cast<float>(components[i]);
 }
 
-// Armed in STABILIZED, everything told at the first tick.
+// Armed in STABILIZED, with all topics updated at the first tick.
 Sample hovering(std::size_t tick) {
   Sample sample{};
   sample.in.timestamp = 5'000'000 + 4000 * tick;

@@ -1,5 +1,5 @@
-// The two tests that a port is usually given: a recorded hover, and random pairs of attitude and
-// setpoint. Measured beside the corpus, to say what it is worth.
+// The two usual tests of a port: a recorded hover, and random pairs of attitude and setpoint. The
+// corpus is compared with them.
 #pragma once
 
 #include <string>

@@ -1,5 +1,4 @@
-// How alike a port and the wrong controllers of the catalogue are on one vector: what a diagnosis
-// is made of.
+// The similarity of a port and each fault of the catalogue on one vector: the basis of a diagnosis.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +14,11 @@
 
 namespace attest {
 
-// One fault beside the port.
+// One fault compared with the port.
 struct Similarity {
-  std::size_t matched = 0;       // ticks at which fault and port answer the same
+  std::size_t matched = 0;       // ticks at which fault and port have the same outputs
   std::size_t intersection = 0;  // values at which both deviate from the law
-  std::size_t union_size = 0;    // values at which one of them does
+  std::size_t union_size = 0;    // values at which at least one does
 };
 
 struct VectorSimilarity {
@@ -28,19 +27,20 @@ struct VectorSimilarity {
   std::vector<Similarity> similarities;  // of each fault of the catalogue, in its order
 };
 
-// Of whichever module; zero of the others.
+// The outputs of the subject's module; those of the others are zero.
 struct Answer {
   attest_outputs out;
   attest_mixer_outputs mixer_out;
   attest_battery_outputs battery_out;
 };
-using Outputs = std::vector<Answer>;  // one a tick
+using Outputs = std::vector<Answer>;  // one per tick
 
 Outputs outputs_of(const Trace& trace);
 
-// What the faults of the catalogue answer. Most answer alike on one vector: as the law does.
+// The outputs of the faults of the catalogue. On one vector, most faults have the same outputs as
+// the law, so equal outputs are stored once.
 struct FaultAnswers {
-  std::vector<Outputs> distinct;      // empty for faults that do not do the profile
+  std::vector<Outputs> distinct;      // empty for faults without the profile
   std::vector<std::size_t> of_fault;  // index into `distinct`, in the order of the catalogue
 };
 
@@ -48,13 +48,13 @@ struct FaultAnswers {
 FaultAnswers answers_of_faults(const Trace& given, const Subject& subject,
                                const faults::Fault* partner = nullptr);
 
-// Of each of the distinct answers. Values are the same when they differ by no more than the
+// For each of the distinct outputs. Values are the same when they differ by no more than the
 // tolerances, which are not widened near a tilt error of 180 deg here.
 VectorSimilarity distinct_similarity(const Outputs& port, const Outputs& law,
                                      std::span<const Outputs> distinct,
                                      const Tolerances& tolerances = Tolerances());
 
-// Of each fault, from what its answers have been found to be like.
+// For each fault, from the similarity of its distinct outputs.
 VectorSimilarity of_each_fault(const VectorSimilarity& distinct, const FaultAnswers& faults);
 
 VectorSimilarity similarity(const Outputs& port, const Outputs& law, const FaultAnswers& faults,

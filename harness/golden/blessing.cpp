@@ -21,7 +21,7 @@ struct Blessing {
   VehicleModels vehicle_models;
 };
 
-// A file with all its profiles: the goldens of the others rest on that of the first.
+// A case file in all its profiles: the goldens of the others are based on that of the first.
 Result<void> write_file_beside(const Case& first, Blessing& blessing, PendingGoldens& pending) {
   MadeGolden of_first;
   std::filesystem::path base_folder = golden_folder(blessing.options.golden, first);
@@ -42,7 +42,7 @@ Result<void> write_file_beside(const Case& first, Blessing& blessing, PendingGol
     }
     blessing.options.on_change(line);
     const GoldenBase base{of_first.traces, base_folder};
-    // Ticks that are kept are not those that another profile keeps.
+    // Keyframes have no base: another profile keeps other ticks.
     const bool rests_on_base =
         !is_first && std::all_of(made->traces.begin(), made->traces.end(),
                                  [](const GoldenTrace& trace) { return trace.is_whole; });

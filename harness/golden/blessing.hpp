@@ -1,4 +1,4 @@
-// New goldens of cases, written beside the old ones, to be put in their places together.
+// New goldens of cases, written next to the old ones, to be put in place together.
 #pragma once
 
 #include <cstddef>
@@ -20,15 +20,15 @@ struct BlessingOptions {
   std::function<bool()> stop = [] { return false; };  // true: end with an error
 };
 
-// Those not put in place are removed with this.
+// The destructor removes goldens that were not put in place.
 struct PendingGoldens {
   std::vector<NewGolden> goldens;
   std::size_t unchanged = 0;  // cases
 };
 
-// For who holds the GoldenLock of the folder. A file is done with all its profiles, whichever of
-// them is selected, because the goldens of the others rest on that of the first. Errors: those of
-// make_golden() and NewGolden::write().
+// REQUIRES: the caller holds the GoldenLock of the folder. A case file is blessed in all its
+// profiles, whichever of them is selected: the goldens of the others are based on that of the
+// first. Errors: those of make_golden() and NewGolden::write().
 Result<PendingGoldens> write_beside(const std::vector<SelectedCase>& cases,
                                     const BlessingOptions& options);
 

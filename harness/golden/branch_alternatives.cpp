@@ -45,7 +45,8 @@ struct LawOnOtherBranch {
   reference::RecoveryStages<float> recovery;
 };
 
-// By value and by bits: the bytes between the members of a topic say nothing.
+// Compares the bits of the values, because the bytes between the members of a topic have no
+// meaning.
 bool is_same(std::string_view prefix, const Sample& a, const Sample& b) {
   const ChannelSet chosen = channels_of(Module::mc_att_control, prefix);
   for (std::size_t i = 0; i < channels().size(); ++i) {
@@ -57,7 +58,7 @@ bool is_same(std::string_view prefix, const Sample& a, const Sample& b) {
   return true;
 }
 
-// One tick by itself, with the parameters in force at it.
+// One tick alone, with the parameters in force at it.
 bool agrees(const Trace& got, const Trace& want, std::size_t tick, const Tolerances& tolerances) {
   const auto& all = want.parameters;
   const auto later = std::find_if(
@@ -132,7 +133,7 @@ Trace on_the_branch_of(const Trace& got, const Trace& law, const BranchAlternati
                        const Tolerances& tolerances) {
   Trace want = law;
   for (std::size_t tick = 0; tick < want.samples.size(); ++tick) {
-    // What is right on no branch is told from the nearest, not from the far one.
+    // An output that is wrong on every branch is compared with the nearest branch.
     const Trace* branch = nullptr;
     for (double factor = 1; branch == nullptr && factor <= 1e4; factor *= 10) {
       branch = branch_of(got, law, others, tick, tolerances.scaled(factor));

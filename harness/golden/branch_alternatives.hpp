@@ -1,8 +1,9 @@
-// Where the law turns one way, and the other is as right.
+// At a tie, both branches of the law are accepted.
 //
-// At a yaw error of 180 deg, and at a direct rotation of 180 deg, the sign of a last bit decides
-// which way the law turns. A case that stands there (Case::either_branch) has more goldens than
-// one: what the law answers, and what it answers when such decisions fall on their other branch.
+// There are two ties: a yaw error of 180 deg, and a direct rotation of 180 deg. There the sign of a
+// last bit decides the law's direction of rotation. A case at such a tie (Case::either_branch) has
+// several goldens: the outputs of the law, and its outputs with such decisions on their other
+// branch.
 #pragma once
 
 #include <map>
@@ -15,16 +16,16 @@
 
 namespace attest {
 
-// By the decisions that fall on their other branch: "yaw_wrap", "yaw_wrap+shorter_rotation".
+// The key names the decisions on their other branch: "yaw_wrap", "yaw_wrap+shorter_rotation".
 using BranchAlternatives = std::map<std::string, Trace>;
 
-// The reference's answers to the inputs of `law` on every other branch that the case allows; `law`
-// has its answers on this one. Errors: the integrals are not the same on both, so that the branches
-// are not a matter of a tick; no tick is on the threshold; the profile is unknown.
+// The reference's outputs for the inputs of `law`, on every other branch that the case allows;
+// `law` has the outputs on the law's own branch. Errors: the integrals differ between the branches,
+// so that the choice affects later ticks; no tick is on the threshold; the profile is unknown.
 Result<BranchAlternatives> branch_alternatives(const Case& the_case, const Trace& law);
 
-// `law` with the answers of another branch at those ticks at which `got` agrees with them and not
-// with the law's, or is nearer to them. REQUIRES: as many samples in all.
+// `law`, with the outputs of another branch where `got` agrees with that branch at a tick and not
+// with the law, or is nearer to it. REQUIRES: the same number of samples in all.
 Trace on_the_branch_of(const Trace& got, const Trace& law, const BranchAlternatives& others,
                        const Tolerances& tolerances);
 

@@ -47,7 +47,7 @@ std::vector<Trace> samples_of(const std::vector<GoldenTrace>& traces) {
   return samples;
 }
 
-// The base is named by its place, and by the bytes that it has now.
+// The provenance identifies the base by its folder and by the bytes that it has now.
 Result<void> note_base(const GoldenBase& base, const Case& the_case, Provenance& provenance) {
   const fs::path above = fs::path("..") / ".." / "..";
   provenance.base = (above / the_case.profiles.front() / the_case.group / the_case.name).string();
@@ -59,7 +59,7 @@ Result<void> note_base(const GoldenBase& base, const Case& the_case, Provenance&
   return {};
 }
 
-// What stays the same is said once in the provenance.
+// Columns that stay the same are stored once, in the provenance.
 Result<void> write_folder(const fs::path& folder, const Case& the_case,
                           const std::vector<GoldenTrace>& traces,
                           const std::vector<fs::path>& vehicle_files, const std::string& reason,
@@ -240,7 +240,8 @@ NewGolden::~NewGolden() {
   if (written_.empty()) return;
   std::error_code ignored;
   fs::remove_all(written_, ignored);
-  // The folders of its group and profile, if they were made for it. Others are not empty.
+  // Removes the folders of its group and profile, too, if they were made for it. Others are not
+  // empty.
   fs::remove(written_.parent_path(), ignored);
   fs::remove(written_.parent_path().parent_path(), ignored);
 }
@@ -265,8 +266,8 @@ Result<NewGolden> NewGolden::write(const fs::path& golden_root, const Case& the_
 Result<void> NewGolden::put_in_place() {
   const bool exchanged =
       ::renameat2(AT_FDCWD, written_.c_str(), AT_FDCWD, folder_.c_str(), RENAME_EXCHANGE) == 0;
-  if (exchanged) return {};  // the old one is in `written_` now, and is removed with this
-  // There is no old one, or the file system cannot exchange: the old golden steps aside first.
+  if (exchanged) return {};  // the old one is in `written_` now, and the destructor removes it
+  // There is no old golden, or the file system cannot exchange. An old golden is moved away first.
   const fs::path old = fs::path(folder_).concat(".old");
   std::error_code error;
   if (fs::exists(folder_)) fs::rename(folder_, old, error);

@@ -1,10 +1,11 @@
 // The golden traces of a case: golden/<profile>/<group>/<name>/<configuration>.csv and one
-// provenance.toml, which says what they were made from. Of a flight some ticks are kept, and in the
-// provenance its horizon and metrics; of a long open-loop case some ticks too (keeps_every_tick).
+// provenance.toml, which records their origin. The golden of a flight keeps keyframes; its
+// provenance has the horizon and the metrics. The golden of a long open-loop case keeps keyframes
+// too (keeps_every_tick).
 //
-// Where a case file has several profiles, the goldens of the others hold what differs from that of
-// the first, which is their base. Goldens that keep some ticks have none: in another profile other
-// ticks are kept, and in a flight what the unit is given depends on its answers.
+// A case file can have several profiles. The golden of the first profile is then the base: the
+// goldens of the others hold only their differences from it. Goldens of keyframes have no base:
+// another profile keeps other ticks, and in a flight the unit's inputs depend on its outputs.
 #pragma once
 
 #include <filesystem>
@@ -24,15 +25,14 @@ namespace attest {
 // The golden of one case, open for reading.
 class Golden {
  public:
-  // Errors: there is none, it was made from another version of the case file, or its provenance was
-  // edited; the message names what mends it.
+  // Errors: the golden is missing, was made from another version of the case file, or has an edited
+  // provenance. The message names the remedy.
   static Result<Golden> open(const std::filesystem::path& golden_root, const Case& the_case);
 
-  // Errors: no trace for that configuration, bytes that are not those that were blessed, a broken
-  // CSV.
+  // Errors: no trace for that configuration, bytes that differ from the blessed ones, a broken CSV.
   Result<Trace> read(const RunConfiguration& configuration) const;
 
-  // What it is on other branches; empty for a case without Case::either_branch. Errors: those of
+  // The goldens on other branches; empty for a case without Case::either_branch. Errors: those of
   // read().
   Result<BranchAlternatives> read_branch_alternatives(const RunConfiguration& configuration) const;
 
@@ -58,45 +58,45 @@ std::string metric_key(const RunConfiguration& configuration, const std::string&
 
 std::filesystem::path golden_folder(const std::filesystem::path& golden_root, const Case& the_case);
 
-// Of a longer case the golden keeps some ticks, so that it fits into a repository.
+// Whether a golden of so many ticks keeps them all. A longer one keeps keyframes, so that it fits
+// into a repository.
 bool keeps_every_tick(std::size_t ticks);
 
-// An open-loop case whose golden keeps some ticks.
+// Whether this is an open-loop case whose golden keeps keyframes.
 bool is_long(const Case& the_case);
 
-// One trace of a golden to be.
+// One trace of a new golden.
 struct GoldenTrace {
   RunConfiguration configuration;
   Trace trace;
-  bool is_whole = true;  // false: some of its ticks, of a flight or a long case
+  bool is_whole = true;  // false: keyframes, of a flight or a long case
   std::optional<double> horizon_s = std::nullopt;
   std::map<std::string, double> metrics = {};
   BranchAlternatives branch_alternatives = {};  // of a case with Case::either_branch
 };
 
-// The golden of a case's first profile, which that of another one rests on.
+// The golden of a case's first profile: the base of the goldens of its other profiles.
 struct GoldenBase {
   const std::vector<GoldenTrace>& traces;
   std::filesystem::path folder;  // where its files are now, perhaps not yet in place
 };
 
-// A golden that has been written beside its place, complete, and not yet put there. For who holds
-// the GoldenLock.
+// A new golden, complete, written next to its place and not yet put there. REQUIRES: the caller
+// holds the GoldenLock.
 class NewGolden {
  public:
   // Writes `traces` (one for each of the case's configurations, in that order). `vehicle_files` are
-  // those that the flights depend on. `base`: null, or the golden of the first profile as it is
-  // written, or stands, in `base_folder`.
+  // the files that the flights depend on. `base`: null, or the golden of the first profile.
   static Result<NewGolden> write(const std::filesystem::path& golden_root, const Case& the_case,
                                  const std::vector<GoldenTrace>& traces,
                                  const std::vector<std::filesystem::path>& vehicle_files,
                                  const std::string& reason, const GoldenBase* base = nullptr);
   NewGolden(NewGolden&& other) noexcept;
   NewGolden& operator=(NewGolden&&) = delete;
-  ~NewGolden();  // removes what does not stand in its place: this one, or the one it replaced
+  ~NewGolden();  // removes the golden that is not in place: this one, or the one it replaced
 
-  // At each moment, a kill included, a complete golden is there: where the file system can exchange
-  // two folders in its place, else there or in `*.old`.
+  // A complete golden exists at each moment, even if the process is killed. If the file system can
+  // exchange two folders, it is in its place; else there or in `*.old`.
   Result<void> put_in_place();
 
   const std::filesystem::path& written() const { return written_; }

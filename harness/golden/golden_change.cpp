@@ -12,7 +12,7 @@
 namespace attest {
 namespace {
 
-// What blessing would change in one trace, beside the traces that do not change.
+// The changes that blessing makes in a trace, or in all traces of a case.
 struct Change {
   ChannelSet channels;
   std::size_t ticks = 0;
@@ -20,19 +20,19 @@ struct Change {
   std::size_t max_channel = 0;
 };
 
-// By bits, as the exact level sees it: -0 is not 0, but every NaN is the same.
+// By bits, as at the exact level: -0 differs from 0, but all NaNs are equal.
 bool differ(double a, double b) {
   if (std::isnan(a) || std::isnan(b)) return std::isnan(a) != std::isnan(b);
   return a != b || std::signbit(a) != std::signbit(b);
 }
 
-// Infinite where one of them is no number.
+// Infinite where one of them is NaN.
 double deviation(double a, double b) {
   const double difference = std::abs(a - b);
   return std::isnan(difference) ? HUGE_VAL : difference;
 }
 
-// Of every channel, inputs too, over the ticks that both have.
+// Of every channel, inputs included, over the ticks that both have.
 Change change_between(const Trace& old_trace, const Trace& new_trace) {
   Change change;
   const std::size_t common = std::min(old_trace.samples.size(), new_trace.samples.size());
@@ -55,7 +55,7 @@ Change change_between(const Trace& old_trace, const Trace& new_trace) {
   return change;
 }
 
-// What a provenance says of flights, beside their traces.
+// The entries of a provenance about flights, in addition to their traces.
 struct Measured {
   std::map<std::string, double> horizon_s, metrics;
   std::map<std::string, std::string> models;
@@ -142,7 +142,7 @@ std::string change_of_golden(const Case& the_case, const MadeGolden& made,
   if (!provenance) {
     return fmt::format("{}: replaced; {}", the_case.id(), provenance.error().to_string());
   }
-  as_blessed.sha256 = provenance->case_sha256;  // what it was made from does not matter here
+  as_blessed.sha256 = provenance->case_sha256;  // another version of the case file is no error here
   const auto golden = Golden::open(golden_root, as_blessed);
   if (!golden) return fmt::format("{}: replaced; {}", the_case.id(), golden.error().to_string());
 

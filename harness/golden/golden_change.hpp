@@ -1,4 +1,4 @@
-// What blessing a case would change in its golden.
+// The changes that blessing a case would make to its golden.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,9 @@
 
 namespace attest {
 
-// One line: how many traces, ticks and channels differ from `made`, and the largest deviation,
-// where values differ as at the exact level; or that only the case, the vehicle's files, metrics or
-// horizons did. Empty when the golden is what would be written now.
+// One line: the number of traces, ticks and channels that differ from `made`, and the largest
+// deviation. Values are compared as at the exact level. If no value differs, the line says whether
+// the case, the vehicle's files, metrics or horizons changed. Empty when the golden is up to date.
 std::string change_of_golden(const Case& the_case, const MadeGolden& made,
                              const std::filesystem::path& golden_root);
 

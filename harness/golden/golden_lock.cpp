@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr mode_t lock_mode = 0644;  // less the umask
 
-// Who held the lock before may have removed the file between our open() and flock().
+// The process that held the lock before may have removed the file between our open() and flock().
 bool is_still_there(int descriptor, const fs::path& file) {
   struct stat opened, there;
   return ::fstat(descriptor, &opened) == 0 && ::stat(file.c_str(), &there) == 0 &&
@@ -79,7 +79,8 @@ Result<void> remove_what_is_left(const fs::path& golden_root) {
                      fmt::format("was left by a run that was killed, and cannot be removed: {}",
                                  error.message()));
     }
-    // The folders of its group and profile, if they were made for it. Others are not empty.
+    // Removes the folders of its group and profile, too, if they were made for it. Others are not
+    // empty.
     fs::remove(folder.parent_path(), error);
     fs::remove(folder.parent_path().parent_path(), error);
   }
@@ -96,7 +97,7 @@ GoldenLock::GoldenLock(GoldenLock&& other) noexcept
 
 GoldenLock::~GoldenLock() {
   if (descriptor_ < 0) return;
-  ::unlink(file_.c_str());  // while it is locked, so that it is nobody else's
+  ::unlink(file_.c_str());  // while it is locked, so that no other process has locked it
   ::close(descriptor_);
 }
 

@@ -1,4 +1,4 @@
-// One process at a time writes goldens, and begins without what a killed one has left.
+// Only one process at a time writes goldens. It first cleans up after a process that was killed.
 #pragma once
 
 #include <filesystem>
@@ -7,14 +7,14 @@
 
 namespace attest {
 
-// Held from take() until it is destroyed. It is an flock of a file in the golden root, which the
-// kernel releases when the process dies, however that happens.
+// Held from take() to its destruction. It is an flock of a file in the golden root. The kernel
+// releases it when the process ends in any way.
 class GoldenLock {
  public:
-  // Makes the root if need be. Removes the folders `*.new` of a process that was killed, and gives
-  // a golden that it had moved away (`*.old`) its place again. Does not wait: who holds the lock
-  // may be waiting for an answer of its user. Errors: another process holds the lock; the root or a
-  // folder in it cannot be written.
+  // Makes the root if necessary. Removes the folders `*.new` of a killed process. Moves `*.old`, a
+  // golden that this process had moved away, back to its place if that is empty. Does not wait,
+  // because the process that holds the lock may be waiting for its user. Errors: another process
+  // holds the lock; the root or a folder in it cannot be written.
   static Result<GoldenLock> take(const std::filesystem::path& golden_root);
 
   GoldenLock(GoldenLock&& other) noexcept;

@@ -1,6 +1,6 @@
-// The golden of a flight, or of a long case, keeps some of its ticks, the keyframes, so that
-// thousands of goldens fit into a repository. The reference fills in the others, once it has
-// answered what the golden has at each keyframe.
+// The golden of a flight, or of a long case, keeps some of its ticks: the keyframes. Thousands of
+// goldens therefore fit into a repository. The reference computes the other ticks, after a check
+// that its outputs at each keyframe agree with the golden.
 #pragma once
 
 #include "harness/core/result.hpp"
@@ -9,15 +9,16 @@
 
 namespace attest {
 
-// Of the controller. The first ticks, ticks at regular distances, those where an output is smallest
-// and largest, and the last, in order; some forty in all. Without parameters, freshness and plant:
-// what is left out between two keyframes cannot be replayed. REQUIRES: not empty.
+// The keyframes of a trace of the controller, in order: the first ticks, ticks at regular
+// distances, those where an output is smallest or largest, and the last; some forty in all.
+// Parameters, freshness and plant are left out, because the ticks between two keyframes cannot be
+// replayed. REQUIRES: not empty.
 Trace keyframes_of(const Trace& flown);
 
-// `made` with the answers of the reference, which at the keyframes `kept` are those of the golden:
-// to the bit, or where these are the platform's (`is_exact` false) at the numeric level. Errors:
-// `kept` has inputs that `made` does not have at that time, or the reference of this build answers
-// otherwise.
+// `made` with the outputs of the reference. At the keyframes `kept` these agree with the golden: to
+// the bit, or at the numeric level if the bits depend on the platform (`is_exact` false). Errors:
+// `kept` has inputs that `made` does not have at that time; the reference of this build has other
+// outputs.
 Result<Trace> filled_in(Trace made, const Trace& kept, const Subject& subject, bool is_exact);
 
 }  // namespace attest

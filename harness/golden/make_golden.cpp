@@ -35,7 +35,7 @@ Result<MadeGolden> make_golden(const Case& the_case, Port& reference, VehicleMod
                                const std::function<bool()>& stop) {
   MadeGolden made;
   std::set<std::filesystem::path> files;
-  // A provenance speaks of all of them.
+  // One provenance covers all configurations.
   for (const RunConfiguration& configuration : the_case.configurations()) {
     if (stop()) return fail("interrupted");
     if (!configuration.plant_configuration) {

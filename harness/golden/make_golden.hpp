@@ -1,4 +1,4 @@
-// What a golden is made of: the answers of the reference to a case.
+// The content of a golden: the outputs of the reference for a case.
 #pragma once
 
 #include <filesystem>
@@ -16,8 +16,9 @@ struct MadeGolden {
   std::vector<std::filesystem::path> vehicle_files;  // that its flights depend on
 };
 
-// `reference` is open_builtin(). `stop` is looked at before each configuration. Errors: it said so;
-// the reference refuses the case, or misses what reference_flight() and branch_alternatives() name.
+// `reference` is open_builtin(). `stop` is called before each configuration. Errors: `stop`
+// returned true; the reference refuses the case; those of reference_flight() and
+// branch_alternatives().
 Result<MadeGolden> make_golden(const Case& the_case, Port& reference, VehicleModels& vehicle_models,
                                const std::function<bool()>& stop);
 

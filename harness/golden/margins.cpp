@@ -19,12 +19,12 @@ using Vector3d = reference::Vector3<double>;
 using Matrix3d = Matrix3<double>;
 using Tilt = reference::TiltError<double>;
 
-// What the stages note at the current tick.
+// The margins that the stages have noted so far.
 struct Notes {
   Margins margins;
   std::size_t tick = 0;
 
-  // NaN is near nothing.
+  // A NaN distance never counts.
   void note(Decision decision, double distance) {
     Margin& least = margins.of[static_cast<std::size_t>(decision)];
     if (distance < least.distance) least = {distance, tick};
@@ -36,14 +36,14 @@ struct Step : reference::StepStages<double> {
 
   bool sticks_beyond(const decltype(Topics::manual)& manual, double threshold) const {
     const double x = std::abs(double(manual.x)), y = std::abs(double(manual.y));
-    // Either of them beyond is enough: the larger decides.
+    // One stick beyond the threshold is enough, so the larger decides.
     notes->note(Decision::rattitude, std::abs(std::max(x, y) - threshold));
     return reference::StepStages<double>::sticks_beyond(manual, threshold);
   }
   float battery_factor(const Topics& topics, const reference::Gains<double>& gains,
                        reference::Profile profile) const {
     const double scale = std::abs(double(topics.battery_scale));
-    // A scale of exactly 0 is none, for everybody.
+    // A scale of exactly 0 means no scaling in every port.
     if (gains.battery_scaling && scale != 0) notes->note(Decision::battery_scale, scale);
     return reference::StepStages<double>::battery_factor(topics, gains, profile);
   }
@@ -64,7 +64,7 @@ struct Attitude : reference::AttitudeStages<double> {
   }
   double yaw_error(const Vector3d& nose, const Matrix3d& R_WD, double weight) const {
     const double error = Law::yaw_error(nose, R_WD, weight);
-    // Where yaw has next to no weight a whole turn of it is within tolerance.
+    // With less weight than this, a whole turn of yaw is within tolerance.
     constexpr double some = 1e-6;
     if (weight > some) {
       notes->note(Decision::yaw_wrap, std::numbers::pi - std::abs(error / weight));
@@ -78,7 +78,7 @@ struct Attitude : reference::AttitudeStages<double> {
   }
 };
 
-// How far `value` is inside (-bound, bound): negative when it is outside.
+// The distance of `value` from the ends of (-bound, bound): negative when it is outside.
 double inside(double value, double bound) { return bound - std::abs(value); }
 
 struct RateMargins : reference::RateStages<double> {
@@ -93,13 +93,14 @@ struct RateMargins : reference::RateStages<double> {
   }
   double integrate_axis(double integral, double control, double thrust_sp, double growth,
                         bool frozen) const {
-    // A step of the integral that is far within its tolerance decides nothing.
+    // A step of the integral below this is far within its tolerance, so its gates do not matter.
     constexpr double negligible = 2e-6;
     if (!frozen && std::abs(growth) > negligible) {
       const double bound = double(reference::integral_limit);
       const std::array gates = {inside(control, thrust_sp), inside(integral + growth, bound),
                                 inside(control, bound)};
-      // All open: the first to shut. Else all that are shut have to open.
+      // If all gates are open, the nearest to closing decides. Otherwise all closed gates have to
+      // open, and the farthest from opening decides.
       const double least = *std::min_element(gates.begin(), gates.end());
       notes->note(Decision::integrator_gate, std::abs(least));
     }
@@ -146,7 +147,7 @@ struct Mixing : actuation::MixerStages<double> {
     if (one_end) notes->note(Decision::mixer_branch, std::abs(min_out + max_out - 1));
     return Law::fit(min_out, max_out, thrust);
   }
-  // The flag is set by the rotor that is furthest out, whichever comes first.
+  // The rotor that is furthest out sets the flag, in any order of the rotors.
   bool yield_yaw(std::span<const actuation::Rotor> rotors, Controls& c, const Fit& fit) const {
     double beyond = -std::numeric_limits<double>::infinity();
     for (const actuation::Rotor& rotor : rotors) {
@@ -174,7 +175,7 @@ Margins mixer_margins(const Trace& given, const std::string& definition) {
 void note_norm(const float (&q)[4], Notes& notes) {
   double squared = 0;
   for (const float component : q) squared += double(component) * double(component);
-  // Zeros and what is not finite are answered alike by all.
+  // All ports treat zeros and non-finite values the same way.
   if (squared == 0 || !std::isfinite(squared)) return;
   Margin& worst = notes.margins.of[static_cast<std::size_t>(Decision::quaternion_norm)];
   const Margin off{std::abs(std::sqrt(squared) - 1), notes.tick};
@@ -187,7 +188,7 @@ struct DecisionTraits {
   double least_margin;
 };
 
-constexpr double of_input = 1e-6;  // an input differs by how a port holds it
+constexpr double of_input = 1e-6;  // an input differs by a port's number format only
 constexpr double of_law = 1e-5;
 
 // In the order of the enumerators.

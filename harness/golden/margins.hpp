@@ -1,10 +1,11 @@
-// How near a vector comes to the places where the law decides: two right controllers differ in
-// their last bits, and where a decision hangs on those a numeric comparison would accuse one of
-// them.
+// The margins of a vector: its distances from the decisions of the law. Two correct controllers
+// differ in their last bits. Where a decision depends on these bits, a numeric comparison would
+// fail one of the two.
 //
-// The distances are measured in double, on the law itself: its stages are policies, and here they
-// take notes. Where a clamp or a blend passes from one branch to the other without a jump (dt, the
-// rate limits, the tilt error at 90 deg) nothing hangs on it, and it is no decision.
+// The distances are measured in double, on the law itself: its stages are policies, and the stages
+// here record the distances. Clamps and blends are not decisions where they pass from one branch to
+// the other without a jump: both branches give the same output there. Examples are dt, the rate
+// limits, and the tilt error at 90 deg.
 #pragma once
 
 #include <array>
@@ -22,31 +23,31 @@
 namespace attest {
 
 enum class Decision {
-  quaternion_norm,    // | |q| - 1 |, the other way round: how far from being an attitude
+  quaternion_norm,    // | |q| - 1 |: here a small distance is safe, and a large one not
   thrust_gate,        // thrust > 0.2
-  integrator_gate,    // |u| < thrust, -0.3 < n < 0.3, -0.3 < u < 0.3, whichever would flip first
+  integrator_gate,    // |u| < thrust, -0.3 < n < 0.3, -0.3 < u < 0.3: the first that would flip
   rattitude,          // a stick against MC_RATT_TH
   shorter_rotation,   // q_e.w >= 0, beyond 90 deg
   yaw_wrap,           // the yaw error at +-pi
-  tilt_axis,          // the tilt error at 180 deg, where its axis is any
+  tilt_axis,          // the tilt error at 180 deg, where its axis is arbitrary
   battery_scale,      // scale > 0
   recovery_latch,     // the tailsitter's 30 and 5 deg
   recovery_rotation,  // its q_e.w > 0
   mixer_limit,        // a rotor's share of roll, pitch and thrust against 0 and 1
-  mixer_branch,       // which end has more room than the other lacks
-  mixer_yaw,          // yaw against the rotors' limits, which it sets the flag by
+  mixer_branch,       // whether one end has as much room as the other lacks
+  mixer_yaw,          // yaw against the rotors' limits, where its flag is set
 };
 inline constexpr auto decision_count = static_cast<std::size_t>(Decision::mixer_yaw) + 1;
 
 std::string_view name_of(Decision decision);  // "integrator gate"
 
-// The least distance that a numeric vector may have: several times what right builds were measured
-// to differ by in that quantity (DESIGN of the tolerances: 8e-7 on controls, 5e-7 on integrals,
-// some 1e-6 rad on angles over 10 s of open loop). For the norm: the most.
+// The least distance that a numeric vector may have; for the norm, the largest. It is several times
+// the difference between correct builds in that quantity. Measured over 10 s of open loop: 8e-7 on
+// controls, 5e-7 on integrals (compare/tolerance.hpp), some 1e-6 rad on angles.
 double least_margin(Decision decision);
 
-// The same with a port in fixed point, if it says its bits: at least as many of the last as its
-// controls were measured to differ by (Tolerances::control_lsb has what is allowed).
+// The same for a port in fixed point, if `fraction_bits` is given: at least `decision_lsb` of its
+// LSBs, the measured difference of its controls. Tolerances::control_lsb is the allowed difference.
 inline constexpr double decision_lsb = 750;
 double least_margin(Decision decision, std::optional<int> fraction_bits);
 
@@ -68,14 +69,14 @@ struct Margins {
   bool is_safe(Decision decision) const;
 };
 
-// How near a unit comes at each tick, one after the other.
+// The margins of a unit at each tick, one tick after the other.
 class MarginMeter {
  public:
   // In the power-on state. REQUIRES: the reference has the profile.
   explicit MarginMeter(std::string_view profile);
   ~MarginMeter();
 
-  // Of the next tick alone; valid until the one after it.
+  // Of the next tick alone; valid until the next call.
   const Margins& step(std::span<const ParameterChange> changes, const attest_inputs& in);
 
  private:
@@ -83,7 +84,7 @@ class MarginMeter {
   std::unique_ptr<Impl> impl_;
 };
 
-// Of all inputs of `given`. A battery estimate decides nothing: it is continuous.
+// Of all inputs of `given`. A battery estimate has no decisions: it is continuous.
 Margins margins(const Trace& given, const Subject& subject);
 
 }  // namespace attest

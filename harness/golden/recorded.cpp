@@ -28,7 +28,8 @@ std::string mixer_of(const std::filesystem::path& file, const Provenance& proven
 
 Result<void> check_mixer(const Trace& trace, const std::string& definition) {
   if (definition.empty()) {
-    return fail_at(trace.source, "which mixer made it? pass --mixer \"R: 4x 10000 10000 10000 0\"");
+    return fail_at(trace.source,
+                   "mixer definition missing; pass --mixer \"R: 4x 10000 10000 10000 0\"");
   }
   const auto mixer = actuation::parse_mixer(definition);
   if (!mixer)
@@ -39,7 +40,7 @@ Result<void> check_mixer(const Trace& trace, const std::string& definition) {
                                            definition, mixer->rotors.size()));
 }
 
-// Outputs of one module only.
+// The outputs must be of one module only.
 Result<void> check_module(const Trace& trace, Module module) {
   const ChannelSet others = trace.present & ~channels_of(module, "out/");
   const auto table = channels();
@@ -72,7 +73,7 @@ void leave_out_foreign_parameters(Recorded& recorded) {
                                        subject.profile, fmt::join(foreign, ", ")));
 }
 
-// Without cells the estimate never leaves 1, so a recording says how many there were, or had 3.
+// Without a number of cells the estimate stays 1. A recording that does not state the number had 3.
 void give_cells(Recorded& recorded) {
   constexpr const char* name = "BAT_N_CELLS";
   constexpr float usual_cells = 3;

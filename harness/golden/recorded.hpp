@@ -1,4 +1,4 @@
-// A trace that was recorded elsewhere, and what of a port it is to be given to.
+// A trace that was recorded elsewhere, and the part of a port that receives it.
 #pragma once
 
 #include <filesystem>
@@ -14,20 +14,20 @@ namespace attest {
 struct Recorded {
   Trace trace;
   Subject subject;
-  // What was taken for granted, or left out, so that the trace can be given to a port: a line each.
+  // Assumptions and omissions that let a port replay the trace: one line each.
   std::vector<std::string> notes;
 };
 
-// With inputs and outputs; of mixers also as mixer_csv.hpp. What `profile` and `mixer` leave empty
-// the provenance.toml in the folder of the file says, or else: px4-v1.5.5, and the unscaled
-// geometry that the file is named after ("4x.csv"). Parameters that the profile does not have are
-// left out. A battery without BAT_N_CELLS has 3 cells, as in the recordings of the firmware.
-// Errors: of reading, and a mixer trace whose definition is missing, invalid, or of another number
-// of rotors.
+// Reads inputs and outputs; of mixers also as mixer_csv.hpp. An empty `profile` or `mixer` is taken
+// from the provenance.toml in the folder of the file. Without an entry there, the profile is
+// px4-v1.5.5, and the mixer is the unscaled geometry that the file is named after ("4x.csv").
+// Parameters that the profile does not have are left out. A battery without BAT_N_CELLS has 3
+// cells, as in the recordings of the firmware. Errors: of reading, and a mixer trace whose
+// definition is missing, invalid, or of another number of rotors.
 Result<Recorded> read_recorded(const std::filesystem::path& file, const std::string& profile = "",
                                const std::string& mixer = "");
 
-// Errors: the module has no such parameter in that profile, or not of that value.
+// Errors: in that profile the module does not have such a parameter, or does not accept the value.
 Result<void> check_parameter(const Subject& subject, const ParameterChange& change);
 
 }  // namespace attest

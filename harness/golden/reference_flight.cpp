@@ -11,7 +11,7 @@
 namespace attest {
 namespace {
 
-// Other right builds may part ten times faster than float32 and double do, and still pass.
+// Other correct builds may deviate ten times as much as float32 and double do, and still pass.
 constexpr double part_of_tolerance = 0.1;
 
 Result<Trace> flown_by(Port& port, const Case& the_case, const RunConfiguration& configuration,

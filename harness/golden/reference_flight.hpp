@@ -1,4 +1,4 @@
-// What the reference makes of a flight, for its golden.
+// The flight of the reference, for the golden of a case.
 #pragma once
 
 #include <map>
@@ -14,21 +14,21 @@ namespace attest {
 
 struct ReferenceFlight {
   Trace rows;                             // keyframes
-  double horizon_s = 0;                   // how long two right controllers stay together
+  double horizon_s = 0;                   // how long two correct controllers agree
   std::map<std::string, double> metrics;  // by name
 };
 
-// Flies the reference in float32, and once more in double to see when the two part: the horizon is
-// the time of the first tick at which an output differs by more than a tenth of its tolerance.
-// Errors, with the case's file: the flight cannot be set up; the reference loses the vehicle, or
-// misses a bound of the case's own metrics.
+// Flies the reference in float32 and again in double. The horizon is the time of the first tick at
+// which an output differs by more than a tenth of its tolerance. Errors, with the case's file: the
+// flight cannot be set up; the reference loses the vehicle, or misses a bound of the case's own
+// metrics.
 Result<ReferenceFlight> reference_flight(const Case& the_case,
                                          const RunConfiguration& configuration,
                                          const VehicleModel& vehicle_model);
 
-// The same at times that are not the case's, for which there is no golden: every row, and metrics
-// whatever they are, as the case's bounds were not made for such times. Errors: the flight cannot
-// be set up; the reference loses the vehicle.
+// The same at other times than the case's. These have no golden, so every row is kept. The metrics
+// are not checked, because the case's bounds are not for such times. Errors: the flight cannot be
+// set up; the reference loses the vehicle.
 Result<ReferenceFlight> reference_flight(const Case& the_case,
                                          const RunConfiguration& configuration,
                                          const VehicleModel& vehicle_model,

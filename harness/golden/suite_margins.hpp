@@ -1,4 +1,4 @@
-// How near the numeric vectors of a suite come to the decisions of the law.
+// The margins of the numeric vectors of a suite: their distances from the decisions of the law.
 #pragma once
 
 #include <array>
@@ -10,9 +10,9 @@
 
 namespace attest {
 
-// Of which vector a margin is, and at which tick.
+// A margin, with its vector and tick.
 struct VectorMargin {
-  const Case* the_case = nullptr;  // null: no vector comes to that decision
+  const Case* the_case = nullptr;  // null: no vector reaches that decision
   RunConfiguration configuration{};
   Decision decision{};
   Margin margin{};
@@ -25,7 +25,8 @@ struct SuiteMargins {
 };
 
 // Of the open-loop cases that are not for the exact level only, at each of their rates. Decisions
-// that a case stands on (Case::either_branch) are left out. Valid as long as `cases` is.
+// at which a case is at a tie on purpose (Case::either_branch) are left out. Valid as long as
+// `cases` is.
 SuiteMargins suite_margins(const std::vector<SelectedCase>& cases);
 
 }  // namespace attest

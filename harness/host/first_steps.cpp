@@ -22,7 +22,7 @@ Trace level_vehicle(const Rate& rate) {
     sample.in.battery_status.scale = 1;
     trace.samples.push_back(sample);
   }
-  // All is new at first, and the state at each step.
+  // At the first step all topics are new; at the others only the state.
   for (const Channel& channel : channels()) {
     if (channel.type == ChannelType::bit) set_value(channel, trace.samples[0], 1);
   }

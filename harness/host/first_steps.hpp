@@ -1,4 +1,4 @@
-// Whether a port survives its first steps: before anything is compared.
+// Whether a port completes its first steps, before any comparison.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@ namespace attest {
 
 inline constexpr std::size_t first_steps = 100;
 
-// Lets the port control a level, armed vehicle for so many steps, at its fixed step or 250 Hz.
-// Empty, or how it went wrong: "step at tick 3 returned ATTEST_FAILED".
+// Lets the port control a level, armed vehicle for `first_steps` steps, at its fixed step or 250
+// Hz. Returns its fault, "step at tick 3 returned ATTEST_FAILED", or an empty string.
 std::string wrong_in_first_steps(const HostOptions& options, const std::string& profile);
 
 }  // namespace attest

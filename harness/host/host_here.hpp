@@ -12,7 +12,8 @@ namespace attest {
 
 class HostHere final : public PortHost {
  public:
-  // `said`: what the port is held to; empty: what it says now.
+  // `said`: the port's declarations before the run, which must stay the same; empty: its
+  // declarations now.
   HostHere(std::unique_ptr<Port> port, std::optional<PortSays> said = {}, Course course = {});
 
   const PortSays& says() const override { return says_; }
@@ -23,7 +24,7 @@ class HostHere final : public PortHost {
   bool supports(const std::string& profile) override;
 
  private:
-  // The fault of a request, or a fault of kind protocol if the port now describes itself otherwise.
+  // The fault of a request, or a fault of kind protocol if the port's declarations have changed.
   std::optional<PortFault> held(std::optional<PortFault> fault, const std::string& profile) const;
   Result<void> measure_stack(const std::string& profile, Trace trace, StepTimes& times);
 
@@ -35,7 +36,8 @@ class HostHere final : public PortHost {
   std::optional<PaintedStack> stack_;
 };
 
-// Opens the port (open_port), in its own floating point environment. Errors: those of open_port().
+// Opens the port (open_port); a change that it makes to the floating point environment does not
+// reach the caller. Errors: those of open_port().
 Result<std::unique_ptr<PortHost>> open_host_here(const std::string& port,
                                                  std::optional<PortSays> said = {},
                                                  Course course = {});

@@ -49,7 +49,7 @@ Subject subject_from(const json& in) {
           in.at("mixer").get<std::string>(), in.at("instances").get<Instances>()};
 }
 
-// A question about a trace. The judge is trusted: its samples are there.
+// Reads the trace of a request. The judge is trusted, so the samples are there.
 Trace trace_from(const json& head, BlobReader& blobs) {
   Trace trace;
   trace.samples = blobs.read<Sample>(head.at("ticks").get<std::size_t>()).value();
@@ -57,7 +57,7 @@ Trace trace_from(const json& head, BlobReader& blobs) {
   return trace;
 }
 
-// What a port's process says, one answer after the other.
+// Handles one request in the port's process.
 class Answerer {
  public:
   Answerer(const Arrived& question, PortHost& host, MessageSocket& judge)
@@ -118,8 +118,8 @@ class Answerer {
   MessageSocket& judge_;
 };
 
-// Reads an answer with `read`. What throws on the way is no answer: a member is missing or of
-// another type.
+// Reads an answer with `read`. An exception means that there is no valid answer: a member is
+// missing or of another type.
 template <typename Read>
 auto read_answer(const Arrived& arrived, Read read) -> decltype(read(json())) {
   const json head = json::parse(arrived.head, nullptr, false);

@@ -1,5 +1,6 @@
-// What a judge and the process of a port say to each other (message_socket.hpp): a head in JSON,
-// and structs as they are in memory, because the one process is a fork of the other.
+// The messages between a judge and the process of a port (message_socket.hpp): a head in JSON, and
+// structs as they are in memory. One process is a fork of the other, so the structs have the same
+// layout.
 //
 //     process -> {"request": 0, "says": {...}}              once, when the port is loaded
 //     judge   -> {"do": "drive", "subject": ..., ...}       samples, with inputs only
@@ -12,10 +13,10 @@
 //     judge   -> {"do": "supports", "profile": ...}
 //     process -> {"request": 4, "supports": true}
 //
-// {"request": n, "error": {...}} in place of the greeting says why the port cannot be loaded; in
-// place of an answer to "fly" or "time", why that cannot be done. The port shares the process, so
-// the judge takes nothing on trust: a message that does not answer its request, is incomplete or
-// has the wrong size, counts as no answer.
+// {"request": n, "error": {...}} replaces the greeting if the port cannot be loaded, and the answer
+// to "fly" or "time" if that cannot be done. The port's code runs in that process, so the judge
+// does not trust its messages. A message that does not answer its request, is incomplete or has the
+// wrong size counts as no answer.
 #pragma once
 
 #include <cstddef>
@@ -35,15 +36,15 @@ std::string fly_request(const FlightPlan& plan);
 std::string time_request(const std::string& profile, const Trace& inputs, bool with_stack);
 std::string supports_request(const std::string& profile);
 
-// What has arrived, and the number of the request that it is to answer.
+// A message that has arrived, and the number of the request that it must answer.
 struct Arrived {
   const std::string& head;
   BlobReader& blobs;
   std::uint64_t request;
 };
 
-// Empty: no answer to that request. Each is whole: of a trace that was driven or timed there are
-// all ticks, of a flight of so many ticks all, or it says why they end.
+// Empty: no valid answer to that request. A valid answer has all `ticks` ticks. A flight or a
+// timing may have fewer, if the answer has the fault or divergence that ended it.
 struct Driven {
   std::vector<Sample> samples;
   std::optional<PortFault> fault;
@@ -58,7 +59,7 @@ std::optional<Result<PortSays>> read_greeting(const Arrived& arrived);
 bool greet(const PortSays& says, MessageSocket& judge);
 bool refuse(const Error& error, std::uint64_t request, MessageSocket& judge);
 
-// Does what is asked, and answers. False when the judge has gone.
+// Handles the request and sends the answer. False when the judge has gone.
 bool answer(const Arrived& question, PortHost& host, MessageSocket& judge);
 
 }  // namespace attest

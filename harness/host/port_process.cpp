@@ -32,7 +32,7 @@ void serve(const HostOptions& options, const Course& course, MessageSocket& judg
   }
 }
 
-// What a port is to answer is not sent to it.
+// The expected outputs are not sent to the port.
 std::vector<Sample> inputs_of(const Trace& trace) {
   std::vector<Sample> inputs = trace.samples;
   for (Sample& sample : inputs) sample.clear_outputs();
@@ -47,14 +47,14 @@ void set_outputs(const std::vector<Sample>& answered, Trace& trace) {
 
 class PortProcess final : public PortHost {
  public:
-  // `child` is empty for a port that is not asked at all.
+  // `child` is empty for a port that is not started (HostOptions::hangs).
   PortProcess(const HostOptions& options, std::optional<Child> child)
       : options_(options), child_(std::move(child)) {
     if (options.said) says_ = *options.said;
     if (!child_) fault_ = PortFault{PortFault::Kind::timeout, 0, options.hangs};
   }
 
-  // Waits until the port is loaded. Errors: it cannot be.
+  // Waits until the port is loaded. Errors: the port cannot be loaded.
   Result<void> greet() {
     if (!child_) return {};
     const auto greeted = answer_from("when it was loaded", patience(), read_greeting);
@@ -106,7 +106,7 @@ class PortProcess final : public PortHost {
   const std::optional<PortFault>& fault() const { return fault_; }
 
  private:
-  // Empty, and fault_ says why, when the port went wrong: now, or in a request before.
+  // Empty after a fault of the port, in this request or before; fault_ has it.
   template <typename Read>
   auto ask(const std::string& question, const std::vector<Blob>& blobs, Read read)
       -> std::invoke_result_t<Read, const Arrived&> {
@@ -173,7 +173,7 @@ class PortProcess final : public PortHost {
   PortSays says_;
   std::uint64_t request_ = 0;
   bool is_told_ = false;            // a request was made: after a timeout the next is `not run`
-  std::optional<PortFault> fault_;  // for good
+  std::optional<PortFault> fault_;  // permanent
 };
 
 Result<std::unique_ptr<PortProcess>> start_process(const HostOptions& options,

@@ -1,5 +1,6 @@
-// A host in a process of its own, which is started before the golden of its case is read. It is a
-// fork, so the case with its tolerances is in its memory. Whatever the port does there ends there.
+// A host in a process of its own, which starts before the golden of its case is read. It is a fork,
+// so its memory has the case with its tolerances, but no golden. A crash or hang of the port
+// affects that process only.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,7 @@
 
 namespace attest {
 
-// For each answer of a port [s]; they take milliseconds.
+// The time limit of each answer of a port [s]. Answers take milliseconds.
 inline constexpr double default_timeout_s = 10;
 
 struct HostOptions;
@@ -22,22 +23,22 @@ using StartHost =
 
 struct HostOptions {
   std::string port = "builtin";  // as for open_port
-  // What the port said before the run, which it is held to; empty: what it says when it is loaded.
+  // The port's declarations before the run, which must stay the same; empty: those at loading.
   std::optional<PortSays> said = {};
   double timeout_s = default_timeout_s;
   bool in_process = false;  // for a debugger: no process of its own, no protection
-  // Why the port is not to be asked at all, as it hangs when it is loaded: the fault of the first
-  // request; later ones are "not run". Empty: it is asked.
+  // For a port that hangs when it is loaded, which is not started again: the fault of the first
+  // request; later ones are "not run". Empty: the port is started.
   std::string hangs = {};
-  // Looked at while an answer is awaited; true: the answer does not matter any more.
+  // Called while an answer is awaited; true: stop waiting, the answer is not needed any more.
   std::function<bool()> stop = [] { return false; };
   // Makes a host of another kind in place of a process; empty: a process, or `in_process`.
-  // describe_port() does not look at it.
+  // describe_port() ignores it.
   StartHost start = {};
 };
 
-// Starts a process, which loads the port and waits for requests. REQUIRES: the caller has nothing
-// in its memory that the port must not read: the process is a copy of it. Errors: the port cannot
+// Starts a process, which loads the port and waits for requests. REQUIRES: the caller's memory has
+// no data that the port must not read, because the process is a copy of it. Errors: the port cannot
 // be opened, a process cannot be started. A port that crashes or hangs when it is loaded is no
 // error: each request ends with that fault.
 Result<std::unique_ptr<PortHost>> start_host(const HostOptions& options, const Course& course = {});
@@ -45,16 +46,16 @@ Result<std::unique_ptr<PortHost>> start_host(const HostOptions& options, const C
 // Starts one in place of `host` if that is null or its process has ended. Errors as start_host().
 Result<void> ensure_host(std::unique_ptr<PortHost>& host, const HostOptions& options);
 
-// What a port says of itself, asked in a process of its own.
+// The declarations of a port, read in a process of its own.
 struct PortDescription : PortSays {
-  std::string hangs;       // why it says nothing: no answer in time when it was loaded
-  std::string goes_wrong;  // how, when it was to make a unit; empty: it did not
+  std::string hangs;       // the fault, if it did not answer in time when it was loaded
+  std::string goes_wrong;  // its fault when it made a unit; empty: no fault
 };
 
-// With those of `profiles` that the port makes a unit of, each asked in a process of its own: a
-// port that makes a single unit is told from one that does not support the second profile. One that
-// goes wrong there is not asked for the profiles after that one. Errors: the port cannot be loaded,
-// or its process ends when it is.
+// Includes those of `profiles` that the port supports. Each is requested in a process of its own. A
+// port that makes a single unit per process is thus distinguished from one that does not support
+// the second profile. After a fault of the port, the remaining profiles are not requested. Errors:
+// the port cannot be loaded, or its process ends when it is.
 Result<PortDescription> describe_port(const HostOptions& options,
                                       const std::vector<std::string>& profiles = {});
 

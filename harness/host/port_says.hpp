@@ -1,5 +1,5 @@
-// What a port says of itself. Which cases it gets and the tolerances they have follow from that, so
-// that a port that says something else later has broken the rules of the ABI.
+// The declarations of a port. They determine its cases and their tolerances, so a port that changes
+// them later breaks the rules of the ABI.
 #pragma once
 
 #include <optional>
@@ -15,9 +15,9 @@ struct PortSays {
   std::string name, version;
   std::vector<std::string> unsupported_groups;
   std::optional<int> fraction_bits;  // of a port in fixed point
-  std::optional<Rate> fixed_step;    // of a port that knows only its own sample time
+  std::optional<Rate> fixed_step;    // of a port with a fixed sample time
   bool has_mixer = false, has_battery_status = false;
-  std::vector<std::string> profiles;  // that it made a unit of, where that was asked
+  std::vector<std::string> profiles;  // of which it made a unit; empty unless requested
 
   // Of a port that is loaded; the profiles stay empty.
   static PortSays asked(const Port& port);

@@ -4,7 +4,7 @@
 
 #include "harness/realtime/pacer.hpp"
 
-// Neither inlined nor given another name: counted_step_symbol.
+// Must be neither inlined nor renamed: counted_step_symbol is its name.
 extern "C" [[gnu::noinline]] int attest_counted_step(attest::Unit& unit, const attest_inputs& in,
                                                      attest_outputs& out) {
   return unit.step(in, out);

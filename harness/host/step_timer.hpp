@@ -1,4 +1,4 @@
-// Units that say how long each step of another takes, and how much stack it uses.
+// Units that measure how long each step of another unit takes, and how much stack it uses.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace attest {
 
-// The least that lies between two readings of the clock.
+// The shortest time between two readings of the clock.
 Nanoseconds time_of_clock();
 
-// A step that other programs can find: valgrind counts what happens in it.
+// A step that other programs can find: valgrind counts the instructions in it.
 inline constexpr const char* counted_step_symbol = "attest_counted_step";
 
 class TimedUnit final : public Unit {

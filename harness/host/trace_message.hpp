@@ -1,5 +1,5 @@
 // Traces in messages between a fork and its parent (host_protocol.hpp): structs as they are in
-// memory, and what is no such struct in the JSON of the head. What reads a head throws
+// memory, and all other data in the JSON of the head. Functions that read a head throw
 // nlohmann::json::exception where a member is missing or of another type.
 #pragma once
 
@@ -24,24 +24,24 @@ namespace attest {
 nlohmann::json changes_json(const std::vector<ParameterChange>& changes);
 std::vector<ParameterChange> changes_from(const nlohmann::json& list);
 
-// How a port's answers, or its flight, ended. A process does not announce its own crash, nor that
-// it is late: such a fault is read as one of kind protocol.
+// How a port's outputs, or its flight, ended. A process cannot report its own crash or timeout:
+// such a fault is read as one of kind protocol.
 void set_end(const std::optional<PortFault>& fault, const std::optional<Divergence>& lost,
              nlohmann::json& head);
 std::optional<PortFault> fault_from(const nlohmann::json& head);
 std::optional<Divergence> divergence_from(const nlohmann::json& head);
 
-// What comes behind a head, one blob after the other.
+// Reads the blobs that follow a head, one after the other.
 class BlobReader {
  public:
-  // `read` fills a place; false: it could not.
+  // `read` fills the given memory; false: it failed.
   BlobReader(std::vector<std::size_t> sizes, std::function<bool(void*, std::size_t)> read)
       : sizes_(std::move(sizes)), read_(std::move(read)) {}
 
   std::size_t left() const { return sizes_.size() - next_; }
 
-  // The next blob. Empty when it does not come, or has not `count` objects. REQUIRES: `count` is
-  // not what an untrusted process says: there is memory for so many.
+  // The next blob. Empty when it does not arrive, or does not have `count` objects. REQUIRES:
+  // memory for `count` objects. An untrusted process must not choose `count`.
   template <typename T>
   std::optional<std::vector<T>> read(std::size_t count) {
     static_assert(std::is_trivially_copyable_v<T>);

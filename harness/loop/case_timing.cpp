@@ -16,7 +16,7 @@ Nanoseconds drifted(Nanoseconds time, const Rate& rate, double drift) {
   return std::min(time, Nanoseconds(static_cast<std::int64_t>(samples * period_ns)));
 }
 
-// The estimator samples on its clock, and the unit runs when that arrives.
+// The estimator samples on its clock, and the unit runs when the sample arrives.
 LoopTiming timing_on_estimate(const Case& the_case, const Rate& rate) {
   const Flight& flight = *the_case.flight;
   const Nanoseconds before = flight.estimator.delay.on(rate);

@@ -8,15 +8,17 @@
 
 namespace attest {
 
-// Of the unit's ticks, the estimator's samples for them and the motor commands that they make.
+// The times of the unit's ticks, of the estimator's samples for them, and of the motor commands
+// that follow from them.
 //
-//     begins = the unit's tick; sampled = begins - delay, or the estimator's last by then
+//     begins = the unit's tick; sampled = begins - delay
+//     drift: sampled = the estimator's last sample at or before begins - delay
 //     trigger = "estimator": sampled = the estimator's tick; begins = sampled + delay
 //
 // In both, commanded = begins + actuator delay. REQUIRES: a flight.
 LoopTiming case_timing(const Case& the_case, const Rate& rate);
 
-// When a task beside the unit's runs.
+// The times at which a task other than the unit's runs.
 std::vector<Nanoseconds> task_times(const TaskTiming& timing, const Timeline& timeline);
 
 }  // namespace attest

@@ -1,17 +1,18 @@
-// A unit flies a plant. What happens at one instant happens in this order:
+// A unit flies a plant. Events at the same instant happen in this order:
 //
 //     the plant is advanced to t
 //     disturbances    wind, centre of mass and motor failure change
 //     estimator       takes its sample of the plant
 //     battery         takes its sample of the plant
 //     motor limits    takes the flags of the mixer's last run, before t
-//     unit            stimulus; what has arrived from estimator, battery, motor limits; step; mixer
+//     unit            stimulus; messages from estimator, battery, motor limits; step; mixer
 //     actuators       the commands that have arrived are held until the next
 //
-// Each task has its own times. What a task makes arrives after the task's delay: without one, at
-// the unit's tick of the same instant. Those of the unit, of the sample that each tick is told and
-// of its command are the LoopTiming, from the case or from a run on a real clock. Samples of before
-// t = 0 do not exist: then the rotors turn as the case says and the unit has been told nothing.
+// Each task has its own times. A task's result arrives after the task's delay; without a delay, at
+// the unit's tick of the same instant. The LoopTiming has the times of the unit's ticks, of each
+// tick's sample and of its command. It comes from the case or from a run on a real clock. Samples
+// before t = 0 do not exist. Until the first estimate arrives, the unit gets the state of the
+// flight's start. Until the first command arrives, the rotors turn as at the start.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +32,7 @@
 namespace attest {
 
 struct FlightEnd {
-  std::size_t ticks = 0;  // that the unit finished
+  std::size_t ticks = 0;  // finished by the unit
   std::optional<PortFault> fault;
   std::optional<Divergence> divergence;
 };
@@ -43,8 +44,8 @@ class ClosedLoop {
   ClosedLoop(const Case& the_case, const Rate& rate, LoopTiming timing, const Vehicle& vehicle,
              Plant& plant, Unit& unit);
 
-  // Flies to the end; records every tick into `trace` unless it is null. No allocation but for the
-  // trace and parameters that change. Call once.
+  // Flies to the end; records every tick into `trace` unless it is null. Allocates only for the
+  // trace and for parameters that change. Call once.
   FlightEnd run(Trace* trace);
 
  private:
@@ -54,7 +55,7 @@ class ClosedLoop {
   bool is_over() const;
 
   LoopTiming timing_;
-  std::size_t first_sampled_;  // tick of which there is a sample
+  std::size_t first_sampled_;  // the first tick with a sample
   PlantTask plant_;
   UnitTask unit_;
   NoisyEstimator estimator_;

@@ -1,4 +1,4 @@
-// What happens to the vehicle on the way: wind, a shifting load, a motor that fails.
+// Disturbances of the vehicle in flight: wind, a moving centre of mass, a motor failure.
 #pragma once
 
 #include <array>
@@ -15,8 +15,8 @@ class Disturbances {
  public:
   Disturbances(const Flight& flight, const Vehicle& vehicle, const Timeline& timeline);
 
-  // When they change: never, or 100 times a second, which is fast beside any vehicle here; and when
-  // the motor fails.
+  // When they change: at t = 0 only, or 100 times a second for signals that vary, which is fast
+  // compared with any vehicle here. In addition, when the motor fails.
   const std::vector<Nanoseconds>& times() const { return times_; }
 
   // REQUIRES: times increase.

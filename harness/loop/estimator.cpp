@@ -39,8 +39,8 @@ ControlState NoisyEstimator::sample(const PlantState& state) {
   return control_state_of(told);
 }
 
-// The sum of twelve uniform numbers has variance 1 and is near enough to normal, within +-6
-// deviations; it needs no logarithm or cosine, whose bits differ between platforms.
+// The sum of twelve uniform numbers has variance 1 and is close enough to normal, within +-6
+// standard deviations. It needs no logarithm or cosine, whose bits differ between platforms.
 Vector3 NoisyEstimator::normal(double deviation) {
   Vector3 noise{};
   for (double& component : noise) {

@@ -1,4 +1,4 @@
-// What the unit is told of the plant's state: in float32, with seeded noise if the case asks.
+// The plant's state as the unit receives it: in float32, with seeded noise if the case has some.
 #pragma once
 
 #include "controller/attest_unit.h"
@@ -11,7 +11,7 @@ namespace attest {
 
 using ControlState = decltype(attest_inputs::control_state);
 
-// A sample of the plant, and of which time since the begin of the case.
+// A sample of the plant, with its time since the begin of the case.
 struct Estimate {
   Nanoseconds sampled{0};
   ControlState state{};

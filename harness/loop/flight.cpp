@@ -11,8 +11,8 @@
 namespace attest {
 namespace {
 
-// Fast beside the rotors' lag and the body's rates: MuJoCo's Runge-Kutta then errs by less than the
-// float32 of the unit's inputs (models/README.md).
+// Fast compared with the rotors' lag and the body's rates. At this rate MuJoCo's Runge-Kutta errs
+// by less than the float32 of the unit's inputs (models/README.md).
 const Rate slowest_physics = Rate::hz(1000);
 
 Result<void> check(const Case& the_case, const RunConfiguration& configuration,

@@ -20,8 +20,8 @@ struct Flown {
   std::optional<Divergence> divergence;  // of the flight, in time since the first tick
 };
 
-// The case as this vehicle flies it: with the vehicle's parameters where the case has none of its
-// own, and thrusts in units of its hover thrust.
+// The case bound to this vehicle: parameters that the case does not set get the vehicle's values.
+// Thrusts in units of hover thrust are scaled by the vehicle's hover thrust.
 Case bound_to_vehicle(const Case& the_case, const Vehicle& vehicle);
 
 // How often MuJoCo steps. REQUIRES: a flight.
@@ -32,9 +32,9 @@ Result<std::unique_ptr<Plant>> plant_for(const Case& the_case,
                                          const RunConfiguration& configuration,
                                          const VehicleModel& vehicle_model);
 
-// Flies `the_case` with a fresh `unit`, at the times that the case schedules, or those of `timing`.
-// REQUIRES: the case is a flight. Errors: the case cannot be flown that way (physics slower than
-// the loop, a rotor that the vehicle does not have), with file and line.
+// Flies `the_case` with a fresh `unit`, at the times that the case schedules, or at those of
+// `timing`. REQUIRES: the case is a flight. Errors, with the case's file: physics slower than the
+// loop, a rotor that the vehicle does not have.
 Result<Flown> fly(const Case& the_case, const RunConfiguration& configuration,
                   const VehicleModel& vehicle_model, Unit& unit);
 Result<Flown> fly(const Case& the_case, const RunConfiguration& configuration,

@@ -74,7 +74,7 @@ PortFault makes_only_one() {
 PortFault makes_no_other() {
   return {
       PortFault::Kind::protocol, 0,
-      "create() returned NULL after the instance before was destroyed; it is legal at any time"};
+      "create() returned NULL after the first instance was destroyed; create() is always legal"};
 }
 
 // `create` makes a fresh instance.
@@ -82,7 +82,7 @@ template <typename ModuleUnit, typename Create>
 std::optional<PortFault> drive_in_company(std::unique_ptr<ModuleUnit> first, Create create,
                                           Instances instances, Trace& trace) {
   Trace of_first = mirrored(trace);
-  // A fault of the first leaves the judged trace without an answer.
+  // After a fault of the first instance, the judged trace has no outputs.
   const auto drive_first = [&] {
     auto fault = drive_module(*first, of_first);
     if (fault) fault->tick = 0;

@@ -15,18 +15,19 @@ namespace attest {
 // valid.
 std::optional<PortFault> drive(Unit& unit, Trace& trace);
 
-// What of a port a trace is given to.
+// The part of a port that receives a trace.
 struct Subject {
   std::string profile;
   Module module = Module::mc_att_control;
-  std::string mixer = {};  // of Module::mixer, its definition: "R: 4x 10000 10000 10000 0"
+  std::string mixer = {};  // definition of a Module::mixer: "R: 4x 10000 10000 10000 0"
   Instances instances = Instances::one;
 };
 
 Subject subject_of(const Case& the_case);
 
-// The same with a fresh instance of that module of the port, in the company that the subject says.
-// A port that makes no second instance beside a living one does not support such a subject.
+// The same with a fresh instance of the subject's module. `Instances` says which other instance
+// exists before or meanwhile. A port that cannot make a second instance while one exists does not
+// support such a subject.
 std::optional<PortFault> drive(Port& port, const Subject& subject, Trace& trace);
 
 }  // namespace attest

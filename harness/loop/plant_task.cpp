@@ -7,7 +7,7 @@
 namespace attest {
 namespace {
 
-// A vehicle that stands still in its attitude, or turns at its rate.
+// A vehicle without velocity, in the attitude and at the body rate of the start.
 PlantState start_of(const FlightStart& start, const Vehicle& vehicle) {
   PlantState state;
   state.position_m[2] = -start.height_m;
@@ -30,7 +30,7 @@ PlantTask::PlantTask(const Case& the_case, const Rate& rate, const Vehicle& vehi
 
 std::optional<Divergence> PlantTask::disturb(Nanoseconds now) {
   disturbances_.apply(now, plant_);
-  return hold(now);  // of a motor that fails
+  return hold(now);  // a motor that fails changes its speed at once
 }
 
 std::optional<Divergence> PlantTask::command(Nanoseconds now, const MotorCommands& commands) {

@@ -1,5 +1,5 @@
-// The plant with all that is done to it: the same in simulation and on a real clock, for one
-// thread.
+// The plant with its disturbances, supply and actuators: the same in simulation and on a real
+// clock, for one thread.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ namespace attest {
 
 class PlantTask {
  public:
-  // Resets the plant to the start of the flight. REQUIRES: what ClosedLoop requires.
+  // Resets the plant to the start of the flight. REQUIRES: same as ClosedLoop.
   PlantTask(const Case& the_case, const Rate& rate, const Vehicle& vehicle, Plant& plant);
 
   // When disturb() is due.
@@ -23,14 +23,15 @@ class PlantTask {
 
   std::optional<Divergence> advance(Nanoseconds to) { return plant_.advance(to); }
 
-  // Wind, centre of mass and motor failure as they are from `now` on. REQUIRES: `now` is reached.
+  // Sets wind, centre of mass and motor failure to their values from `now` on. REQUIRES: `now` is
+  // reached.
   std::optional<Divergence> disturb(Nanoseconds now);
 
-  // The motors follow `commands` from `now` on; before the first, they turn as at the start. A
-  // command that is not a number ends the flight.
+  // The motors follow `commands` from `now` on. Before the first command they turn as at the start.
+  // A command that is not finite ends the flight.
   std::optional<Divergence> command(Nanoseconds now, const MotorCommands& commands);
 
-  // As of Supply::sample.
+  // Same as Supply::sample.
   float battery_scale(Nanoseconds now, float throttle, bool armed) {
     return supply_.sample(now, plant_.state(), throttle, armed);
   }

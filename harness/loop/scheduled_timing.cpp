@@ -5,7 +5,7 @@ namespace attest {
 LoopTiming scheduled_timing(const std::vector<TaskJob>& unit,
                             const std::vector<TaskJob>* estimator) {
   LoopTiming timing;
-  std::size_t estimated = 0;  // jobs of the estimator that are over
+  std::size_t estimated = 0;  // finished jobs of the estimator
   for (const TaskJob& job : unit) {
     Nanoseconds sampled = job.start;
     if (estimator != nullptr) {

@@ -1,4 +1,4 @@
-// What a loop feels of a schedule.
+// The times of a loop that result from a schedule of tasks.
 #pragma once
 
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace attest {
 
-// A tick is a job of the unit: its timestamp is when it first runs, and the motors follow it when
-// it is over. It is told the sample that the estimator began its last finished job with; without
-// an estimator, that of the moment.
+// Each tick is a job of the unit. Its timestamp is the start of the job; the motors follow its
+// command when the job finishes. Its sample is the one with which the estimator's last finished job
+// began. Without an estimator, the sample is taken at the start of the tick.
 LoopTiming scheduled_timing(const std::vector<TaskJob>& unit,
                             const std::vector<TaskJob>* estimator);
 

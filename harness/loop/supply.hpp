@@ -1,5 +1,5 @@
-// What the rotors are supplied with: an ideal source, or a battery that empties, and what the
-// firmware makes of its voltage.
+// The supply of the rotors: an ideal source, or a battery that discharges, with the firmware's
+// estimate of its voltage.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ class Supply {
   // battery; times do not decrease.
   float sample(Nanoseconds now, const PlantState& state, float throttle, bool armed);
 
-  // What the rotors' speed is multiplied with, as of the last sample; 1 with an ideal source.
+  // The factor on the rotors' speed, from the last sample; 1 with an ideal source.
   double ratio() const { return battery_ ? battery_->supply_ratio() : 1; }
 
   double voltage_V() const { return battery_ ? battery_->voltage_V() : 0; }

@@ -16,7 +16,7 @@ using nlohmann::json;
 
 constexpr int format = 1;
 
-// Three times of an hour's ticks at 8 kHz.
+// Enough for the three times of each tick of an hour at 8 kHz.
 constexpr std::uintmax_t most_bytes = std::uintmax_t{2} << 30;
 
 std::optional<LoopTick> tick_of(const json& value) {
@@ -29,7 +29,7 @@ std::optional<LoopTick> tick_of(const json& value) {
   return tick;
 }
 
-// What LoopTiming requires of a tick and those before it; a timestamp is a microsecond.
+// Whether `tick` follows `before` as LoopTiming requires. Timestamps are in whole microseconds.
 bool follows(const LoopTick& tick, const LoopTiming& before, Nanoseconds last_commanded) {
   const Nanoseconds commanded = tick.commanded.value_or(std::max(last_commanded, tick.begins));
   const bool ordered = tick.sampled <= tick.begins && tick.begins <= commanded &&

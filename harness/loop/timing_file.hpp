@@ -1,10 +1,11 @@
-// The times of a loop as a file: what a stress run measured, to be flown again in simulation.
+// The times of a loop as a file: measured in a stress run, to be flown again in simulation.
 //
 //     {"attest_timing": 1, "case": "px4-v1.5.5/flight/hover", "case_sha256": "...", "rate": "1000",
 //      "vehicle": "iris", "plant": "mujoco", "duration_s": 10,
 //      "ticks_ns": [[0, 8113, 1000000], [0, 1009001, null], ...]}
 //
-// A tick is [sampled, begins, commanded] as in LoopTick, null where its command was overtaken.
+// A tick is [sampled, begins, commanded] as in LoopTick; `commanded` is null where the command was
+// overtaken.
 #pragma once
 
 #include <filesystem>
@@ -24,13 +25,13 @@ struct TimingFile {
   LoopTiming ticks;
 };
 
-// Errors, with the file: it cannot be read or written; it is no timing, or one whose times go
-// backwards (says at which tick).
+// Errors, with the file: it cannot be read or written; it is not a timing file; its times go
+// backwards (with the tick).
 Result<TimingFile> read_timing(const std::filesystem::path& path);
 Result<void> write_timing(const TimingFile& timing, const std::filesystem::path& path);
 
-// The case as it was flown then: as long as that, without metrics of windows that begin later.
-// REQUIRES: it is the timing's.
+// The case as the recorded flight flew it: with the duration of the timing, and without metrics
+// whose windows begin later. REQUIRES: the case is the timing's.
 Case with_timing(Case the_case, const TimingFile& timing);
 
 }  // namespace attest

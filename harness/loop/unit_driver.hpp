@@ -1,4 +1,5 @@
-// Gives a unit one sample after the other by the rules of the ABI, and sees when it breaks them.
+// Gives a unit one sample after another by the rules of the ABI, and detects when the unit breaks
+// them.
 #pragma once
 
 #include <array>
@@ -13,11 +14,11 @@
 
 namespace attest {
 
-// The port itself went wrong, or said that it cannot do this. Its other faults (a wrong value) show
-// in the comparison.
+// The port itself failed, or declared that it does not support this. Wrong values are found by the
+// comparison.
 struct PortFault {
   enum class Kind {
-    profile,      // does not do the profile
+    profile,      // the profile is not supported
     unsupported,  // ATTEST_UNSUPPORTED, or a module that the port does not have
     failed,       // ATTEST_FAILED, ATTEST_INVALID
     protocol,     // broke the rules of the ABI
@@ -25,7 +26,7 @@ struct PortFault {
     timeout,      // no answer in time
   };
   Kind kind = Kind::failed;
-  std::size_t tick = 0;  // of the judged trace: those before it were answered
+  std::size_t tick = 0;  // of the judged trace: the ticks before it have outputs
   std::string what;      // one line
 };
 
@@ -53,8 +54,8 @@ class ModuleDriver {
   using Inputs = typename ModuleUnit::Inputs;
   using Outputs = typename ModuleUnit::Outputs;
 
-  // What the unit gets, with a margin behind it that must stay as it was: a port compiled with
-  // another layout writes there first.
+  // The unit's inputs and outputs, each followed by bytes that must not change. A port compiled
+  // with another layout writes there first.
   struct Exchange {
     Inputs in{};
     std::array<unsigned char, 64> canary_in;

@@ -1,4 +1,4 @@
-// What runs on the flight controller at a tick of the unit: the same in simulation and on a real
+// The work of the flight controller at a tick of the unit: the same in simulation and on a real
 // clock, for one thread.
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace attest {
 
-// What has arrived since the last tick.
+// The messages that have arrived since the last tick.
 struct Arrivals {
   std::optional<Estimate> estimate;
   std::optional<float> battery_scale;
@@ -28,16 +28,17 @@ struct Arrivals {
 
 class UnitTask {
  public:
-  // `start` is the state used before the first estimate arrives, that of time 0. REQUIRES: as of
+  // `start` is the state used before the first estimate arrives, that of time 0. REQUIRES: same as
   // ClosedLoop.
   UnitTask(const Case& the_case, const Rate& rate, const Vehicle& vehicle, Unit& unit,
            const ControlState& start);
 
-  // Stimulus and arrivals -> the unit's step -> the mixer. No allocation but for parameters that
+  // Stimulus and arrivals -> the unit's step -> the mixer. Allocates only for parameters that
   // change. REQUIRES: `tick` counts from 0, times increase.
   std::optional<PortFault> tick(std::size_t tick, Nanoseconds now, const Arrivals& arrivals);
 
-  // The two halves of it, for who measures the second: fill the inputs; step the unit and mix.
+  // The two halves of tick(): fill the inputs; step the unit and mix. Callers can measure the
+  // second alone.
   void prepare(std::size_t tick, Nanoseconds now, const Arrivals& arrivals);
   std::optional<PortFault> step(std::size_t tick);
 

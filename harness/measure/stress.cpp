@@ -12,7 +12,7 @@
 namespace attest {
 namespace {
 
-// Budgets may be longer than the clock counts.
+// A budget may exceed the range of the clock.
 Nanoseconds nanoseconds(double microseconds) {
   constexpr double longest_us = 1e15;
   return Nanoseconds(static_cast<std::int64_t>(std::min(microseconds, longest_us) * 1000));

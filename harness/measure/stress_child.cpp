@@ -6,8 +6,9 @@
 //     {"refused": true}                                          the port made no unit
 //     {"error": {...}}
 //
-// The port shares the child, so no verdict is taken from there. A port can forge what was measured,
-// as it can its own execution time; it cannot forge its outputs, which the parent judges.
+// The port's code runs in the child, so no verdict is taken from there. A port can forge the
+// measurements, same as its own execution time. It cannot forge the verdict on its outputs, because
+// the parent judges them.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -52,15 +53,16 @@ void send_measured(const StressMeasurement& measured, MessageSocket& parent) {
               {blob_of(unit.samples), blob_of(unit.ticks), blob_of(plant.commanded)});
 }
 
-// The first of what comes in that number, if there are at most so many.
+// The next blob, of `count` objects, if these are at most `most`.
 template <typename T>
 std::optional<std::vector<T>> read_some(const json& count, std::size_t most, BlobReader& blobs) {
   const auto wanted = count.get<std::size_t>();
   return wanted <= most ? blobs.read<T>(wanted) : std::nullopt;
 }
 
-// Empty: nothing that the child of a stress run sends. Only one that was asked to stop may have
-// flown less than the whole flight. Throws json::exception, too.
+// Empty: not a message of a stress run's child. A flight may be shorter than its case only after a
+// request to stop, a fault or a divergence, or with a unit that the estimator triggers. Throws
+// json::exception, too.
 std::optional<StressMeasurement> measurement_from(const StressTask& task, bool was_asked_to_stop,
                                                   const json& head, BlobReader& blobs) {
   auto stress = stress_from_json(head.at("stress"));
@@ -116,7 +118,7 @@ void work(const StressTask& task, const std::string& specification, MessageSocke
   }
 }
 
-// By what the port said of itself before.
+// The result if the port's declarations before the run exclude the task.
 std::optional<StressResult> declined(const StressTask& task) {
   StressResult stress;
   stress.result = result_for(task.the_case, task.configuration);
@@ -137,7 +139,7 @@ StressResult gone_wrong(const StressTask& task, Verdict verdict, std::string rea
   return stress;
 }
 
-// Listens until the child has said how it went, died, or hangs.
+// Listens until the child has sent its result, has died, or hangs.
 class Listener {
  public:
   Listener(const StressTask& task, Child& child,
@@ -161,13 +163,13 @@ class Listener {
   }
 
  private:
-  // Why no answer came, or what came is none.
+  // The result when no answer came, or an invalid one.
   StressResult end_of(Received::Kind why) {
     if (why == Received::Kind::ended) {
       const std::string how = child_.end(), words = child_.last_words();
       return gone_wrong(
           task_, Verdict::crash,
-          fmt::format("the process {}{}", how, words.empty() ? "" : "; its last words: " + words));
+          fmt::format("the process {}{}", how, words.empty() ? "" : "; it last printed: " + words));
     }
     child_.kill();
     if (why == Received::Kind::too_late || why == Received::Kind::given_up) {
@@ -184,11 +186,11 @@ class Listener {
 
   bool hangs() const {
     const Nanoseconds duration(static_cast<std::int64_t>(task_.the_case.duration.amount * 1e9));
-    // A child that says nothing for so long, or flies on so long after the end, hangs.
+    // A child hangs if it sends no message for so long, or flies so long after the end.
     const Nanoseconds limit = report_every + task_.timeout;
     return Clock::now() - heard_ > (idle_ ? task_.idle_duration + limit : limit) ||
            flown_ > duration + limit ||
-           // Whatever it says of its progress.
+           // An upper bound that does not depend on its progress messages.
            Clock::now() - began_ > task_.timeout + task_.idle_duration + duration + 2 * limit;
   }
 
@@ -196,12 +198,12 @@ class Listener {
     const double limit_s = in_seconds(task_.timeout);
     const double flown_s = in_seconds(flown_);
     return is_made_
-               ? fmt::format("the port did not come back {:.3f} s into the flight, within {:g} s",
-                             flown_s, limit_s)
+               ? fmt::format("the port did not return within {:g} s, {:.3f} s into the flight",
+                             limit_s, flown_s)
                : fmt::format("no answer within {:g} s, when it was loaded and created", limit_s);
   }
 
-  // Empty: it is not the last message. The port shares the process, so nothing is taken on trust.
+  // Empty: it is not the last message. The port shares the process, so no message is trusted.
   std::optional<Result<StressResult>> answer_of(const Received& received,
                                                 const Patience& patience) {
     heard_ = Clock::now();

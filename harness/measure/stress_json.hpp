@@ -1,5 +1,5 @@
-// A StressResult as JSON and back: the line that the child of a stress run sends, and one entry of
-// the JSON report. Times are integer nanoseconds, their keys end in _ns.
+// A StressResult as JSON and back: the message of a stress run's child, and one entry of the JSON
+// report. Times are integer nanoseconds, their keys end in _ns.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,7 +11,8 @@ namespace attest {
 
 nlohmann::json to_json(const StressResult& stress);
 
-// Errors: a missing or wrong member; the child shares its process with the port.
+// Errors: a missing or wrong member, which the port can cause because it shares the child's
+// process.
 Result<StressResult> stress_from_json(const nlohmann::json& json);
 
 }  // namespace attest

@@ -14,7 +14,8 @@ namespace {
 
 // A plant that falls behind more often than this is not the plant of the case.
 constexpr double plant_late_share = 0.01;
-// What a budget of the 99th percentile leaves. It is counted, which needs no percentile.
+// The share that a budget of the 99th percentile allows. Late starts are counted, so no percentile
+// is needed.
 constexpr double late_starts_share = 0.01;
 
 int gravity(Verdict verdict) { return fails_a_run(verdict) ? 2 : verdict == Verdict::pass ? 0 : 1; }
@@ -65,17 +66,20 @@ void judge_machine(const RealtimeBudget& budget, StressResult& stress) {
   const DeadlineMisses& misses = stress.misses;
   const double allowed = budget.misses_per_million;
   if (const double missed = stress.per_million(misses.total()); missed > allowed) {
-    add_skip(stress.result,
-             fmt::format("the machine's, not the port's: {} of {} deadlines missed, {:.0f} per "
-                         "million, budget {:g}; {} of them by the port's execution time",
-                         misses.total(), stress.deadlines, missed, allowed, misses.by_port));
+    add_skip(
+        stress.result,
+        fmt::format("caused by the machine, not by the port: {} of {} deadlines missed, {:.0f} per "
+                    "million, budget {:g}; {} of them by the port's execution time",
+                    misses.total(), stress.deadlines, missed, allowed, misses.by_port));
   }
   if (share_of(misses.late_starts, stress.ticks) > late_starts_share) {
-    add_skip(stress.result,
-             fmt::format("the machine's, not the port's: {} of {} wake-up latencies above {:g} us, "
-                         "budget 1%; at most {:.3g} us on the idle machine",
-                         misses.late_starts, stress.ticks, budget.p99_latency_us,
-                         static_cast<double>(stress.idle.max.count()) / 1000));
+    add_skip(
+        stress.result,
+        fmt::format(
+            "caused by the machine, not by the port: {} of {} wake-up latencies above {:g} us, "
+            "budget 1%; at most {:.3g} us on the idle machine",
+            misses.late_starts, stress.ticks, budget.p99_latency_us,
+            static_cast<double>(stress.idle.max.count()) / 1000));
   }
 }
 
@@ -89,7 +93,7 @@ void judge_outputs(const Case& the_case, LiveUnitRecord& unit, std::optional<int
   got.present = channels_of(Module::mc_att_control);
   got.samples = std::move(unit.samples);
   got.parameters = std::move(unit.changes);
-  if (got.samples.empty()) return add_skip(result, "outputs not judged: no step was over");
+  if (got.samples.empty()) return add_skip(result, "outputs not judged: no step finished");
   const std::size_t compared = got.samples.size();
   const auto answers = compare_answers(
       got, the_case.profile, tolerances_of(the_case, Level::numeric, fraction_bits, compared),
@@ -128,8 +132,8 @@ void judge_flight_end(const StressTask& task, const LiveFlight& flight, CaseResu
   const auto again =
       fly(to_the_end, task.configuration, *task.vehicle_model, *reference, flight.timing());
   if (!again) return add_skip(result, how + "; " + again.error().to_string());
-  if (again->divergence) return add_skip(result, how + "; the reference loses it too");
-  add(result, Verdict::fail, how + "; the reference keeps it at the same times");
+  if (again->divergence) return add_skip(result, how + "; the reference loses the vehicle too");
+  add(result, Verdict::fail, how + "; the reference keeps the vehicle at the same times");
 }
 
 void judge_timing(const RealtimeBudget& budget, StressResult& stress) {

@@ -16,14 +16,14 @@
 namespace attest {
 namespace {
 
-// Above, every vehicle of a case holds, or its bounds are wrong; below, the law's own clamp of the
-// time step (20 ms) has long been passed.
+// At the highest rate every vehicle of a case holds, or its bounds are wrong. At the lowest rate
+// the period is far beyond the law's own clamp of the time step (20 ms).
 constexpr int highest_hz = 1000, lowest_hz = 2;
 constexpr double rate_step = 0.8;
-// In units of 0.1 ms: beyond half a second no multicopter is flown.
+// In units of 0.1 ms. No multicopter is flown with a delay beyond half a second.
 constexpr int longest_delay = 5000, delay_step = 20;
 
-// Flies a case again and again, each time in another way.
+// Flies one case several times, each time with another rate or delay.
 class Trial {
  public:
   Trial(const Case& the_case, PortHost& host, CaseResult& result)
@@ -143,7 +143,7 @@ Result<SweepResult> SweepJob::run(std::size_t task) {
         });
   }
   if (trial.error()) return tl::unexpected(*trial.error());
-  // What was found before the port went wrong is no figure of it.
+  // A figure from before the port's failure is not valid.
   if (found.result.verdict != Verdict::pass) {
     (task == 0 ? found.lowest_rate_hz : found.largest_delay_ms) = -1;
   }

@@ -1,5 +1,5 @@
-// Where a vehicle stops holding: the lowest loop rate and the largest delay with which a port still
-// flies a case within the bounds of its metrics.
+// The limits of a vehicle: the lowest loop rate and the largest delay with which a port still flies
+// a case within the bounds of its metrics.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +15,10 @@
 
 namespace attest {
 
-// One of the two figures is there. Below 0: nothing holds, or `result` is no pass.
+// One of the two figures is set. It is below 0 if no value holds, or if `result` is not a pass.
 struct SweepResult {
-  CaseResult result;                       // a verdict other than pass: the port went wrong
-  std::optional<double> lowest_rate_hz;    //
+  CaseResult result;  // a verdict other than pass: the port failed
+  std::optional<double> lowest_rate_hz;
   std::optional<double> largest_delay_ms;  // of the motor commands, beyond the case's own
 };
 
@@ -28,9 +28,9 @@ struct Codec<SweepResult> {
   static Result<SweepResult> decode(const std::string& text);
 };
 
-// One vehicle on one plant. Task 0 looks for the lowest rate, task i for the largest delay at rate
-// i - 1. Both are searched by steps and then by halves: what is found is next to one that does not
-// hold, and nothing is said of what lies beyond that.
+// One vehicle on one plant. Task 0 searches for the lowest rate, task i for the largest delay at
+// rate i - 1. Both searches take steps and then bisect. The value next to the result does not hold;
+// values beyond that one are not tried.
 class SweepJob final : public Job<SweepResult> {
  public:
   SweepJob(Case the_case, PlantConfiguration plant_configuration, std::vector<Rate> rates,

@@ -13,7 +13,7 @@
 namespace attest {
 namespace {
 
-// Times vectors, in a new process of the port where the last one ended.
+// Times vectors, in a new process of the port after the last one ended.
 class Stopwatches {
  public:
   Stopwatches(const TimeOptions& options, const HostOptions& host)
@@ -127,7 +127,7 @@ Result<void> write_slowest(const CorpusTimes& times, const std::vector<SelectedC
                            const HostOptions& host, const std::filesystem::path& file) {
   const VectorTimes* slowest = times.with_slowest_step();
   const Case* the_case = slowest ? find_case(cases, slowest->result.case_id()) : nullptr;
-  if (!the_case) return fail("nothing was timed that could be written");
+  if (!the_case) return fail("no vector was timed, so there is no slowest step to write");
   Trace trace = stimulate(*the_case, slowest->result.rate);
   const std::size_t tick = slowest->slowest_tick();
   trace.samples.resize(tick + 1);

@@ -1,4 +1,4 @@
-// How long a port's steps take, over the corpus, and which input takes longest.
+// How long a port's steps take over the corpus, and the input of the slowest step.
 #pragma once
 
 #include <cstddef>
@@ -15,16 +15,16 @@
 namespace attest {
 
 struct TimeOptions {
-  int repeats = 5;                  // of each vector: of each step the quickest counts
+  int repeats = 5;                  // of each vector; the quickest time of each step counts
   std::optional<double> budget_us;  // steps longer than this are counted
   bool stack = true;                // measure the stack of a step, in one more run of each vector
-  std::filesystem::path worst;      // where to write the vector of the slowest step; empty: nowhere
+  std::filesystem::path worst;  // where to write the vector of the slowest step; empty: not written
 };
 
 // A case at a rate.
 struct VectorTimes {
   CaseResult result;                       // a verdict other than pass: there are no times
-  std::vector<Nanoseconds> steps;          // the quickest of each
+  std::vector<Nanoseconds> steps;          // the quickest time of each
   std::optional<std::size_t> stack_bytes;  // the most that a step used
 
   bool is_timed() const { return !steps.empty(); }
@@ -37,22 +37,23 @@ struct VectorTimes {
 struct CorpusTimes {
   std::vector<VectorTimes> vectors;
   Histogram steps;       // of all vectors; over its limit: over the budget
-  Nanoseconds clock{0};  // what reading the clock takes, which was taken off
+  Nanoseconds clock{0};  // the time of reading the clock, already subtracted
 
-  // Null: nothing was timed.
+  // Null: no vector was timed.
   const VectorTimes* with_slowest_step() const;
   const VectorTimes* with_most_stack() const;  // also null where no stack was measured
 };
 
-// Every vector of the cases, one after the other in one process of the port, so that they do not
-// disturb each other; in a new one after a crash. Ends early when `host.stop` says so. Errors: the
-// port cannot be opened, no memory for its stack. REQUIRES: open-loop cases of the controller.
+// Times every vector of the cases, one after the other so that they do not disturb each other. They
+// share one process of the port; after a crash a new one is started. Ends early when `host.stop`
+// returns true. Errors: the port cannot be opened, no memory for its stack. REQUIRES: open-loop
+// cases of the controller.
 Result<CorpusTimes> time_corpus(const std::vector<SelectedCase>& cases, const TimeOptions& options,
                                 const HostOptions& host,
                                 const std::function<void(const CaseResult&)>& on_result);
 
-// Writes the vector of the slowest step up to that step, with what the port answers: for `attest
-// replay`. Errors: nothing was timed, the port goes wrong now, the file cannot be written.
+// Writes the vector of the slowest step up to that step, with the port's outputs, for `attest
+// replay`. Errors: no vector was timed, the port fails now, the file cannot be written.
 Result<void> write_slowest(const CorpusTimes& times, const std::vector<SelectedCase>& cases,
                            const HostOptions& host, const std::filesystem::path& file);
 

@@ -1,4 +1,4 @@
-// A battery that empties: what voltage it gives, and what that leaves of the rotors' speed.
+// A battery that empties: its voltage, and the reduction of the rotors' speed.
 #pragma once
 
 #include "harness/core/time.hpp"
@@ -6,22 +6,22 @@
 
 namespace attest {
 
-// No allocation; no clock: the caller says when it is measured.
+// No allocation; no clock: the caller passes the time of each measurement.
 class Battery {
  public:
   // `charge` [0..1] of the capacity at the start. The current is that of hover until the first
   // update. REQUIRES: a positive capacity.
   Battery(const BatteryPack& pack, double charge);
 
-  // Measures at `now`: `hover_seconds_used` is that of PlantState, `power_ratio` the rotors' power
-  // beside that in hover. REQUIRES: times do not decrease.
+  // Measures at `now`. `hover_seconds_used` is that of PlantState; `power_ratio` is the rotors'
+  // power divided by that in hover. REQUIRES: times do not decrease.
   void update(Nanoseconds now, double hover_seconds_used, double power_ratio);
 
   double charge() const { return charge_; }        // 0..1
   double current_A() const { return current_A_; }  // low-passed
   double voltage_V() const;                        // under load, not below 0
 
-  // What the rotors' speed is multiplied with: the voltage beside that of a full battery in hover.
+  // The factor of the rotors' speed: the voltage divided by that of a full battery in hover.
   double supply_ratio() const;
 
  private:

@@ -12,7 +12,7 @@ class Agreement {
   explicit Agreement(const Vehicle& vehicle) : toml_(vehicle.file.filename().string()) {}
 
   void same(const std::string& what, double model, double vehicle) {
-    // MuJoCo computes the inertia anew, so not to the bit.
+    // Not compared by bits, because MuJoCo recomputes the inertia.
     constexpr double relative = 1e-9;
     if (!difference.empty() || std::abs(model - vehicle) <= relative * std::abs(vehicle)) return;
     difference = fmt::format("{} is {:g}, in {} it is {:g}", what, model, toml_, vehicle);
@@ -47,7 +47,7 @@ std::string first_difference(const ModelNumbers& model, const Vehicle& vehicle) 
     const auto of_rotor = [i](const char* what) { return fmt::format("{} of rotor {}", what, i); };
     agreement.same(of_rotor("the place [m]"), rotor.position_m, vehicle.rotors[i].position_m);
     agreement.same(of_rotor("the force gear"), rotor.force_gear, {0, 0, -1});
-    // Turning counter-clockwise seen from above, it pushes the body clockwise: +z in FRD.
+    // A rotor that turns counter-clockwise, seen from above, pushes the body clockwise: +z in FRD.
     const double torque = vehicle.rotors[i].turns * vehicle.torque_over_thrust_m;
     agreement.same(of_rotor("the torque gear [m]"), rotor.torque_gear_m, {0, 0, torque});
     agreement.same(of_rotor("the thrust coefficient"), rotor.thrust_coefficient,

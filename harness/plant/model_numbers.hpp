@@ -1,4 +1,4 @@
-// A MuJoCo model must be the vehicle of its TOML, or the two plants fly different vehicles.
+// Compares a MuJoCo model with the TOML of its vehicle. Both plants must fly the same vehicle.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace attest {
 
-// What a model was compiled to. FRD, SI units.
+// The numbers of a compiled model. FRD, SI units.
 struct ModelNumbers {
   struct Rotor {
     Vector3 position_m;
@@ -26,7 +26,7 @@ struct ModelNumbers {
   std::vector<Rotor> rotors;
 };
 
-// The first quantity that is not the vehicle's, with both values; empty when all agree.
+// The first quantity that differs from the vehicle's, with both values; empty when all agree.
 std::string first_difference(const ModelNumbers& model, const Vehicle& vehicle);
 
 }  // namespace attest

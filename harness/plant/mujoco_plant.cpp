@@ -18,9 +18,10 @@ constexpr int body = 1;  // 0 is the world
 
 Vector3 vector_at(const mjtNum* numbers) { return {numbers[0], numbers[1], numbers[2]}; }
 
-// ---- MuJoCo's complaints ------------------------------------------------------------------------
+// ---- MuJoCo's errors and warnings ---------------------------------------------------------------
 
-// MuJoCo's error handler must not return, and its warnings come from deep inside a step.
+// MuJoCo's error handler must not return, so it throws. Warnings come from deep inside a step, so
+// they are stored.
 struct MujocoError {
   std::string what;
 };
@@ -33,7 +34,7 @@ void on_warning(const char* text) {
   if (warning.empty()) warning = text;
 }
 
-// ---- what the model asks of us ------------------------------------------------------------------
+// ---- callbacks of the model ---------------------------------------------------------------------
 
 // userdata of mjData: linear drag [kg/s] by body axis FLU, velocity of the air [m/s] ENU.
 enum UserData : int { drag_at = 0, wind_at = 3, userdata_size = 6 };
@@ -45,12 +46,12 @@ mjtNum rotor_lag(const mjModel* model, const mjData* data, int id) {
   return difference / (difference > 0 ? tau[0] : tau[1]);
 }
 
-// Thrust = gain * speed, gainprm = {kf}, so that it goes with the square of the speed.
+// Thrust = gain * speed and gain = kf * speed, so that thrust is kf * speed^2. gainprm = {kf}.
 mjtNum rotor_gain(const mjModel* model, const mjData* data, int id) {
   return model->actuator_gainprm[id * mjNGAIN] * data->act[id];
 }
 
-// Linear drag at the centre of mass, at each stage of the Runge-Kutta step.
+// Linear drag at the centre of mass. Called at each stage of the Runge-Kutta step.
 void drag(const mjModel* model, mjData* data) {
   const mjtNum* k = data->userdata + drag_at;
   if (model->nuserdata < userdata_size || (k[0] == 0 && k[1] == 0 && k[2] == 0)) return;
@@ -106,8 +107,8 @@ Result<Model> compile(const std::filesystem::path& xml) {
   return model;
 }
 
-// What MuJoCo compiled, for model_numbers.hpp to compare with the TOML. Of another structure: an
-// error that says what it needs.
+// The numbers of the compiled model, for the comparison with the TOML (model_numbers.hpp). Errors:
+// a model of another structure, with the missing element.
 Result<ModelNumbers> numbers_of(const mjModel& model, const std::filesystem::path& xml) {
   const bool free_body = model.nbody == 2 && model.njnt == 1 && model.jnt_type[0] == mjJNT_FREE;
   if (!free_body) return fail_at(xml.string(), "needs one body with one free joint");
@@ -147,7 +148,7 @@ void copy(const Vector3& vector, mjtNum* numbers) {
   std::copy(vector.begin(), vector.end(), numbers);
 }
 
-// Room for the contacts of a few feet: four points on each of some geoms, up to four rows each.
+// Memory for the contacts of a few feet: four points on each of some geoms, up to four rows each.
 void enable_floor(mjModel& model) {
   constexpr int contacts = 64, rows_of_one = 4;
   constexpr int stack_numbers = 200'000;
@@ -216,8 +217,8 @@ class MujocoPlant final : public Plant {
     } catch (const MujocoError& error) {
       lost_ = Divergence{next, "MuJoCo: " + error.what};
     }
-    // The cube of a speed that follows an exponential: the trapezium rule's error is of the order
-    // of (h / tau)^2, which is nothing beside what a battery is known to.
+    // The cube of a speed that follows an exponential: the error of the trapezium rule is of the
+    // order of (h / tau)^2. The numbers of a battery are much less accurate than that.
     state_.hover_seconds_used += h * (power_before + power_ratio()) / 2;
     now_ = next;
     check();
@@ -239,7 +240,7 @@ class MujocoPlant final : public Plant {
 
   double power_ratio() const { return vehicle_.power_ratio({data_->act, rotors_}); }
 
-  // MuJoCo takes short cuts where the centre of mass is the body's origin.
+  // MuJoCo has faster code for a centre of mass at the body's origin. These fields select it.
   void place_centre_of_mass(const Vector3& offset_flu) {
     copy(offset_flu, model_->body_ipos + 3 * body);
     const bool at_origin = offset_flu == Vector3{0, 0, 0};
@@ -248,7 +249,7 @@ class MujocoPlant final : public Plant {
     for (int i = 0; i < model_->nv; ++i) model_->dof_simplenum[i] = at_origin ? model_->nv - i : 0;
   }
 
-  // The free joint is the body's origin; ours is the centre of mass.
+  // MuJoCo's free joint is at the body's origin; PlantState is that of the centre of mass.
   void write_body() {
     const Quaternion q = flu_to_enu(state_.attitude);
     mjtNum* qpos = data_->qpos;

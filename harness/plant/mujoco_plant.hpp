@@ -1,5 +1,5 @@
-// The plant in MuJoCo: a free body with one actuator a rotor, integrated by the Runge-Kutta method
-// of order 4 at the physics rate. FLU and ENU inside, nowhere else.
+// The plant in MuJoCo: a free body with one actuator per rotor, integrated by the Runge-Kutta
+// method of order 4 at the physics rate. Only the inside of this plant uses FLU and ENU.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace attest {
 
-// A model as MuJoCo compiled it. Immutable, for any number of plants.
+// A compiled MuJoCo model. Immutable; any number of plants may use it.
 class MujocoModel {
  public:
   // Errors: XML that MuJoCo refuses, with its line; a model that disagrees with the vehicle's TOML,
@@ -19,7 +19,7 @@ class MujocoModel {
                                                          const Vehicle& vehicle);
   virtual ~MujocoModel() = default;
 
-  // Errors: MuJoCo's words. The vehicle must outlive the plant.
+  // Errors: the text of MuJoCo's error. The vehicle must outlive the plant.
   virtual Result<std::unique_ptr<Plant>> make_plant(const Vehicle& vehicle,
                                                     const PlantOptions& options) const = 0;
 };

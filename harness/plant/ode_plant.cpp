@@ -26,7 +26,7 @@ struct Inputs {
   Vector3 centre_of_mass_m{};
 };
 
-// dy/dt, with the inputs as they are held. Plain scalars: this is most of a step's time.
+// dy/dt with the held inputs. Written in plain scalars, because it takes most of a step's time.
 class Dynamics {
  public:
   explicit Dynamics(const Vehicle& vehicle) : vehicle_(vehicle), count_(vehicle.rotors.size()) {}
@@ -70,7 +70,7 @@ class Dynamics {
     dy[used] = vehicle_.power_ratio({y + rotors, count_});
   }
 
-  // At the centre of mass, so it does not turn the body.
+  // Drag acts at the centre of mass, so it does not turn the body.
   void add_drag(const double* y, const double (&R_NB)[3][3], Vector3& force_B) const {
     const Vector3& k = vehicle_.drag_kg_s;
     if (k[0] == 0 && k[1] == 0 && k[2] == 0) return;
@@ -106,10 +106,10 @@ int right_hand_side(realtype, N_Vector y, N_Vector dy, void* dynamics) {
   return 0;
 }
 
-// SUNDIALS would print; the flag that comes back says enough.
+// Without this, SUNDIALS would print its errors. The returned flag is enough.
 void silent(int, const char*, const char*, char*, void*) {}
 
-// Out of memory is the only way to fail.
+// These calls fail only without memory.
 template <typename T>
 T* made(T* pointer) {
   if (!pointer) throw std::bad_alloc();
@@ -122,7 +122,7 @@ class ErkPlant final : public OdePlant {
       : vehicle_(vehicle), dynamics_(vehicle), count_(vehicle.rotors.size()) {
     SUNContext_Create(nullptr, &context_);
     y_ = made(N_VNew_Serial(rotors + static_cast<sunindextype>(count_), context_));
-    // One pass over the vectors where there would be several; 15-22% of the time.
+    // One pass over the vectors instead of several; this saves 15-22% of the time.
     N_VEnableFusedOps_Serial(y_, SUNTRUE);
     N_VConst(0, y_);
     integrator_ = made(ERKStepCreate(right_hand_side, 0, y_, context_));
@@ -156,7 +156,7 @@ class ErkPlant final : public OdePlant {
     std::copy_n(start.rate_rad_s.begin(), 3, y + rate);
     y[used] = start.hover_seconds_used;
     std::copy_n(start.rotor_rad_s.begin(), count_, y + rotors);
-    // The step size that the last flight ended with is no part of this one.
+    // Discards the last step size of the flight before.
     ERKStepReInit(integrator_, right_hand_side, 0, y_);
     stale_ = false;
   }
@@ -177,7 +177,7 @@ class ErkPlant final : public OdePlant {
   std::optional<Divergence> advance(Nanoseconds to) override {
     if (lost_ || to <= now_) return lost_;
     const double end = in_seconds(to);
-    // The method's first stage is kept from the last step, where the inputs were others.
+    // The integrator keeps the first stage from its last step, which had other inputs.
     if (stale_) ERKStepReset(integrator_, in_seconds(now_), y_);
     stale_ = false;
     ERKStepSetStopTime(integrator_, end);
@@ -201,7 +201,7 @@ class ErkPlant final : public OdePlant {
     const double* y = N_VGetArrayPointer(y_);
     std::copy_n(y + position, 3, state_.position_m.begin());
     std::copy_n(y + velocity, 3, state_.velocity_m_s.begin());
-    // The integrator keeps its own norm: to scale its state would change what it computes.
+    // Only the copy is scaled: to scale the integrator's state would change its results.
     const double* q = y + attitude;
     const double scale = 1 / quaternion_norm();
     state_.attitude = {scale * q[0], scale * q[1], scale * q[2], scale * q[3]};

@@ -11,8 +11,8 @@
 namespace attest {
 
 struct OdeOptions {
-  // Cash-Karp. Order 6 is broken in SUNDIALS 6.4.1; order 8 at a fixed step, which falls as order 7
-  // there, is what the truth tests take for exact.
+  // Cash-Karp. Order 6 is broken in SUNDIALS 6.4.1. The truth tests take order 8 at a fixed step as
+  // exact; its error falls as order 7 there.
   int order = 5;
   double relative_tolerance = 1e-9;
   double absolute_tolerance = 1e-10;
@@ -21,8 +21,8 @@ struct OdeOptions {
 
 class OdePlant : public Plant {
  public:
-  // Of the integrated attitude, which state() tells with norm 1. Its distance from 1 is a measure
-  // of the integrator's error.
+  // The norm of the integrated attitude. Its distance from 1 is a measure of the integrator's
+  // error. state() has the attitude scaled to norm 1.
   virtual double quaternion_norm() const = 0;
 };
 

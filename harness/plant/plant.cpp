@@ -30,7 +30,7 @@ class LoadedModel final : public VehicleModel {
       case PlantKind::ode:
         return make_ode_plant(vehicle_, {});
     }
-    return fail("a plant that nobody makes");
+    return fail("unknown plant");
   }
 
  private:

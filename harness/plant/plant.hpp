@@ -1,10 +1,10 @@
-// What the unit under test flies: a rigid body with rotors, in one of two implementations that are
-// checked against each other and against exact solutions (models/README.md).
+// The plant that the unit under test controls: a rigid body with rotors. It has two implementations
+// that are checked against each other and against exact solutions (models/README.md).
 //
-// Rotor speed w of each rotor follows its command u with a first-order lag, dw/dt = (u - w) / tau,
-// tau one for u > w and another for u < w. Thrust kf w^2 along -z body at the hub, drag torque
-// km w^2 about z against the rotation. Linear drag against the air. Gravity along +z world. The
-// spin of the rotors is not part of the body's angular momentum.
+// Rotor speed w of each rotor follows its command u with a first-order lag, dw/dt = (u - w) / tau.
+// tau has one value for u > w and another for u < w. Thrust kf w^2 along -z body at the hub, drag
+// torque km w^2 about z against the rotation. Linear drag against the air. Gravity along +z world.
+// The spin of the rotors is not part of the body's angular momentum.
 //
 // Frames NED and FRD, SI units, time since reset() in integer nanoseconds. No clock, no allocation
 // after reset(), one thread at a time. The same calls give the same bits.
@@ -36,8 +36,8 @@ struct PlantState {
   double hover_seconds_used = 0;
 };
 
-// The end of a flight: the state is not finite, the body rate is beyond the vehicle's bound, or the
-// simulator complained.
+// The early end of a flight: the state is not finite, the body rate is beyond the vehicle's bound,
+// or the simulator reported an error or a warning.
 struct Divergence {
   Nanoseconds at{0};
   std::string what;  // "the body rate is 103 rad/s, beyond 100"
@@ -47,25 +47,26 @@ class Plant {
  public:
   virtual ~Plant() = default;
 
-  // Begins anew at time 0, in `start`, commands equal to the rotor speeds, no wind, the centre of
-  // mass where it nominally is. REQUIRES: a unit quaternion.
+  // Restarts at time 0 in the state `start`: commands equal to the rotor speeds, no wind, the
+  // centre of mass at its nominal place. REQUIRES: a unit quaternion.
   virtual void reset(const PlantState& start) = 0;
 
-  // Rotor speeds wanted [rad/s], one a rotor, not negative; held until the next call.
+  // Commanded rotor speeds [rad/s], one per rotor, not negative; held until the next call.
   virtual void command(std::span<const double> rotor_rad_s) = 0;
 
   // Velocity of the air, NED; held until the next call.
   virtual void set_wind(const Vector3& velocity_m_s) = 0;
 
-  // Of the centre of mass from its nominal place, FRD; held until the next call. Its position and
-  // velocity do not jump, the hubs' places relative to it do: as when a load is dropped.
+  // Offset of the centre of mass from its nominal place, FRD; held until the next call. Its
+  // position and velocity do not jump; the hubs' places relative to it do, as when a load is
+  // dropped.
   virtual void set_centre_of_mass(const Vector3& offset_m) = 0;
 
-  // To exactly time `to`, not before the time reached. After a divergence the plant stays where it
-  // is until reset().
+  // Integrates to exactly the time `to`. REQUIRES: `to` is not before the time reached. After a
+  // divergence the state does not change until reset().
   virtual std::optional<Divergence> advance(Nanoseconds to) = 0;
 
-  // At the time reached.
+  // The state at the time reached.
   virtual const PlantState& state() const = 0;
 };
 
@@ -76,26 +77,26 @@ bool has_floor(PlantKind kind);            // ground contact
 Result<PlantKind> parse_plant_kind(std::string_view name);
 
 struct PlantOptions {
-  // MuJoCo's steps begin at multiples of this period, and at the times it is advanced to; the ode
-  // plant chooses its own steps.
+  // MuJoCo's steps begin at multiples of this period, and at the times to which it is advanced. The
+  // ode plant chooses its own steps.
   Rate physics = Rate::hz(1000);
   bool floor = false;  // MuJoCo only: ground contact at z = 0
 };
 
-// A vehicle ready to fly: its numbers, and its model as MuJoCo compiled it, which takes
-// milliseconds and is done once. Immutable; may be shared, also across fork().
+// A vehicle ready to fly: its numbers, and its compiled MuJoCo model. Compiling takes milliseconds
+// and is done once. Immutable; may be shared, also across fork().
 class VehicleModel {
  public:
-  // Reads models/<name>.toml and models/<name>.xml. Errors, with file and line where there is one:
-  // no such vehicle (says which there are), what read_vehicle refuses, XML that MuJoCo refuses, a
-  // model that disagrees with its TOML (says in what).
+  // Reads models/<name>.toml and models/<name>.xml. Errors, with file and, if known, line: no such
+  // vehicle (with the known ones), the errors of read_vehicle, XML that MuJoCo refuses, a model
+  // that disagrees with its TOML (with the quantity).
   static Result<std::shared_ptr<const VehicleModel>> load(const std::filesystem::path& models,
                                                           const std::string& name);
   virtual ~VehicleModel() = default;
 
   virtual const Vehicle& vehicle() const = 0;
 
-  // Errors: that plant has no floor. The vehicle model must outlive the plant.
+  // Errors: options.floor for a plant without a floor. The vehicle model must outlive the plant.
   virtual Result<std::unique_ptr<Plant>> make_plant(PlantKind kind,
                                                     const PlantOptions& options) const = 0;
 };

@@ -1,12 +1,12 @@
-// What a simulator says of a model, as one of our error messages.
+// Converts a simulator's message about a model to an error message of attest.
 #pragma once
 
 #include <string>
 
 namespace attest {
 
-// The line that it names ("Element 'geom', line 12", "line = 12", "Line number=12"); 0 when it
-// names none.
+// The line in the message ("Element 'geom', line 12", "line = 12", "Line number=12"); 0 if it has
+// no line.
 int line_in(const std::string& simulator_message);
 
 // Without line breaks.

@@ -43,7 +43,7 @@ Vector3 read_inertia(const TomlTable& root) {
   const bool possible = x > 0 && y > 0 && z > 0 && x <= y + z && y <= x + z && z <= x + y;
   if (root.has("inertia_kg_m2") && !possible) {
     root.error("inertia_kg_m2",
-               "is of no body: each moment is positive and at most the sum of the "
+               "is impossible: each moment must be positive and at most the sum of the "
                "other two");
   }
   return inertia;
@@ -57,7 +57,7 @@ Vector3 read_drag(const TomlTable& root) {
   return drag;
 }
 
-// Positions as one list a rotor: [rotors] r0 = { position_m = [x, y, z], turns = "ccw" }, ...
+// One table per rotor: [rotors] r0 = { position_m = [x, y, z], turns = "ccw" }, ...
 std::vector<VehicleRotor> read_rotors(const TomlTable& root) {
   std::vector<VehicleRotor> rotors;
   const TomlTable table = root.table("rotors");
@@ -91,8 +91,9 @@ BatteryPack read_battery(const TomlTable& root) {
   return pack;
 }
 
-// What the mixer believes of rotor i, beside where it is: roll is given by rotors on the left,
-// pitch by those in front, yaw by those that turn counter-clockwise.
+// Compares the mixer's rotor i with the vehicle's. In the mixer, rotors on the left have a positive
+// roll scale, those in front a positive pitch scale, and those that turn counter-clockwise a
+// positive yaw scale.
 std::optional<std::string> disagreement(const VehicleRotor& rotor, const actuation::Rotor& mixed) {
   constexpr double small = 1e-3;
   const auto differs = [&](double place, float scale) {

@@ -1,5 +1,5 @@
-// A vehicle as numbers: what both plants are made of. Read from models/<name>.toml, where each
-// number has its source.
+// A vehicle as numbers. Both plants are made from it. Read from models/<name>.toml, which gives the
+// source of each number.
 //
 // Body frame FRD, its origin at the nominal centre of mass. SI units.
 #pragma once
@@ -24,9 +24,9 @@ struct VehicleRotor {
   int turns = 1;       // +1 counter-clockwise seen from above, -1 clockwise
 };
 
-// Voltage = full_V - fall_V * used fraction of the charge - resistance_ohm * current, the current
-// low-passed. The current is hover_current_A in hover and goes with the rotors' power, as the cube
-// of their speed.
+// Voltage = full_V - fall_V * used fraction of the charge - resistance_ohm * low-passed current.
+// The current is hover_current_A in hover. It is proportional to the rotors' power, which grows as
+// the cube of their speed.
 struct BatteryPack {
   int cells = 3;
   double full_V = 0;  // open circuit
@@ -50,17 +50,17 @@ struct Vehicle {
   double time_constant_down_s = 0;  // towards a lower one
   double rotor_max_rad_s = 0;       // at the motor command 1
   Vector3 drag_kg_s{};  // linear rotor drag, optional: force = -drag * air velocity, by body axis
-  double rate_bound_rad_s = 0;  // a body rate beyond is a diverged flight
+  double rate_bound_rad_s = 0;  // beyond this body rate a flight has diverged
   BatteryPack battery;
   std::string mixer;                                       // "R: 4x 10000 10000 10000 0"
-  std::vector<std::pair<std::string, double>> parameters;  // of the law: the gains that fly it
+  std::vector<std::pair<std::string, double>> parameters;  // of the law: gains for this vehicle
 
-  // What the vehicle is read from: models/<name>.toml and .xml.
+  // The files of the vehicle: models/<name>.toml and .xml.
   std::vector<std::filesystem::path> files() const;
 
-  double hover_rotor_rad_s() const;  // all rotors alike
-  // The power of rotors that turn so fast beside that in hover: it goes with the cube of the speed.
-  // REQUIRES: a speed a rotor [rad/s].
+  double hover_rotor_rad_s() const;  // the same for all rotors
+  // The power of rotors at these speeds [rad/s] divided by that in hover. Power grows as the cube
+  // of the speed. REQUIRES: one speed per rotor.
   double power_ratio(std::span<const double> rotor_rad_s) const;
   double arm_m() const;  // from the centre of mass to the farthest hub
   // The thrust control, 0..1, at which it hovers: motor commands are linear in the speed.
@@ -69,9 +69,9 @@ struct Vehicle {
 
 inline constexpr double gravity_m_s2 = 9.80665;  // standard gravity, ISO 80000-3
 
-// Errors name file, line and fix: a number missing or impossible (a mass that is not positive, an
-// inertia that breaks the triangle inequality), an unknown key or parameter, a mixer whose rotors
-// are not where the vehicle's are.
+// Errors name file, line and fix: a number that is missing or impossible (a mass that is not
+// positive, an inertia that breaks the triangle inequality), an unknown key or parameter, a mixer
+// whose rotors are at other places than the vehicle's.
 Result<Vehicle> read_vehicle(const std::filesystem::path& file);
 
 // The names of the vehicles (*.toml) in a folder, sorted; empty when there is no such folder.

@@ -1,4 +1,4 @@
-// The vehicles of a suite, each loaded once, when it is first asked for.
+// The vehicles of a suite. Each is loaded once, at its first use.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// A port behind the C ABI of attest_unit.h, wherever its table came from.
+// A port with the C ABI of attest_unit.h. Its table may be linked in or loaded from a library.
 #pragma once
 
 #include <memory>
@@ -36,7 +36,7 @@ class AbiUnit : public Interface {
   void* self_;
 };
 
-// The controller, which may want to know the time of the sample.
+// The controller. `timestamp_sample` is null if it does not need the time of the sample.
 class AbiController final : public AbiUnit<attest_unit, Unit> {
  public:
   AbiController(const attest_unit& table, const attest_timestamp_sample* timestamp_sample,
@@ -52,7 +52,7 @@ class AbiController final : public AbiUnit<attest_unit, Unit> {
   const attest_timestamp_sample* timestamp_sample_;
 };
 
-// `owner` keeps what the table lives in (a loaded library) alive.
+// `owner` keeps the memory of the table alive, for example a loaded library.
 class AbiPort final : public Port {
  public:
   explicit AbiPort(const attest_unit& table, std::shared_ptr<void> owner = nullptr)

@@ -9,7 +9,7 @@ namespace attest {
 
 std::unique_ptr<Port> open_builtin();
 
-// The reference in double precision: what goldens of flights measure their horizon with.
+// The reference in double precision. Horizons of flights are measured with it.
 std::unique_ptr<Port> open_builtin_in_double();
 
 }  // namespace attest

@@ -1,4 +1,4 @@
-// `fault:ID` or `fault:ID+ID`: the reference with mistakes of the catalogue, to test a suite with.
+// `fault:ID` or `fault:ID+ID`: the reference with faults of the catalogue, to test a suite with.
 #pragma once
 
 #include <memory>
@@ -10,8 +10,9 @@
 
 namespace attest {
 
-// With `fraction_bits` it says that it is in fixed point, which it is not: to see which mistakes
-// the tolerance for such ports lets pass. Errors: no such fault; says which is near.
+// With `fraction_bits` the port declares fixed point, although it computes in floating point. This
+// shows which faults pass with the tolerance for such ports. Errors: no such fault, with the
+// nearest known one.
 Result<std::unique_ptr<Port>> open_fault(std::string_view ids,
                                          std::optional<int> fraction_bits = std::nullopt);
 

@@ -13,7 +13,8 @@ namespace attest {
 
 Result<int> parse_fraction_bits(std::string_view arithmetic) {
   constexpr std::string_view prefix = "fixed:";
-  // With fewer the tolerance would let wrong ports pass; with more it is that of floats.
+  // With fewer bits, wrong ports would pass the tolerance. With more, it is the tolerance of
+  // floats.
   constexpr int fewest = 20, most = 32;
   int bits = 0;
   const char* const end = arithmetic.data() + arithmetic.size();
@@ -22,7 +23,7 @@ Result<int> parse_fraction_bits(std::string_view arithmetic) {
   if (!arithmetic.starts_with(prefix) || error != std::errc() || stop != end || bits < fewest ||
       bits > most) {
     return fail(
-        fmt::format("its arithmetic is `{}`; known is `fixed:BITS`, from {} to {} bits "
+        fmt::format("its arithmetic is `{}`; it must be `fixed:BITS`, from {} to {} bits "
                     "behind the point",
                     arithmetic, fewest, most));
   }

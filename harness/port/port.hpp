@@ -1,7 +1,8 @@
-// What the harness tests: a port is a kind of controller, a unit one running instance of it.
+// The subject of the tests: a port is an implementation of the controller, a unit is one running
+// instance of it.
 //
-// Ways in share this meaning: `builtin` (the reference), `lib:PATH` (a shared library with the ABI
-// of attest_unit.h), `fault:ID` (the reference with a mistake of the catalogue).
+// The kinds of port are `builtin` (the reference), `lib:PATH` (a shared library with the ABI of
+// attest_unit.h) and `fault:ID` (the reference with a fault of the catalogue).
 #pragma once
 
 #include <cstdint>
@@ -27,16 +28,16 @@ class Steppable {
 
   virtual ~Steppable() = default;
 
-  // Both return ATTEST_OK, ATTEST_UNSUPPORTED, ATTEST_INVALID or ATTEST_FAILED; anything else is
-  // the port's fault and is reported as such.
+  // Both return ATTEST_OK, ATTEST_UNSUPPORTED, ATTEST_INVALID or ATTEST_FAILED. Any other value is
+  // reported as an error of the port.
   virtual int set_parameter(const std::string& name, float value) = 0;
   virtual int step(const Inputs& in, Outputs& out) = 0;
 };
 
 class Unit : public Steppable<attest_inputs, attest_outputs> {
  public:
-  // Same as attest_timestamp_sample, once before each step; ATTEST_OK from a unit that does not
-  // want to know.
+  // Same as attest_timestamp_sample: called once before each step. A unit that does not need the
+  // time returns ATTEST_OK.
   virtual int set_timestamp_sample(std::uint64_t /*timestamp_sample_us*/) { return ATTEST_OK; }
 };
 
@@ -50,24 +51,24 @@ class Port {
   virtual std::string name() const = 0;
   virtual std::string version() const = 0;
 
-  // The groups of cases that the port declares not to do.
+  // The groups of cases that the port declares as unsupported.
   virtual std::vector<std::string> unsupported_groups() const { return {}; }
 
-  // Bits behind the point of a port in fixed point.
+  // Bits behind the point of a port in fixed point; empty for other arithmetic.
   virtual std::optional<int> fraction_bits() const { return std::nullopt; }
 
-  // The rate of a port that knows only its own sample time.
+  // The rate of a port with a fixed step; empty for other ports.
   virtual std::optional<Rate> fixed_step() const { return std::nullopt; }
 
   // A unit in its power-on state; null when the port does not support the profile.
   // The port must outlive the unit.
   virtual std::unique_ptr<Unit> create(const std::string& profile) = 0;
 
-  // Does the port have this part at all?
+  // True if the port has this module.
   virtual bool has_mixer() const { return false; }
   virtual bool has_battery_status() const { return false; }
 
-  // As create(), where it has.
+  // Same as create(). REQUIRES: the port has the module.
   virtual std::unique_ptr<MixerUnit> create_mixer(const std::string& /*profile*/,
                                                   const std::string& /*definition*/) {
     return nullptr;
@@ -77,18 +78,19 @@ class Port {
   }
 };
 
-// "fixed:22" -> 22, of ATTEST_EXTENSION_ARITHMETIC. Errors: anything else, and bits out of range.
+// Parses the text of ATTEST_EXTENSION_ARITHMETIC: "fixed:22" -> 22. Errors: other text, bits out of
+// range.
 Result<int> parse_fraction_bits(std::string_view arithmetic);
 
-// The file of "lib:PATH"; empty for a port of another kind.
+// The PATH of "lib:PATH"; empty for a port of another kind.
 std::optional<std::string> library_of(const std::string& specification);
 
 // For help and messages.
 inline constexpr const char* port_kinds = "`builtin`, `lib:PATH` or `fault:ID`";
 
 // Opens "builtin", "lib:PATH" or "fault:ID". Loading a library runs its code: a program that must
-// survive a bad port does this in a child process. Errors: unknown kind, missing library, missing
-// symbol, wrong ABI version, incomplete function table.
+// survive a bad port calls this in a child process. Errors: unknown kind, unknown fault, missing
+// library, missing symbol, wrong ABI version, incomplete function table.
 Result<std::unique_ptr<Port>> open_port(const std::string& specification);
 
 }  // namespace attest

@@ -28,7 +28,7 @@ std::string missing_function(const attest_unit& unit) {
   return "";
 }
 
-// An extension that is there has to be whole.
+// An extension that the port has must be complete.
 Result<void> check_extensions(const attest_unit& unit, const std::string& path) {
   const auto incomplete = [&](const char* id) {
     return fail_at(path,
@@ -85,7 +85,7 @@ Result<std::unique_ptr<Port>> open_shared_library(const std::string& path) {
   }
   // An absolute path keeps dlopen from searching the system's library folders.
   const std::string absolute = std::filesystem::absolute(path).string();
-  // Undefined symbols are errors now, not in the middle of a step.
+  // RTLD_NOW: undefined symbols are errors here, not in the middle of a step.
   void* handle = dlopen(absolute.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!handle) return fail_at(path, fmt::format("cannot be loaded: {}", last_error()));
   std::shared_ptr<void> library(handle, [](void* opened) { dlclose(opened); });

@@ -23,7 +23,7 @@
 namespace attest {
 namespace {
 
-// A port that prints at every step must not fill the machine's memory.
+// The output is in memory. A port that prints at every step must not use it up.
 constexpr rlim_t max_file_bytes = std::uint64_t{max_file_mib} << 20;
 constexpr rlim_t max_memory_bytes = std::uint64_t{max_memory_gib} << 30;
 
@@ -33,8 +33,9 @@ void close_all(std::initializer_list<int> files) {
   }
 }
 
-// Of what a process writes to, all that it allocates: a port that goes on allocating must not take
-// the machine's memory. Sanitizers reserve terabytes.
+// Limits the writable memory, which includes all allocations: a port that never stops allocating
+// must not use up the memory of the machine. With sanitizers there is no limit, as they reserve
+// terabytes.
 void limit_memory() {
   if (memory_is_limited()) {
     rlimit memory{};
@@ -49,24 +50,24 @@ void limit_files() {
   ::getrlimit(RLIMIT_FSIZE, &files);
   files.rlim_cur = std::min(files.rlim_max, max_file_bytes);
   ::setrlimit(RLIMIT_FSIZE, &files);
-  ::signal(SIGXFSZ, SIG_IGN);  // writing past the limit fails, it does not kill
+  ::signal(SIGXFSZ, SIG_IGN);  // a write past the limit then fails instead of killing the process
 }
 
-// Leaves the child its socket, and files in place of the parent's input and output.
+// Keeps the child's socket, replaces the parent's input and output, and closes all other files.
 void keep_only(int nothing, int output, int socket) {
   ::dup2(nothing, STDIN_FILENO);
   ::close(nothing);
   ::dup2(output, STDOUT_FILENO);
   ::dup2(output, STDERR_FILENO);
-  // The reports and sockets that the parent has open are not the child's.
+  // The child must not hold the reports and sockets that the parent has open.
   constexpr unsigned first_other = 3;
   const auto kept = static_cast<unsigned>(socket);
   if (kept > first_other) ::close_range(first_other, kept - 1, 0);
   ::close_range(kept + 1, ~0u, 0);
 }
 
-// Neither returns nor throws: what the parent has on its stack (files to be renamed, other
-// children) is not the child's to unwind, nor are its exit handlers to run.
+// Neither returns nor throws. The child must not unwind the parent's stack, which owns files to be
+// renamed and other children, and must not run the parent's exit handlers.
 [[noreturn]] void work_and_end(const std::function<void(MessageSocket&)>& work, int descriptor) {
   MessageSocket socket(descriptor);
   try {
@@ -97,7 +98,7 @@ bool memory_is_limited() {
 }
 
 Result<Child> Child::spawn(Runs runs, const std::function<void(MessageSocket&)>& work) {
-  // All of it before the fork: what cannot be opened is no fault of the work.
+  // All files are opened before the fork, so that a failure is not attributed to the work.
   std::array<int, 2> ends{-1, -1};
   const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
   const int output = ::memfd_create("attest-child-output", MFD_CLOEXEC);
@@ -145,13 +146,13 @@ Child::~Child() { close_all({output_}); }
 
 namespace {
 
-// Patience that ends with a process.
+// Patience that ends when a process has died.
 class UntilDeath {
  public:
   UntilDeath(Process& process, const Patience& patience) : patience_(patience) {
     patience_.given_up = [this, &process, &patience] {
       if (has_died_) return true;
-      // Not at once: what it sent last is still to be read.
+      // Gives up at the next call only, because its last message may still be unread.
       has_died_ = process.ends_within(0);
       return patience.given_up();
     };

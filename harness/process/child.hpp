@@ -1,5 +1,5 @@
-// A child process that does some work and answers in messages. Whatever goes on in there (a crash,
-// a hang, exit(), output, a changed floating point mode) stays in there.
+// A child process that does some work and sends messages. It contains a crash, a hang, exit(),
+// output and a changed floating point mode: the parent is not affected.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@
 
 namespace attest {
 
-// What a child that runs code of others may use. A build with sanitizers does not limit the memory.
+// Limits of a child that runs code of others. A build with sanitizers does not limit the memory.
 inline constexpr int max_memory_gib = 4, max_file_mib = 16;
 bool memory_is_limited();
 
@@ -20,31 +20,31 @@ class Child {
  public:
   enum class Runs { our_code, code_of_others };
 
-  // Forks; `work` runs in the child, a Process, which then ends. Its stdout and stderr are kept
-  // apart (last_words), its stdin is empty, and of the parent's descriptors it has none. Code of
-  // others has limits besides: of memory, and of each file it writes, which bounds what it prints.
+  // Forks; `work` runs in the child, a Process, which then ends. Its stdout and stderr are captured
+  // (last_words), its stdin is empty, and it has no descriptors of the parent. Code of others also
+  // has limits: of memory, and of the size of each file that it writes, including its output.
   static Result<Child> spawn(Runs runs, const std::function<void(MessageSocket&)>& work);
 
   Child(Child&& other) noexcept;
   Child& operator=(Child&& other) noexcept;
   ~Child();  // kills and reaps
 
-  // To the child's `work`, for sending.
+  // The socket to the child's `work`, for sending.
   MessageSocket& socket() { return socket_; }
 
-  // Same as MessageSocket. Also ends when the child has died, because a process that it started may
-  // keep its end open.
+  // Same as in MessageSocket. Both also return `ended` when the child has died, because a process
+  // that it started may keep its end open.
   Received receive(const Patience& patience = {});
   Received::Kind receive_blob(void* place, std::size_t size, const Patience& patience = {});
 
-  void kill() { process_.kill(); }  // with all that it started
+  void kill() { process_.kill(); }  // with its process group
   bool was_killed() const { return process_.was_killed(); }
 
-  void ask_to_stop() { process_.terminate(); }  // SIGTERM, for work that has arranged for it
+  void ask_to_stop() { process_.terminate(); }  // SIGTERM, for work that handles it
 
-  // How it ended, as Ending::to_string() says. For a child that was killed or whose socket has
-  // ended: it has two seconds to end by itself. If it still runs then, it is killed, and the text
-  // says so.
+  // Waits for the end, and returns the text of Ending::to_string(). After two seconds a child that
+  // still runs is killed, and the text reports that. REQUIRES: the child was killed, or its socket
+  // has ended.
   std::string end();
 
   // After end(): it exited by itself, with status 0.

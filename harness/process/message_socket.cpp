@@ -19,10 +19,10 @@ namespace {
 using Kind = Received::Kind;
 using Clock = std::chrono::steady_clock;
 
-// What a message begins with. No text begins with it.
+// The first bytes of a message. No text begins with them.
 constexpr std::uint32_t magic = 0xa77e57ff;
 constexpr std::size_t most_blobs = 8;
-// A head has some words, and at most the parameters of a trace.
+// A head is short, or has the parameters of a trace.
 constexpr std::uint64_t longest_head = std::uint64_t{64} << 20;
 
 struct Prefix {
@@ -36,7 +36,7 @@ bool is_sane(const Prefix& prefix) {
   return prefix.magic == magic && prefix.blobs <= most_blobs && prefix.head <= longest_head;
 }
 
-// Waits until the descriptor is ready; else says why it did not.
+// Waits until the descriptor is ready. Returns the reason if the waiting ended before that.
 std::optional<Kind> wait_for(int descriptor, short what, const Patience& patience) {
   constexpr double look_every_ms = 100;  // whether to give up
   while (true) {
@@ -83,7 +83,7 @@ MessageSocket::~MessageSocket() {
 
 bool MessageSocket::write_all(std::string_view bytes, const Patience& patience) {
   while (!bytes.empty()) {
-    // A reader that is gone is an answer here, not a signal.
+    // MSG_NOSIGNAL: a closed other end is an error here, not a signal.
     const ssize_t sent =
         ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     if (sent >= 0) {

@@ -1,5 +1,5 @@
-// Messages between two processes of attest, over a pair of sockets: a head, which is text, and
-// blobs of bytes behind it. What is in them is their senders' affair.
+// Messages between two processes of attest, over a pair of sockets. A message is a head, which is
+// text, and blobs of bytes behind it. Their content is not interpreted here.
 #pragma once
 
 #include <chrono>
@@ -14,43 +14,44 @@
 
 namespace attest {
 
-// Bytes to be sent, which stay where they are.
+// Bytes to be sent. They are not copied.
 struct Blob {
   const void* data = nullptr;
   std::size_t size = 0;
 };
 
-// Objects that lie one after the other, as a blob. They must outlive its use.
+// The objects of a vector as a blob. They must outlive its use.
 template <typename T>
 Blob blob_of(const std::vector<T>& objects) {
   static_assert(std::is_trivially_copyable_v<T>);
   return {objects.data(), objects.size() * sizeof(T)};
 }
 
-// How long to wait, and what ends the waiting early.
+// How long to wait, and the condition that ends the waiting early.
 struct Patience {
   std::chrono::steady_clock::time_point until = std::chrono::steady_clock::time_point::max();
-  // Looked at several times a second.
+  // Called several times a second.
   std::function<bool()> given_up = [] { return false; };
 
   static Patience seconds(double seconds);
 };
 
-// What came of waiting for a message.
+// The result of waiting for a message.
 struct Received {
   enum class Kind {
     message,
     ended,      // the other process closed its end, or died, perhaps in the middle of a message
-    too_late,   // nothing complete in time
-    given_up,   // as the patience said
-    no_message  // bytes that are not a message: nothing more is to be read here
+    too_late,   // no complete message in time
+    given_up,   // Patience::given_up returned true
+    no_message  // bytes that are not a message: the socket cannot be read any more
   };
   Kind kind = Kind::ended;
   std::string head = {};
   std::vector<std::size_t> blobs = {};  // the size of each, which is to be read next
 };
 
-// One end. Only the process that made this object can send: in its forks send() returns false.
+// One end of the pair. Only the process that made this object can send: in its forks send() returns
+// false.
 class MessageSocket {
  public:
   explicit MessageSocket(int descriptor);  // owned
@@ -58,17 +59,17 @@ class MessageSocket {
   MessageSocket& operator=(MessageSocket&& other) noexcept;
   ~MessageSocket();
 
-  // Readable when something arrived, or the other end was closed. For poll().
+  // For poll(): readable when bytes arrived, or the other end was closed.
   int descriptor() const { return descriptor_; }
 
-  // At most 8 blobs. False: the other end is gone, or did not take it in time.
+  // REQUIRES: at most 8 blobs. False: the other end is closed, or did not read in time.
   bool send(std::string_view head, const std::vector<Blob>& blobs = {},
             const Patience& patience = {});
 
-  // The head. REQUIRES: the blobs of the message before were read.
+  // Receives the head. REQUIRES: the blobs of the message before were read.
   Received receive(const Patience& patience = {});
 
-  // The next blob of that message, which has `size` bytes, into the place for them.
+  // Receives the next blob of that message, which has `size` bytes, into `place`.
   Received::Kind receive_blob(void* place, std::size_t size, const Patience& patience = {});
 
  private:

@@ -29,10 +29,10 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-// The kernel ends a killed process at once, unless it waits for a device.
+// The kernel ends a killed process immediately, unless the process waits for a device.
 constexpr double time_to_die_s = 5;
 
-// Asks again and again, at first quickly: most processes end within a millisecond.
+// Polls `happened`, at first with short pauses, because most processes end within a millisecond.
 template <typename Happened>
 bool happens_within(double seconds, Happened&& happened) {
   const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
@@ -60,7 +60,7 @@ class SignalsBlocked {
   sigset_t before_{};
 };
 
-// Those of errors stay: they are the sanitizers', which report with them.
+// The handlers of these signals stay, because the sanitizers report errors with them.
 bool is_of_an_error(int signal) {
   return signal == SIGSEGV || signal == SIGBUS || signal == SIGFPE || signal == SIGILL ||
          signal == SIGABRT || signal == SIGTRAP;
@@ -75,8 +75,8 @@ void reset_signals() {
   ::pthread_sigmask(SIG_SETMASK, &none, nullptr);
 }
 
-// The processes that have an owner here, so that all other children are orphans: started by one of
-// them, and left behind. Locked while a child exists that is not in it yet.
+// The processes that have an owner. All other children are orphans: a process of this list started
+// them and ended before them. Locked while a child exists that is not in the list yet.
 struct Owned {
   std::mutex mutex;
   std::set<pid_t> processes;
@@ -87,13 +87,13 @@ Owned& owned() {
   return all;
 }
 
-// In a child, which owns none of them, and was forked under the lock.
+// For a child: it owns no process, and it was forked while the lock was held.
 void own_nothing() {
   owned().processes.clear();
   owned().mutex.unlock();
 }
 
-// Both ends of a pipe, by which the guard says that it is in place.
+// Both ends of the pipe on which the guard reports that it has joined the group.
 using Ready = std::array<int, 2>;
 
 [[noreturn]] void lead_group(pid_t parent, const Ready& ready, const std::function<void()>& work) {
@@ -101,7 +101,7 @@ using Ready = std::array<int, 2>;
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(EXIT_FAILURE);  // it died before the line above
-  // What it starts before there is a guard would live on if the parent died just now.
+  // Waits for the guard. Without it, processes started now would outlive a parent that dies now.
   ::close(ready[1]);
   char byte = 0;
   if (::read(ready[0], &byte, 1) != 1) ::_exit(EXIT_FAILURE);
@@ -118,7 +118,7 @@ using Ready = std::array<int, 2>;
 [[noreturn]] void guard_group(pid_t parent, const Ready& ready, pid_t leader) {
   ::prctl(PR_SET_PDEATHSIG, SIGHUP);
   if (::setpgid(0, leader) != 0 || ::write(ready[1], "", 1) != 1) ::_exit(EXIT_FAILURE);
-  // It must not hold a pipe open whose end somebody waits for.
+  // It must not keep open a pipe whose end of file another process waits for.
   ::close_range(0, ~0u, 0);
   sigset_t death_of_parent;
   ::sigemptyset(&death_of_parent);
@@ -147,7 +147,7 @@ std::vector<pid_t> children() {
 void end_orphans() {
   Owned& all = owned();
   const std::lock_guard lock(all.mutex);
-  // When one ends, what it started becomes an orphan.
+  // When an orphan ends, its own children become orphans.
   constexpr int generations = 100;
   for (int i = 0; i < generations; ++i) {
     std::vector<pid_t> orphans = children();
@@ -178,7 +178,7 @@ std::string Ending::to_string() const {
 
 Result<Process> Process::start(const std::function<void()>& work, bool with_guard) {
   const pid_t parent = ::getpid();
-  // A child that calls exit() would print what the parent has not printed yet.
+  // Otherwise a child that calls exit() would print the unflushed output of the parent, too.
   std::fflush(nullptr);
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   const SignalsBlocked blocked;
@@ -249,7 +249,7 @@ Ending Process::end(double patience_s) {
   if (pid_ <= 0) return ending;
   if (!ends_within(patience_s)) kill();
   ending.was_killed = was_killed_;
-  // What it started, while its number cannot be another's yet.
+  // Kills the group before reap(): until then no other process can get this number.
   ::kill(-pid_, SIGKILL);
   reap(pid_, ending);
   if (guard_ > 0) {

@@ -1,4 +1,4 @@
-// A child process that ends when its owner says so, and at the latest with this process.
+// A child process that its owner can always end. It ends at the latest with this process.
 #pragma once
 
 #include <functional>
@@ -22,17 +22,17 @@ struct Ending {
   std::string to_string() const;
 };
 
-// The process leads a process group of its own, and everything that it starts in that group ends
-// with it. What it starts in a group or session of its own becomes a child of this process when
-// its parent has ended, and is killed by the next end() of any Process. No member function waits
-// longer than its argument and a few seconds.
+// The process leads a process group of its own. Its descendants in that group end with it. Those in
+// other groups or sessions become children of this process when their parents have ended; the next
+// end() of any Process kills them. No member function waits longer than its argument and a few
+// seconds.
 //
-// When this process dies, even by SIGKILL, the process ends too. What it started ends then if there
-// is a second process in the group, the guard: code of others needs one. Code of ours starts
-// Processes only, which see to that themselves.
+// When this process dies, even by SIGKILL, the process ends too. Its descendants then end only if
+// the group has a second process, the guard. Code of others needs the guard. Code of attest starts
+// only Processes, which end with their parent.
 //
-// One thread at a time. The thread that calls start() must live as long as the Process: Linux takes
-// the end of that thread for the death of the parent.
+// One thread at a time. The thread that calls start() must live as long as the Process, because
+// Linux treats the end of that thread as the death of the parent.
 class Process {
  public:
   // Forks. `work` runs in the child, which then exits with status 0. The child starts with default
@@ -45,17 +45,17 @@ class Process {
 
   pid_t pid() const { return pid_; }  // -1 after end()
 
-  // Whether it has ended by itself, or does in that time. end() still says how.
+  // True if it has ended by itself, or does so in that time. end() then still returns how.
   bool ends_within(double seconds);
 
   void terminate();  // sends SIGTERM to the group
   void kill();       // sends SIGKILL to the group
   bool was_killed() const { return was_killed_; }
 
-  // Waits so long for it to end by itself, then kills it with its group.
+  // Waits up to `patience_s` for it to end by itself, then kills it with its group.
   Ending end(double patience_s);
 
-  // Asks it to end cleanly, and kills it after the grace period.
+  // Sends SIGTERM, and kills it after the grace period.
   Ending stop(double grace_s);
 
  private:

@@ -19,10 +19,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t max_output_bytes = 16u << 20;
-constexpr double grace_s = 1;      // for a program that is asked to end
-constexpr int look_every_ms = 20;  // at whether it has ended, or is to be stopped
+constexpr double grace_s = 1;      // between SIGTERM and SIGKILL
+constexpr int look_every_ms = 20;  // period of the check for its end, or for a request to stop
 
-constexpr int cannot_be_executed = 127;  // as of a shell
+constexpr int cannot_be_executed = 127;  // the exit status that shells use
 
 // REQUIRES: in a child. `output` is its stdout, or -1.
 [[noreturn]] void become(const std::vector<char*>& arguments, int output) {
@@ -46,7 +46,7 @@ double seconds_until(Clock::time_point deadline) {
   return std::max(std::chrono::duration<double>(deadline - Clock::now()).count(), 0.0);
 }
 
-// Until the program has closed the pipe or has ended: what it started may hold the pipe open.
+// Reads until the program has closed the pipe, or has ended: its children may keep the pipe open.
 std::optional<std::string> read_all(int pipe, Process& program, Clock::time_point deadline,
                                     const ProgramLimits& limits) {
   std::string text;

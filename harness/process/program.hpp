@@ -1,4 +1,4 @@
-// Programs that others keep, used where they are installed.
+// External programs, used where they are installed.
 #pragma once
 
 #include <functional>
@@ -11,11 +11,11 @@
 
 namespace attest {
 
-// In the folders of PATH.
+// True if a folder of PATH has this program.
 bool is_installed(const std::string& program);
 
-// Starts a program of PATH without input; what it prints is dropped. It exits with status 127 when
-// it cannot be executed.
+// Starts a program of PATH without input and discards its output. The process exits with status 127
+// when the program cannot be executed.
 Result<Process> start_program(const std::vector<std::string>& command);
 
 struct ProgramLimits {
@@ -23,8 +23,8 @@ struct ProgramLimits {
   std::function<bool()> stop = [] { return false; };  // true: its output is not needed any more
 };
 
-// Runs it to its end without input: what it printed on stdout. Empty when it failed, printed more
-// than 16 MiB, or did not end within the limits; then it is stopped.
+// Runs a program to its end without input. Returns its stdout. Empty when it failed, printed more
+// than 16 MiB, or did not end within the limits; in the last two cases it is stopped.
 std::optional<std::string> output_of(const std::vector<std::string>& command,
                                      const ProgramLimits& limits);
 

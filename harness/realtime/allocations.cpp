@@ -2,13 +2,13 @@
 
 #include <cstddef>
 
-// A program may replace malloc ("Replacing malloc" in the manual of the GNU C library), and one
-// that links this file does: by functions that count and hand on to the library's own, whose free
-// stays as it is. Libraries that are loaded later, such as ports, use them too.
+// A program may replace malloc ("Replacing malloc" in the manual of the GNU C library). A program
+// that links this file does so: the functions here count, and call those of the library. Its free
+// is not replaced. Libraries that are loaded later, such as ports, use these functions too.
 
 namespace {
 
-// Not allocated on first use, which would ask malloc.
+// This TLS model does not allocate the variable on first use, which would call malloc.
 [[gnu::tls_model("initial-exec")]] thread_local std::uint64_t allocations = 0;
 
 }  // namespace

@@ -1,12 +1,12 @@
-// How often a thread has asked for memory: in a real-time loop, never.
+// The number of allocations of a thread; in a real-time loop it stays the same.
 #pragma once
 
 #include <cstdint>
 
 namespace attest {
 
-// Calls of malloc and its kin by the calling thread so far, by whatever library; always 0 in a
-// build with a sanitizer, which has a malloc of its own.
+// Calls of malloc and related functions by the calling thread so far, from any library. Always 0 in
+// a build with a sanitizer, which has its own malloc.
 std::uint64_t thread_allocations();
 
 }  // namespace attest

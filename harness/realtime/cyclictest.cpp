@@ -15,13 +15,13 @@ namespace attest {
 
 namespace {
 
-// A day: what is longer is no measurement.
+// A day. A longer time is not a measurement.
 constexpr std::int64_t longest_us = 86'400'000'000;
 constexpr std::int64_t most_cycles = 1'000'000'000'000;
-// Time to start, and to write what it measured.
+// Time to start, and to write its measurements.
 constexpr double patience_s = 10;
 
-// The times of its histogram in microseconds, each with how often it was. Empty: no such histogram.
+// The counts of its histogram, by time in microseconds. Empty: not such a histogram.
 std::optional<std::map<std::int64_t, std::int64_t>> counts_of(const nlohmann::json& histogram) {
   std::map<std::int64_t, std::int64_t> counts;
   if (!histogram.is_object()) return std::nullopt;
@@ -39,7 +39,7 @@ std::optional<std::map<std::int64_t, std::int64_t>> counts_of(const nlohmann::js
 }  // namespace
 
 std::optional<Cyclictest> parse_cyclictest(const std::string& text) {
-  // The histogram as text comes after it.
+  // The histogram as text follows the JSON.
   const std::size_t end = std::min(text.find("\n}"), text.size());
   const auto json = nlohmann::json::parse(text.substr(0, end + 2), nullptr, false);
   const auto path = nlohmann::json::json_pointer("/thread/0");

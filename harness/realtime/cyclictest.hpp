@@ -1,4 +1,4 @@
-// The idle machine as cyclictest (rt-tests) sees it: a judge of our own pacer.
+// The idle machine as measured by cyclictest (rt-tests): an independent check of our own pacer.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@
 namespace attest {
 
 struct Cyclictest {
-  Nanoseconds median{0};  // within its bins of 1 us taken as evenly spread
+  Nanoseconds median{0};  // interpolated within its bins of 1 us
   Nanoseconds max{0};
   std::int64_t cycles = 0;
 };
@@ -22,7 +22,7 @@ std::optional<Cyclictest> run_cyclictest(const Rate& rate, Nanoseconds duration,
                                          const LiveOptions& options,
                                          const std::function<bool()>& stop);
 
-// What it prints with --json. Empty when it is not that.
+// Parses its output with --json. Empty when the text is something else.
 std::optional<Cyclictest> parse_cyclictest(const std::string& json);
 
 }  // namespace attest

@@ -19,7 +19,7 @@ struct Course {
   }
 };
 
-// What the machine added to a tick, before its start and after that.
+// The delay of a tick by the machine, before its start and after it.
 struct Delay {
   Nanoseconds before{0}, after{0};
 };
@@ -47,7 +47,7 @@ Nanoseconds usual_delay(const std::vector<Delay>& delays, const Rate& rate) {
   return std::min(*middle, rate.tick(1) / usual_part_of_period);
 }
 
-// As the loop decides: a release is passed over when the next one is due.
+// The rule of the loop: a release is passed over when the next one is due.
 std::uint64_t skipped_by_port(const LiveTick& tick, const Rate& rate, Nanoseconds machines_finish,
                               Nanoseconds ports_finish) {
   std::uint64_t count = 0;

@@ -8,15 +8,15 @@
 //     machine's: finish_i = max(release_i, finish_(i-1)) + delay_i
 //     port's:    finish_i = max(release_i, finish_(i-1)) + min(delay_i, usual) + execution_i
 //
-// delay_i is what the machine adds: wake-up latency, preemption within the step, and what attest
-// does around it. It carries over to later ticks as backlog does. `usual` is the median of the
+// delay_i is the delay by the machine: wake-up latency, preemption within the step, and attest's
+// own work around it. It carries over to later ticks as backlog does. `usual` is the median of the
 // delays, and at most a tenth of the period. A miss is the port's if both hold:
 //
 //  1. In the machine's timeline the deadline is kept. A miss that also happens to a port whose
 //     steps take no time is the machine's.
-//  2. In the port's timeline it is missed. A miss may need both causes, as a wake-up that is late
-//     by nearly a period, and then a short step. A right port would collect such misses on a bad
-//     machine. A port has to live with the usual delay only, and a machine whose usual delay is
+//  2. In the port's timeline it is missed. A miss may need both causes, for example a wake-up that
+//     is late by nearly a period, and then a short step. On a bad machine a correct port would have
+//     such misses, so a port must tolerate the usual delay only. A machine whose usual delay is
 //     above a tenth of the period says little about a port. So a port whose steps all take less
 //     than nine tenths of a period never has a miss of its own.
 //
@@ -26,8 +26,8 @@
 // to the step that ran meanwhile. The same two conditions hold, with the deadline of the release
 // and the finish of that step.
 //
-// Limit: CPU time is what the kernel accounts. Cold caches, interrupts and, on a virtual machine
-// without steal accounting, time of the hypervisor count as execution time.
+// Limit: the CPU time is that of the kernel's accounting. Cold caches, interrupts and, on a virtual
+// machine without steal accounting, time of the hypervisor count as execution time.
 #pragma once
 
 #include <cstdint>

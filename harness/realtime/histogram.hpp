@@ -1,4 +1,4 @@
-// How long something took, a million times: counts in bins of equal ratio, and what is exact.
+// A histogram of times: counts in bins of equal ratio, and some exact figures.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,15 @@
 namespace attest {
 
 // Whether `count` samples support the percentile `part` (0..1): at least ten of them have to lie
-// beyond it, so count >= 10 / (1 - part). The number beyond a percentile is binomial: with ten its
-// standard deviation is a third of it, and with one the percentile is the maximum, which is a
-// property of the run and not of the distribution. p50 needs 20 samples, p90 100, p99 1,000 and
-// p99.9 10,000.
+// beyond it, so count >= 10 / (1 - part). The number beyond a percentile is binomial: with ten, its
+// standard deviation is a third of it. With one, the percentile is the maximum, which is a property
+// of the run and not of the distribution. p50 needs 20 samples, p90 100, p99 1,000 and p99.9
+// 10,000.
 bool supports_percentile(std::uint64_t count, double part);
 
-// Percentiles are right to 1%, the width of a bin; count, min, max, mean and the count over the
-// limit are exact. Times below 1 ns count as 1 ns, those beyond 1000 s only in what is exact. No
-// allocation after construction.
+// Percentiles are correct to 1%, the width of a bin; count, min, max, mean and the count over the
+// limit are exact. The bins cover 1 ns to 1000 s. Shorter times count as 1 ns; a percentile beyond
+// 1000 s is the maximum. No allocation after construction.
 class Histogram {
  public:
   // Times t with from <= t < to, in whole nanoseconds.
@@ -29,7 +29,7 @@ class Histogram {
     friend bool operator==(const Bucket&, const Bucket&) = default;
   };
 
-  // Counts apart what is above `limit`.
+  // Times above `limit` are counted separately.
   explicit Histogram(Nanoseconds limit = Nanoseconds::max());
   Histogram(Histogram&&) noexcept;
   Histogram& operator=(Histogram&&) noexcept;
@@ -40,12 +40,12 @@ class Histogram {
   std::uint64_t count() const { return count_; }
   std::uint64_t over_limit() const { return over_limit_; }
 
-  // 0 when nothing was added.
+  // 0 when empty.
   Nanoseconds min() const { return count_ ? min_ : Nanoseconds(0); }
   Nanoseconds max() const { return max_; }
   Nanoseconds mean() const;
 
-  // The time that `part` (0..1) of all do not exceed, for any number of them.
+  // The time that the share `part` (0..1) of all times does not exceed, for any count.
   Nanoseconds percentile(double part) const;
 
   // Those that are not empty, ascending. Times below 1 ns are in the first bucket, which begins at

@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A folder that goes with what is in it.
+// A folder that is removed with its content.
 class Scratch {
  public:
   Scratch() {
@@ -31,7 +31,7 @@ class Scratch {
   fs::path path_;
 };
 
-// "totals: 812" is the last line but for empty ones of what callgrind writes.
+// The last line of callgrind's output, except empty ones, is "totals: 812".
 std::optional<std::uint64_t> total_of(const fs::path& dump) {
   std::ifstream file(dump);
   for (std::string line; std::getline(file, line);) {

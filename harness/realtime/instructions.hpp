@@ -1,4 +1,4 @@
-// Instructions that a function executes, counted by valgrind: unlike times, they repeat.
+// Instructions that a function executes, counted by valgrind: unlike times, the counts repeat.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace attest {
 
-// Runs `command` under callgrind and counts each call of `symbol`, what it calls included, in their
-// order. Empty when valgrind is not installed, the command fails or does not end within the limits,
-// or nothing was called.
+// Runs `command` under callgrind and counts the instructions of each call of `symbol`, callees
+// included, in order. Empty when valgrind is not installed, the command fails or does not end
+// within the limits, or `symbol` was not called.
 std::vector<std::uint64_t> instructions_of_calls(const std::vector<std::string>& command,
                                                  const std::string& symbol,
                                                  const ProgramLimits& limits);

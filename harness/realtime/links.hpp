@@ -1,4 +1,4 @@
-// What the plant's thread and the unit's tell each other.
+// The messages between the plant's thread and the unit's.
 #pragma once
 
 #include <atomic>
@@ -22,7 +22,7 @@ struct LiveCommand {
   std::size_t tick = 0;
   Nanoseconds made{0};
   MotorCommands commands{};
-  float throttle = 0;  // as commanded by the unit: what the battery estimate takes into account
+  float throttle = 0;  // as commanded by the unit; an input of the battery estimate
   bool armed = false;
 };
 
@@ -36,9 +36,9 @@ struct Links {
   TripleBuffer<LiveState> states;
   TripleBuffer<LiveCommand> commands;
   TripleBuffer<LiveBattery> batteries;
-  std::atomic<bool> stop{false};  // anyone may say so
-  // Of a unit that the estimator triggers: released with each sample of the estimator that is in
-  // `states`; the plant's thread has published its last when `all_published` is set.
+  std::atomic<bool> stop{false};  // any thread may set it
+  // For a unit that the estimator triggers: released with each sample of the estimator that is in
+  // `states`. `all_published` is set after the last sample of the plant's thread.
   std::counting_semaphore<> published{0};
   std::atomic<bool> all_published{false};
 };

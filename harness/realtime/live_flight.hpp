@@ -19,7 +19,7 @@ namespace attest {
 
 // Where and how the threads run.
 struct LiveOptions {
-  int unit_cpu = 0, plant_cpu = 0;  // the same: one-CPU mode, the unit before the plant
+  int unit_cpu = 0, plant_cpu = 0;  // if equal: one-CPU mode, the unit has priority
   bool fifo = true;
   Wait wait;
 };
@@ -32,28 +32,27 @@ struct LiveProgress {
 struct LiveFlight {
   LiveUnitRecord unit;
   LivePlantRecord plant;
-  std::vector<RealtimePrivilege>
-      privileges;       // of process and unit; the plant's only where it was refused
-  Nanoseconds wall{0};  // how long the flight was
+  std::vector<RealtimePrivilege> privileges;  // of process, unit; of the plant refused ones only
+  Nanoseconds wall{0};                        // duration of the flight
 
-  // When everything happened: what a simulated flight can be flown with again.
+  // The times of the flight, with which a simulated flight can repeat it.
   LoopTiming timing() const;
 };
 
-// Flies the case for its whole duration, or until `stop` is true. Its own timing of the unit is not
-// used: the clock is what makes ticks late. A unit that the estimator triggers waits for the
+// Flies the case for its whole duration, or until `stop` is true. The case's timing of the unit is
+// not used: ticks are late by the clock only. A unit that the estimator triggers waits for the
 // plant's thread, which publishes a sample at each tick of the rate. Keeps the samples of the first
-// `samples` ticks. `progress` is called every tenth of a second. A battery is sampled by the
-// plant's thread, and takes into account the command that the motors follow. REQUIRES: a flight; a
-// fresh unit. Errors: those of fly().
+// `samples` ticks. `progress` is called every tenth of a second. The plant's thread samples the
+// battery, with the command that the motors follow. REQUIRES: a flight; a fresh unit. Errors: those
+// of fly().
 Result<LiveFlight> fly_live(const Case& the_case, const RunConfiguration& configuration,
                             const VehicleModel& vehicle_model, Unit& unit,
                             const LiveOptions& options, std::size_t samples,
                             const std::function<bool()>& stop,
                             const std::function<void(const LiveProgress&)>& progress);
 
-// Wake-ups at that rate with nothing to do: the latency of the machine itself, on the unit's CPU
-// and with its privileges.
+// The wake-up latency of an idle thread at that rate, on the unit's CPU and with its privileges:
+// the latency of the machine itself.
 Histogram idle_latency(const Rate& rate, Nanoseconds duration, const LiveOptions& options,
                        const std::function<bool()>& stop);
 

@@ -47,8 +47,8 @@ void LivePlant::run() {
   if (record_.divergence) links_.stop.store(true, std::memory_order_relaxed);
 }
 
-// A unit that waits for the estimator is woken when its sample is in the state, and once when
-// several came due.
+// A unit that waits for the estimator is woken when its sample is in the state; only once when
+// several samples came due.
 void LivePlant::publish(Nanoseconds now) {
   links_.states.write({now, task_.state(), clock_.now()});
   if (!plan_.estimator) return;
@@ -66,7 +66,7 @@ std::optional<Divergence> LivePlant::advance(Nanoseconds to) {
     const Nanoseconds next = std::min(disturbance, battery);
     if (next > to) break;
     if (auto lost = task_.advance(next)) return lost;
-    // At one instant in the order of closed_loop.hpp.
+    // Events at the same instant happen in the order of closed_loop.hpp.
     if (disturbance == next) {
       ++disturbed_;
       if (auto lost = task_.disturb(next)) return lost;
@@ -81,8 +81,8 @@ void LivePlant::sample_battery(Nanoseconds now) {
   links_.batteries.write({now, task_.battery_scale(now, throttle_, armed_)});
 }
 
-// A step that was late may find a command that was made after its time, which it must not follow
-// yet: what is recorded could not be flown again.
+// A late step may find a command that was made after its time. It must not follow this command yet,
+// because a flight with such times could not be repeated in simulation.
 std::optional<Divergence> LivePlant::take_commands(Nanoseconds now) {
   std::optional<Divergence> lost;
   if (pending_ && pending_->made <= now) {

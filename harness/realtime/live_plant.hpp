@@ -18,8 +18,8 @@ namespace attest {
 struct LivePlantRecord {
   Histogram latency;
   std::uint64_t steps = 0;
-  std::uint64_t late_steps = 0;  // whose time had passed; made up in one go with the next
-  // By the unit's ticks: when the motors began to follow what it said; empty: overtaken.
+  std::uint64_t late_steps = 0;  // whose time had passed; advanced together with the next
+  // For each tick of the unit: when the motors began to follow its command; empty: overtaken.
   std::vector<std::optional<Nanoseconds>> commanded;
   std::optional<Divergence> divergence;
   Usage usage;
@@ -38,8 +38,8 @@ class LivePlant {
   // Publishes the state at time 0. Allocates here and never later.
   LivePlant(PlantTask& task, LivePlantPlan plan, Clock& clock, Links& links);
 
-  // Until `duration`, the links say stop, or the vehicle is lost. Once. The estimator's sample k is
-  // published with the first state of its time, rate.tick(k), or later.
+  // Runs until `duration`, Links::stop, or the loss of the vehicle. Call once. The estimator's
+  // sample k is published with the first state of its time, rate.tick(k), or later.
   void run();
 
   // After run().
@@ -61,7 +61,7 @@ class LivePlant {
   std::int64_t estimates_ = 0;  // samples published
   float throttle_ = 0;          // of the command that the motors follow
   bool armed_ = false;
-  std::optional<LiveCommand> pending_;  // made after the step that it reached
+  std::optional<LiveCommand> pending_;  // made after the time of the step that read it
   LivePlantRecord record_;
 };
 

@@ -1,6 +1,6 @@
-// What is known of one step of a unit on a clock. The terms are those of the glossary in README.md,
-// Timing, which follows Buttazzo, "Hard Real-Time Computing Systems" (3rd ed.), section 2.2, and
-// Liu, "Real-Time Systems", section 3.1.
+// The times of one step of a unit on a clock. The terms are those of the glossary in README.md,
+// Timing. It follows Buttazzo, "Hard Real-Time Computing Systems" (3rd ed.), section 2.2, and Liu,
+// "Real-Time Systems", section 3.1.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ struct LiveTick {
   std::int64_t release_number = 0;
   Nanoseconds release{0};     // k periods; of a triggered unit: when the sample was published
   Nanoseconds deadline{0};    // one period after the release
-  Nanoseconds start{0};       // when the thread ran for it
+  Nanoseconds start{0};       // when the thread began to run for it
   Nanoseconds sampled{0};     // time of the plant's state that it was given; -1: before any
   Nanoseconds begins{0};      // its timestamp
   Nanoseconds finish{0};      // when its commands were written
@@ -27,8 +27,8 @@ struct LiveTick {
   Nanoseconds response() const { return finish - release; }
 
   // The CPU time of the step, so that a preemption does not count. A step that waits by itself
-  // counts with all its elapsed time, because its waiting delays the response like computing.
-  // Both clocks are read one after the other: their difference is no time of the step.
+  // counts with all its elapsed time, because its waiting delays the response like computing. The
+  // two clocks are read one after the other, so `cpu` can be slightly above `elapsed`.
   Nanoseconds execution() const { return waited ? elapsed : std::min(cpu, elapsed); }
 };
 

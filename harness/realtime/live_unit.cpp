@@ -67,7 +67,7 @@ void LiveUnit::run_on_estimates() {
   std::int64_t last = -1;  // sample that was used
   while (last + 1 < deadlines_ && !links_.stop.load(std::memory_order_relaxed)) {
     const bool published = links_.published.try_acquire_for(look_for_the_end_every);
-    // Read before the sample, so that none published before it is overlooked.
+    // Read before the sample, so that no sample published before it is missed.
     const bool is_over = links_.all_published.load(std::memory_order_acquire);
     const bool is_new = published && take_sample();
     const Nanoseconds woke = clock_.now();
@@ -96,7 +96,7 @@ void LiveUnit::count_skipped(std::int64_t k, std::int64_t next) {
 
 Nanoseconds LiveUnit::tick(LiveTick due) {
   take_battery();
-  // Not before the samples were read, which then cannot be of the future.
+  // Read after the samples, so that no sample is later than the tick.
   due.begins = clock_.now();
   due.sampled = sampled_ ? latest_.time : Nanoseconds(-1);
   Arrivals arrivals;
@@ -127,7 +127,7 @@ bool LiveUnit::take_sample() {
   return sampled_ = true;
 }
 
-// One that was overtaken is missed, as of a topic of queue length 1.
+// An overtaken sample is lost, same as in a topic of queue length 1.
 void LiveUnit::take_battery() {
   if (const LiveBattery* battery = links_.batteries.read()) {
     battery_scales_.send(battery->time, battery->scale);

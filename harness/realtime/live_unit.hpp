@@ -1,4 +1,4 @@
-// The unit's task on a clock: it waits for its releases, and writes down how it went.
+// The unit's task on a clock: it waits for its releases, and records each tick.
 #pragma once
 
 #include <atomic>
@@ -22,9 +22,9 @@ struct LiveUnitRecord {
   Histogram latency;           // of the wake-ups
   Histogram execution;         // as in LiveTick
   Histogram response;          // as in LiveTick
-  Histogram age;               // of the sample used, when the step ended: what the loop feels
+  Histogram age;               // of the sample used, at the finish of the step
   std::uint64_t late = 0;      // responses longer than the period
-  std::uint64_t skipped = 0;   // releases passed over; with the late responses all the misses
+  std::uint64_t skipped = 0;   // releases passed over; all misses are late + skipped
   Nanoseconds longest_gap{0};  // between the begins of two ticks
   Usage usage;                 // after the first tick, which sets the parameters
   std::vector<LiveTick> ticks;
@@ -40,19 +40,19 @@ struct LiveUnitRecord {
 // and of several that came while a step ran only the newest is used, the others are skipped.
 class LiveUnit {
  public:
-  // Records all ticks, and the samples of the first `samples`; allocates and touches the memory for
-  // it here, and none later. REQUIRES: a flight; all outlive this.
+  // Records all ticks, and the samples of the first `samples`. Allocates and touches the memory for
+  // this here only. REQUIRES: a flight; all outlive this.
   LiveUnit(const Case& the_case, const Rate& rate, UnitTask& task, Clock& clock, Links& links,
            std::size_t samples);
 
-  // Until the case is over, the links say stop, or the port goes wrong. Once.
+  // Runs until the end of the case, Links::stop, or a fault of the port. Call once.
   void run();
 
   // For other threads, while it runs.
   std::uint64_t releases_passed() const { return passed_.load(std::memory_order_relaxed); }
   std::uint64_t missed() const { return missed_.load(std::memory_order_relaxed); }
 
-  // How many there are in the case: the most ticks there can be.
+  // The number of releases in the case: the largest possible number of ticks.
   std::size_t deadlines() const { return static_cast<std::size_t>(deadlines_); }
 
   // After run().
@@ -61,9 +61,9 @@ class LiveUnit {
  private:
   void run_on_releases();
   void run_on_estimates();
-  // The tick of a release, with all of it that is known before the step. Returns its finish.
+  // Runs the tick of a release; `due` has the values known before the step. Returns its finish.
   Nanoseconds tick(LiveTick due);
-  // After release k, when release `next` is the next that is used.
+  // Counts the releases after k and before `next`, which is the next that is used.
   void count_skipped(std::int64_t k, std::int64_t next);
   bool take_sample();
   void take_battery();

@@ -56,7 +56,7 @@ constexpr std::array<std::string_view, 3> names = {"cpu", "cache", "io"};
   use_cpu();
 }
 
-// Empty when it is not installed, or ends at once: then it makes no load.
+// Empty when it is not installed, or ends at once and makes no load.
 std::optional<Process> stress_ng(LoadKind kind, int workers) {
   constexpr double refuses_within_s = 0.2;
   if (!is_installed("stress-ng")) return std::nullopt;

@@ -1,4 +1,4 @@
-// Work for the machine to do while a controller is stressed.
+// Load on the machine during a stress run.
 #pragma once
 
 #include <string>

@@ -10,10 +10,10 @@ struct Wait {
   Nanoseconds spin{0};
 };
 
-// CLOCK_MONOTONIC. One a thread; no allocation, no lock.
+// CLOCK_MONOTONIC. One per thread; no allocation, no lock.
 class Pacer final : public Clock {
  public:
-  // `origin` is what now_monotonic() said when time 0 was.
+  // `origin` is now_monotonic() at time 0.
   Pacer(Nanoseconds origin, Wait wait) : origin_(origin), wait_(wait) {}
 
   static Nanoseconds now_monotonic();

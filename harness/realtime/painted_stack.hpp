@@ -1,5 +1,5 @@
-// How much stack a function uses: it runs on a stack of its own that was filled with a pattern, and
-// the deepest byte that has changed says how far it went.
+// Measures how much stack a function uses. The function runs on its own stack, which is filled with
+// a pattern; the deepest changed byte marks the use.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace attest {
 
-// As large as the stack of a main thread (8 MiB), with a page below that may not be touched: what
-// needs more dies of SIGSEGV, as it would there. One thread at a time.
+// As large as the stack of a main thread (8 MiB), with a guard page below: a function that needs
+// more dies of SIGSEGV, same as there. One thread at a time.
 class PaintedStack {
  public:
   static Result<PaintedStack> make();  // errors: no memory
@@ -20,7 +20,7 @@ class PaintedStack {
   ~PaintedStack();
 
   // Calls `work` on this stack and returns when it has returned. It must not throw. The modes of
-  // the floating point unit are afterwards what they were before.
+  // the floating point unit are restored afterwards.
   template <typename Work>
   void run(Work&& work) {
     using Function = std::remove_reference_t<Work>;
@@ -38,7 +38,7 @@ class PaintedStack {
   void call(void (*function)(void*), void* argument);
   std::size_t lowest_change() const;  // offset from the bottom
 
-  unsigned char* memory_;  // the page that may not be touched, and the stack above it
+  unsigned char* memory_;  // the guard page, and the stack above it
   std::size_t own_ = 0;    // bytes that run() uses itself
 };
 

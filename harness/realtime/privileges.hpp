@@ -1,5 +1,5 @@
-// What an operating system may give a real-time thread, asked for piece by piece: each is got or
-// refused, and a run goes on without what it was refused and says so.
+// The privileges of a real-time thread. Each is requested separately, and is granted or refused. A
+// run continues without those that were refused, and reports them.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace attest {
 struct RealtimePrivilege {
   std::string name;  // "SCHED_FIFO 80"
   bool got = false;
-  std::string why;  // it was refused: "Operation not permitted"
+  std::string why;  // reason of a refusal: "Operation not permitted"
 };
 
 // For the process while this lives: memory that stays in RAM, and CPUs that do not sleep deeply
@@ -34,7 +34,7 @@ struct ThreadWish {
   int fifo_priority = 0;  // 0: the ordinary scheduler
 };
 
-// For the calling thread: CPU, scheduler, and timers that fire when they are asked to.
+// For the calling thread: CPU, scheduler, and timers without slack.
 std::vector<RealtimePrivilege> claim(const ThreadWish& wish);
 
 // The CPUs that this process may use, ascending; at least one.

@@ -15,7 +15,7 @@ constexpr std::size_t fewest_blocks = 5;
 constexpr double complete = 0.8;  // the part of the blocks that have their event
 constexpr double false_alarms = 1e-4;
 
-// What is looked at, cut so that it takes a quarter of a second at most.
+// The examined ticks and events, cut so that the search takes a quarter of a second at most.
 struct Examined {
   std::vector<std::size_t> events;
   std::size_t ticks = 0;
@@ -57,7 +57,7 @@ class Hits {
  public:
   explicit Hits(std::size_t longest) : counts_(longest) {}
 
-  // The first tick that most events of whole blocks are at, and how many.
+  // The place within a block that has most events, and their number; of whole blocks only.
   std::pair<std::size_t, std::size_t> most(const Examined& sample, std::size_t every) {
     const std::size_t end = sample.ticks / every * every;
     std::size_t first = 0, count = 0;

@@ -3,20 +3,22 @@
 // A rhythm is claimed against a null hypothesis only, because among some dozens of events at random
 // ticks several are always equally far apart.
 //
-// Null hypothesis. The ticks are cut into blocks of `every` ticks. How many events a block has is
-// given; where they are within their block is random, independently of other blocks. So events may
-// cluster, and come more often in some parts of a run, as those of a busy machine do. This is the
-// interval jitter test for spike trains: Amarasingham, Harrison, Hatsopoulos and Geman,
+// Null hypothesis. The ticks are cut into blocks of `every` ticks. The number of events of each
+// block is given. Their places within the block are random, independently of other blocks. So
+// events may cluster, and come more often in some parts of a run, as those of a busy machine do.
+// This is the interval jitter test for spike trains: Amarasingham, Harrison, Hatsopoulos and Geman,
 // "Conditional modeling and the jitter method of spike resampling", J. Neurophysiology 107 (2012).
 //
 // Statistic. The number K of blocks that have an event at their tick `first`. Under the null
 // hypothesis a block with b events has one there with probability b / every, so K is a sum of
-// independent Bernoulli variables. Its upper tail is at most that of the binomial distribution with
-// the same mean over the blocks that have events, from one above the mean on: Hoeffding, "On the
-// distribution of the number of successes in independent trials", Ann. Math. Stat. 27 (1956).
+// independent Bernoulli variables. From one above the mean on, its upper tail is at most that of a
+// binomial distribution: the one with the same mean over the blocks that have events. Source:
+// Hoeffding, "On the distribution of the number of successes in independent trials", Ann. Math.
+// Stat. 27 (1956).
 //
-// Claim. At least five blocks, four blocks in five have their event at `first`, and the tail times
-// the number of all pairs (every, first) that could be tried is at most 1e-4 (Bonferroni).
+// Claim. There are at least five blocks, and four blocks in five have their event at `first`. The
+// tail times the number of all pairs (every, first) that could be tried is at most 1e-4
+// (Bonferroni).
 #pragma once
 
 #include <cstddef>
@@ -28,11 +30,11 @@ namespace attest {
 struct Rhythm {
   std::size_t every = 0;
   std::size_t first = 0;  // tick of the first event
-  double chance = 1;      // bound of the probability that chance does it, with all pairs tried
+  double chance = 1;      // upper bound of its probability by chance, for all pairs tried
 };
 
-// The one with the shortest period. Looks at the first 131,072 ticks and 2,048 events, for the sake
-// of time. REQUIRES: `events` ascending, below `ticks`.
+// The rhythm with the shortest period. Examines the first 131,072 ticks and 2,048 events only, to
+// limit the run time. REQUIRES: `events` ascending, below `ticks`.
 std::optional<Rhythm> find_rhythm(const std::vector<std::size_t>& events, std::size_t ticks);
 
 }  // namespace attest

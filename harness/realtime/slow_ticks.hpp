@@ -1,5 +1,5 @@
-// Steps that took much longer than the others, and whether they come in a rhythm: a port that does
-// its housekeeping in every hundredth step looks like a busy machine otherwise.
+// Steps that took much longer than the others, and whether they come in a rhythm. Without the
+// rhythm, a port that does its housekeeping in every hundredth step looks like a busy machine.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ struct SlowTick {
 
 // Slow by execution time: a step that was preempted is not slow.
 struct SlowTicks {
-  Nanoseconds threshold{0};      // eight times the median, and 20 us more than it
+  Nanoseconds threshold{0};      // the larger of 8 x median and median + 20 us
   std::size_t count = 0;         // slower than that
   std::vector<SlowTick> worst;   // the slowest eight, by execution time
   std::optional<Rhythm> rhythm;  // in numbers of steps

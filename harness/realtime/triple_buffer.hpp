@@ -2,8 +2,8 @@
 // CPUs. Wait-free on both sides: neither ever waits for the other, takes a lock or allocates.
 //
 // Three copies: the writer fills one, the reader looks at one, and the third is handed over by an
-// atomic exchange of its index. (H. Simpson's four-slot mechanism is the classic; with an atomic
-// exchange three slots do.)
+// atomic exchange of its index. (H. Simpson's classic mechanism has four slots; with an atomic
+// exchange, three are enough.)
 #pragma once
 
 #include <array>
@@ -23,8 +23,8 @@ class TripleBuffer {
     writing_ = handed & index;
   }
 
-  // Reader only: the last value written, or null when there is none newer than the last read. Valid
-  // until the next call.
+  // Reader only: the last value written, or null when it was read before. Valid until the next
+  // call.
   const T* read() {
     if ((shared_.load(std::memory_order_relaxed) & fresh) == 0) return nullptr;
     const std::uint8_t handed = shared_.exchange(reading_, std::memory_order_acq_rel);

@@ -1,4 +1,4 @@
-// What a loop waits on: time that jumps where it is wanted (here), or that passes
+// The clock that a loop waits on. Simulated time jumps to each deadline (here); real time passes
 // (realtime/pacer.hpp).
 #pragma once
 
@@ -8,18 +8,19 @@
 
 namespace attest {
 
-// Of one thread. Times count from the same origin for all clocks of a run, and never decrease.
+// For one thread. Times never decrease. They count from the same origin for all clocks of a run.
 class Clock {
  public:
   virtual ~Clock() = default;
 
   virtual Nanoseconds now() = 0;
 
-  // Returns at `deadline`, or later, or at once when that has passed: now().
+  // Waits until `deadline`, or returns at once when it has passed. Returns now(), which may be
+  // later.
   virtual Nanoseconds wait_until(Nanoseconds deadline) = 0;
 };
 
-// Is never late.
+// Wakes up exactly at each deadline.
 class SimulatedClock final : public Clock {
  public:
   Nanoseconds now() override { return now_; }

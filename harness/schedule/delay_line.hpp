@@ -1,4 +1,4 @@
-// A message that arrives some time after it was sent: of a task whose result is late.
+// Messages that arrive some time after they were sent: the results of a task with a delay.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace attest {
 template <typename T>
 class DelayLine {
  public:
-  // `messages` is the number that can be on the way at once; no allocation after this.
+  // `messages` is the number that can be on the way at once. No allocation after this.
   DelayLine(Nanoseconds delay, std::size_t messages) : delay_(delay), ring_(messages + 1) {}
 
   // REQUIRES: times do not decrease.
@@ -26,8 +26,8 @@ class DelayLine {
     if (end_ - begin_ > ring_.size()) begin_ = end_ - ring_.size();
   }
 
-  // The latest message that has arrived by `now`, if any arrived since the last call: what a reader
-  // of a topic sees, who misses what was overtaken.
+  // The latest message that has arrived by `now`, if a message arrived since the last call. Earlier
+  // ones are lost, as for a reader of a topic.
   std::optional<T> receive(Nanoseconds now) {
     std::optional<T> latest;
     for (; begin_ != end_ && ring_[begin_ % ring_.size()].first <= now; ++begin_) {

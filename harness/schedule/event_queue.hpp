@@ -1,7 +1,7 @@
-// Several tasks on one line of time.
+// Merges the events of several tasks into one sequence.
 //
-// Events come by time; at one instant, by the number of their task. That order is the whole
-// meaning of simultaneity in the harness.
+// Events are ordered by time; at one instant, by the number of their task. This order alone defines
+// simultaneity in the harness.
 #pragma once
 
 #include <cstddef>
@@ -21,10 +21,10 @@ class EventQueue {
     Nanoseconds time;
   };
 
-  // When each task runs, by its number. REQUIRES: no task's times decrease.
+  // `times`: the times at which each task runs, by its number. REQUIRES: no task's times decrease.
   explicit EventQueue(std::vector<std::vector<Nanoseconds>> times);
 
-  // How often a task runs in all.
+  // The number of times that a task runs.
   std::size_t size(std::size_t task) const { return tasks_[task].times.size(); }
 
   // The next event; empty when there are no more. No allocation.

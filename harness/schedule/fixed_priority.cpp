@@ -25,7 +25,7 @@ struct Queue {
     const Nanoseconds time = releasing ? next_finish() : task->phase + task->rate.tick(released);
     return time < duration ? time : never;
   }
-  // A job that is not over has none yet.
+  // The time of the next release by the other task: `never` until that job has finished.
   Nanoseconds next_finish() const {
     const auto next = static_cast<std::size_t>(released);
     if (next >= releasing->size()) return never;
@@ -53,7 +53,7 @@ class Cpu {
   }
 
  private:
-  // Releases what is due by `now`; the time of the next.
+  // Releases all jobs that are due by `now`. Returns the time of the next release.
   Nanoseconds release_until(Nanoseconds now) {
     Nanoseconds next = never;
     for (Queue& queue : queues_) {
@@ -73,7 +73,7 @@ class Cpu {
     return found == queues_.end() ? nullptr : &*found;
   }
 
-  // Runs until the job is over or something is released; returns when that is.
+  // Runs the job until it finishes or another one is released. Returns that time.
   static Nanoseconds work(Queue& queue, Nanoseconds now, Nanoseconds release) {
     TaskJob& job = (*queue.jobs)[queue.finished];
     if (queue.remaining == Nanoseconds(0)) {
@@ -99,7 +99,7 @@ std::set<int> cpus_of(const std::vector<ScheduledTask>& tasks) {
   return cpus;
 }
 
-// One whose jobs release those of another before that.
+// A CPU with a task that releases another comes first, because the other needs its finish times.
 std::vector<int> cpus_in_order(const std::vector<ScheduledTask>& tasks) {
   const std::set<int> cpus = cpus_of(tasks);
   std::vector<int> order(cpus.begin(), cpus.end());
@@ -123,9 +123,8 @@ Result<void> check(const std::vector<ScheduledTask>& tasks) {
   for (const int cpu : cpus_of(tasks)) {
     const double asked = utilisation(tasks, cpu);
     if (asked <= 1 + 1e-12) continue;
-    return fail(
-        fmt::format("the tasks of CPU {} ask for {:.1f}% of it, so that ever more work waits", cpu,
-                    100 * asked));
+    return fail(fmt::format("the tasks of CPU {} need {:.1f}% of it; shorten or slow down tasks",
+                            cpu, 100 * asked));
   }
   return {};
 }

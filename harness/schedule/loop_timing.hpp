@@ -1,4 +1,4 @@
-// The times of a closed loop, tick by tick: as a case schedules them, or as they really were.
+// The times of a closed loop, tick by tick: as scheduled by a case, or as recorded in real time.
 #pragma once
 
 #include <optional>
@@ -10,16 +10,16 @@ namespace attest {
 
 // Since the begin of the case. REQUIRES: sampled <= begins <= commanded.
 struct LoopTick {
-  Nanoseconds sampled{0};  // of this time is the state of the plant that the unit is told
-  Nanoseconds begins{0};   // the unit runs, and this is its timestamp
-  // The motors follow what it says from then on; empty: they never do, as the next tick's command
-  // is there first.
+  Nanoseconds sampled{0};  // time of the plant's state that the unit receives
+  Nanoseconds begins{0};   // the unit's step begins; its timestamp
+  // From this time on the motors follow the unit's outputs. Empty: they never do, because the
+  // command of the next tick arrives first.
   std::optional<Nanoseconds> commanded;
 
   friend bool operator==(const LoopTick&, const LoopTick&) = default;
 };
 
-// REQUIRES: none of the three decreases from tick to tick, and `begins` increases.
+// REQUIRES: from tick to tick, `begins` increases, and the other two do not decrease.
 using LoopTiming = std::vector<LoopTick>;
 
 }  // namespace attest

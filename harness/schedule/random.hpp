@@ -1,5 +1,5 @@
-// Seeded randomness with the same values on every platform: the engine's output is fixed by the
-// C++ standard, which the standard distributions' is not.
+// Seeded random numbers with the same values on every platform. The C++ standard fixes the output
+// of the engine, but not that of its distributions; so they are not used.
 #pragma once
 
 #include <cstdint>

@@ -12,7 +12,7 @@ namespace {
 __extension__ using Int128 = __int128;
 
 constexpr std::int64_t ns_per_s = 1'000'000'000;
-// The timestamps are microseconds: two ticks of a faster loop would share one.
+// Timestamps are in microseconds: two ticks of a faster loop would have the same one.
 constexpr std::int64_t max_hz = 1'000'000;
 constexpr std::int64_t min_millihertz = 1;
 // Keeps products of two rates inside 64 bits.
@@ -89,7 +89,8 @@ std::int64_t Rate::ticks_in(Nanoseconds duration) const {
   if (duration <= Nanoseconds(0)) return 0;
   const Int128 product = Int128{duration.count()} * numerator_;
   const Int128 divisor = Int128{ns_per_s} * denominator_;
-  // floor(x) >= duration where x >= duration, so no tick needs to be looked at.
+  // Tick k is at floor(x). As `duration` is whole, floor(x) >= duration exactly where x >=
+  // duration.
   return static_cast<std::int64_t>((product + divisor - 1) / divisor);
 }
 

@@ -52,8 +52,8 @@ class Rate {
   std::int64_t denominator_;
 };
 
-// The rates every case runs at unless it says why not: both sides of the law's dt clamp (500 Hz
-// and 50 Hz are its edges) and one that does not divide a second evenly.
+// The default rates of a case; a case with other rates gives the reason. They lie on both sides of
+// the limits of the law's dt (500 Hz and 50 Hz). One, 333 Hz, does not divide a second evenly.
 const std::vector<Rate>& standard_rates();
 
 }  // namespace attest

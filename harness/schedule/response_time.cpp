@@ -5,7 +5,7 @@
 namespace attest {
 namespace {
 
-// How much later than its rate says it may be released.
+// J of response_time.hpp; empty when the releasing task has no bound.
 std::optional<Nanoseconds> release_jitter(const std::vector<ScheduledTask>& tasks,
                                           const ScheduledTask& task) {
   if (!task.released_by) return Nanoseconds(0);
@@ -33,7 +33,7 @@ std::optional<Nanoseconds> response_time(const std::vector<ScheduledTask>& tasks
       }
       const auto jitter = release_jitter(tasks, other);
       if (!jitter) return std::nullopt;
-      // Of a task with releases at 0, T, 2T, ..: those in [0, R).
+      // The number of releases in [0, R + J) of a task with releases at 0, T, 2T, ...
       next += other.rate.ticks_in(response + *jitter) * other.worst_execution();
     }
     if (next + *own_jitter > own.rate.tick(1)) return std::nullopt;

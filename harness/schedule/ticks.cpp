@@ -9,10 +9,11 @@ namespace attest {
 
 namespace {
 
-// Of two timestamps.
+// The least distance of two timestamps.
 constexpr Nanoseconds closest{1000};
 
-// In periods. Square root and division are exact to the last bit everywhere, as pow is not.
+// In periods. It uses square root and division because they, unlike pow, give the same bits on
+// every platform.
 double lateness(const TickSchedule& schedule, Random& random) {
   const double uniform = random.uniform();
   if (!schedule.heavy_tail) return schedule.jitter * uniform;
@@ -25,7 +26,7 @@ bool is_dropped(const TickSchedule& schedule, std::int64_t k) {
   return std::find(drops.begin(), drops.end(), k) != drops.end();
 }
 
-// When what is due at `time` runs.
+// The time at which a tick that is due at `time` runs.
 Nanoseconds after_stall(const Stall& stall, Nanoseconds time) {
   if (stall.every == Nanoseconds(0) || time < stall.every) return time;
   return std::max(time, time - time % stall.every + stall.length);
@@ -38,7 +39,7 @@ std::vector<Nanoseconds> ticks(const TickSchedule& schedule, std::int64_t period
   times.reserve(static_cast<std::size_t>(periods));
   Random random(schedule.seed);
   for (std::int64_t k = 0; k < periods; ++k) {
-    // Drawn for dropped ticks too, so that dropping one leaves the others where they were.
+    // Also drawn for dropped ticks, so that dropping a tick does not move the others.
     const double late = lateness(schedule, random);
     if (is_dropped(schedule, k)) continue;
     const Nanoseconds begin = schedule.rate.tick(k);

@@ -1,5 +1,5 @@
-// When things happen: the ticks of the unit's task and the releases of the topics it reads, as
-// times since the case began.
+// The ticks of the unit's task and the releases of the topics that it reads, as times since the
+// begin of the case.
 //
 // Order at one instant: a topic released at the time of a tick is seen by that tick.
 #pragma once
@@ -13,36 +13,37 @@
 
 namespace attest {
 
-// Something else holds the processor: from each positive multiple of `every`, for `length`, no tick
-// runs. The first tick that was held up runs at the end of it; the others with it, a tenth of a
-// period apart, if the task catches up, and else not at all.
+// Other work holds the processor: from each positive multiple of `every`, for `length`, no tick
+// runs. The first delayed tick runs at the end of the stall. If the task catches up, the others
+// follow it, a tenth of a period apart; else they are left out.
 struct Stall {
   Nanoseconds every{0};  // 0: never
   Nanoseconds length{0};
   bool catches_up = false;
 };
 
-// A periodic task: release k at phase + k / rate, made late by seeded jitter, some left out.
+// A periodic task: release k at phase + k / rate, delayed by seeded jitter. Some may be left out.
 struct TickSchedule {
   Rate rate = Rate::hz(250);
   Nanoseconds phase{0};
-  // Late by up to this fraction of a period, uniform; in [0, 1). With a heavy tail: by
-  // jitter (1 / sqrt(u) - 1) periods, u uniform in (0, 1], which has no finite variance.
+  // Uniform: late by up to this fraction of a period, in [0, 1). With a heavy tail: late by
+  // jitter (1 / sqrt(u) - 1) periods, u uniform in (0, 1]; this has no finite variance.
   double jitter = 0;
   std::uint64_t seed = 1;           // of the jitter
-  std::vector<std::int64_t> drops;  // values of k that do not happen
+  std::vector<std::int64_t> drops;  // values of k that are left out
   bool heavy_tail = false;
-  std::int64_t drop_every = 0;  // the last of each so many does not happen; 0: all do
-  Stall stall;                  // of times without the phase
+  std::int64_t drop_every = 0;  // the last of each so many is left out; 0: none
+  Stall stall;                  // its times do not include the phase
 };
 
-// The ticks with k in [0, periods), increasing by a microsecond at least. One that another so late
-// has passed over does not happen. The same arguments give the same ticks on every machine.
+// The ticks with k in [0, periods), at least a microsecond apart. A tick that would be nearer to
+// the one before, or before it, is left out; with `stall.catches_up` it runs later. The same
+// arguments give the same ticks on every machine.
 std::vector<Nanoseconds> ticks(const TickSchedule& schedule, std::int64_t periods);
 
-// When the samples of a topic are published: periodically, at given times, or both empty: never.
-// Release i is at phase + rate.tick(first + i * every), so that releases counted in the unit's
-// ticks are those very ticks, to the nanosecond.
+// The times at which the samples of a topic are published: periodic, or given; both empty: never.
+// Release i is at phase + rate.tick(first + i * every). So releases counted in the unit's ticks are
+// at the same nanosecond as those ticks.
 struct ReleaseSchedule {
   std::optional<Rate> rate;
   Nanoseconds phase{0};

@@ -25,7 +25,7 @@ constexpr Channel updated(std::string_view name, int mask) {
           static_cast<std::uint32_t>(mask)};
 }
 
-// The name is the member: "in/" #member at offsetof(Sample, in.member).
+// The name is made from the member: "in/" #member at offsetof(Sample, in.member).
 #define IN(member, quantity)                                                      \
   number("in/" #member, Quantity::quantity, Module::mc_att_control, Stage::input, \
          offsetof(Sample, in.member))

@@ -1,6 +1,6 @@
-// The one table of signals: what a CSV column, a ULog field, a case key, a report line and a member
-// of the ABI structs have in common. A channel is a member of Sample, found by its offset, so the
-// table is the struct.
+// The only table of signals. CSV columns, ULog fields, case keys and report lines all take their
+// names from it. A channel is a member of Sample, found by its offset, so the table always agrees
+// with the ABI structs.
 //
 // Names are `in/<topic>.<field>` and `out/<topic>.<field>`; `in/updated.<topic>` are the bits of
 // attest_inputs.updated. `timestamp` has no prefix. Parameters are not channels: they are the
@@ -19,12 +19,12 @@
 
 namespace attest {
 
-// The module of a flight controller that a trace is of: what attest_unit.h has, or one of the
-// extensions of attest_actuation.h.
+// The module of a flight controller that a trace records: the controller of attest_unit.h, or one
+// of the extensions of attest_actuation.h.
 enum class Module : std::uint8_t { mc_att_control, mixer, battery_status };
 std::string_view name_of(Module module);  // "mc_att_control"
 
-// One step: what a module was given and what it answered. Those of the other modules are zero.
+// The inputs and outputs of one step of a module. Those of the other modules are zero.
 struct Sample {
   attest_inputs in;  // its timestamp is that of every module's step
   attest_outputs out;
@@ -33,20 +33,20 @@ struct Sample {
   attest_battery_inputs battery_in;
   attest_battery_outputs battery_out;
 
-  // Those of all modules.
+  // Both act on the outputs of all modules.
   void clear_outputs();
   void copy_outputs(const Sample& from);
 };
 
-// False when a module was added behind the others: then the code that asserts this has to name its
-// outputs, too.
+// False when a module was added at the end of Sample. The code that asserts this must then handle
+// the outputs of that module, too.
 inline constexpr bool sample_has_three_modules =
     sizeof(Sample) - offsetof(Sample, battery_out) - sizeof(attest_battery_outputs) <
     alignof(Sample);
 
 enum class ChannelType : std::uint8_t { u64, f32, u8, bit };
 
-// What a channel carries, which decides its tolerance (compare/tolerance.hpp) and its unit.
+// The kind of value in a channel. It determines the tolerance (compare/tolerance.hpp) and the unit.
 enum class Quantity : std::uint8_t {
   time,        // us
   flag,        // 0 false, anything else true
@@ -62,8 +62,8 @@ enum class Quantity : std::uint8_t {
   current,     // A
 };
 
-// The stage of the law that writes an output, in the order the data flows: the first stage that
-// differs is the one to look at.
+// The stage of the law that writes an output, in the order of the data flow. The first stage that
+// deviates is the one to examine.
 enum class Stage : std::uint8_t {
   input,
   attitude_law,
@@ -101,7 +101,7 @@ std::optional<std::string_view> parameter_of(std::string_view column);
 // The channels of a module (with timestamp) whose name begins with `prefix`, for example "out/".
 ChannelSet channels_of(Module module, std::string_view prefix = "");
 
-// The module that channels are of: that of the first but timestamp.
+// The module of the first of these channels after timestamp, which belongs to all modules.
 Module module_of(const ChannelSet& channels);
 
 // The topics that have a freshness bit, in bit order: "vehicle_attitude_setpoint", ...

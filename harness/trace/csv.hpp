@@ -1,11 +1,12 @@
-// Traces as CSV: one header line with channel names, one row a tick, floats in the shortest decimal
-// form that reads back to the same bits. `nan`, `inf` and `-inf` are numbers; CRLF is accepted.
+// Traces as CSV: one header line with channel names, one row per tick, floats in the shortest
+// decimal form that reads back to the same bits. `nan`, `inf` and `-inf` are numbers; CRLF is
+// accepted.
 //
-// A flown trace may have columns `plant/...`, the truth of the vehicle at each tick, for people and
-// their plots: they are written and never read (plant_columns.hpp).
+// A flown trace may have columns `plant/...` with the true state of the vehicle at each tick, for
+// people and their plots. They are written, but ignored when read (plant_columns.hpp).
 //
-// A file that stands beside a provenance.toml leaves out what never changes: the constants there
-// are columns too (provenance.hpp).
+// If there is a provenance.toml in the folder of the file, its constants count as columns, too, and
+// the file leaves them out (provenance.hpp).
 #pragma once
 
 #include <filesystem>
@@ -18,15 +19,16 @@
 
 namespace attest {
 
-// Reads the whole trace, with the constants of the provenance.toml beside it if there is one.
-// Parameter columns become changes: all at tick 0, after those of the constants; then, at each tick
-// with in/updated.parameter_update, those whose value is not the one last set (by bits, NaN = NaN).
+// Reads the whole trace, with the constants of a provenance.toml in the same folder.
+// Parameter columns become changes. At tick 0 all are changes, after those of the constants. Later,
+// at each tick with in/updated.parameter_update, a value that differs from the one last set is a
+// change (by bits, NaN = NaN).
 // Errors, each as file:line:column with what to do: unreadable file, no header, unknown or repeated
 // column, missing channel, short or long row, a cell that is not a number of its channel's type,
 // timestamps that do not increase, no rows.
 Result<Trace> read_csv(const std::filesystem::path& path, TraceNeed need);
 
-// The same a tick at a time, in memory that does not grow with the length of the trace.
+// Reads a trace tick by tick, in memory that does not grow with the length of the trace.
 class TraceReader {
  public:
   static Result<TraceReader> open(const std::filesystem::path& path, TraceNeed need);
@@ -36,8 +38,8 @@ class TraceReader {
   const std::string& file() const;
   const ChannelSet& present() const;
 
-  // The next tick, with the parameters that change at it in place of what was in `changes`; false
-  // after the last.
+  // Reads the next tick. Replaces `changes` by the parameters that change at it. Returns false
+  // after the last tick.
   Result<bool> next(Sample& sample, std::vector<ParameterChange>& changes);
 
  private:
@@ -46,19 +48,20 @@ class TraceReader {
   std::unique_ptr<Impl> impl_;
 };
 
-// Which columns to write. Constant channels are left to the provenance.
+// The columns to write. Constant channels go to the provenance instead.
 struct CsvColumns {
   ChannelSet channels;                  // in the order of channels()
   std::vector<std::string> parameters;  // names, written after the inputs
   bool plant = false;                   // plant/ columns, last. REQUIRES: a flown trace
 };
 
-// Everything the trace has, parameters in the order they are first set; without plant/ columns.
+// All channels and parameters of the trace, parameters in the order in which they are first set.
+// Without plant/ columns.
 CsvColumns all_columns(const Trace& trace);
 
-// Written aside and renamed. Errors: the file cannot be written, and what a column cannot say of a
-// parameter: a first value later than tick 0, a change at a tick without
-// in/updated.parameter_update.
+// Writes to a temporary file and renames it. Errors: the file cannot be written; a parameter that a
+// column cannot represent, because its first value is later than tick 0 or because it changes at a
+// tick without in/updated.parameter_update.
 Result<void> write_csv(const std::filesystem::path& path, const Trace& trace,
                        const CsvColumns& columns);
 

@@ -1,4 +1,4 @@
-// Cells of a CSV file: from text to a value of a column's type, and what to say when that fails.
+// Cells of a CSV file: converts text to a value of the column's type, and reports errors.
 #pragma once
 
 #include <charconv>
@@ -14,22 +14,23 @@
 
 namespace attest {
 
-// The rare floats: with a plus sign, too small (which are zero) or too large for 32 bits. Returns
-// the end of the number, or null if [first, last) does not begin with one.
+// Parses the rare floats: those with a plus sign, and those too small for 32 bits, which become
+// zero. Returns the end of the number. Returns null if [first, last) does not begin with a number,
+// or with one that is too large for 32 bits.
 const char* parse_unusual_float(const char* first, const char* last, float& value);
 
 // "`1.2.3` is not a number for in/battery_status.scale; write a decimal number, nan, inf or -inf".
 // REQUIRES: `cell` is not a value of that type.
 std::string cell_error(std::string_view cell, ChannelType type, std::string_view column);
 
-// For messages: between backquotes, shortened, with what cannot be printed as \xNN.
+// For messages: between backquotes, shortened, with unprintable bytes as \xNN.
 std::string in_backquotes(std::string_view text);
 
 // The parsers below read a value at `first`, store it at `to`, and return its end, or null if there
-// is none. REQUIRES: *last can be read and is no digit. They are here to be inlined: half of the
-// cells of a trace are flags of one digit, for which a call costs more than the work.
+// is no value. REQUIRES: *last is readable and not a digit. They are in the header to be inlined:
+// half of the cells of a trace are flags of one digit, for which a call costs more than the work.
 
-// Where the cells of a column go.
+// The type of a column's cells and where they are stored.
 struct CsvColumn {
   ChannelType type;
   std::size_t offset;  // of the member in the row's struct [bytes]
@@ -85,7 +86,7 @@ inline const char* parse_integer(const char* first, const char* last, void* to) 
   return parsed.ec == std::errc() ? parsed.ptr : nullptr;
 }
 
-// Forced: left to itself clang calls it, which costs 5 % of the reading time.
+// Inlining is forced: clang would call the function, which costs 5 % of the reading time.
 [[gnu::always_inline]] inline const char* parse_cell(const char* first, const char* last,
                                                      const CsvColumn& column, char* row) {
   char* const to = row + column.offset;

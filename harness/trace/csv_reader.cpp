@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::size_t timestamp_channel = 0;  // of channels()
 
-// A row is a Sample, a float for columns that are not kept, and the values of the parameter
-// columns.
+// A row in memory is a Sample, one float for all columns that are ignored, and the values of the
+// parameter columns.
 constexpr std::size_t ignored_offset = sizeof(Sample);
 constexpr std::size_t parameters_offset = ignored_offset + sizeof(float);
 
@@ -52,7 +52,7 @@ Result<Layout> layout_of(const CsvRows& rows) {
   return layout;
 }
 
-// The trace whose columns another one has too, except those that it has itself.
+// The base of a trace (Provenance::base): it supplies the columns that the trace itself lacks.
 class Base {
  public:
   static Result<std::unique_ptr<Base>> open(const std::filesystem::path& path,
@@ -71,8 +71,8 @@ class Base {
 
   const ChannelSet& present() const { return reader_.present(); }
 
-  // Fills in what `sample` does not have itself; `more`: there is such a sample. Parameters are
-  // those of the base.
+  // Reads the base's next tick, and fills in the channels that the trace itself does not have.
+  // `more`: the trace has a next sample, which is `sample`. Parameters are those of the base.
   Result<void> complete(bool more, Sample& sample, std::vector<ParameterChange>& changes,
                         const CsvRows& rows) {
     const Sample own = sample;
@@ -97,7 +97,7 @@ class Base {
   ChannelSet own_;
 };
 
-// Fills what every row has in common: channels into `sample`, parameters as changes at tick 0.
+// Applies the constants: channels to `sample`, parameters as changes at tick 0.
 Result<void> apply_constants(const std::map<std::string, double>& constants, const CsvRows& rows,
                              Sample& sample, ChannelSet& present,
                              std::vector<ParameterChange>& changes) {
@@ -131,7 +131,7 @@ Result<void> check_need(const ChannelSet& present, TraceNeed need, const std::st
     const std::string_view name = channels()[absent._Find_first()].name;
     return missing(
         name, absent.count() - 1,
-        fmt::format("add the column, or an entry \"{}\" under [constants] in a {} beside "
+        fmt::format("add the column, or an entry \"{}\" under [constants] in a {} next to "
                     "the file",
                     name, provenance_name));
   }
@@ -197,7 +197,7 @@ struct TraceReader::Impl {
     return more;
   }
 
-  // What the file itself has.
+  // Reads the next row of the file itself, without the base.
   Result<bool> next_row(Sample& sample, std::vector<ParameterChange>& changes) {
     const auto more = rows.next(row.data());
     if (!more) return more;

@@ -13,7 +13,7 @@
 namespace attest {
 namespace {
 
-// Fits the first-level cache or nearly; also the longest line that is taken for one.
+// About the size of a first-level cache. It is also the length limit of a line.
 constexpr std::size_t buffer_size = std::size_t{64} * 1024;
 
 std::vector<std::string_view> split(std::string_view line) {
@@ -26,7 +26,7 @@ std::vector<std::string_view> split(std::string_view line) {
   }
 }
 
-// The place of a cell in its line, in characters (a UTF-8 sequence is one), from 1.
+// The column of a cell in its line, in characters (a UTF-8 sequence is one), from 1.
 int place_of(std::string_view line, std::string_view cell) {
   const auto before = line.substr(0, static_cast<std::size_t>(cell.data() - line.data()));
   const auto is_first_byte = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; };
@@ -75,7 +75,7 @@ Result<void> CsvRows::read_header() {
   return {};
 }
 
-// Moves what is left to the front of the buffer and reads behind it.
+// Moves the unread text to the front of the buffer and reads more behind it.
 Result<void> CsvRows::fill() {
   std::memmove(buffer_.get(), buffer_.get() + begin_, end_ - begin_);
   end_ -= std::exchange(begin_, 0);
@@ -147,8 +147,8 @@ bool CsvRows::parse_line(char* row) const {
   return false;
 }
 
-// Called when parse_line() gave up: looks again, slowly, for what to say. A row of the wrong length
-// comes first, because in it cells are compared with columns that are not theirs.
+// Finds the error in a line that parse_line() refused. A row of the wrong length is reported first,
+// because its cells may belong to other columns.
 tl::unexpected<Error> CsvRows::diagnose(char* row) const {
   const std::vector<std::string_view> cells = split(line_);
   const std::size_t want = columns_.size();
@@ -160,7 +160,7 @@ tl::unexpected<Error> CsvRows::diagnose(char* row) const {
   }
   if (cells.size() > want) {
     return fail_at_place(cells[want],
-                         fmt::format("row has {} cells, the header has {}; remove what is too much",
+                         fmt::format("row has {} cells, the header has {}; remove the extra cells",
                                      cells.size(), want));
   }
   const auto is_bad = [&](std::size_t i) {

@@ -1,5 +1,5 @@
-// Rows of numbers, streamed from a CSV file into structs. What the readers of traces and of mixer
-// traces share; everything else reads through csv.hpp or mixer_csv.hpp.
+// Rows of numbers, streamed from a CSV file into structs. Only the readers of traces (csv.hpp) and
+// of mixer traces (mixer_csv.hpp) use it; other code reads through them.
 //
 //     auto rows = CsvRows::open(path);             // reads the header
 //     rows->set_columns(...);                      // where each column of rows->header() goes
@@ -8,7 +8,7 @@
 //       ...
 //     }
 //
-// The text takes a fixed amount of memory, whatever the length of the file.
+// The text takes a fixed amount of memory, independent of the length of the file.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@ namespace attest {
 
 class CsvRows {
  public:
-  // Errors: unreadable file, no header, a column repeated or without a name.
+  // Errors: unreadable file, no header, a repeated column, a column without a name.
   static Result<CsvRows> open(const std::filesystem::path& path);
 
   const std::string& file() const { return file_; }
@@ -36,12 +36,12 @@ class CsvRows {
   // REQUIRES: one for each name of header(), in the same order.
   void set_columns(std::vector<CsvColumn> columns) { columns_ = std::move(columns); }
 
-  // Writes the next row's values to `row`; false at the end of the file. NaN is always the same
-  // quiet NaN. Errors: a cell that is not a value of its column's type, short or long row, empty
-  // line before the last row, a line that is too long for any trace.
+  // Writes the next row's values to `row`. Returns false at the end of the file. Every NaN becomes
+  // the same quiet NaN. Errors: a cell that is not a value of its column's type, a short or long
+  // row, an empty line before the last row, a line that is too long for a trace.
   Result<bool> next(void* row);
 
-  // An error at a column's name, and at its cell in the row last read.
+  // An error at the column's name in the header, or at its cell in the row last read.
   tl::unexpected<Error> fail_at_name(std::size_t column, std::string message) const;
   tl::unexpected<Error> fail_at_cell(std::size_t column, std::string message) const;
 
@@ -61,7 +61,7 @@ class CsvRows {
   std::string file_;
   std::unique_ptr<std::FILE, Close> stream_;
   std::unique_ptr<char[]> buffer_;
-  std::size_t begin_ = 0;  // of the text not yet handed out, in buffer_
+  std::size_t begin_ = 0;  // of the unread text in buffer_
   std::size_t end_ = 0;
   bool at_end_of_file_ = false;
 

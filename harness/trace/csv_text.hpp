@@ -24,7 +24,7 @@ class CsvText {
   void integer(std::uint64_t value);
   void end_row();
 
-  // Writes what is left, and gives the first error of all that was written.
+  // Writes the rest. Returns the first error of all writes.
   Result<void> finish();
 
  private:

@@ -10,8 +10,8 @@
 namespace attest {
 namespace {
 
-// A column takes every change of its parameter, and the reader finds it again: a value from the
-// first row on, and PARAMETER_UPDATE where it changes.
+// Checks that the reader will find every change again in the parameter's column: the parameter has
+// a value from the first row on, and PARAMETER_UPDATE is set where it changes.
 Result<void> check_changes(const Trace& trace, const std::string& parameter) {
   bool has_value = false;
   for (const ParameterChange& change : trace.parameters) {
@@ -50,7 +50,7 @@ void write_cell(const Channel& channel, const Sample& sample, CsvText& text) {
   }
 }
 
-// The values of the parameter columns as the ticks go by.
+// The values of the parameter columns, tick by tick.
 class ParameterValues {
  public:
   ParameterValues(const Trace& trace, const std::vector<std::string>& names)

@@ -72,7 +72,7 @@ Result<std::vector<CsvColumn>> columns_of(const CsvRows& rows, ChannelSet& prese
   return columns;
 }
 
-// Are all columns there for as many rotors as there are outputs?
+// Checks that there are 4, 6 or 8 out[] columns, and all other columns of a mixer.
 Result<void> check_rotors(const CsvRows& rows) {
   const std::vector<std::string>& header = rows.header();
   const auto rotors = static_cast<std::size_t>(std::count_if(header.begin(), header.end(), is_out));

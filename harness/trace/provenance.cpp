@@ -22,7 +22,7 @@ bool is_integer_up_to(double value, double highest) {
   return value >= 0 && value <= highest && value == std::floor(value);
 }
 
-// What is wrong with a constant; empty if nothing.
+// The error of a constant; empty if it is valid.
 std::string complaint_about(std::string_view name, double value) {
   const auto index = find_channel(name);
   if (!index && !parameter_of(name)) {
@@ -82,7 +82,7 @@ std::map<std::string, double> read_tolerances(const TomlTable& root) {
   return tolerances;
 }
 
-// Distinguishes what a trace file distinguishes: -0 from 0, but no NaN from another.
+// Distinguishes the same values as a trace file: -0 and 0 differ, all NaN are equal.
 std::uint64_t canonical_bits(double value) {
   return std::bit_cast<std::uint64_t>(std::isnan(value) ? std::numeric_limits<double>::quiet_NaN()
                                                         : value);
@@ -112,7 +112,7 @@ bool is_same(const Channel& channel, const std::vector<Trace>& traces,
   return true;
 }
 
-// The value of a parameter if it is set at tick 0 of every trace and never to anything else.
+// The value of a parameter if every trace sets it at tick 0 and always to the same value.
 std::optional<double> constant_value(const std::string& parameter,
                                      const std::vector<Trace>& traces) {
   std::optional<double> value;

@@ -1,4 +1,4 @@
-// A recorded run: what the unit was given at each tick and what it answered.
+// A recorded run: the inputs and outputs of the unit at each tick.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace attest {
 
-// Parameters in force from a tick on. A change at tick 0 is made before the first step; one at a
-// later tick belongs to a sample whose PARAMETER_UPDATE bit is set.
+// A parameter that has a new value from a tick on. A change at tick 0 is made before the first
+// step. A change at a later tick belongs to a sample whose PARAMETER_UPDATE bit is set.
 struct ParameterChange {
   std::size_t tick;
   std::string name;
@@ -22,12 +22,12 @@ struct ParameterChange {
   friend bool operator==(const ParameterChange&, const ParameterChange&) = default;
 };
 
-// The changes of a trace as its ticks go by.
+// Hands out the changes of a trace, tick by tick.
 class PendingChanges {
  public:
   explicit PendingChanges(std::span<const ParameterChange> changes) : pending_(changes) {}
 
-  // Those up to `tick` that no earlier call returned; valid as long as the trace is.
+  // The changes up to `tick` that no earlier call returned. Valid as long as the trace.
   std::span<const ParameterChange> take_until(std::size_t tick) {
     std::size_t count = 0;
     while (count < pending_.size() && pending_[count].tick <= tick) ++count;
@@ -40,8 +40,8 @@ class PendingChanges {
   std::span<const ParameterChange> pending_;
 };
 
-// What is true of the vehicle at a tick, beside what the unit was told: for metrics and for people
-// (plant_columns.hpp names its columns). Never compared. NED and FRD, SI units.
+// The true state of the vehicle at a tick; the unit receives an estimate of it. For metrics and for
+// people (plant_columns.hpp names its columns). Never compared. NED and FRD, SI units.
 struct PlantSample {
   std::array<float, 3> position_m;    // of the centre of mass
   std::array<float, 3> velocity_m_s;  // of the centre of mass
@@ -50,10 +50,10 @@ struct PlantSample {
   std::array<float, 8> motor;         // commands of the mixer, -1 stopped .. 1 full
   std::array<float, 8> rotor_rad_s;   // speeds
   float voltage_V;                    // of the battery; 0 without one
-  std::uint8_t saturated;             // the mixer gave something up at this tick
+  std::uint8_t saturated;             // 1: the mixer was in saturation at this tick
 };
 
-// What a file of a trace must contain, beside timestamp.
+// The channels that a trace file must have in addition to timestamp.
 enum class TraceNeed {
   inputs,             // every in/ channel: to feed a port
   outputs,            // at least one out/ channel: to compare
@@ -62,10 +62,10 @@ enum class TraceNeed {
 
 struct Trace {
   std::string source;                       // file or case, for messages
-  std::vector<Sample> samples;              // one a tick, timestamps strictly increasing
-  std::vector<ParameterChange> parameters;  // by tick, then in the order they are set
+  std::vector<Sample> samples;              // one per tick, timestamps strictly increasing
+  std::vector<ParameterChange> parameters;  // by tick, then in the order of their setting
   ChannelSet present;                       // the channels that were recorded; the others are 0
-  std::vector<PlantSample> plant;           // of a flown trace: one a sample; else empty
+  std::vector<PlantSample> plant;           // of a flown trace: one per sample; else empty
 };
 
 }  // namespace attest

@@ -8,11 +8,11 @@
 
 namespace attest {
 
-// Whether TraceReader (csv.hpp) can read it tick by tick.
+// True if TraceReader (csv.hpp) can read the file tick by tick.
 bool is_streamed(const std::filesystem::path& path);
 
-// The whole trace. A CSV whose header names columns of a mixer trace is read as one
-// (mixer_csv.hpp), any other file as csv.hpp says. Errors: those of the two readers.
+// Reads the whole trace. A CSV whose header names columns of a mixer trace is read as one
+// (mixer_csv.hpp), any other file as in csv.hpp. Errors: those of the two readers.
 Result<Trace> open_trace(const std::filesystem::path& path, TraceNeed need);
 
 }  // namespace attest

@@ -1,4 +1,4 @@
-// The cases of a run as jobs: what a worker process judges.
+// The cases of a run as jobs for worker processes.
 #pragma once
 
 #include <cstddef>
@@ -27,9 +27,9 @@ struct Codec<CaseResult> {
   static Result<CaseResult> decode(const std::string& text);
 };
 
-// A case in some of its configurations: any of an open-loop case, or those of one
-// plant configuration. The port has a process of its own, which is started before the golden is
-// read.
+// A case in some of its run configurations: any of an open-loop case, or those of one plant
+// configuration. The port's own process starts before the golden is read, so that its memory has no
+// golden.
 class CaseJob final : public Job<CaseResult> {
  public:
   // `vehicle_model` is the plant configuration's; null for open loop.
@@ -80,9 +80,9 @@ class TimedJob final : public Job<CaseResult> {
   HostOptions options_;
 };
 
-// The jobs of the cases that were selected, in order: one for an open-loop case, one a
-// plant configuration for a flight, so that long flights are shared among the workers. Errors: a
-// vehicle that cannot be loaded.
+// The jobs of the selected cases, in order. An open-loop case is one job. A flight is one job per
+// plant configuration, so that the workers share long flights. Errors: a vehicle that cannot be
+// loaded.
 Result<Jobs<CaseResult>> case_jobs(const std::vector<SelectedCase>& cases,
                                    const std::filesystem::path& golden_root,
                                    VehicleModels& vehicle_models, Level level,

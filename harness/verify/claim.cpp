@@ -13,7 +13,7 @@ namespace {
 // Extensions of the ABI that a port need not have.
 bool is_module(const std::string& group) { return group == "mixer" || group == "battery_status"; }
 
-// What came of the cases of a group at a rate.
+// Counts of the cases of a group at a rate.
 struct Tally {
   std::size_t in_suite = 0, run = 0, good = 0;
 };
@@ -21,7 +21,7 @@ struct Tally {
 struct Group {
   std::map<Rate, Tally> rates;
   bool passes = false, fails = false;
-  // Cases that were counted apart.
+  // Cases that the claim counts separately.
   std::size_t unsupported = 0, skipped = 0, expected_failures = 0;
 
   bool was_run() const {
@@ -32,7 +32,7 @@ struct Group {
 
 using Groups = std::map<std::string, Group>;
 
-// A port with a fixed step has no other rate, and the claim names its step.
+// A port with a fixed step runs at that rate only, and the claim names its step.
 bool is_of_another_step(const CaseResult& result, const RunResult& run) {
   return run.fixed_step && result.rate != *run.fixed_step && result.verdict == Verdict::unsupported;
 }
@@ -82,7 +82,7 @@ bool is_whole(const Group& group, const RunResult& run) {
          });
 }
 
-// "3 cases unsupported (modes, tpa)"; none is not said.
+// "3 cases unsupported (modes, tpa)"; left out when the count is 0.
 void say(const Groups& groups, std::size_t Group::*count, const char* singular, const char* plural,
          std::vector<std::string>& missing) {
   std::size_t all = 0;
@@ -97,7 +97,7 @@ void say(const Groups& groups, std::size_t Group::*count, const char* singular, 
       fmt::format("{} {} ({})", all, all == 1 ? singular : plural, fmt::join(names, ", ")));
 }
 
-// The mandatory groups and the rates of which no case was run, and what else was not.
+// Adds the mandatory groups and the rates without any case run, and the number of cases not run.
 void say_what_was_not_run(const Groups& groups, const RunResult& run,
                           std::vector<std::string>& missing) {
   std::vector<std::string> names, rates;

@@ -1,9 +1,9 @@
-// What a run entitles a port to claim, one profile at a time: a port may be the same controller in
-// one version of the law only.
+// The conformance claims that a run supports, one per profile: a port may implement one version of
+// the law only.
 //
 // A port conforms to a profile when it passed the released suite: every group that is not an
-// optional module (mixer, battery estimate), every rate, every case. Only the cases of the exact
-// level may be skipped, at another level. Anything less is partial, and what is missing is named.
+// optional module (mixer, battery estimate), every rate, every case. Cases of the exact level may
+// be skipped at another level. Anything less is partial, and the claim names the missing parts.
 #pragma once
 
 #include <string>
@@ -17,22 +17,22 @@ struct Claim {
   std::string profile;
   // Groups, in alphabetical order. Whole: every case passed at all rates that were run.
   std::vector<std::string> whole, in_part, failing;
-  std::vector<std::string>
-      modules;                  // optional ones that are whole; in no other list unless failing
-  bool has_all_groups = false;  // `whole` has all that are mandatory
+  // Optional modules that are whole. A module that fails is in `failing` instead.
+  std::vector<std::string> modules;
+  bool has_all_groups = false;       // `whole` has all mandatory groups
   std::vector<std::string> missing;  // "custom suite", "2 cases unsupported (tpa)"; empty: conforms
 
   bool conforms() const { return failing.empty() && missing.empty(); }
 };
 
-// Of each profile of which something was judged, sorted. A profile that the port does not support,
-// of which all cases are skipped, has none.
+// One for each profile with a judged case, sorted. A profile that the port does not support has no
+// claim: all its cases are skipped.
 std::vector<Claim> claims_of(const RunResult& run);
 
 enum class Standing { conformant, partial, none };
 
-// Of the run as a whole. None: something failed, an error, an end before the end, nothing passed.
-// Conformant: the port conforms to a profile at least.
+// Of the whole run. None: a case failed, an error occurred, the run stopped early, or no case
+// passed. Conformant: the port conforms to at least one profile.
 Standing standing_of(const RunResult& run);
 
 }  // namespace attest

@@ -19,8 +19,8 @@
 namespace attest {
 namespace {
 
-// Drives a fresh unit through `answered`, whose inputs are those of `want`, and compares. Where
-// there are other branches they are as right; the exact level is the law's.
+// Drives a fresh unit through `answered`, whose inputs are those of `want`, and compares. Branch
+// alternatives are equally correct, but the exact level accepts the law's branch only.
 void run_and_judge(Trace& answered, const Trace& want, const BranchAlternatives& others,
                    const Subject& subject, PortHost& host, const Tolerances& tolerances,
                    const Tolerances& of_branches, CaseResult& result) {
@@ -37,7 +37,7 @@ void run_and_judge(Trace& answered, const Trace& want, const BranchAlternatives&
   if (fault) judge_after(*fault, result);
 }
 
-// What the case gives the unit, and what the reference answered to just that.
+// A case's inputs for the unit, and the reference's outputs for exactly these inputs.
 struct Prepared {
   Trace answered;  // inputs only, so far
   Trace want;
@@ -55,7 +55,7 @@ Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& g
   }
   if (const ChannelSet missing = made.present & ~want->present; missing.any()) {
     return fail_at(want->source,
-                   fmt::format("has no {}, neither as a column nor in the {} beside it; bless it "
+                   fmt::format("has no {}, neither as a column nor in the {} next to it; bless it "
                                "anew, or restore it from version control",
                                channels()[missing._Find_first()].name, provenance_name));
   }
@@ -70,7 +70,7 @@ Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& g
   return Prepared{std::move(made), std::move(*want), std::move(*others)};
 }
 
-// The same for a port with a fixed step (fixed_step.hpp): the reference's answers from one period
+// The same for a port with a fixed step (fixed_step.hpp): the reference's outputs from one period
 // after zero on. Errors: the reference does not agree with the golden.
 Result<Prepared> prepare_from_one_period_on(const Case& the_case, const Rate& rate,
                                             const Golden& golden) {

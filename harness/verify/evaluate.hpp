@@ -20,23 +20,23 @@ namespace attest {
 CaseResult result_for(const Case& the_case, const RunConfiguration& configuration);
 CaseResult result_for(const Trace& recorded, const std::string& profile);
 
-// The case's inputs at that rate are made anew, given to a fresh unit, and what it answers is
-// compared with the golden. Errors are the environment's: a golden that is missing or stale.
+// Makes the case's inputs at that rate anew, gives them to a fresh unit, and compares the outputs
+// with the golden. Errors are those of the environment: a golden that is missing or stale.
 Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const Golden& golden,
                                  PortHost& host, Level level);
 
-// A fresh unit flies. REQUIRES: the host's course is this case with this vehicle model. Each answer
-// is compared with that of the reference to the same inputs, the flight with the golden up to the
-// golden's horizon, and its metrics with their bounds. The level is the same for every run: what a
-// plant computes differs in the last bits between processors, so no flight is compared to the bit.
-// Errors: as above.
+// A fresh unit flies. REQUIRES: the host's course is this case with this vehicle model. Each output
+// is compared with that of the reference for the same inputs. The flight is compared with the
+// golden up to the golden's horizon, and the metrics with their bounds. The level is numeric in
+// every run: a plant's results differ in the last bits between processors, so no flight is compared
+// to the bit. Errors: as above.
 Result<CaseResult> evaluate_flight(const Case& the_case, const RunConfiguration& configuration,
                                    const VehicleModel& vehicle_model, const Golden& golden,
                                    PortHost& host);
 
-// The same at recorded times, for which there is no golden: beside the reference, flown at the same
-// times. A bound of the case's metrics that the reference misses at these times binds no port.
-// Errors: the flight cannot be set up; the reference loses the vehicle at these times.
+// The same at recorded times. These have no golden: the reference flies at the same times for
+// comparison. A bound of the case's metrics that the reference misses at these times is not
+// applied. Errors: the flight cannot be set up; the reference loses the vehicle at these times.
 Result<CaseResult> evaluate_timed_flight(const Case& the_case,
                                          const RunConfiguration& configuration,
                                          const VehicleModel& vehicle_model,
@@ -46,8 +46,8 @@ Result<CaseResult> evaluate_timed_flight(const Case& the_case,
 // divergence.
 std::string how_it_ended(const Flown& flown);
 
-// The recorded inputs are given to a fresh instance of that module of the port, and what it answers
-// is compared with the recorded outputs.
+// Gives the recorded inputs to a fresh instance of that module of the port, and compares the
+// outputs with the recorded ones.
 CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHost& host,
                           const Tolerances& tolerances);
 

@@ -22,9 +22,9 @@
 namespace attest {
 namespace {
 
-// How far a right controller's metric may be from the reference's: beyond the horizon two right
-// flights differ, and these are a few times what they were seen to differ by, and far less than
-// what a port with a wrong gain does.
+// The allowed deviation of a metric from the reference's. Beyond the horizon, the flights of two
+// correct controllers differ. These values are a few times the measured differences, and far below
+// those of a port with a wrong gain.
 double tolerance_of(Measure measure, double reference, const Rate& rate) {
   constexpr double relative = 0.05;
   const auto at_least = [&] {
@@ -82,7 +82,8 @@ void judge_metrics(const Case& the_case, const Trace& flown, const ReferenceFlig
   }
 }
 
-// Of a flight whose every answer is right: the loop beside the golden's.
+// For a flight with correct outputs: the comparison of the loop with the golden, and the tightest
+// headroom of both comparisons.
 Comparison with_tightest(Comparison loop, const Comparison& answers) {
   loop.ticks = answers.ticks;
   if (!loop.tightest || (answers.tightest && answers.tightest->ratio < loop.tightest->ratio)) {
@@ -91,14 +92,14 @@ Comparison with_tightest(Comparison loop, const Comparison& answers) {
   return loop;
 }
 
-// Each answer by the reference, the loop by the golden's rows to the horizon, and no NaN and no
-// infinity at any tick.
+// Compares each output with the reference's, and the loop with the golden's rows up to the horizon.
+// NaN and infinity fail at every tick.
 Result<void> judge_ticks(const Case& the_case, const Flown& flown, const ReferenceFlight& reference,
                          std::optional<int> fraction_bits, CaseResult& result) {
-  // The horizon is of floats. In flight, where what it rounds comes back to it, a port with 22 bits
-  // behind the point was measured to leave the golden by seven times what its LSBs are allowed.
-  // With 30 bits that is a tenth of what floats are allowed; with fewer, the loop as a whole is
-  // judged by its metrics.
+  // The horizon holds for floats. In flight, a port's rounding comes back as an input. A port with
+  // 22 fraction bits was measured to deviate from the golden by seven times the tolerance of its
+  // LSBs. With 30 bits that is a tenth of the tolerance of floats. With fewer bits, the metrics
+  // judge the loop as a whole.
   constexpr int as_near_as_floats_bits = 30;
   const double horizon_s = fraction_bits.value_or(as_near_as_floats_bits) < as_near_as_floats_bits
                                ? 0
@@ -146,7 +147,7 @@ std::string how_it_ended(const Flown& flown) {
 
 namespace {
 
-// A fresh unit flies at those times, and is judged by the reference.
+// A fresh unit flies at those times, and is compared with the reference.
 Result<CaseResult> evaluate_with(const Case& the_case, const FlightPlan& plan,
                                  const ReferenceFlight& reference, PortHost& host) {
   const Stopwatch stopwatch;
@@ -169,7 +170,7 @@ Result<CaseResult> evaluate_with(const Case& the_case, const FlightPlan& plan,
   return result;
 }
 
-// Of a port with a fixed step (fixed_step.hpp): compared with the reference from one period after
+// For a port with a fixed step (fixed_step.hpp): compared with the reference from one period after
 // zero on. Errors: the reference does not agree with the golden.
 Result<CaseResult> evaluate_from_one_period_on(const Case& the_case, FlightPlan plan,
                                                const VehicleModel& vehicle_model,

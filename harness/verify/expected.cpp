@@ -20,8 +20,8 @@ bool matches(const std::string& pattern, const CaseResult& result) {
   return matches_name(result.id()) || matches_name(result.case_id());
 }
 
-// A pattern that matches a case of any group and name would excuse every mistake of a port, those
-// that are made later too.
+// A pattern that matches a case of any group and name would excuse every mistake of a port,
+// including later ones.
 bool excuses_everything(const std::string& pattern) {
   constexpr const char* of_no_group = "\x01/\x01";
   const auto profiles = reference::profile_names();

@@ -1,5 +1,5 @@
-// Failures that are known and accepted for a while: a file of case ids, each with a reason. One
-// that passes is told, and fails the run: the list must not outlive what it excuses.
+// Failures that are known and accepted for a while: a file of case ids, each with a reason. A
+// listed case that passes is reported and fails the run, so that obsolete entries are removed.
 //
 //     [expected]
 //     "px4-v1.5.5/tailsitter/latch@*" = "no recovery yet (#12)"
@@ -27,8 +27,8 @@ class ExpectedFailures {
 
   bool expects(const CaseResult& result) const;
 
-  // What fails and is listed becomes xfail, what passes and is listed xpass. An entry that names no
-  // result is an error of the run when `complete`: when nothing was filtered out.
+  // A listed result that fails becomes xfail, and one that passes xpass. `complete`: no result was
+  // filtered out. Then an entry that matches no result is an error of the run.
   void apply(bool complete, RunResult& run) const;
 
  private:
@@ -36,8 +36,8 @@ class ExpectedFailures {
   std::vector<ExpectedFailure> entries_;
 };
 
-// The file for what fails in this run: one entry a case when it fails at all its configurations and
-// all were run, else one a configuration.
+// The file for the failures of this run. A case gets one entry if all its configurations were run
+// and failed, else one per failing configuration.
 std::string expected_failures_of(const RunResult& run);
 
 }  // namespace attest

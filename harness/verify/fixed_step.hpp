@@ -1,10 +1,10 @@
-// Cases for a port that knows only its own sample time (ATTEST_EXTENSION_FIXED_STEP).
+// Cases for a port with a fixed sample time (ATTEST_EXTENSION_FIXED_STEP).
 //
-// The law takes its dt from timestamps. That of a case's first tick is 5 s, and `last` is 0 before
-// it: the first dt saturates at 20 ms, which a constant dt does not. The cases of such a port
-// therefore begin one period after zero, so that each dt is the period. A golden has the outputs
-// for its own timestamps, so the reference makes those to compare with, after it was seen to agree
-// with the golden.
+// The law computes dt from timestamps. The first timestamp of a case is 5 s, and the law's `last`
+// is 0 before it. The first dt therefore saturates at 20 ms, which a constant dt does not. For such
+// a port the cases begin one period after zero, so that each dt is the period. A golden has the
+// outputs for its own timestamps. The expected outputs therefore come from the reference, after a
+// check that the reference agrees with the golden.
 #pragma once
 
 #include "harness/casefile/case.hpp"
@@ -14,18 +14,19 @@
 
 namespace attest {
 
-// Whether the port is given `the_case` from one period after zero on (Case). Mixers and battery
-// estimates have no clock, so theirs are left as they are.
+// Whether `the_case` begins one period after zero for this port (Case::from_one_period_on). Mixers
+// and battery estimates have no clock, so their cases are not shifted.
 bool has_fixed_step(const PortSays& port, const Case& the_case);
 
-// The port has a fixed step, and the case has another somewhere: the verdict is unsupported, with
-// the reason. Another rate, ticks that are not exactly periodic, a `start_s` of the case's own.
+// Whether the port has a fixed step that the case does not keep: another rate, ticks that are not
+// exactly periodic, or a `start_s` of the case's own. If so, the verdict becomes unsupported, with
+// the reason.
 bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
                      CaseResult& result);
 bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
                      const LoopTiming& timing, CaseResult& result);
 
-// The same for a recorded trace, whose timestamps are what they are.
+// The same for a recorded trace, whose timestamps are fixed.
 bool has_other_steps(const PortSays& port, const Trace& recorded, CaseResult& result);
 
 }  // namespace attest

@@ -1,4 +1,4 @@
-// From what a port did to a verdict: shared by open loop and flight.
+// From the outputs or the fault of a port to a verdict: shared by open loop and flight.
 #pragma once
 
 #include <optional>
@@ -11,25 +11,27 @@
 
 namespace attest {
 
-// The case's own tolerances where it has some; of a port in fixed point at least its LSBs, of a run
-// of so many ticks.
+// The tolerances of the level, or the case's own where it has some. For a port in fixed point they
+// are at least its LSBs for a run of `ticks` ticks.
 Tolerances tolerances_of(const Case& the_case, Level level, std::optional<int> fraction_bits,
                          std::size_t ticks);
 
-// The port declares that it does not do the result's group: the verdict is unsupported.
+// Whether the port declares that it does not support the result's group. If so, the verdict becomes
+// unsupported.
 bool declines(const PortSays& port, CaseResult& result);
 bool declines(const PortSays& port, const std::string& group);
 
 void judge(const PortFault& fault, CaseResult& result);
 
-// What was answered before the port said that it does not do this is judged all the same: wrong
-// outputs are not excused by a later ATTEST_UNSUPPORTED.
+// Whether there are ticks before an ATTEST_UNSUPPORTED. They are judged, because a later
+// ATTEST_UNSUPPORTED does not excuse wrong outputs.
 bool leaves_ticks_to_judge(const PortFault& fault);
 
-// From `tick` on `answered` gets the outputs of `want`, so that only the ticks before decide.
+// From `tick` on, `answered` gets the outputs of `want`, so that only the ticks before it decide.
 void leave_out_from(std::size_t tick, const Trace& want, Trace& answered);
 
-// After the ticks before the fault have been judged: a failure stays one, and the reason says both.
+// Call after the ticks before the fault have been judged. A failure stays a failure, and the reason
+// names both.
 void judge_after(const PortFault& fault, CaseResult& result);
 
 void judge(const Comparison& comparison, CaseResult& result);

@@ -29,7 +29,7 @@ std::vector<fs::path> traces_below(const fs::path& folder) {
   return files;
 }
 
-// A recording that was edited is no judge any more.
+// An edited recording is not evidence of the firmware's behaviour.
 Result<void> check_bytes(const fs::path& file, const Provenance& provenance) {
   const auto recorded = provenance.sha256.find(file.filename().string());
   if (recorded == provenance.sha256.end()) {
@@ -51,7 +51,7 @@ Tolerances tolerances_for(const fs::path& file, const Provenance& provenance) {
   return tolerances;
 }
 
-// What differs, in words; empty when nothing does.
+// A description of the difference; empty when the trace conforms.
 Result<std::string> trace_difference(const fs::path& file, const Provenance& provenance) {
   const auto recorded = read_recorded(file);
   if (!recorded) return tl::unexpected(recorded.error());

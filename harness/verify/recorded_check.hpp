@@ -1,4 +1,4 @@
-// The outside judge of the reference: traces recorded from the original firmware.
+// Checks the reference against traces recorded from the original firmware.
 #pragma once
 
 #include <cstddef>
@@ -16,14 +16,14 @@ struct RecordedCheck {
   std::string first_difference;  // file and what differs; empty when all conform
 };
 
-// Replays every trace below `folder` (golden/recorded) on the built-in reference: to the bit,
-// except where the provenance beside a trace states a tolerance. Errors: a trace that cannot be
-// read, no traces at all.
+// Replays every trace below `folder` (golden/recorded) on the built-in reference. A trace conforms
+// if the outputs agree to the bit, or within the tolerance that the provenance next to the trace
+// states. Errors: a trace that cannot be read or was edited; a folder without traces.
 Result<RecordedCheck> check_recorded(const std::filesystem::path& folder);
 
-// The groups, "px4-v1.5.5/tpa", whose behaviour the recordings below `folder` show, as the
-// provenance of each says. What no recording covers, only our own code has seen. Errors: a
-// provenance that cannot be read.
+// The groups, "px4-v1.5.5/tpa", whose behaviour the recordings below `folder` show, according to
+// their provenances. All other groups were checked by our own code only. Errors: a provenance that
+// cannot be read.
 Result<std::set<std::string>> covered_groups(const std::filesystem::path& folder);
 
 }  // namespace attest

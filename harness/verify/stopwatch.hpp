@@ -1,4 +1,4 @@
-// Wall time of a result, for JUnit only: nothing that is judged depends on it.
+// Wall time of a result, for JUnit only: no verdict depends on it.
 #pragma once
 
 #include <chrono>

@@ -52,7 +52,7 @@ bool RunResult::failed() const {
 }
 
 bool MetricResult::within() const {
-  // An infinite reference makes every difference infinite, and its tolerance may be too.
+  // An infinite reference makes every difference infinite, and its tolerance can be infinite too.
   const bool near =
       value == reference || (std::isfinite(reference) && std::abs(value - reference) <= tolerance);
   return near && value >= min && value <= max;

@@ -1,4 +1,4 @@
-// The verdict on one case at one rate. It knows nothing of the catalogue of wrong controllers.
+// The verdict on one case at one rate. It does not depend on the catalogue of wrong controllers.
 #pragma once
 
 #include <optional>
@@ -13,15 +13,15 @@
 
 namespace attest {
 
-// Only pass counts as conformant. unsupported, skip and xfail do not fail a run; all else does.
+// Only pass counts as conformant. unsupported, skip and xfail do not fail a run; all others do.
 enum class Verdict {
   pass,
-  fail,         // an output differs, or the port said it failed
+  fail,         // an output differs, or the port reported a failure
   crash,        // the port's process died
   timeout,      // no answer in time
   protocol,     // the port broke the rules of the ABI
   non_finite,   // NaN or Inf where the golden has a number
-  unsupported,  // the port declared that it does not do this
+  unsupported,  // the port declared that it does not support this
   skip,         // not run, with a reason (profile not supported, exact-level case)
   xfail,        // failed, as expected
   xpass,        // passed although expected to fail
@@ -37,7 +37,7 @@ std::string_view name_of(Verdict verdict);  // "non-finite"
 std::optional<Verdict> parse_verdict(std::string_view name);
 bool fails_a_run(Verdict verdict);
 
-// A metric of a flight, beside what it may be.
+// A metric of a flight, with its bounds.
 struct MetricResult {
   std::string name;  // as the case calls it
   Measure measure = Measure::settling_time_s;
@@ -46,7 +46,7 @@ struct MetricResult {
   double tolerance = 0;  // allowed |value - reference|
   double min = 0, max = 0;
 
-  // Infinite values agree with each other; NaN agrees with nothing.
+  // Infinite values agree with each other; NaN agrees with no value.
   bool within() const;
 };
 
@@ -62,7 +62,7 @@ struct CaseResult {
   std::size_t deviating_ticks = 0;
   std::optional<Deviation> first;
   std::optional<Headroom> tightest;
-  std::vector<MetricResult> metrics;  // of a flight that ended well
+  std::vector<MetricResult> metrics;  // of a flight without fault and divergence
   double elapsed_s = 0;  // of wall time, for JUnit only: everything else is deterministic
 
   std::string case_id() const { return profile + "/" + group + "/" + name; }

@@ -45,7 +45,7 @@ json headroom_to_json(const Headroom& headroom) {
           {"channel", channels()[headroom.channel].name}};
 }
 
-// Reads straight on and keeps the first thing that was wrong.
+// Reads on after an error and keeps the first message.
 class Reader {
  public:
   Reader(const json& object, std::string& error) : object_(object), error_(error) {

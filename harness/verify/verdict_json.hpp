@@ -1,18 +1,18 @@
-// A CaseResult as JSON and back: what a worker process sends to the command, and one entry of the
-// JSON report.
+// A CaseResult as JSON and back: the message of a worker process to the command, and one entry of
+// the JSON report.
 //
 //     {"id": "px4-v1.5.5/attitude/roll_30@250hz", "profile": ..., "group": ..., "name": ...,
 //      "rate": "250", "verdict": "fail", "reason": "...", "ticks": 500, "deviating_ticks": 3,
 //      "first": {"channel": "out/vehicle_rates_setpoint.roll", "stage": "attitude law", ...},
 //      "tightest": {"ratio": 12.3, "tick": 17, "channel": "out/..."}, "elapsed_s": 0.012}
 //
-// A flight has "vehicle", "plant" and "metrics" besides, a list of {"name": "settles", "measure":
+// A flight also has "vehicle", "plant" and "metrics", a list of {"name": "settles", "measure":
 // "settling_time_s", "value": 0.62, "reference": 0.61, "tolerance": 0.08, "min": "-inf", "max": 1,
 // "within": true}.
 //
-// `first` and `tightest` are absent when there is none. JSON has no NaN and no infinity: where a
-// number is not finite it is the string "nan", "inf" or "-inf". Channels go by name. Values of
-// float32 channels carry their bits beside the number.
+// `first` and `tightest` are absent when the result has no such value. JSON has no NaN and no
+// infinity: a number that is not finite is the string "nan", "inf" or "-inf". Channels are given by
+// name. Values of float32 channels have their bits in addition to the number.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -22,7 +22,7 @@
 
 namespace attest {
 
-// With the port's words as they are: text_of() and document_of() repair what is not UTF-8.
+// Text of the port stays as it is: text_of() and document_of() repair invalid UTF-8.
 nlohmann::json to_json(const CaseResult& result);
 
 // The inverse. Errors: a discarded value (json::parse without exceptions), a missing or wrong

@@ -1,5 +1,5 @@
-// A job: tasks in a row, each with a result of the job's own type. Jobs run in worker processes, as
-// many at a time as there are to be, and the results are the same for any number.
+// A job: tasks in a row, each with a result of the job's own type. Jobs run in a chosen number of
+// worker processes, and the results are the same for any number.
 #pragma once
 
 #include <cstddef>
@@ -22,23 +22,23 @@ class Job {
 
   virtual std::size_t size() const = 0;  // tasks
 
-  // Before the first task of a process. An error is one for all tasks, which are then left out.
+  // Called before the first task of a process. An error applies to all tasks, which are left out.
   virtual Result<void> open() { return {}; }
 
-  // REQUIRES: open() went well.
+  // REQUIRES: open() succeeded.
   virtual Result<R> run(std::size_t task) = 0;
 
-  // After a task: the rest needs a fresh process.
+  // Called after a task. True if the other tasks need a fresh process.
   virtual bool is_spent() const { return false; }
 
-  // After the last task of a process, or an open() that failed: ends what open() began.
+  // Called after the last task of a process, or after an open() that failed. Undoes open().
   virtual void close() {}
 };
 
 template <typename R>
 using Jobs = std::vector<std::unique_ptr<Job<R>>>;
 
-// How a result gets from a worker to its parent. Specialised for each type of result:
+// Converts a result to text, to send it from a worker to its parent. Specialised for each type:
 //
 //     static std::string encode(const Result<R>& result);
 //     static Result<R> decode(const std::string& text);
@@ -48,24 +48,23 @@ struct Codec;
 template <typename R>
 struct JobOptions {
   int processes = 1;
-  bool in_process = false;  // for a debugger: one after the other, no processes
-  bool fail_fast =
-      false;  // nothing after the first job, in their order, that has an error or fails
+  bool in_process = false;  // for a debugger: jobs run one after the other in this process
+  bool fail_fast = false;   // leave out all jobs after the first one that fails or has an error
   std::function<void(const R&)> on_result = [](const R&) {};
   std::function<bool(const R&)> fails = [](const R&) { return false; };
-  std::function<bool()> stop = [] { return false; };  // true: end soon, results do not matter
+  std::function<bool()> stop = [] { return false; };  // true: end soon, results are not needed
 };
 
 template <typename R>
 struct JobResults {
-  std::vector<R> results;     // in the order of jobs and tasks, whatever finished first
+  std::vector<R> results;     // in the order of jobs and tasks
   std::vector<Error> errors;  // in the same order
   bool stopped_early = false;
 };
 
 namespace detail {
 
-// Calls `done` with the results of the tasks from `first` on, and of how many tasks each is.
+// Runs the tasks from `first` on. Calls `done` with each result and the number of its tasks.
 template <typename R, typename Done>
 void run_tasks(Job<R>& job, std::size_t first, Done&& done) {
   if (const auto opened = job.open(); !opened) {
@@ -80,13 +79,13 @@ void run_tasks(Job<R>& job, std::size_t first, Done&& done) {
   job.close();
 }
 
-// What has come back from the jobs.
+// Collects the results of the jobs.
 template <typename R>
 class Collector {
  public:
   Collector(std::size_t jobs, const JobOptions<R>& options) : options_(options), of_jobs_(jobs) {}
 
-  // Both: false, nothing after this job is wanted.
+  // Both return false if the jobs after this one are not needed.
   bool fail(std::size_t job, const Error& error) {
     of_jobs_[job].errors.push_back(error);
     return !options_.fail_fast;

@@ -28,7 +28,7 @@ class Pool {
  private:
   struct Worker {
     std::size_t work;
-    std::size_t first, task;  // of its tasks, and that it is at
+    std::size_t first, task;  // the first task of this process, and the current one
     Child child;
     bool over = false;
   };
@@ -38,7 +38,7 @@ class Pool {
     while (workers_.size() < most && next_ < end_) {
       const std::size_t work = next_++;
       if (work_[work].tasks == 0 || start(work, 0)) continue;
-      if (!workers_.empty()) return;  // the next may start when one of these has ended
+      if (!workers_.empty()) return;  // a process may be available when one of these has ended
     }
   }
 
@@ -65,7 +65,7 @@ class Pool {
     for (Worker& worker : workers_) {
       descriptors.push_back({worker.child.socket().descriptor(), POLLIN, 0});
     }
-    constexpr int look_every_ms = 100;  // whether to stop
+    constexpr int look_every_ms = 100;  // period of the check of `stop`
     ::poll(descriptors.data(), descriptors.size(), look_every_ms);
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < descriptors.size(); ++i) {
@@ -93,8 +93,8 @@ class Pool {
     const std::string how = worker.child.end(), words = worker.child.last_words();
     const bool is_done = worker.task >= work_[worker.work].tasks;
     if (!worker.child.has_exited_well() || (!is_done && worker.task == worker.first)) {
-      fail(worker.work, {fmt::format("a process of attest that judges {}{}{}; please report this",
-                                     how, words.empty() ? "" : ": ", words)});
+      fail(worker.work, {fmt::format("a judging process of attest {}{}{}; please report this", how,
+                                     words.empty() ? "" : ": ", words)});
     } else if (!is_done) {
       start(worker.work, worker.task);  // `worker` may have moved
     }
@@ -104,13 +104,13 @@ class Pool {
   const PoolOptions& options_;
   std::vector<Worker> workers_;
   std::size_t next_ = 0;  // to be started
-  std::size_t end_;       // of what is wanted
+  std::size_t end_;       // of the needed work
 };
 
 }  // namespace
 
 std::size_t run_in_workers(const std::vector<Work>& work, const PoolOptions& options) {
-  // What is free here would be copied page by page by each process that uses it again.
+  // Returns free memory to the system first: each worker that reused it would copy it page by page.
   ::malloc_trim(0);
   return Pool(work, options).run();
 }

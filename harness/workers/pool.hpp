@@ -1,5 +1,5 @@
-// Worker processes: jobs run in some processes at a time, and their answers come back as text. What
-// the jobs do and what their answers mean is not known here (job.hpp).
+// Worker processes: pieces of work run in several processes at a time, and send their answers as
+// text. The meaning of work and answers is defined elsewhere (job.hpp).
 #pragma once
 
 #include <cstddef>
@@ -14,25 +14,26 @@ namespace attest {
 // Some tasks in a row for one process.
 struct Work {
   std::size_t tasks = 0;
-  // Says an answer, and of how many tasks it is.
+  // Sends an answer, and the number of tasks that it is for.
   using Done = std::function<void(const std::string& answer, std::size_t tasks)>;
-  // In a worker: does the tasks from `first` on, in their order. One that returns before the last
-  // has the rest done in a fresh process.
+  // Called in a worker: does the tasks from `first` on, in their order. If it returns before the
+  // last task, the rest is done in a fresh process.
   std::function<void(std::size_t first, const Done& done)> run;
 };
 
 struct PoolOptions {
   int processes = 1;
-  std::function<bool()> stop = [] { return false; };  // true: end soon, answers do not matter
-  // In the caller's process, in any order. False: begin no piece of work after this one.
+  std::function<bool()> stop = [] { return false; };  // true: end soon, answers are not needed
+  // Called in the caller's process, in any order. False: do not begin the work after this piece.
   std::function<bool(std::size_t work, const std::string& answer)> on_answer;
-  // The rest of that piece is not done: a process cannot be started, or one died. The latter is a
-  // mistake of ours, as the code of a port is in processes of its own (host/port_process.hpp).
+  // The rest of that piece is left out: a process cannot be started, or one died. The latter is a
+  // bug of attest, because the code of a port runs in processes of its own (host/port_process.hpp).
+  // Returns the same as on_answer.
   std::function<bool(std::size_t work, const Error& error)> on_error;
 };
 
-// The index of the first piece of work that was not begun, or how many there are. Pieces are begun
-// in their order.
+// Begins the pieces of work in their order. Returns the index of the first one that was not begun
+// or is not needed; work.size() if all were done.
 std::size_t run_in_workers(const std::vector<Work>& work, const PoolOptions& options);
 
 }  // namespace attest

@@ -1,6 +1,6 @@
 load common
 
-# refused TEXT COMMAND...: in finite time and memory, with exit code 2 and that text.
+# refused TEXT COMMAND...: it ends in bounded time and memory, with exit code 2 and that text.
 refused() {
   local text=$1 memory=4000000
   shift
@@ -60,7 +60,8 @@ refused() {
 }
 
 @test "without enough descriptors there is an error, and no verdict" {
-  # With fewer than 5 the dynamic linker cannot load the program. Those of bats are closed.
+  # With fewer than 5 descriptors the dynamic linker cannot load the program. Those of bats are
+  # closed.
   for limit in 5 6 7 8 9 10 14; do
     code=0
     (

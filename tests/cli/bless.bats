@@ -58,7 +58,7 @@ golden=suite/golden/px4-v1.5.5/attitude/roll
   blessed_suite
   sed -i 's/to = 20/to = 25/' suite/cases/px4-v1.5.5/attitude/roll.toml
   before=$(cat $golden/*)
-  # script gives it a terminal to ask on
+  # script gives attest a terminal to ask on.
   run script -qec "\"$ATTEST\" --suite suite bless --reason r" /dev/null <<<"n"
   has "nothing was changed"
   [ "$before" = "$(cat $golden/*)" ]
@@ -105,7 +105,7 @@ golden=suite/golden/px4-v1.5.5/attitude/roll
   run "$ATTEST" --suite suite run --level exact
   [ "$status" -eq 0 ]
   has "22 of 22"
-  # An edit of the first is noticed in both.
+  # An edit of the first profile's golden is noticed in both profiles.
   sed -i '$s/[0-9]$/1/;$s/$/1/' suite/golden/px4-v1.5.5/attitude/roll/250hz.csv
   run "$ATTEST" --suite suite run --profile px4-v1.3.4
   [ "$status" -eq 2 ]
@@ -139,7 +139,7 @@ make_large_suite() {
   sed -i 's/duration_ticks = 30/duration_ticks = 1200/' suite/cases/px4-v1.5.5/attitude/*.toml
 }
 
-# being_written: waits until a golden is.
+# being_written: waits until a golden is being written.
 being_written() {
   for _ in $(seq 500); do
     [ -z "$(find suite/golden -name '*.new')" ] || return 0

@@ -1,6 +1,6 @@
 load common
 
-# value EXPRESSION: of the report `r`.
+# value EXPRESSION: prints its value for the report `r`.
 value() { python3 -c "import json; r = json.load(open('report.json')); print($1)"; }
 
 @test "attest knows the suite of this tree as the released one" {
@@ -21,7 +21,7 @@ value() { python3 -c "import json; r = json.load(open('report.json')); print($1)
   has "conformance: partial: px4-v1.5.5, numeric, 11 rates, all groups (missing: custom suite)"
   [ "$(value 'r["conformant"]')" = False ]
   grep -q "px4-v1.5.5 numeric, partial" badge.svg
-  cp -r "$SOURCE/golden/SUITE.sha256" suite/golden/ # says nothing
+  cp -r "$SOURCE/golden/SUITE.sha256" suite/golden/ # has no effect
   run "$ATTEST" --suite suite run --json report.json
   has "custom suite"
 }

@@ -3,7 +3,7 @@
 setup() {
   cd "$BATS_TEST_TMPDIR"
   unset NO_COLOR ATTEST_SUITE
-  export SOURCE_DATE_EPOCH=1774915200 # a report of yesterday is the same
+  export SOURCE_DATE_EPOCH=1774915200 # reports do not depend on the day
 }
 
 # A suite of one quick case, without golden, in ./suite.
@@ -48,14 +48,14 @@ lacks() {
   }
 }
 
-# fake PROGRAM: the text on stdin is a script that stands in for it, in the folder ./fakes.
+# fake PROGRAM: the script on stdin replaces it, in the folder ./fakes.
 fake() {
   mkdir -p fakes
   { echo '#!/bin/sh' && cat; } >"fakes/$1"
   chmod +x "fakes/$1"
 }
 
-# Nothing runs whose command line names this test's folder.
+# Waits until the command line of no process names this test's folder.
 nothing_is_left() {
   local pattern="${BATS_TEST_TMPDIR%?}[${BATS_TEST_TMPDIR: -1}]"
   for _ in $(seq 50); do
@@ -66,7 +66,7 @@ nothing_is_left() {
   return 1
 }
 
-# reseal PROVENANCE: as if attest had written it so.
+# reseal PROVENANCE: updates its checksum, as if attest had written the file.
 reseal() {
   python3 - "$1" <<'SEAL'
 import hashlib, pathlib, sys

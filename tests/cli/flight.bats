@@ -25,7 +25,7 @@ max = 0.45
 CASE
 }
 
-# The line of the suite's case that is broken by the sed script $1, and what is said of it.
+# broken SED_SCRIPT: edits the suite's case with it; attest must refuse the case.
 broken() {
   flight_suite
   sed -i "$1" suite/cases/px4-v1.5.5/flight/tilt.toml

@@ -18,7 +18,7 @@ judged() {
   run "$ATTEST" run --port "lib:$PORTS/hostile_one_unit.so" --filter 'instances/*again*@250hz' \
     --no-diagnose
   [ "$status" -eq 1 ]
-  has "protocol: create() returned NULL after the instance before was destroyed"
+  has "protocol: create() returned NULL after the first instance was destroyed"
 }
 
 @test "what a port says of itself is asked once, and a change breaks the protocol" {
@@ -97,7 +97,7 @@ judged() {
   done
 }
 
-# As its own process would send it: 80 bytes that give the sizes, and a head.
+# A message as the port's own process would send it: 80 bytes that give the sizes, and a head.
 forge() {
   python3 - "$1" <<'FORGE'
 import struct, sys

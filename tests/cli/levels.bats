@@ -1,6 +1,6 @@
 load common
 
-# What needs many cases and nothing of flights; those take seconds (flight.bats).
+# For tests that need many cases: groups without flights, which take seconds (flight.bats).
 open_loop=(--group anti_windup --group modes --group arming --group attitude --group robustness)
 
 @test "a port that is a tick late is the same at the events level only" {

@@ -184,7 +184,7 @@ TASKS
   [ "$status" -eq 0 ]
   "$ATTEST" run --filter 'rates/*@250hz' --json reference.json
   [ "$(grep -c '"id"' report.json)" -eq "$(grep -c '"id"' reference.json)" ]
-  # Its sixty seconds are not over; the process has its name from its command line.
+  # The process would sleep for 60 s, so it was killed. Its command line would name the port.
   ! grep -qa "port_fork[s].so" /proc/[0-9]*/cmdline 2>/dev/null
 }
 

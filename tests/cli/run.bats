@@ -1,6 +1,6 @@
 load common
 
-# What needs many cases and nothing of flights; those take seconds (flight.bats).
+# For tests that need many cases: groups without flights, which take seconds (flight.bats).
 quick=(--group attitude --group battery --group rates)
 
 @test "the reference conforms to the bit, at every rate" {
@@ -149,7 +149,7 @@ quick=(--group attitude --group battery --group rates)
   [ -z "$output" ]
 }
 
-# In a step, and already when the port is asked for its name.
+# The port hangs in a step, while it is loaded, or in create().
 @test "Ctrl-C ends a run at once and leaves no report behind" {
   for port in hang hangs_in_load hangs_in_create; do
     timeout 50 "$ATTEST" run --port "lib:$PORTS/port_$port.so" --timeout 60 --junit r.xml \

@@ -1,7 +1,7 @@
 load common
 
-# Real time on a machine that does other things: what is asserted is what its latency cannot
-# change. The budgets are wide open, so that only the port can fail.
+# Real time on a machine with other work: the tests assert only results that its latency cannot
+# change. The budgets are wide, so that only the port can fail.
 open=(--policy other --no-cyclictest --misses-per-million 1000000 --p99-latency 1000000)
 
 @test "a port is measured at each rate, beside the machine alone" {
@@ -156,7 +156,7 @@ import json
 stress = json.load(open("s.json"))["results"][0]
 slow = stress["slow_steps"]
 assert stress["overruns"] >= stress["ticks"] // 1000, stress["overruns"]
-# On a machine that does other things too, its own slow steps may crowd out these.
+# On a busy machine, its own slow steps may replace these in the list of the worst.
 if slow["count"] <= len(slow["worst"]):
     ticks = {step["tick"] for step in slow["worst"]}
     assert set(range(999, stress["ticks"], 1000)) <= ticks, slow

@@ -63,7 +63,7 @@ CHECK
   sed -i 's/execution_us = 400/execution_us = 4000/' tasks.toml
   run "$ATTEST" schedule tasks.toml
   [ "$status" -eq 2 ]
-  has "tasks.toml: the tasks of CPU 0 ask for 101.9% of it"
+  has "tasks.toml: the tasks of CPU 0 need 101.9% of it"
   sed -i 's/priority = 3/priority = 2/' tasks.toml
   run "$ATTEST" schedule tasks.toml
   has '`unit` and `estimator` have the same priority 2 on CPU 0'
@@ -150,7 +150,7 @@ CHECK
 @test "instructions are counted where valgrind is" {
   command -v valgrind || skip "no valgrind"
   nm "$ATTEST" | grep -q __asan_init && skip "valgrind and sanitizers do not go together"
-  # One vector, because which of several is the slowest is chance.
+  # One vector, because with several it depends on chance which of them is the slowest.
   local vector='px4-v1.5.5/large_angle/exactly_inverted@250hz'
   "$ATTEST" time --filter "$vector" --instructions --json one.json
   "$ATTEST" time --filter "$vector" --instructions --json two.json

@@ -12,8 +12,8 @@ std::atomic<std::size_t> g_count{0};
 
 std::size_t attest::test::allocation_count() { return g_count; }
 
-// Every unaligned form, because a sanitizer brings its own for those that a program leaves out,
-// and memory from its new may not come back to this delete.
+// Every unaligned form is replaced: a sanitizer supplies the forms that a program leaves out, and
+// memory from its new must not come to this delete.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   ++g_count;
   return std::malloc(size == 0 ? 1 : size);

@@ -51,8 +51,8 @@ RC_GTEST_PROP(AttitudeControl, SetpointReachedGivesZero, ()) {
   RC_ASSERT(rates(q, q).cwiseAbs().maxCoeff() < 1e-6);
 }
 
-// A setpoint made by tilting the body and then turning it about the new thrust axis is answered by
-// that very tilt and, weighted, by that very turn.
+// The setpoint is the body, tilted and then turned about the new thrust axis. The error that the
+// rates undo is exactly that tilt and, weighted, that turn.
 RC_GTEST_PROP(AttitudeControl, RecoversTheRotationOfTheSetpoint, ()) {
   const Quaterniond q = *any_attitude();
   const double direction = *uniform(-M_PI, M_PI);
@@ -66,7 +66,7 @@ RC_GTEST_PROP(AttitudeControl, RecoversTheRotationOfTheSetpoint, ()) {
   RC_ASSERT((rates(q, q_d) - expected).cwiseAbs().maxCoeff() < 1e-9);
 }
 
-// Where north is makes no difference.
+// The rates do not depend on where north is.
 RC_GTEST_PROP(AttitudeControl, HeadingOfTheWorldDoesNotMatter, ()) {
   const Quaterniond q = *any_attitude();
   const Quaterniond tilted = product(q, tilt_quaternion(*uniform(-M_PI, M_PI), *uniform(0, 3)));
@@ -92,7 +92,7 @@ RC_GTEST_PROP(AttitudeControl, SignOfAQuaternionDoesNotMatter, ()) {
   }
 }
 
-// The clamp lets NaN through and nothing else.
+// NaN is the only value that the clamp does not limit.
 RC_GTEST_PROP(AttitudeControl, RateLimitsHold, (bool autonomous)) {
   const AttitudeGains<float> gains = compute_gains<float>(default_parameters()).attitude;
   AttitudeControl<float> control(Profile::px4_v1_5_5);

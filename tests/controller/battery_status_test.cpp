@@ -16,7 +16,7 @@ constexpr int cells = 3;
 
 BatterySample at_rest(float cell_V) { return {cell_V * cells, 0.0f, 0.0f, false}; }
 
-// Until the filter has forgotten where it started.
+// Steps until the initial state of the filter has no effect.
 float settled(BatteryStatus& battery, const BatterySample& sample) {
   float scale = 0;
   for (int i = 0; i < 3000; ++i) scale = battery.update(sample);

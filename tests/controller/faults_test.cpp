@@ -1,4 +1,5 @@
-// The catalogue as such; that it is wrong, and how soon, is tested with the corpus (attest faults).
+// The catalogue itself. `attest faults` tests with the corpus that each fault is wrong, and how
+// soon it is caught.
 #include <cstring>
 #include <set>
 
@@ -58,7 +59,7 @@ TEST(FaultyController, WithoutAFaultIsTheReferenceToTheBit) {
   unit.destroy(self);
 }
 
-// Faults that remember something do so by instance: a second one begins anew.
+// A fault keeps its state in its instance: a second instance starts anew.
 TEST(FaultyController, InstancesShareNothing) {
   for (const Fault* fault : catalogue()) {
     const Fault* const one[] = {fault};

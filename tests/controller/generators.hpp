@@ -14,7 +14,7 @@ namespace attest::test {
 
 using Quaterniond = reference::Quaternion<double>;
 
-// Evenly spread over [low, high], whatever the size rapidcheck asks for.
+// Evenly spread over [low, high], for every size that rapidcheck asks for.
 rc::Gen<double> uniform(double low, double high);
 
 // A rotation by `angle` about the unit axis of that direction in the x-y plane.

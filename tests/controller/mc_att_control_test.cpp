@@ -10,9 +10,9 @@
 namespace attest::reference {
 namespace {
 
-constexpr std::uint32_t everything = 0xff;  // but parameters
+constexpr std::uint32_t everything = 0xff;  // except parameter_update
 
-// One controller and the topics it is given, 4 ms a step, level and armed in attitude mode.
+// One controller and its input topics: 4 ms a step, level and armed in attitude mode.
 class McAttControlTest : public ::testing::Test {
  protected:
   McAttControlTest() {
@@ -169,7 +169,7 @@ TEST_F(McAttControlTest, StepsLastBetweenTwoAndTwentyMilliseconds) {
   EXPECT_NEAR(out_.mc_att_ctrl_status.roll_rate_integ - second, 0.05f * 0.1f * 0.002f, 1e-9f);
 }
 
-// Garbage of any kind may come in; what drives the motors is finite and the integrals are bounded.
+// For any inputs, the actuator controls are finite and the integrals are bounded.
 RC_GTEST_PROP(McAttControl, GarbageNeverReachesTheMotors, (bool newer)) {
   McAttControl<float> control(newer ? Profile::px4_v1_5_5 : Profile::px4_v1_3_4);
   attest_outputs out{};

@@ -15,7 +15,7 @@ using test::mostly_ordinary_float;
 
 using Vector = Vector3<float>;
 
-// Rolling at nothing, wanting a little: inside every gate of the integral.
+// No rates and a small setpoint: inside every gate of the integral.
 RateInput<float> gentle_input() {
   RateInput<float> in;
   in.rates_B.setZero();
@@ -125,7 +125,7 @@ RC_GTEST_PROP(RateControl, AttenuationIsAFactorForAnyThrust, ()) {
   RC_ASSERT(factor <= 1.0f);
 }
 
-// Whatever comes in, the integral stays finite and inside its bound.
+// For any inputs, the integral stays finite and inside its bound.
 RC_GTEST_PROP(RateControl, IntegralNeverLeavesItsBound, (bool newer)) {
   RateControl<float> control = make_control(newer ? Profile::px4_v1_5_5 : Profile::px4_v1_3_4);
   RateGains<float> gains = compute_gains<float>(default_parameters()).rate;
@@ -142,7 +142,7 @@ RC_GTEST_PROP(RateControl, IntegralNeverLeavesItsBound, (bool newer)) {
   }
 }
 
-// On the ground each step starts from zero, but still adds what it would add in flight.
+// On the ground each step starts the integral from zero, but adds the same as in flight.
 RC_GTEST_PROP(RateControl, IntegralStartsFromZeroUnlessFlying, ()) {
   RateControl<float> control = make_control();
   control.update(gentle_input());

@@ -5,11 +5,11 @@
 
 Takes the ```sh blocks of DOCUMENT in order, in one shell, in a fresh copy of the repository below
 the scratch directory: at its root, or for a starter in the starter's folder, where its reader is.
-A command has to succeed; one that ends in the comment `# exit 1` has to exit with that status, and
-`# exit 0 or 2` with one of them, where it is the machine that decides.
+A command has to succeed. A command that ends in the comment `# exit 1` has to exit with that
+status. With `# exit 0 or 2` both are accepted, because the result depends on the machine.
 
-The set-up commands (ci/...) would build everything again: they stand in a ```sh no-run block and
-are only asked for their --help.
+The set-up commands (ci/...) would build everything again. They are in a ```sh no-run block, and
+only their --help is run.
 """
 
 import argparse
@@ -57,8 +57,8 @@ def blocks(text: str) -> list[Block]:
     return found
 
 
-# $LINENO is a line of the document: the script keeps every command in its place. Line 1 is free
-# because no block starts there.
+# The script keeps every command in its line of the document, so that $LINENO is right. Line 1 is
+# free for this prologue, because no block starts there.
 _PROLOGUE = (
     "set -Eeuo pipefail; "
     """trap 'echo "$DOCUMENT:$LINENO: exit status $? of: $BASH_COMMAND" >&2' ERR; """

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Sees documents with a wrong command fail, at its line, and right ones pass."""
+"""Checks that a wrong command fails at its line of the document, and that right documents pass."""
 
 import contextlib
 import io
@@ -27,7 +27,7 @@ class Documents(unittest.TestCase):
         target.chmod(mode)
 
     def run_document(self, text: str, path: str = "README.md") -> tuple[int, str]:
-        """Exit status, and all that was said."""
+        """The exit status and all output."""
         self.write(path, text)
         said = io.StringIO()
         with tempfile.TemporaryFile("w+") as errors:

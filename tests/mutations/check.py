@@ -3,14 +3,14 @@
 
     check.py [--only NAME]... [--room ROOM]... [--applies]
 
-A folder here is named after a room of harness/. Each of its patches is applied to a copy of the
-tree, the room's tests are built and run, and the mistake is noticed if they fail. The text at the
-head of a patch says what is mistaken. A line `Survives: why` there marks a mistake that the tests
-need not notice, and is an error once they do.
+A folder here has the name of a room of harness/. Each of its patches is applied to a copy of the
+tree; then the room's tests are built and run. The mutation is noticed if they fail. The text at the
+head of a patch describes the mutation. A line `Survives: why` there marks a mutation that the tests
+need not notice. It is an error if they notice a marked mutation.
 
-Prints a table and the score. Exits 1 if fewer than 95% are noticed, an unmarked mistake survives or
-a marked one is noticed; 2 if a patch does not apply or the code does not compile. --applies only
-looks whether each patch applies.
+Prints a table and the score. Exits 1 if fewer than 95% are noticed, an unmarked mutation survives
+or a marked one is noticed; 2 if a patch does not apply or the code does not compile. --applies only
+checks whether each patch applies.
 """
 
 import argparse
@@ -28,7 +28,7 @@ from patches import Broken, Patch, apply, execute, patches  # noqa: E402
 
 COPY = ROOT / "build" / "mutate"
 BOUND = 0.95
-# The tests of a room take seconds: what takes longer never ends.
+# The tests of a room take seconds: a test that runs into this limit hangs.
 TIMEOUT_S = 120
 
 
@@ -42,7 +42,8 @@ class Mutation(NamedTuple):
 
 
 def mutations(args: argparse.Namespace) -> list[Mutation]:
-    """What is asked for, those of one file after each other: it is compiled back only once."""
+    """The selected mutations. Those of one file follow each other, so that the unmutated file is
+    compiled again only once."""
     found = [
         Mutation(folder.name, patch)
         for folder in sorted(HERE.iterdir())
@@ -55,8 +56,8 @@ def mutations(args: argparse.Namespace) -> list[Mutation]:
 
 
 def copy_tree() -> None:
-    """The files of the project as they are now. What has not changed keeps its time, so that only
-    what has changed is compiled again."""
+    """Copies the files of the project as they are now. Unchanged files keep their time, so that
+    only changed files are compiled again."""
     listed = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"]
     listing = subprocess.run(listed, cwd=ROOT, capture_output=True, text=True, check=True).stdout
     names = set(filter(None, listing.split("\0")))
@@ -135,7 +136,7 @@ def judge(mutation: Mutation) -> Judged:
 
 
 def check_tests(rooms: list[str]) -> None:
-    """Without a mutation all tests have to pass: a test that always fails notices everything."""
+    """Without a mutation all tests have to pass: a failing test would notice every mutation."""
     for room in rooms:
         failed = first_failure(f"attest_{room}_tests")
         if failed:

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: crash, as nobody hears what it answers; not as killed, which the host did. */
+/* Judged: crash, because its answers cannot arrive. The report must not say that it was killed,
+ * because it was the host that killed it. */
 #include <unistd.h>
 
 #include "wrapper.h"

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view head = "{\"request\": 1}";
 
-// As MessageSocket sends it.
+// The layout in which MessageSocket sends it.
 struct Prefix {
   std::uint32_t magic = 0xa77e57ff, blobs = 1;
   std::uint64_t head_bytes = head.size();

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Judged: pass at 250 Hz, and unsupported at other rates and where ticks are late or missing. It
- * knows only its own step of 4 ms and ignores the timestamps, as code that Simulink generates does.
- * With GAIN it multiplies the roll control by that. Must fail then. */
+ * always steps by 4 ms and ignores the timestamps, like code that Simulink generates. With GAIN
+ * defined it multiplies the roll control by GAIN, and must fail. */
 #include <stddef.h>
 #include <string.h>
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
- * Judged: pass, each case once. It starts a process that outlives it, and a second one that goes on
- * as if it were the port; neither may answer for it, nor hold up the run, nor be left behind.
+ * Judged: pass, each case once. It starts a process that outlives it, and a second one that
+ * continues as if it were the port. Neither may answer for the port, delay the run, or outlive the
+ * run.
  */
 #include <unistd.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: pass. Its one instance lives in file scope, as in much generated code: the host must not
- * have two at a time in a process, and must create afresh for every case. */
+/* Judged: pass. Its one instance lives in file scope, as in much generated code. The host must not
+ * create two at a time in a process, and must create a new one for every case. */
 #include "wrapper.h"
 
 static wrapper* the_instance;

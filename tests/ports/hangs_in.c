@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
- * hangs_in.c - never comes back from one of its functions, HANGS_IN: create, set_parameter, destroy
+ * hangs_in.c - never returns from one of its functions, HANGS_IN: create, set_parameter, destroy
  * or load. Judged: timeout; the port's process must be gone afterwards.
  */
 #include "wrapper.h"

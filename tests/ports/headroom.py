@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""How far right ports that compute otherwise are from being accused.
+"""How far right ports that compute in other ways are from a failure.
 
     headroom.py ATTEST FOLDER [--group GROUP]... [--rate HZ,...]
 
 Runs each right port in FOLDER through the suite at the numeric level and prints a Markdown table:
-what did not pass, and the tightest headroom (tolerance / difference) of each kind of output.
-Exits 1 if a right port was accused, or came within a factor of 3 of it.
+the number of vectors that failed, and the tightest headroom (tolerance / difference) of each kind
+of output. Exits 1 if a right port failed, or if a headroom is not above 3.
 """
 
 import argparse

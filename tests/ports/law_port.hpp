@@ -1,4 +1,5 @@
-// The reference with stages of its own, as a shared library: a port that computes otherwise.
+// The reference with some stages replaced, as a shared library: a port that computes in another
+// way.
 #pragma once
 
 #include "controller/reference/mc_att_control_definition.hpp"
@@ -13,7 +14,7 @@ struct LawWith {
   attest::reference::RecoveryStages<float> recovery;
 };
 
-// Law is as reference::ReferenceLaw<float>.
+// Law has the members of reference::ReferenceLaw<float>.
 #define ATTEST_LAW_PORT(name, Law)                                                             \
   extern "C" __attribute__((visibility("default"))) const attest_unit* attest_unit_v1(void) {  \
     static constexpr attest_unit table =                                                       \

@@ -1,4 +1,5 @@
-// Right, and declares that it recovers no tailsitter: that group must be counted apart.
+// Right, and declares that it does not support tailsitter recovery: that group must be counted
+// separately.
 #include <cstring>
 
 #include "controller/reference/mc_att_control.hpp"

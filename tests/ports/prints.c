@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: pass. It is right but talks; its words must not get into the host's machine output. */
+/* Judged: pass. It is right but prints; its text must not get into the host's machine-readable
+ * output. */
 #include <stdio.h>
 
 #include "wrapper.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Judged: pass, if the host restores its floating-point mode after loading. The constructor sets
- * flush-to-zero and denormals-are-zero, as any library linked with -ffast-math does; left set, it
- * would change the host's own numbers and those of the ports that come after. On a processor
- * without SSE this is just a right port. */
+ * flush-to-zero and denormals-are-zero, as any library linked with -ffast-math does. If the mode
+ * stayed set, the results of the host and of later ports would change. On a processor without SSE
+ * this is just a right port. */
 #include "wrapper.h"
 
 #if defined(__SSE2__)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: fail, in every case that pitches. A pitch rate taken positive nose-down, the commonest
- * mistake between frames. */
+/* Judged: fail, in every case that pitches. It takes a nose-down pitch rate as positive, the most
+ * common mistake between frames. */
 #include "wrapper.h"
 
 static int step(void* self, const attest_inputs* in, attest_outputs* out) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: fail at the first step in which the golden publishes. Values that are all zero must not
- * pass for small ones: the publication flags differ. */
+/* Judged: fail at the first step in which the golden publishes. Its zeros must not pass as small
+ * values: the publication flags differ. */
 #include <string.h>
 
 #include "wrapper.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
- * stalls.c - right, but every 1,000th step keeps the CPU for 300 us: a log that is flushed, a cache
- * that is rebuilt. No comparison sees it; a run in real time names the ticks.
+ * stalls.c - right, but every 1,000th step keeps the CPU for 300 us, as if it flushed a log or
+ * rebuilt a cache. Comparing outputs cannot detect it; a run in real time names the ticks.
  */
 #include <time.h>
 

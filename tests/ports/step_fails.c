@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: fail, at step 20, as the port's own report. The outputs of that step are right, so only
- * the result tells. */
+/* Judged: fail, at step 20, as the port's own report. The outputs of that step are right: only the
+ * result shows the failure. */
 #include "wrapper.h"
 
 static int step(void* self, const attest_inputs* in, attest_outputs* out) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: pass where the estimator's delay is SAMPLE_DELAY_US of the environment (0 if it is not
- * set), and fail elsewhere. It checks the times of its samples to the microsecond, and that they
- * come once before each step. */
+/* Judged: pass if the estimator's delay is that of the environment variable SAMPLE_DELAY_US (0 if
+ * it is not set), fail otherwise. It checks the times of its samples to the microsecond, and that
+ * exactly one comes before each step. */
 #include <stddef.h>
 #include <string.h>
 
@@ -25,7 +25,7 @@ static int set_timestamp_sample(void* self, uint64_t timestamp_sample) {
   return times.given++ == 0 ? ATTEST_OK : ATTEST_FAILED;
 }
 
-/* Before the first sample has arrived the unit sees the state at the begin. */
+/* Before the first sample has arrived the unit sees the initial state. */
 static uint64_t expected(uint64_t timestamp) {
   return timestamp - times.begin < times.delay ? times.begin : timestamp - times.delay;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Right: the C starter, and beside it a mixer and a battery estimate written by hand from the law's
- * description, without sight of controller/actuation: the other implementation that the goldens of
- * these groups agree with, to the bit. */
+/* Right: the C starter, with a mixer and a battery estimate written by hand from the law's
+ * description, without sight of controller/actuation. It is the second implementation of these
+ * groups. Their goldens agree with it to the bit. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -192,7 +192,7 @@ static int battery_set_parameter(void* self, const char* name, float value) {
   return ATTEST_OK;
 }
 
-/* A first-order filter that forgets what is not a number. */
+/* A first-order filter that keeps its state where the result would not be finite. */
 static void follow(float* state, float sample) {
   const float next = *state * 0.99f + sample * 0.01f;
   if (isfinite(next)) *state = next;

@@ -52,7 +52,7 @@ static inline int wrapper_step(void* self, const attest_inputs* in, attest_outpu
   return attest_starter_unit_v1()->step(w->law, in, out);
 }
 
-/* Whether the step that begins now is the one to go wrong in. */
+/* Whether the step that begins now must go wrong. */
 static inline int wrapper_fault_is_due(const void* self) {
   const wrapper* w = self;
   return w->step_index == WRAPPER_FAULT_STEP;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: never pass. At step 20 it writes past the outputs, with outputs that are right: the host
- * finds its guard bytes changed (protocol), or its process dies of it (crash). */
+/* Judged: never pass. At step 20 its outputs are right, but it writes past them. The host finds its
+ * guard bytes changed (protocol), or the process dies (crash). */
 #include <string.h>
 
 #include "wrapper.h"

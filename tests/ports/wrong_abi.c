@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: refused when it is loaded, naming both versions; nothing of it but abi_version may be
- * used. The functions are absent to prove it. */
+/* Judged: refused when it is loaded, naming both versions. The host may read only abi_version: the
+ * functions are absent, so any call would crash. */
 #include "wrapper.h"
 
 #ifndef ABI_VERSION

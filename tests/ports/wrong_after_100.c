@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: fails. It says that it has 22 bits behind the point, for which much is allowed, and is
-   right for 100 steps; then its yaw control is 4% too large. */
+/* Judged: fails. It declares 22 fraction bits, for which tolerances are wide, and is right for 100
+   steps; then its yaw control is 4% too large. */
 #include <stddef.h>
 #include <string.h>
 

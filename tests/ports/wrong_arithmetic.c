@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: not loaded. It says that it computes in decimals, which nobody knows a tolerance for. */
+/* Judged: not loaded. It declares decimal arithmetic, for which no tolerance is defined. */
 #include <stddef.h>
 #include <string.h>
 

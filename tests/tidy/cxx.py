@@ -1,5 +1,5 @@
-"""Just enough C and C++ to find comments, includes and functions. A heuristic, not a parser: it
-knows the style of this repository and does not expand macros."""
+"""Finds comments, includes and functions of C and C++. It is a heuristic, not a parser: it relies
+on the style of this repository and does not expand macros."""
 
 import re
 from typing import NamedTuple
@@ -49,7 +49,7 @@ def without_comments(text: str) -> str:
 
 
 def code_only(text: str) -> str:
-    """Comments, directives and what is in quotes become spaces; lines and columns stay."""
+    """Comments, directives and quoted text become spaces; lines and columns stay."""
 
     def keep(match):
         if match["number"]:
@@ -78,7 +78,7 @@ _ACCESS = re.compile(r"\s*(?:public|private|protected)\s*$")
 
 
 def _opens(head: str) -> str:
-    """What the brace after `head` opens, outside functions."""
+    """The kind of block that the brace after `head` opens, outside functions."""
     plain = _DECORATION.sub("", head)
     if plain.count("(") > plain.count(")"):
         return "initialiser"  # a default argument

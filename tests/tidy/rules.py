@@ -66,7 +66,8 @@ def _reachable(folder: str) -> list[str]:
     return HARNESS_ORDER[: HARNESS_ORDER.index(folder) + 1]
 
 
-# <cmath>, <stdint.h>; not <unistd.h>: the law has no clock, file or thread of the system.
+# <cmath> and <stdint.h> match, <unistd.h> does not: the law uses no clock, file or thread of the
+# system.
 _STANDARD = re.compile(r"[a-z_0-9]+|(?:float|math|stdbool|stddef|stdint|stdio|stdlib|string)\.h")
 
 
@@ -80,7 +81,7 @@ def controller_stands_alone(tree: Tree):
                 yield Finding(
                     path,
                     include.line,
-                    f"the controller includes {include.path}: it knows nothing but Eigen,"
+                    f"the controller includes {include.path}: it may include only Eigen,"
                     " tl::expected and the standard library",
                 )
 
@@ -131,7 +132,7 @@ def _lists(cmake: str, words: set[str], path: str) -> bool:
     return stem in words and any(re.search(r"\$\{\w+\}" + re.escape(suffix), w) for w in words)
 
 
-# Data and headers that a command depends on may be globbed; what is compiled may not.
+# Data and headers that a command depends on may be globbed; compiled sources may not.
 _SOURCE_GLOB = re.compile(r"\bfile\s*\(\s*GLOB[^)]*\.(?:c|cpp)\b")
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Sees each rule fail on a bad snippet and pass on a good one."""
+"""Checks that each rule fails on a bad snippet and passes on a good one."""
 
 import sys
 import unittest
@@ -16,7 +16,7 @@ def function_of(lines: int) -> str:
     return "int f() {\n" + "  g();\n" * (lines - 2) + "}\n"
 
 
-# rule: (files that break it, files that keep it). The first file of the broken ones is blamed.
+# rule: (files that break it, files that keep it). The finding names the first file of the former.
 EXAMPLES = {
     "line_length": [
         ({"harness/core/a.cpp": f"// {LONG_LINE}\n"}, {"golden/README.md": f"{LONG_LINE}\n"}),

@@ -9,7 +9,7 @@ from tree import Tree
 
 
 def function_statistics(tree: Tree) -> str:
-    """The aim is a 90th percentile of 25 lines; the rule cuts off the tail only."""
+    """The aim is a 90th percentile of 25 lines; the rule limits only the longest functions."""
     lengths = sorted(
         function.lines for path in tree.cxx() for function in cxx.functions(tree.text(path))
     )

@@ -24,7 +24,7 @@ class Finding(NamedTuple):
 
 
 class Tree:
-    """Paths with their text. `texts` stands in for the repository in the self-test."""
+    """Paths with their text. `texts` replaces the repository in the self-test."""
 
     def __init__(self, texts: dict[str, str] | None = None):
         self._texts = texts if texts is not None else dict(_texts())
@@ -51,7 +51,7 @@ class Tree:
         ]
 
     def code(self) -> list[str]:
-        """What people write for a program to read: C, C++, CMake, Python, Rust, shell."""
+        """Sources that people write: C, C++, CMake, Python, Rust, shell."""
         cmake = set(self.cmake())
         return [
             path

@@ -24,7 +24,7 @@ class CaseFiles {
   // A case of the group `tests`, 10 ticks long: five lines, so `body` begins in line 6.
   static std::string with(std::string_view body);
 
-  // What `text` is read as, in the group `tests`.
+  // Parses `text` as a case of the group `tests`.
   Result<Case> parse(std::string_view text) const;
 
  private:

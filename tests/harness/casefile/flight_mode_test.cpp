@@ -88,7 +88,7 @@ TEST(FlightMode, ATransitionIsAFlagBesideAMode) {
   const auto errors = [](const std::string& lines) {
     return errors_of("[vehicle_control_mode]\n" + lines);
   };
-  EXPECT_EQ(errors("in_transition = 1\n"), "7:1: needs a `flight_mode` beside it");
+  EXPECT_EQ(errors("in_transition = 1\n"), "7:1: needs a `flight_mode` in the same table");
   EXPECT_THAT(errors("flight_mode = \"AUTO_RTL\"\nin_transition = 0.5\n"),
               testing::HasSubstr("8:1: is a flag"));
 }

@@ -1,4 +1,4 @@
-// What a case file may not say, outside its topics and signals.
+// Errors of a case file outside its topics and signals.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -121,11 +121,11 @@ TEST(CaseErrors, DroppedTicksAreTicksOfTheCase) {
 TEST(CaseErrors, OfTheUnitsTicks) {
   EXPECT_EQ(errors_of("[unit]\njitter_shape = 'wide'\n"), "7:1: must be uniform or heavy");
   EXPECT_EQ(errors_of("[unit]\ndrop_every = 1\n"),
-            "7:1: must be 2 or more: one in so many ticks does not happen");
+            "7:1: must be 2 or more: the last of each so many ticks is left out");
   EXPECT_EQ(errors_of("[unit]\nstall = { every_ticks = 4, for_ticks = 3, catches_up = true }\n"),
             "");
   EXPECT_THAT(errors_of("[unit]\nstall = { every_s = 0.01, for_ticks = 2 }\n"),
-              HasSubstr("is over before the next one"));
+              HasSubstr("must end before the next one begins"));
   EXPECT_THAT(errors_of("[unit]\nstall = { every_s = 0.01, for_s = 0 }\n"),
               HasSubstr("must be positive"));
   EXPECT_THAT(errors_of("[unit]\nstall = { every_s = 0.01 }\n"), HasSubstr("for_s"));

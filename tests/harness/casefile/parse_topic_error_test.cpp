@@ -94,7 +94,7 @@ TEST(TopicErrors, Publication) {
   EXPECT_THAT(error("rate_hz = 0"), HasSubstr("7:1: `0` is not a rate"));
 }
 
-// It is what makes a step.
+// control_state starts each step, so it has no rate of its own.
 TEST(TopicErrors, TheControlStateHasNoPublication) {
   EXPECT_THAT(error_of("control_state", "rate_hz = 50"), HasSubstr("unknown key `rate_hz`"));
   EXPECT_THAT(error_of("control_state", "publish = \"never\""), HasSubstr("unknown key `publish`"));

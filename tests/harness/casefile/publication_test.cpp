@@ -1,4 +1,5 @@
-// When a topic's samples reach the unit, and what it sees meanwhile. battery_status stands for all.
+// When a topic's samples reach the unit, and which values it sees in between. battery_status
+// represents all topics.
 #include <string>
 #include <vector>
 
@@ -63,7 +64,7 @@ TEST(Publication, PeriodicShowsTheLastSampleInBetween) {
 
 TEST(Publication, AtGivenTimes) {
   const Trace trace = battery(std::string(counting) + "publish_at_ticks = [1, 1.5, 6]\n");
-  // A sample between ticks is seen by the next, with the value that it had.
+  // The next tick sees a sample that lies between ticks, with the value at the sample's time.
   EXPECT_THAT(published_at(trace), ElementsAre(1, 2, 6));
   EXPECT_THAT(scales(trace), ElementsAre(0, 1, 1.5, 1.5, 1.5, 1.5, 6, 6, 6, 6));
 }
@@ -112,7 +113,7 @@ TEST(Publication, ReleasesMayBeDroppedOrLate) {
   EXPECT_THAT(
       published_at(battery(std::string(counting) + "period_ticks = 2\ndrop_samples = [1, 3]\n")),
       ElementsAre(0, 4, 8));
-  // Late by less than a period, each by its own part.
+  // Each sample is late by its own random part of a period.
   const Trace late = battery(std::string(counting) + "rate_hz = 125\njitter = 0.9\nseed = 3\n");
   EXPECT_THAT(published_at(battery(std::string(counting) + "rate_hz = 125\n")),
               ElementsAre(0, 2, 4, 6, 8));

@@ -1,4 +1,4 @@
-// SCHEMA.md tells of every word that a case file may use, and its example is a case.
+// SCHEMA.md contains every word that a case file may use, and its example is a valid case.
 #include <filesystem>
 #include <regex>
 #include <set>
@@ -39,7 +39,7 @@ std::set<std::string> matches(const std::string& text, const std::string& patter
   return found;
 }
 
-// A word of something between backquotes.
+// Whether the word occurs between backquotes.
 bool is_named(const std::string& word) {
   static const std::set<std::string> words = [] {
     std::string code;
@@ -58,7 +58,7 @@ std::string parsers() {
   return text;
 }
 
-// Keys and values are the words in quotes, but for the stems of times, which take a unit.
+// Keys and values are the quoted words, except the stems of times, which take a unit.
 TEST(Schema, NamesEveryWordThatTheParserReads) {
   const std::string text = parsers();
   const auto stems = matches(text, R"re(_spans?\(\w+, "([a-z_]+)"\))re");

@@ -46,7 +46,7 @@ TEST(Signal, StepAndRampBeginAndEndAtTheirTimes) {
   EXPECT_EQ(at(ramp, ms(900)), 2);
 }
 
-// In ticks and seconds its order depends on the rate.
+// One time is in ticks, the other in seconds, so their order depends on the rate.
 TEST(Signal, ARampThatEndsBeforeItBeginsIsAStep) {
   const Ramp ramp{1, 2, in_ticks(50), in_seconds(0.1)};
   EXPECT_EQ(at(ramp, ms(300)), 1);
@@ -135,8 +135,8 @@ TEST(Attitude, ComponentsOfPicturedAngles) {
   expect(by_tilt(90, 0, 0), half, half, 0, 0);   // roll right
   expect(by_tilt(90, 90, 0), half, 0, half, 0);  // pitch up
   expect(by_tilt(0, 33, 90), half, 0, 0, half);  // yaw clockwise
-  // First the yaw, then the tilt about an axis of the world: the nose to the east, then the
-  // vehicle over to the east about north, which the nose follows down.
+  // First the yaw turns the nose to the east. Then the vehicle tilts to the east about north, an
+  // axis of the world, so the nose points down.
   expect(by_tilt(90, 0, 90), 0.5, 0.5, -0.5, 0.5);
 }
 
@@ -158,7 +158,7 @@ RC_GTEST_PROP(Attitude, EulerAnglesAreTheAerospaceSequence, ()) {
                  std::sin(r) * std::sin(p) * std::cos(y) - std::cos(r) * std::sin(y)));
 }
 
-// The tilt is that of the thrust axis, whatever the yaw: cos(tilt) is the lower right of R(q).
+// The tilt is that of the thrust axis, for every yaw: cos(tilt) is the lower right of R(q).
 RC_GTEST_PROP(Attitude, TiltIsTheAngleOfTheThrustAxis, ()) {
   const double tilt = *rc::gen::inRange(0, 1800) / 10.0;
   const Quaternion q = by_tilt(tilt, *rc::gen::inRange(0, 360), *rc::gen::inRange(-180, 180));

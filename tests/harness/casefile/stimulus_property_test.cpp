@@ -1,4 +1,4 @@
-// What holds for every case, whatever is in it.
+// Properties of the inputs of every case.
 #include <string>
 
 #include <fmt/format.h>

@@ -186,7 +186,7 @@ TEST(Stimulate, ATimestampIsRoundedDownOnce) {
   EXPECT_EQ(stimulus.timestamp_us(Nanoseconds(500)), 2u);
 }
 
-// Whose clock runs faster by a quarter has its ticks earlier, and more of them in the same time.
+// With a clock that is faster by a quarter, ticks come earlier, and more of them in the same time.
 TEST(UnitTicks, OnAFasterClockAreCloserTogether) {
   const auto times = unit_ticks(case_of(""), Rate::hz(100), 0.25);
   ASSERT_EQ(times.size(), 13u);

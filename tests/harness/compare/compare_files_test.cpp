@@ -1,4 +1,4 @@
-// Files beside each other, a tick at a time: what the comparison of whole traces says.
+// Comparing files one tick at a time gives the same result as comparing whole traces.
 #include "harness/compare/compare_files.hpp"
 
 #include <gmock/gmock.h>

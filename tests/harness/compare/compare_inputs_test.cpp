@@ -53,7 +53,7 @@ TEST(FirstInputDifference, SeesParametersInForce) {
   EXPECT_THAT(first_input_difference(a, b), Optional(2u));
   b.parameters = {{0, "MC_ROLL_P", 5}, {2, "MC_PITCH_P", 6}};
   EXPECT_THAT(first_input_difference(a, b), Optional(2u));
-  // Said again, or in another order, it is the same parameter.
+  // The same values set again, or in another order, are no difference.
   a.parameters = {{0, "MC_ROLL_P", 5}, {0, "MC_PITCH_P", 6}};
   b.parameters = {{0, "MC_PITCH_P", 6}, {0, "MC_ROLL_P", 5}, {2, "MC_ROLL_P", 5}};
   EXPECT_EQ(first_input_difference(a, b), std::nullopt);

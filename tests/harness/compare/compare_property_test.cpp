@@ -42,7 +42,7 @@ Place any_float_output() {
   return {*rc::gen::inRange<std::size_t>(0, trace_ticks), *rc::gen::elementOf(outputs)};
 }
 
-// `want` with one value moved by `amount` of the tolerance that it has.
+// `want` with one value moved by `amount` times its tolerance.
 Trace moved(const Trace& want, const Place& place, double amount, const Tolerances& tolerances) {
   const Channel& what = channels()[place.channel];
   Trace got = want;
@@ -103,7 +103,7 @@ RC_GTEST_PROP(Compare, WhatIsExactIsNumeric, ()) {
   if (compare(a, b, Tolerances(Level::exact)).agrees()) {
     RC_ASSERT(compare(a, b, Tolerances()).agrees());
   }
-  // The bits decide, whichever is called golden.
+  // The bits decide, so got and golden can be exchanged.
   RC_ASSERT(compare(a, b, Tolerances(Level::exact)).deviating_ticks ==
             compare(b, a, Tolerances(Level::exact)).deviating_ticks);
 }

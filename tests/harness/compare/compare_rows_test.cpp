@@ -11,7 +11,7 @@ namespace {
 constexpr double whole = 1e9;
 const char* const yaw = "out/vehicle_rates_setpoint.yaw";
 
-// What a golden keeps of a flight: every third tick, and not what was new.
+// The part of a flight that a golden keeps: every third tick, without in/updated.
 Trace rows_of(const Trace& flown) {
   Trace rows;
   rows.present = flown.present & ~channels_of(Module::mc_att_control, "in/updated.");
@@ -68,7 +68,8 @@ TEST(CompareRows, ARowBetweenTicksIsAMismatch) {
   EXPECT_THAT(comparison.mismatch, testing::HasSubstr("a row at 28001 us"));
 }
 
-// The tolerance widens with the tilt error to the setpoint in force, which was new long before.
+// The tolerance widens with the tilt error to the setpoint in force, which was published long
+// before.
 TEST(CompareRows, KnowsTheSetpointInForce) {
   Trace flown = sample_trace(10);
   for (std::size_t tick = 0; tick < 10; ++tick) {

@@ -36,7 +36,7 @@ TEST(Events, AreTheSameATickLater) {
   EXPECT_FALSE(first_event_difference(moving(4, 13), moving(5, 12)));
 }
 
-// A port that answers one tick late has said nothing at the first.
+// A port that is one tick late publishes nothing at the first tick.
 TEST(Events, TheFirstAndTheLastTickMayBeEither) {
   Trace got = moving(5, 12);
   set(got, 0, rates_published, 0);
@@ -96,7 +96,7 @@ TEST(Events, AreALevelOfCompare) {
   EXPECT_THAT(late.event, testing::HasSubstr("expected moving"));
 }
 
-// What stands in a topic that is not published says nothing, nor does the step from it.
+// Values of a topic that is not published have no meaning, nor has the step from them.
 TEST(Events, AStepFromAnUnpublishedTickIsNoEvent) {
   const char* const status_published = "out/mc_att_ctrl_status.published";
   Trace want = moving(20, 20), got = want;
@@ -109,7 +109,7 @@ TEST(Events, AStepFromAnUnpublishedTickIsNoEvent) {
   EXPECT_TRUE(first_event_difference(got, want)) << "published, the step is an event";
 }
 
-// By less than what right ports differ by.
+// The distance to the edge is smaller than the difference between right ports.
 TEST(Events, WhatIsTooNearToItsEdgeToTellAgreesWithEither) {
   Trace want = moving(20, 20), got = want;
   for (std::size_t tick = 6; tick < 14; ++tick) {

@@ -16,7 +16,7 @@ const char* const roll_rate = "out/vehicle_rates_setpoint.roll";
 const char* const pitch_torque = "out/actuator_controls_0.control[1]";
 const char* const yaw_integral = "out/mc_att_ctrl_status.yaw_rate_integ";
 
-// Everything is constant, these three are not zero.
+// A constant trace, in which these three values are not zero.
 Trace constant(double rate, double control, double integrated) {
   Trace trace = sample_trace(20);
   for (std::size_t tick = 0; tick < 20; ++tick) {
@@ -82,7 +82,7 @@ TEST(Gross, NearAHalfTurnEitherWayIsRight) {
     }
   }
   EXPECT_FALSE(first_gross_difference(got, want));
-  // In rates mode nothing turns.
+  // In rates mode there is no attitude error, so no half turn.
   for (Sample& sample : want.samples) {
     sample.in.vehicle_control_mode.flag_control_attitude_enabled = 0;
   }

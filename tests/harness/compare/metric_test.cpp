@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// 4 ms apart; the setpoint is level, and the attitude rolls by these errors.
+// Ticks 4 ms apart; the setpoint is level, and the attitude rolls by these errors.
 Trace rolled_by(const std::vector<double>& errors_deg) {
   Trace trace = sample_trace(errors_deg.size());
   for (const double error : errors_deg) {
@@ -73,7 +73,7 @@ TEST(Overshoot, IsWhatComesAfterTheFirstArrival) {
   EXPECT_EQ(measured(overshoots, rolled_by({40, 10, 3})), infinity);
 }
 
-// By the quaternions' directions alone.
+// Only the directions of the quaternions count.
 TEST(AttitudeError, DoesNotMindSignsAndIsFineNearZero) {
   Trace trace = rolled_by({0.001, 0.001});
   trace.samples[1].in.vehicle_attitude_setpoint.q_d[0] = -1;
@@ -92,7 +92,7 @@ TEST(RateError, IsAgainstTheSetpointInForce) {
   trace.plant[0].rate_rad_s = {1, 2, 3};
   sample.out.vehicle_rates_setpoint = {1, 2, 1, 0, 1};
   EXPECT_NEAR(measured(metric(Measure::rms_rate_error_rad_s), trace), 2, 1e-6);
-  // Rates from outside: the unit's own are not asked.
+  // The rates setpoint comes from outside: the unit's own output is not used.
   sample.in.vehicle_control_mode.flag_control_attitude_enabled = 0;
   sample.in.vehicle_control_mode.flag_control_manual_enabled = 0;
   sample.in.vehicle_rates_setpoint = {1, 2, 0, 0};
@@ -119,7 +119,7 @@ TEST(Metric, VersusAnotherWindowIsARatio) {
   EXPECT_NEAR(measured(ratio, rolled_by({10, 10, 5, 5})), 0.5, 1e-6);
 }
 
-// std::max drops a NaN that comes second: a peak is then that of the numbers.
+// std::max drops a NaN that comes second, so the peak would be that of the numbers.
 TEST(Metric, OfSomethingThatIsNoNumberIsNone) {
   const char* const integrals[] = {"out/mc_att_ctrl_status.roll_rate_integ",
                                    "out/mc_att_ctrl_status.pitch_rate_integ",

@@ -11,7 +11,7 @@ namespace attest {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// 4 ms apart, level, in an attitude mode, every output published with a value of its own.
+// Ticks 4 ms apart, level, in an attitude mode, every output published with a value of its own.
 Trace sample_trace(std::size_t ticks);
 
 // Index of a channel that exists.

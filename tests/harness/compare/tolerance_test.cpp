@@ -59,7 +59,7 @@ TEST(Tolerances, AreNotSetForWhatIsNoFloatOutput) {
   }
 }
 
-// At the exact level a case's tolerances are known, and without effect.
+// At the exact level a case's tolerances are accepted, but have no effect.
 TEST(Tolerances, TheExactLevelHasNone) {
   Tolerances tolerances(Level::exact);
   EXPECT_TRUE(tolerances.set("vehicle_rates_setpoint", {0.5, 0}));
@@ -77,7 +77,7 @@ TEST(Tolerances, OfFixedPointAreAtLeastItsLsbs) {
   EXPECT_DOUBLE_EQ(coarse.of(yaw).absolute, Tolerances::rate_lsb / (1 << 22));
   EXPECT_DOUBLE_EQ(coarse.of(integral).absolute, Tolerances::integral_lsb / (1 << 22));
   EXPECT_EQ(coarse.of(channel("out/actuator_controls_0.published")).absolute, 0);
-  // What is not computed in fixed point is not rounded by it.
+  // Fixed point rounds only computed values.
   for (std::size_t i = 0; i < channels().size(); ++i) {
     const Quantity quantity = channels()[i].quantity;
     const bool is_computed = channels()[i].is_output() && quantity != Quantity::flag &&
@@ -86,7 +86,7 @@ TEST(Tolerances, OfFixedPointAreAtLeastItsLsbs) {
     EXPECT_EQ(coarse.of(i).absolute, Tolerances().of(i).absolute) << channels()[i].name;
     EXPECT_EQ(coarse.of(i).relative, Tolerances().of(i).relative) << channels()[i].name;
   }
-  // What integrates has an LSB more for each tick of a flight.
+  // An integral may be off by one more LSB for each tick of a flight.
   Tolerances of_flight;
   of_flight.allow_lsb(22, 1000);
   EXPECT_EQ(of_flight.of(yaw).absolute, coarse.of(yaw).absolute);

@@ -14,7 +14,7 @@ namespace {
 constexpr const char* roll = "out/vehicle_rates_setpoint.roll";
 constexpr double default_tolerance = Tolerances::rate.absolute;
 
-// 179.5 deg away from a level setpoint: 3e-6/8.7e-3 = 3.4e-4 more is allowed.
+// 179.5 deg away from a level setpoint: this allows 3e-6/8.7e-3 = 3.4e-4 more.
 Trace nearly_upside_down() {
   Trace trace = sample_trace(1);
   const double half = 179.5 * std::numbers::pi / 360;
@@ -77,7 +77,7 @@ TEST(Widening, NothingIsWiderWithoutASetpoint) {
   EXPECT_FALSE(agrees(trace, 2 * default_tolerance));
 }
 
-// The law holds on to the setpoint that was published, whatever a later row of a recording shows.
+// The law keeps the setpoint that was published, although a later row of a recording shows another.
 TEST(Widening, IsByTheSetpointLastPublished) {
   Trace trace = nearly_upside_down();
   trace.samples.push_back(trace.samples[0]);

@@ -107,7 +107,7 @@ TEST(AtomicFile, LeavesNothingBehindWhenTheProcessIsKilled) {
   const pid_t child = ::fork();
   if (child == 0) {
     auto file = AtomicFile::open(directory.path() / "a.csv");
-    ::_exit(file && file->write("half") ? 0 : 1);  // destroys nothing, like a kill
+    ::_exit(file && file->write("half") ? 0 : 1);  // runs no destructor, like a kill
   }
   int status = 0;
   ASSERT_EQ(::waitpid(child, &status, 0), child);
@@ -184,7 +184,7 @@ TEST(AtomicFile, WritesDirectlyToWhatIsNoOrdinaryFile) {
 }
 
 TEST(AtomicFile, AppendsToAnOrdinaryFileBehindAFileDescriptor) {
-  // As `attest sim --out /dev/stdout > file` has it: renaming would lose the other writers' text.
+  // The case of `attest sim --out /dev/stdout > file`: renaming would lose the other writers' text.
   const TemporaryDirectory directory;
   const fs::path path = directory.write("a.csv", "before\n");
   std::FILE* stream = std::fopen(path.c_str(), "a");
@@ -208,7 +208,7 @@ TEST(AtomicFile, SaysAtOnceWhyItCannot) {
             here + "/no/a.csv: cannot create the file: No such file or directory");
 }
 
-// Root may write everywhere: for such a test it is somebody else.
+// Root may write everywhere, so such a test runs as another user.
 class OrdinaryUser {
  public:
   explicit OrdinaryUser(const fs::path& directory) {

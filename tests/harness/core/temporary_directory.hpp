@@ -1,4 +1,4 @@
-// A directory that a test may fill; gone when the test is.
+// A directory for the files of a test, removed at the end of the test.
 #pragma once
 
 #include <cstdlib>
@@ -26,7 +26,7 @@ class TemporaryDirectory {
 
   const std::filesystem::path& path() const { return path_; }
 
-  // Writes a file, byte for byte, and gives its path.
+  // Writes a file, byte for byte, and returns its path.
   std::filesystem::path write(std::string_view name, std::string_view bytes) const {
     const std::filesystem::path file = path_ / name;
     // Some file systems flush to disk when a file is truncated and written again.

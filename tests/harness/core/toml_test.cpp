@@ -19,7 +19,7 @@ TomlFile parsed(std::string_view text) {
   return *file;
 }
 
-// What finish() says; empty when all is well.
+// The error of finish(); empty if there is no error.
 std::string complaints(const TomlFile& file) {
   const auto done = file.finish();
   return done ? "" : done.error().to_string();

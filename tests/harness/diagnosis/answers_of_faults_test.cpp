@@ -1,4 +1,4 @@
-// What the faults of the catalogue answer to the inputs of a vector.
+// The outputs of the catalogue's faults for the inputs of a vector.
 #include <algorithm>
 #include <cstring>
 
@@ -20,7 +20,7 @@ using testing::SizeIs;
 
 const Subject subject{"px4-v1.5.5"};
 
-// Shows a dropped yaw weight and a missing attenuation.
+// A vector on which a dropped yaw weight and a missing attenuation change the outputs.
 Trace given() {
   return stimulate(
       case_of("[parameters]\nMC_TPA_BREAK = 0.3\n[control_state]\nroll_rate = 0.3\n"

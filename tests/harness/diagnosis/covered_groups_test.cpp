@@ -28,7 +28,7 @@ std::vector<Recorded> all_recordings() {
   return all;
 }
 
-// Does a recording of the profile tell some mistake of the group from the law?
+// Whether a recording of the profile distinguishes some mistake of the group from the law.
 bool tells_a_mistake_of(const std::string& group, const std::string& profile,
                         const std::vector<Recorded>& recordings) {
   const auto known = *reference::profile_from_name(profile);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr faults::Profile newest = faults::Profile::px4_v1_5_5;
 
-// Cases of 20 ms, of which the ticks say the rate: 2 at 100 Hz, 5 at 250 Hz, 20 at 1 kHz.
+// Cases of 20 ms, so the number of ticks gives the rate: 2 at 100 Hz, 5 at 250 Hz, 20 at 1 kHz.
 class Cases {
  public:
   void add(std::string_view name, std::string_view body, std::vector<int> rates_hz) {

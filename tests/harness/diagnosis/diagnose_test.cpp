@@ -63,7 +63,7 @@ TEST(Diagnose, NamesBothOfTwo) {
   EXPECT_NE(named.find("tpa-missing"), std::string::npos) << named;
 }
 
-// A port that answers nothing of the catalogue still deviates somewhere.
+// A port that matches no fault of the catalogue still deviates somewhere.
 TEST(Diagnose, WithoutASuspectTheStageIsWhereDeviationsLie) {
   std::vector<VectorSimilarity> all = vectors("yaw-weight-dropped");
   for (VectorSimilarity& vector : all) {

@@ -16,7 +16,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-// Shows a dropped yaw weight and a missing attenuation.
+// A vector on which a dropped yaw weight and a missing attenuation change the outputs.
 const char* const tilted_and_loud =
     "[parameters]\nMC_TPA_BREAK = 0.3\n[control_state]\nroll_rate = 0.3\n"
     "[vehicle_attitude_setpoint]\nq_d = { tilt_deg = 40, yaw_deg = 25 }\nthrust = 0.8\n";
@@ -72,7 +72,7 @@ TEST_F(DiagnosisJobTest, ARightPortDoesNotDeviate) {
   EXPECT_EQ(of_fault(**found, "tpa-missing").intersection, 0u);
 }
 
-// As in the verdict: what passed there must not count as failed here.
+// The same tolerances as for the verdict: a vector that passed must not count as failed here.
 TEST_F(DiagnosisJobTest, TheTolerancesAreThoseOfTheCaseAndThePort) {
   const char* const wide =
       "[tolerance]\nwhy = \"x\"\nactuator_controls_0 = { absolute = 9 }\n"
@@ -118,7 +118,7 @@ TEST_F(DiagnosisJobTest, AGroupThatThePortDeclinesHasNoDiagnosis) {
   EXPECT_FALSE(*ran());
 }
 
-// Its first dt is not the longest, as that of others.
+// The first dt of such a port is its period; other ports start with the longest dt.
 TEST_F(DiagnosisJobTest, APortWithAFixedStepIsGivenTheCaseFromOnePeriodOn) {
   const auto right = run(here(test_port("fixed_step")));
   ASSERT_TRUE(right && *right);
@@ -128,7 +128,7 @@ TEST_F(DiagnosisJobTest, APortWithAFixedStepIsGivenTheCaseFromOnePeriodOn) {
   EXPECT_TRUE((*wrong)->deviates);
 }
 
-// The law turns to the left, this one to the right.
+// The law turns to the left, this port to the right.
 TEST_F(DiagnosisJobTest, OnAThresholdEitherBranchIsRight) {
   suite_.add_unblessed("turned",
                        "either_branch = [\"yaw_wrap\"]\n[control_state]\nq.yaw_deg = 180\n"
@@ -169,7 +169,7 @@ TEST(DiagnosisCodec, AResultComesBackAsItWas) {
 
 // ---- which vectors ------------------------------------------------------------------------------
 
-// Cases of 20 ms, of which the ticks say the rate: 2 at 100 Hz, 5 at 250 Hz, 160 at 8 kHz.
+// Cases of 20 ms, so the number of ticks gives the rate: 2 at 100 Hz, 5 at 250 Hz, 160 at 8 kHz.
 class DiagnosisJobsTest : public testing::Test {
  protected:
   void add_case(const std::string& name, Span duration = {0.02, Span::In::seconds}) {
@@ -189,7 +189,7 @@ class DiagnosisJobsTest : public testing::Test {
     results_.push_back(std::move(result));
     return results_.back();
   }
-  // Cases of 1, 2, 3, ... ticks, which are all at 250 Hz.
+  // Cases of 1, 2, 3, ... ticks, all at 250 Hz.
   void add_cases(const std::string& name, int count, Verdict verdict) {
     for (int i = 1; i <= count; ++i) {
       add_case(fmt::format("{}_{}", name, i), {static_cast<double>(i), Span::In::ticks});
@@ -268,7 +268,7 @@ TEST_F(DiagnosisJobsTest, FlightsAreLeftOut) {
   EXPECT_THAT(jobs(), IsEmpty());
 }
 
-// The whole catalogue takes long on them.
+// Running the whole catalogue on a long case takes long.
 TEST_F(DiagnosisJobsTest, LongCasesAreLeftOut) {
   add_case("long", {5000, Span::In::ticks});
   add_result("long", 250, Verdict::fail);
@@ -281,7 +281,8 @@ TEST_F(DiagnosisJobsTest, FewAreRunAllInTheOrderOfTheCases) {
   EXPECT_THAT(ticks_of_jobs(), ElementsAre(1, 2, 3, 4, 5));
 }
 
-// What is in between is seen in three of them: each runs the whole catalogue.
+// Each job runs the whole catalogue, so only some vectors are run. Their spread is checked at the
+// first, the middle and the last.
 TEST_F(DiagnosisJobsTest, OfManyThatFailSomeAreRunThatAreSpreadOverTheCorpus) {
   add_cases("bad", 200, Verdict::fail);
   const auto all = jobs();

@@ -12,7 +12,8 @@ namespace {
 
 using testing::IsEmpty;
 
-// Shows a missing attenuation: of a roll rate of 0.3 rad/s, P is 0.045.
+// A vector on which a missing attenuation changes the outputs: of a roll rate of 0.3 rad/s, P is
+// 0.045.
 std::string loud(double slope = 1) {
   return fmt::format(
       "[parameters]\nMC_TPA_BREAK = 0.3\nMC_TPA_SLOPE = {}\n[control_state]\nroll_rate = 0.3\n"
@@ -120,7 +121,7 @@ TEST_F(FaultJobTest, OnlyTheExactLevelSeesLastBits) {
   EXPECT_EQ(caught("tpa-missing").by, "px4-v1.5.5/tpa/nearly_flat_exactly@250hz");
 }
 
-// It rounds otherwise, which the exact level takes for a mistake.
+// An equivalent fault rounds in another way, which is a mistake at the exact level.
 TEST_F(FaultJobTest, AnEquivalentFaultIsNotJudgedOnAThreshold) {
   const std::string turning =
       "[control_state]\n"

@@ -18,7 +18,7 @@ using testing::SizeIs;
 
 const char* const the_profile = "px4-v1.5.5";
 
-// What is done to the outputs of a step, counted from 0; ATTEST_OK or another result.
+// Changes the outputs of a step, counted from 0; returns ATTEST_OK or another result.
 using Change = std::function<int(std::size_t step, attest_outputs& out)>;
 
 // The reference, with its outputs changed.
@@ -71,7 +71,7 @@ bool random_attitudes_catch(Change change) {
   return caught_by_random_attitudes(port, the_profile);
 }
 
-// By which of the two a fault of the catalogue is caught.
+// Which of the two suites catches a fault of the catalogue.
 struct Caught {
   bool by_hover, by_random_attitudes;
   friend bool operator==(const Caught&, const Caught&) = default;
@@ -81,7 +81,7 @@ Caught caught(const char* fault) {
   return {caught_by_hover(**port, the_profile), caught_by_random_attitudes(**port, the_profile)};
 }
 
-// That of the state, and of the setpoint.
+// The tilts [deg] of the state and of the setpoint.
 std::pair<double, double> tilts_deg(const attest_inputs& in) {
   const auto tilt = [](const float(&q)[4]) {
     return std::acos(1 - 2 * static_cast<double>(q[1] * q[1] + q[2] * q[2])) * 180 / std::acos(-1);

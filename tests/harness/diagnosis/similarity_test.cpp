@@ -33,7 +33,7 @@ bool are_same(const Answer& port, const Answer& law) {
   return !distinct_similarity({port}, {law}, {}).deviates;
 }
 
-// Of one fault.
+// The similarity of one fault.
 Similarity beside(const Outputs& fault, const Outputs& port, const Outputs& law) {
   const std::vector<Outputs> distinct{fault};
   return distinct_similarity(port, law, distinct).similarities.at(0);
@@ -47,7 +47,7 @@ std::vector<Channel> output_channels() {
   return outputs;
 }
 
-// Zero, and this in one channel.
+// A sample of zeros, with this value in one channel.
 Sample sample_with(const Channel& channel, double value) {
   Sample sample{};
   sample.in.control_state.q[0] = 1;
@@ -62,7 +62,7 @@ Answer answer_with(const Channel& channel, double value) {
   return outputs_of(trace).at(0);
 }
 
-// At the numeric level.
+// Whether the value passes at the numeric level.
 bool passes(std::size_t channel, double got, double want) {
   Trace trace;
   trace.present[channel] = true;
@@ -112,7 +112,7 @@ TEST(Similarity, AnyFlagButZeroIsTrue) {
   EXPECT_FALSE(are_same(zero, one));
 }
 
-// 2e-4 rad/s, or 1e-5 of the value.
+// The tolerance is 2e-4 rad/s, or 1e-5 of the value.
 TEST(Similarity, ARateIsTheSameWithinItsTolerance) {
   for (const float sign : {1.0f, -1.0f}) {
     EXPECT_TRUE(are_same(rates(1 + sign * 1.9e-4f), rates(1)));

@@ -1,4 +1,4 @@
-// Diagnoses of similarities made by hand: vectors of 10 ticks, the failing ones first.
+// Diagnoses of handmade similarities: vectors of 10 ticks, the failing ones first.
 #include <algorithm>
 
 #include <gmock/gmock.h>
@@ -14,7 +14,7 @@ using testing::IsEmpty;
 
 constexpr std::size_t ticks = 10;
 
-// Of three stages, in the order of the catalogue.
+// Faults of three stages, in the order of the catalogue.
 const char* const tilt_fault = "tilt-in-world";
 const char* const yaw_fault = "yaw-weight-dropped";
 const char* const tpa_fault = "tpa-missing";
@@ -28,7 +28,7 @@ std::size_t index_of(const char* id) {
 
 class HandMade {
  public:
-  // No fault matches anything yet.
+  // At first no fault matches any tick.
   HandMade(std::size_t failing, std::size_t passing) {
     VectorSimilarity vector;
     vector.ticks = ticks;
@@ -42,13 +42,13 @@ class HandMade {
   Similarity& of(const char* id, std::size_t vector) {
     return vectors_.at(vector).similarities[index_of(id)];
   }
-  // So many ticks in the vectors from `first` to before `end`.
+  // The fault matches `matched` ticks in each of the vectors from `first` to before `end`.
   HandMade& matches(const char* id, std::size_t first, std::size_t end,
                     std::size_t matched = ticks) {
     for (std::size_t vector = first; vector < end; ++vector) of(id, vector).matched = matched;
     return *this;
   }
-  // Values that deviate in a vector.
+  // Numbers of values of a vector that deviate: in both port and fault, or in either.
   HandMade& deviates(const char* id, std::size_t vector, std::size_t both, std::size_t either) {
     of(id, vector).intersection = both;
     of(id, vector).union_size = either;
@@ -182,7 +182,7 @@ TEST(Suspects, FaultsThatMatchAsWellAreNamedBesideTheFirst) {
   EXPECT_THAT(ids_of(found->suspects.front().ambiguity_group), ElementsAre(yaw_fault));
 }
 
-// The vectors tell them apart.
+// The vectors distinguish the two.
 TEST(Suspects, AFaultThatExplainsAsManyOthersIsNotBesideTheFirst) {
   HandMade vectors(4, 1);
   vectors.matches(tilt_fault, 0, 2).matches(yaw_fault, 2, 4);
@@ -245,7 +245,7 @@ TEST(Suspects, TheFirstDecidesTheStageThoughAnotherIsNearer) {
 
 // ---- two mistakes -------------------------------------------------------------------------------
 
-// The suspects explain three of five vectors, the one of yaw the first two.
+// The suspects explain three of five vectors; the yaw fault explains the first two.
 HandMade alone() {
   HandMade vectors(5, 20);
   vectors.matches(yaw_fault, 0, 2).matches(tilt_fault, 2, 3);
@@ -253,7 +253,8 @@ HandMade alone() {
   return vectors;
 }
 
-// Another one together with the first explains so many, and passes so many.
+// tpa_fault together with the first suspect: it explains `explained` failing vectors, and agrees
+// with `passes` passing ones.
 HandMade together(std::size_t explained, std::size_t passes) {
   return HandMade(5, 20).matches(tpa_fault, 0, explained).matches(tpa_fault, 5, 5 + passes);
 }

@@ -9,11 +9,11 @@
 
 namespace attest {
 
-// What the reference answers in each of the case's configurations. REQUIRES: open loop.
+// The reference's outputs in each run configuration of the case. REQUIRES: open loop.
 std::vector<GoldenTrace> answers_of_reference(const Case& the_case);
 
-// Puts the golden in its place. Fails the test if it cannot. REQUIRES: that of the case's first
-// profile is in place.
+// Writes the golden to its place; the test fails if it cannot. REQUIRES: the golden of the case's
+// first profile is in place.
 void bless(const std::filesystem::path& golden_root, const Case& the_case);
 
 }  // namespace attest

@@ -56,10 +56,11 @@ TEST(OtherSide, IsAllowedAtEachTickByItself) {
   EXPECT_FALSE(compare(got, law, tolerances).agrees());
   EXPECT_TRUE(compare(got, on_the_branch_of(got, law, others, tolerances), tolerances).agrees());
 
-  // Neither branch: the way of one with the size of none; and a turn where the law is not free.
+  // On neither branch: first one branch's direction with another size; then a turn at a tick
+  // without a tie.
   got.samples[3].out.vehicle_rates_setpoint.yaw *= 0.9f;
   EXPECT_FALSE(compare(got, on_the_branch_of(got, law, others, tolerances), tolerances).agrees());
-  // It is told from the nearest side.
+  // The deviation is measured from the nearest branch.
   EXPECT_EQ(yaw_at(on_the_branch_of(got, law, others, tolerances), 3),
             yaw_at(others.at("yaw_wrap"), 3));
   got = law;

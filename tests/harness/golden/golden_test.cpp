@@ -118,7 +118,7 @@ TEST_F(GoldenTest, BytesThatWereNotBlessedAreAnError) {
   EXPECT_FALSE(golden->read(at(100)));
 }
 
-// A feed-forward of the setpoint in one profile, of its change in the other: one control differs.
+// One profile feeds the setpoint forward, the other its change: one control differs.
 class TwoProfiles : public GoldenTest {
  protected:
   void SetUp() override {

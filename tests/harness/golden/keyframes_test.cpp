@@ -114,7 +114,7 @@ TEST(KeyframesOf, AShortFlightIsKeptWhole) {
   EXPECT_THAT(kept(keyframes_of(flown(1))), testing::ElementsAre(0u));
 }
 
-// Between two rows anything may have been new.
+// Any topic may have been updated between two rows.
 TEST(KeyframesOf, SaysNothingOfWhatWasNew) {
   const Trace rows = keyframes_of(flown(30));
   EXPECT_EQ(rows.present & channels_of(Module::mc_att_control, "in/updated."), ChannelSet());

@@ -46,7 +46,7 @@ TEST(Margins, OfAMixerWithinItsLimits) {
   EXPECT_TRUE(std::isinf(found[Decision::mixer_branch].distance));
 }
 
-// Roll is fitted so that the lowest rotor is at its limit: whether it is beyond is rounding's.
+// Roll is fitted so that the lowest rotor is at its limit. Rounding decides whether it is beyond.
 TEST(Margins, AMixerThatFitsRollIsAtTheLimitOfYaw) {
   const Margins found = mixer_margins_of("\"control[0]\" = 0.5\n\"control[3]\" = 0.3\n");
   EXPECT_FALSE(found.is_safe(Decision::mixer_yaw));
@@ -55,7 +55,7 @@ TEST(Margins, AMixerThatFitsRollIsAtTheLimitOfYaw) {
   EXPECT_TRUE(yawed.is_safe(Decision::mixer_yaw));
 }
 
-// A gate counts by what would flip the decision: while another is shut it may be near.
+// A gate counts only if it can flip the decision: while another gate is shut, it may be near.
 TEST(Margins, AGateBehindAShutOneIsNoDecision) {
   const std::string near =
       "[parameters]\nMC_ROLLRATE_P = 0.3\nMC_ROLLRATE_D = 0\nMC_ROLLRATE_I = 0.1\n"
@@ -87,7 +87,7 @@ TEST(Margins, SticksAndTheRecovery) {
                    .is_safe(Decision::recovery_latch));
 }
 
-// 750 of the last of 20 bits are more than what floats need, of 40 less.
+// 750 LSB of 20 bits are more than the margin that floats need; 750 LSB of 40 bits are less.
 TEST(Margins, OfAPortInFixedPointAreAtLeastSomeOfItsLastBits) {
   EXPECT_EQ(least_margin(Decision::integrator_gate, std::nullopt), 1e-5);
   EXPECT_DOUBLE_EQ(least_margin(Decision::integrator_gate, 20), 750.0 / (1 << 20));

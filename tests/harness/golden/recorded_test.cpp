@@ -43,7 +43,7 @@ TEST(Recorded, OrIsTheGeometryThatTheFileIsNamedAfter) {
   std::filesystem::copy(mixers / "6x.csv", folder.path() / "flight.csv");
   const auto unknown = read_recorded(folder.path() / "flight.csv");
   ASSERT_FALSE(unknown);
-  EXPECT_THAT(unknown.error().message, HasSubstr("which mixer made it?"));
+  EXPECT_THAT(unknown.error().message, HasSubstr("mixer definition missing"));
 }
 
 TEST(Recorded, ADefinitionThatDoesNotFitIsAnError) {
@@ -61,7 +61,7 @@ TEST(Recorded, TheProfileThatTheUserNamesGoesBeforeThatOfTheFolder) {
   EXPECT_EQ(read->subject.profile, "px4-v1.5.5");
 }
 
-// A parameter of another profile is left out with a note; one of none is a mistake.
+// A parameter of another profile is left out with a note; a parameter of no profile is an error.
 TEST(Recorded, AParameterOfNoProfileIsAnError) {
   const TemporaryDirectory folder;
   auto trace = open_trace(recorded / "px4-v1.5.5" / "fuzz_250hz.csv", TraceNeed::outputs);

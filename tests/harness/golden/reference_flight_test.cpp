@@ -29,7 +29,7 @@ class ReferenceFlightTest : public testing::Test {
     return fly(case_, at_50, *iris_, *port.create(case_.profile), case_timing(case_, at_50.rate))
         ->trace;
   }
-  // Until the outputs of float and double differ by more.
+  // The time until the outputs of float and double differ by more than the tolerance.
   double seconds_within(double tolerance) const {
     const Trace flown = flown_by(*open_builtin());
     const auto first =
@@ -46,7 +46,7 @@ class ReferenceFlightTest : public testing::Test {
     return tolerances;
   }
 
-  // Not of the rates, whose tolerance widens.
+  // Without the rates setpoint, whose tolerance widens.
   static constexpr std::array topics{"actuator_controls_0", "mc_att_ctrl_status"};
   static constexpr Tolerance any{1e9, 0};
   Case case_;

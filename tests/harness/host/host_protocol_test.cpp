@@ -1,4 +1,4 @@
-// What a port could send in place of its process: the judge takes it for no answer.
+// Messages that a port could send in place of its process: the judge does not take them as answers.
 #include "harness/host/host_protocol.hpp"
 
 #include <cstring>
@@ -70,7 +70,7 @@ TEST(HostProtocol, AFaultHasAllItsMembers) {
   }
 }
 
-// Which would not count as broken rules.
+// Otherwise a port could report a crash, which does not count as a violation of the protocol.
 TEST(HostProtocol, AProcessDoesNotAnnounceItsOwnDeath) {
   const json fault = {{"kind", PortFault::Kind::crash}, {"tick", 2}, {"what", "x"}};
   Sent sent({{"request", 5}, {"fault", fault}}, {three_samples});
@@ -85,7 +85,7 @@ bool is_flown(json head, std::size_t ticks) {
   return read_flown(sent.as_answer_to(5), ticks).has_value();
 }
 
-// A flight of which only the first ticks are there has not been judged.
+// A flight with only its first ticks cannot be judged, unless the message gives the reason.
 TEST(HostProtocol, AFlightThatEndsEarlySaysWhy) {
   EXPECT_TRUE(is_flown({{"ticks", 3}}, 3));
   EXPECT_FALSE(is_flown({{"ticks", 3}}, 4));

@@ -1,5 +1,5 @@
-// A port in a process of its own answers as it does in this one; and whatever it does there is a
-// fault of the request.
+// A port gives the same answers in a process of its own as in this one. Every failure there becomes
+// a fault of the request.
 #include "harness/host/port_process.hpp"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ std::unique_ptr<PortHost> host_of(const std::string& port, bool in_process = fal
   return host ? *std::move(host) : nullptr;
 }
 
-// Longer than the ports of tests/ports are right.
+// A trace with more ticks than the ports of tests/ports stay right for.
 Trace pitching() {
   Case the_case = case_of(
       "[control_state]\n"
@@ -56,7 +56,7 @@ bool same_bits(const std::vector<T>& one, const std::vector<T>& other) {
          std::memcmp(one.data(), other.data(), one.size() * sizeof(T)) == 0;
 }
 
-// By channels: what is between the members of a struct says nothing.
+// Compared by channel, because the padding of a struct has no meaning.
 bool same_samples(const std::vector<Sample>& one, const std::vector<Sample>& other) {
   return std::equal(
       one.begin(), one.end(), other.begin(), other.end(), [](const Sample& a, const Sample& b) {

@@ -65,7 +65,7 @@ TEST_F(ActuatorsTest, ACommandThatIsNoNumberHasNoSpeeds) {
   EXPECT_THAT(actuators_.speeds(actuators_.commands(), 1, {}), IsEmpty());
 }
 
-// As the firmware sends them: bits of one mask.
+// The firmware sends the flags as bits of one mask.
 TEST_F(ActuatorsTest, FlagsAreBits) {
   actuators_.mix(controls(0.5f, 1), true);
   EXPECT_EQ(actuators_.limits().upper_limit, 2);
@@ -74,7 +74,7 @@ TEST_F(ActuatorsTest, FlagsAreBits) {
   EXPECT_EQ(actuators_.limits().lower_limit, 1);
 }
 
-// Yaw alone asks two rotors to stop: only the yaw flag is set.
+// Yaw alone would stop two rotors: only the yaw flag is set.
 TEST_F(ActuatorsTest, YawThatIsNotFittedHasAFlagOfItsOwn) {
   attest_outputs out = controls(0, 0.5f);
   out.actuator_controls_0.control[2] = 1;

@@ -1,4 +1,4 @@
-// The loop with a plant and a unit that only take notes: what happens when.
+// The order of events in the loop, with a plant and a unit that only record them.
 #include "harness/loop/closed_loop.hpp"
 
 #include <functional>
@@ -27,7 +27,7 @@ std::string in_ms(Nanoseconds time) {
   return fmt::format("{:g}", static_cast<double>(time.count()) / 1e6);
 }
 
-// Its body rate about x is the time [ms] and its rotors follow at once.
+// Its body rate about x is the time [ms], and its rotors follow a command at once.
 class NotingPlant final : public Plant {
  public:
   explicit NotingPlant(Notes& notes) : notes_(notes) {}
@@ -82,7 +82,7 @@ class NotingUnit final : public Unit {
 
   float roll = 0, thrust = 0.5f;
   int result = ATTEST_OK;
-  std::vector<std::uint64_t> timestamps_sample;  // [us] since the begin
+  std::vector<std::uint64_t> timestamps_sample;  // [us] since the beginning
 
  private:
   Notes& notes_;
@@ -134,7 +134,7 @@ class ClosedLoopTest : public testing::Test {
 TEST_F(ClosedLoopTest, TheUnitIsGivenTheTimeOfItsSample) {
   fly();
   EXPECT_THAT(unit_.timestamps_sample, ElementsAre(0, 4000, 8000));
-  // The first sample arrives at 6 ms: until then the unit sees the state of the begin.
+  // The first sample arrives at 6 ms: until then the unit sees the initial state.
   case_.flight->estimator.delay = seconds(0.006);
   unit_.timestamps_sample.clear();
   fly();
@@ -162,7 +162,7 @@ TEST_F(ClosedLoopTest, AUnitThatTheEstimatorTriggersRunsWhenASampleArrives) {
 }
 
 TEST_F(ClosedLoopTest, AtOneInstantTheSensorComesBeforeTheUnitAndTheMotorsAfter) {
-  unit_.thrust = 1;  // with roll on top of it, the mixer runs into the upper limit
+  unit_.thrust = 1;  // with roll on top of it, the mixer reaches the upper limit
   unit_.roll = 0.2f;
   case_.flight->wind_m_s[0] = Step{0, 3, seconds(0.0)};
   case_.flight->battery.emplace().timing.rate = Rate::hz(125);
@@ -238,8 +238,8 @@ TEST_F(ClosedLoopTest, JitteredAndDroppedTicksAreFlownAsTheyCome) {
 
 TEST_F(ClosedLoopTest, ATimingIsFlownAsItWas) {
   const auto ms = [](std::int64_t count) { return Nanoseconds(count * 1'000'000); };
-  // The second tick is told of the state of the first again, is itself late, and its command is
-  // overtaken; the third sample is taken before the second tick begins.
+  // The second tick sees the first sample again and runs late, and the next command overtakes its
+  // own. The third sample is taken before the second tick begins.
   timing_ = LoopTiming{{ms(0), ms(1), ms(2)}, {ms(0), ms(6), {}}, {ms(5), ms(7), ms(9)}};
   case_.duration = seconds(0.020);
   case_.flight->motor_limits.phase = seconds(1);
@@ -248,7 +248,7 @@ TEST_F(ClosedLoopTest, ATimingIsFlownAsItWas) {
 }
 
 TEST_F(ClosedLoopTest, AnEstimatorOnItsOwnClockGivesItsLastSample) {
-  case_.flight->estimator.drift = 1.0 / 3;  // every 3 ms, beside 4 ms
+  case_.flight->estimator.drift = 1.0 / 3;  // every 3 ms; the unit runs every 4 ms
   case_.flight->motor_limits.phase = seconds(1);
   case_.duration = seconds(0.016);
   fly();
@@ -289,7 +289,6 @@ TEST_F(ClosedLoopTest, TheBatteryScalesTheRotors) {
   EXPECT_EQ(notes_.at(1), fmt::format("0 hold {:g}", 400 * (full - 1.5) / full));
 }
 
-// A phase in ticks is one of the unit's ticks.
 TEST(TaskTimes, APhaseInTicksIsInThoseOfTheUnit) {
   TaskTiming timing;
   timing.rate = Rate::hz(100);
@@ -299,7 +298,7 @@ TEST(TaskTimes, APhaseInTicksIsInThoseOfTheUnit) {
   EXPECT_EQ(times[0], Nanoseconds(8'000'000));
 }
 
-// A sample of 8 ms that arrives when the flight is over steps nobody.
+// The sample of 8 ms arrives after the end of the flight, so it starts no step.
 TEST_F(ClosedLoopTest, ATriggeredUnitDoesNotRunAtTheEnd) {
   case_.unit.on_estimate = true;
   case_.flight->estimator.delay = seconds(0.004);
@@ -307,8 +306,8 @@ TEST_F(ClosedLoopTest, ATriggeredUnitDoesNotRunAtTheEnd) {
   EXPECT_THAT(unit_.timestamps_sample, ElementsAre(0, 4000));
 }
 
-// The voltage is the same whatever the rotors take: what is left is the sag that the estimate
-// expects of the throttle.
+// The voltage does not depend on the rotors' current. What remains is the sag that the estimate
+// expects from the throttle.
 TEST_F(ClosedLoopTest, TheBatteryTaskTakesTheThrottle) {
   vehicle_.battery = {3, 12, 0, 0, 1, 1, 10};
   const auto scale_at_end = [&] {

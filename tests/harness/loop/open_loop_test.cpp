@@ -17,7 +17,7 @@ using testing::IsEmpty;
 
 using Kind = PortFault::Kind;
 
-// Does what the test says, and notes the calls.
+// Runs the step that the test gives, and records the calls.
 class FakeUnit final : public Unit {
  public:
   using Step = std::function<int(const attest_inputs&, attest_outputs&)>;
@@ -73,7 +73,7 @@ TEST(Drive, GivesEachStepTheOutputsOfTheOneBefore) {
     return ATTEST_OK;
   });
   Trace trace = trace_of(3);
-  // What is there already is replaced, and is no starting point.
+  // Outputs that the trace already has are replaced; the first step does not start from them.
   for (Sample& sample : trace.samples) sample.out.actuator_controls_0.control[0] = 99;
   EXPECT_FALSE(drive(unit, trace));
   EXPECT_EQ(trace.samples[0].out.actuator_controls_0.control[0], 1);
@@ -145,7 +145,7 @@ TEST(Drive, InputsAreConst) {
   EXPECT_EQ(fault->what, "step changed its inputs at tick 1; they are const");
 }
 
-// Of which a test says what it does.
+// Runs the step that the test gives.
 class FakeMixer final : public MixerUnit {
  public:
   using Step = std::function<int(const attest_mixer_inputs&, attest_mixer_outputs&)>;
@@ -224,7 +224,7 @@ TEST(Drive, OneByteBehindTheStructsIsSeen) {
           behind_inputs
               ? reinterpret_cast<unsigned char*>(&const_cast<attest_inputs&>(in)) + sizeof in
               : reinterpret_cast<unsigned char*>(&out) + sizeof out;
-      // Through volatile, because the compiler knows where the struct ends.
+      // Through volatile, because the compiler could see that the write is outside the struct.
       unsigned char* volatile place = end;
       *place = 0;
       return ATTEST_OK;
@@ -237,7 +237,7 @@ TEST(Drive, OneByteBehindTheStructsIsSeen) {
   }
 }
 
-// Says what its instances do, and shares a counter among them if it is asked to.
+// Records the calls of its instances, of which at most `most_alive` may exist at a time.
 class CountingPort final : public Port {
  public:
   std::string name() const override { return "counting"; }

@@ -1,5 +1,4 @@
-// A host that a test makes, for HostOptions::start: what a port answers, and how long it takes, is
-// given then.
+// A host for HostOptions::start, whose answers and times the test gives.
 #pragma once
 
 #include <functional>
@@ -11,7 +10,7 @@
 
 namespace attest {
 
-// Answers as the test says. REQUIRES: what is asked was given.
+// Returns the answers that the test gives. REQUIRES: the test gives an answer to each request.
 class GivenHost final : public PortHost {
  public:
   struct Answers {

@@ -1,4 +1,4 @@
-// A flight at the desk, flown by a host that answers as the test says: verdict, metrics and file.
+// A simulated flight, by a host whose answers the test gives: verdict, metrics and file.
 #include "harness/measure/simulate.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Verdicts on live flights made by hand: what fails, what cannot be judged, and in which order.
+// Verdicts on handmade live flights: what fails, what cannot be judged, and in which order.
 #include "harness/measure/stress_judge.hpp"
 
 #include <cmath>
@@ -50,7 +50,7 @@ class StressJudge : public testing::Test {
     return stress_.result;
   }
 
-  // From that tick on the roll control is another.
+  // Changes the roll control from that tick on.
   void deviate_from(std::size_t tick) {
     for (std::size_t i = tick; i < flight_.unit.samples.size(); ++i) {
       flight_.unit.samples[i].out.actuator_controls_0.control[0] += 0.1f;
@@ -116,9 +116,10 @@ TEST_F(StressJudge, AFlightThatTheReferenceKeepsFails) {
   add_skip(result, "outputs not judged");
   judge_flight_end(task_, flight_, result);
   EXPECT_EQ(result.verdict, Verdict::fail);
-  EXPECT_EQ(result.reason,
-            "the flight ended at 0.300 s: it fell; the reference keeps it at the same times; "
-            "outputs not judged");
+  EXPECT_EQ(
+      result.reason,
+      "the flight ended at 0.300 s: it fell; the reference keeps the vehicle at the same times; "
+      "outputs not judged");
 }
 
 TEST_F(StressJudge, AFlightThatTheReferenceLosesTooIsNotJudged) {
@@ -128,7 +129,7 @@ TEST_F(StressJudge, AFlightThatTheReferenceLosesTooIsNotJudged) {
   add_skip(result, "outputs not judged");
   judge_flight_end(task_, flight_, result);
   EXPECT_EQ(result.verdict, Verdict::skip);
-  EXPECT_THAT(result.reason, HasSubstr("the reference loses it too"));
+  EXPECT_THAT(result.reason, HasSubstr("the reference loses the vehicle too"));
 }
 
 TEST_F(StressJudge, AFlightThatEndsWithRightOutputsIsNotJudged) {

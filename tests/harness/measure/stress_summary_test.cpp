@@ -1,4 +1,4 @@
-// What is said of a live flight whose ticks, histograms and counters are made by hand.
+// The summary of a live flight with handmade ticks, histograms and counters.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

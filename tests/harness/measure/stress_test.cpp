@@ -24,7 +24,7 @@ StressTask hover_task() {
   StressTask task;
   task.the_case = *parse_case(source / "cases/px4-v1.5.5/flight/hover.toml");
   task.the_case.duration = {0.3, Span::In::seconds};
-  // Whatever the machine does: verdicts on timing are tested in stress_judge_test.
+  // Budgets that hold on any machine: verdicts on timing are tested in stress_judge_test.
   task.the_case.flight->realtime = {1e6, 1e9, std::nullopt};
   task.configuration = {Rate::hz(250), PlantConfiguration{"iris", PlantKind::mujoco}};
   task.vehicle_model = *VehicleModel::load(source / "models", "iris");
@@ -42,7 +42,7 @@ Result<StressResult> stressed(const std::string& port, const StressTask& task = 
 TEST(Stress, ARightPortIsJudgedByItsOutputsToo) {
   const auto stress = stressed("builtin");
   ASSERT_TRUE(stress) << stress.error().to_string();
-  // A machine that cannot step the plant in time judges nothing.
+  // On a machine that cannot step the plant in time there is no verdict.
   if (stress->result.verdict == Verdict::skip) GTEST_SKIP() << stress->result.reason;
   EXPECT_EQ(stress->result.verdict, Verdict::pass) << stress->result.reason;
   EXPECT_EQ(stress->deadlines, 75u);
@@ -96,7 +96,7 @@ TEST(Stress, APortThatHangsAnywhereHasAVerdict) {
     const auto stress = stressed(test_port(port), task);
     ASSERT_TRUE(stress) << stress.error().to_string();
     EXPECT_EQ(stress->result.verdict, Verdict::timeout) << stress->result.reason;
-    EXPECT_THAT(stress->result.reason, HasSubstr("the port did not come back"));
+    EXPECT_THAT(stress->result.reason, HasSubstr("the port did not return"));
   }
 }
 
@@ -128,7 +128,7 @@ TEST(Stress, APortThatMadeAUnitBeforeMustMakeOneAgain) {
   EXPECT_THAT(stress->result.reason, HasSubstr("it made a unit when the port was asked first"));
 }
 
-// Of a flight without a step: its outputs cannot be judged.
+// A measured flight without a step, so its outputs cannot be judged.
 StressMeasurement measured_flight() {
   StressMeasurement measured;
   measured.flight.emplace();
@@ -138,7 +138,7 @@ StressMeasurement measured_flight() {
   return measured;
 }
 
-// The port shares the process that measures.
+// The port shares the process that measures, and could set this verdict.
 TEST(JudgeLive, AVerdictOfTheMeasurementIsNotBelieved) {
   StressMeasurement measured;
   measured.stress.result.verdict = Verdict::pass;
@@ -159,7 +159,7 @@ TEST(JudgeLive, OutputsAndTimingAreJudgedTogether) {
   EXPECT_EQ(stress->result.verdict, Verdict::fail);
   EXPECT_THAT(stress->result.reason,
               StartsWith("1 overruns of the execution time of 50 us: 10000"));
-  EXPECT_THAT(stress->result.reason, HasSubstr("outputs not judged: no step was over"));
+  EXPECT_THAT(stress->result.reason, HasSubstr("outputs not judged: no step finished"));
   EXPECT_EQ(stress->result.ticks, 75u);
   EXPECT_DOUBLE_EQ(stress->result.elapsed_s, 0.25);
 }

@@ -1,4 +1,4 @@
-// The search for the last flight that holds, by a host whose flights hold where the test says.
+// The search for the last flight that holds, with a host whose flights the test gives.
 #include "harness/measure/sweep.hpp"
 
 #include <cmath>
@@ -87,7 +87,7 @@ class Sweep : public testing::Test {
     fly_ = [holds](const FlightPlan& plan) { return sinking(holds(plan) ? 0 : 2); };
   }
 
-  // Whether flights that sink so far hold.
+  // Whether flights that sink by `metres` hold.
   bool holds_sinking(float metres) {
     fly_ = [metres](const FlightPlan&) { return sinking(metres); };
     return *run(0)->lowest_rate_hz > 0;
@@ -224,7 +224,7 @@ TEST_F(Sweep, APortThatGoesWrongHasAVerdictAndNoFigure) {
     EXPECT_EQ(found->result.verdict, Verdict::crash);
     EXPECT_EQ(found->result.reason, "it went wrong");
     EXPECT_LT(*(task == 0 ? found->lowest_rate_hz : found->largest_delay_ms), 0);
-    // 1000, 800, 640 and 512 Hz; 0, 2 and 4 ms: it is asked for no more.
+    // 1000, 800, 640 and 512 Hz; 0, 2 and 4 ms: no other flight is requested.
     EXPECT_EQ(plans_.size(), task == 0 ? 4u : 3u);
   }
 }

@@ -1,4 +1,4 @@
-// Times of steps that the test gives: which of them count.
+// Which of the steps count, for times that the test gives.
 #include "harness/measure/vector_times.hpp"
 
 #include <gmock/gmock.h>
@@ -47,7 +47,7 @@ VectorTimes timed_vector(const SelectedCase& selected, const Rate& rate,
 
 VectorTimes with_stack_of(std::optional<std::size_t> bytes) { return {{}, {}, bytes}; }
 
-// What a host was asked for.
+// A request to the host.
 struct Question {
   std::string profile;
   std::vector<std::uint64_t> timestamps;
@@ -249,7 +249,7 @@ TEST(CorpusTimesTest, KnowsTheVectorsOfTheSlowestStepAndOfTheMostStack) {
   EXPECT_EQ(times.with_most_stack(), &times.vectors[2]);
 }
 
-// A port that has died cannot say how long its clock takes.
+// A port that has died cannot report how long reading the clock takes.
 TEST_F(TimeCorpus, TheClockIsThatOfAnAnswerWithoutAFault) {
   StepTimes died;
   died.fault = PortFault{PortFault::Kind::crash, 0, "it died"};

@@ -1,4 +1,4 @@
-// What is written of the slowest step, of times that are made by hand.
+// The trace that is written for the slowest step, from handmade times.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

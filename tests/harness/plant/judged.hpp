@@ -1,4 +1,4 @@
-// The plants that the table of truth is about.
+// The plants in the table of truth.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace attest::test {
 
-// Named as the table names it. The vehicle model must outlive it.
+// The name is that in the table. The vehicle model must outlive the plant.
 struct Judged {
   std::string name;
   std::unique_ptr<Plant> plant;

@@ -1,4 +1,4 @@
-// What holds for every plant.
+// Properties of every plant.
 #include "harness/plant/plant.hpp"
 
 #include <algorithm>
@@ -200,7 +200,7 @@ TEST_P(EveryPlant, AStateThatIsNoNumberIsDiverged) {
   flown->reset(start);
   const auto lost = flown->advance(ms(10));
   ASSERT_TRUE(lost);
-  // MuJoCo looks at its state before a step, and complains first.
+  // MuJoCo checks its state before a step, so its error comes first.
   EXPECT_THAT(lost->what, AnyOf(HasSubstr("not finite"), HasSubstr("MuJoCo: Nan")));
 }
 

@@ -1,4 +1,4 @@
-// Vehicles made by tests, as files: what is true of them is known exactly.
+// Vehicles that tests write as files: their properties are known exactly.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace attest::test {
 
-// A quadrotor x with arms of 0.2 m; every number that a test may want to choose.
+// A quadrotor x with arms of 0.2 m, and the numbers that a test may choose.
 struct Numbers {
   double mass_kg = 1;
   Vector3 inertia_kg_m2{0.01, 0.015, 0.02};
@@ -22,7 +22,7 @@ struct Numbers {
 // Writes <folder>/brick.toml and brick.xml.
 void write_vehicle(const std::filesystem::path& folder, const Numbers& numbers);
 
-// Loads it through the files. Throws what is wrong with them.
+// Loads it through the files. Throws their error.
 std::shared_ptr<const VehicleModel> vehicle_model(const Numbers& numbers);
 
 // A vehicle of the repository.

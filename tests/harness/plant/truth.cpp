@@ -50,7 +50,7 @@ PlantState turning(const Vector3& rate_rad_s) {
   return state;
 }
 
-// The largest of what `error` says at `steps` times until `end_s`.
+// The largest `error` at `steps` times until `end_s`.
 double worst(Plant& plant, const PlantState& start, double end_s, int steps,
              const std::function<double(double, const PlantState&)>& error) {
   plant.reset(start);
@@ -63,8 +63,8 @@ double worst(Plant& plant, const PlantState& start, double end_s, int steps,
   return largest;
 }
 
-// MuJoCo's attitude is of second order (observed_order), and its error at 1 ms that of the rates
-// times a hundred.
+// MuJoCo's attitude is of second order (observed_order): at 1 ms its error is a hundred times that
+// of the rates.
 double attitude_bound(const std::string& plant) {
   return plant.starts_with("mujoco") ? 2e-6 : 2e-8;
 }
@@ -255,8 +255,8 @@ void observed_order(std::vector<Truth>& table) {
                    slope([&](int n) { return mujoco(*frame, Rate::hz(n)); }, 100), 3.7, 4.3});
   table.push_back({"order observed by halving the step", "5", "ode, order 5", "1",
                    slope([&](int n) { return fixed_ode(*frame, 5, 1.0 / n); }, 64), 4.6, 5.4});
-  // SUNDIALS calls this table (Fehlberg 13-7-8) order 8; in 6.4.1 it behaves as 7. At 1 ms its
-  // error is of the order of the rounding all the same.
+  // SUNDIALS calls this table (Fehlberg 13-7-8) order 8; in 6.4.1 it behaves as order 7. At 1 ms
+  // its error is nevertheless of the order of the rounding.
   table.push_back({"order observed by halving the step", "7", "ode, order 8", "1",
                    slope([&](int n) { return fixed_ode(*frame, 8, 1.0 / n); }, 48), 6.5, 8.5});
   // MuJoCo turns the body by a mean rate of each step, which is of second order in the attitude.

@@ -1,4 +1,4 @@
-// Both plants against what is known exactly, and against each other. Measured here once, judged by
+// Both plants compared with exact solutions, and with each other. Measured here, judged by
 // truth_test.cpp and printed by truth_main.cpp.
 #pragma once
 

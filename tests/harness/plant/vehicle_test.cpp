@@ -35,13 +35,13 @@ class VehicleFile : public testing::Test {
     changed.replace(at, what.size(), with);
     std::ofstream(folder_.path() / file) << changed;
   }
-  // What is said of the TOML once `what` is `with`.
+  // The error of the TOML after `what` is replaced by `with`.
   std::string error(const std::string& what, const std::string& with) const {
     replace("brick.toml", what, with);
     const auto vehicle = read_vehicle(folder_.path() / "brick.toml");
     return vehicle ? "" : vehicle.error().to_string();
   }
-  // What is said of the model once `what` is `with`.
+  // The error of the model after `what` is replaced by `with`.
   std::string model_error(const std::string& what, const std::string& with) const {
     replace("brick.xml", what, with);
     const auto frame = VehicleModel::load(folder_.path(), "brick");
@@ -78,7 +78,7 @@ TEST_F(VehicleFile, ImpossibleNumbersAreNamedWithTheirLine) {
 
 TEST_F(VehicleFile, AnInertiaOfNoBodyIsRefused) {
   EXPECT_THAT(error("[0.01, 0.015, 0.02]", "[0.01, 0.015, 0.03]"),
-              HasSubstr("brick.toml:3:1: is of no body"));
+              HasSubstr("brick.toml:3:1: is impossible"));
 }
 
 TEST_F(VehicleFile, AMisspeltKeyIsRefused) {

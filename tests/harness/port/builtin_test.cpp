@@ -31,7 +31,7 @@ TEST(FractionBits, AreThoseOfTheArithmetic) {
        {"", "fixed", "fixed:", "fixed:19", "fixed:33", "fixed:22x", "float", "22"}) {
     const auto bits = parse_fraction_bits(text);
     ASSERT_FALSE(bits) << text;
-    EXPECT_THAT(bits.error().message, HasSubstr("known is `fixed:BITS`, from 20 to 32"));
+    EXPECT_THAT(bits.error().message, HasSubstr("must be `fixed:BITS`, from 20 to 32"));
   }
 }
 

@@ -10,7 +10,7 @@
 namespace attest {
 namespace {
 
-// Of one step with a tilt and a yaw error, and more thrust than MC_TPA_BREAK.
+// The outputs of one step with a tilt and a yaw error, and more thrust than MC_TPA_BREAK.
 attest_outputs answer_of(Port& port) {
   const auto unit = port.create("px4-v1.5.5");
   unit->set_parameter("MC_TPA_BREAK", 0.3f);

@@ -47,7 +47,7 @@ TEST(SharedLibrary, OneThatIsNotThereIsAnError) {
   for (const std::string path : {"", "nowhere/libport.so", "."}) {
     EXPECT_THAT(error_of(path), HasSubstr("no such library"));
   }
-  // The system refuses to look for these.
+  // The system refuses so long a path.
   EXPECT_THAT(error_of(std::string(5000, 'x')), HasSubstr("no such library"));
 }
 

@@ -19,7 +19,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Optional;
 
-constexpr double patience_s = 60;  // no test waits for it
+constexpr double patience_s = 60;  // no test waits so long
 
 Child spawned(const std::function<void(MessageSocket&)>& work,
               Child::Runs runs = Child::Runs::code_of_others) {
@@ -31,7 +31,7 @@ Child spawned(const std::function<void(MessageSocket&)>& work,
   return *std::move(child);
 }
 
-// The head of its next message; empty when there is none in that time.
+// The head of its next message; empty if no message arrives in that time.
 std::optional<std::string> said(Child& child, double seconds = patience_s) {
   Received received = child.receive(Patience::seconds(seconds));
   if (received.kind != Received::Kind::message) return std::nullopt;
@@ -71,7 +71,7 @@ TEST(Child, OneThatEndsWithoutAWordSaysNothing) {
   EXPECT_EQ(child.end(), "exited with status 3");
 }
 
-// It would go on with the work of the parent: here, with the tests after this one.
+// Otherwise the child would continue the work of the parent: here, the later tests.
 TEST(Child, AnExceptionIsItsDeath) {
   Child child = spawned([](MessageSocket&) { throw std::runtime_error("of a port"); });
   EXPECT_EQ(said(child), std::nullopt);
@@ -88,7 +88,7 @@ TEST(Child, OneThatSaysNothingInTimeCanBeKilled) {
   EXPECT_EQ(child.end(), "was killed by signal 9 (Killed)");
 }
 
-// As a library does that makes itself a daemon.
+// A library that makes itself a daemon does this.
 TEST(Child, OneThatClosesItsSocketAndGoesOnIsNotWaitedFor) {
   Child child = spawned([](MessageSocket&) {
     for (int descriptor = 3; descriptor < 1024; ++descriptor) ::close(descriptor);
@@ -113,7 +113,7 @@ TEST(Child, KeepsItsOutputApart) {
 }
 
 TEST(Child, WithoutOutputThereAreNoLastWords) {
-  // What the parent has not printed yet is not the child's to print.
+  // The child must not print the parent's buffered text.
   std::fputs("words of the parent\n", stdout);
   Child child = spawned([](MessageSocket&) { std::fflush(stdout); });
   EXPECT_EQ(child.end(), "exited with status 0");
@@ -149,7 +149,7 @@ TEST(Child, HasNoInputAndLeavesNoCore) {
   EXPECT_THAT(said(child), Optional(std::string("so it is")));
 }
 
-// A report that is being written, the socket of another child.
+// Such as a report that is being written, or the socket of another child.
 TEST(Child, HasNoDescriptorOfItsParent) {
   const int opened = ::open("/dev/null", O_WRONLY);
   ASSERT_GE(opened, 0);
@@ -186,7 +186,7 @@ TEST(Child, CodeOfOursHasNoLimits) {
   EXPECT_THAT(said(child), Optional(std::string("none")));
 }
 
-// The socket stays open as long as what the child started has it.
+// The socket stays open while a process that the child started holds it.
 TEST(Child, ItsDeathIsSeenAlthoughWhatItStartedLivesOn) {
   Child child = spawned([](MessageSocket& parent) {
     if (::fork() == 0) {

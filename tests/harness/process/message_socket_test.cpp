@@ -14,7 +14,7 @@ namespace {
 using testing::ElementsAre;
 using Kind = Received::Kind;
 
-constexpr double enough_s = 60;  // no test waits for it
+constexpr double enough_s = 60;  // no test waits so long
 
 class MessageSocketTest : public testing::Test {
  protected:
@@ -25,7 +25,7 @@ class MessageSocketTest : public testing::Test {
     there_ = MessageSocket(ends[1]);
   }
 
-  // What a process sends that is no attest.
+  // Sends bytes as another program could.
   void send_bytes(const std::string& bytes) {
     ASSERT_EQ(::write(there_.descriptor(), bytes.data(), bytes.size()),
               static_cast<ssize_t>(bytes.size()));
@@ -91,7 +91,7 @@ TEST_F(MessageSocketTest, BytesThatAreNoMessageAreRefused) {
   EXPECT_EQ(received().kind, Kind::no_message);
 }
 
-// It would be a reason to allocate all memory.
+// A receiver that accepted such a length would allocate all memory.
 TEST_F(MessageSocketTest, ALengthThatIsBeyondAllMessagesIsRefused) {
   ASSERT_TRUE(there_.send("head"));
   std::string bytes(200, '\0');

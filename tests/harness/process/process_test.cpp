@@ -21,9 +21,9 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr int patience_ms = 60'000;  // no test waits for it
+constexpr int patience_ms = 60'000;  // no test waits so long
 
-// Open as long as one of the processes that inherited it lives.
+// A pipe that stays open while one of the processes that inherited it lives.
 class Alive {
  public:
   Alive() {
@@ -33,10 +33,10 @@ class Alive {
     for (const int end : ends_) ::close(end);
   }
 
-  // In a process that lives.
+  // Called in a process that lives.
   void say_so() const { static_cast<void>(!::write(ends_[1], "x", 1)); }
 
-  // Whether so many said that they live.
+  // Whether `count` processes have called say_so().
   bool are_alive(int count) const {
     char byte = 0;
     for (int i = 0; i < count; ++i) {
@@ -46,7 +46,7 @@ class Alive {
     return true;
   }
 
-  // Whether all have ended that held it.
+  // Whether all processes that held the pipe have ended.
   bool are_gone() {
     ::close(std::exchange(ends_[1], -1));
     pollfd readable{ends_[0], POLLIN, 0};
@@ -101,7 +101,7 @@ TEST(Process, ThatCannotBeStartedIsAnErrorWithTheLimit) {
   constexpr int other_user_refused = 2;
   const pid_t limited = ::fork();
   if (limited == 0) {
-    // The limit does not hold for root.
+    // The limit does not apply to root.
     if (::getuid() == 0 && ::setuid(nobody) != 0) ::_exit(other_user_refused);
     const rlimit none{0, 0};
     ::setrlimit(RLIMIT_NPROC, &none);
@@ -136,7 +136,8 @@ TEST(Process, ThatIgnoresSigtermIsKilledAfterTheGracePeriod) {
   EXPECT_EQ(ending.to_string(), "was killed by signal 9 (Killed)");
 }
 
-// The command line notes SIGINT and SIGTERM: a child that noted them too would go on.
+// The command line's handlers only record SIGINT and SIGTERM: a child with these handlers would go
+// on.
 TEST(Process, DoesNotHaveTheHandlersAndMaskOfItsParent) {
   const auto before = std::signal(SIGTERM, pass_over);
   sigset_t mask;
@@ -169,7 +170,7 @@ TEST(Process, WhatItLeftBehindEndsWhenItHasEnded) {
   EXPECT_TRUE(alive.are_gone());
 }
 
-// As a library does that makes itself a daemon.
+// A library that makes itself a daemon does this.
 TEST(Process, WhatItStartedInASessionOfItsOwnEndsToo) {
   Process other = started(stay);
   Alive alive;
@@ -187,7 +188,7 @@ TEST(Process, WhatItStartedInASessionOfItsOwnEndsToo) {
   EXPECT_FALSE(other.ends_within(0.05));
 }
 
-// As the processes of an attest that is killed itself.
+// The case of an attest that is killed itself.
 TEST(Process, ItAndWhatItStartedEndWithItsParent) {
   Alive alive;
   const pid_t parent = ::fork();

@@ -1,4 +1,4 @@
-// Programs that do not do what they should.
+// Programs that are missing, fail, hang or print without end.
 #include "harness/process/program.hpp"
 
 #include <chrono>

@@ -1,4 +1,5 @@
-// Whose a missed deadline is, on ticks made by hand: a loop of 1 kHz as LiveUnit runs it.
+// Which deadline misses are the port's, and which the machine's: handmade ticks of a 1 kHz loop, as
+// LiveUnit runs it.
 #include "harness/realtime/deadline_misses.hpp"
 
 #include <functional>
@@ -11,7 +12,7 @@
 namespace attest {
 namespace {
 
-// What happens in the tick of release k.
+// The delays in the tick of release k.
 struct Delays {
   Nanoseconds execution{0};   // CPU time of the step
   Nanoseconds wake_up{0};     // of the machine, before the step
@@ -19,8 +20,8 @@ struct Delays {
   bool waits = false;         // the step sleeps for `preemption` by itself
 };
 
-// The ticks that the loop records: it starts at the release or when the step before is over, and
-// passes over all releases but the last that is due.
+// The ticks that the loop records. A tick starts at its release or when the previous step ends. Of
+// all releases that are due it uses only the last.
 std::vector<LiveTick> loop(const std::function<Delays(std::int64_t)>& delays,
                            std::int64_t releases = 100, const Rate& rate = Rate::hz(1000)) {
   std::vector<LiveTick> ticks;
@@ -87,7 +88,7 @@ TEST(DeadlineMisses, ThatAShortStepCompletesAreTheMachines) {
   EXPECT_EQ(found.by_port, 0u);
 }
 
-// The same wake-up latency everywhere, which a port has to live with.
+// Every release has this wake-up latency, so a port has to allow for it.
 TEST(DeadlineMisses, ThatALongStepCompletesAreThePorts) {
   const DeadlineMisses found = misses([](std::int64_t k) {
     return Delays{us(k == 5 ? 950 : 20), us(80)};
@@ -123,7 +124,7 @@ TEST(DeadlineMisses, OfAStepThatSleepsByItselfAreThePorts) {
   EXPECT_EQ(found.by_port, 3u);
 }
 
-// A backlog of the machine reaches the ticks after it.
+// The machine's backlog also delays the ticks after it.
 TEST(DeadlineMisses, OfTheMachinesBacklogAreTheMachines) {
   const DeadlineMisses found = misses([](std::int64_t k) {
     return Delays{us(20), us(k == 5 ? 990 : 0), us(k == 6 ? 980 : 0)};
@@ -141,10 +142,10 @@ TEST(DeadlineMisses, WithoutAStepAreTheMachines) {
   EXPECT_EQ(found.by_port, 0u);
 }
 
-// A port that is too slow, on a machine that is late: from 5 ms on, 2.5 ms of the machine and 3.3
-// of the port. The response would be late anyway, and the release with the deadline at 7 ms passed
-// over. The one with the deadline at 8 ms is passed over by the port alone, so it is the port's.
-// Those at 9 and 10 ms need both.
+// After the release at 5 ms, the machine delays by 2.5 ms and the step takes 3.3 ms. The machine's
+// delay alone makes the response late, and passes over the release with the deadline at 7 ms. The
+// step alone passes over the release with the deadline at 8 ms, so that miss is the port's. The
+// releases with deadlines at 9 and 10 ms are passed over only by the sum of both.
 TEST(DeadlineMisses, ThatHappenWithoutAnyStepToo) {
   const DeadlineMisses found = misses([](std::int64_t k) {
     return k == 5 ? Delays{us(3300), us(2500)} : short_step();
@@ -166,7 +167,7 @@ TEST(DeadlineMisses, AStartThatIsLateWithoutTheStepBeforeIsTheMachines) {
   EXPECT_EQ(found.late_starts_by_port, 0u);
 }
 
-// One that the machine delays at times more than usual, which turns single misses into its own.
+// The machine at times delays more than usual, which makes single misses its own.
 TEST(DeadlineMisses, OfATooSlowPortAreNearlyAllThePortsOnARestlessMachine) {
   Random random(2);
   const DeadlineMisses found =
@@ -197,7 +198,8 @@ TEST(DeadlineMisses, OfShortStepsAreNeverThePorts) {
   }
 }
 
-// A release is passed over when the next one is due, at 2 ms here: by neither of the two alone.
+// A release is passed over when the next one is due: here 2 ms after the release at 5 ms.
+// The machine's 0.5 ms and a step of 1.6 ms reach that only together.
 TEST(DeadlineMisses, AReleaseIsPassedOverByThePortIfItsStepAloneReachesTheNext) {
   const auto late = [](Nanoseconds execution) {
     return misses([=](std::int64_t k) {

@@ -1,4 +1,4 @@
-// What the tests of real time fly.
+// The case and the vehicle of the real-time tests.
 #pragma once
 
 #include "harness/casefile/case.hpp"
@@ -6,7 +6,7 @@
 
 namespace attest::test {
 
-// Armed and level, without anything else; read from no file.
+// Armed and level, without anything else; not read from a file.
 Case hover_case(double duration_s);
 
 // A quad that hovers at half of its rotors' speed.

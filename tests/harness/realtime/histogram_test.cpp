@@ -39,7 +39,7 @@ TEST(Histogram, TakesWhatIsBeyondItsBins) {
   EXPECT_EQ(histogram.percentile(1), Nanoseconds(std::chrono::hours(1)));
 }
 
-// Against sorting them all.
+// Compared with the sorted values.
 RC_GTEST_PROP(Histogram, PercentilesAreRightToABin, (std::vector<std::uint32_t> values)) {
   RC_PRE(!values.empty());
   const double part = *rc::gen::inRange(0, 1001) / 1000.0;

@@ -1,5 +1,5 @@
-// Two threads on the real clock. How late they are is the machine's; what is asserted is what holds
-// however late that is.
+// Two threads on the real clock. Their lateness depends on the machine, so the tests assert only
+// facts that hold for any lateness.
 #include "harness/realtime/live_flight.hpp"
 
 #include <gtest/gtest.h>
@@ -66,7 +66,8 @@ TEST(LiveFlight, ItsTimesCanBeFlownAgain) {
   const auto unit = open_builtin()->create("px4-v1.5.5");
   const Flown again = *fly(the_case, configuration, *iris, *unit, timing);
   ASSERT_EQ(again.trace.samples.size(), live.unit.samples.size());
-  // MuJoCo's steps are cut elsewhere, so not to the bit; far below what the unit could feel.
+  // MuJoCo's steps are cut at other times, so the replay is not equal to the bit. The bound is far
+  // below any effect on the unit.
   for (std::size_t i = 0; i < again.trace.samples.size(); ++i) {
     const attest_inputs& then = live.unit.samples[i].in;
     const attest_inputs& now = again.trace.samples[i].in;
@@ -108,7 +109,7 @@ TEST(LiveFlight, EndsWhenItIsAsked) {
   EXPECT_LT(flight.unit.ticks.size(), 20'000u);
 }
 
-// What battery_status told the unit last: empty battery, more scale.
+// The last scale of battery_status: an emptier battery has a larger scale.
 float last_scale(const std::vector<Sample>& samples) {
   return samples.back().in.battery_status.scale;
 }
@@ -124,7 +125,7 @@ TEST(LiveFlight, ABatteryEmptiesAndItsScaleReachesTheUnit) {
   for (const Sample& sample : live.unit.samples) {
     published += (sample.in.updated & ATTEST_UPDATED_BATTERY_STATUS) != 0 ? 1 : 0;
   }
-  // 100 Hz; on a machine that is late some are overtaken.
+  // It is published at 100 Hz; on a late machine, newer samples replace some.
   EXPECT_GE(published, 2u);
   EXPECT_LE(published, 51u);
   const auto iris = *VehicleModel::load(source / "models", "iris");

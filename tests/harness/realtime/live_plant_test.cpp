@@ -1,4 +1,4 @@
-// The plant's loop on a clock that is late as the test says.
+// The plant's loop on a clock whose lateness the test gives.
 #include "harness/realtime/live_plant.hpp"
 
 #include <gmock/gmock.h>
@@ -54,7 +54,8 @@ TEST_F(LivePlantTest, StepsWhoseTimeHasPassedAreMadeUpInOneGo) {
   EXPECT_EQ(record.latency.max(), us(2500));
 }
 
-// The step of 3 ms happens at 3.5 ms. A command of 3.2 ms comes too early for it.
+// The step of 3 ms runs at 3.5 ms. A command of 3.2 ms is there by then, but belongs to the next
+// step.
 TEST_F(LivePlantTest, ACommandFromAfterTheTimeOfAStepIsForTheNext) {
   clock_.latency = [](Nanoseconds due) { return due == ms(3) ? us(500) : ns(0); };
   clock_.before_waiting = [&](Nanoseconds due) {

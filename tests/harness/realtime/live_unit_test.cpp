@@ -1,4 +1,4 @@
-// The unit's loop on a clock that is late as the test says: which releases are used and passed
+// The unit's loop on a clock whose lateness the test gives: which releases are used and passed
 // over, and which deadlines are missed.
 #include "harness/realtime/live_unit.hpp"
 
@@ -20,7 +20,7 @@ namespace {
 
 using testing::ElementsAre;
 
-// Takes as long as the test says, by its own steps.
+// Its steps take the times that the test gives, by step number.
 class SlowUnit final : public Unit {
  public:
   explicit SlowUnit(ScriptedClock& clock) : clock_(clock) {}
@@ -129,7 +129,7 @@ TEST_F(LiveUnitTest, ATickKnowsItsReleaseAndItsDeadline) {
   EXPECT_EQ(tick.start, us(3070));
   EXPECT_EQ(tick.finish, us(3080));
   EXPECT_EQ(tick.elapsed, us(10));
-  EXPECT_LT(tick.cpu, ms(1));  // of the real CPU, whatever the clock says
+  EXPECT_LT(tick.cpu, ms(1));  // of the real CPU, not of the scripted clock
 }
 
 TEST_F(LiveUnitTest, AStepThatSleepsHasWaited) {

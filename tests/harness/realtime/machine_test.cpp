@@ -1,4 +1,4 @@
-// What is asked of the operating system, and of other programs.
+// Requests to the operating system, and to other programs.
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
@@ -64,7 +64,7 @@ TEST(Usage, CountsWhatAThreadDoes) {
 
 void note(int) {}
 
-// As attest does, to end a run cleanly.
+// attest has such handlers, to end a run cleanly.
 TEST(Load, EndsThoughThisProcessNotesInterrupts) {
   const auto before = std::signal(SIGTERM, note);
   { const Load load(LoadKind::cpu, 2); }
@@ -113,8 +113,8 @@ TEST(Cyclictest, GarbageIsRefused) {
   }
 }
 
-// However late the machine is at times: that a clock that spins wakes after its deadline by as long
-// as it spins, each time, is no accident.
+// A clock that spins after its deadline wakes late by at least the spin time, every time. A machine
+// is not that late 50 times in a row.
 TEST(Pacer, SpinsBeforeTheDeadlineAndNotAfterIt) {
   const Nanoseconds spin = ms(3);
   Pacer pacer(Pacer::now_monotonic(), {spin});

@@ -5,7 +5,7 @@
 namespace attest {
 namespace {
 
-// Neither inlined, which would use the stack of its caller, nor left out.
+// Neither inlined, which would use the stack of its caller, nor optimised away.
 template <std::size_t bytes>
 [[gnu::noinline]] unsigned char use_stack() {
   volatile unsigned char memory[bytes];
@@ -13,7 +13,7 @@ template <std::size_t bytes>
   return memory[0];
 }
 
-// A sanitizer puts more around each variable.
+// A sanitizer adds memory around each variable.
 constexpr std::size_t slack = 2048;
 
 TEST(PaintedStack, MeasuresTheDeepestCall) {
@@ -45,7 +45,7 @@ TEST(PaintedStack, WorkSeesItsVariables) {
   EXPECT_EQ(sum, 5050);
 }
 
-// The frame in which attest makes the call is no part of it.
+// The frame in which attest makes the call does not count.
 TEST(PaintedStack, WorkThatDoesNothingUsesNothing) {
   auto stack = PaintedStack::make();
   ASSERT_TRUE(stack);

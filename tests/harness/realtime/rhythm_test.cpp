@@ -37,7 +37,7 @@ Events uniform(Random& random, std::size_t ticks) {
   return events;
 }
 
-// Runs of slow ticks without a gap: something else had the caches, or the clock was slow.
+// Runs of slow ticks without a gap: another program used the caches, or the clock was slow.
 Events runs(Random& random, std::size_t ticks) {
   Events events;
   const double mean = random.uniform(1.5, 30);
@@ -61,7 +61,7 @@ Events clusters(Random& random, std::size_t ticks) {
   return events;
 }
 
-// Ticks of a machine that is busy and idle by turns.
+// Ticks of a machine that is alternately busy and idle.
 Events by_turns(Random& random, std::size_t ticks) {
   Events events;
   const double length = random.uniform(5, 200), busy = random.uniform(0.05, 0.9);
@@ -76,7 +76,7 @@ Events by_turns(Random& random, std::size_t ticks) {
   return events;
 }
 
-// Never two within a dead time.
+// Never two slow ticks within a dead time.
 Events spaced(Random& random, std::size_t ticks) {
   Events events;
   const std::size_t dead = 1 + below(random, 40);
@@ -123,8 +123,8 @@ TEST(Rhythm, IsClaimedInNoneOfALongRunsRandomSamples) {
   }
 }
 
-// A port that is slow in every so-manieth step but misses some, on a machine with slow ticks of its
-// own, as many again, in runs of one to five.
+// A port is slow in every n-th step but misses some. The machine has as many slow ticks of its own,
+// in runs of one to five.
 TEST(Rhythm, IsFoundInTheNoiseOfAMachine) {
   Random random(3);
   int missed = 0;

@@ -1,4 +1,4 @@
-// A clock that is late as a test says.
+// A clock whose lateness the test gives.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace attest {
 
-// Wakes up late by `latency` of its next release; time passes nowhere else by itself.
+// A wait ends `latency` after its deadline. Otherwise time passes only by pass().
 class ScriptedClock final : public Clock {
  public:
   Nanoseconds now() override { return now_; }

@@ -29,8 +29,8 @@ TEST(TripleBuffer, StaysWhileOthersAreWritten) {
   EXPECT_EQ(*value.read(), 9);
 }
 
-// Two threads at full speed: no value is torn, none comes twice or out of order. The thread
-// sanitizer sees whether it rests on luck.
+// Two threads at full speed: no value is torn, repeated or out of order. The thread sanitizer finds
+// a race that this test misses by luck.
 TEST(TripleBuffer, GoesFromThreadToThreadWhole) {
   using Wide = std::array<std::uint64_t, 32>;
   constexpr std::uint64_t last = 200'000;

@@ -41,7 +41,7 @@ std::string baseline_complaint(const std::filesystem::path& folder, const std::s
   if (!accept) {
     return fmt::format(
         "{} is not what the report says now: {}\nset ATTEST_ACCEPT_BASELINES=1 to "
-        "write {}.new beside it",
+        "write {}.new next to it",
         path.string(), difference, name);
   }
   std::ofstream(path.string() + ".new", std::ios::binary) << text;

@@ -8,9 +8,9 @@
 
 namespace attest {
 
-// Empty when `text` is what `folder`/`name` holds; else what differs and what to do. A baseline is
-// never overwritten: with `accept` the text is written beside it as `name`.new, to be read and
-// renamed by hand.
+// Empty if `text` is the content of `folder`/`name`; otherwise the difference, and what to do. A
+// baseline is never overwritten: with `accept` the text is written next to it as `name`.new, to be
+// read and renamed by hand.
 std::string baseline_complaint(const std::filesystem::path& folder, const std::string& name,
                                const std::string& text, bool accept);
 

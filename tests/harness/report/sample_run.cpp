@@ -37,7 +37,7 @@ CaseResult with_headroom(CaseResult out, const char* channel, double ratio, std:
   return out;
 }
 
-// A sign error in the yaw law: the same case fails alike at three rates.
+// A sign error in the yaw law: the same case fails in the same way at three rates.
 void add_attitude(std::vector<CaseResult>& results) {
   const char* yaw = "out/vehicle_rates_setpoint.yaw";
   const Rate slow = Rate::hz(100);

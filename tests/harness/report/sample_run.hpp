@@ -7,8 +7,8 @@
 
 namespace attest {
 
-// Numeric level. Every verdict, three groups and four rates, a NaN and a flag that deviate, words
-// hostile to XML, HTML, shells and terminals, a long name, errors.
+// Numeric level. Every verdict, three groups and four rates, a NaN and a flag that deviate, text
+// that XML, HTML, shells and terminals could misread, a long name, errors.
 RunResult sample_run();
 
 // Exact level: 3 cases at 2 rates, all passed.

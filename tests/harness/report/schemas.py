@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The baselines of the reports are valid under their schemas, and wrong reports are not.
+"""Checks that the schemas accept the baselines of the reports and reject wrong reports.
 
 Usage: schemas.py SOURCE_DIR XMLLINT
 """
@@ -18,7 +18,7 @@ BASELINES = SOURCE / "tests/baselines"
 XSD = SOURCE / "tests/harness/report/junit.xsd"
 SCHEMAS = SOURCE / "harness/report"
 
-# What each does to a report that is right: one step away from it.
+# Each makes a right report wrong by one change.
 WRONG_REPORT = {
     "another schema": lambda r: r.update(schema="attest-report-2"),
     "an unknown member": lambda r: r.update(elapsed_s=1.0),
@@ -139,7 +139,7 @@ def check_json() -> list[str]:
 
 
 def check_definitions() -> list[str]:
-    """What both schemas define is the same in both."""
+    """Compares the definitions that both schemas contain."""
     one, other = (
         json.loads((SCHEMAS / name).read_text())["definitions"] for name, *_ in JSON_REPORTS
     )

@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// A case at two rates of each of these groups, all of which pass, of the released suite.
+// A run of the released suite: a case at two rates of each of these groups, all of which pass.
 RunResult run_of(const std::vector<std::string>& groups) {
   RunResult run;
   run.rates = {Rate::hz(100), Rate::hz(250)};

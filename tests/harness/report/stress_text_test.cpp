@@ -13,7 +13,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-// Of that many samples, of which each is some microseconds.
+// The percentiles of `count` samples of some microseconds each.
 Percentiles spread(std::uint64_t count) {
   Histogram histogram;
   for (std::uint64_t i = 0; i < count; ++i) histogram.add(us(i % 100 == 99 ? 40 : 8));

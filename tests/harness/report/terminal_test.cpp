@@ -135,7 +135,7 @@ TEST(Headroom, NamesTheTightestFirst) {
   run.results[1].tightest = Headroom{20, 5, control};
   run.results[2].tightest = Headroom{7.26, 6, rate};
   run.results[3].tightest = Headroom{1, 7, rate};
-  run.results[3].verdict = Verdict::fail;  // it has none to boast of
+  run.results[3].verdict = Verdict::fail;  // its headroom does not count
   EXPECT_THAT(summary(run), HasSubstr("\n  rates      7.3x on out/vehicle_rates_setpoint.yaw in "
                                       "px4-v1.5.5/attitude/roll_30@50hz at tick 6\n"
                                       "  controls   20.0x on out/actuator_controls_0.control[0] in "

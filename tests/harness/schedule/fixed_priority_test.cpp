@@ -16,7 +16,8 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// Periods and executions in ms, as textbooks have them without a unit; the first is the highest.
+// Periods and execution times in ms; textbooks give them without a unit. The first task has the
+// highest priority.
 std::vector<ScheduledTask> rate_monotonic(const std::vector<std::pair<int, int>>& periods) {
   std::vector<ScheduledTask> tasks;
   int priority = 100;
@@ -85,8 +86,8 @@ TEST(ResponseTime, OfATaskThatMissesItsPeriodIsNone) {
   EXPECT_THAT(analysed(tasks), ElementsAre(ms(2), Nanoseconds(-1), Nanoseconds(-1)));
 }
 
-// Released together at time 0, each task's first job meets the worst there is (Liu and Layland's
-// critical instant): analysis and simulation are two ways to one number.
+// Released together at time 0, each task's first job has the longest response (Liu and Layland's
+// critical instant). Analysis and simulation must give the same number.
 RC_GTEST_PROP(FixedPriority, TheLongestResponseIsTheAnalysed, ()) {
   const auto count = *rc::gen::inRange(1, 6);
   std::vector<std::pair<int, int>> periods;
@@ -146,7 +147,7 @@ TEST(FixedPriority, WhatCannotBeScheduledIsRefused) {
   EXPECT_THAT(simulate(tasks, ms(100)).error().message, HasSubstr("same priority 100 on CPU 0"));
 }
 
-// A rate that is no whole number of nanoseconds does not drift.
+// The releases of a rate that is no whole number of nanoseconds do not drift.
 TEST(FixedPriority, ReleasesAreThoseOfTheRate) {
   auto tasks = rate_monotonic({{3, 1}});
   tasks[0].rate = Rate::hz(333);
@@ -180,7 +181,7 @@ TEST(FixedPriority, ATaskIsReleasedWhenAnotherFinishes) {
 
 TEST(FixedPriority, AReleaseAtTheEndIsNoReleaseAndTheOrderOfTheCpusIsNone) {
   auto tasks = triggered(50, 0);
-  tasks[0].cpu = 1;  // releases a task of the CPU before its own
+  tasks[0].cpu = 1;  // CPU 1 releases a task of CPU 0
   const auto jobs = *simulate(tasks, ms(13));
   ASSERT_EQ(jobs[1].size(), 1u);
   EXPECT_EQ(jobs[1][0].release, ms(3));
@@ -189,7 +190,7 @@ TEST(FixedPriority, AReleaseAtTheEndIsNoReleaseAndTheOrderOfTheCpusIsNone) {
 
 TEST(FixedPriority, OfTwoReadyAtTheInstantOfAReleaseTheHigherRuns) {
   auto tasks = triggered(50, 0);
-  tasks[2].phase = ms(3);  // as `a` finishes
+  tasks[2].phase = ms(3);  // when `a` finishes
   const auto jobs = *simulate(tasks, ms(9));
   EXPECT_EQ(jobs[2][0].start, ms(3));
   EXPECT_EQ(jobs[1][0].release, ms(3));
@@ -197,7 +198,7 @@ TEST(FixedPriority, OfTwoReadyAtTheInstantOfAReleaseTheHigherRuns) {
 }
 
 TEST(ResponseTime, OfATaskThatAnotherReleasesCountsFromThere) {
-  // `c` (1 every 7) is above both: the estimator answers in 4, its jitter is 1.
+  // `c` (1 every 7) is above both: the estimator's response is 4, its jitter 1.
   auto tasks = triggered(50, 0);
   tasks[2].priority = 200;
   EXPECT_THAT(analysed(tasks), ElementsAre(ms(4), ms(6), ms(1)));
@@ -234,8 +235,8 @@ TEST(ScheduledTask, TheWorstExecutionIsTheLongest) {
   EXPECT_EQ(task.worst_execution(), ms(3));
 }
 
-// `a` on the other CPU answers in 3 or 4, so `b` comes every 9 to 11: within 10 of the release of
-// the third task twice.
+// `a` on the other CPU has a response of 3 or 4 ms, so `b` is released every 9 to 11 ms. Within 10
+// ms of a release of the lowest task, it may be released twice.
 TEST(ResponseTime, AHigherTaskThatMayBeLateDisturbsTwice) {
   auto tasks = triggered(150, 0);
   tasks[0].cpu = tasks[2].cpu = 1;
@@ -247,7 +248,7 @@ TEST(ResponseTime, AHigherTaskThatMayBeLateDisturbsTwice) {
   lowest.priority = 1;
   tasks.push_back(lowest);
   EXPECT_EQ(response_time(tasks, 3), ms(12));
-  tasks[2].execution = {ms(0)};  // `a` answers in 3 always
+  tasks[2].execution = {ms(0)};  // the response of `a` is always 3 ms
   EXPECT_EQ(response_time(tasks, 3), ms(10));
 }
 

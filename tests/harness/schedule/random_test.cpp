@@ -7,7 +7,7 @@
 namespace attest {
 namespace {
 
-// Goldens rest on these numbers: they may never change.
+// Goldens depend on these numbers, so they may never change.
 TEST(Random, HasTheValuesOfTheStandardsEngine) {
   Random random(5489);  // whose 10000th output the C++ standard gives: 9981545732273789042
   for (int i = 0; i < 9999; ++i) random.uniform();

@@ -79,7 +79,7 @@ TEST_F(CsvErrors, MissingInput) {
   sheet.remove("in/battery_status.scale");
   constexpr const char* message =
       "a.csv:1: no column in/battery_status.scale; add the column, or an entry "
-      "\"in/battery_status.scale\" under [constants] in a provenance.toml beside the file";
+      "\"in/battery_status.scale\" under [constants] in a provenance.toml next to the file";
   EXPECT_EQ(error_of(sheet.text(), TraceNeed::inputs), message);
   EXPECT_EQ(error_of(sheet.text(), TraceNeed::inputs_and_outputs), message);
   EXPECT_EQ(error_of(sheet.text(), TraceNeed::outputs), "");
@@ -124,9 +124,9 @@ TEST_F(CsvErrors, ShortRow) {
 TEST_F(CsvErrors, LongRow) {
   EXPECT_EQ(
       error_of("timestamp,out/vehicle_rates_setpoint.yaw\n1,2\n30,4,5,6\n", TraceNeed::outputs),
-      "a.csv:3:6: row has 4 cells, the header has 2; remove what is too much");
+      "a.csv:3:6: row has 4 cells, the header has 2; remove the extra cells");
   EXPECT_EQ(error_of("timestamp,out/vehicle_rates_setpoint.yaw\n1,2,\n", TraceNeed::outputs),
-            "a.csv:2:5: row has 3 cells, the header has 2; remove what is too much");
+            "a.csv:2:5: row has 3 cells, the header has 2; remove the extra cells");
 }
 
 TEST_F(CsvErrors, RowOfTheWrongLengthIsNotBlamedOnItsShiftedCells) {

@@ -160,7 +160,7 @@ TEST_F(CsvReader, TurnsParameterColumnsIntoChanges) {
   sheet.add("in/parameter.MC_ROLL_P", {"6.5", "7", "8"});
   sheet.add("in/parameter.MC_YAW_P", {"nan", "nan", "-nan"});
   sheet.add("in/parameter.MC_PITCH_P", {"0", "1", "-0"});
-  sheet.cell(1, "in/updated.parameter_update") = "0";  // tick 0 takes all all the same
+  sheet.cell(1, "in/updated.parameter_update") = "0";  // tick 0 takes all nevertheless
   sheet.cell(2, "in/updated.parameter_update") = "0";
   sheet.cell(3, "in/updated.parameter_update") = "1";
   const Trace trace = read(sheet.text());
@@ -216,7 +216,7 @@ TEST_F(CsvReader, ReadsFilesLongerThanItsBuffer) {
   }
 }
 
-// A file that leaves to its base what is the same.
+// The file stores only the columns that differ from its base.
 TEST_F(CsvReader, ABaseHasTheSameTicks) {
   const TemporaryDirectory directory;
   const auto first = directory.path() / "first", other = directory.path() / "other";

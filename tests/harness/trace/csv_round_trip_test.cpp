@@ -19,7 +19,7 @@ std::uint32_t arbitrary_bits() {
   return *rc::gen::resize(rc::kNominalSize, rc::gen::arbitrary<std::uint32_t>());
 }
 
-// Every kind of float in good measure: any bits, both zeros, NaNs with payloads, infinities,
+// Every kind of float, each of them often: any bits, both zeros, NaNs with payloads, infinities,
 // denormals, the neighbours of their ends, short decimals.
 float arbitrary_float() {
   const std::uint32_t bits = arbitrary_bits();
@@ -51,7 +51,8 @@ void fill(Sample& sample) {
   }
 }
 
-// A trace as runs make them: parameters have values at tick 0 and change where the unit is told.
+// A trace as runs make them: parameters have values at tick 0, and change where the unit receives
+// parameter_update.
 Trace arbitrary_trace() {
   Trace trace;
   trace.present = channels_of(Module::mc_att_control);
@@ -71,7 +72,7 @@ Trace arbitrary_trace() {
     trace.samples.push_back(sample);
     if (tick == 0 || (sample.in.updated & ATTEST_UPDATED_PARAMETER_UPDATE) == 0) continue;
     const std::size_t changed = arbitrary_bits() % names.size();
-    const auto value = static_cast<float>(tick) + 0.5f;  // never the last one
+    const auto value = static_cast<float>(tick) + 0.5f;  // never the previous value
     if (value != values[changed]) trace.parameters.push_back({tick, names[changed], value});
     values[changed] = value;
   }

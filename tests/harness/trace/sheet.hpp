@@ -30,7 +30,7 @@ class Sheet {
   std::vector<std::vector<std::string>> rows_;
 };
 
-// Are all channels the same by bits, any NaN being the same as any other?
+// Whether all channels have the same bits; all NaNs count as the same.
 bool same_samples(const Trace& a, const Trace& b);
 
 }  // namespace attest

@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* profile = "px4-v1.5.5";
 
-// What the reference answers to a vehicle that rolls and pitches, 10 ticks of it.
+// 10 ticks of the reference's outputs for a vehicle that rolls and pitches.
 Trace flown(const std::string& body = "[control_state]\nroll_rate = 0.4\npitch_rate = 0.5\n") {
   Trace trace = stimulate(case_of(body), Rate::hz(250));
   EXPECT_FALSE(drive(*open_builtin(), Subject{profile}, trace));
@@ -32,7 +32,7 @@ Answers answers_of(const Trace& trace, std::optional<int> fraction_bits = {}) {
 
 Comparison compared(const Trace& trace) { return answers_of(trace).comparison; }
 
-// Thrust passes the gate of the integrals at 0.2: whether it is above is rounding's.
+// Thrust passes the integrator's gate at 0.2. Near the gate, rounding decides.
 Trace flown_over_the_gate(double thrust) {
   return flown(
       fmt::format("[vehicle_attitude_setpoint]\nthrust = {{ signal = \"samples\", times_ticks = "
@@ -66,7 +66,7 @@ TEST(Answers, WhatIsNoNumberIsFound) {
   EXPECT_TRUE(comparison.got_non_finite);
 }
 
-// The parameters that the port was given are those that the reference is given.
+// The reference receives the same parameters as the port.
 TEST(Answers, ParametersAreThoseOfTheFlight) {
   Trace trace = flown("[parameters]\nMC_ROLL_P = 9\n[control_state]\nq = { roll_deg = 10 }\n");
   EXPECT_TRUE(compared(trace).agrees());
@@ -109,7 +109,7 @@ TEST(Answers, WhatIsNoNumberIsWrongWhereRoundingDecidesToo) {
   EXPECT_TRUE(answers.comparison.got_non_finite);
 }
 
-// A port with few bits rounds more, and so more often decides by rounding.
+// A port with few bits rounds more, so rounding decides more often.
 TEST(Answers, FewerBitsDecideByRoundingFurtherFromADecision) {
   Trace trace = flown_over_the_gate(0.2001);
   trace.samples[8].out.actuator_controls_0.control[0] += 0.01f;

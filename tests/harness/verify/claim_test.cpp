@@ -23,7 +23,7 @@ CaseResult result_of(const std::string& group, Rate rate, Verdict verdict = Verd
   return result;
 }
 
-// A suite of these groups, one case at two rates in each, all of which pass.
+// A run of these groups, one case at two rates in each, all of which pass.
 RunResult complete_run(const std::vector<std::string>& groups) {
   RunResult run;
   run.suite_is_released = true;
@@ -94,7 +94,7 @@ TEST(Claim, WhatIsCountedApartIsMissing) {
   }
 }
 
-// The level has no verdict on these; at the exact level there is none to skip.
+// At other levels these cases have no verdict. At the exact level none of them may be skipped.
 TEST(Claim, CasesOfTheExactLevelMayBeSkippedAtAnother) {
   RunResult run = complete_run({"attitude", "tpa"});
   run.results.back().verdict = Verdict::skip;

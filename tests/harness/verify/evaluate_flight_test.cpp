@@ -1,4 +1,4 @@
-// Flights of the reference, changed afterwards as a test wants them.
+// Flights of the reference, which a test then changes.
 #include <functional>
 
 #include <gmock/gmock.h>
@@ -47,8 +47,8 @@ class ChangedFlight final : public PortHost {
   Change change_;
 };
 
-// Tilts by 30 deg; the metric is the largest body rate, of at least 2 rad/s. It may be off by 5%,
-// which is more than the 0.1 rad/s that it may be off in any case.
+// Tilts by 30 deg. The metric is the largest body rate, of at least 2 rad/s. Its tolerance is 5%,
+// which is more here than the least tolerance of 0.1 rad/s.
 class EvaluateFlight : public testing::Test {
  protected:
   EvaluateFlight()
@@ -92,7 +92,7 @@ TEST_F(EvaluateFlight, AMetricMayBeOffByTheLargerOfItsTolerances) {
   EXPECT_EQ(with_rates(0.94f).verdict, Verdict::fail);
 }
 
-// A ratio of a few tenths, for which 0.1 would be much.
+// A ratio of a few tenths, for which a tolerance of 0.1 would be wide.
 TEST_F(EvaluateFlight, ARatioMayBeOffByAShareOfItself) {
   case_.duration = {150, Span::In::ticks};
   metric_.window.from_s = 2;
@@ -125,8 +125,8 @@ TEST_F(EvaluateFlight, AMissedMetricDoesNotHideThatAnOutputIsNoNumber) {
   EXPECT_THAT(result.reason, HasSubstr("metric turns"));
 }
 
-// From 30 bits on it is held to the golden's rows like floats. What is changed here is the state
-// that the port was given and its answers to that, which are right.
+// From 30 bits on the golden's rows apply, as they do for floats. The test changes the port's
+// input; the port's outputs are right for that input.
 TEST_F(EvaluateFlight, APortInFixedPointIsHeldToTheGoldenFrom30BitsOn) {
   const auto other_rate = [](Trace& flown) {
     flown.samples[10].in.control_state.roll_rate += 0.01f;
@@ -138,7 +138,8 @@ TEST_F(EvaluateFlight, APortInFixedPointIsHeldToTheGoldenFrom30BitsOn) {
   EXPECT_EQ(result_of(other_rate, 29).verdict, Verdict::pass);
 }
 
-// Beyond the horizon, where the golden says nothing: of a port with 22 bits that is every tick.
+// Beyond the horizon, where the golden's rows do not apply: for a port with 22 bits that is every
+// tick.
 TEST_F(EvaluateFlight, AWrongAnswerIsFoundAtAnyTick) {
   const CaseResult result = result_of(
       [](Trace& flown) { flown.samples[95].out.vehicle_rates_setpoint.roll += 0.1f; }, 22);

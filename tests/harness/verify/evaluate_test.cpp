@@ -82,7 +82,7 @@ TEST_F(EvaluateTest, AMissingGoldenIsOneErrorForAllRates) {
   EXPECT_THAT(outcome.errors[0].message, HasSubstr("no golden for px4-v1.5.5/tests/pitch"));
 }
 
-// Answers what it was told to, whatever the inputs.
+// Returns the given outputs for any inputs.
 class Reciting final : public PortHost {
  public:
   explicit Reciting(Trace answers) : answers_(std::move(answers)) {}
@@ -129,7 +129,7 @@ TEST_F(EvaluateTest, AnotherSideIsAsRightButNotAtTheExactLevel) {
   EXPECT_EQ(verdict_on(other, Level::exact), Verdict::fail);
 }
 
-// The case is as it was, but what is made of it is not: the harness has changed.
+// The case is unchanged, but its inputs are not: this happens if the harness changes.
 TEST_F(EvaluateTest, AGoldenWithOtherInputsIsAnError) {
   suite_.add_unblessed("pitch", pitching);
   Case other = suite_[0];

@@ -1,4 +1,4 @@
-// Each port of tests/ports is judged as it says at its top.
+// Each port of tests/ports gets the verdict that the comment at its top states.
 #include <cerrno>
 #include <set>
 
@@ -57,7 +57,7 @@ TEST_F(PortsTest, AWordyPortIsNotHeard) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-// With a sanitizer in it the port's process reports and exits.
+// With a sanitizer the port's process prints a report and exits.
 TEST_F(PortsTest, ACrashHasTheNameOfItsSignalAndTheRestStillRuns) {
   for (const CaseResult& result : all_are("crash", Verdict::crash)) {
     EXPECT_THAT(result.reason, AnyOf(HasSubstr("was killed by signal 11 (Segmentation fault)"),
@@ -179,7 +179,8 @@ bool has_denormals() {
 }
 
 TEST_F(PortsTest, AFloatingPointModeOfThePortStaysItsOwn) {
-  // Made anew for the port, and compared with the golden to the bit: inputs that would be flushed.
+  // These inputs are denormal. They are generated for the port and compared with the golden to the
+  // bit.
   suite_.add("tiny", "[control_state]\nroll_rate = 1e-40\n");
   for (const bool in_process : {false, true}) {
     HostOptions host = host_of(test_port("sets_ftz"));

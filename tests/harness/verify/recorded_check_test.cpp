@@ -81,7 +81,7 @@ TEST_F(RecordedCheckTest, NoTracesAreAnError) {
   EXPECT_THAT(error(), HasSubstr("no recorded traces"));
 }
 
-// Off by 8e-4, which is more than a thousandth of the value, and by 1.5e-3.
+// The deviations are 8e-4, which is more than a thousandth of the value, and 1.5e-3.
 TEST_F(RecordedCheckTest, AStatedToleranceIsAbsolute) {
   const fs::path trace = "mixer-v1.5.5/4x.csv";
   for (const auto& [value, conforming] : {std::pair("-0.60436307", 1u), {"-0.60506307", 0u}}) {

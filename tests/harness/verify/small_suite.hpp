@@ -1,4 +1,4 @@
-// Cases and goldens of the tests' own, and what a port is given for them.
+// Cases and goldens that a test makes, and the options to run a port on them.
 #pragma once
 
 #include <string>

@@ -121,7 +121,7 @@ TEST(Jobs, OneThatDoesNotOpenIsOneError) {
   }
 }
 
-// No port is in there: it is a mistake of ours, and the run has an error.
+// A worker has no port in it, so this is a bug of attest: the run has an error.
 TEST(Jobs, AWorkerThatDiesIsAnError) {
   const Task dies = []() -> Result<std::string> {
     std::fputs("an assertion\n", stderr);
@@ -135,7 +135,7 @@ TEST(Jobs, AWorkerThatDiesIsAnError) {
   EXPECT_THAT(outcome.errors[0].message, HasSubstr("an assertion"));
 }
 
-// What it did not answer may be answered otherwise by another process.
+// Another process could give other answers to the open tasks.
 TEST(Jobs, AWorkerThatDiesIsNotStartedAgain) {
   const TemporaryDirectory directory;
   const auto marker = directory.path() / "has_died";
@@ -163,7 +163,7 @@ TEST(Jobs, AProcessThatCannotBeStartedIsAnErrorOfItsJob) {
   EXPECT_THAT(outcome.errors[0].message, HasSubstr("`ulimit -n`"));
 }
 
-// It would be started for ever.
+// It would be restarted again and again.
 TEST(Jobs, AWorkerThatEndsWithoutAnAnswerIsAnError) {
   const Task ends = []() -> Result<std::string> { ::_exit(EXIT_SUCCESS); };
   const auto outcome = run_jobs(jobs_of({{ends, says("a")}, {says("b")}}), with(1));
@@ -214,7 +214,7 @@ TEST(Jobs, StopWhenTheyAreTold) {
 TEST(Jobs, NothingToDoIsDone) {
   EXPECT_THAT(run_jobs(Jobs<std::string>(), with(2)).results, IsEmpty());
   EXPECT_THAT(run_jobs(jobs_of({{}, {says("a")}}), with(1)).results, ElementsAre("a"));
-  // As few as there can be.
+  // The smallest number of workers.
   EXPECT_EQ(run_jobs(jobs_of({{says("a")}}), with(0)).results.size(), 1u);
 }
 

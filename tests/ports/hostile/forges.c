@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: protocol. Has the torque's sign wrong, and writes an answer of its own into every
- * descriptor that is open, at each step. */
+/* Judged: protocol. Has the torque's sign wrong. At each step it writes a forged answer into every
+ * open descriptor. */
 #include <string.h>
 #include <unistd.h>
 

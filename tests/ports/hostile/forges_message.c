@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: protocol. Has the torque's sign wrong, and writes the file that FORGED_MESSAGE names, a
- * whole message of attest, into every descriptor that is open, at its first step. */
+/* Judged: protocol. Has the torque's sign wrong. At its first step it writes the file that
+ * FORGED_MESSAGE names, a whole message of attest, into every open descriptor. */
 #include <stdio.h>
 #include <unistd.h>
 

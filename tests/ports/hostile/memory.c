@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: fail. Ports that look for the golden in the memory of their process: a sample there whose
- * inputs are those of this step, and outputs behind it.
+/* Judged: fail. Ports that look for the golden in the memory of their process: a sample with the
+ * inputs of this step, followed by outputs.
  *
- *     copies_golden      has no law, and answers what it finds
- *     rewrites_golden    has the torque's sign wrong, and writes what it answers over what it finds
+ *     copies_golden      has no law, and returns the outputs that it finds
+ *     rewrites_golden    has the torque's sign wrong, and overwrites what it finds with its outputs
  *
- * Both passed while the judge had the same process; with --in-process they still do. */
+ * Both passed while the judge ran in the same process; with --in-process they still pass. */
 #include <stdio.h>
 #include <string.h>
 
 #include "../wrapper.h"
 
-/* As attest keeps it: the inputs of a tick, and the outputs behind them. */
+/* The layout in which attest stores a tick: the inputs, then the outputs. */
 typedef struct sample {
   attest_inputs in;
   attest_outputs out;
@@ -33,7 +33,7 @@ static void visit(sample* found, const attest_outputs* mine, attest_outputs* out
 #endif
 }
 
-/* All that the process may write, but for the step's own `in`. */
+/* Searches all memory that the process may write, except the step's own `in`. */
 static void search(const attest_inputs* in, const attest_outputs* mine, const void* self,
                    attest_outputs* out) {
   FILE* maps = fopen("/proc/self/maps", "r");
@@ -57,7 +57,7 @@ static int step(void* self, const attest_inputs* in, attest_outputs* out) {
   attest_outputs mine;
   memset(&mine, 0, sizeof mine);
 #ifdef REWRITES
-  /* A step lives in `out`, which the host keeps from step to step. */
+  /* A step updates `out`, which the host keeps from step to step. */
   static attest_outputs kept;
   const int result = wrapper_step(self, in, &kept);
   if (result != ATTEST_OK) return result;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: protocol, from the second case of a process on. create() makes a unit once, and returns
- * NULL from then on: it supported the profile when it was asked. */
+/* Judged: protocol, from the second case of a process on. create() makes a unit once and then
+ * returns NULL, although the port supported the profile when it was asked. */
 #include "../wrapper.h"
 
 static void* create(const char* profile) {

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: never pass. What the starter answers, with CHANGE(out, step) made to it:
+/* Judged: never pass. Outputs of the starter, changed by CHANGE(out, step):
  *
  *     negated_torque       fail at every level: roll, pitch and yaw controls have the other sign
  *     rates_times_100      fail at every level: rates setpoints times -100
  *     nan_integrals        non-finite at every level: integrals are NaN
  *     nan_once             non-finite, in flight too: an integral is NaN in one step
  *     wrong_unsupported    fail: negated torque, and ATTEST_UNSUPPORTED from step 20 on
- *     right_unsupported    unsupported: what is answered before step 20 is right
+ *     right_unsupported    unsupported: its outputs before step 20 are right
  */
 #include <math.h>
 
@@ -16,7 +16,8 @@
 #define UNSUPPORTED_FROM UINT32_MAX
 #endif
 
-/* A step lives in `out`, which the host keeps from step to step: changes are of a copy. */
+/* A step updates `out`, which the host keeps from step to step. Therefore changes are made to a
+ * copy. */
 typedef struct changed {
   wrapper law;
   attest_outputs out;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: protocol. The extension EXTENSION is FIRST until create() was called, and LATER then. */
+/* Judged: protocol. The extension EXTENSION is FIRST until create() was called, and LATER
+ * afterwards. */
 #include <stddef.h>
 #include <string.h>
 

@@ -6,7 +6,7 @@
 A style is a folder here with a right port (c_starter: the starter of the repository) and patches,
 each a porting mistake. Every patch is applied to a copy of its port, compiled, and run through the
 suite, flights last. The text at the head of a patch says what the mistake is. A line `Passes: why`
-there marks a mistake that no case tells from the law yet, and is an error once a case does.
+there marks a mistake that no case detects yet. It is an error if a case detects a marked mistake.
 
 Prints a table. Exits 1 if an unmarked mistake passes, a marked one fails, or a right port fails; 2
 if a patch does not apply or its port does not compile.
@@ -38,7 +38,7 @@ SOURCES = (".c", ".cpp", ".h", ".hpp")
 # Flights take most of the time and show few mistakes that the other groups do not.
 FLIGHTS = ("flight", "flight_timing")
 FLIGHT_RATES = "333"
-# A mistake is a wrong number, never a slow step: on a busy machine a case may take its time.
+# Mistakes give wrong numbers, never slow steps: the limit allows for a busy machine.
 TIMEOUT_S = 300
 COMPILES_AT_ONCE = threading.Semaphore(2)
 
@@ -55,7 +55,7 @@ class Candidate(NamedTuple):
 
     @property
     def passes(self) -> str | None:
-        """Why no case tells it from the law yet."""
+        """Why no case detects it yet."""
         return self.patch and self.patch.marked
 
 

@@ -1,5 +1,5 @@
-// Eigen's own products, norms and rotations, in whatever order they add: what a port in Eigen
-// would be written as. Must pass at the numeric level.
+// Eigen's own products, norms and rotations, in Eigen's order of additions: how a port in Eigen
+// would be written. Must pass at the numeric level.
 #include <cmath>
 
 #include <Eigen/Geometry>

@@ -1,5 +1,5 @@
-// Numbers as a processor without floating point has them: 64 bits of which FRACTION_BITS stand
-// behind the point (32), rounded, saturated, with products in 128 bits.
+// Numbers of a processor without floating point: 64 bits, of which FRACTION_BITS (by default 32)
+// are fraction bits. Results are rounded and saturated; products have 128 bits.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ class Fixed {
 
   constexpr Fixed() = default;
   constexpr Fixed(int value) : Fixed(of_raw(Wide{value} << fraction_bits)) {}  // NOLINT
-  // The one place where floats come in and go out: sensors, parameters and outputs.
+  // Floats are converted only here: sensors, parameters and outputs.
   explicit constexpr Fixed(float value) : Fixed(double{value}) {}
   explicit constexpr Fixed(double value) : Fixed(of_raw(rounded(value))) {}
   explicit operator float() const {
@@ -55,7 +55,7 @@ class Fixed {
   friend constexpr auto operator<=>(Fixed a, Fixed b) = default;
 
  private:
-  // Saturated; NaN, which no fixed point has, is the lowest.
+  // Saturated. NaN, which fixed point cannot represent, becomes the lowest value.
   static constexpr Wide rounded(double value) {
     constexpr double most = 9.2e18;
     const double scaled = value * static_cast<double>(Wide{1} << fraction_bits);
@@ -70,7 +70,7 @@ inline Fixed abs(Fixed value) { return value.raw() < 0 ? -value : value; }
 
 inline Fixed fmin(Fixed a, Fixed b) { return std::min(a, b); }
 
-// A quotient by zero is as large as a number can be.
+// Division by zero gives the largest number, which therefore counts as not finite.
 inline bool isfinite(Fixed value) {
   return abs(value).raw() != std::numeric_limits<std::int64_t>::max();
 }

@@ -1,7 +1,7 @@
-// The law in fixed point: quaternions, matrices, angles, rates, controls and integrals. Nothing
-// that is not finite can be said in it, and it recovers no tailsitter: it declares both. Must pass
-// at the numeric level: with 32 bits behind the point as any port, with 22, as a processor of 32
-// bits has room for, as the fixed-point port that it then says it is.
+// The law in fixed point: quaternions, matrices, angles, rates, controls and integrals. It cannot
+// represent values that are not finite, and recovers no tailsitter; it declares both. Must pass at
+// the numeric level. With 32 fraction bits it is judged like any port. With 22, which a 32-bit
+// processor has room for, it declares its arithmetic and is judged as fixed point.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -19,7 +19,7 @@ using Vector = Vector3<Fixed>;
 Vector fixed(const Vector3<float>& v) { return {Fixed(v[0]), Fixed(v[1]), Fixed(v[2])}; }
 
 struct Step : StepStages<Fixed> {
-  // Microseconds do not fit; what is left after the clamp does.
+  // Microseconds do not fit into Fixed; the clamped difference does.
   static Fixed step_time(std::uint64_t now_us, std::uint64_t last_us) {
     const auto us = static_cast<double>(std::clamp<std::uint64_t>(now_us - last_us, 2000, 20000));
     return Fixed(us / 1e6);
@@ -73,7 +73,7 @@ struct Law {
   NoRecovery recovery;
 };
 
-// A sample that is not finite cannot be converted, and is left out: the scale stays what it was.
+// A sample that is not finite cannot be converted. It is left out, and the scale keeps its value.
 int step_battery(void* self, const attest_battery_inputs* in, attest_battery_outputs* out) {
   const auto& [voltage_v, current_a, throttle, armed] = in->battery;
   const bool is_finite =

@@ -1,4 +1,4 @@
-// atan2 as a polynomial, right to 2e-7: what a processor without one is given.
+// atan2 as a polynomial, accurate to 2e-7: for a processor without atan2.
 // Must pass at the numeric level.
 #include <cmath>
 #include <utility>

@@ -11,13 +11,13 @@ using Vector = Vector3<float>;
 using Matrix = Matrix3<float>;
 
 struct Stages : AttitudeStages<float> {
-  // The tilt is the rotation that a quaternion with the same x and y direction and no z makes:
-  // its half angle is between the parts (w, z) and (x, y).
+  // The tilt is the rotation of a quaternion with the same direction in x-y and without z. The
+  // tangent of its half angle is |(x, y)| / |(w, z)|.
   static TiltError<float> tilt_error(const Matrix& R_WB, const Matrix& R_WD) {
     const Matrix D = R_WB.transpose() * R_WD;
     TiltError<float> tilt{Vector::Zero(), Vector::Zero(), 0, 0};
     tilt.cosine = D(2, 2);
-    // A quaternion of zeros is no rotation; the law answers with no tilt.
+    // A quaternion of zeros is not a rotation; the law then returns no tilt.
     if (D.squaredNorm() == 0) return tilt;
     const Quaternion<float> q = quaternion_of(D);
     const float swing = std::hypot(q.x(), q.y()), twist = std::hypot(q.w(), q.z());
@@ -26,7 +26,7 @@ struct Stages : AttitudeStages<float> {
       if (std::isnan(tilt.sine)) tilt.rotation_B.fill(tilt.sine);
       return tilt;
     }
-    // (x, y) turned by half of the torsion: the axis as the body sees it before it turns.
+    // (x, y) turned by half of the torsion: the axis in body axes before the turn.
     const float scale = 1 / (swing * twist);
     tilt.axis_B = {(q.w() * q.x() - q.y() * q.z()) * scale, (q.w() * q.y() + q.x() * q.z()) * scale,
                    0};

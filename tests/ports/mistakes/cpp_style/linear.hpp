@@ -16,7 +16,7 @@ constexpr float kPi = 3.14159265358979323846f;
 
 constexpr float radians(float degrees) { return (degrees / 180.0f) * kPi; }
 
-// Unlike std::clamp, of a defined result for bounds the wrong way round: a limit may be negative.
+// Unlike std::clamp, defined for low above high too: a limit may be negative.
 constexpr float clamp(float v, float low, float high) {
   return v < low ? low : (v > high ? high : v);
 }
