@@ -1,5 +1,5 @@
-// Comparing two traces that agree to the bit, against memcmp of their samples: what is left to the
-// comparison is to walk over them.
+// Comparing two traces that agree to the bit, against memcmp of their samples. For such traces the
+// comparison only has to go through the samples.
 #include "harness/compare/compare.hpp"
 
 #include <cstring>

@@ -1,6 +1,6 @@
-// One step of the reference against the same law written by hand in C (the C starter), both through
-// the ABI, both from the same compiler, over inputs recorded from the firmware: every mode, every
-// tilt, parameter changes.
+// One step of the reference against the same law written by hand in C (the C starter). Both run
+// through the ABI and come from the same compiler. The inputs are recorded from the firmware, with
+// every mode, every tilt and parameter changes.
 #include <benchmark/benchmark.h>
 
 #include "controller/attest_unit.h"

@@ -1,5 +1,5 @@
-// Reading a trace against the least that reading can cost: the file in memory, std::from_chars on
-// each cell, the values thrown away.
+// Reading a trace against the least cost of reading: the file in memory, std::from_chars on each
+// cell, the values discarded.
 #include <charconv>
 
 #include <benchmark/benchmark.h>

@@ -1,5 +1,5 @@
-// Writing a trace against the least that writing can cost: std::to_chars of each value into memory
-// that is there already, and one write of it all.
+// Writing a trace against the least cost of writing: std::to_chars of each value into memory that
+// is already allocated, and one write of all of it.
 #include <charconv>
 #include <variant>
 #include <vector>
@@ -21,7 +21,7 @@ const Trace& trace() {
 
 using Cell = std::variant<float, std::uint64_t>;
 
-// The same numbers, row by row; parameters as they are at first.
+// The numbers that the writer writes, row by row; parameters have their first values throughout.
 std::vector<Cell> cells_of(const Trace& from) {
   const CsvColumns columns = all_columns(from);
   std::vector<Cell> cells;

@@ -1,5 +1,5 @@
-// A flight against what no harness can leave out: the same steps of MuJoCo on the same model, with
-// the same rotor commands read from memory.
+// A flight against its unavoidable part: the same steps of MuJoCo on the same model, with the same
+// rotor commands read from memory.
 #include <chrono>
 #include <map>
 #include <memory>
@@ -55,7 +55,7 @@ void flight(benchmark::State& state, int hertz, bool keep_trace) {
   }
 }
 
-// The rotor speeds that were asked for, four a tick.
+// The commanded rotor speeds [rad/s], four a tick.
 std::vector<double> commands(int hertz) {
   const Flying& f = flying();
   const auto unit = f.port->create("px4-v1.5.5");
@@ -71,7 +71,7 @@ std::vector<double> commands(int hertz) {
 }
 
 void bare_steps(benchmark::State& state, int hertz) {
-  static std::map<int, std::vector<double>> flown;             // once a rate: a turn begins at once
+  static std::map<int, std::vector<double>> flown;  // kept, so that later turns start fast
   if (!flown.contains(hertz)) flown[hertz] = commands(hertz);  // installs MuJoCo's callbacks too
   const std::vector<double>& all = flown[hertz];
   mjModel* model = mj_loadXML(ATTEST_SOURCE_DIR "/models/iris.xml", nullptr, nullptr, 0);
@@ -91,7 +91,7 @@ void bare_steps(benchmark::State& state, int hertz) {
   mj_deleteModel(model);
 }
 
-// What a flight needs before it begins, once the vehicle is loaded.
+// The preparation of a flight after the vehicle was loaded.
 void set_up(benchmark::State& state) {
   const Flying& f = flying();
   for (auto _ : state) {

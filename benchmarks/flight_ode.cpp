@@ -1,4 +1,4 @@
-// The ode plant against a bare ERKStep loop: the same equations and options, written straight down.
+// The ode plant against a bare ERKStep loop: the same equations and options, without abstractions.
 #include <array>
 #include <cmath>
 #include <vector>
@@ -13,7 +13,7 @@
 namespace attest::bench {
 namespace {
 
-constexpr int ticks = 1000;  // of 1 ms, each with commands of its own
+constexpr int ticks = 1000;  // of 1 ms, each with new commands
 
 const Vehicle& iris() {
   static const Vehicle vehicle = *read_vehicle(ATTEST_SOURCE_DIR "/models/iris.toml");
@@ -48,7 +48,7 @@ void plant(benchmark::State& state) {
   }
 }
 
-// p, v, q, w, hover seconds, four rotors.
+// The state y: position, velocity, quaternion, body rate, hover seconds, four rotor speeds.
 int derivative(realtype, N_Vector y_vector, N_Vector dy_vector, void* user) {
   const double* y = N_VGetArrayPointer(y_vector);
   double* dy = N_VGetArrayPointer(dy_vector);

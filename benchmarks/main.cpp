@@ -31,7 +31,7 @@ std::string today() { return fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nu
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Short, so that a turn of a pair is over before the machine has changed its pace.
+  // Short, so that a turn of a pair ends before the speed of the machine drifts.
   std::string short_runs = "--benchmark_min_time=0.02";
   std::vector<char*> arguments{argv[0], short_runs.data()};
   for (int i = 1; i < argc; ++i) arguments.push_back(argv[i]);
@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
 
   bool met = true;
   const std::string filter = benchmark::GetBenchmarkFilter();
-  // First, in a process that has not yet taken memory for itself.
+  // First, while this process has not allocated much memory itself.
   const bool of_memory = filter.empty() || filter == "memory";
   const std::string memory = of_memory ? "\n" + attest::bench::memory_table(met) : "";
   attest::bench::PairReporter reporter;

@@ -21,8 +21,8 @@ namespace {
 constexpr int jobs = 2;
 constexpr double bound_mb = 200;
 
-// Memory of a process that is its own, and its part of what it shares, as workers share what was
-// there before they were forked (PSS); in kB.
+// Proportional set size (PSS) of a process, in kB: its private memory and its share of the shared
+// memory. Workers share all memory from before the fork.
 long proportional_kb(const std::string& process) {
   std::ifstream rollup("/proc/" + process + "/smaps_rollup");
   for (std::string line; std::getline(rollup, line);) {
@@ -31,7 +31,7 @@ long proportional_kb(const std::string& process) {
   return 0;  // it has ended
 }
 
-// With the processes that it started, and those that they started.
+// Of a process and all its descendants.
 long with_children_kb(const std::string& process) {
   long sum = proportional_kb(process);
   std::ifstream children(fmt::format("/proc/{}/task/{}/children", process, process));
@@ -39,7 +39,7 @@ long with_children_kb(const std::string& process) {
   return sum;
 }
 
-// Of `work` in a process of its own, with the workers it has at a time; looked at all the time.
+// Of `work` in a separate process, with all its workers, sampled each millisecond.
 double peak_mb(const std::function<void()>& work) {
   const pid_t process = ::fork();
   if (process == 0) {
@@ -49,7 +49,7 @@ double peak_mb(const std::function<void()>& work) {
   long peak = 0;
   while (::waitpid(process, nullptr, WNOHANG) == 0) {
     peak = std::max(peak, with_children_kb(fmt::to_string(process)));
-    ::usleep(1'000);  // the shortest of them takes a twentieth of a second
+    ::usleep(1'000);  // the shortest work takes 50 ms
   }
   return static_cast<double>(peak) / 1024;
 }
@@ -64,7 +64,7 @@ void whole_suite() {
   run_jobs(*suite_jobs, options);
 }
 
-// Outputs only, which is what a long comparison is about.
+// Outputs only: a long comparison reads no other columns.
 void write_long_trace(const std::filesystem::path& path, std::size_t ticks) {
   Trace trace;
   trace.present = channels_of(Module::mc_att_control, "out/") |
@@ -77,12 +77,12 @@ void write_long_trace(const std::filesystem::path& path, std::size_t ticks) {
   write_csv(path, trace, all_columns(trace));
 }
 
-// Of comparing a trace of so many ticks with itself, file by file.
+// Of comparing a trace of `ticks` ticks with itself, both read from its file.
 double comparison_mb(std::size_t ticks) {
   std::string folder = (std::filesystem::temp_directory_path() / "attest-XXXXXX").string();
   if (::mkdtemp(folder.data()) == nullptr) return 0;
   const auto path = std::filesystem::path(folder) / "long.csv";
-  peak_mb([&] { write_long_trace(path, ticks); });  // elsewhere, so that it is not counted
+  peak_mb([&] { write_long_trace(path, ticks); });  // in its own process, so it is not counted
   const double peak = peak_mb([&] { compare_files(path, path, Tolerances(Level::numeric)); });
   std::filesystem::remove_all(folder);
   return peak;

@@ -24,13 +24,13 @@ std::string duration(double seconds) {
   return fmt::format("{:.2f} s", seconds);
 }
 
-// Median and the middle half of the turns.
+// The median and the quartiles of the turns.
 std::string spread(const std::vector<double>& values) {
   return fmt::format("{} ({} .. {})", duration(median(values)), duration(quantile(values, 0.25)),
                      duration(quantile(values, 0.75)));
 }
 
-// `of` each turn's two times.
+// Applies `of` to the two times of each turn.
 template <typename Of>
 std::vector<double> by_turn(const std::vector<double>& measured, const std::vector<double>& floor,
                             Of of) {
@@ -41,7 +41,7 @@ std::vector<double> by_turn(const std::vector<double>& measured, const std::vect
   return out;
 }
 
-// Benchmarks that are run one after the other: a figure, its floor, and another on the same floor.
+// Benchmarks that run one after the other: a figure, its floor, and a second figure of that floor.
 struct Group {
   std::string floor;
   std::vector<std::string> names;
@@ -60,7 +60,7 @@ std::vector<Group> groups(const std::string& filter) {
   return out;
 }
 
-// Half a minute of work each, so a few times only.
+// Few turns for the suite: each of its runs takes half a minute.
 int turns(const std::string& floor) { return floor.starts_with("suite/") ? 3 : 101; }
 
 }  // namespace
@@ -73,7 +73,7 @@ bool run_by_turns(const std::string& filter, PairReporter& reporter) {
       for (const std::string& name : group.names) {
         benchmark::RunSpecifiedBenchmarks(&reporter, "^" + name + "(/.*)?$");
       }
-      // To and fro: a machine that slows down steadily favours neither.
+      // Alternate the order, so that a machine that slows down steadily favours neither.
       std::reverse(group.names.begin(), group.names.end());
     }
   }
@@ -88,7 +88,7 @@ const std::vector<Pair>& pairs() {
        "at least 0.8x the speed of a bare from_chars loop"},
       {"trace CSV, write", "csv/write_csv", "csv/to_chars", 1 / 0.8,
        "at least 0.8x the speed of a bare to_chars loop"},
-      {"traces compared, all bits alike", "compare/compare", "compare/memcmp", 3,
+      {"traces compared, all bits equal", "compare/compare", "compare/memcmp", 3,
        "at most 3x memcmp"},
       {"flight, 250 Hz, MuJoCo at 1 kHz", "flight/250hz", "mj_step/250hz", 1.06,
        "at most 1.06x the bare steps"},
@@ -98,7 +98,7 @@ const std::vector<Pair>& pairs() {
        "at most 1.25x the bare steps"},
       {"ode plant, 1 s at 1 kHz", "ode/plant", "ode/erkstep", 1.10, "at most 1.10x bare ERKStep"},
       {"plant made and reset", "plant/set_up", "mujoco/set_up", 0,
-       "within 100 us of what MuJoCo takes", 100e-6},
+       "within 100 us of MuJoCo's own time", 100e-6},
       {"suite, 4 jobs", "suite/4_jobs", "suite/1_job", 1 / 3.4, "at least 3.4x the speed of 1 job"},
       {"suite, 2 jobs", "suite/2_jobs", "suite/1_job", 1 / 1.9, "at least 1.9x the speed of 1 job"},
       {"suite, port in a process of its own", "suite/2_jobs", "suite/port_shared", 1.10,

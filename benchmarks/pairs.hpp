@@ -1,6 +1,6 @@
-// A figure and its floor: two benchmarks that are run by turns, in one process, and told as a
-// ratio. Machines differ, and drift within seconds: each turn runs the figure right beside its
-// floor, and the median of the turns' ratios is what is claimed.
+// A figure and its floor: two benchmarks that run alternately in one process, reported as a ratio.
+// The speed of machines differs, and drifts within seconds. So each turn runs the figure directly
+// before or after its floor, and the claim is the median of the turns' ratios.
 #pragma once
 
 #include <string>
@@ -14,21 +14,21 @@ struct Pair {
   std::string what;      // "controller step"
   std::string measured;  // names of the two benchmarks
   std::string floor;
-  double bound;         // of the time measured / the time of the floor; 0: of the difference
-  std::string claim;    // how the bound is said: "at most 1.15x the hand-written law"
-  double beyond_s = 0;  // bound of the difference
+  double bound;         // of measured time / floor time; 0: beyond_s is the bound
+  std::string claim;    // the bound in words: "at most 1.15x the hand-written law"
+  double beyond_s = 0;  // bound of the difference of the two times
 };
 
-// The claims, in the order of the table. Those that share a floor, two at most, stand together.
+// The claims, in the order of the table. Claims that share a floor, two at most, are adjacent.
 const std::vector<Pair>& pairs();
 
-// Collects every run of every benchmark; the table is made of their medians.
+// Collects every run of every benchmark; the table shows their medians.
 class PairReporter : public benchmark::BenchmarkReporter {
  public:
   bool ReportContext(const Context& context) override;
   void ReportRuns(const std::vector<Run>& runs) override;
 
-  // Markdown. Says which bounds were missed. `met` is false when any was.
+  // Markdown, with the bounds that were missed. Sets `met` to false when one was.
   std::string table(bool& met) const;
 
   // Every turn: [{"figure": ..., "measured_s": [...], "floor_s": [...], "ratio": 1.03,
@@ -38,14 +38,14 @@ class PairReporter : public benchmark::BenchmarkReporter {
  private:
   struct Times {
     std::string name;
-    std::vector<double> seconds;  // one a turn, of one iteration
+    std::vector<double> seconds;  // time of one iteration, for each turn
   };
   const Times* find(const std::string& name) const;
 
   std::vector<Times> times_;
 };
 
-// Runs the pairs of which a benchmark's name holds `filter`; "": all. False when none does.
+// Runs the pairs with `filter` in the name of a benchmark; "": all. False if no pair matches.
 bool run_by_turns(const std::string& filter, PairReporter& reporter);
 
 }  // namespace attest::bench

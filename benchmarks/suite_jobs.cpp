@@ -1,6 +1,6 @@
-// The whole suite on the reference, numeric level, from reading the case files to the verdicts,
-// with one, two and, where there are as many processors, four worker processes; and with two that
-// have the port in their own process, which is the floor of keeping it apart.
+// The whole suite on the reference at the numeric level, from the case files to the verdicts, with
+// one, two and (given four processors) four workers. A further run has two workers with the port in
+// the judge's process: the floor of the cost of a separate process.
 #include <thread>
 
 #include <benchmark/benchmark.h>

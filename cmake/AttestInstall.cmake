@@ -1,4 +1,4 @@
-# What `cmake --install` gives a port author: the attest binary, the ABI headers, the cases with
+# `cmake --install` installs for port authors: the attest binary, the ABI headers, the cases with
 # their goldens, the starters, the schemas of the reports, and the CMake package `attest` with
 #
 #     attest::unit     the ABI headers, for the port to link (C or C++)
@@ -13,12 +13,12 @@ install(TARGETS attest EXPORT attestTargets RUNTIME DESTINATION ${CMAKE_INSTALL_
 install(FILES controller/attest_unit.h controller/attest_actuation.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY cases golden models DESTINATION ${ATTEST_INSTALL_DATADIR})
-# Without what a build in the source tree leaves there.
+# Excludes the results of builds in the source tree.
 install(
   DIRECTORY controller/starters
   DESTINATION ${ATTEST_INSTALL_DATADIR}
   REGEX "/(build|target|__pycache__)$" EXCLUDE)
-# What the JSON reports are described by.
+# The schemas of the JSON reports.
 install(FILES harness/report/report.schema.json harness/report/stress.schema.json
         DESTINATION ${ATTEST_INSTALL_DATADIR}/schemas)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
@@ -27,7 +27,7 @@ install(EXPORT attestTargets NAMESPACE attest:: DESTINATION ${ATTEST_INSTALL_CMA
 configure_package_config_file(cmake/attestConfig.cmake.in attestConfig.cmake
                               INSTALL_DESTINATION ${ATTEST_INSTALL_CMAKEDIR}
                               PATH_VARS ATTEST_INSTALL_DATADIR)
-# ARCH_INDEPENDENT: the header serves a port that is cross-compiled for another word size.
+# ARCH_INDEPENDENT: a port that is cross-compiled for another word size can use the header.
 write_basic_package_version_file(attestConfigVersion.cmake COMPATIBILITY SameMajorVersion
                                  ARCH_INDEPENDENT)
 install(FILES ${PROJECT_BINARY_DIR}/attestConfig.cmake

@@ -1,7 +1,7 @@
 # The simulators of harness/plant: attest_mujoco and SUNDIALS::arkode, SUNDIALS::nvecserial.
 
-# MuJoCo's own CMake config asks for OpenGL and qhull, which only its viewer and its compilation
-# need.
+# Not MuJoCo's own CMake config: it requires OpenGL and qhull, which only its viewer and its
+# compilation need.
 find_path(ATTEST_MUJOCO_INCLUDE mujoco/mujoco.h DOC "Folder that has mujoco/mujoco.h")
 find_library(ATTEST_MUJOCO_LIBRARY mujoco DOC "libmujoco 2.2 or later")
 mark_as_advanced(ATTEST_MUJOCO_INCLUDE ATTEST_MUJOCO_LIBRARY)

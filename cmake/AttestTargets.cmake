@@ -1,11 +1,11 @@
-# How every target of the project is made: one static library a folder, sources listed by hand,
-# PUBLIC/PRIVATE link visibility as the dependency rule.
+# Functions and flags for all targets of the project: one static library a folder, sources listed
+# by hand, PUBLIC/PRIVATE link visibility as the dependency rule.
 
 add_library(attest_flags INTERFACE)
 target_compile_features(attest_flags INTERFACE cxx_std_20 c_std_11)
-# The law is defined in IEEE binary32 without contraction (a*b+c rounds twice); a compiler that
-# fuses it changes bits. The harness computes stimuli under the same rule, so that gcc and clang
-# agree to the bit on x86-64.
+# The law is defined in IEEE binary32 without contraction (a*b+c rounds twice); a fused multiply-add
+# changes bits. The harness computes stimuli under the same rule, so that gcc and clang agree to the
+# bit on x86-64.
 target_compile_options(attest_flags INTERFACE -ffp-contract=off -fno-math-errno)
 target_include_directories(attest_flags INTERFACE ${PROJECT_SOURCE_DIR})
 
@@ -18,8 +18,8 @@ target_compile_options(
 
 # The presets ci and asan build from nothing, and compile several sources of a folder as one (a
 # unity build), because most sources take less time to compile than the headers that they include.
-# The preset dev compiles each by itself, so that a missing include shows.
-# In a unity build gcc takes sources for headers, in which this would be a mistake.
+# The preset dev compiles each source separately, so that a missing include is found.
+# In a unity build gcc treats sources as headers, where -Wsubobject-linkage reports mistakes.
 if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(attest_warnings
                          INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
@@ -33,8 +33,8 @@ function(attest_library name)
                                                                           ${ARG_PRIVATE})
 endfunction()
 
-# In seconds: tens of times what the slowest takes with sanitizers on two cores that do other things
-# too. A test that hangs is to fail, a slow machine is not to.
+# Time limits [s]: tens of times the duration of the slowest test with sanitizers on two busy cores.
+# So a test that hangs fails, and a slow machine does not cause failures.
 set(ATTEST_UNIT_TEST_TIMEOUT 600)
 set(ATTEST_COMMAND_TEST_TIMEOUT 1800)
 set(ATTEST_LONG_TEST_TIMEOUT 3600)
@@ -47,10 +47,10 @@ function(attest_test name)
   target_link_libraries(${name} PRIVATE attest_flags attest_warnings ${ARG_LINK} GTest::gmock
                                         GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE ATTEST_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  # Tests run once for each time that they are compiled.
+  # Not optimised: a test mostly runs once per compilation.
   target_compile_options(${name} PRIVATE -O0)
   get_target_property(sources ${name} SOURCES)
-  if(NOT sources MATCHES "\\.c(;|$)") # the precompiled headers are of C++
+  if(NOT sources MATCHES "\\.c(;|$)") # the precompiled headers are C++
     target_precompile_headers(${name} REUSE_FROM attest_test_headers)
   endif()
   set(properties TIMEOUT ${ATTEST_UNIT_TEST_TIMEOUT})
@@ -61,8 +61,8 @@ function(attest_test name)
                        PROPERTIES ${properties})
 endfunction()
 
-# attest_time_limits(): every test that the folder adds by add_test(), before this call or after it,
-# has a time limit: the default, if it sets none.
+# attest_time_limits(): gives every test that the folder adds by add_test(), before or after this
+# call, the default time limit unless it sets its own.
 function(attest_time_limits)
   cmake_language(DEFER CALL attest_set_time_limits)
 endfunction()

@@ -1,1 +1,1 @@
-// Headers that others reuse precompiled need a source to be compiled with.
+// The target of shared precompiled headers needs a source.

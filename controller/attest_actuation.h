@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
- * attest_actuation.h - what lies between the controller and the motors, for ports that have it too:
+ * attest_actuation.h - the C ABI of two optional modules between the controller and the motors:
  * the multirotor mixer and the battery estimate that scales the controls.
  *
- * Two extensions of attest_unit.h, each a table of functions. A port returns them from its
- * extension() and is then given the cases of the groups `mixer` and `battery_status`; those of a
- * port that does not are counted as unsupported. What attest_unit.h says of threads, memory and
- * results holds here too. Compiles as C11 and as C++17.
+ * They are two extensions of attest_unit.h, each a table of functions. A port that returns them
+ * from its extension() is given the cases of the groups `mixer` and `battery_status`. For other
+ * ports those cases are counted as unsupported. The rules of attest_unit.h for threads, memory and
+ * results hold here too. Compiles as C11 and as C++17.
  */
 #ifndef ATTEST_ACTUATION_H
 #define ATTEST_ACTUATION_H
@@ -28,7 +28,7 @@ typedef struct attest_mixer_inputs {
     float control[4]; /* roll, pitch, yaw [-1..1] about body x, y, z (FRD); thrust [0..1] */
   } actuator_controls_0;
   struct {
-    float delta_out_max; /* how far an output may move from the call before; 0: no limit */
+    float delta_out_max; /* largest change of an output since the previous call; 0: no limit */
   } mixer;
 } attest_mixer_inputs;
 
@@ -45,12 +45,11 @@ typedef struct attest_mixer_outputs {
 } attest_mixer_outputs;
 
 typedef struct attest_mixer {
-  /* A new mixer. Its outputs before the first call, which the first call's limit by delta_out_max
-   * starts from, are NaN if the deadband is 0: then the first call is not limited. With another
-   * deadband they are 0. `definition` is a line of a PX4 mixer file,
-   * "R: <geometry> <roll> <pitch> <yaw> <deadband>" with numbers in 1/10000, such as
-   * "R: 4x 10000 10000 10000 0"; it is valid during the call only. NULL: not supported; its cases
-   * are then counted as unsupported. */
+  /* A new mixer. With a deadband of 0 the outputs before the first call are NaN, and delta_out_max
+   * does not limit the first call. With another deadband they are 0, and it does. `definition` is a
+   * line of a PX4 mixer file, "R: <geometry> <roll> <pitch> <yaw> <deadband>"
+   * with numbers in 1/10000, such as "R: 4x 10000 10000 10000 0". It is valid during the call only.
+   * NULL: not supported; its cases are then counted as unsupported. */
   void* (*create)(const char* profile, const char* definition);
   void (*destroy)(void* self);
   int (*step)(void* self, const attest_mixer_inputs* in, attest_mixer_outputs* out);
@@ -72,23 +71,23 @@ typedef struct attest_battery_inputs {
 
 typedef struct attest_battery_outputs {
   struct {       /* topic battery_status */
-    float scale; /* [1] what the controls are multiplied with, 1 .. 1.3 */
+    float scale; /* [1] factor on the controls, 1 .. 1.3 */
   } battery_status;
 } attest_battery_outputs;
 
 typedef struct attest_battery_status {
-  /* A new estimate that has seen no sample. NULL: profile not supported. */
+  /* A new estimate, before its first sample. NULL: profile not supported. */
   void* (*create)(const char* profile);
   void (*destroy)(void* self);
   /* BAT_N_CELLS, BAT_V_EMPTY, BAT_V_CHARGED, BAT_V_LOAD_DROP, BAT_R_INTERNAL (negative: unknown),
-   * before the first step. Those never set are 0, 3.4 V, 4.05 V, 0.3 V and -1. With 0 cells, the
-   * firmware's default, the estimate has no finite number and the scale stays 1. */
+   * before the first step. Their defaults are 0, 3.4 V, 4.05 V, 0.3 V and -1. With 0 cells, the
+   * firmware's default, the estimate is not finite and the scale stays 1. */
   int (*set_parameter)(void* self, const char* name, float value);
-  /* One sample; 100 of them are a second. */
+  /* One sample of 100 Hz. */
   int (*step)(void* self, const attest_battery_inputs* in, attest_battery_outputs* out);
 } attest_battery_status;
 
-/* ---- layout, fixed for ever ------------------------------------------------------------------*/
+/* ---- layout, never changed -------------------------------------------------------------------*/
 
 #ifdef __cplusplus
 #define ATTEST_LAYOUT(type, field, offset) \

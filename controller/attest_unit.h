@@ -2,9 +2,9 @@
 /*
  * attest_unit.h - the C ABI that a controller implements to be tested by attest.
  *
- * A port of the multicopter attitude controller is a shared library that exports one symbol,
- * attest_unit_v1(), which returns a table of functions. This header is all a port author has
- * to read. It compiles as C11 and as C++17.
+ * A port of the multicopter attitude controller is a shared library. It exports one symbol,
+ * attest_unit_v1(), which returns a table of functions. A port author needs to read this header
+ * only. It compiles as C11 and as C++17.
  *
  * Life cycle, in the order the host calls:
  *
@@ -24,17 +24,17 @@
  *
  * Time: `timestamp` is the only clock. A unit must not read another one.
  *
- * Threads: attest_unit_v1() and extension() are called on one thread at a time, any. The host calls
- * one instance from one thread at a time. That thread may change between calls: `attest stress`
- * calls create() and destroy() on one thread and the rest on a real-time thread. Several instances
- * may exist at once; two instances may be called from two threads at the same time. A port that can
- * have one only returns NULL from create() while it has one: the cases of the group `instances`
- * that need two are then unsupported.
+ * Threads: the host calls attest_unit_v1() and extension() from any thread, but from one at a time.
+ * It also calls each instance from one thread at a time. That thread may change between calls:
+ * `attest stress` calls create() and destroy() on one thread and the rest on a real-time thread.
+ * Several instances may exist at once. Two instances may be called from two threads at the same
+ * time. A port that allows only one instance returns NULL from create() while that instance exists.
+ * The cases of the group `instances` that need two are then unsupported.
  *
- * Memory: the host owns both structs, and they are valid during the call only. The unit owns what
- * create() returned until destroy(). Strings that the host passes are valid during the call only.
- * The table, `name`, `version` and all that extension() returns must stay valid and unchanged until
- * the library is unloaded. A step should neither allocate nor block.
+ * Memory: the host owns both structs and all strings that it passes. They are valid during the call
+ * only. The unit owns the result of create() until destroy(). The table, `name`, `version` and all
+ * results of extension() must stay valid and unchanged until the library is unloaded. A step should
+ * neither allocate nor block.
  */
 #ifndef ATTEST_UNIT_H
 #define ATTEST_UNIT_H
@@ -57,10 +57,10 @@ extern "C" {
 
 /* ---- inputs ----------------------------------------------------------------------------------
  *
- * `updated` says which topics were published since the previous step. A topic whose bit is clear
- * still shows its last published sample; before its first publication it is all zero. A port
- * copies a topic only when its bit is set (and keeps the bit pending where the law latches the
- * topic only in some modes). control_state is new in every step and has no bit.
+ * `updated` has a bit for each topic, set if the topic was published since the previous step. A
+ * topic whose bit is clear holds its last published sample, or zeros before its first publication.
+ * A port copies a topic only when its bit is set. Where the law latches a topic in some modes only,
+ * the port keeps the bit pending until then. control_state is new in every step and has no bit.
  *
  * Flags are bytes: zero is false and ANY other value is true (multirotor_motor_limits arrives as
  * bit masks 1, 2, 4).
@@ -74,16 +74,16 @@ enum {
   ATTEST_UPDATED_VEHICLE_STATUS = 1 << 5,
   ATTEST_UPDATED_MULTIROTOR_MOTOR_LIMITS = 1 << 6,
   ATTEST_UPDATED_BATTERY_STATUS = 1 << 7,
-  ATTEST_UPDATED_PARAMETER_UPDATE = 1 << 8 /* set_parameter() was called for what changed */
+  ATTEST_UPDATED_PARAMETER_UPDATE = 1 << 8 /* set_parameter() was called for each change */
 };
 
 typedef struct attest_inputs {
-  uint64_t timestamp; /* [us] at which this step runs; never decreases. The law's dt is the
+  uint64_t timestamp; /* [us] time of this step; never decreases. The law's dt is the
                        * difference between the timestamps of two steps. The sample in
                        * control_state may be older: see ATTEST_EXTENSION_TIMESTAMP_SAMPLE. */
   uint32_t updated;   /* ATTEST_UPDATED_... bits */
 
-  struct {            /* topic control_state: the estimate this step acts on */
+  struct {            /* topic control_state: the estimate that this step uses */
     float q[4];       /* attitude, body FRD to world NED; norm 1 except in robustness cases */
     float roll_rate;  /* [rad/s] about body x (forward) */
     float pitch_rate; /* [rad/s] about body y (right) */
@@ -92,12 +92,12 @@ typedef struct attest_inputs {
 
   struct {                          /* topic vehicle_attitude_setpoint */
     float q_d[4];                   /* desired attitude, body FRD to world NED. The topic of
-                                     * px4-v1.3.4 has a rotation matrix instead: it is R(q_d),
-                                     * which a port of that profile computes itself */
+                                     * px4-v1.3.4 has the rotation matrix R(q_d) instead: a port
+                                     * of that profile computes it from q_d */
     float thrust;                   /* [0..1] collective thrust along -z body */
     float yaw_sp_move_rate;         /* [rad/s] yaw rate commanded by the pilot, fed forward */
     float landing_gear;             /* [-1..1] passed through to control[7] */
-    uint8_t disable_mc_yaw_control; /* flag: weather-vane, let the wind turn the nose */
+    uint8_t disable_mc_yaw_control; /* flag: weather-vane, the wind may turn the nose */
   } vehicle_attitude_setpoint;
 
   struct {        /* topic vehicle_rates_setpoint: from outside, used in offboard rates mode */
@@ -115,7 +115,7 @@ typedef struct attest_inputs {
   } manual_control_setpoint;
 
   struct {       /* topic battery_status */
-    float scale; /* [1] multiplies all controls, to make up for a low voltage */
+    float scale; /* [1] factor on roll, pitch, yaw and thrust; compensates a low voltage */
   } battery_status;
 
   struct { /* topic vehicle_control_mode: flags, see above */
@@ -132,11 +132,11 @@ typedef struct attest_inputs {
   } actuator_armed;
 
   struct {                  /* topic vehicle_status */
-    uint8_t is_rotary_wing; /* the unit starts with this true, before the first sample */
+    uint8_t is_rotary_wing; /* true in a unit that has had no sample yet */
     uint8_t is_vtol;        /* the first sample selects the topics of the outputs, see below */
   } vehicle_status;
 
-  struct {               /* topic multirotor_motor_limits: saturation seen by the mixer */
+  struct {               /* topic multirotor_motor_limits: saturation reported by the mixer */
     uint8_t lower_limit; /* a motor is at its minimum */
     uint8_t upper_limit; /* a motor is at its maximum */
     uint8_t yaw;         /* yaw was cut to keep roll and pitch */
@@ -145,9 +145,9 @@ typedef struct attest_inputs {
 
 /* ---- outputs ---------------------------------------------------------------------------------
  *
- * `published` is 1 in a step that publishes the topic and 0 in one that does not; with 0 the other
- * fields keep the values last published. The host passes the same struct to every step, zeroed
- * before the first, so a unit that writes only what it publishes does the right thing.
+ * `published` is 1 in a step that publishes the topic, else 0. With 0 the other fields keep the
+ * values last published. The host passes the same struct to every step, zeroed before the first. So
+ * a unit only has to write the topics that it publishes, and every `published`.
  *
  * Topics: a unit publishes vehicle_rates_setpoint and actuator_controls_0 only after its first
  * sample of vehicle_status, which selects the topics for the life of the instance. If is_vtol is
@@ -155,10 +155,10 @@ typedef struct attest_inputs {
  * actuator_controls_virtual_mc; the outputs below are the same fields for both. mc_att_ctrl_status
  * needs no vehicle_status.
  *
- * Own publications: the unit has one copy of vehicle_rates_setpoint. What it computes overwrites
- * that copy. Its publication also supersedes an external sample that is still pending, because both
- * are on one topic. A VTOL publishes on the virtual topic: there the external sample stays pending
- * until offboard rates mode takes it.
+ * Own publications: the unit has one copy of vehicle_rates_setpoint, which its own result
+ * overwrites. Its publication also supersedes an external sample that is still pending, because
+ * both are on one topic. A VTOL publishes on the virtual topic: there the external sample stays
+ * pending until offboard rates mode takes it.
  */
 typedef struct attest_outputs {
   struct {        /* topic vehicle_rates_setpoint: result of the attitude loop */
@@ -186,9 +186,9 @@ typedef struct attest_outputs {
 
 enum {
   ATTEST_OK = 0,
-  ATTEST_UNSUPPORTED = 1, /* this port does not do that: the case is counted as unsupported */
-  ATTEST_INVALID = 2,     /* the call makes no sense (unknown parameter name, value not allowed) */
-  ATTEST_FAILED = 3       /* the port broke: the case fails */
+  ATTEST_UNSUPPORTED = 1, /* not implemented in this port: the case is counted as unsupported */
+  ATTEST_INVALID = 2,     /* invalid arguments (unknown parameter name, value not allowed) */
+  ATTEST_FAILED = 3       /* internal error of the port: the case fails */
 };
 
 typedef struct attest_unit {
@@ -198,61 +198,62 @@ typedef struct attest_unit {
 
   /* A new instance in its power-on state with default parameters. `profile` names the version of
    * the law, such as "px4-v1.5.5". NULL: profile not supported, its cases are skipped. A profile
-   * that was supported once stays so; a port that can have one instance only returns NULL while it
-   * has it, and makes the next when that was destroyed. Legal at any time, also while other
-   * instances exist. May allocate. */
+   * that was supported once must stay supported. A port that allows only one instance returns NULL
+   * while that exists, and can create another after it was destroyed. Legal at any time, also while
+   * other instances exist. May allocate. */
   void* (*create)(const char* profile);
 
-  /* Frees an instance. Called once per successful create(), after the last call with it. */
+  /* Frees an instance. Called once per successful create(), as the last call for the instance. */
   void (*destroy)(void* self);
 
   /* Sets one parameter by its PX4 name. Integer parameters arrive as the float of the same value.
    * Legal before the first step, and before a step that has ATTEST_UPDATED_PARAMETER_UPDATE set.
-   * What is set before the first step holds from creation: it also decides what the law decides
-   * once, such as tailsitter recovery. Later it takes effect in the step that follows. Parameters
-   * never set have the default of the law: `attest list --parameters` prints them all. In
-   * px4-v1.3.4 MC_TPA_BREAK, MC_TPA_SLOPE and MC_BAT_SCALE_EN do not exist: the host does not set
-   * them there, and a port may answer ATTEST_INVALID. Same thread as step(). */
+   * A value set before the first step holds from creation: it also controls decisions that the law
+   * makes once, such as tailsitter recovery. A later value takes effect in the step that follows.
+   * Parameters never set have the default of the law: `attest list --parameters` prints them all.
+   * In px4-v1.3.4 MC_TPA_BREAK, MC_TPA_SLOPE and MC_BAT_SCALE_EN do not exist: the host does not
+   * set them there, and a port may return ATTEST_INVALID. Same thread as step(). */
   int (*set_parameter)(void* self, const char* name, float value);
 
   /* One control step. Must work for every input, NaN and infinities included. `in` and `out` are
    * valid during the call only; `in` must not be written. */
   int (*step)(void* self, const attest_inputs* in, attest_outputs* out);
 
-  /* Growth without breaking the ABI: a pointer to the interface named `id`, or NULL. Must answer
-   * the same each time, before create() too. May itself be NULL when a port has no extensions. */
+  /* Extends the ABI without breaking it: returns a pointer to the interface named `id`, or NULL.
+   * Must return the same each time, before create() too. The function pointer itself may be NULL
+   * when a port has no extensions. */
   const void* (*extension)(const char* id);
 } attest_unit;
 
-/* Extension: const char*, the groups of cases that the port does not do, separated by commas:
- * "tailsitter,robustness". They are counted apart, never as conformant. */
+/* Extension: const char*, the groups of cases that the port does not support, separated by commas:
+ * "tailsitter,robustness". They are counted separately, never as conformant. */
 #define ATTEST_EXTENSION_UNSUPPORTED_GROUPS "attest.unsupported_groups"
 
 /* Extension: const char*, the arithmetic of a port in fixed point: "fixed:22" when its signals have
- * 22 bits behind the point, of 20 to 32. The numeric level then allows it, beside the tolerances
- * for floats, some multiples of that last bit (LSB), and every report says so. */
+ * 22 bits behind the point; 20 to 32 are allowed. The numeric level then allows, in addition to the
+ * tolerances for floats, some multiples of the last bit (LSB). Every report says so. */
 #define ATTEST_EXTENSION_ARITHMETIC "attest.arithmetic"
 
-/* Extension: const char*, the rate in Hz of a port that knows only its own sample time and ignores
- * `timestamp`, as code generated for a fixed step does: "250", or "1000/3" for a step of 3 ms. Such
- * a port is given the cases at that rate whose ticks are all one period apart. They begin one
- * period after zero, so that the first dt is the period too (with other ports they begin at 5 s,
- * and the first dt is the longest, 20 ms). The others are counted as unsupported, and every report
- * names the fixed step. A port computes with the law's dt: its period, but from 2 to 20 ms. */
+/* Extension: const char*, the rate in Hz of a port that has a fixed sample time and ignores
+ * `timestamp`, as generated code often does: "250", or "1000/3" for a step of 3 ms. Such a port is
+ * given the cases at that rate whose ticks are all one period apart. Other cases are counted as
+ * unsupported, and every report names the fixed step. The cases begin one period after zero, so
+ * that the first dt is the period too. (For other ports they begin at 5 s, and the first dt is the
+ * longest, 20 ms.) The port computes with the law's dt: its period, clamped to 2 .. 20 ms. */
 #define ATTEST_EXTENSION_FIXED_STEP "attest.fixed_step"
 
-/* Extension: const attest_timestamp_sample*, for a port that wants to know when the sample in
- * control_state was taken. `timestamp` cannot say it: under an estimator delay it is later. */
+/* Extension: const attest_timestamp_sample*, for a port that needs the time at which the sample in
+ * control_state was taken. Under an estimator delay, `timestamp` is later than that time. */
 #define ATTEST_EXTENSION_TIMESTAMP_SAMPLE "attest.timestamp_sample.v1"
 
 typedef struct attest_timestamp_sample {
   /* The host calls it exactly once before each step(), after the set_parameter() calls of that step
    * and on the thread of that step. `timestamp_sample` is the time in us, on the clock of
-   * `timestamp`, at which the sample that the step will see in control_state was taken. It is not
-   * later than the step's `timestamp` and never decreases. It repeats when a step sees the sample
-   * of the step before. It equals `timestamp` where no delay is modelled, as in scripted cases. In
-   * a flight a unit that runs before the first sample has arrived sees the state at the begin of
-   * the flight, and is given the time of that. Returns ATTEST_OK or another of the results. */
+   * `timestamp`, at which the control_state sample of that step was taken. It is not later than the
+   * step's `timestamp` and never decreases. It repeats when two steps use the same sample. It
+   * equals `timestamp` where no delay is modelled, as in scripted cases. In a flight, a step before
+   * the arrival of the first sample gets the state at the begin of the flight, and the time of that
+   * state. Returns ATTEST_OK or another of the results. */
   int (*set_timestamp_sample)(void* self, uint64_t timestamp_sample);
 } attest_timestamp_sample;
 
@@ -260,7 +261,7 @@ typedef struct attest_timestamp_sample {
  * outlives every instance. */
 ATTEST_EXPORT const attest_unit* attest_unit_v1(void);
 
-/* ---- layout, fixed for ever ------------------------------------------------------------------*/
+/* ---- layout, never changed -------------------------------------------------------------------*/
 
 #include <stddef.h>
 

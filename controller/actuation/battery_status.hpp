@@ -1,8 +1,9 @@
-// The factor by which controls are raised as a battery empties: battery_status.scale.
+// The battery estimate: battery_status.scale, the factor on the controls as a battery discharges.
 //
-// The estimate of PX4 v1.5.5 systemlib Battery: the cell voltage, corrected for the drop under load
-// and low-passed, gives the remaining charge, which gives the voltage the cell would have at rest.
-// The order of the operations is part of it: golden/recorded/battery-v1.5.5 is matched to the bit.
+// The estimate of PX4 v1.5.5 systemlib Battery. The cell voltage, corrected for the drop under
+// load, gives a measured charge. Its low-pass is the remaining charge, which gives the voltage of
+// the cell at rest. The order of the operations is part of the estimate:
+// golden/recorded/battery-v1.5.5 is matched to the bit.
 //
 // Voltages [V], currents [A], throttle [0..1]. No clock: one update is one sample at 100 Hz. No
 // allocation; one thread at a time.
@@ -16,14 +17,14 @@
 
 namespace attest::actuation {
 
-// The defaults are those of PX4 v1.5.5. Nobody has set the number of cells then: the measured
-// charge is not finite and the scale stays 1.
+// The defaults are those of PX4 v1.5.5. With its default of 0 cells the measured charge is not
+// finite and the scale stays 1.
 struct BatteryOptions {
   int cell_count = 0;
   float empty_cell_V = 3.4f;
   float full_cell_V = 4.05f;
   float load_drop_V = 0.3f;  // of one cell at full throttle
-  // Of one cell; where it is known it is used instead of load_drop_V.
+  // Of one cell; used instead of load_drop_V where known.
   std::optional<float> internal_resistance_ohm = std::nullopt;
 };
 
@@ -34,11 +35,11 @@ struct BatteryParameter {
   std::string_view description;
 };
 
-// The parameters of PX4 that the options are made of.
+// The PX4 parameters that set the options.
 std::span<const BatteryParameter> battery_parameters();
 
-// Returns false, and changes nothing, when no parameter has that name or when it cannot have that
-// value: BAT_N_CELLS is a whole number from 0 to 100.
+// Returns false and keeps the options when no parameter has that name, or when the value is not
+// allowed: BAT_N_CELLS is a whole number from 0 to 100.
 bool set_battery_parameter(BatteryOptions& options, std::string_view name, float value);
 
 struct BatterySample {
@@ -48,24 +49,24 @@ struct BatterySample {
   bool armed;
 };
 
-// In the order they run. Pure; any thread.
+// The stages of the estimate. Pure; any thread.
 template <typename Scalar>
 struct BatteryStages {
   static constexpr Scalar filter_keep = Scalar(0.99f);
   static constexpr Scalar filter_take = Scalar(0.01f);
   static constexpr Scalar scale_max = Scalar(1.3f);
 
-  // A pack with less voltage than this is taken to be unplugged, and its scale is not used.
+  // Up to this voltage a pack counts as unplugged, and the scale is 1.
   static constexpr Scalar plugged_in_V = Scalar(2.1f);
 
-  // The drop under load is fitted to throttle plus this share, so that it is not zero at idle.
+  // Added to the throttle, so that the drop under load is not zero at idle.
   static constexpr Scalar idle_share = Scalar(0.1f);
 
   static Scalar range_V(const BatteryOptions& options) {
     return Scalar(options.full_cell_V) - Scalar(options.empty_cell_V);
   }
 
-  // A sample that would make the filter NaN or infinite leaves it as it is.
+  // A sample that would make the filter NaN or infinite is ignored.
   static Scalar low_passed(Scalar kept, Scalar sample) {
     const Scalar next = kept * filter_keep + sample * filter_take;
     using std::isfinite;
@@ -82,7 +83,7 @@ struct BatteryStages {
     return Scalar(options.load_drop_V) * (sample.armed ? load : Scalar(0));
   }
 
-  // The charge that is left, by this sample alone. Without cells it is not finite.
+  // The remaining charge according to this sample alone. With 0 cells it is not finite.
   static Scalar measured(const BatterySample& sample, Scalar load_drop_V,
                          const BatteryOptions& options) {
     const Scalar cells = static_cast<Scalar>(options.cell_count);
@@ -94,7 +95,7 @@ struct BatteryStages {
     return std::clamp(low_passed(before, measured), Scalar(0), Scalar(1));
   }
 
-  // The rest voltage of a full cell over that of this one.
+  // The rest voltage of a full cell divided by that of this cell.
   static Scalar scale(Scalar remaining, const BatteryOptions& options) {
     const Scalar factor =
         Scalar(options.full_cell_V) / (Scalar(options.empty_cell_V) + range_V(options) * remaining);
@@ -106,7 +107,7 @@ struct BatteryStages {
   static bool is_plugged_in(Scalar filtered_V) { return filtered_V > plugged_in_V; }
 };
 
-// Stages replace those of above: controller/faults has wrong ones.
+// Stages is a policy: the stages above, or wrong ones (controller/faults).
 template <typename Scalar, typename Stages = BatteryStages<Scalar>>
 class BasicBatteryStatus {
  public:
@@ -115,7 +116,7 @@ class BasicBatteryStatus {
 
   // Takes one 100 Hz sample and returns the new scale, 1 .. 1.3.
   Scalar update(const BatterySample& sample) {
-    // Below 0 the filter has not started: the sample starts it.
+    // Below 0 the filter has no value yet: the first sample initialises it.
     if (filtered_V_ < 0) filtered_V_ = Scalar(sample.voltage_V);
     filtered_V_ = stages_.low_passed(filtered_V_, Scalar(sample.voltage_V));
     const Scalar drop_V = stages_.load_drop_V(sample, options_);
@@ -124,7 +125,7 @@ class BasicBatteryStatus {
     return stages_.is_plugged_in(filtered_V_) ? scale : Scalar(1);
   }
 
-  // What the filtered voltage says is left, 0..1. A new estimate takes the battery to be full.
+  // The filtered remaining charge, 0..1. A new estimate starts from a full battery.
   Scalar remaining() const { return remaining_; }
 
  private:

@@ -57,8 +57,8 @@ tl::expected<MixerDefinition, std::string> parse_mixer(std::string_view text) {
   }
   const std::string_view rest = next_word(text);
   if (!rest.empty()) {
-    return tl::unexpected("mixer: nothing may follow the deadband, found '" + std::string(rest) +
-                          "'");
+    return tl::unexpected("mixer: unexpected '" + std::string(rest) +
+                          "' after the deadband: remove it");
   }
   return MixerDefinition{*rotors, values[0], values[1], values[2], -1.0f + 2.0f * values[3]};
 }

@@ -23,16 +23,16 @@ inline constexpr std::size_t rotors_max = 8;
 struct MixerDefinition {
   std::span<const Rotor> rotors;  // of the static geometry table
   float roll_scale, pitch_scale, yaw_scale;
-  float idle;  // command of a motor that is asked for nothing
+  float idle;  // command of a motor at an output of 0
 };
 
 // From one line of a mixer file, "R: <geometry> <roll> <pitch> <yaw> <deadband>", such as
 // "R: 4x 10000 10000 10000 0". Geometries: 4x 4+ 6x 8x. The numbers are integers in 1/10000: scales
-// of the controls, and the fraction of the range in which a motor does not turn. The error says
-// what is wrong with the text.
+// of the controls, and the fraction of the range in which a motor does not turn. The error
+// describes the mistake in the text.
 tl::expected<MixerDefinition, std::string> parse_mixer(std::string_view text);
 
-// Stages replace those of mixer_stages.hpp: controller/faults has wrong ones.
+// Stages is a policy: the stages of mixer_stages.hpp, or wrong ones (controller/faults).
 template <typename Scalar, typename Stages = MixerStages<Scalar>>
 class BasicMixer {
  public:
@@ -75,7 +75,7 @@ class BasicMixer {
   MixerScales<Scalar> scales_;
   [[no_unique_address]] Stages stages_;
   std::array<Scalar, rotors_max> commands_{};
-  // `commands_` are those of a previous call, or what the first is limited from.
+  // `commands_` are those of a previous call, or the 0 from which the first call is limited.
   bool has_previous_;
 };
 

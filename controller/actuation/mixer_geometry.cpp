@@ -5,8 +5,8 @@
 namespace attest::actuation {
 namespace {
 
-// A rotor at an angle a, clockwise from the nose, has roll = cos(a + 90 deg) and pitch = cos(a),
-// rounded to six decimals as in PX4's generated tables.
+// A rotor at an angle a, clockwise from the nose, has roll = cos(a + 90 deg) and pitch = cos(a).
+// Both are rounded to six decimals, as in PX4's generated tables.
 constexpr float ccw = 1.0f;
 constexpr float cw = -1.0f;
 

@@ -1,4 +1,4 @@
-// The rotor layouts that the mixer knows. PX4 v1.5.5 multirotor geometries.
+// The rotor layouts that the mixer supports: PX4 v1.5.5 multirotor geometries.
 #pragma once
 
 #include <span>
@@ -6,7 +6,7 @@
 
 namespace attest::actuation {
 
-// What one unit of each control does to one motor.
+// The share of each control in the output of one motor.
 struct Rotor {
   float roll;
   float pitch;

@@ -1,8 +1,8 @@
 // The stages of the multirotor mixer, in the order they run. Pure; any thread.
 //
-// The algorithm of PX4 v1.5.5 MultirotorMixer: when motors saturate, roll and pitch are kept as
-// long as collective thrust can be traded for them, then scaled; yaw gives way last, rotor by
-// rotor.
+// The algorithm of PX4 v1.5.5 MultirotorMixer. When motors saturate, it first changes collective
+// thrust to keep roll and pitch. Where that is not enough, it scales roll and pitch down. At the
+// end it cuts yaw, rotor by rotor.
 #pragma once
 
 #include <cfloat>
@@ -25,21 +25,20 @@ struct MixerControls {
 template <typename Scalar>
 struct MixerScales {
   Scalar roll, pitch, yaw;
-  Scalar idle;  // command of a motor that is asked for nothing
+  Scalar idle;  // command of a motor at an output of 0
 };
 
-// How saturated roll and pitch are fitted between the motors' limits.
+// Fits saturated roll and pitch between the motors' limits.
 template <typename Scalar>
 struct MixerFit {
   Scalar boost = 0;             // added to the thrust of all rotors
-  Scalar roll_pitch_scale = 1;  // what is left of roll and pitch
+  Scalar roll_pitch_scale = 1;  // factor on roll and pitch
 };
 
-// What the mixer had to give up in one call: goes back to the controller as
-// multirotor_motor_limits.
+// The saturation in one call. The controller gets it as multirotor_motor_limits.
 struct Saturation {
-  bool lower;  // a motor was asked for less than idle
-  bool upper;  // a motor was asked for more than full
+  bool lower;  // roll, pitch and thrust demanded less than idle from a motor
+  bool upper;  // roll, pitch and thrust demanded more than full from a motor
   bool yaw;    // yaw was cut
 };
 
@@ -49,14 +48,15 @@ struct MixerStages {
   using Scales = MixerScales<Scalar>;
   using Fit = MixerFit<Scalar>;
 
-  // Thrust may be raised to 1.5 times, or lowered to 0.6 times, what was asked for roll and pitch.
+  // To keep roll and pitch, thrust may be raised to 1.5 times, or lowered to 0.6 times, its
+  // command.
   static constexpr Scalar thrust_raise = Scalar(1.5f);
   static constexpr Scalar thrust_lower = Scalar(0.6f);
 
-  // Thrust that one rotor may give up so that yaw keeps authority.
+  // The most by which one saturated rotor may lower the thrust, to keep yaw authority.
   static constexpr Scalar thrust_for_yaw_max = Scalar(0.15f);
 
-  // Lets NaN through, as both comparisons fail.
+  // NaN passes unchanged: both comparisons are false.
   static Scalar clamp(Scalar value, Scalar low, Scalar high) {
     return value < low ? low : (value > high ? high : value);
   }
@@ -70,7 +70,7 @@ struct MixerStages {
     return (c.roll * Scalar(rotor.roll) + c.pitch * Scalar(rotor.pitch)) * roll_pitch_scale;
   }
 
-  // min_out and max_out are of all rotors, without yaw.
+  // min_out and max_out are the smallest and largest output of all rotors, without yaw.
   static Saturation saturation(Scalar min_out, Scalar max_out) {
     return {min_out<0, max_out> 1, false};
   }
@@ -105,8 +105,8 @@ struct MixerStages {
     return {};
   }
 
-  // Cuts yaw, and at the upper limit some thrust, until every rotor is inside its limits; what one
-  // rotor gave up stays given up for the next. Returns whether yaw was cut.
+  // Goes through the rotors in order: where one is outside its limits, cuts yaw, and at the upper
+  // limit some thrust. The cut holds for the rotors after it, too. Returns whether yaw was cut.
   static bool yield_yaw(std::span<const Rotor> rotors, Controls& c, const Fit& fit) {
     bool cut = false;
     for (const Rotor& rotor : rotors) {
@@ -133,8 +133,8 @@ struct MixerStages {
     return clamp(idle + out * (1 - idle), idle, 1);
   }
 
-  // Before the first call the outputs are 0, or without a deadband unknown: then the first call is
-  // not limited.
+  // With a deadband the outputs before the first call are 0. Without one they are unknown, and the
+  // first call is not limited.
   static bool starts_at_0(Scalar idle) { return idle > Scalar(-1); }
 
   static Scalar slew(Scalar wanted, Scalar previous, Scalar delta_out_max) {

@@ -1,4 +1,4 @@
-// Mixer and battery estimate behind the C ABI of attest_actuation.h: the functions of their tables.
+// The functions that make mixer and battery estimate available through attest_actuation.h.
 //
 // Every function is noexcept: an exception must not cross into a host written in C.
 #pragma once
@@ -12,14 +12,14 @@
 
 namespace attest::actuation {
 
-// What this mixer and this estimate are the ones of.
+// The profile of this mixer and of this estimate.
 inline constexpr const char* profile_name = "px4-v1.5.5";
 
 inline bool is_profile(const char* name) {
   return name != nullptr && std::strcmp(name, profile_name) == 0;
 }
 
-// Binary32 in and out, whatever Scalar is.
+// Inputs and outputs are binary32 for every Scalar.
 template <typename Scalar, typename Stages>
 void step_mixer(BasicMixer<Scalar, Stages>& mixer, const attest_mixer_inputs& in,
                 attest_mixer_outputs& out) {
@@ -60,7 +60,7 @@ struct MixerTable {
   static constexpr attest_mixer table{create, destroy, step};
 };
 
-// An estimate that is told its parameters before its first sample.
+// Collects the parameters until the first sample, which creates the estimate.
 template <typename Battery>
 struct ConfiguredBattery {
   BatteryOptions options;
@@ -93,7 +93,7 @@ struct BatteryTable {
   static constexpr attest_battery_status table{create, destroy, set_parameter, step};
 };
 
-// extension() of a unit that has both.
+// extension() of a unit that has both modules.
 template <typename Scalar>
 const void* extension(const char* id) noexcept {
   if (id == nullptr) return nullptr;

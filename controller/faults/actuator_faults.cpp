@@ -17,7 +17,7 @@ void change_controls(FaultyLaw& law, Change change) {
   });
 }
 
-// The battery's factor is not applied by the law, but here.
+// The law scales by 1, and `apply` gets the battery's factor instead.
 template <typename Apply>
 void scale_otherwise(FaultyLaw& law, Apply apply) {
   auto factor = std::make_shared<float>(1.0f);
@@ -43,7 +43,7 @@ const Fault battery[] = {
     {"battery-always",
      "battery",
      Stage::scaling,
-     "scales without being asked to",
+     "scales while scaling is off",
      "a scale with scaling off",
      "a condition dropped",
      [](FaultyLaw& law) {
@@ -51,12 +51,12 @@ const Fault battery[] = {
      },
      {},
      reference::all_profiles},
-    {"battery-unguarded", "battery", Stage::scaling, "scales by zero and less", "a scale of 0",
-     "a condition dropped",
+    {"battery-unguarded", "battery", Stage::scaling, "scales by zero and by negative factors",
+     "a scale of 0", "a condition dropped",
      [](FaultyLaw& law) {
        change_factor(law, [](float scale, bool on) { return on ? scale : 1.0f; });
      }},
-    {"battery-divides", "battery", Stage::scaling, "divides by the scale", "a scale but 1",
+    {"battery-divides", "battery", Stage::scaling, "divides by the scale", "a scale other than 1",
      "a wrong factor",
      [](FaultyLaw& law) {
        change_factor(law, [](float scale, bool on) { return on && scale > 0 ? 1 / scale : 1.0f; });
@@ -73,14 +73,14 @@ const Fault battery[] = {
          return on && scale > 0 && std::isfinite(scale) ? scale : 1.0f;
        });
      }},
-    {"battery-not-thrust", "battery", Stage::scaling, "does not scale thrust", "a scale but 1",
-     "wrong axis",
+    {"battery-not-thrust", "battery", Stage::scaling, "does not scale thrust",
+     "a scale other than 1", "wrong axis",
      [](FaultyLaw& law) {
        scale_otherwise(law, [](Controls& control, float factor) {
          for (int i = 0; i < 3; ++i) control[i] *= factor;
        });
      }},
-    {"battery-thrust-only", "battery", Stage::scaling, "scales thrust only", "a scale but 1",
+    {"battery-thrust-only", "battery", Stage::scaling, "scales thrust only", "a scale other than 1",
      "wrong axis",
      [](FaultyLaw& law) {
        scale_otherwise(law, [](Controls& control, float factor) { control[3] *= factor; });
@@ -96,7 +96,7 @@ const Fault battery[] = {
      "battery",
      Stage::scaling,
      "clamps to 1 after scaling",
-     "controls beyond 1 by the scale",
+     "controls beyond 1 after scaling",
      "misplaced clamp",
      [](FaultyLaw& law) {
        scale_otherwise(law, [](Controls& control, float factor) {
@@ -106,7 +106,7 @@ const Fault battery[] = {
      },
      {},
      reference::all_profiles},
-    {"battery-before-guard", "battery", Stage::scaling, "scales before it asks for finite",
+    {"battery-before-guard", "battery", Stage::scaling, "scales before the check for finite values",
      "an infinite scale", "order of stages",
      [](FaultyLaw& law) {
        scale_otherwise(law, [](Controls& control, float factor) {
@@ -116,8 +116,8 @@ const Fault battery[] = {
          }
        });
      }},
-    {"battery-seen-by-gates", "battery", Stage::scaling, "lets the integrator see scaled controls",
-     "a scaled control near a gate", "scaling order",
+    {"battery-seen-by-gates", "battery", Stage::scaling,
+     "gives the scaled controls to the integrator", "a scaled control near a gate", "scaling order",
      [](FaultyLaw& law) {
        auto factor = std::make_shared<float>(1.0f);
        law.step.battery_factor = [factor](const Topics& topics, const Gains& gains,
@@ -130,7 +130,7 @@ const Fault battery[] = {
                                                 frozen);
        };
      }},
-    {"battery-first-scale", "battery", Stage::scaling, "keeps the first scale it is told",
+    {"battery-first-scale", "battery", Stage::scaling, "keeps the first scale that it receives",
      "a scale that changes", "a latch",
      [](FaultyLaw& law) {
        law.step.battery_factor = [kept = 0.0f](const Topics& topics, const Gains& gains,
@@ -147,7 +147,7 @@ const Fault actuators[] = {
     {"gear-missing",
      "actuators",
      Stage::output,
-     "does not pass the landing gear on",
+     "does not output the landing gear",
      "a landing gear",
      "a missing step",
      [](FaultyLaw& law) {
@@ -167,7 +167,7 @@ const Fault actuators[] = {
      },
      {},
      reference::from_v1_5_5},
-    {"gear-at-once", "actuators", Stage::output, "takes the landing gear in every mode",
+    {"gear-at-once", "actuators", Stage::output, "updates the landing gear in every mode",
      "a setpoint in acro", "a latch",
      [](FaultyLaw& law) {
        change_controls(law, [](Controls& control, const attest_inputs& in) {
@@ -196,7 +196,7 @@ const Fault actuators[] = {
          return gains;
        };
      }},
-    {"breaker-by-any-value", "actuators", Stage::output, "opens the breaker at any value",
+    {"breaker-by-any-value", "actuators", Stage::output, "opens the breaker at any value except 0",
      "CBRK_RATE_CTRL of another value", "flag comparison",
      [](FaultyLaw& law) {
        law.step.gains = [](const Parameters& parameters) {
@@ -206,7 +206,8 @@ const Fault actuators[] = {
        };
      }},
     {"breaker-stops-status", "actuators", Stage::output,
-     "publishes no integrals when the actuators are not", "CBRK_RATE_CTRL", "a misplaced condition",
+     "publishes no integrals where it publishes no actuators", "CBRK_RATE_CTRL",
+     "a misplaced condition",
      [](FaultyLaw& law) {
        also_after(law,
                   [last = attest_outputs{}](const attest_inputs&, attest_outputs& out) mutable {
@@ -230,8 +231,8 @@ const Fault actuators[] = {
          control[3] = reference::clamp(control[3], 0.0f, 1.0f);
        });
      }},
-    {"controls-not-cleared", "actuators", Stage::output, "leaves rubbish in controls 4 to 6",
-     "any step", "uninitialised memory",
+    {"controls-not-cleared", "actuators", Stage::output,
+     "leaves arbitrary values in controls 4 to 6", "any step", "uninitialised memory",
      [](FaultyLaw& law) {
        change_controls(law, [](Controls& control, const attest_inputs&) {
          control[4] = control[0];

@@ -12,7 +12,7 @@ namespace {
 using reference::integral_limit;
 using reference::takeoff_thrust;
 
-// One axis as the law has it, with each gate as a function of its own.
+// One axis of the integrator, with each gate of the law as a separate function.
 struct Gates {
   bool (*by_thrust)(float control, float thrust) = [](float control, float thrust) {
     return std::abs(control) < thrust;
@@ -75,7 +75,7 @@ const Fault anti_windup_list[] = {
      [](FaultyLaw& law) {
        gate_on(law, [](float t, const MotorLimits& l) { return t > takeoff_thrust && !l.lower; });
      }},
-    {"gate-both-needed", "anti_windup", Stage::gate, "freezes at both motor limits only",
+    {"gate-both-needed", "anti_windup", Stage::gate, "freezes only where both motor limits are set",
      "one of the limits", "a condition changed",
      [](FaultyLaw& law) {
        gate_on(law, [](float t, const MotorLimits& l) {
@@ -150,7 +150,7 @@ const Fault anti_windup_list[] = {
        use_gates(law, {.by_integral = [](float n) { return std::isfinite(n); }});
      }},
     {"gate-integral-clamped", "anti_windup", Stage::gate,
-     "clamps the integral instead of leaving it", "an integral near 0.3", "wrong clamp",
+     "clamps the integral instead of freezing it", "an integral near 0.3", "wrong clamp",
      [](FaultyLaw& law) {
        law.rate.integrate_axis = [](float integral, float control, float thrust, float growth,
                                     bool frozen) {
@@ -170,7 +170,7 @@ const Fault anti_windup_list[] = {
      [](FaultyLaw& law) {
        use_gates(law, {.by_integral = [](float n) { return std::abs(n) < 0.25f; }});
      }},
-    {"gate-integral-not-strict", "anti_windup", Stage::gate, "lets the integral be 0.3",
+    {"gate-integral-not-strict", "anti_windup", Stage::gate, "allows an integral of 0.3",
      "an integral of exactly 0.3", "a condition made non-strict",
      [](FaultyLaw& law) {
        use_gates(law, {.by_integral = [](float n) { return std::abs(n) <= integral_limit; }});
@@ -178,7 +178,7 @@ const Fault anti_windup_list[] = {
     {"gate-control-dropped", "anti_windup", Stage::gate, "integrates at any control",
      "a control beyond 0.3 below the thrust", "a condition dropped",
      [](FaultyLaw& law) { use_gates(law, {.by_control = [](float) { return true; }}); }},
-    {"gate-control-upper-only", "anti_windup", Stage::gate, "looks at positive controls only",
+    {"gate-control-upper-only", "anti_windup", Stage::gate, "checks positive controls only",
      "a control below -0.3", "a condition dropped",
      [](FaultyLaw& law) {
        use_gates(law, {.by_control = [](float control) { return control < integral_limit; }});
@@ -190,8 +190,8 @@ const Fault anti_windup_list[] = {
                  {.by_control = [](float control) { return std::abs(control) <= integral_limit; }});
      }},
     {"gate-by-direction", "anti_windup", Stage::gate,
-     "integrates at a limit where that lowers the integral", "a limit while the error turns",
-     "a helpful extra",
+     "integrates at a motor limit if that lowers the integral",
+     "a limit while the error changes its sign", "a helpful extra",
      [](FaultyLaw& law) {
        auto limited = std::make_shared<bool>(false);
        law.rate.may_integrate = [limited](float thrust, const MotorLimits& limits) {
@@ -205,9 +205,9 @@ const Fault anti_windup_list[] = {
                                                 frozen || (*limited && grows));
        };
      }},
-    {"gate-finite-dropped", "anti_windup", Stage::gate, "does not ask whether the sum is finite",
+    {"gate-finite-dropped", "anti_windup", Stage::gate, "does not check whether the sum is finite",
      "a NaN", "NaN handling", [](FaultyLaw& law) { use_gates(law, {}); },
-     "no NaN or infinity is within +-0.3, so the bound refuses it as well"},
+     "a NaN or infinity is never within +-0.3, so the bound rejects it, too"},
     {"limits-exchanged", "anti_windup", Stage::gate, "exchanges the lower and the upper limit",
      "one of the limits", "wrong field",
      [](FaultyLaw& law) {
@@ -215,9 +215,9 @@ const Fault anti_windup_list[] = {
          std::swap(flags.lower_limit, flags.upper_limit);
        });
      },
-     "either of them freezes all axes, and nothing else reads them"},
-    {"flags-are-1", "anti_windup", Stage::gate, "takes only 1 for true", "flags as masks, 2 and 4",
-     "flag comparison",
+     "each of them freezes all axes, and that is their only effect"},
+    {"flags-are-1", "anti_windup", Stage::gate, "treats only 1 as true",
+     "flags as bit masks 2 and 4", "flag comparison",
      [](FaultyLaw& law) {
        change_flags(law, [](Flags& flags, const attest_inputs&) {
          flags.lower_limit = flags.lower_limit == 1;
@@ -240,7 +240,7 @@ const Fault anti_windup_list[] = {
          flags = latched;
        });
      }},
-    {"flags-fresh-only", "anti_windup", Stage::gate, "forgets the motor limits between samples",
+    {"flags-fresh-only", "anti_windup", Stage::gate, "clears the motor limits between samples",
      "limits at 50 Hz", "stale flags",
      [](FaultyLaw& law) {
        also_before(law, [](attest_inputs& in) {
@@ -250,7 +250,7 @@ const Fault anti_windup_list[] = {
          in.updated |= ATTEST_UPDATED_MULTIROTOR_MOTOR_LIMITS;
        });
      }},
-    {"flags-late", "anti_windup", Stage::gate, "sees the motor limits one tick late",
+    {"flags-late", "anti_windup", Stage::gate, "uses the motor limits one tick late",
      "a limit that begins or ends", "one-tick delay",
      [](FaultyLaw& law) {
        also_before(law, [last = Flags{}](attest_inputs& in) mutable {
@@ -259,7 +259,7 @@ const Fault anti_windup_list[] = {
        });
      }},
     {"frozen-is-zero", "anti_windup", Stage::gate, "returns 0 where the integral is frozen",
-     "any gate shut after something was integrated", "a wrong return",
+     "a gate that closes after some integration", "a wrong return",
      [](FaultyLaw& law) {
        law.rate.integrate_axis = [](float integral, float control, float thrust, float growth,
                                     bool frozen) {
@@ -268,8 +268,9 @@ const Fault anti_windup_list[] = {
          return next == integral && growth != 0 ? 0.0f : next;
        };
      }},
-    {"zero-is-not-finite", "anti_windup", Stage::gate, "tests `if (x && ...)` for isfinite(x)",
-     "an integral that becomes exactly 0", "NaN handling",
+    {"zero-is-not-finite", "anti_windup", Stage::gate,
+     "tests `if (x && ...)` instead of isfinite(x)", "an integral that becomes exactly 0",
+     "NaN handling",
      [](FaultyLaw& law) {
        use_gates(law, {.by_integral = [](float n) {
                    return n != 0 && n > -integral_limit && n < integral_limit;

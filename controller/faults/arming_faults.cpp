@@ -1,4 +1,4 @@
-// Wrong beginnings and ends: arming, the kind of vehicle, what is not known yet.
+// Wrong start and end of a flight: arming, the kind of vehicle, topics without a sample yet.
 #include <cmath>
 #include <utility>
 
@@ -9,12 +9,12 @@ namespace {
 
 const Fault arming_list[] = {
     {"disarm-keeps-integral", "arming", Stage::arming, "does not reset the integrals on disarm",
-     "disarmed after something was integrated", "a missing reset",
+     "disarmed after some integration", "a missing reset",
      [](FaultyLaw& law) {
        law.step.is_flying = [](const Topics& topics) { return topics.is_rotary_wing; };
      }},
     {"fixed-wing-keeps-integral", "arming", Stage::arming,
-     "does not reset the integrals as a fixed wing", "a transition", "a missing reset",
+     "does not reset the integrals of a fixed wing", "a transition", "a missing reset",
      [](FaultyLaw& law) {
        law.step.is_flying = [](const Topics& topics) { return topics.armed; };
      }},
@@ -25,8 +25,8 @@ const Fault arming_list[] = {
          return topics.armed || topics.is_rotary_wing;
        };
      }},
-    {"reset-on-arming", "arming", Stage::arming, "resets when it is armed, not while disarmed",
-     "disarmed", "a missing reset",
+    {"reset-on-arming", "arming", Stage::arming, "resets at arming, not while disarmed", "disarmed",
+     "a missing reset",
      [](FaultyLaw& law) {
        law.step.is_flying = [was = false](const Topics& topics) mutable {
          const bool is = StepStages::Law::is_flying(topics);
@@ -71,20 +71,21 @@ const Fault arming_list[] = {
          if (!*armed) out.actuator_controls_0.published = 0;
        });
      }},
-    {"armed-is-1", "arming", Stage::arming, "takes only 1 for armed",
-     "the flag with another value than 1", "flag comparison",
+    {"armed-is-1", "arming", Stage::arming, "treats only 1 as armed",
+     "a true flag with a value other than 1", "flag comparison",
      [](FaultyLaw& law) {
        also_before(
            law, [](attest_inputs& in) { in.actuator_armed.armed = in.actuator_armed.armed == 1; });
      }},
-    {"armed-late", "arming", Stage::arming, "is armed one tick late", "disarming", "one-tick delay",
+    {"armed-late", "arming", Stage::arming, "uses actuator_armed one tick late", "disarming",
+     "one-tick delay",
      [](FaultyLaw& law) {
        also_before(law, [last = std::uint8_t{0}](attest_inputs& in) mutable {
          std::swap(last, in.actuator_armed.armed);
          in.updated |= ATTEST_UPDATED_ACTUATOR_ARMED;
        });
      }},
-    {"armed-at-start", "arming", Stage::arming, "takes itself for armed until told",
+    {"armed-at-start", "arming", Stage::arming, "assumes armed before the first actuator_armed",
      "no actuator_armed yet", "initial state",
      [](FaultyLaw& law) {
        auto told = std::make_shared<bool>(false);
@@ -95,8 +96,9 @@ const Fault arming_list[] = {
          return (topics.armed || !*told) && topics.is_rotary_wing;
        };
      }},
-    {"fixed-wing-at-start", "arming", Stage::arming, "takes itself for a fixed wing until told",
-     "no vehicle_status yet", "initial state",
+    {"fixed-wing-at-start", "arming", Stage::arming,
+     "assumes a fixed wing before the first vehicle_status", "no vehicle_status yet",
+     "initial state",
      [](FaultyLaw& law) {
        auto told = std::make_shared<bool>(false);
        also_before(law, [told](attest_inputs& in) {
@@ -106,7 +108,7 @@ const Fault arming_list[] = {
          return StepStages::Law::is_flying(topics) && *told;
        };
      }},
-    {"status-not-needed", "arming", Stage::output, "publishes before there is a vehicle_status",
+    {"status-not-needed", "arming", Stage::output, "publishes before the first vehicle_status",
      "no vehicle_status yet", "initial state",
      [](FaultyLaw& law) {
        also_before(law, [first = true](attest_inputs& in) mutable {
@@ -117,8 +119,9 @@ const Fault arming_list[] = {
          first = false;
        });
      }},
-    {"status-every-step", "arming", Stage::output, "publishes with a fresh vehicle_status only",
-     "a vehicle_status that came once", "a latch",
+    {"status-every-step", "arming", Stage::output,
+     "publishes only in steps with a new vehicle_status", "a vehicle_status that came once",
+     "a latch",
      [](FaultyLaw& law) {
        also_after(law, [](const attest_inputs& in, attest_outputs& out) {
          if ((in.updated & ATTEST_UPDATED_VEHICLE_STATUS) == 0) {
@@ -134,7 +137,7 @@ const Fault arming_list[] = {
          if (out.actuator_controls_0.published == 0) out.mc_att_ctrl_status.published = 0;
        });
      }},
-    {"limits-armed-only", "arming", Stage::input, "takes motor limits only while armed",
+    {"limits-armed-only", "arming", Stage::input, "updates the motor limits only while armed",
      "a limit that changes while disarmed", "a condition added",
      [](FaultyLaw& law) {
        also_before(law, [](attest_inputs& in) {
@@ -144,7 +147,7 @@ const Fault arming_list[] = {
        });
      }},
     {"previous-rates-shared", "instances", Stage::d,
-     "keeps the rates of the step before where all instances see them", "a second instance",
+     "stores the previous rates in a variable that all instances share", "a second instance",
      "static state",
      [](FaultyLaw& law) {
        law.rate.derivative = [](const Vector&, const Vector& rates, float dt,
@@ -162,8 +165,8 @@ const Fault arming_list[] = {
          if (in.vehicle_status.is_vtol != 0) out.actuator_controls_0.published = 0;
        });
      }},
-    {"setpoint-not-kept", "arming", Stage::input, "uses a setpoint only in the step it comes with",
-     "a setpoint at 50 Hz", "a latch",
+    {"setpoint-not-kept", "arming", Stage::input,
+     "uses a setpoint only in the step in which it arrives", "a setpoint at 50 Hz", "a latch",
      [](FaultyLaw& law) {
        also_before(law, [](attest_inputs& in) {
          if ((in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) == 0) {
@@ -173,8 +176,8 @@ const Fault arming_list[] = {
          in.updated |= ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT;
        });
      }},
-    {"setpoint-level-at-start", "arming", Stage::input, "flies level until there is a setpoint",
-     "no setpoint yet", "initial state",
+    {"setpoint-level-at-start", "arming", Stage::input,
+     "assumes a level setpoint before the first one", "no setpoint yet", "initial state",
      [](FaultyLaw& law) {
        also_before(law, [told = false](attest_inputs& in) mutable {
          told = told || (in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;

@@ -14,7 +14,7 @@ constexpr float pi = 3.14159265358979323846f;
 
 using Q = float[4];
 
-// Both attitudes, each by its own.
+// Changes the quaternions of the state and of the setpoint.
 template <typename Change>
 void change_attitudes(FaultyLaw& law, Change change) {
   also_before(law, [change](attest_inputs& in) {
@@ -33,7 +33,7 @@ void normalise(Q& q) {
   for (float& component : q) component /= norm;
 }
 
-// The tilt error with another way from sine and cosine to the angle.
+// The tilt error with another function from sine and cosine to the angle.
 template <typename Angle>
 void change_tilt_angle(FaultyLaw& law, Angle angle) {
   law.attitude.tilt_error = [angle](const Matrix& R_WB, const Matrix& R_WD) {
@@ -43,7 +43,7 @@ void change_tilt_angle(FaultyLaw& law, Angle angle) {
   };
 }
 
-// The tilt error with another axis than R^T (z x z_sp).
+// The tilt error with an axis other than R^T (z x z_sp).
 template <typename Axis>
 void change_tilt_axis(FaultyLaw& law, Axis axis) {
   law.attitude.tilt_error = [axis](const Matrix& R_WB, const Matrix& R_WD) {
@@ -61,7 +61,7 @@ void change_tilt_axis(FaultyLaw& law, Axis axis) {
 
 const Fault attitude_list[] = {
     {"quat-order-xyzw", "attitude", Stage::input, "takes quaternions as x, y, z, w",
-     "any attitude but level", "quaternion order",
+     "any attitude except level", "quaternion order",
      [](FaultyLaw& law) { change_attitudes(law, [](Q& q) { rotate_order(q); }); }},
     {"quat-order-state", "attitude", Stage::input, "takes the state's quaternion as x, y, z, w",
      "any attitude", "quaternion order",
@@ -74,19 +74,20 @@ const Fault attitude_list[] = {
        also_before(law, [](attest_inputs& in) { rotate_order(in.vehicle_attitude_setpoint.q_d); });
      }},
     {"quat-conjugated-state", "attitude", Stage::input,
-     "takes the state's quaternion as world to body", "any attitude but level", "transposition",
+     "takes the state's quaternion as world to body", "any attitude except level", "transposition",
      [](FaultyLaw& law) {
        also_before(law, [](attest_inputs& in) { conjugate(in.control_state.q); });
      }},
     {"quat-conjugated-setpoint", "attitude", Stage::input,
-     "takes the setpoint's quaternion as world to body", "any setpoint but level", "transposition",
+     "takes the setpoint's quaternion as world to body", "any setpoint except level",
+     "transposition",
      [](FaultyLaw& law) {
        also_before(law, [](attest_inputs& in) { conjugate(in.vehicle_attitude_setpoint.q_d); });
      }},
     {"quat-conjugated-both", "attitude", Stage::input, "takes both quaternions as world to body",
      "tilted away from the setpoint while both are tilted", "transposition",
      [](FaultyLaw& law) { change_attitudes(law, [](Q& q) { conjugate(q); }); }},
-    {"attitudes-exchanged", "attitude", Stage::input, "takes the setpoint for the state",
+    {"attitudes-exchanged", "attitude", Stage::input, "exchanges the setpoint and the state",
      "any error", "handedness",
      [](FaultyLaw& law) {
        also_before(law, [](attest_inputs& in) {
@@ -94,7 +95,7 @@ const Fault attitude_list[] = {
                           in.vehicle_attitude_setpoint.q_d);
        });
      }},
-    {"frame-flu", "attitude", Stage::input, "takes attitudes in FLU and ENU as if FRD and NED",
+    {"frame-flu", "attitude", Stage::input, "takes attitudes in FLU and ENU as in FRD and NED",
      "pitch or yaw", "handedness",
      [](FaultyLaw& law) {
        change_attitudes(law, [](Q& q) {
@@ -125,8 +126,8 @@ const Fault attitude_list[] = {
          return ordered::times<float>(R, ordered::cross(z, z_sp));
        });
      }},
-    {"tilt-cross-reversed", "attitude", Stage::tilt, "takes z_sp x z", "any tilt error",
-     "handedness",
+    {"tilt-cross-reversed", "attitude", Stage::tilt, "computes z_sp x z instead of z x z_sp",
+     "any tilt error", "handedness",
      [](FaultyLaw& law) {
        change_tilt_axis(law, [](const Matrix& R, const Vector& z, const Vector& z_sp) {
          return ordered::transpose_times<float>(R, ordered::cross(z_sp, z));
@@ -141,25 +142,25 @@ const Fault attitude_list[] = {
          return ordered::transpose_times<float>(R, e);
        });
      }},
-    {"tilt-as-sine", "attitude", Stage::tilt, "takes the sine for the angle", "a tilt of 20 deg",
+    {"tilt-as-sine", "attitude", Stage::tilt, "uses the sine as the angle", "a tilt of 20 deg",
      "a small-angle shortcut",
      [](FaultyLaw& law) { change_tilt_angle(law, [](float s, float) { return s; }); }},
-    {"tilt-by-asin", "attitude", Stage::tilt, "takes asin for atan2", "a tilt beyond 90 deg",
+    {"tilt-by-asin", "attitude", Stage::tilt, "uses asin instead of atan2", "a tilt beyond 90 deg",
      "atan2 arguments",
      [](FaultyLaw& law) {
        change_tilt_angle(law, [](float s, float) { return std::asin(std::min(s, 1.0f)); });
      }},
-    {"tilt-by-acos", "attitude", Stage::tilt, "takes acos, which has no resolution near 0",
+    {"tilt-by-acos", "attitude", Stage::tilt, "uses acos, which has no resolution near 0",
      "a tilt of a fraction of a degree", "atan2 arguments",
      [](FaultyLaw& law) {
        change_tilt_angle(law, [](float, float c) { return std::acos(std::clamp(c, -1.0f, 1.0f)); });
      }},
     {"tilt-atan2-exchanged", "attitude", Stage::tilt, "exchanges the arguments of atan2",
-     "any tilt but 45 deg", "atan2 arguments",
+     "any tilt except 45 deg", "atan2 arguments",
      [](FaultyLaw& law) {
        change_tilt_angle(law, [](float s, float c) { return std::atan2(c, s); });
      }},
-    {"tilt-atan", "attitude", Stage::tilt, "takes atan(s / c)", "a tilt beyond 90 deg",
+    {"tilt-atan", "attitude", Stage::tilt, "uses atan(s / c)", "a tilt beyond 90 deg",
      "atan2 arguments",
      [](FaultyLaw& law) {
        change_tilt_angle(law, [](float s, float c) { return std::atan(s / c); });
@@ -169,7 +170,7 @@ const Fault attitude_list[] = {
      [](FaultyLaw& law) {
        change_tilt_angle(law, [](float s, float c) { return std::atan2(s, c) * (180 / pi); });
      }},
-    {"tilt-halved", "attitude", Stage::tilt, "takes half of the angle, as in a quaternion",
+    {"tilt-halved", "attitude", Stage::tilt, "uses half of the angle, as in a quaternion",
      "any tilt error", "quaternion order",
      [](FaultyLaw& law) {
        change_tilt_angle(law, [](float s, float c) { return std::atan2(s, c) / 2; });
@@ -179,7 +180,7 @@ const Fault attitude_list[] = {
      [](FaultyLaw& law) {
        change_tilt_angle(law, [](float s, float c) { return std::atan2(s, c) * s; });
      }},
-    {"tilt-dead-zone", "attitude", Stage::tilt, "takes tilts below 0.01 rad for none",
+    {"tilt-dead-zone", "attitude", Stage::tilt, "treats tilts below 0.01 rad as 0",
      "a tilt error below 0.6 deg", "a helpful extra",
      [](FaultyLaw& law) {
        change_tilt_angle(law, [](float sine, float cosine) {
@@ -187,8 +188,8 @@ const Fault attitude_list[] = {
          return angle < 0.01f ? 0.0f : angle;
        });
      }},
-    {"tilt-dead-band", "attitude", Stage::tilt, "takes tilts below 0.06 deg for none",
-     "a tiny error", "wrong branch threshold",
+    {"tilt-dead-band", "attitude", Stage::tilt, "treats tilts below 0.06 deg as 0", "a tiny error",
+     "wrong branch threshold",
      [](FaultyLaw& law) {
        law.attitude.tilt_error = [](const Matrix& R_WB, const Matrix& R_WD) {
          Tilt tilt = AttitudeStages::Law::tilt_error(R_WB, R_WD);
@@ -217,14 +218,14 @@ const Fault attitude_list[] = {
          return Vector(e[0] * k[1], e[1] * k[0], e[2] * k[2]);
        };
      }},
-    {"gain-of-roll-for-all", "attitude", Stage::p, "takes the roll gain for all axes",
+    {"gain-of-roll-for-all", "attitude", Stage::p, "uses the roll gain for all axes",
      "gains that differ", "wrong axis",
      [](FaultyLaw& law) {
        law.attitude.proportional = [](const Vector& e, const AttitudeGains& gains) {
          return Vector(e * gains.proportional_1_s[0]);
        };
      }},
-    {"direct-everywhere", "attitude", Stage::blend, "flies the quaternion error at all tilts",
+    {"direct-everywhere", "attitude", Stage::blend, "uses the quaternion error at all tilts",
      "a tilt of 30 deg, or a tilted setpoint with a yaw error", "another law",
      [](FaultyLaw& law) {
        law.attitude.is_upset = [](float) { return true; };
@@ -232,15 +233,15 @@ const Fault attitude_list[] = {
          return direct;
        };
      }},
-    {"outputs-late", "attitude", Stage::output, "answers one tick late", "anything that changes",
-     "one-tick delay",
+    {"outputs-late", "attitude", Stage::output, "publishes its outputs one tick late",
+     "anything that changes", "one-tick delay",
      [](FaultyLaw& law) {
        also_after(law,
                   [last = attest_outputs{}](const attest_inputs&, attest_outputs& out) mutable {
                     std::swap(last, out);
                   });
      }},
-    {"state-late", "attitude", Stage::input, "uses the state of the tick before",
+    {"state-late", "attitude", Stage::input, "uses the state of the previous tick",
      "an attitude that moves", "one-tick delay",
      [](FaultyLaw& law) {
        also_before(law, [last = decltype(attest_inputs::control_state){},
@@ -250,7 +251,7 @@ const Fault attitude_list[] = {
          std::swap(last, in.control_state);
        });
      }},
-    {"setpoint-late", "attitude", Stage::input, "uses the setpoint of the tick before",
+    {"setpoint-late", "attitude", Stage::input, "uses the setpoint of the previous tick",
      "a setpoint that moves", "one-tick delay",
      [](FaultyLaw& law) {
        also_before(law, [last = decltype(attest_inputs::vehicle_attitude_setpoint){},
@@ -262,7 +263,7 @@ const Fault attitude_list[] = {
        });
      }},
     {"state-in-12-bits", "attitude", Stage::input, "holds quaternions in 12 bits",
-     "any attitude but level", "fixed point",
+     "any attitude except level", "fixed point",
      [](FaultyLaw& law) {
        change_attitudes(law, [](Q& q) {
          for (float& component : q) component = std::round(component * 2048) / 2048;

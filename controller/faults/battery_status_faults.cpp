@@ -21,7 +21,7 @@ void change_drop(FaultyLaw& law, Drop drop) {
 
 const Fault battery_status_list[] = {
     {"battery-status-pack", "battery_status", Stage::battery_status,
-     "takes the pack's voltage for a cell's", "always", "a missing factor",
+     "uses the voltage of the pack as that of a cell", "always", "a missing factor",
      [](FaultyLaw& law) {
        law.battery.measured = [](const Sample& sample, float drop, const Options& options) {
          Options one_cell = options;
@@ -30,7 +30,7 @@ const Fault battery_status_list[] = {
        };
      }},
     {"battery-status-three-cells", "battery_status", Stage::battery_status,
-     "has three cells always", "another number of cells", "a wrong parameter",
+     "always assumes three cells", "another number of cells", "a wrong parameter",
      [](FaultyLaw& law) {
        law.battery.measured = [](const Sample& sample, float drop, const Options& options) {
          Options three_cells = options;
@@ -67,7 +67,7 @@ const Fault battery_status_list[] = {
        };
      }},
     {"battery-status-throttle-clamped", "battery_status", Stage::battery_status,
-     "takes throttle beyond 1 for 1", "throttle beyond 1", "a helpful clamp",
+     "clamps the throttle to 1", "throttle beyond 1", "a helpful clamp",
      [](FaultyLaw& law) {
        law.battery.load_drop_V = [](Sample sample, const Options& options) {
          sample.throttle = std::clamp(sample.throttle, -1.0f, 1.0f);
@@ -75,7 +75,7 @@ const Fault battery_status_list[] = {
        };
      }},
     {"battery-status-no-charging", "battery_status", Stage::battery_status,
-     "takes a current that charges for none", "a current below 0", "a helpful clamp",
+     "treats a charging current as 0", "a current below 0", "a helpful clamp",
      [](FaultyLaw& law) {
        law.battery.load_drop_V = [](Sample sample, const Options& options) {
          sample.current_A = std::max(sample.current_A, 0.0f);
@@ -83,7 +83,7 @@ const Fault battery_status_list[] = {
        };
      }},
     {"battery-status-no-idle-share", "battery_status", Stage::battery_status,
-     "takes the drop to be 0 at no throttle", "throttle below full while armed", "a missing term",
+     "computes a drop of 0 at zero throttle", "throttle below full while armed", "a missing term",
      [](FaultyLaw& law) {
        change_drop(law, [](float drop, const Sample& sample, const Options& options) {
          const bool modelled = sample.armed && !options.internal_resistance_ohm;
@@ -91,14 +91,14 @@ const Fault battery_status_list[] = {
        });
      }},
     {"battery-status-not-normalised", "battery_status", Stage::battery_status,
-     "lets the drop exceed itself at full throttle", "throttle while armed", "a missing factor",
+     "exceeds BAT_V_LOAD_DROP at full throttle", "throttle while armed", "a missing factor",
      [](FaultyLaw& law) {
        change_drop(law, [](float drop, const Sample&, const Options& options) {
          return options.internal_resistance_ohm ? drop : drop * (1 + Law::idle_share);
        });
      }},
     {"battery-status-signed-throttle", "battery_status", Stage::battery_status,
-     "does not take the throttle's magnitude", "negative throttle", "a sign",
+     "uses the signed throttle", "negative throttle", "a sign",
      [](FaultyLaw& law) {
        change_drop(law, [](float drop, const Sample& sample, const Options& options) {
          const bool modelled = sample.armed && !options.internal_resistance_ohm;
@@ -147,7 +147,7 @@ const Fault battery_status_list[] = {
        };
      }},
     {"battery-status-first-sample-starts", "battery_status", Stage::battery_status,
-     "starts the filter at the first sample in place of a full battery", "the first seconds",
+     "starts the filter at the first sample instead of at a full battery", "the first seconds",
      "a wrong initial value",
      [](FaultyLaw& law) {
        law.battery.remaining = [is_first = true](float before, float measured) mutable {
@@ -174,15 +174,15 @@ const Fault battery_status_list[] = {
      "lets the filter leave 0..1", "a voltage beyond full, then a lower one", "missing clamp",
      [](FaultyLaw& law) { law.battery.remaining = Law::low_passed; }},
     {"battery-status-clamps-sample", "battery_status", Stage::battery_status,
-     "clamps the sample in place of the filter", "a voltage beyond full while the filter is not",
-     "a misplaced clamp",
+     "clamps the sample instead of the filter",
+     "a voltage beyond full while the filter is below full", "a misplaced clamp",
      [](FaultyLaw& law) {
        law.battery.remaining = [](float before, float measured) {
          return Law::remaining(before, std::clamp(measured, 0.0f, 1.0f));
        };
      }},
     {"battery-status-nan-stays", "battery_status", Stage::battery_status,
-     "lets one sample that is not finite into the filter", "a voltage that is NaN or infinite",
+     "does not reject a sample that is not finite", "a voltage that is NaN or infinite",
      "a missing guard",
      [](FaultyLaw& law) {
        law.battery.remaining = [](float before, float measured) {
@@ -190,22 +190,22 @@ const Fault battery_status_list[] = {
        };
      }},
     {"battery-status-voltage-nan-stays", "battery_status", Stage::battery_status,
-     "lets a voltage that is not finite into the filtered voltage",
-     "a voltage that is NaN once, and the battery not full after", "a missing guard",
+     "does not keep voltages that are not finite out of the filtered voltage",
+     "a single NaN voltage, and a battery that is not full after it", "a missing guard",
      [](FaultyLaw& law) {
        law.battery.low_passed = [](float kept, float sample) {
          return kept * Law::filter_keep + sample * Law::filter_take;
        };
      }},
     {"battery-status-always-plugged-in", "battery_status", Stage::battery_status,
-     "scales by a pack that has almost no voltage", "a pack below 2.1 V", "a missing gate",
+     "scales for a pack that has almost no voltage", "a pack below 2.1 V", "a missing gate",
      [](FaultyLaw& law) { law.battery.is_plugged_in = [](float) { return true; }; }},
     {"battery-status-plugged-in-by-sample", "battery_status", Stage::battery_status,
-     "compares the latest voltage with 2.1 V, and not the filtered one",
+     "compares the latest voltage with 2.1 V instead of the filtered one",
      "a voltage that drops out for a moment", "the wrong signal",
      [](FaultyLaw& law) { law.battery.low_passed = [](float, float sample) { return sample; }; }},
     {"battery-status-plugged-in-by-cell", "battery_status", Stage::battery_status,
-     "compares the voltage of a cell with 2.1 V, and not that of the pack",
+     "compares the voltage of a cell with 2.1 V instead of that of the pack",
      "a pack of 3 cells below 6.3 V", "the wrong signal",
      [](FaultyLaw& law) {
        law.battery.is_plugged_in = [](float filtered_V) {
@@ -213,7 +213,7 @@ const Fault battery_status_list[] = {
        };
      }},
     {"battery-status-infinite-is-1", "battery_status", Stage::battery_status,
-     "answers 1 in place of 1.3 to an infinite scale", "cells that are empty at 0 V", "wrong order",
+     "returns 1 instead of 1.3 for an infinite scale", "cells that are empty at 0 V", "wrong order",
      [](FaultyLaw& law) {
        law.battery.scale = [](float remaining, const Options& options) {
          const float factor =
@@ -221,18 +221,18 @@ const Fault battery_status_list[] = {
          return std::isfinite(factor) ? Law::scale(remaining, options) : 1.0f;
        };
      }},
-    {"battery-status-never", "battery_status", Stage::battery_status, "answers 1 always",
+    {"battery-status-never", "battery_status", Stage::battery_status, "always returns 1",
      "a battery that is not full", "a missing step",
      [](FaultyLaw& law) { law.battery.scale = [](float, const Options&) { return 1.0f; }; }},
     {"battery-status-inverse", "battery_status", Stage::battery_status,
-     "answers the part of the voltage that is left", "a battery that is not full", "a wrong factor",
+     "returns the inverse of the scale", "a battery that is not full", "a wrong factor",
      [](FaultyLaw& law) {
        law.battery.scale = [](float remaining, const Options& options) {
          return 1 / Law::scale(remaining, options);
        };
      }},
     {"battery-status-by-charge", "battery_status", Stage::battery_status,
-     "divides by the charge that is left", "a battery that is not full", "another law",
+     "divides by the remaining charge", "a battery that is not full", "another law",
      [](FaultyLaw& law) {
        law.battery.scale = [](float remaining, const Options&) {
          return std::clamp(1 / remaining, 1.0f, Law::scale_max);

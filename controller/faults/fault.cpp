@@ -40,7 +40,7 @@ std::string_view name_of(Stage stage) {
 
 namespace {
 
-// Faults of one subject, and the profiles whose law has it.
+// Faults of one subject, and the profiles whose law has that subject.
 struct Subject {
   std::span<const Fault> faults;
   reference::ProfileSet profiles = reference::all_profiles;

@@ -1,6 +1,6 @@
-// The catalogue of wrong controllers as data: the mistakes that ports of this law make, each the
-// reference with one stage replaced (faulty_controller.hpp). A suite is measured by how many of
-// them it catches, and a port that fails is compared with them to say what it looks like.
+// The catalogue of faults as data: the mistakes that ports of this law make, each the reference
+// with one stage replaced (faulty_controller.hpp). The share of faults that a suite catches is a
+// measure of the suite. The diagnosis compares a failing port with them.
 //
 // The table is static and constant; any thread.
 #pragma once
@@ -16,7 +16,7 @@ namespace attest::faults {
 using reference::Profile;
 struct FaultyLaw;
 
-// Where in the law the mistake is.
+// The part of the law that contains the mistake.
 enum class Stage {
   input,
   tilt,
@@ -50,15 +50,15 @@ std::string_view name_of(Stage stage);  // "integrator gate"
 struct Fault {
   std::string_view id;     // "quat-order-xyzw"
   std::string_view group;  // of the cases that must catch it: "attitude"
-  Stage stage;             //
-  std::string_view what;   // one line: what it does
-  std::string_view shows;  // in which situation
+  Stage stage;             // the part of the law that contains the mistake
+  std::string_view what;   // its effect in one line: "takes quaternions as x, y, z, w"
+  std::string_view shows;  // the situation that makes it visible: "any attitude except level"
   std::string_view kind;   // of porting mistake: "quaternion order"
   void (*inject)(FaultyLaw& law);
-  // Not empty: no input can tell it from the law, and why.
+  // Not empty: the reason why no input can distinguish the fault from the law.
   std::string_view equivalent = {};
-  // The profiles in which some input can: those that have what is wrong here. Empty: those of the
-  // fault's subject, which the catalogue fills in.
+  // The profiles in which some input can: those with the part of the law that is wrong here. Empty:
+  // those of the fault's subject, which the catalogue fills in.
   std::optional<reference::ProfileSet> profiles = {};
 
   bool is_detectable(Profile profile) const {
@@ -69,7 +69,7 @@ struct Fault {
 // In the order of the groups. The pointers stay valid until the program ends.
 std::span<const Fault* const> catalogue();
 
-// Null when there is none of that id.
+// Null when no fault has that id.
 const Fault* find_fault(std::string_view id);
 
 }  // namespace attest::faults

@@ -14,8 +14,8 @@ struct FaultyController::Controller {
   reference::McAttControl<Scalar, FaultyLaw> control;
 };
 
-// The law is copied into the controller: what its functions remember together with `before` and
-// `after` is shared by pointer.
+// The law is copied into the controller. State that its functions share with `before` and `after`
+// is therefore held by pointer.
 FaultyController::FaultyController(Profile profile, std::span<const Fault* const> faults)
     : law_(law_with(faults)),
       controller_(std::make_unique<Controller>(

@@ -1,4 +1,4 @@
-// The wrong controllers themselves: a law with mistakes of the catalogue in it, and its unit.
+// The wrong controllers: a law with faults of the catalogue, and a controller that runs it.
 #pragma once
 
 #include <memory>
@@ -11,16 +11,16 @@
 
 namespace attest::faults {
 
-// The law with these mistakes in it, together.
+// The law with all these faults at once.
 FaultyLaw law_with(std::span<const Fault* const> faults);
 
-// A controller of profile `px4-v1.5.5` or `px4-v1.3.4` with some mistakes.
+// A controller of profile `px4-v1.5.5` or `px4-v1.3.4` with some faults.
 class FaultyController {
  public:
   FaultyController(Profile profile, std::span<const Fault* const> faults);
   ~FaultyController();
 
-  // As of McAttControl.
+  // Same as in McAttControl.
   bool set_parameter(std::string_view name, float value);
   void step(const attest_inputs& in, attest_outputs& out);
 

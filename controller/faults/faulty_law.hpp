@@ -1,7 +1,7 @@
-// The law with every stage replaceable: functions that are the reference's until a fault puts its
-// own in place. McAttControl<float, FaultyLaw> is then the reference with that one mistake.
+// The law with every stage replaceable. Each stage is a function: that of the reference, or that of
+// a fault. McAttControl<float, FaultyLaw> is then the reference with that one mistake.
 //
-// Copied into each controller, with what the functions remember: instances share nothing.
+// Each controller has its own copy of the law, with the state of its functions.
 #pragma once
 
 #include <functional>
@@ -132,13 +132,13 @@ struct FaultyLaw {
   MixerStages mixer;
   BatteryStages battery;
 
-  // What a port does to its inputs before the law and to its outputs after it.
+  // Changes to the inputs before the law and to the outputs after it.
   std::function<void(attest_inputs&)> before = [](attest_inputs&) {};
   std::function<void(const attest_inputs&, attest_outputs&)> after = [](const attest_inputs&,
                                                                         attest_outputs&) {};
 };
 
-// Put another function behind the one that is there, so that two faults can act at once.
+// Append a function to the present one, so that two faults can act at once.
 template <typename Added>
 void also_before(FaultyLaw& law, Added added) {
   law.before = [then = law.before, added](attest_inputs& in) mutable {

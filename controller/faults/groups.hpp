@@ -1,4 +1,4 @@
-// The parts of the catalogue, one file each.
+// The parts of the catalogue, by subject.
 #pragma once
 
 #include <memory>

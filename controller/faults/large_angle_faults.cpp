@@ -9,7 +9,7 @@ namespace {
 
 namespace ordered = reference::ordered;
 
-// error (1 - share) + direct share, with another share.
+// error * (1 - share) + direct * share, with another share.
 template <typename Share>
 void change_share(FaultyLaw& law, Share share) {
   law.attitude.blend = [share](const Vector& error, const Vector& direct, float c, float weight) {
@@ -66,7 +66,7 @@ const Fault large_angle_list[] = {
      [](FaultyLaw& law) {
        change_share(law, [](float c, float weight) { return c * c * weight * weight; });
      }},
-    {"blend-adds", "large_angle", Stage::blend, "does not take the other share from the error",
+    {"blend-adds", "large_angle", Stage::blend, "does not reduce the share of the error",
      "a tilt error beyond 90 deg", "a missing term",
      [](FaultyLaw& law) {
        law.attitude.blend = [](const Vector& error, const Vector& direct, float c, float weight) {
@@ -96,35 +96,35 @@ const Fault large_angle_list[] = {
          return Vector(shorter(q) / 2);
        });
      }},
-    {"direct-longer-way", "large_angle", Stage::blend, "does not look at the sign of w",
+    {"direct-longer-way", "large_angle", Stage::blend, "ignores the sign of w",
      "an upset whose error quaternion has w < 0", "quaternion order",
      [](FaultyLaw& law) {
        change_direct(law, [](const Matrix&, const Matrix&, const Quaternion& q) {
          return Vector(imaginary(q) * 2);
        });
      }},
-    {"direct-reversed", "large_angle", Stage::blend, "takes the longer side",
+    {"direct-reversed", "large_angle", Stage::blend, "uses the longer rotation",
      "a tilt error beyond 90 deg", "a sign",
      [](FaultyLaw& law) {
        change_direct(law, [](const Matrix&, const Matrix&, const Quaternion& q) {
          return Vector(-shorter(q));
        });
      }},
-    {"direct-in-world", "large_angle", Stage::blend, "takes R_sp R^T, an error in world axes",
+    {"direct-in-world", "large_angle", Stage::blend, "uses R_sp R^T, an error in world axes",
      "an upset with a heading", "transposition",
      [](FaultyLaw& law) {
        change_direct(law, [](const Matrix& R, const Matrix& R_sp, const Quaternion&) {
          return shorter(reference::quaternion_of(Matrix(R_sp * R.transpose())));
        });
      }},
-    {"direct-transposed", "large_angle", Stage::blend, "takes R_sp^T R",
+    {"direct-transposed", "large_angle", Stage::blend, "uses R_sp^T R instead of R^T R_sp",
      "a tilt error beyond 90 deg", "transposition",
      [](FaultyLaw& law) {
        change_direct(law, [](const Matrix& R, const Matrix& R_sp, const Quaternion&) {
          return shorter(reference::quaternion_of(ordered::transpose_product(R_sp, R)));
        });
      }},
-    {"direct-imag-0-to-2", "large_angle", Stage::blend, "takes q[0..2] for the imaginary part",
+    {"direct-imag-0-to-2", "large_angle", Stage::blend, "uses q[0..2] as the imaginary part",
      "a tilt error beyond 90 deg", "quaternion order",
      [](FaultyLaw& law) {
        change_direct(law, [](const Matrix&, const Matrix&, const Quaternion& q) {
@@ -132,7 +132,7 @@ const Fault large_angle_list[] = {
        });
      }},
     {"direct-axes-rolled", "large_angle", Stage::blend,
-     "mixes up the axes when the largest diagonal element leads", "an upset of more than 120 deg",
+     "mixes up the axes where the trace is not positive", "an upset of more than 120 deg",
      "wrong axis",
      [](FaultyLaw& law) {
        change_direct(law, [](const Matrix& R, const Matrix& R_sp, const Quaternion& q) {
@@ -142,7 +142,7 @@ const Fault large_angle_list[] = {
        });
      }},
     {"direct-trace-only", "large_angle", Stage::blend,
-     "makes a quaternion of a matrix by its trace alone", "an error of more than 120 deg",
+     "computes a quaternion from the trace of a matrix alone", "an error of more than 120 deg",
      "wrong branch",
      [](FaultyLaw& law) {
        change_direct(law, [](const Matrix& R, const Matrix& R_sp, const Quaternion&) {
@@ -153,7 +153,7 @@ const Fault large_angle_list[] = {
        });
      }},
     {"direct-w-reversed", "large_angle", Stage::blend,
-     "has w's sign wrong when the largest diagonal element leads", "an upset of more than 120 deg",
+     "has the sign of w wrong where the trace is not positive", "an upset of more than 120 deg",
      "a sign",
      [](FaultyLaw& law) {
        change_direct(law, [](const Matrix& R, const Matrix& R_sp, const Quaternion& q) {
@@ -161,7 +161,7 @@ const Fault large_angle_list[] = {
          return D.trace() > 0 ? shorter(q) : Vector(-shorter(q));
        });
      }},
-    {"direct-at-w-0", "large_angle", Stage::blend, "takes w = 0 for the negative side",
+    {"direct-at-w-0", "large_angle", Stage::blend, "treats w = 0 as negative",
      "an error of exactly 180 deg", "a condition made strict",
      [](FaultyLaw& law) {
        change_direct(law, [](const Matrix&, const Matrix&, const Quaternion& q) {

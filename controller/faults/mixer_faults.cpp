@@ -15,7 +15,7 @@ using actuation::Rotor;
 using actuation::Saturation;
 using Rotors = std::span<const Rotor>;
 
-// The rotors as another table has them.
+// Replaces each rotor of the geometry.
 template <typename Change>
 void change_rotors(FaultyLaw& law, Change change) {
   law.mixer.without_yaw = [change](const Rotor& rotor, const Controls& c, float scale) {
@@ -31,7 +31,7 @@ void change_rotors(FaultyLaw& law, Change change) {
   };
 }
 
-// Yaw and thrust that one rotor beyond its limits leaves to the next.
+// Replaces the change of yaw and thrust at a rotor beyond its limits.
 template <typename Yield>
 void change_yield(FaultyLaw& law, Yield yield) {
   law.mixer.yield_yaw = [yield](Rotors rotors, Controls& c, const Fit& fit) {
@@ -47,7 +47,7 @@ void change_yield(FaultyLaw& law, Yield yield) {
   };
 }
 
-// As the law does, but for the thrust that is given up.
+// Replaces only the thrust that is given up for yaw.
 template <typename Thrust>
 void change_thrust_given_up(FaultyLaw& law, Thrust given_up) {
   change_yield(law, [given_up](const Rotor& rotor, Controls& c, float base, float out) {
@@ -57,7 +57,7 @@ void change_thrust_given_up(FaultyLaw& law, Thrust given_up) {
 }
 
 const Fault mixer_list[] = {
-    {"mixer-unclamped", "mixer", Stage::mixer_scaling, "takes roll, pitch and yaw beyond 1",
+    {"mixer-unclamped", "mixer", Stage::mixer_scaling, "does not clamp roll, pitch and yaw",
      "controls beyond 1", "missing clamp",
      [](FaultyLaw& law) {
        law.mixer.scaled = [](const Controls& c, const Scales& scales) {
@@ -65,7 +65,7 @@ const Fault mixer_list[] = {
                          Law::clamp(c.thrust, 0, 1)};
        };
      }},
-    {"mixer-thrust-unclamped", "mixer", Stage::mixer_scaling, "takes thrust outside 0..1",
+    {"mixer-thrust-unclamped", "mixer", Stage::mixer_scaling, "does not clamp thrust to 0..1",
      "thrust outside 0..1", "missing clamp",
      [](FaultyLaw& law) {
        law.mixer.scaled = [](const Controls& c, const Scales& scales) {
@@ -74,8 +74,8 @@ const Fault mixer_list[] = {
          return scaled;
        };
      }},
-    {"mixer-unscaled", "mixer", Stage::mixer_scaling, "leaves the scales of its definition out",
-     "a scale but 1", "a missing factor",
+    {"mixer-unscaled", "mixer", Stage::mixer_scaling, "ignores the scales of its definition",
+     "a scale other than 1", "a missing factor",
      [](FaultyLaw& law) {
        law.mixer.scaled = [](const Controls& c, const Scales&) {
          return Law::scaled(c, {1, 1, 1, 0});
@@ -90,7 +90,7 @@ const Fault mixer_list[] = {
                          clamped.yaw * scales.yaw, clamped.thrust};
        };
      }},
-    {"mixer-scales-at-most-1", "mixer", Stage::mixer_scaling, "takes scales beyond 1 for 1",
+    {"mixer-scales-at-most-1", "mixer", Stage::mixer_scaling, "clamps scales to 1",
      "a scale beyond 1", "a helpful clamp",
      [](FaultyLaw& law) {
        law.mixer.scaled = [](const Controls& c, const Scales& scales) {
@@ -98,7 +98,7 @@ const Fault mixer_list[] = {
                                 std::min(scales.yaw, 1.0f), scales.idle});
        };
      }},
-    {"mixer-scales-unsigned", "mixer", Stage::mixer_scaling, "takes a scale's magnitude",
+    {"mixer-scales-unsigned", "mixer", Stage::mixer_scaling, "uses the magnitude of a scale",
      "a scale below 0", "a sign",
      [](FaultyLaw& law) {
        law.mixer.scaled = [](const Controls& c, const Scales& scales) {
@@ -139,7 +139,7 @@ const Fault mixer_list[] = {
          return false;
        };
      }},
-    {"mixer-yaw-clipped", "mixer", Stage::mixer_yaw, "clips yaw rotor by rotor",
+    {"mixer-yaw-clipped", "mixer", Stage::mixer_yaw, "clips each rotor instead of cutting yaw",
      "yaw that saturates", "a missing step",
      [](FaultyLaw& law) { change_yield(law, [](const Rotor&, Controls&, float, float) {}); }},
     {"mixer-yaw-dropped", "mixer", Stage::mixer_yaw, "drops yaw where it does not fit",
@@ -148,7 +148,7 @@ const Fault mixer_list[] = {
        change_yield(law, [](const Rotor&, Controls& c, float, float) { c.yaw = 0; });
      }},
     {"mixer-yaw-not-carried-on", "mixer", Stage::mixer_yaw,
-     "forgets what one rotor gave up when it comes to the next", "yaw that several rotors cut",
+     "does not carry the cut of one rotor on to the next", "yaw that several rotors cut",
      "a copy in place of a reference",
      [](FaultyLaw& law) {
        law.mixer.yield_yaw = [](Rotors rotors, Controls& c, const Fit& fit) {
@@ -167,16 +167,16 @@ const Fault mixer_list[] = {
      "yaw at the upper limit", "a missing step",
      [](FaultyLaw& law) { change_thrust_given_up(law, [](float) { return 0.0f; }); }},
     {"mixer-yaw-takes-all-thrust", "mixer", Stage::mixer_yaw,
-     "gives up as much thrust as yaw wants", "much yaw at the upper limit", "missing clamp",
+     "gives up thrust for yaw without a limit", "much yaw at the upper limit", "missing clamp",
      [](FaultyLaw& law) { change_thrust_given_up(law, [](float beyond) { return beyond; }); }},
-    {"mixer-yaw-without-boost", "mixer", Stage::mixer_yaw, "forgets the boost when it cuts yaw",
-     "yaw beside roll that saturates", "a missing term",
+    {"mixer-yaw-without-boost", "mixer", Stage::mixer_yaw, "leaves out the boost when it cuts yaw",
+     "yaw together with roll that saturates", "a missing term",
      [](FaultyLaw& law) {
        law.mixer.yield_yaw = [](Rotors rotors, Controls& c, const Fit& fit) {
          return Law::yield_yaw(rotors, c, {0, fit.roll_pitch_scale});
        };
      }},
-    {"mixer-output-0-to-1", "mixer", Stage::mixer_output, "answers 0..1", "always",
+    {"mixer-output-0-to-1", "mixer", Stage::mixer_output, "outputs 0..1", "always",
      "another convention",
      [](FaultyLaw& law) {
        law.mixer.command = [](const Rotor& rotor, const Controls& c, const Fit& fit, float idle) {
@@ -190,14 +190,14 @@ const Fault mixer_list[] = {
          return Law::command(rotor, c, fit, (idle - 1) / 2);
        };
      }},
-    {"mixer-idle-clips", "mixer", Stage::mixer_output, "clips at idle in place of scaling to it",
+    {"mixer-idle-clips", "mixer", Stage::mixer_output, "clips at idle instead of scaling to it",
      "a deadband", "a helpful simplification",
      [](FaultyLaw& law) {
        law.mixer.command = [](const Rotor& rotor, const Controls& c, const Fit& fit, float idle) {
          return std::max(idle, Law::command(rotor, c, fit, -1));
        };
      }},
-    {"mixer-no-slew", "mixer", Stage::mixer_output, "does not limit how fast outputs move",
+    {"mixer-no-slew", "mixer", Stage::mixer_output, "does not limit the change of the outputs",
      "a limit and a jump", "a missing step",
      [](FaultyLaw& law) { law.mixer.slew = [](float wanted, float, float) { return wanted; }; }},
     {"mixer-first-call-from-0", "mixer", Stage::mixer_output,
@@ -208,22 +208,22 @@ const Fault mixer_list[] = {
      "does not limit the first call with a deadband", "a limit at the first call, and a deadband",
      "a wrong initial value",
      [](FaultyLaw& law) { law.mixer.starts_at_0 = [](float) { return false; }; }},
-    {"mixer-slew-up-only", "mixer", Stage::mixer_output, "limits outputs that rise only",
+    {"mixer-slew-up-only", "mixer", Stage::mixer_output, "limits rising outputs only",
      "a limit and a fall", "a condition dropped",
      [](FaultyLaw& law) {
        law.mixer.slew = [](float wanted, float previous, float limit) {
          return wanted < previous ? wanted : Law::slew(wanted, previous, limit);
        };
      }},
-    {"mixer-slew-always", "mixer", Stage::mixer_output, "takes a limit of 0 for one", "no limit",
-     "a condition dropped",
+    {"mixer-slew-always", "mixer", Stage::mixer_output,
+     "treats 0 as a limit instead of as no limit", "no limit", "a condition dropped",
      [](FaultyLaw& law) {
        law.mixer.slew = [](float wanted, float previous, float limit) {
          return Law::clamp(wanted, previous - limit, previous + limit);
        };
      }},
     {"mixer-slew-by-magnitude", "mixer", Stage::mixer_output,
-     "takes a negative limit for one of its size", "a limit below 0", "a helpful simplification",
+     "uses the magnitude of a negative limit", "a limit below 0", "a helpful simplification",
      [](FaultyLaw& law) {
        law.mixer.slew = [](float wanted, float previous, float limit) {
          return Law::slew(wanted, previous, std::abs(limit));

@@ -1,4 +1,4 @@
-// Wrong mixers: how roll and pitch are fitted between the limits, and its flags.
+// Wrong mixers: the fit of roll and pitch between the limits, and the saturation flags.
 #include <algorithm>
 
 #include "controller/faults/groups.hpp"
@@ -10,8 +10,7 @@ using Law = MixerStages::Law;
 using Fit = MixerStages::Fit;
 using actuation::Saturation;
 
-// Roll and pitch as another fit of theirs leaves them; `room` is what a port takes for the range
-// that thrust may be raised and lowered in.
+// Changes the fit of roll and pitch; arguments are the law's fit, min_out, max_out and thrust.
 template <typename Change>
 void change_fit(FaultyLaw& law, Change change) {
   law.mixer.fit = [change](float min_out, float max_out, float thrust) {
@@ -20,15 +19,15 @@ void change_fit(FaultyLaw& law, Change change) {
 }
 
 const Fault mixer_fit_list[] = {
-    {"mixer-no-fit", "mixer", Stage::mixer_fit, "clips what is beyond the limits",
+    {"mixer-no-fit", "mixer", Stage::mixer_fit, "clips each output at its limits",
      "roll or pitch that saturate", "a missing step",
      [](FaultyLaw& law) { law.mixer.fit = [](float, float, float) { return Fit{}; }; }},
-    {"mixer-no-boost", "mixer", Stage::mixer_fit, "trades no thrust for roll and pitch",
+    {"mixer-no-boost", "mixer", Stage::mixer_fit, "does not change thrust to keep roll and pitch",
      "roll or pitch that saturate", "a missing term",
      [](FaultyLaw& law) {
        change_fit(law, [](Fit fit, float, float, float) { return Fit{0, fit.roll_pitch_scale}; });
      }},
-    {"mixer-boost-unlimited", "mixer", Stage::mixer_fit, "raises thrust as far as is needed",
+    {"mixer-boost-unlimited", "mixer", Stage::mixer_fit, "raises thrust without a limit",
      "roll at little thrust", "missing clamp",
      [](FaultyLaw& law) {
        change_fit(law, [](Fit fit, float min_out, float max_out, float) {
@@ -36,12 +35,12 @@ const Fault mixer_fit_list[] = {
        });
      }},
     {"mixer-roll-pitch-unscaled", "mixer", Stage::mixer_fit, "does not scale roll and pitch down",
-     "roll or pitch beyond what thrust can make room for", "a missing factor",
+     "roll or pitch that no change of thrust makes fit", "a missing factor",
      [](FaultyLaw& law) {
        change_fit(law, [](Fit fit, float, float, float) { return Fit{fit.boost, 1}; });
      }},
-    {"mixer-raise-to-1.6", "mixer", Stage::mixer_fit, "raises thrust to 1.6 times",
-     "roll that wants more than half as much thrust again", "a wrong constant",
+    {"mixer-raise-to-1.6", "mixer", Stage::mixer_fit, "raises thrust to 1.6 times, not 1.5 times",
+     "roll that needs more than 1.5 times the thrust", "a wrong constant",
      [](FaultyLaw& law) {
        change_fit(law, [](Fit fit, float min_out, float max_out, float thrust) {
          const float up = 0.6f * thrust;
@@ -50,8 +49,8 @@ const Fault mixer_fit_list[] = {
          return Fit{up, (thrust + up) / (thrust - min_out)};
        });
      }},
-    {"mixer-lower-by-0.6", "mixer", Stage::mixer_fit, "lowers thrust by 0.6 of it, not to 0.6",
-     "roll near full thrust", "a wrong constant",
+    {"mixer-lower-by-0.6", "mixer", Stage::mixer_fit,
+     "lowers thrust by 0.6 of it, not to 0.6 of it", "roll near full thrust", "a wrong constant",
      [](FaultyLaw& law) {
        change_fit(law, [](Fit fit, float min_out, float max_out, float thrust) {
          const float down = 0.6f * thrust;
@@ -60,7 +59,7 @@ const Fault mixer_fit_list[] = {
        });
      }},
     {"mixer-not-in-the-middle", "mixer", Stage::mixer_fit,
-     "lifts the lowest rotor to its limit where both ends are near",
+     "lifts the lowest rotor to its limit where the room above is too small",
      "roll that fits at neither end", "a missing term",
      [](FaultyLaw& law) {
        change_fit(law, [](Fit fit, float min_out, float max_out, float thrust) {
@@ -70,7 +69,7 @@ const Fault mixer_fit_list[] = {
        });
      }},
     {"mixer-both-ends-from-above", "mixer", Stage::mixer_fit,
-     "scales by the upper end where both are beyond", "roll beyond both limits",
+     "scales by the upper limit where both limits are exceeded", "roll beyond both limits",
      "wrong branch threshold",
      [](FaultyLaw& law) {
        change_fit(law, [](Fit fit, float min_out, float max_out, float thrust) {
@@ -79,7 +78,7 @@ const Fault mixer_fit_list[] = {
        });
      }},
     {"mixer-both-ends-lower-unlimited", "mixer", Stage::mixer_fit,
-     "lowers thrust to the middle, however far, where both ends are beyond",
+     "lowers thrust to the middle without a limit where both limits are exceeded",
      "roll and pitch at almost full thrust", "missing clamp",
      [](FaultyLaw& law) {
        change_fit(law, [](Fit fit, float min_out, float max_out, float thrust) {
@@ -89,7 +88,7 @@ const Fault mixer_fit_list[] = {
        });
      }},
     {"mixer-above-lower-unlimited", "mixer", Stage::mixer_fit,
-     "lowers thrust to the middle, however far, where the upper end is beyond",
+     "lowers thrust to the middle without a limit where the upper limit is exceeded",
      "roll with little room below, at almost full thrust", "missing clamp",
      [](FaultyLaw& law) {
        change_fit(law, [](Fit fit, float min_out, float max_out, float thrust) {
@@ -99,7 +98,7 @@ const Fault mixer_fit_list[] = {
        });
      }},
     {"mixer-middle-from-below-strict", "mixer", Stage::mixer_fit,
-     "needs more room above than is missing below, to lift", "as much room as is missing",
+     "treats room above that equals the excess below as too small", "room that equals the excess",
      "comparison made strict",
      [](FaultyLaw& law) {
        change_fit(law, [](Fit fit, float min_out, float max_out, float thrust) {
@@ -109,7 +108,7 @@ const Fault mixer_fit_list[] = {
        });
      }},
     {"mixer-middle-from-above-strict", "mixer", Stage::mixer_fit,
-     "needs more room below than is missing above, to lower", "as much room as is missing",
+     "treats room below that equals the excess above as too small", "room that equals the excess",
      "comparison made strict",
      [](FaultyLaw& law) {
        change_fit(law, [](Fit fit, float min_out, float max_out, float thrust) {

@@ -1,4 +1,4 @@
-// Wrong modes: which loop flies, what it is given, and what is published.
+// Wrong modes: the choice of the loop, its inputs, and its publications.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -31,7 +31,7 @@ bool flies_outside_rates(const attest_inputs& in) {
   return !flies_attitude(in) && in.vehicle_control_mode.flag_control_manual_enabled == 0;
 }
 
-// The rates setpoint from outside is kept apart from the unit's own.
+// Keeps the external rates setpoint separate from the unit's own.
 void keep_rates_apart(FaultyLaw& law) {
   also_before(law, [external = decltype(attest_inputs::vehicle_rates_setpoint){}](
                        attest_inputs& in) mutable {
@@ -44,7 +44,7 @@ void keep_rates_apart(FaultyLaw& law) {
 }
 
 const Fault modes[] = {
-    {"rattitude-not-latched", "modes", Stage::mode, "returns to attitude with the stick",
+    {"rattitude-not-latched", "modes", Stage::mode, "returns to attitude when the stick returns",
      "a stick that comes back in rattitude", "a latch",
      [](FaultyLaw& law) {
        also_before(law, [mode = Topics{}.mode](attest_inputs& in) mutable {
@@ -54,7 +54,7 @@ const Fault modes[] = {
          in.updated |= ATTEST_UPDATED_VEHICLE_CONTROL_MODE;
        });
      }},
-    {"rattitude-for-good", "modes", Stage::mode, "stays in rates whatever mode comes",
+    {"rattitude-for-good", "modes", Stage::mode, "stays in rates after every new mode",
      "a new mode after a large deflection", "a latch",
      [](FaultyLaw& law) {
        law.step.sticks_beyond = [latched = false](const Manual& manual, float threshold) mutable {
@@ -62,15 +62,15 @@ const Fault modes[] = {
          return latched;
        };
      }},
-    {"rattitude-missing", "modes", Stage::mode, "does not know rattitude", "a large deflection",
-     "a missing step",
+    {"rattitude-missing", "modes", Stage::mode, "does not implement rattitude",
+     "a large deflection", "a missing step",
      [](FaultyLaw& law) { change_sticks(law, [](const Manual&, float) { return false; }); }},
-    {"rattitude-roll-only", "modes", Stage::mode, "looks at the roll stick only",
+    {"rattitude-roll-only", "modes", Stage::mode, "checks the roll stick only",
      "a large pitch deflection", "wrong axis",
      [](FaultyLaw& law) {
        change_sticks(law, [](const Manual& m, float th) { return std::abs(m.y) > th; });
      }},
-    {"rattitude-pitch-only", "modes", Stage::mode, "looks at the pitch stick only",
+    {"rattitude-pitch-only", "modes", Stage::mode, "checks the pitch stick only",
      "a large roll deflection", "wrong axis",
      [](FaultyLaw& law) {
        change_sticks(law, [](const Manual& m, float th) { return std::abs(m.x) > th; });
@@ -81,14 +81,14 @@ const Fault modes[] = {
        change_sticks(
            law, [](const Manual& m, float th) { return std::abs(m.x) > th && std::abs(m.y) > th; });
      }},
-    {"rattitude-yaw-too", "modes", Stage::mode, "looks at the yaw stick too",
+    {"rattitude-yaw-too", "modes", Stage::mode, "checks the yaw stick too",
      "a large yaw deflection", "wrong axis",
      [](FaultyLaw& law) {
        change_sticks(law, [](const Manual& m, float th) {
          return StepStages::Law::sticks_beyond(m, th) || std::abs(m.r) > th;
        });
      }},
-    {"rattitude-signed", "modes", Stage::mode, "looks at positive deflections only",
+    {"rattitude-signed", "modes", Stage::mode, "checks positive deflections only",
      "a large negative deflection", "a sign",
      [](FaultyLaw& law) {
        change_sticks(law, [](const Manual& m, float th) { return m.x > th || m.y > th; });
@@ -100,7 +100,7 @@ const Fault modes[] = {
          return std::abs(m.x) >= th || std::abs(m.y) >= th;
        });
      }},
-    {"rattitude-everywhere", "modes", Stage::mode, "does not ask for the rattitude flag",
+    {"rattitude-everywhere", "modes", Stage::mode, "does not check the rattitude flag",
      "a large deflection in ALTCTL", "a condition dropped",
      [](FaultyLaw& law) {
        also_before(law, [](attest_inputs& in) {
@@ -135,7 +135,7 @@ const Fault modes[] = {
          command.rates_sp_B[0] *= 0.3f + 0.7f * m.y * m.y;
        });
      }},
-    {"acro-limited", "modes", Stage::limit, "limits acro rates as attitude's",
+    {"acro-limited", "modes", Stage::limit, "limits acro rates to the limits of attitude mode",
      "a full stick in acro", "misplaced clamp",
      [](FaultyLaw& law) {
        change_acro(law, [](RateCommand& command, const Manual&, const Gains& gains) {
@@ -157,7 +157,7 @@ const Fault modes[] = {
          command.thrust_sp = m.z * 0.9f;
        });
      }},
-    {"acro-thrust-not-negative", "modes", Stage::mode, "does not let the throttle be negative",
+    {"acro-thrust-not-negative", "modes", Stage::mode, "clamps a negative throttle to 0",
      "a negative throttle in acro", "misplaced clamp",
      [](FaultyLaw& law) {
        change_acro(law, [](RateCommand& command, const Manual&, const Gains&) {
@@ -175,8 +175,8 @@ const Fault modes[] = {
                     last = out;
                   });
      }},
-    {"manual-first", "modes", Stage::mode, "asks for manual before attitude", "STABILIZED",
-     "order of conditions",
+    {"manual-first", "modes", Stage::mode, "checks the manual flag before the attitude flag",
+     "STABILIZED", "order of conditions",
      [](FaultyLaw& law) {
        also_before(law, [](attest_inputs& in) {
          if (in.vehicle_control_mode.flag_control_manual_enabled != 0) {
@@ -184,18 +184,17 @@ const Fault modes[] = {
          }
        });
      }},
-    {"offboard-published", "modes", Stage::output, "publishes rates that came from outside",
-     "OFFBOARD rates", "a helpful extra",
+    {"offboard-published", "modes", Stage::output, "publishes external rates", "OFFBOARD rates",
+     "a helpful extra",
      [](FaultyLaw& law) {
        also_after(law, [](const attest_inputs& in, attest_outputs& out) {
          if (flies_outside_rates(in)) out.vehicle_rates_setpoint.published = 1;
        });
      }},
-    {"offboard-apart", "modes", Stage::mode,
-     "keeps the rates from outside apart from the unit's own", "OFFBOARD rates after another mode",
-     "a variable too many", keep_rates_apart},
-    {"offboard-limited", "modes", Stage::limit, "limits rates from outside",
-     "fast rates from outside", "misplaced clamp",
+    {"offboard-apart", "modes", Stage::mode, "keeps external rates separate from the unit's own",
+     "OFFBOARD rates after another mode", "a variable too many", keep_rates_apart},
+    {"offboard-limited", "modes", Stage::limit, "limits external rates", "fast external rates",
+     "misplaced clamp",
      [](FaultyLaw& law) {
        auto bound = std::make_shared<Vector>(Vector::Zero());
        law.step.gains = [bound](const Parameters& parameters) {
@@ -211,15 +210,16 @@ const Fault modes[] = {
          sp.yaw = reference::clamp(sp.yaw, -(*bound)[2], (*bound)[2]);
        });
      }},
-    {"pending-lost", "modes", Stage::mode, "loses an attitude setpoint that came in another mode",
-     "a setpoint before the mode", "a latch",
+    {"pending-lost", "modes", Stage::mode,
+     "loses an attitude setpoint that arrived in another mode", "a setpoint before the mode",
+     "a latch",
      [](FaultyLaw& law) {
        also_before(law, [](attest_inputs& in) {
          if (!flies_attitude(in))
            in.updated &= ~std::uint32_t{ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT};
        });
      }},
-    {"pending-rates-lost", "modes", Stage::mode, "loses rates that came in another mode",
+    {"pending-rates-lost", "modes", Stage::mode, "loses rates that arrived in another mode",
      "rates before OFFBOARD", "a latch",
      [](FaultyLaw& law) {
        also_before(law, [](attest_inputs& in) {
@@ -232,10 +232,10 @@ const Fault modes[] = {
      "a condition dropped",
      [](FaultyLaw& law) { law.step.supersedes_pending = [](bool) { return true; }; }},
     {"own-rates-do-not-supersede", "modes", Stage::mode,
-     "takes a rates sample that is older than its own", "rates before OFFBOARD", "a latch",
+     "uses an external rates sample that is older than its own", "rates before OFFBOARD", "a latch",
      [](FaultyLaw& law) { law.step.supersedes_pending = [](bool) { return false; }; }},
     {"topics-by-latest-status", "modes", Stage::mode,
-     "selects its topics by each vehicle_status, and not by the first", "is_vtol changes",
+     "selects its topics by each vehicle_status, not only by the first", "is_vtol changes",
      "a latch",
      [](FaultyLaw& law) {
        const auto is_vtol = std::make_shared<bool>(false);
@@ -288,7 +288,7 @@ const Fault modes[] = {
        };
      }},
     {"mode-resets", "modes", Stage::i, "resets the integrals when the mode changes",
-     "a change of mode after something was integrated", "a reset too many",
+     "a change of mode after some integration", "a reset too many",
      [](FaultyLaw& law) {
        auto changed = std::make_shared<bool>(false);
        also_before(law, [changed, last = true](attest_inputs& in) mutable {

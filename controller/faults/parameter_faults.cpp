@@ -10,7 +10,7 @@ namespace {
 
 using P = Parameters;
 
-// The gains of other parameters than those that are set.
+// Computes the gains from changed parameters.
 template <typename Change>
 void change_parameters(FaultyLaw& law, Change change) {
   law.step.gains = [change](const Parameters& parameters) {
@@ -20,7 +20,7 @@ void change_parameters(FaultyLaw& law, Change change) {
   };
 }
 
-// One parameter is read from another's place.
+// Reads one parameter from the place of another.
 template <float P::*to, float P::*from>
 void read_from(FaultyLaw& law) {
   change_parameters(law, [](Parameters& p) { p.*to = p.*from; });
@@ -55,7 +55,7 @@ const Fault parameter_list[] = {
        };
      }},
     {"param-one-update-late", "parameters", Stage::parameters,
-     "uses the parameters of the update before", "a parameter that changes in flight",
+     "uses the parameters of the previous update", "a parameter that changes in flight",
      "one-tick delay",
      [](FaultyLaw& law) {
        law.step.gains = [last = std::optional<Parameters>{}](const Parameters& p) mutable {
@@ -63,12 +63,12 @@ const Fault parameter_list[] = {
        };
      }},
     {"tc-ignored", "parameters", Stage::parameters, "does not read the time constants",
-     "a time constant but 0.2", not_read,
+     "a time constant other than 0.2", not_read,
      [](FaultyLaw& law) {
        change_parameters(law, [](Parameters& p) { p.mc_roll_tc = p.mc_pitch_tc = 0.2f; });
      }},
     {"tc-inverted", "parameters", Stage::parameters, "multiplies by TC / 0.2",
-     "a time constant but 0.2", "a wrong factor",
+     "a time constant other than 0.2", "a wrong factor",
      [](FaultyLaw& law) {
        change_parameters(law, [](Parameters& p) {
          p.mc_roll_tc = 0.04f / p.mc_roll_tc;
@@ -81,7 +81,7 @@ const Fault parameter_list[] = {
        change_parameters(law, [](Parameters& p) { std::swap(p.mc_roll_tc, p.mc_pitch_tc); });
      }},
     {"tc-on-i", "parameters", Stage::parameters, "scales the integral gain too",
-     "a time constant but 0.2", "a misplaced factor",
+     "a time constant other than 0.2", "a misplaced factor",
      [](FaultyLaw& law) {
        change_gains(law, [](Gains& gains, const Parameters& p) {
          gains.rate.integral[0] *= 0.2f / p.mc_roll_tc;
@@ -89,7 +89,7 @@ const Fault parameter_list[] = {
        });
      }},
     {"tc-on-ff", "parameters", Stage::parameters, "scales the feed-forward too",
-     "a time constant but 0.2 and a feed-forward", "a misplaced factor",
+     "a time constant other than 0.2 and a feed-forward", "a misplaced factor",
      [](FaultyLaw& law) {
        change_gains(law, [](Gains& gains, const Parameters& p) {
          gains.rate.feed_forward[0] *= 0.2f / p.mc_roll_tc;
@@ -97,7 +97,7 @@ const Fault parameter_list[] = {
        });
      }},
     {"tc-on-yaw", "parameters", Stage::parameters, "scales yaw by the roll time constant",
-     "a time constant but 0.2", "wrong axis",
+     "a time constant other than 0.2", "wrong axis",
      [](FaultyLaw& law) {
        change_gains(law, [](Gains& gains, const Parameters& p) {
          gains.attitude.proportional_1_s[2] *= 0.2f / p.mc_roll_tc;
@@ -105,7 +105,7 @@ const Fault parameter_list[] = {
        });
      }},
     {"tc-not-on-d", "parameters", Stage::parameters, "does not scale the D gain",
-     "a time constant but 0.2", "a missing factor",
+     "a time constant other than 0.2", "a missing factor",
      [](FaultyLaw& law) {
        change_gains(law, [](Gains& gains, const Parameters& p) {
          gains.rate.derivative[0] = p.mc_rollrate_d;
@@ -113,7 +113,7 @@ const Fault parameter_list[] = {
        });
      }},
     {"tc-not-on-attitude", "parameters", Stage::parameters, "does not scale the attitude gain",
-     "a time constant but 0.2", "a missing factor",
+     "a time constant other than 0.2", "a missing factor",
      [](FaultyLaw& law) {
        change_gains(law, [](Gains& gains, const Parameters& p) {
          gains.attitude.proportional_1_s[0] = p.mc_roll_p;
@@ -121,16 +121,16 @@ const Fault parameter_list[] = {
        });
      }},
     {"tc-not-on-rate-p", "parameters", Stage::parameters, "does not scale the rate gain",
-     "a time constant but 0.2", "a missing factor",
+     "a time constant other than 0.2", "a missing factor",
      [](FaultyLaw& law) {
        change_gains(law, [](Gains& gains, const Parameters& p) {
          gains.rate.proportional[0] = p.mc_rollrate_p;
          gains.rate.proportional[1] = p.mc_pitchrate_p;
        });
      }},
-    {"pitch-p-of-roll", "parameters", Stage::parameters, "reads MC_ROLL_P for MC_PITCH_P",
+    {"pitch-p-of-roll", "parameters", Stage::parameters, "reads MC_ROLL_P instead of MC_PITCH_P",
      "gains that differ", wrong_name, read_from<&P::mc_pitch_p, &P::mc_roll_p>},
-    {"yaw-p-of-roll", "parameters", Stage::parameters, "reads MC_ROLL_P for MC_YAW_P",
+    {"yaw-p-of-roll", "parameters", Stage::parameters, "reads MC_ROLL_P instead of MC_YAW_P",
      "gains that differ", wrong_name, read_from<&P::mc_yaw_p, &P::mc_roll_p>},
     {"pitchrate-p-of-roll", "parameters", Stage::parameters, "reads the roll rate gain for pitch",
      "gains that differ", wrong_name, read_from<&P::mc_pitchrate_p, &P::mc_rollrate_p>},
@@ -144,16 +144,17 @@ const Fault parameter_list[] = {
      read_from<&P::mc_pitchrate_ff, &P::mc_rollrate_ff>},
     {"yawrate-d-of-roll", "parameters", Stage::parameters, "reads the roll D gain for yaw",
      "yaw rates that change", wrong_name, read_from<&P::mc_yawrate_d, &P::mc_rollrate_d>},
-    {"yawrate-i-of-p", "parameters", Stage::parameters, "reads MC_YAWRATE_P for MC_YAWRATE_I",
-     "an error in yaw that lasts", wrong_name, read_from<&P::mc_yawrate_i, &P::mc_yawrate_p>},
+    {"yawrate-i-of-p", "parameters", Stage::parameters,
+     "reads MC_YAWRATE_P instead of MC_YAWRATE_I", "an error in yaw that lasts", wrong_name,
+     read_from<&P::mc_yawrate_i, &P::mc_yawrate_p>},
     {"pitchrate-max-of-roll", "parameters", Stage::parameters, "reads the roll limit for pitch",
      "limits that differ", wrong_name, read_from<&P::mc_pitchrate_max, &P::mc_rollrate_max>},
     {"yawrauto-of-yawrate", "parameters", Stage::parameters,
-     "reads MC_YAWRATE_MAX for MC_YAWRAUTO_MAX", "a large yaw error on a mission", wrong_name,
-     read_from<&P::mc_yawrauto_max, &P::mc_yawrate_max>},
-    {"acro-p-of-r", "parameters", Stage::parameters, "reads MC_ACRO_R_MAX for MC_ACRO_P_MAX",
+     "reads MC_YAWRATE_MAX instead of MC_YAWRAUTO_MAX", "a large yaw error on a mission",
+     wrong_name, read_from<&P::mc_yawrauto_max, &P::mc_yawrate_max>},
+    {"acro-p-of-r", "parameters", Stage::parameters, "reads MC_ACRO_R_MAX instead of MC_ACRO_P_MAX",
      "acro limits that differ", wrong_name, read_from<&P::mc_acro_p_max, &P::mc_acro_r_max>},
-    {"acro-y-of-r", "parameters", Stage::parameters, "reads MC_ACRO_R_MAX for MC_ACRO_Y_MAX",
+    {"acro-y-of-r", "parameters", Stage::parameters, "reads MC_ACRO_R_MAX instead of MC_ACRO_Y_MAX",
      "acro limits that differ", wrong_name, read_from<&P::mc_acro_y_max, &P::mc_acro_r_max>},
     {"roll-p-not-read", "parameters", Stage::parameters, "does not read MC_ROLL_P", "another value",
      not_read, never_read<&P::mc_roll_p>},

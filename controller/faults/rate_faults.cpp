@@ -43,7 +43,7 @@ const Fault rate_list[] = {
      [](FaultyLaw& law) {
        change_control(law, [](V p, V d, V i, V ff) { return p - d - i + ff; });
      }},
-    {"error-reversed", "rates", Stage::p, "takes rates minus setpoint", "a rate error", "a sign",
+    {"error-reversed", "rates", Stage::p, "computes rates minus setpoint", "a rate error", "a sign",
      [](FaultyLaw& law) {
        law.rate.proportional = [](V error, float attenuation, const RateGains& gains) {
          return Vector(-RateStages::Law::proportional(error, attenuation, gains));
@@ -72,7 +72,7 @@ const Fault rate_list[] = {
          return Vector(gains.derivative.cwiseProduct(prev - rates) * dt);
        };
      }},
-    {"d-over-two-ticks", "rates", Stage::d, "takes the rates of two ticks ago", "rates that change",
+    {"d-over-two-ticks", "rates", Stage::d, "uses the rates of two ticks ago", "rates that change",
      "one-tick delay",
      [](FaultyLaw& law) {
        law.rate.derivative = [older = Vector(Vector::Zero())](V prev, V rates, float dt,
@@ -104,7 +104,7 @@ const Fault rate_list[] = {
     {"ff-of-change",
      "rates",
      Stage::ff,
-     "feeds the setpoint's change forward, as v1.3.4",
+     "feeds the setpoint's change forward, as v1.3.4 does",
      "a feed-forward gain",
      "another version of the law",
      [](FaultyLaw& law) {
@@ -132,8 +132,8 @@ const Fault rate_list[] = {
      },
      {},
      reference::from_v1_5_5},
-    {"i-before-control", "rates", Stage::i, "adds this step's error before it controls",
-     "a rate error", "order of stages",
+    {"i-before-control", "rates", Stage::i,
+     "adds this step's error to the integral before the control", "a rate error", "order of stages",
      [](FaultyLaw& law) {
        auto growth = std::make_shared<Vector>(Vector::Zero());
        auto dt_s = std::make_shared<float>(0.0f);
@@ -150,7 +150,7 @@ const Fault rate_list[] = {
        };
      }},
     {"i-fixed-dt", "rates", Stage::i, "integrates as if every step took 4 ms",
-     "any rate but 250 Hz", "a fixed rate",
+     "any rate except 250 Hz", "a fixed rate",
      [](FaultyLaw& law) {
        law.rate.growth = [](V error, float, const RateGains& gains) {
          return RateStages::Law::growth(error, 0.004f, gains);
@@ -194,7 +194,7 @@ const Fault rate_list[] = {
          in.control_state.yaw_rate *= degrees;
        });
      }},
-    {"gyro-yaw-reversed", "rates", Stage::input, "takes the yaw rate as of FLU", "a yaw rate",
+    {"gyro-yaw-reversed", "rates", Stage::input, "takes the yaw rate as in FLU", "a yaw rate",
      "handedness",
      [](FaultyLaw& law) {
        also_before(

@@ -73,14 +73,14 @@ const Fault limit_faults[] = {
          return Vector(bound_of(autonomous, gains) * (180 / pi));
        });
      }},
-    {"limit-57.3", "rate_limit", Stage::limit, "takes 57.3 for 180 / pi",
+    {"limit-57.3", "rate_limit", Stage::limit, "uses 57.3 as 180 / pi",
      "a setpoint beyond a high limit", "degrees",
      [](FaultyLaw& law) {
        change_bound(law, [](bool autonomous, const AttitudeGains& gains) {
          return Vector(bound_of(autonomous, gains) * (180 / pi) / 57.3f);
        });
      }},
-    {"limit-roll-for-all", "rate_limit", Stage::limit, "takes the roll limit for all axes",
+    {"limit-roll-for-all", "rate_limit", Stage::limit, "uses the roll limit for all axes",
      "limits that differ", "wrong axis",
      [](FaultyLaw& law) {
        change_bound(law, [](bool, const AttitudeGains& gains) {
@@ -96,12 +96,12 @@ const Fault limit_faults[] = {
          return limited;
        };
      }},
-    {"limit-manual-always", "rate_limit", Stage::limit, "takes the pilot's limits in all modes",
+    {"limit-manual-always", "rate_limit", Stage::limit, "uses the pilot's limits in all modes",
      "a large yaw error on a mission", "wrong branch",
      [](FaultyLaw& law) {
        change_bound(law, [](bool, const AttitudeGains& gains) { return gains.rate_max_rad_s; });
      }},
-    {"limit-auto-always", "rate_limit", Stage::limit, "takes the autonomous limits in all modes",
+    {"limit-auto-always", "rate_limit", Stage::limit, "uses the autonomous limits in all modes",
      "a large yaw error under a pilot", "wrong branch",
      [](FaultyLaw& law) {
        change_bound(law,
@@ -118,7 +118,7 @@ const Fault limit_faults[] = {
     {"auto-by-velocity",
      "rate_limit",
      Stage::mode,
-     "takes velocity control alone for autonomous",
+     "treats only velocity control as autonomous",
      "DESCEND, which has no velocity control",
      "a condition dropped",
      [](FaultyLaw& law) {
@@ -128,14 +128,14 @@ const Fault limit_faults[] = {
      },
      {},
      reference::from_v1_5_5},
-    {"auto-by-auto", "rate_limit", Stage::mode, "takes the auto flag alone for autonomous",
+    {"auto-by-auto", "rate_limit", Stage::mode, "treats only the auto flag as autonomous",
      "velocity control without the auto flag", "a condition dropped",
      [](FaultyLaw& law) {
        change_autonomous(law, [](const Mode& mode) {
          return mode.flag_control_auto_enabled != 0 && mode.flag_control_manual_enabled == 0;
        });
      }},
-    {"auto-by-both", "rate_limit", Stage::mode, "takes velocity and auto for velocity or auto",
+    {"auto-by-both", "rate_limit", Stage::mode, "requires both the velocity and the auto flag",
      "one of the two flags alone", "a condition changed",
      [](FaultyLaw& law) {
        change_autonomous(law, [](const Mode& mode) {
@@ -150,7 +150,7 @@ const Fault limit_faults[] = {
          return mode.flag_control_velocity_enabled != 0 || mode.flag_control_auto_enabled != 0;
        });
      }},
-    {"auto-without-pilot", "rate_limit", Stage::mode, "is autonomous wherever no pilot is",
+    {"auto-without-pilot", "rate_limit", Stage::mode, "is autonomous in every mode without a pilot",
      "OFFBOARD attitude", "a condition dropped",
      [](FaultyLaw& law) {
        change_autonomous(law,
@@ -193,7 +193,7 @@ const Fault feed_forward_faults[] = {
        change_feed_forward(law, [](float rate, float w, float) { return rate * w; });
      }},
     {"yaw-ff-in-degrees", "yaw_feed_forward", Stage::feed_forward,
-     "takes the commanded yaw rate for degrees", "a commanded yaw rate", "degrees",
+     "treats the commanded yaw rate as deg/s", "a commanded yaw rate", "degrees",
      [](FaultyLaw& law) {
        change_feed_forward(law,
                            [](float rate, float w, float k) { return rate * w * k * pi / 180; });

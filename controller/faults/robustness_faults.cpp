@@ -1,4 +1,4 @@
-// Wrong answers to what is not finite.
+// Wrong treatment of values that are not finite.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 const Fault robustness_list[] = {
     {"guard-missing", "robustness", Stage::guard, "publishes NaN and infinity", "a NaN rate",
      "NaN handling", [](FaultyLaw& law) { law.step.guarded = [](float value) { return value; }; }},
-    {"guard-zero-only", "robustness", Stage::guard, "tests `x ? x : 0` for isfinite(x)",
+    {"guard-zero-only", "robustness", Stage::guard, "tests `x ? x : 0` instead of isfinite(x)",
      "a NaN rate", "NaN handling",
      [](FaultyLaw& law) {
        law.step.guarded = [](float value) { return value != 0 ? value : 0.0f; };
@@ -29,8 +29,8 @@ const Fault robustness_list[] = {
          return kept = std::isfinite(value) ? value : kept;
        };
      }},
-    {"guard-stops-all", "robustness", Stage::guard, "zeroes all axes for one", "a NaN on one axis",
-     "NaN handling",
+    {"guard-stops-all", "robustness", Stage::guard, "zeroes all axes where one is not finite",
+     "a NaN on one axis", "NaN handling",
      [](FaultyLaw& law) {
        auto bad = std::make_shared<bool>(false);
        law.rate.control = [bad](const Vector& p, const Vector& d, const Vector& i,
@@ -64,7 +64,7 @@ const Fault robustness_list[] = {
     {"nan-thrust-no-p",
      "robustness",
      Stage::guard,
-     "attenuates by 0 at a NaN thrust",
+     "uses an attenuation factor of 0 at a NaN thrust",
      "a NaN thrust",
      "NaN handling",
      [](FaultyLaw& law) {
@@ -75,8 +75,8 @@ const Fault robustness_list[] = {
      },
      {},
      reference::from_v1_5_5},
-    {"nan-poisons-integral", "robustness", Stage::guard, "refuses only what is beyond the bound",
-     "a NaN rate", "NaN handling",
+    {"nan-poisons-integral", "robustness", Stage::guard,
+     "inverts the comparisons of the gates, so that NaN passes", "a NaN rate", "NaN handling",
      [](FaultyLaw& law) {
        law.rate.integrate_axis = [](float integral, float control, float thrust, float growth,
                                     bool frozen) {
@@ -87,7 +87,7 @@ const Fault robustness_list[] = {
          return shut ? integral : next;
        };
      }},
-    {"nan-rates-skipped", "robustness", Stage::guard, "keeps the last rates for a NaN",
+    {"nan-rates-skipped", "robustness", Stage::guard, "replaces a NaN rate by the last rate",
      "a NaN rate", "a helpful extra",
      [](FaultyLaw& law) {
        also_before(law, [last = std::array<float, 3>{}](attest_inputs& in) mutable {
@@ -99,7 +99,7 @@ const Fault robustness_list[] = {
          }
        });
      }},
-    {"zero-quat-is-level", "robustness", Stage::guard, "takes an all-zero quaternion for level",
+    {"zero-quat-is-level", "robustness", Stage::guard, "treats an all-zero quaternion as level",
      "a setpoint of zeros", "a helpful extra",
      [](FaultyLaw& law) {
        also_before(law, [](attest_inputs& in) {
@@ -118,8 +118,8 @@ const Fault robustness_list[] = {
          out.actuator_controls_0.published = 0;
        });
      }},
-    {"fast-math", "robustness", Stage::guard, "assumes that nothing is NaN or infinite",
-     "a NaN rate", "fast math",
+    {"fast-math", "robustness", Stage::guard, "assumes that all values are finite", "a NaN rate",
+     "fast math",
      [](FaultyLaw& law) {
        law.step.guarded = [](float value) { return value; };
        law.rate.throttle_attenuation = [](float thrust, const RateGains& gains) {

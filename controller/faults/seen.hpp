@@ -1,4 +1,4 @@
-// What faults of the rate loop need of each other's stages.
+// Values that a fault in one stage of the rate loop needs from another stage.
 #pragma once
 
 #include <memory>
@@ -7,7 +7,7 @@
 
 namespace attest::faults {
 
-// What one stage saw, for another of the same step.
+// Inputs of one stage, recorded for another stage of the same step.
 struct Seen {
   Vector error = Vector::Zero();
   float attenuation = 1;
@@ -15,7 +15,7 @@ struct Seen {
   Vector last = Vector::Zero();
 };
 
-// Remembers the error, the attenuation and dt, which the stages after them are not given.
+// Records the error, the attenuation and dt, which are not arguments of the later stages.
 inline std::shared_ptr<Seen> watch(FaultyLaw& law) {
   auto seen = std::make_shared<Seen>();
   law.rate.proportional = [seen, then = law.rate.proportional](
@@ -32,7 +32,7 @@ inline std::shared_ptr<Seen> watch(FaultyLaw& law) {
   return seen;
 }
 
-// The control as another sum of its terms.
+// Replaces the sum of the terms.
 template <typename Sum>
 void change_control(FaultyLaw& law, Sum sum) {
   law.rate.control = [sum](const Vector& p, const Vector& d, const Vector& i, const Vector& ff) {

@@ -39,7 +39,7 @@ const Fault tailsitter_list[] = {
      [](FaultyLaw& law) {
        law.recovery.latch = [](bool, float tilt) { return tilt > reference::radians(30.0f); };
      }},
-    {"recovery-from-5", "tailsitter", Stage::recovery, "recovers from 5 deg",
+    {"recovery-from-5", "tailsitter", Stage::recovery, "recovers above 5 deg",
      "a tilt between 5 and 30 deg", "wrong branch threshold",
      [](FaultyLaw& law) {
        law.recovery.latch = [](bool, float tilt) { return tilt > reference::radians(5.0f); };
@@ -75,7 +75,7 @@ const Fault tailsitter_list[] = {
          tilt.direction_rad = 1.57079632679f - tilt.direction_rad;
        });
      }},
-    {"recovery-pitch-not-1.5", "tailsitter", Stage::recovery, "leaves the factor 1.5 on pitch out",
+    {"recovery-pitch-not-1.5", "tailsitter", Stage::recovery, "leaves out the factor 1.5 on pitch",
      "a recovery", "a missing factor",
      [](FaultyLaw& law) { change_optimal(law, [](Vector& rates) { rates[1] /= 1.5f; }); }},
     {"recovery-reversed", "tailsitter", Stage::recovery, "does not negate the optimal rates",
@@ -91,7 +91,7 @@ const Fault tailsitter_list[] = {
      [](FaultyLaw& law) {
        law.recovery.limit = [](const Vector& rates, const AttitudeGains&) { return rates; };
      }},
-    {"recovery-auto-limit", "tailsitter", Stage::limit, "takes the autonomous limits",
+    {"recovery-auto-limit", "tailsitter", Stage::limit, "uses the autonomous limits",
      "a large yaw rate", "wrong branch",
      [](FaultyLaw& law) {
        law.recovery.limit = [](const Vector& rates, const AttitudeGains& gains) {
@@ -109,7 +109,7 @@ const Fault tailsitter_list[] = {
          return rates;
        };
      }},
-    {"recovery-longer-way", "tailsitter", Stage::recovery, "does not look at the sign of w",
+    {"recovery-longer-way", "tailsitter", Stage::recovery, "ignores the sign of w",
      "the other quaternion of an attitude", "quaternion order",
      [](FaultyLaw& law) {
        law.recovery.quaternion_rates = [](const Quaternion& q, const Quaternion& q_sp,
@@ -129,7 +129,7 @@ const Fault tailsitter_list[] = {
        };
      }},
     {"recovery-ff-signed", "tailsitter", Stage::feed_forward,
-     "lets the feed-forward's weight be negative", "a commanded yaw rate upside down",
+     "allows a negative weight of the feed-forward", "a commanded yaw rate upside down",
      "missing clamp",
      [](FaultyLaw& law) {
        law.recovery.yaw_feed_forward = [](float yaw, float rate, const Quaternion& q,

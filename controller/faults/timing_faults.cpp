@@ -39,24 +39,24 @@ const Fault timing_list[] = {
          return std::max(seconds(now, last), 1e-6f);
        });
      }},
-    {"dt-from-1-ms", "timing", Stage::timing, "bounds dt at 1 ms", "rates above 500 Hz",
-     "wrong clamp",
+    {"dt-from-1-ms", "timing", Stage::timing, "bounds dt below at 1 ms, not 2 ms",
+     "rates above 500 Hz", "wrong clamp",
      [](FaultyLaw& law) {
        change_step(law, [](std::uint64_t now, std::uint64_t last) {
          return std::clamp(seconds(now, last), 0.001f, 0.02f);
        });
      }},
-    {"dt-to-50-ms", "timing", Stage::timing, "bounds dt at 50 ms", "a gap of more than 20 ms",
-     "wrong clamp",
+    {"dt-to-50-ms", "timing", Stage::timing, "bounds dt above at 50 ms, not 20 ms",
+     "a gap of more than 20 ms", "wrong clamp",
      [](FaultyLaw& law) {
        change_step(law, [](std::uint64_t now, std::uint64_t last) {
          return std::clamp(seconds(now, last), 0.002f, 0.05f);
        });
      }},
-    {"dt-fixed", "timing", Stage::timing, "takes 4 ms for every step", "any rate but 250 Hz",
+    {"dt-fixed", "timing", Stage::timing, "uses 4 ms as dt in every step", "any rate except 250 Hz",
      "a fixed rate",
      [](FaultyLaw& law) { change_step(law, [](std::uint64_t, std::uint64_t) { return 0.004f; }); }},
-    {"dt-nominal", "timing", Stage::timing, "takes the first period it sees for all",
+    {"dt-nominal", "timing", Stage::timing, "uses the first period as dt in all steps",
      "jitter, or a dropped tick", "a fixed rate",
      [](FaultyLaw& law) {
        law.step.step_time = [n = 0, dt = 0.0f](std::uint64_t now, std::uint64_t last) mutable {
@@ -64,14 +64,14 @@ const Fault timing_list[] = {
          return dt;
        };
      }},
-    {"dt-first-is-minimum", "timing", Stage::timing, "takes 2 ms for the first step",
+    {"dt-first-is-minimum", "timing", Stage::timing, "uses 2 ms as dt in the first step",
      "the first step", "initial state",
      [](FaultyLaw& law) {
        change_step(law, [](std::uint64_t now, std::uint64_t last) {
          return last == 0 ? 0.002f : StepStages::Law::step_time(now, last);
        });
      }},
-    {"dt-one-late", "timing", Stage::timing, "uses the period before", "jitter", "one-tick delay",
+    {"dt-one-late", "timing", Stage::timing, "uses the previous period", "jitter", "one-tick delay",
      [](FaultyLaw& law) {
        law.step.step_time = [dt = 0.02f](std::uint64_t now, std::uint64_t last) mutable {
          return std::exchange(dt, StepStages::Law::step_time(now, last));
@@ -110,7 +110,8 @@ const Fault timing_list[] = {
          return std::clamp(static_cast<float>((low(now) - low(last)) / 1e6), 0.002f, 0.02f);
        });
      }},
-    {"clock-in-uint32", "timing", Stage::timing, "holds timestamps in 32 bits, compared as numbers",
+    {"clock-in-uint32", "timing", Stage::timing,
+     "holds timestamps in 32 bits and subtracts them without wrap-around",
      "timestamps across 2^32 us", "a narrow type",
      [](FaultyLaw& law) {
        change_step(law, [](std::uint64_t now, std::uint64_t last) {

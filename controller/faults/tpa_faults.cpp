@@ -68,8 +68,7 @@ const Fault tpa_list[] = {
          return std::max(0.0f, 1 - slope * (std::abs(thrust) - from));
        });
      }},
-    {"tpa-signed", "tpa", Stage::tpa, "does not take the thrust's magnitude", "negative thrust",
-     "a sign",
+    {"tpa-signed", "tpa", Stage::tpa, "uses the signed thrust", "negative thrust", "a sign",
      [](FaultyLaw& law) {
        change_attenuation(law, [](float thrust, float from, float slope) {
          return unit(1 - slope * (thrust - from));
@@ -90,15 +89,15 @@ const Fault tpa_list[] = {
        });
      }},
     {"tpa-relative", "tpa", Stage::tpa,
-     "takes the part of thrust above the break, as other firmware", "thrust above the break",
-     "another law",
+     "attenuates by the relative thrust above the break, as other firmware does",
+     "thrust above the break", "another law",
      [](FaultyLaw& law) {
        change_attenuation(law, [](float thrust, float from, float slope) {
          const float above = std::max(0.0f, std::abs(thrust) - from);
          return unit(1 - slope * above / std::max(1e-6f, 1 - from));
        });
      }},
-    {"tpa-late", "tpa", Stage::tpa, "attenuates by the thrust of the step before",
+    {"tpa-late", "tpa", Stage::tpa, "attenuates by the thrust of the previous step",
      "thrust that changes above the break", "one-tick delay",
      [](FaultyLaw& law) {
        law.rate.throttle_attenuation = [last = 0.0f](float thrust, const RateGains& gains) mutable {

@@ -1,5 +1,5 @@
-// Mistakes where v1.3.4 differs from v1.5.5: ported from the wrong version, or not quite. Some are
-// mistakes in v1.5.5 too.
+// Mistakes where v1.3.4 differs from v1.5.5: a port of the wrong version, or an inexact one. Some
+// are mistakes in v1.5.5 too.
 #include <memory>
 #include <utility>
 
@@ -81,7 +81,7 @@ const Fault v1_3_4_list[] = {
     {"v1.3.4-ff-of-setpoint",
      "rates",
      Stage::ff,
-     "feeds the setpoint forward, and not its change",
+     "feeds the setpoint forward instead of its change",
      "a feed-forward gain",
      "another version",
      [](FaultyLaw& law) { change_feed_forward(law, [](V sp, V, float) { return sp; }); },
@@ -112,7 +112,7 @@ const Fault v1_3_4_list[] = {
     {"v1.3.4-ff-from-0",
      "rates",
      Stage::ff,
-     "never remembers the setpoint before",
+     "never stores the previous setpoint",
      "a feed-forward gain and a setpoint that stays",
      "a missing step",
      [](FaultyLaw& law) {
@@ -123,7 +123,7 @@ const Fault v1_3_4_list[] = {
     {"v1.3.4-ff-no-first-kick",
      "rates",
      Stage::ff,
-     "feeds nothing forward in the first step",
+     "has no feed-forward in the first step",
      "a feed-forward gain and a setpoint at the start",
      "a helpful extra",
      [](FaultyLaw& law) {
@@ -159,8 +159,8 @@ const Fault v1_3_4_list[] = {
     {"v1.3.4-auto-by-flag",
      "rate_limit",
      Stage::limit,
-     "takes the automatic modes for autonomous, and not only those that control velocity",
-     "an automatic mode without velocity control",
+     "treats every auto mode as autonomous, not only those with velocity control",
+     "an auto mode without velocity control",
      "another version",
      [](FaultyLaw& law) {
        law.step.is_autonomous = [](const decltype(Topics::mode)& mode, Profile) {
@@ -169,7 +169,7 @@ const Fault v1_3_4_list[] = {
      },
      {},
      only_v1_3_4},
-    {"gear-unlatched", "actuators", Stage::output, "passes the landing gear on",
+    {"gear-unlatched", "actuators", Stage::output, "outputs the landing gear",
      "a landing gear that is not 0", "another version",
      [](FaultyLaw& law) {
        also_after(law, [](const attest_inputs& in, attest_outputs& out) {

@@ -11,7 +11,7 @@ void change_weathervane(FaultyLaw& law, Flag flag) {
   law.step.is_weathervaning = flag;
 }
 
-// The weather-vane's limit, but not its reset of the integral; or the other way round.
+// Applies the weather-vane's limit without its reset of the integral.
 void limit_without_reset(FaultyLaw& law) {
   auto vaning = std::make_shared<bool>(false);
   law.step.is_weathervaning = [vaning](bool autonomous, const Setpoint& setpoint) {
@@ -54,14 +54,14 @@ const Fault weathervane_list[] = {
      [](FaultyLaw& law) {
        change_weathervane(law, [](bool autonomous, const Setpoint&) { return autonomous; });
      }},
-    {"vane-flag-is-1", "weathervane", Stage::weathervane, "takes only 1 for true",
-     "the flag with another value than 1", "flag comparison",
+    {"vane-flag-is-1", "weathervane", Stage::weathervane, "treats only 1 as true",
+     "a true flag with a value other than 1", "flag comparison",
      [](FaultyLaw& law) {
        change_weathervane(law, [](bool autonomous, const Setpoint& setpoint) {
          return autonomous && setpoint.disable_mc_yaw_control == 1;
        });
      }},
-    {"vane-latched", "weathervane", Stage::weathervane, "stays once it was asked for",
+    {"vane-latched", "weathervane", Stage::weathervane, "stays active after the flag is cleared",
      "the flag set and cleared", "a latch",
      [](FaultyLaw& law) {
        law.step.is_weathervaning = [latched = false](bool autonomous,

@@ -41,11 +41,11 @@ const Fault yaw_list[] = {
      [](FaultyLaw& law) {
        change_yaw_error(law, [](float s, float c) { return -std::atan2(s, c); });
      }},
-    {"yaw-as-sine", "attitude", Stage::yaw, "takes the sine for the yaw error",
+    {"yaw-as-sine", "attitude", Stage::yaw, "uses the sine as the yaw error",
      "a yaw error of 20 deg", "a small-angle shortcut",
      [](FaultyLaw& law) { change_yaw_error(law, [](float s, float) { return s; }); }},
     {"yaw-atan2-exchanged", "attitude", Stage::yaw, "exchanges the arguments of the yaw's atan2",
-     "any yaw error but 45 deg", "atan2 arguments",
+     "any yaw error except 45 deg", "atan2 arguments",
      [](FaultyLaw& law) {
        change_yaw_error(law, [](float s, float c) { return std::atan2(c, s); });
      }},
@@ -57,15 +57,16 @@ const Fault yaw_list[] = {
          return angle < 0 ? angle + 2 * pi : angle;
        });
      }},
-    {"yaw-about-vertical", "attitude", Stage::yaw, "takes the yaw error about the world's vertical",
-     "a yaw error with a tilted setpoint", "wrong axis",
+    {"yaw-about-vertical", "attitude", Stage::yaw,
+     "computes the yaw error about the world's vertical", "a yaw error with a tilted setpoint",
+     "wrong axis",
      [](FaultyLaw& law) {
        law.attitude.yaw_error = [](const Vector& nose, const Matrix& R_WD, float weight) {
          const Vector x = R_WD.col(0);
          return std::atan2(ordered::cross(nose, x)[2], ordered::dot(nose, x)) * weight;
        };
      }},
-    {"yaw-about-x", "attitude", Stage::yaw, "takes the yaw error's sine along x_sp",
+    {"yaw-about-x", "attitude", Stage::yaw, "computes the yaw error's sine along x_sp",
      "any yaw error", "wrong axis",
      [](FaultyLaw& law) {
        law.attitude.yaw_error = [](const Vector& nose, const Matrix& R_WD, float weight) {
@@ -74,8 +75,9 @@ const Fault yaw_list[] = {
                 weight;
        };
      }},
-    {"yaw-before-tilt", "attitude", Stage::yaw, "takes the nose before the tilt is corrected",
-     "yaw and tilt error together", "a missing step",
+    {"yaw-before-tilt", "attitude", Stage::yaw,
+     "uses the nose direction before the tilt correction", "yaw and tilt error together",
+     "a missing step",
      [](FaultyLaw& law) {
        law.attitude.nose_after_tilt = [](const Matrix& R, const Tilt&) -> Vector {
          return R.col(0);
@@ -93,13 +95,14 @@ const Fault yaw_list[] = {
          return AttitudeStages::Law::yaw_error(nose, R_WD, weight) + *third;
        };
      },
-     "z x z_sp is normal to z, so R^T (z x z_sp) has no component along the body's z but rounding"},
+     "z x z_sp is normal to z, so the component of R^T (z x z_sp) along the body's z is a rounding "
+     "error"},
     {"rodrigues-no-square", "attitude", Stage::yaw, "drops the K K term of Rodrigues' formula",
      "a large tilt with a yaw error", "a missing term",
      [](FaultyLaw& law) {
        change_rodrigues(law, [](const Tilt& t) { return std::pair(t.sine, 0.0f); });
      }},
-    {"rodrigues-plus-cosine", "attitude", Stage::yaw, "takes 1 + cos for 1 - cos",
+    {"rodrigues-plus-cosine", "attitude", Stage::yaw, "uses 1 + cos instead of 1 - cos",
      "yaw with a tilt error", "a sign",
      [](FaultyLaw& law) {
        change_rodrigues(law, [](const Tilt& t) { return std::pair(t.sine, 1 + t.cosine); });
@@ -109,7 +112,7 @@ const Fault yaw_list[] = {
      [](FaultyLaw& law) {
        change_rodrigues(law, [](const Tilt& t) { return std::pair(-t.sine, 1 - t.cosine); });
      }},
-    {"rodrigues-by-angle", "attitude", Stage::yaw, "takes the angle for its sine",
+    {"rodrigues-by-angle", "attitude", Stage::yaw, "uses the angle as its sine",
      "yaw with a large tilt error", "a small-angle shortcut",
      [](FaultyLaw& law) {
        change_rodrigues(law, [](const Tilt& t) {

@@ -1,9 +1,9 @@
 // The attitude loop: from an attitude and its setpoint to a setpoint of body rates.
 //
-// The law of PX4 v1.5.5 mc_att_control, control_attitude(): the tilt is corrected along the
-// shortest arc of the thrust axis, yaw is corrected about the desired thrust axis with a weight
-// that vanishes as the desired tilt approaches 90 deg, and beyond 90 deg of tilt error the result
-// is blended with the shortest rotation of the whole attitude.
+// The law of PX4 v1.5.5 mc_att_control, control_attitude(). The tilt is corrected along the
+// shortest arc of the thrust axis. Yaw is corrected about the desired thrust axis, with a weight
+// that vanishes as the desired tilt approaches 90 deg. Beyond 90 deg of tilt error the result is
+// blended with the shortest rotation of the whole attitude.
 //
 // Frames: W world NED, B body FRD, D desired body. R_WB maps body into world. Angles [rad], rates
 // [rad/s]. Pure: no state beyond the gains, no clock, no allocation; const calls from any thread.
@@ -26,10 +26,10 @@ struct AttitudeInput {
   Quaternion<Scalar> q_WD;
   Scalar yaw_sp_move_rate_rad_s;  // commanded by the pilot
   bool autonomous;                // the vehicle, not a pilot, sets the attitude
-  bool weathervane;               // and lets the wind turn the nose
+  bool weathervane;               // the wind may turn the nose; implies autonomous
 };
 
-// Rotation error of the thrust axis: how the body has to turn to thrust where it should.
+// Rotation error of the thrust axis: the shortest turn of the body that aligns that axis.
 template <typename Scalar>
 struct TiltError {
   Vector3<Scalar> rotation_B;  // axis times angle
@@ -38,7 +38,7 @@ struct TiltError {
   Scalar cosine;
 };
 
-// The stages of the law. Each is a pure function of what it names.
+// The stages of the law. Each is a pure function of its arguments.
 template <typename Scalar>
 struct AttitudeStages {
   using Vector = Vector3<Scalar>;
@@ -72,19 +72,19 @@ struct AttitudeStages {
     return ordered::product_column(R_WB, turned);
   }
 
-  // 1 when the desired attitude is level (or upside down), 0 at 90 deg where yaw has no meaning.
+  // 1 when the desired attitude is level or upside down, 0 at 90 deg, where yaw has no meaning.
   ATTEST_INLINE static Scalar yaw_weight(const Matrix& R_WD) { return R_WD(2, 2) * R_WD(2, 2); }
 
   // Angle from the tilted nose to the desired nose about the desired thrust axis.
   ATTEST_INLINE static Scalar yaw_error(const Vector& nose_W, const Matrix& R_WD, Scalar weight) {
     const Vector x_D_W = R_WD.col(0);
     const Vector z_D_W = R_WD.col(2);
-    using std::atan2;  // a scalar that is no float brings its own
+    using std::atan2;  // a user-defined scalar type provides its own overload
     return atan2(ordered::dot(ordered::cross(nose_W, x_D_W), z_D_W), ordered::dot(nose_W, x_D_W)) *
            weight;
   }
 
-  // Twice the imaginary part of the error quaternion of the whole attitude, on its shorter side.
+  // Twice the imaginary part of the error quaternion of the whole attitude, by the shorter way.
   static Vector direct_error(const Matrix& R_WB, const Matrix& R_WD) {
     const Quaternion<Scalar> q_BD = quaternion_of(ordered::transpose_product(R_WB, R_WD));
     const Vector imaginary = imaginary_part(q_BD);
@@ -94,7 +94,7 @@ struct AttitudeStages {
   // A tilt error beyond 90 deg.
   ATTEST_INLINE static bool is_upset(Scalar tilt_cosine) { return tilt_cosine < Scalar(0); }
 
-  // The direct share grows from 0 at 90 deg of tilt error.
+  // The share of the direct rotation grows from 0 at 90 deg of tilt error.
   ATTEST_INLINE static Vector blend(const Vector& error_B, const Vector& direct_B,
                                     Scalar tilt_cosine, Scalar weight) {
     const Scalar share = tilt_cosine * tilt_cosine * weight;
@@ -123,7 +123,7 @@ struct AttitudeStages {
   }
 };
 
-// Stages is a policy: the law itself, or the law with a stage replaced (controller/faults).
+// Stages is a policy: the stages of the law, or a copy with one replaced (controller/faults).
 template <typename Scalar, typename Stages = AttitudeStages<Scalar>>
 class AttitudeControl {
  public:

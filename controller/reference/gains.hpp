@@ -1,4 +1,4 @@
-// What the loops compute with: the parameters in SI units, time constants folded in.
+// The gains of the loops: the parameters in SI units, scaled by the time constants.
 //
 // Body axes are FRD and vectors are in the order roll, pitch, yaw. Plain values; any thread.
 #pragma once
@@ -34,14 +34,14 @@ struct Gains {
   RateGains<Scalar> rate;
   Vector3<Scalar> acro_rate_max_rad_s;
   Scalar rattitude_threshold;  // [0..1] stick deflection
-  bool battery_scaling;        // controls follow battery_status.scale
+  bool battery_scaling;        // controls are multiplied by battery_status.scale
   bool actuators_cut;          // circuit breaker: no actuator controls
 };
 
 // The value of CBRK_RATE_CTRL that opens the breaker (PX4 v1.5.5 circuit_breaker).
 inline constexpr float rate_control_breaker_key = 140253.0f;
 
-// The time constant for which the gains of PX4 are stated; a faster one raises them.
+// The gains of PX4 hold for this time constant; a shorter one raises them.
 inline constexpr float nominal_time_constant_s = 0.2f;
 
 template <typename Scalar>
@@ -65,7 +65,7 @@ Gains<Scalar> compute_gains(const Parameters& p) {
   attitude.yaw_feed_forward = Scalar(p.mc_yaw_ff);
   attitude.weathervane_scale = Scalar(p.vt_wv_yawr_scl);
 
-  // The integral and the feed-forward are not sped up: so it is in PX4 v1.5.5.
+  // As in PX4 v1.5.5, the time constants do not scale the integral and the feed-forward.
   RateGains<Scalar>& rate = gains.rate;
   rate.proportional = scaled(p.mc_rollrate_p, p.mc_pitchrate_p, p.mc_yawrate_p);
   rate.integral =

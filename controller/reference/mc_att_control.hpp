@@ -1,11 +1,11 @@
-// The multicopter attitude controller: what happens once for each control_state sample.
+// The multicopter attitude controller: one step for each control_state sample.
 //
 // The task of PX4 v1.5.5 (or v1.3.4) mc_att_control without its bus and clock:
 //
 //     dt from the timestamps, clamped to 2 .. 20 ms
 //     latch the topics that were updated, apply parameters
 //     rattitude: a large stick deflection clears the attitude flag
-//     outer loop: attitude (or tailsitter recovery), acro, or rates from outside
+//     outer loop: attitude (or tailsitter recovery), acro, or an external rates setpoint
 //     if rates are controlled: rate loop, actuators, status
 //
 // Frames: world NED, body FRD. Units are those of attest_unit.h. No clock, no allocation after
@@ -26,7 +26,7 @@
 
 namespace attest::reference {
 
-// A law: the stages of every part. This one is the law itself; controller/faults has others.
+// A law: the stages of every loop. This is the unmodified law; controller/faults has variants.
 template <typename Scalar>
 struct ReferenceLaw {
   [[no_unique_address]] StepStages<Scalar> step;
@@ -74,8 +74,8 @@ class McAttControl {
   std::uint32_t pending_ = 0;  // ATTEST_UPDATED_... bits of topics not yet latched
   bool first_step_ = true;
   bool recovery_enabled_ = false;  // decided at the first step
-  bool status_seen_ = false;       // the first vehicle_status selects the topics to publish on:
-  bool is_vtol_ = false;           // the virtual ones, or not
+  bool status_seen_ = false;       // the first vehicle_status has arrived
+  bool is_vtol_ = false;           // of that first one: publishes on the virtual topics
 };
 
 extern template class McAttControl<float>;

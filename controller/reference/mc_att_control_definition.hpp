@@ -1,4 +1,4 @@
-// The definitions of McAttControl: a law of its own (controller/faults) instantiates it from here.
+// The definitions of McAttControl: include it to instantiate another law (controller/faults).
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace attest::reference {
 
-// Latched when the outer loop uses them, which may be later than their sample.
+// Latched when the outer loop uses them, which may be some steps after the sample arrived.
 inline constexpr std::uint32_t latched_on_demand =
     ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT | ATTEST_UPDATED_VEHICLE_RATES_SETPOINT;
 
@@ -80,8 +80,8 @@ void McAttControl<Scalar, Law>::apply_parameters() {
   }
 }
 
-// Clears the flag in the latched copy: it stays cleared until vehicle_control_mode is updated,
-// also when the stick comes back.
+// Clears the flag in the latched copy. It stays cleared until vehicle_control_mode is updated, even
+// when the stick returns before that.
 template <typename Scalar, typename Law>
 ATTEST_INLINE void McAttControl<Scalar, Law>::apply_rattitude() {
   if (topics_.mode.flag_control_rattitude_enabled == 0) return;

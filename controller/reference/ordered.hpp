@@ -2,8 +2,8 @@
 //
 // PX4 v1.5.5 computes each dot product, matrix product and squared length as a sum that starts at
 // 0 and adds the products in index order. Floating point addition is not associative, and
-// 0 + (-0) is +0, so both the start and the order show in the bits of the result. Eigen gives the
-// types and the element-wise operations; its own products and norms may reorder and are not used.
+// 0 + (-0) is +0, so both the start and the order change bits of the result. Eigen provides the
+// types and the element-wise operations. Its products and norms are not used: they may reorder.
 //
 // Pure functions, no units; any thread.
 #pragma once
@@ -42,8 +42,8 @@ ATTEST_INLINE Vector3<Scalar> cross(const Vector3<Scalar>& a, const Vector3<Scal
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// A v. Unlike the other sums this one starts at its first product: that is seen in the sign of a
-// zero rate setpoint at tilt errors of exactly 0 and 180 deg.
+// A v. Unlike the other sums, this sum starts at its first product. The difference shows in the
+// sign of a zero rate setpoint, at tilt errors of exactly 0 and 180 deg.
 template <typename Scalar>
 ATTEST_INLINE Vector3<Scalar> times(const Matrix3<Scalar>& A, const Vector3<Scalar>& v) {
   return {A(0, 0) * v[0] + A(0, 1) * v[1] + A(0, 2) * v[2],
@@ -51,7 +51,7 @@ ATTEST_INLINE Vector3<Scalar> times(const Matrix3<Scalar>& A, const Vector3<Scal
           A(2, 0) * v[0] + A(2, 1) * v[1] + A(2, 2) * v[2]};
 }
 
-// A^T v, like A v.
+// A^T v, summed as A v is.
 template <typename Scalar>
 ATTEST_INLINE Vector3<Scalar> transpose_times(const Matrix3<Scalar>& A, const Vector3<Scalar>& v) {
   return {A(0, 0) * v[0] + A(1, 0) * v[1] + A(2, 0) * v[2],

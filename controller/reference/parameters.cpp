@@ -10,7 +10,7 @@ using P = Parameters;
 constexpr ParameterType real = ParameterType::real;
 constexpr ParameterType integer = ParameterType::integer;
 
-// name, member, default, min, max, unit, type, description, profiles where not all have it
+// name, member, default, min, max, unit, type, description, profiles (all unless given)
 constexpr std::array<ParameterInfo, 33> all_parameters{{
     {"MC_ROLL_TC", &P::mc_roll_tc, 0.2f, 0.15f, 0.25f, "s", real,
      "roll time constant; 0.2 s divided by it scales MC_ROLL_P, MC_ROLLRATE_P and _D"},

@@ -2,8 +2,8 @@
 //
 // Names and defaults are those of PX4 v1.5.5 (mc_att_control, vtol_att_control, commander). Angles
 // and angular rates of parameters are in degrees; everything computed from them is in radians
-// (gains.hpp). The law uses whatever value it is given: `min` and `max` are the range in which a
-// vehicle can be expected to fly, for documentation and for whoever draws random parameters.
+// (gains.hpp). The law accepts any value. `min` and `max` are the range in which a vehicle can be
+// expected to fly: they serve the documentation and the drawing of random parameters.
 //
 // The table is static and constant; `Parameters` is a plain value. Any thread.
 #pragma once
@@ -15,7 +15,7 @@
 
 namespace attest::reference {
 
-// Raw values, as set. Integer parameters are held as the float of the same value.
+// Raw values, as set. Integer parameters are stored as the float of the same value.
 struct Parameters {
   float mc_roll_tc, mc_pitch_tc;
   float mc_roll_p, mc_pitch_p, mc_yaw_p, mc_yaw_ff;
@@ -54,8 +54,8 @@ const ParameterInfo* find_parameter(std::string_view name);
 // The values of a new controller.
 Parameters default_parameters();
 
-// Sets one value by name. Returns false, and changes nothing, when the profile has no parameter of
-// that name or when an integer parameter is given a value that is no integer.
+// Sets one value by name. Returns false and changes no value if the profile has no parameter of
+// that name, or if an integer parameter is given another number.
 bool set_parameter(Parameters& parameters, Profile profile, std::string_view name, float value);
 
 }  // namespace attest::reference

@@ -1,4 +1,4 @@
-// The versions of the law that are known, by name.
+// The supported versions of the law, by name.
 #pragma once
 
 #include <array>
@@ -16,19 +16,19 @@ enum class Profile { px4_v1_5_5, px4_v1_3_4 };
 // Newest first.
 inline constexpr std::array<Profile, 2> every_profile{Profile::px4_v1_5_5, Profile::px4_v1_3_4};
 
-// All in which the profiles differ, but for their parameters (parameters.hpp).
+// All differences between the profiles, except their parameters (parameters.hpp).
 struct ProfileTraits {
   std::string_view name;
   bool attenuates_by_throttle;          // the proportional rate gain (TPA)
   bool feeds_forward_rates;             // the rates setpoint itself; else its change
   bool freezes_yaw_integral;            // while the mixer reports yaw at its limit
-  bool limits_yaw_before_feed_forward;  // when weather-vaning, and after it in any case
+  bool limits_yaw_before_feed_forward;  // when weather-vaning; every profile limits it after, too
   bool limits_rates_in_auto;            // in every auto mode; else in those with velocity control
   bool has_landing_gear;
   bool scales_by_battery;
 };
 
-// A new profile has to be decided here: the compiler warns of one that is not.
+// A new profile needs its traits here: the compiler warns if it has none.
 constexpr ProfileTraits traits_of(Profile profile) {
   switch (profile) {
     case Profile::px4_v1_5_5:
@@ -50,10 +50,10 @@ constexpr ProfileTraits traits_of(Profile profile) {
               .has_landing_gear = false,
               .scales_by_battery = false};
   }
-  std::abort();  // a value that is no enumerator
+  std::abort();  // the value is not an enumerator
 }
 
-// Some of the profiles: those that have a parameter, or can tell a mistake.
+// A set of profiles: those that have a certain parameter, or whose cases detect a certain fault.
 class ProfileSet {
  public:
   constexpr ProfileSet(std::initializer_list<Profile> profiles)
@@ -70,7 +70,7 @@ class ProfileSet {
   std::uint32_t bits_ = 0;
 };
 
-// `first` and all that are newer.
+// `first` and all newer profiles.
 constexpr ProfileSet profiles_from(Profile first) {
   std::size_t count = 0;
   while (every_profile[count] != first) ++count;
@@ -82,7 +82,7 @@ inline constexpr ProfileSet from_v1_5_5 = profiles_from(Profile::px4_v1_5_5);
 inline constexpr ProfileSet only_v1_3_4{Profile::px4_v1_3_4};
 static_assert(!from_v1_5_5.contains(Profile::px4_v1_3_4));
 
-// Of every_profile.
+// In the order of every_profile.
 std::span<const std::string_view> profile_names();
 constexpr std::string_view name_of(Profile profile) { return traits_of(profile).name; }
 

@@ -1,7 +1,7 @@
 // The rate loop: from body rates and their setpoint to dimensionless torque controls.
 //
 // The law of PX4 v1.5.5 mc_att_control, control_attitude_rates(): P with throttle attenuation, D on
-// the measured rates, an integral that holds still near saturation, and a feed-forward.
+// the measured rates, an integral that is frozen near saturation, and a feed-forward.
 //
 // Body axes FRD, in the order roll, pitch, yaw; rates [rad/s], time [s], thrust [0..1]. The state
 // is the integral and the samples of the last update. No clock, no allocation; one thread at a
@@ -18,13 +18,13 @@
 
 namespace attest::reference {
 
-// The integral and the control that feeds it stay inside this bound.
+// An axis integrates only while its new integral and its control are inside this bound.
 inline constexpr float integral_limit = 0.3f;
 
-// At less thrust the vehicle is taken to stand on the ground, where integrals would wind up.
+// Up to this thrust the vehicle is assumed to stand on the ground, where integrals would wind up.
 inline constexpr float takeoff_thrust = 0.2f;
 
-// What the mixer had to give up: see multirotor_motor_limits.
+// Saturation reported by the mixer: see multirotor_motor_limits.
 struct MotorLimits {
   bool lower = false;
   bool upper = false;
@@ -42,7 +42,7 @@ struct RateInput {
   bool flying;  // armed as a rotary wing; otherwise the integral starts from zero
 };
 
-// The stages of the law. Each is a pure function of what it names.
+// The stages of the law. Each is a pure function of its arguments.
 template <typename Scalar>
 struct RateStages {
   using Vector = Vector3<Scalar>;
@@ -61,7 +61,7 @@ struct RateStages {
     return gains.proportional.cwiseProduct(error * attenuation);
   }
 
-  // On the measurement, so that a step of the setpoint gives no kick.
+  // On the measured rates, so that a step of the setpoint gives no kick.
   ATTEST_INLINE static Vector derivative(const Vector& rates_prev, const Vector& rates, Scalar dt_s,
                                          const RateGains<Scalar>& gains) {
     return gains.derivative.cwiseProduct(rates_prev - rates) / dt_s;
@@ -87,7 +87,7 @@ struct RateStages {
     return thrust_sp > Scalar(takeoff_thrust) && !limits.lower && !limits.upper;
   }
 
-  // One axis of the integral after this step: unchanged when any gate is shut.
+  // One axis of the integral after this step: unchanged unless all conditions hold.
   ATTEST_INLINE static Scalar integrate_axis(Scalar integral, Scalar control, Scalar thrust_sp,
                                              Scalar growth, bool frozen) {
     const Scalar limit = Scalar(integral_limit);
@@ -104,7 +104,7 @@ struct RateStages {
   }
 };
 
-// Stages is a policy: the law itself, or the law with a stage replaced (controller/faults).
+// Stages is a policy: the stages of the law, or a copy with one replaced (controller/faults).
 template <typename Scalar, typename Stages = RateStages<Scalar>>
 class RateControl {
  public:
@@ -113,7 +113,7 @@ class RateControl {
 
   void set_gains(const RateGains<Scalar>& gains) { gains_ = gains; }
 
-  // The torque controls: dimensionless, not limited, NaN where an input was.
+  // The torque controls: dimensionless, not limited, NaN where an input was NaN.
   // REQUIRES: set_gains() was called.
   Vector3<Scalar> update(const RateInput<Scalar>& in);
 

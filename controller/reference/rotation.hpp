@@ -1,8 +1,8 @@
-// Rotations as the law writes them.
+// Rotations, with the expressions of the law.
 //
 // Quaternions are Hamilton, scalar first, and rotate body FRD into world NED: v_W = R(q_WB) v_B.
-// Nothing here normalises: a quaternion whose norm is not 1 gives a scaled matrix, and the law's
-// answer to such an input is defined by these very expressions (PX4 v1.5.5 math library).
+// No function normalises: a quaternion whose norm is not 1 gives a scaled matrix. The result of the
+// law for such an input is defined by exactly these expressions (PX4 v1.5.5 math library).
 //
 // Pure functions; any thread.
 #pragma once
@@ -14,11 +14,11 @@
 
 namespace attest::reference {
 
-// Unaligned, so that structs which hold one need no special allocation.
+// Unaligned, so that structs that contain one need no aligned allocation.
 template <typename Scalar>
 using Quaternion = Eigen::Quaternion<Scalar, Eigen::DontAlign>;
 
-// A decimal angle in degrees to rad, in the order of operations of PX4's math::radians().
+// Degrees to rad, in the order of operations of PX4's math::radians().
 template <typename Scalar>
 ATTEST_INLINE constexpr Scalar radians(Scalar degrees) {
   return (degrees / Scalar(180)) * Scalar(3.14159265358979323846f);
@@ -48,8 +48,8 @@ ATTEST_INLINE Matrix3<Scalar> rotation_matrix(const Quaternion<Scalar>& q) {
   return R;
 }
 
-// The quaternion of a rotation matrix whose trace is not positive: the largest diagonal element
-// leads, so that the square root stays away from zero.
+// The quaternion of a rotation matrix whose trace is not positive. It starts from the largest
+// diagonal element, so that the square root stays away from zero.
 template <typename Scalar>
 Quaternion<Scalar> quaternion_of_half_turn(const Matrix3<Scalar>& D) {
   int i = 0;
@@ -108,7 +108,7 @@ ATTEST_INLINE Matrix3<Scalar> cross_product_matrix(const Vector3<Scalar>& axis) 
   return K;
 }
 
-// The law's clamp: both comparisons fail for NaN, which therefore passes.
+// The law's clamp. NaN passes unchanged: both comparisons are false.
 template <typename Scalar>
 ATTEST_INLINE constexpr Scalar clamp(Scalar value, Scalar low, Scalar high) {
   return value < low ? low : (value > high ? high : value);

@@ -1,4 +1,4 @@
-// What surrounds the two loops in a step: time, modes, sticks and actuators.
+// The stages of a step outside the two loops: time, modes, sticks and actuators.
 //
 // Angular rates [rad/s], time [s], sticks and thrust as in attest_unit.h. Pure; any thread.
 #pragma once
@@ -15,7 +15,7 @@
 namespace attest::reference {
 
 // The latched copies of the topics. All zero at first, except that the vehicle starts as a rotary
-// wing. `rates_setpoint` is one variable: what the controller publishes overwrites it too.
+// wing. `rates_setpoint` has one copy: the controller's own setpoint overwrites the external one.
 struct Topics {
   decltype(attest_inputs::vehicle_attitude_setpoint) attitude_setpoint{};
   decltype(attest_inputs::vehicle_rates_setpoint) rates_setpoint{};
@@ -27,7 +27,7 @@ struct Topics {
   bool is_rotary_wing = true;
 };
 
-// What the outer loop asks of the rate loop in one step.
+// The command of the outer loop to the rate loop in one step.
 template <typename Scalar>
 struct RateCommand {
   Vector3<Scalar> rates_sp_B;  // [rad/s]
@@ -38,7 +38,7 @@ template <typename Scalar>
 struct StepStages {
   using Vector = Vector3<Scalar>;
 
-  // A step is taken to last between 2 ms and 20 ms, whatever the timestamps say.
+  // The difference of the timestamps, clamped to 2 .. 20 ms.
   ATTEST_INLINE static Scalar step_time(std::uint64_t now_us, std::uint64_t last_us) {
     constexpr float shortest_s = 0.002f, longest_s = 0.02f;
     const Scalar dt_s = Scalar(now_us - last_us) / Scalar(1000000);
@@ -49,7 +49,7 @@ struct StepStages {
     return compute_gains<Scalar>(parameters);
   }
 
-  // Rattitude: a large deflection flies rates.
+  // Rattitude: beyond the threshold the sticks command rates instead of attitude.
   ATTEST_INLINE static bool sticks_beyond(const decltype(Topics::manual)& manual,
                                           Scalar threshold) {
     using std::abs;
@@ -63,17 +63,17 @@ struct StepStages {
     return by_vehicle && mode.flag_control_manual_enabled == 0;
   }
 
-  // Lets the wind turn the nose.
+  // While weather-vaning, the wind may turn the nose.
   ATTEST_INLINE static bool is_weathervaning(bool autonomous,
                                              const decltype(Topics::attitude_setpoint)& setpoint) {
     return autonomous && setpoint.disable_mc_yaw_control != 0;
   }
 
-  // Does a rates setpoint of our own replace one from outside that is still waiting? It does where
-  // both are on one topic. A VTOL publishes its own on mc_virtual_rates_setpoint.
+  // Whether the controller's own rates setpoint replaces a pending external one. It does where both
+  // are on one topic. A VTOL publishes its own on mc_virtual_rates_setpoint.
   ATTEST_INLINE static bool supersedes_pending(bool is_vtol) { return !is_vtol; }
 
-  // Acro leaves the mixer some room above the throttle stick.
+  // Acro limits thrust to 0.9, which leaves the mixer headroom for attitude control.
   ATTEST_INLINE static RateCommand<Scalar> acro(const decltype(Topics::manual)& manual,
                                                 const Gains<Scalar>& gains) {
     constexpr float thrust_max = 0.9f;
@@ -89,7 +89,7 @@ struct StepStages {
 
   ATTEST_INLINE static float guarded(float value) { return std::isfinite(value) ? value : 0.0f; }
 
-  // What the first four controls are multiplied with.
+  // The factor on the first four controls.
   ATTEST_INLINE static float battery_factor(const Topics& topics, const Gains<Scalar>& gains,
                                             Profile profile) {
     const bool scales = traits_of(profile).scales_by_battery && gains.battery_scaling &&

@@ -12,7 +12,8 @@ constexpr Scalar pi = Scalar(3.14159265358979323846);
 template <typename Scalar>
 constexpr Scalar half_pi = Scalar(1.57079632679489661923);
 
-// A value times the logistic function of v, as one division: the recorded bits tell.
+// A value times the logistic function of v. It is one division: a product with 1 / (1 + exp(-v))
+// differs from the recorded traces in some bits.
 template <typename Scalar>
 Scalar times_sigmoid(Scalar value, Scalar v) {
   return value / (Scalar(1) + std::exp(-v));
@@ -42,7 +43,7 @@ RecoveryTilt<Scalar> RecoveryStages<Scalar>::tilt(const Quaternion<Scalar>& q_WB
   const Vector up(Scalar(0), Scalar(0), Scalar(-1));
   const Vector turned = ordered::times(rotation_matrix(product(q_WB, conjugate(q_WD))), up);
   const Scalar angle = arc_cosine(ordered::dot(turned, up));
-  // At 0 and pi the cross product vanishes and any axis will do.
+  // At 0 and pi the cross product vanishes, and the law takes `up` as the axis.
   const Scalar from_singular = std::min(std::abs(angle), std::abs(angle - pi<Scalar>));
   const Vector axis_W = from_singular > Scalar(0.00001) ? ordered::cross(turned, up) : up;
   const Vector axis_B = ordered::transpose_times(rotation_matrix(q_WB), axis_W);
@@ -56,8 +57,8 @@ bool RecoveryStages<Scalar>::latch(bool recovering, Scalar tilt_rad) {
   return recovering;
 }
 
-// Polynomials in the direction times sigmoids in the tilt, fitted to an optimal control problem;
-// the numbers are those of PX4 v1.5.5 TailsitterRecovery.
+// Polynomials in the direction times sigmoids in the tilt, fitted to solutions of an optimal
+// control problem. The numbers are those of PX4 v1.5.5 TailsitterRecovery.
 template <typename Scalar>
 Vector3<Scalar> RecoveryStages<Scalar>::optimal_rates(const RecoveryTilt<Scalar>& tilt) {
   const Scalar x = tilt.angle_rad;
@@ -97,7 +98,7 @@ Vector3<Scalar> RecoveryStages<Scalar>::quaternion_rates(const Quaternion<Scalar
   return rates_sp;
 }
 
-// Weighted by how upright the vehicle is, not by the setpoint.
+// Weighted by the vertical component of the vehicle's own z axis, not by that of the setpoint.
 template <typename Scalar>
 Scalar RecoveryStages<Scalar>::yaw_feed_forward(Scalar yaw_rate_sp, Scalar move_rate,
                                                 const Quaternion<Scalar>& q_WB,

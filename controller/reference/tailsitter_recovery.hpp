@@ -1,11 +1,12 @@
 // The outer loop of a tailsitter that recovers from a large tilt along an optimal path.
 //
-// The law of PX4 v1.5.5 TailsitterRecovery: beyond 30 deg of tilt error, and until it is below
-// 5 deg, the rate setpoint is a fitted function of the tilt and of the direction of its axis; else
-// a plain quaternion law. It replaces AttitudeControl when VT_TYPE is 0 and VT_OPT_RECOV_EN is set.
+// The law of PX4 v1.5.5 TailsitterRecovery. A recovery begins beyond 30 deg of tilt error and ends
+// below 5 deg. During it the rate setpoint is a fitted function of the tilt and of the direction of
+// its axis; otherwise it follows a plain quaternion law. TailsitterRecovery replaces
+// AttitudeControl when VT_TYPE is 0 and VT_OPT_RECOV_EN is set.
 //
 // Frames: W world NED, B body FRD, D desired body. Angles [rad], rates [rad/s]. The only state is
-// whether a recovery is under way. No clock, no allocation; one thread at a time.
+// the flag of a recovery in progress. No clock, no allocation; one thread at a time.
 #pragma once
 
 #include <utility>
@@ -16,12 +17,12 @@
 
 namespace attest::reference {
 
-// The error rotation q_WB q_WD^-1, a rotation of the world, as the fitted functions take it.
+// The error rotation q_WB q_WD^-1, in world axes, as arguments of the fitted functions.
 template <typename Scalar>
 struct RecoveryTilt {
-  Scalar angle_rad;       // 0 .. pi by which it tilts the vertical
+  Scalar angle_rad;       // 0 .. pi, by which the error rotation tilts the vertical
   Scalar direction_rad;   // of the tilt axis in the body's x-y plane, folded into 0 .. pi/2
-  Vector3<Scalar> signs;  // that undo the folding
+  Vector3<Scalar> signs;  // of the rates, to undo the folding
 };
 
 // The stages of the law, in the order they run.
@@ -40,7 +41,7 @@ struct RecoveryStages {
   static Vector limit(const Vector& rates_sp_B, const AttitudeGains<Scalar>& gains);
 };
 
-// Stages is a policy: the law itself, or the law with a stage replaced (controller/faults).
+// Stages is a policy: the stages of the law, or a copy with one replaced (controller/faults).
 template <typename Scalar, typename Stages = RecoveryStages<Scalar>>
 class TailsitterRecovery {
  public:

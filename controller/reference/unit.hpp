@@ -9,7 +9,7 @@ namespace attest::reference {
 // unless compiled with ATTEST_REFERENCE_SCALAR=double.
 const attest_unit* reference_unit();
 
-// The same law in binary64: another right controller, to measure what rounding does to it.
+// The same law in binary64: a second correct controller, to measure the effect of rounding.
 const attest_unit* reference_unit_in_double();
 
 }  // namespace attest::reference

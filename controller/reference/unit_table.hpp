@@ -1,4 +1,4 @@
-// A controller behind the C ABI of attest_unit.h: the functions of its table.
+// The functions that make a controller available through the C ABI of attest_unit.h.
 #pragma once
 
 #include <new>
@@ -8,7 +8,7 @@
 
 namespace attest::reference {
 
-// Controller is constructed from a Profile and has set_parameter() and step(), as McAttControl.
+// Controller has a constructor from a Profile, set_parameter() and step(), as McAttControl does.
 // Every function is noexcept: an exception must not cross into a host written in C.
 template <typename Controller>
 struct UnitTable {

@@ -43,7 +43,7 @@ TEST(Mixer, BadTextIsRefusedWithAReason) {
   EXPECT_THAT(message("R: 5x 1 1 1 0"), HasSubstr("unknown geometry '5x', known are 4x 4+ 6x 8x"));
   EXPECT_THAT(message("R: 4x 10000 10000"), HasSubstr("yaw must be an integer in 1/10000"));
   EXPECT_THAT(message("R: 4x 10000 1.5 0 0"), HasSubstr("pitch must be an integer"));
-  EXPECT_THAT(message("R: 4x 1 1 1 0 0"), HasSubstr("nothing may follow"));
+  EXPECT_THAT(message("R: 4x 1 1 1 0 0"), HasSubstr("unexpected '0' after the deadband"));
 }
 
 TEST(Mixer, GeometriesTurnWithoutResidue) {

@@ -43,7 +43,8 @@ static void quaternion_of(const float D[9], float q[4]) {
   q[0] = (D[3 * k + j] - D[3 * j + k]) * s;
 }
 
-/* Beyond 90 deg of tilt the reduced error loses sense of torsion: mix in the direct rotation. */
+/* Beyond 90 deg of tilt error the reduced error does not describe torsion well: the law mixes in
+ * the direct rotation. */
 static void mix_direct_rotation(const float Rt[9], const float R_sp[9], float cosine, float yaw_w,
                                 float e[3]) {
   float D[9], q_e[4];
@@ -56,8 +57,8 @@ static void mix_direct_rotation(const float Rt[9], const float R_sp[9], float co
   }
 }
 
-/* The rotation vector, in body axes, that takes R to R_sp: thrust axis first, then yaw, which
- * counts less the further the setpoint is tilted (`yaw_w`). */
+/* The rotation vector, in body axes, that takes R to R_sp: thrust axis first, then yaw. The weight
+ * `yaw_w` of the yaw falls as the tilt of the setpoint grows to 90 deg. */
 static void attitude_error(const float R[9], const float R_sp[9], float yaw_w, float e[3]) {
   float Rt[9], z[3], z_sp[3], z_cross[3];
   transpose(R, Rt);
@@ -90,7 +91,7 @@ static void attitude_error(const float R[9], const float R_sp[9], float yaw_w, f
   if (cosine < 0.0f) mix_direct_rotation(Rt, R_sp, cosine, yaw_w, e);
 }
 
-/* Lets the wind turn the nose: little yaw authority, and no integral that would fight it. */
+/* The wind may turn the nose: little yaw authority, and no yaw integral that opposes the wind. */
 static void weather_vane(controller* c) {
   const float limit = c->gains.auto_rate_max[2] * c->gains.weather_vane_scale;
   c->rates_sp[2] = clamp(c->rates_sp[2], -limit, limit);
@@ -117,7 +118,7 @@ void attitude_law(controller* c) {
     c->rates_sp[i] = clamp(g->att_p[i] * e[i], -rate_max[i], rate_max[i]);
   }
   if (vane && old) weather_vane(c);
-  /* After the limit: the pilot's yaw rate may exceed it. */
+  /* Added after the limit: the pilot's yaw rate may exceed it. */
   c->rates_sp[2] += c->copy.vehicle_attitude_setpoint.yaw_sp_move_rate * yaw_w * g->yaw_ff;
   if (vane) weather_vane(c);
 }

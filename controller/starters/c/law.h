@@ -2,7 +2,7 @@
 /*
  * law.h - the multicopter attitude control law of PX4 v1.5.5 mc_att_control, in plain C11.
  *
- *     unit.c        the C ABI, the parameters, and one step: which loop runs on which input
+ *     unit.c        the C ABI, the parameters, and one step: selects the loops and their inputs
  *     attitude.c    outer loop: attitude error -> body rates setpoint
  *     tailsitter.c  outer loop of a tailsitter that may have to recover from a large tilt
  *     rate.c        inner loop: rate error -> actuator controls
@@ -34,7 +34,7 @@ typedef struct parameters {
   float weather_vane_scale, vtol_type, recovery_enabled, circuit_breaker;
 } parameters;
 
-/* The parameters as the law uses them. Computed when parameter_update says so, not when set. */
+/* The parameters as the law uses them. Computed at parameter_update, not at set_parameter(). */
 typedef struct gains {
   float att_p[3];                                    /* [1/s] */
   float rate_p[3], rate_i[3], rate_d[3], rate_ff[3]; /* control per rad/s, rad, rad/s^2, rad/s */
@@ -43,7 +43,7 @@ typedef struct gains {
   bool battery_scale_enabled, circuit_breaker_open;
 } gains;
 
-/* One controller. All that it remembers from step to step is here. */
+/* One controller, with all its state from step to step. */
 typedef struct controller {
   profile profile;
   parameters parameters;
@@ -55,8 +55,8 @@ typedef struct controller {
   bool have_vehicle_status; /* the first one selects the topics to publish to */
   bool on_virtual_topics;   /* those of a VTOL; vehicle_rates_setpoint is still read */
 
-  bool tailsitter; /* tailsitter.c takes the place of attitude.c; decided at the first step */
-  bool recovering; /* tailsitter.c: a large tilt is being recovered */
+  bool tailsitter; /* tailsitter.c replaces attitude.c; decided at the first step */
+  bool recovering; /* tailsitter.c: recovers from a large tilt */
   float rates_sp[3], thrust_sp;
   float rates_prev[3];
   float rates_sp_prev[3]; /* px4-v1.3.4 only: its feed-forward acts on the change */

@@ -5,10 +5,10 @@
 
 #include "law.h"
 
-#define MIN_TAKEOFF_THRUST 0.2f /* below it the vehicle may stand on the ground: no integration */
+#define MIN_TAKEOFF_THRUST 0.2f /* up to it the vehicle may stand on the ground: no integration */
 #define RATES_INT_LIMIT 0.3f
 
-/* Thrust-based attenuation of the P gain. fminf and fmaxf drop a NaN: NaN thrust gives 1. */
+/* Thrust-based attenuation of the P gain. fminf and fmaxf ignore a NaN: NaN thrust gives 1. */
 static float tpa_factor(const gains* g, float thrust) {
   return fmaxf(0.0f, fminf(1.0f, 1.0f - g->tpa_slope * (fabsf(thrust) - g->tpa_break)));
 }
@@ -30,7 +30,7 @@ static void integrate(controller* c, float dt, const float err[3], const float c
   for (int i = 0; i < 3; i++) {
     if (!(fabsf(control[i]) < c->thrust_sp)) continue;
     const float next = c->rates_int[i] + c->gains.rate_i[i] * err[i] * dt;
-    /* A NaN or infinite `next` is not inside either. */
+    /* A NaN or infinite `next` is outside, too. */
     if (inside_int_limit(next) && inside_int_limit(control[i]) && !(i == 2 && yaw_frozen)) {
       c->rates_int[i] = next;
     }
@@ -40,7 +40,7 @@ static void integrate(controller* c, float dt, const float err[3], const float c
 void rate_law(controller* c, float dt, float control[3]) {
   const gains* g = &c->gains;
   if (!c->copy.actuator_armed.armed || !c->copy.vehicle_status.is_rotary_wing) {
-    memset(c->rates_int, 0, sizeof c->rates_int); /* this step's update below still runs */
+    memset(c->rates_int, 0, sizeof c->rates_int); /* integrate() below still runs in this step */
   }
   const float tpa = c->profile == PROFILE_PX4_V1_3_4
                         ? 1.0f

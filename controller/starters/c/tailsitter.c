@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
  * The outer loop of a tailsitter with VT_OPT_RECOV_EN: PX4 v1.5.5 TailsitterRecovery, called by
- * mc_att_control. Rates that bring the vehicle back from a large tilt as fast as possible, fitted
- * to the solutions of an optimisation; the constants below are those of the fit. A port for
- * multicopters only can leave this file out and return ATTEST_UNSUPPORTED where it is called.
+ * mc_att_control. Its rates return the vehicle from a large tilt as fast as possible. They are
+ * fitted to the solutions of an optimisation, with the constants below. A port for multicopters
+ * only can leave this file out and return ATTEST_UNSUPPORTED where it is called.
  */
 #include <math.h>
 
@@ -19,8 +19,8 @@ static void product(const float p[4], const float q[4], float out[4]) {
 
 static float sigmoid(float v) { return 1.0f / (1.0f + expf(-v)); }
 
-/* The angle [rad] between the thrust axis and that of the setpoint, and the direction [rad] of the
- * axis of that tilt in the body's x-y plane, counted from y. */
+/* Returns the angle [rad] between the thrust axis and that of the setpoint. `direction` [rad] is
+ * that of the tilt axis in the body's x-y plane, counted from y. */
 static float tilt_error(const float q[4], const float q_sp_conj[4], const float R[9],
                         float* direction) {
   const float z_B[3] = {0.0f, 0.0f, -1.0f};
@@ -79,7 +79,7 @@ static void recovery_rates(float tilt, float direction, float rates_sp[3]) {
   rates_sp[2] = yaw * -sign[2];
 }
 
-/* Small tilt: proportional to the imaginary part of the shortest rotation to the setpoint. */
+/* Small tilt: rates proportional to the imaginary part of the shortest rotation to the setpoint. */
 static void hold_rates(const gains* g, const float q[4], const float q_sp_conj[4],
                        float rates_sp[3]) {
   float q_e[4];

@@ -63,7 +63,7 @@ static void set3(float out[3], float roll, float pitch, float yaw) {
 static void read_parameters(controller* c) {
   const parameters* p = &c->parameters;
   gains* g = &c->gains;
-  /* A vehicle slower than the default time constant of 0.2 s gets lower gains, not on I or FF. */
+  /* A time constant above the default of 0.2 s lowers the gains, except I and FF. */
   const float roll = 0.2f / p->roll_tc;
   const float pitch = 0.2f / p->pitch_tc;
   set3(g->att_p, p->roll_p * roll, p->pitch_p * pitch, p->yaw_p);
@@ -85,7 +85,7 @@ static void read_parameters(controller* c) {
 
 /* ---- one step --------------------------------------------------------------------------------*/
 
-/* Takes `bit` off the pending samples. Returns whether it was there. */
+/* Removes `bit` from the pending samples. Returns whether it was set. */
 static bool take(controller* c, uint32_t bit) {
   const bool was_pending = (c->pending & bit) != 0;
   c->pending &= ~bit;
@@ -97,7 +97,7 @@ static bool take(controller* c, uint32_t bit) {
     if (take(c, ATTEST_UPDATED_##bit)) c->copy.topic = in->topic; \
   } while (0)
 
-/* The copies of every topic but the two setpoints, which are latched in some modes only. */
+/* Latches every topic except the two setpoints, which the law latches in some modes only. */
 static void latch_inputs(controller* c, const attest_inputs* in) {
   c->pending |= in->updated;
   c->copy.timestamp = in->timestamp;
@@ -109,7 +109,7 @@ static void latch_inputs(controller* c, const attest_inputs* in) {
     c->started = true;
   }
   if ((in->updated & ATTEST_UPDATED_VEHICLE_STATUS) && !c->have_vehicle_status) {
-    /* The first sample selects the topics, for good. */
+    /* The first sample selects the topics for the life of the instance. */
     c->have_vehicle_status = true;
     c->on_virtual_topics = in->vehicle_status.is_vtol != 0;
   }
@@ -127,7 +127,7 @@ static void publish_rates_setpoint(controller* c, attest_outputs* out) {
   c->copy.vehicle_rates_setpoint.yaw = c->rates_sp[2];
   c->copy.vehicle_rates_setpoint.thrust = c->thrust_sp;
   if (!c->have_vehicle_status) return;
-  /* A pending sample from outside is superseded by this newer one, if that is on the same topic. */
+  /* On the same topic, this newer sample supersedes a pending external one. */
   if (!c->on_virtual_topics) take(c, ATTEST_UPDATED_VEHICLE_RATES_SETPOINT);
   out->vehicle_rates_setpoint.roll = c->rates_sp[0];
   out->vehicle_rates_setpoint.pitch = c->rates_sp[1];
@@ -153,7 +153,7 @@ static void outer_loop(controller* c, const attest_inputs* in, attest_outputs* o
     c->rates_sp[0] = c->copy.manual_control_setpoint.y * g->acro_rate_max[0];
     c->rates_sp[1] = -c->copy.manual_control_setpoint.x * g->acro_rate_max[1];
     c->rates_sp[2] = c->copy.manual_control_setpoint.r * g->acro_rate_max[2];
-    c->thrust_sp = z < 0.9f ? z : 0.9f; /* NaN gives 0.9; headroom for attitude control */
+    c->thrust_sp = z < 0.9f ? z : 0.9f; /* leaves headroom for attitude control; NaN gives 0.9 */
     publish_rates_setpoint(c, out);
   } else {
     LATCH(vehicle_rates_setpoint, VEHICLE_RATES_SETPOINT);
@@ -172,7 +172,7 @@ static void publish_actuator_controls(const controller* c, const float u[3], att
   control[3] = isfinite(c->thrust_sp) ? c->thrust_sp : 0.0f;
   if (c->profile == PROFILE_PX4_V1_5_5) {
     control[7] = c->copy.vehicle_attitude_setpoint.landing_gear;
-    /* An infinite scale passes: the guard for finite controls is above. */
+    /* After the check for finite controls: an infinite scale gives infinite controls. */
     if (c->gains.battery_scale_enabled && c->copy.battery_status.scale > 0.0f) {
       for (int i = 0; i < 4; i++) control[i] *= c->copy.battery_status.scale;
     }
@@ -186,7 +186,7 @@ static int step(void* self, const attest_inputs* in, attest_outputs* out) {
   out->actuator_controls_0.published = 0;
   out->mc_att_ctrl_status.published = 0;
 
-  /* The clamp is part of the law: above 500 Hz it still reckons with 2 ms. */
+  /* The clamp is part of the law: above 500 Hz it still uses 2 ms. */
   float dt = (float)(in->timestamp - c->copy.timestamp) / 1000000.0f;
   dt = dt < 0.002f ? 0.002f : (dt > 0.02f ? 0.02f : dt);
   latch_inputs(c, in);
@@ -194,7 +194,7 @@ static int step(void* self, const attest_inputs* in, attest_outputs* out) {
   if (c->copy.vehicle_control_mode.flag_control_rattitude_enabled &&
       (fabsf(c->copy.manual_control_setpoint.y) > c->gains.rattitude_threshold ||
        fabsf(c->copy.manual_control_setpoint.x) > c->gains.rattitude_threshold)) {
-    /* In the copy: attitude mode returns only with the next vehicle_control_mode. */
+    /* Cleared in the copy: attitude mode returns only with the next vehicle_control_mode. */
     c->copy.vehicle_control_mode.flag_control_attitude_enabled = 0;
   }
   outer_loop(c, in, out);
