@@ -202,6 +202,11 @@ void parse_identity(const TomlTable& root, const fs::path& file, Case& parsed) {
   if (root.has("why") && parsed.why.empty()) root.error("why", "must say why the case exists");
 }
 
+// At the fastest rate; 0 without a rate, which is an error of its own.
+std::int64_t most_ticks(const Case& parsed) {
+  return parsed.rates.empty() ? 0 : tick_count(parsed.duration, parsed.rates.back());
+}
+
 void parse_duration(const TomlTable& root, Case& parsed) {
   parsed.duration = parse_span(root, "duration");
   const Span& duration = parsed.duration;
@@ -211,7 +216,7 @@ void parse_duration(const TomlTable& root, Case& parsed) {
   if (duration.in == Span::In::ticks && duration.amount != std::floor(duration.amount)) {
     root.error(key, "must be a whole number");
   }
-  if (!parsed.rates.empty() && tick_count(duration, parsed.rates.back()) > max_ticks) {
+  if (most_ticks(parsed) > max_ticks) {
     root.error(key, fmt::format("is more than {} ticks at {} Hz", max_ticks,
                                 parsed.rates.back().to_string()));
   }
@@ -237,7 +242,7 @@ void parse_body(const TomlTable& root, Case& parsed) {
     if (level != "numeric" && level != "exact") root.error("level", "must be numeric or exact");
   }
   parsed.either_branch = parse_either_branch(root);
-  if (parsed.either_branch.any() && tick_count(parsed.duration, parsed.rates.back()) > 1000) {
+  if (parsed.either_branch.any() && most_ticks(parsed) > 1000) {
     root.error("either_branch",
                "is for cases of at most 1000 ticks, whose goldens keep every tick");
   }

@@ -60,8 +60,9 @@ struct RunOptions {
   std::string level = "numeric";
   std::map<std::string, std::string> reports;  // files, by ReportFormat::option; empty: not wanted
   std::string expected_failures;
-  std::string timing;    // file; empty: the cases' own
-  bool diagnose = true;  // when something fails
+  std::string timing;       // file; empty: the cases' own
+  std::string save_traces;  // folder; empty: not saved
+  bool diagnose = true;     // when something fails
 };
 int run_command(const RunOptions& options, const Globals& globals);
 

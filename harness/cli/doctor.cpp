@@ -109,8 +109,8 @@ void examine_port(const DoctorOptions& options, Examination& examination) {
   }
   const std::string who = fmt::format("{}: {} {}", specification, port->name, port->version);
   if (port->profiles.empty()) {
-    return examination.bad("port", fmt::format("{}; create() returned NULL for each of {}", who,
-                                               fmt::join(known, ", ")));
+    return examination.bad("port", fmt::format("{}; create() returned NULL for each of {}{}", who,
+                                               fmt::join(known, ", "), port->refusal));
   }
   examination.good("port", fmt::format("{}, profiles {}", who, fmt::join(port->profiles, ", ")));
   for (const std::string& profile : port->profiles) {

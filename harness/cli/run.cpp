@@ -96,7 +96,8 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
   for (const SelectedCase& selected : *cases) profiles.insert(selected.the_case.profile);
   if (auto asked = ask_port({profiles.begin(), profiles.end()}, plan); !asked) return asked;
   VehicleModels vehicle_models(suite.models());
-  auto jobs = case_jobs(*cases, suite.golden(), vehicle_models, plan.run.level, plan.host);
+  auto jobs = case_jobs(*cases, suite.golden(), vehicle_models,
+                        {plan.run.level, options.save_traces}, plan.host);
   if (!jobs) return tl::unexpected(jobs.error());
   plan.jobs = *std::move(jobs);
   plan.run.selection = options.select.narrowing();
@@ -115,9 +116,9 @@ Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, Run
   plan.results = 1;
   plan.run.timing = options.timing;
   plan.run.rates = {flight->timing.configuration.rate};
-  plan.jobs.push_back(std::make_unique<TimedJob>(std::move(flight->the_case),
-                                                 std::move(flight->timing),
-                                                 std::move(flight->vehicle_model), plan.host));
+  plan.jobs.push_back(std::make_unique<TimedJob>(
+      std::move(flight->the_case), std::move(flight->timing), std::move(flight->vehicle_model),
+      JudgeOptions(plan.run.level, options.save_traces), plan.host));
   return {};
 }
 
@@ -229,6 +230,10 @@ int run_command(const RunOptions& options, const Globals& globals) {
   const auto checked = check_outputs(
       outputs, {options.host.port, {options.expected_failures, options.timing}}, *suite);
   if (!checked) return report_error(checked.error());
+  if (!options.save_traces.empty()) {
+    const auto apart = check_output_folder(options.save_traces, *suite);
+    if (!apart) return report_error(apart.error());
+  }
   auto plan = make_plan(options, *suite);
   if (!plan) return report_error(plan.error());
   plan->run.suite_folder = globals.suite;
@@ -267,6 +272,10 @@ int run_command(const RunOptions& options, const Globals& globals) {
   if (!globals.quiet || code != exit_ok) {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
     fmt::print("{}", render_summary(run, wall.count(), terminal_style(stdout), diagnosis));
+  }
+  if (!options.save_traces.empty() && run.failed()) {
+    fmt::print("traces: {}/PROFILE/GROUP/NAME/RATE.got.csv and .want.csv of each failing vector\n",
+               options.save_traces);
   }
   if (!written) return report_error(written.error());
   return code;

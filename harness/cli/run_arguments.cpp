@@ -48,6 +48,12 @@ void add_reports(CLI::App& command, RunOptions& options) {
         ->type_name("FILE")
         ->group(option_group::reports);
   }
+  command
+      .add_option("--save-traces", options.save_traces,
+                  "Write the traces of each failing vector: DIR/PROFILE/GROUP/NAME/RATE.got.csv "
+                  "with the port's outputs, .want.csv with the expected ones")
+      ->type_name("DIR")
+      ->group(option_group::reports);
   command.get_option("--write-expected")->excludes(command.get_option("--expected-failures"));
 }
 

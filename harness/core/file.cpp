@@ -102,6 +102,15 @@ class Sha256 {
   std::unique_ptr<EVP_MD_CTX, Free> context_{EVP_MD_CTX_new()};
 };
 
+// Everything that this process prints later goes to stderr, so that stdout has the file alone.
+int take_stdout() {
+  std::fflush(stdout);
+  const int file = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
+  if (file >= 0 && ::dup2(STDERR_FILENO, STDOUT_FILENO) >= 0) return file;
+  if (file >= 0) ::close(file);
+  return -1;
+}
+
 }  // namespace
 
 Result<int> open_regular_file(const fs::path& path) {
@@ -225,6 +234,11 @@ AtomicFile::~AtomicFile() {
 }
 
 Result<AtomicFile> AtomicFile::open(const fs::path& path) {
+  if (path == "-") {
+    const int file = take_stdout();
+    return file < 0 ? Result<AtomicFile>(system_failure("stdout", "cannot write"))
+                    : AtomicFile("stdout", "", "", file);
+  }
   if (!path.has_filename()) return fail_at(path.string(), "not a file name; name a file");
   struct stat status;
   const bool exists = ::stat(path.c_str(), &status) == 0;

@@ -29,7 +29,8 @@ Result<std::string> sha256_of_file(const std::filesystem::path& path);
 // A file that is written in the same folder as its target and renamed at commit(). Open it early,
 // to find an unwritable path before the work. Without commit() it leaves no file behind. If the
 // file system supports files without a name, this is also so when the process is killed. Other
-// kinds of file (/dev/stdout, /dev/null, a pipe) are written to directly.
+// kinds of file (/dev/stdout, /dev/null, a pipe) are written to directly. `-` is stdout; all that
+// the process prints there after open() goes to stderr.
 class AtomicFile {
  public:
   static Result<AtomicFile> open(const std::filesystem::path& path);

@@ -90,6 +90,17 @@ void give_cells(Recorded& recorded) {
                   name, usual_cells));
 }
 
+void note_ignored_columns(Recorded& recorded) {
+  const auto& names = recorded.trace.ignored_columns;
+  if (names.empty()) return;
+  constexpr std::size_t most = 8;
+  const auto end = names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), most));
+  const std::string more =
+      names.size() > most ? fmt::format(" and {} more", names.size() - most) : "";
+  recorded.notes.push_back(fmt::format("columns ignored, because attest has no such signals: {}{}",
+                                       fmt::join(names.begin(), end, ", "), more));
+}
+
 Result<void> check_parameters(Recorded& recorded) {
   leave_out_foreign_parameters(recorded);
   give_cells(recorded);
@@ -131,6 +142,7 @@ Result<Recorded> read_recorded(const std::filesystem::path& file, const std::str
   if (auto checked = check_module(recorded.trace, subject.module); !checked) {
     return tl::unexpected(checked.error());
   }
+  note_ignored_columns(recorded);
   if (subject.profile.empty()) subject.profile = provenance.profile;
   if (subject.profile.empty()) subject.profile = default_profile;
   if (auto checked = check_parameters(recorded); !checked) {

@@ -82,10 +82,12 @@ bool HostHere::supports(const std::string& profile) {
 }
 
 Result<std::unique_ptr<PortHost>> open_host_here(const std::string& port,
-                                                 std::optional<PortSays> said, Course course) {
-  const DefaultFloatEnvironment callers;  // a library may change it when it is loaded
+                                                 std::optional<PortSays> said, Course course,
+                                                 const PortCalls* calls) {
+  const DefaultFloatEnvironment callers;  // which a library may change when it is loaded
   auto opened = open_port(port);
   if (!opened) return tl::unexpected(opened.error());
+  if (calls) *opened = calls->noted(*std::move(opened));
   return std::make_unique<HostHere>(*std::move(opened), std::move(said), course);
 }
 

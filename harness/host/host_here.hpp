@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "harness/core/float_environment.hpp"
+#include "harness/host/port_calls.hpp"
 #include "harness/host/port_host.hpp"
 #include "harness/realtime/painted_stack.hpp"
 
@@ -37,9 +38,11 @@ class HostHere final : public PortHost {
 };
 
 // Opens the port (open_port); a change that it makes to the floating point environment does not
-// reach the caller. Errors: those of open_port().
+// reach the caller. The port's calls are noted in `calls`, which must outlive the host; null: not
+// noted. Errors: those of open_port().
 Result<std::unique_ptr<PortHost>> open_host_here(const std::string& port,
                                                  std::optional<PortSays> said = {},
-                                                 Course course = {});
+                                                 Course course = {},
+                                                 const PortCalls* calls = nullptr);
 
 }  // namespace attest

@@ -7,6 +7,7 @@
 
 #include "harness/host/host_here.hpp"
 #include "harness/host/host_protocol.hpp"
+#include "harness/host/port_calls.hpp"
 #include "harness/process/child.hpp"
 
 namespace attest {
@@ -15,8 +16,9 @@ namespace {
 using Kind = Received::Kind;
 
 // In the child.
-void serve(const HostOptions& options, const Course& course, MessageSocket& judge) {
-  auto host = open_host_here(options.port, options.said, course);
+void serve(const HostOptions& options, const Course& course, const PortCalls& calls,
+           MessageSocket& judge) {
+  auto host = open_host_here(options.port, options.said, course, &calls);
   if (!host) {
     refuse(host.error(), 0, judge);
     return;
@@ -47,9 +49,9 @@ void set_outputs(const std::vector<Sample>& answered, Trace& trace) {
 
 class PortProcess final : public PortHost {
  public:
-  // `child` is empty for a port that is not started (HostOptions::hangs).
-  PortProcess(const HostOptions& options, std::optional<Child> child)
-      : options_(options), child_(std::move(child)) {
+  // `child` is empty for a port that is not started (HostOptions::hangs). `calls` are the child's.
+  PortProcess(const HostOptions& options, PortCalls calls, std::optional<Child> child)
+      : options_(options), calls_(std::move(calls)), child_(std::move(child)) {
     if (options.said) says_ = *options.said;
     if (!child_) fault_ = PortFault{PortFault::Kind::timeout, 0, options.hangs};
   }
@@ -72,14 +74,17 @@ class PortProcess final : public PortHost {
             [&](const Arrived& arrived) { return read_driven(arrived, inputs.size()); });
     if (!driven) return fault_;
     set_outputs(driven->samples, trace);
-    return driven->fault;
+    return with_words(driven->fault);
   }
 
   Result<Flown> fly(const FlightPlan& plan) override {
     auto flown = ask(fly_request(plan), {blob_of(plan.timing)}, [&](const Arrived& arrived) {
       return read_flown(arrived, plan.timing.size());
     });
-    if (flown) return *std::move(flown);
+    if (flown) {
+      if (*flown) (*flown)->fault = with_words(std::move((*flown)->fault));
+      return *std::move(flown);
+    }
     Flown none;
     none.fault = fault_;
     return none;
@@ -90,7 +95,10 @@ class PortProcess final : public PortHost {
     auto times =
         ask(time_request(profile, inputs, with_stack), {blob_of(inputs.samples)},
             [&](const Arrived& arrived) { return read_times(arrived, inputs.samples.size()); });
-    if (times) return *std::move(times);
+    if (times) {
+      if (*times) (*times)->fault = with_words(std::move((*times)->fault));
+      return *std::move(times);
+    }
     StepTimes none;
     none.fault = fault_;
     return none;
@@ -104,6 +112,12 @@ class PortProcess final : public PortHost {
   bool is_spent() const override { return fault_ && fault_->kind != PortFault::Kind::timeout; }
 
   const std::optional<PortFault>& fault() const { return fault_; }
+
+  // "; it last printed: no memory"; empty if the port has printed nothing.
+  std::string printed() const {
+    const std::string words = child_ ? child_->last_words() : "";
+    return words.empty() ? "" : fmt::format("; it last printed: {}", words);
+  }
 
  private:
   // Empty after a fault of the port, in this request or before; fault_ has it.
@@ -148,19 +162,17 @@ class PortProcess final : public PortHost {
   void give_up(Kind why, const std::string& when) {
     if (why != Kind::ended) child_->kill();
     const std::string how = child_->end();
-    const std::string comma = when.empty() ? "" : ", " + when;
-    const std::string words = child_->last_words();
-    const std::string printed = words.empty() ? "" : fmt::format("; it last printed: {}", words);
+    const std::string where = when.empty() ? calls_.current() : ", " + when;
     switch (why) {
       case Kind::ended:
         fault_ = PortFault{PortFault::Kind::crash, 0,
-                           fmt::format("the port's process {}{}{}", how, comma, printed)};
+                           fmt::format("the port's process {}{}{}", how, where, printed())};
         return;
       case Kind::too_late:
       case Kind::given_up:
-        fault_ =
-            PortFault{PortFault::Kind::timeout, 0,
-                      fmt::format("no answer within {} s{}{}", options_.timeout_s, comma, printed)};
+        fault_ = PortFault{
+            PortFault::Kind::timeout, 0,
+            fmt::format("no answer within {} s{}{}", options_.timeout_s, where, printed())};
         return;
       default:
         fault_ = PortFault{PortFault::Kind::protocol, 0,
@@ -168,7 +180,14 @@ class PortProcess final : public PortHost {
     }
   }
 
+  // A port that makes no unit may have printed the reason.
+  std::optional<PortFault> with_words(std::optional<PortFault> fault) const {
+    if (fault && fault->kind == PortFault::Kind::profile) fault->what += printed();
+    return fault;
+  }
+
   HostOptions options_;
+  PortCalls calls_;
   std::optional<Child> child_;
   PortSays says_;
   std::uint64_t request_ = 0;
@@ -178,14 +197,17 @@ class PortProcess final : public PortHost {
 
 Result<std::unique_ptr<PortProcess>> start_process(const HostOptions& options,
                                                    const Course& course) {
+  auto calls = PortCalls::make();
+  if (!calls) return tl::unexpected(calls.error());
   std::optional<Child> child;
   if (options.hangs.empty()) {
-    auto spawned = Child::spawn(Child::Runs::code_of_others,
-                                [&](MessageSocket& judge) { serve(options, course, judge); });
+    auto spawned = Child::spawn(Child::Runs::code_of_others, [&](MessageSocket& judge) {
+      serve(options, course, *calls, judge);
+    });
     if (!spawned) return tl::unexpected(spawned.error());
     child = *std::move(spawned);
   }
-  auto host = std::make_unique<PortProcess>(options, std::move(child));
+  auto host = std::make_unique<PortProcess>(options, *std::move(calls), std::move(child));
   if (auto greeted = host->greet(); !greeted) return tl::unexpected(greeted.error());
   return host;
 }
@@ -226,11 +248,14 @@ Result<PortDescription> describe_port(const HostOptions& options,
     if (!host) return tl::unexpected(host.error());
     const bool supports = (*host)->supports(profile);
     if (const auto& fault = (*host)->fault()) {
-      description.goes_wrong =
-          fmt::format("{}, when it was to make a unit of {}", fault->what, profile);
+      description.goes_wrong = fmt::format("profile {}: {}", profile, fault->what);
       break;
     }
-    if (supports) description.profiles.push_back(profile);
+    if (supports) {
+      description.profiles.push_back(profile);
+    } else {
+      description.refusal = (*host)->printed();
+    }
   }
   return description;
 }

@@ -50,6 +50,8 @@ Result<void> ensure_host(std::unique_ptr<PortHost>& host, const HostOptions& opt
 struct PortDescription : PortSays {
   std::string hangs;       // the fault, if it did not answer in time when it was loaded
   std::string goes_wrong;  // its fault when it made a unit; empty: no fault
+  // "; it last printed: ...", when it made no unit of a profile; empty if it printed nothing.
+  std::string refusal;
 };
 
 // Includes those of `profiles` that the port supports. Each is requested in a process of its own. A

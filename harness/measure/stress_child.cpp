@@ -19,6 +19,7 @@
 
 #include "harness/core/error_json.hpp"
 #include "harness/core/json_text.hpp"
+#include "harness/host/port_calls.hpp"
 #include "harness/host/trace_message.hpp"
 #include "harness/measure/stress.hpp"
 #include "harness/measure/stress_json.hpp"
@@ -92,13 +93,15 @@ std::optional<StressMeasurement> measurement_from(const StressTask& task, bool w
   return measured;
 }
 
-void work(const StressTask& task, const std::string& specification, MessageSocket& parent) {
+void work(const StressTask& task, const std::string& specification, const PortCalls& calls,
+          MessageSocket& parent) {
   std::signal(SIGTERM, [](int) { asked_to_stop.store(true); });
   auto port = open_port(specification);
   if (!port) {
     parent.send(text_of({{"error", to_json(port.error())}}));
     return;
   }
+  *port = calls.noted(*std::move(port));
   Clock::time_point reported{};
   const auto progress = [&](const StressProgress& now) {
     if (!now.idle && Clock::now() - reported < report_every) return;
@@ -142,9 +145,9 @@ StressResult gone_wrong(const StressTask& task, Verdict verdict, std::string rea
 // Listens until the child has sent its result, has died, or hangs.
 class Listener {
  public:
-  Listener(const StressTask& task, Child& child,
+  Listener(const StressTask& task, const PortCalls& calls, Child& child,
            const std::function<void(const StressProgress&)>& progress)
-      : task_(task), child_(child), progress_(progress) {}
+      : task_(task), calls_(calls), child_(child), progress_(progress) {}
 
   Result<StressResult> listen(const std::function<bool()>& stop) {
     Patience patience;
@@ -167,9 +170,9 @@ class Listener {
   StressResult end_of(Received::Kind why) {
     if (why == Received::Kind::ended) {
       const std::string how = child_.end(), words = child_.last_words();
-      return gone_wrong(
-          task_, Verdict::crash,
-          fmt::format("the process {}{}", how, words.empty() ? "" : "; it last printed: " + words));
+      return gone_wrong(task_, Verdict::crash,
+                        fmt::format("the process {}{}{}", how, calls_.current(),
+                                    words.empty() ? "" : "; it last printed: " + words));
     }
     child_.kill();
     if (why == Received::Kind::too_late || why == Received::Kind::given_up) {
@@ -245,6 +248,7 @@ class Listener {
   }
 
   const StressTask& task_;
+  const PortCalls& calls_;
   Child& child_;
   const std::function<void(const StressProgress&)>& progress_;
   const Clock::time_point began_ = Clock::now();
@@ -261,10 +265,12 @@ Result<StressResult> run_stress(const StressTask& task, const std::string& port,
                                 const std::function<bool()>& stop,
                                 const std::function<void(const StressProgress&)>& progress) {
   if (auto unsupported = declined(task)) return *std::move(unsupported);
+  const auto calls = PortCalls::make();
+  if (!calls) return tl::unexpected(calls.error());
   auto child = Child::spawn(Child::Runs::code_of_others,
-                            [&](MessageSocket& parent) { work(task, port, parent); });
+                            [&](MessageSocket& parent) { work(task, port, *calls, parent); });
   if (!child) return tl::unexpected(child.error());
-  return Listener(task, *child, progress).listen(stop);
+  return Listener(task, *calls, *child, progress).listen(stop);
 }
 
 }  // namespace attest

@@ -5,6 +5,9 @@
 // A flown trace may have columns `plant/...` with the true state of the vehicle at each tick, for
 // people and their plots. They are written, but ignored when read (plant_columns.hpp).
 //
+// Other columns of a file with a `timestamp` are ignored, too, unless their names begin with in/ or
+// out/, or resemble a channel's name.
+//
 // If there is a provenance.toml in the folder of the file, its constants count as columns, too, and
 // the file leaves them out (provenance.hpp).
 #pragma once
@@ -37,6 +40,7 @@ class TraceReader {
 
   const std::string& file() const;
   const ChannelSet& present() const;
+  const std::vector<std::string>& ignored() const;  // as Trace::ignored_columns
 
   // Reads the next tick. Replaces `changes` by the parameters that change at it. Returns false
   // after the last tick.

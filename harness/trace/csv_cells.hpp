@@ -1,6 +1,7 @@
 // Cells of a CSV file: converts text to a value of the column's type, and reports errors.
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
@@ -33,8 +34,9 @@ std::string in_backquotes(std::string_view text);
 // The type of a column's cells and where they are stored.
 struct CsvColumn {
   ChannelType type;
-  std::size_t offset;  // of the member in the row's struct [bytes]
-  std::uint32_t bit;   // mask, for ChannelType::bit
+  std::size_t offset;       // of the member in the row's struct [bytes]
+  std::uint32_t bit;        // mask, for ChannelType::bit
+  bool is_ignored = false;  // its cells may hold any text; the other members have no meaning
 };
 
 inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -89,6 +91,7 @@ inline const char* parse_integer(const char* first, const char* last, void* to) 
 // Inlining is forced: clang would call the function, which costs 5 % of the reading time.
 [[gnu::always_inline]] inline const char* parse_cell(const char* first, const char* last,
                                                      const CsvColumn& column, char* row) {
+  if (column.is_ignored) return std::find(first, last, ',');
   char* const to = row + column.offset;
   switch (column.type) {
     case ChannelType::f32:

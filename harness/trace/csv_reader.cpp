@@ -17,16 +17,24 @@ namespace {
 
 constexpr std::size_t timestamp_channel = 0;  // of channels()
 
-// A row in memory is a Sample, one float for all columns that are ignored, and the values of the
-// parameter columns.
-constexpr std::size_t ignored_offset = sizeof(Sample);
-constexpr std::size_t parameters_offset = ignored_offset + sizeof(float);
+// A row in memory is a Sample and the values of the parameter columns.
+constexpr std::size_t parameters_offset = sizeof(Sample);
+constexpr CsvColumn ignored_column{ChannelType::f32, 0, 0, true};
 
 struct Layout {
   std::vector<CsvColumn> columns;
   std::vector<std::string> parameters;
   ChannelSet present;
+  std::vector<std::string> ignored;
 };
+
+// The file is a trace, and the column is not a misspelt one of attest's.
+bool may_be_ignored(std::string_view name, const CsvRows& rows, const std::string& suggestion) {
+  const auto& header = rows.header();
+  const bool is_a_trace =
+      std::find(header.begin(), header.end(), channels()[timestamp_channel].name) != header.end();
+  return is_a_trace && suggestion.empty() && !name.starts_with("in/") && !name.starts_with("out/");
+}
 
 Result<Layout> layout_of(const CsvRows& rows) {
   Layout layout;
@@ -41,12 +49,16 @@ Result<Layout> layout_of(const CsvRows& rows) {
       layout.columns.push_back({ChannelType::f32, offset, 0});
       layout.parameters.emplace_back(*parameter);
     } else if (name.starts_with(plant_prefix)) {
-      layout.columns.push_back({ChannelType::f32, ignored_offset, 0});
+      layout.columns.push_back(ignored_column);
     } else {
       std::vector<std::string> names;
       for (const Channel& channel : channels()) names.emplace_back(channel.name);
-      return rows.fail_at_name(
-          i, fmt::format("unknown column {}{}", in_backquotes(name), suggestion(name, names)));
+      const std::string meant = suggestion(name, names);
+      if (!may_be_ignored(name, rows, meant)) {
+        return rows.fail_at_name(i, fmt::format("unknown column {}{}", in_backquotes(name), meant));
+      }
+      layout.columns.push_back(ignored_column);
+      layout.ignored.emplace_back(name);
     }
   }
   return layout;
@@ -173,6 +185,7 @@ struct TraceReader::Impl {
   CsvRows rows;
   ChannelSet present{};
   ParameterColumns parameters{{}};
+  std::vector<std::string> ignored{};      // names of columns
   std::vector<ParameterChange> constants;  // parameters of the provenance, set at tick 0
   std::vector<char> row{};
   std::unique_ptr<Base> base{};  // null: the trace has all of its columns itself
@@ -225,6 +238,7 @@ TraceReader::~TraceReader() = default;
 
 const std::string& TraceReader::file() const { return impl_->rows.file(); }
 const ChannelSet& TraceReader::present() const { return impl_->present; }
+const std::vector<std::string>& TraceReader::ignored() const { return impl_->ignored; }
 
 Result<bool> TraceReader::next(Sample& sample, std::vector<ParameterChange>& changes) {
   return impl_->next(sample, changes);
@@ -238,8 +252,11 @@ Result<TraceReader> TraceReader::open(const std::filesystem::path& path, TraceNe
   const auto provenance = provenance_in(path.parent_path());
   if (!provenance) return tl::unexpected(provenance.error());
 
-  auto impl = std::make_unique<Impl>(
-      Impl{std::move(*rows), layout->present, ParameterColumns(std::move(layout->parameters)), {}});
+  auto impl = std::make_unique<Impl>(Impl{std::move(*rows),
+                                          layout->present,
+                                          ParameterColumns(std::move(layout->parameters)),
+                                          std::move(layout->ignored),
+                                          {}});
   Sample common{};
   if (const auto done = apply_constants(provenance->constants, impl->rows, common, impl->present,
                                         impl->constants);
@@ -267,6 +284,7 @@ Result<Trace> read_csv(const std::filesystem::path& path, TraceNeed need) {
   Trace trace;
   trace.source = reader->file();
   trace.present = reader->present();
+  trace.ignored_columns = reader->ignored();
   Sample sample;
   std::vector<ParameterChange> changes;
   while (true) {

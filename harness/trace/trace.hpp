@@ -61,11 +61,12 @@ enum class TraceNeed {
 };
 
 struct Trace {
-  std::string source;                       // file or case, for messages
-  std::vector<Sample> samples;              // one per tick, timestamps strictly increasing
-  std::vector<ParameterChange> parameters;  // by tick, then in the order of their setting
-  ChannelSet present;                       // the channels that were recorded; the others are 0
-  std::vector<PlantSample> plant;           // of a flown trace: one per sample; else empty
+  std::string source;                          // file or case, for messages
+  std::vector<Sample> samples;                 // one per tick, timestamps strictly increasing
+  std::vector<ParameterChange> parameters;     // by tick, then in the order of their setting
+  ChannelSet present;                          // the channels that were recorded; the others are 0
+  std::vector<PlantSample> plant;              // of a flown trace: one per sample; else empty
+  std::vector<std::string> ignored_columns{};  // of its file: names that attest does not have
 };
 
 }  // namespace attest

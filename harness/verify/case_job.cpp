@@ -30,20 +30,20 @@ Result<void> CaseJob::open() {
 
 Result<CaseResult> CaseJob::run(std::size_t task) {
   const RunConfiguration& configuration = configurations_[task];
-  if (!vehicle_model_) return evaluate_case(case_, configuration.rate, *golden_, *host_, level_);
-  return evaluate_flight(case_, configuration, *vehicle_model_, *golden_, *host_);
+  if (!vehicle_model_) return evaluate_case(case_, configuration.rate, *golden_, *host_, judge_);
+  return evaluate_flight(case_, configuration, *vehicle_model_, *golden_, *host_, judge_);
 }
 
 Result<CaseResult> TimedJob::run(std::size_t) {
   const auto host = start_host(options_, {&case_, vehicle_model_.get()});
   if (!host) return tl::unexpected(host.error());
-  return evaluate_timed_flight(case_, timing_.configuration, *vehicle_model_, timing_.ticks,
-                               **host);
+  return evaluate_timed_flight(case_, timing_.configuration, *vehicle_model_, timing_.ticks, **host,
+                               judge_);
 }
 
 Result<Jobs<CaseResult>> case_jobs(const std::vector<SelectedCase>& cases,
                                    const std::filesystem::path& golden_root,
-                                   VehicleModels& vehicle_models, Level level,
+                                   VehicleModels& vehicle_models, const JudgeOptions& judge,
                                    const HostOptions& options) {
   Jobs<CaseResult> jobs;
   for (const auto& [the_case, configurations] : cases) {
@@ -59,7 +59,7 @@ Result<Jobs<CaseResult>> case_jobs(const std::vector<SelectedCase>& cases,
         vehicle_model = *loaded;
       }
       jobs.push_back(std::make_unique<CaseJob>(the_case, std::vector(begin, end), vehicle_model,
-                                               golden_root, level, options));
+                                               golden_root, judge, options));
       begin = end;
     }
   }

@@ -16,6 +16,7 @@
 #include "harness/host/port_process.hpp"
 #include "harness/loop/timing_file.hpp"
 #include "harness/plant/vehicle_models.hpp"
+#include "harness/verify/evaluate.hpp"
 #include "harness/verify/verdict.hpp"
 #include "harness/workers/job.hpp"
 
@@ -35,12 +36,12 @@ class CaseJob final : public Job<CaseResult> {
   // `vehicle_model` is the plant configuration's; null for open loop.
   CaseJob(Case the_case, std::vector<RunConfiguration> configurations,
           std::shared_ptr<const VehicleModel> vehicle_model, std::filesystem::path golden_root,
-          Level level, HostOptions options)
+          JudgeOptions judge, HostOptions options)
       : case_(std::move(the_case)),
         configurations_(std::move(configurations)),
         vehicle_model_(std::move(vehicle_model)),
         golden_root_(std::move(golden_root)),
-        level_(level),
+        judge_(std::move(judge)),
         options_(std::move(options)) {}
 
   std::size_t size() const override { return configurations_.size(); }
@@ -54,7 +55,7 @@ class CaseJob final : public Job<CaseResult> {
   std::vector<RunConfiguration> configurations_;
   std::shared_ptr<const VehicleModel> vehicle_model_;
   std::filesystem::path golden_root_;
-  Level level_;
+  JudgeOptions judge_;
   HostOptions options_;
   std::unique_ptr<PortHost> host_;
   std::optional<Golden> golden_;
@@ -64,10 +65,11 @@ class CaseJob final : public Job<CaseResult> {
 class TimedJob final : public Job<CaseResult> {
  public:
   TimedJob(Case the_case, TimingFile timing, std::shared_ptr<const VehicleModel> vehicle_model,
-           HostOptions options)
+           JudgeOptions judge, HostOptions options)
       : case_(std::move(the_case)),
         timing_(std::move(timing)),
         vehicle_model_(std::move(vehicle_model)),
+        judge_(std::move(judge)),
         options_(std::move(options)) {}
 
   std::size_t size() const override { return 1; }
@@ -77,6 +79,7 @@ class TimedJob final : public Job<CaseResult> {
   Case case_;
   TimingFile timing_;
   std::shared_ptr<const VehicleModel> vehicle_model_;
+  JudgeOptions judge_;
   HostOptions options_;
 };
 
@@ -85,7 +88,7 @@ class TimedJob final : public Job<CaseResult> {
 // loaded.
 Result<Jobs<CaseResult>> case_jobs(const std::vector<SelectedCase>& cases,
                                    const std::filesystem::path& golden_root,
-                                   VehicleModels& vehicle_models, Level level,
+                                   VehicleModels& vehicle_models, const JudgeOptions& judge,
                                    const HostOptions& options);
 
 }  // namespace attest

@@ -14,6 +14,7 @@
 #include "harness/trace/provenance.hpp"
 #include "harness/verify/fixed_step.hpp"
 #include "harness/verify/judge.hpp"
+#include "harness/verify/saved_traces.hpp"
 #include "harness/verify/stopwatch.hpp"
 
 namespace attest {
@@ -115,8 +116,9 @@ CaseResult result_for(const Trace& recorded, const std::string& profile) {
 }
 
 Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const Golden& golden,
-                                 PortHost& host, Level level) {
+                                 PortHost& host, const JudgeOptions& options) {
   const Stopwatch stopwatch;
+  Level level = options.level;
   CaseResult result = result_for(the_case, {rate, std::nullopt});
   if (the_case.exact_only && level != Level::exact) {
     result.verdict = Verdict::skip;
@@ -136,6 +138,10 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
   run_and_judge(prepared->answered, prepared->want, prepared->branch_alternatives,
                 subject_of(the_case), host, tolerances_of(the_case, level, bits, ticks),
                 tolerances_of(the_case, Level::numeric, bits, ticks), result);
+  const bool has_outputs = result.ticks > 0;
+  const auto saved = save_traces(options.save_traces, result,
+                                 has_outputs ? &prepared->answered : nullptr, prepared->want);
+  if (!saved) return tl::unexpected(saved.error());
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }

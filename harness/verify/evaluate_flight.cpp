@@ -17,6 +17,7 @@
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/fixed_step.hpp"
 #include "harness/verify/judge.hpp"
+#include "harness/verify/saved_traces.hpp"
 #include "harness/verify/stopwatch.hpp"
 
 namespace attest {
@@ -147,9 +148,21 @@ std::string how_it_ended(const Flown& flown) {
 
 namespace {
 
+// `want` is what the reference answers to the inputs of that flight.
+Result<void> save_flight(const std::filesystem::path& folder, const CaseResult& result,
+                         const Flown& flown) {
+  if (folder.empty() || flown.trace.samples.empty()) return {};
+  Trace want = flown.trace;
+  if (const auto fault = drive(*open_builtin(), Subject{result.profile}, want)) {
+    return fail("the reference: " + fault->what);
+  }
+  return save_traces(folder, result, &flown.trace, want);
+}
+
 // A fresh unit flies at those times, and is compared with the reference.
 Result<CaseResult> evaluate_with(const Case& the_case, const FlightPlan& plan,
-                                 const ReferenceFlight& reference, PortHost& host) {
+                                 const ReferenceFlight& reference, PortHost& host,
+                                 const JudgeOptions& options) {
   const Stopwatch stopwatch;
   CaseResult result = result_for(the_case, plan.configuration);
   if (declines(host.says(), result)) return result;
@@ -165,6 +178,7 @@ Result<CaseResult> evaluate_with(const Case& the_case, const FlightPlan& plan,
   } else {
     judge(*flown->fault, result);
   }
+  if (judged) judged = save_flight(options.save_traces, result, *flown);
   if (!judged) return tl::unexpected(judged.error());
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
@@ -174,9 +188,10 @@ Result<CaseResult> evaluate_with(const Case& the_case, const FlightPlan& plan,
 // zero on. Errors: the reference does not agree with the golden.
 Result<CaseResult> evaluate_from_one_period_on(const Case& the_case, FlightPlan plan,
                                                const VehicleModel& vehicle_model,
-                                               const ReferenceFlight& golden, PortHost& host) {
+                                               const ReferenceFlight& golden, PortHost& host,
+                                               const JudgeOptions& options) {
   HostHere builtin(open_builtin(), {}, {&the_case, &vehicle_model});
-  const auto checked = evaluate_with(the_case, plan, golden, builtin);
+  const auto checked = evaluate_with(the_case, plan, golden, builtin, Level::numeric);
   if (!checked) return tl::unexpected(checked.error());
   if (checked->verdict != Verdict::pass) {
     return fail_at(the_case.file.string(),
@@ -188,30 +203,31 @@ Result<CaseResult> evaluate_from_one_period_on(const Case& the_case, FlightPlan 
   const auto reference = reference_flight(begun, plan.configuration, vehicle_model, plan.timing);
   if (!reference) return tl::unexpected(reference.error());
   plan.from_one_period_on = true;
-  return evaluate_with(begun, plan, *reference, host);
+  return evaluate_with(begun, plan, *reference, host, options);
 }
 
 }  // namespace
 
 Result<CaseResult> evaluate_flight(const Case& the_case, const RunConfiguration& configuration,
                                    const VehicleModel& vehicle_model, const Golden& golden,
-                                   PortHost& host) {
+                                   PortHost& host, const JudgeOptions& options) {
   const auto reference = golden.read_flight(configuration, vehicle_model.vehicle());
   if (!reference) return tl::unexpected(reference.error());
   const FlightPlan plan{configuration, case_timing(the_case, configuration.rate)};
   if (!has_fixed_step(host.says(), the_case)) {
-    return evaluate_with(the_case, plan, *reference, host);
+    return evaluate_with(the_case, plan, *reference, host, options);
   }
   CaseResult result = result_for(the_case, configuration);
   if (has_other_steps(host.says(), the_case, configuration.rate, plan.timing, result))
     return result;
-  return evaluate_from_one_period_on(the_case, plan, vehicle_model, *reference, host);
+  return evaluate_from_one_period_on(the_case, plan, vehicle_model, *reference, host, options);
 }
 
 Result<CaseResult> evaluate_timed_flight(const Case& the_case,
                                          const RunConfiguration& configuration,
                                          const VehicleModel& vehicle_model,
-                                         const LoopTiming& timing, PortHost& host) {
+                                         const LoopTiming& timing, PortHost& host,
+                                         const JudgeOptions& options) {
   CaseResult result = result_for(the_case, configuration);
   if (has_other_steps(host.says(), the_case, configuration.rate, timing, result)) return result;
   const FlightPlan plan{configuration, timing, has_fixed_step(host.says(), the_case)};
@@ -223,7 +239,7 @@ Result<CaseResult> evaluate_timed_flight(const Case& the_case,
     if (value < metric.min) metric.min = -std::numeric_limits<double>::infinity();
     if (value > metric.max) metric.max = std::numeric_limits<double>::infinity();
   }
-  return evaluate_with(relaxed, plan, *reference, host);
+  return evaluate_with(relaxed, plan, *reference, host, options);
 }
 
 }  // namespace attest

@@ -136,3 +136,14 @@ PYTHON
   [ "$status" -eq 2 ]
   has "provenance.toml:"
 }
+
+@test "a trace is read from a pipe" {
+  trace="$SOURCE"/golden/recorded/px4-v1.5.5/fuzz_250hz.csv
+  run bash -c "cat '$trace' | '$ATTEST' replay --level exact /dev/stdin"
+  [ "$status" -eq 0 ]
+  has "/dev/stdin  px4-v1.5.5  330 ticks"
+  run bash -c "head -c 20000 '$trace' | '$ATTEST' replay /dev/stdin"
+  [ "$status" -eq 2 ]
+  has "/dev/stdin:"
+  lacks "/proc/"
+}

@@ -203,3 +203,48 @@ quick=(--group attitude --group battery --group rates)
   has "report: is asked for twice"
   [ ! -e report ]
 }
+
+@test "a report named - goes to stdout, and everything else to stderr" {
+  "$ATTEST" run --group tpa --rate 250 --json - >report.json 2>text
+  python3 -m json.tool report.json >/dev/null
+  grep -q "^PASS" text
+  "$ATTEST" run --group tpa --rate 250 --junit - 2>/dev/null | xmllint --noout -
+}
+
+@test "the traces of what fails are saved, and compare as the run said" {
+  run "$ATTEST" run --group tpa --rate 250 --profile px4-v1.5.5 --port fault:tpa-missing \
+    --no-diagnose --save-traces traces
+  [ "$status" -eq 1 ]
+  has "traces: traces/PROFILE/GROUP/NAME/RATE.got.csv"
+  place=traces/px4-v1.5.5/tpa/each_axis/250hz
+  run "$ATTEST" compare "$place.got.csv" "$place.want.csv"
+  [ "$status" -eq 1 ]
+  has "first at tick"
+  "$ATTEST" replay "$place.want.csv"
+  [ "$(find traces -name '*.got.csv' | wc -l)" -eq 7 ]
+}
+
+@test "the traces of a failing flight have what the reference answers to the same inputs" {
+  run "$ATTEST" run --filter 'px4-v1.5.5/flight/hover@250hz-iris-mujoco' --no-diagnose \
+    --port "lib:$PORTS/port_sign_flip.so" --save-traces traces
+  [ "$status" -eq 1 ]
+  place=traces/px4-v1.5.5/flight/hover/250hz-iris-mujoco
+  head -1 "$place.got.csv" | grep -q plant/
+  "$ATTEST" replay "$place.want.csv" --level exact
+  run "$ATTEST" replay "$place.want.csv" --port "lib:$PORTS/port_sign_flip.so"
+  [ "$status" -eq 1 ]
+}
+
+@test "of a crash only the expected trace is saved" {
+  run "$ATTEST" run --filter 'px4-v1.5.5/tpa/each_axis@250hz' --no-diagnose \
+    --port "lib:$PORTS/port_crash.so" --save-traces traces
+  [ "$status" -eq 1 ]
+  has "in step() at tick 20"
+  [ "$(cd traces/px4-v1.5.5/tpa/each_axis && echo *)" = 250hz.want.csv ]
+}
+
+@test "traces are not saved among the files of the suite" {
+  run "$ATTEST" run --group tpa --save-traces "$SOURCE/golden"
+  [ "$status" -eq 2 ]
+  has "is a folder of the suite"
+}

@@ -89,6 +89,8 @@ TEST(CaseErrors, Rates) {
   EXPECT_THAT(errors_of("rates_hz = [250]\n"), HasSubstr("missing key `rates_why`"));
   EXPECT_EQ(errors_of(why), "6:1: explains `rates_hz`, which is not there");
   EXPECT_EQ(errors_of(why + "rates_hz = []\n"), "7:1: names no rate");
+  EXPECT_EQ(errors_of(why + "rates_hz = []\neither_branch = [\"yaw_wrap\"]\n"),
+            "7:1: names no rate");
   EXPECT_EQ(errors_of(why + "rates_hz = [250, 100, 250.0]\n"), "7:1: names a rate twice");
   EXPECT_THAT(errors_of(why + "rates_hz = [0]\n"), HasSubstr("7:1: `0` is not a rate"));
   EXPECT_THAT(errors_of(why + "rates_hz = [-250]\n"), HasSubstr("is not a rate"));

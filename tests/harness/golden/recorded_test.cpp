@@ -25,6 +25,28 @@ TEST(Recorded, AControllersTraceIsOfTheProfileThatItsProvenanceNames) {
   EXPECT_EQ(read->subject.profile, "px4-v1.3.4");
 }
 
+TEST(Recorded, ColumnsThatAttestDoesNotHaveAreIgnoredWithANote) {
+  const TemporaryDirectory folder;
+  std::ifstream original(recorded / "px4-v1.5.5" / "fuzz_250hz.csv");
+  std::filesystem::copy(recorded / "px4-v1.5.5" / "provenance.toml", folder.path());
+  std::ofstream extended(folder.path() / "a.csv");
+  std::string line;
+  for (int row = 0; std::getline(original, line); ++row) {
+    extended << (row == 0 ? "comment," : "any text,") << line << (row == 0 ? ",log/x" : ",")
+             << "\n";
+  }
+  extended.close();
+  const auto read = read_recorded(folder.path() / "a.csv");
+  ASSERT_TRUE(read) << read.error().to_string();
+  EXPECT_THAT(read->notes, testing::ElementsAre("columns ignored, because attest has no such "
+                                                "signals: comment, log/x"));
+  const auto plain = read_recorded(recorded / "px4-v1.5.5" / "fuzz_250hz.csv");
+  EXPECT_EQ(read->trace.parameters, plain->trace.parameters);
+  EXPECT_EQ(read->trace.samples.size(), plain->trace.samples.size());
+  EXPECT_EQ(read->trace.samples.back().out.actuator_controls_0.control[1],
+            plain->trace.samples.back().out.actuator_controls_0.control[1]);
+}
+
 TEST(Recorded, AMixersDefinitionStandsInItsProvenance) {
   const auto read = read_recorded(mixers / "4x_scaled_idle.csv");
   ASSERT_TRUE(read) << read.error().to_string();

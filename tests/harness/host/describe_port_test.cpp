@@ -49,6 +49,7 @@ TEST(DescribePort, OneThatRefusesEveryProfileIsStillAPort) {
   const auto description = described(test_port("refuses_profile"));
   ASSERT_TRUE(description);
   EXPECT_THAT(description->profiles, IsEmpty());
+  EXPECT_EQ(description->refusal, "; it last printed: no gains for px4-v1.3.4");
 }
 
 TEST(DescribePort, OneThatCannotBeLoadedSaysWhy) {
@@ -67,7 +68,7 @@ TEST(DescribePort, OneThatHangsSaysSo) {
   const auto create = described(test_port("hangs_in_create"), profiles, 0.3);
   ASSERT_TRUE(create) << create.error().to_string();
   EXPECT_EQ(create->hangs, "");
-  EXPECT_EQ(create->goes_wrong, "no answer within 0.3 s, when it was to make a unit of px4-v1.5.5");
+  EXPECT_EQ(create->goes_wrong, "profile px4-v1.5.5: no answer within 0.3 s in create()");
   EXPECT_THAT(create->profiles, IsEmpty());
   EXPECT_EQ(described("builtin")->hangs, "");
   EXPECT_EQ(described("builtin")->goes_wrong, "");

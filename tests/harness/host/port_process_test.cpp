@@ -119,6 +119,7 @@ TEST(PortProcess, ItsDeathIsTheFaultOfTheRequestAndOfAllThatFollow) {
     ASSERT_TRUE(fault);
     EXPECT_EQ(fault->kind, Kind::crash);
     EXPECT_THAT(fault->what, HasSubstr("the port's process "));
+    EXPECT_THAT(fault->what, HasSubstr(" in step() at tick 20"));
     EXPECT_TRUE(host->is_spent());
   }
 }
@@ -129,7 +130,7 @@ TEST(PortProcess, AHangIsWaitedForOnce) {
   const auto fault = host->drive(unit, trace);
   ASSERT_TRUE(fault);
   EXPECT_EQ(fault->kind, Kind::timeout);
-  EXPECT_EQ(fault->what, "no answer within 0.2 s");
+  EXPECT_EQ(fault->what, "no answer within 0.2 s in step() at tick 20");
   EXPECT_EQ(host->drive(unit, trace)->what, "not run: the port had timed out before");
   EXPECT_FALSE(host->is_spent());
 }
@@ -159,7 +160,12 @@ TEST(PortProcess, WhatTheStepSaysComesBack) {
   ASSERT_TRUE(fault);
   EXPECT_EQ(fault->kind, Kind::failed);
   EXPECT_EQ(fault->tick, 20u);
-  EXPECT_EQ(host_of("refuses_profile")->drive(unit, trace)->kind, Kind::profile);
+  const auto refusal = host_of("refuses_profile")->drive(unit, trace);
+  ASSERT_TRUE(refusal);
+  EXPECT_EQ(refusal->kind, Kind::profile);
+  EXPECT_EQ(refusal->what,
+            "the port does not support profile px4-v1.5.5; it last printed: no gains for "
+            "px4-v1.5.5");
 }
 
 TEST(PortProcess, APortIsHeldToWhatItSaid) {

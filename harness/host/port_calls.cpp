@@ -1,0 +1,150 @@
+#include "harness/host/port_calls.hpp"
+
+#include <atomic>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
+#include <sys/mman.h>
+
+namespace attest {
+
+namespace {
+
+enum class Call : std::uint32_t { none, create, set_parameter, step, destroy };
+
+}  // namespace
+
+struct PortCalls::Now {
+  std::atomic<Call> call{Call::none};
+  std::atomic<std::uint64_t> tick{0};  // of the instance whose step() runs
+};
+static_assert(std::atomic<std::uint64_t>::is_always_lock_free);  // shared by two processes
+
+namespace {
+
+using Now = PortCalls::Now;
+
+// Notes a call for as long as it exists.
+class Noted {
+ public:
+  Noted(Now& now, Call call) : now_(now) { now_.call.store(call, std::memory_order_relaxed); }
+  ~Noted() { now_.call.store(Call::none, std::memory_order_relaxed); }
+  Noted(const Noted&) = delete;
+  Noted& operator=(const Noted&) = delete;
+
+ private:
+  Now& now_;
+};
+
+// Base is Unit, MixerUnit or BatteryUnit.
+template <typename Base>
+class NotedUnit : public Base {
+ public:
+  NotedUnit(std::unique_ptr<Base> unit, Now& now) : unit_(std::move(unit)), now_(now) {}
+  ~NotedUnit() override {
+    const Noted noted(now_, Call::destroy);
+    unit_.reset();
+  }
+
+  int set_parameter(const std::string& name, float value) override {
+    const Noted noted(now_, Call::set_parameter);
+    return unit_->set_parameter(name, value);
+  }
+  int step(const typename Base::Inputs& in, typename Base::Outputs& out) override {
+    now_.tick.store(tick_++, std::memory_order_relaxed);
+    const Noted noted(now_, Call::step);
+    return unit_->step(in, out);
+  }
+
+ protected:
+  Base& unit() { return *unit_; }
+
+ private:
+  std::unique_ptr<Base> unit_;
+  Now& now_;
+  std::uint64_t tick_ = 0;
+};
+
+class NotedControllerUnit final : public NotedUnit<Unit> {
+ public:
+  using NotedUnit::NotedUnit;
+  int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
+    return unit().set_timestamp_sample(timestamp_sample_us);
+  }
+};
+
+class NotedPort final : public Port {
+ public:
+  NotedPort(std::unique_ptr<Port> port, Now& now) : port_(std::move(port)), now_(now) {}
+
+  std::string name() const override { return port_->name(); }
+  std::string version() const override { return port_->version(); }
+  std::vector<std::string> unsupported_groups() const override {
+    return port_->unsupported_groups();
+  }
+  std::optional<int> fraction_bits() const override { return port_->fraction_bits(); }
+  std::optional<Rate> fixed_step() const override { return port_->fixed_step(); }
+  bool has_mixer() const override { return port_->has_mixer(); }
+  bool has_battery_status() const override { return port_->has_battery_status(); }
+
+  std::unique_ptr<Unit> create(const std::string& profile) override {
+    return made<NotedControllerUnit>([&] { return port_->create(profile); });
+  }
+  std::unique_ptr<MixerUnit> create_mixer(const std::string& profile,
+                                          const std::string& definition) override {
+    return made<NotedUnit<MixerUnit>>([&] { return port_->create_mixer(profile, definition); });
+  }
+  std::unique_ptr<BatteryUnit> create_battery_status(const std::string& profile) override {
+    return made<NotedUnit<BatteryUnit>>([&] { return port_->create_battery_status(profile); });
+  }
+
+ private:
+  template <typename NotedKind, typename Create>
+  std::unique_ptr<NotedKind> made(Create create) {
+    const Noted noted(now_, Call::create);
+    auto unit = create();
+    return unit ? std::make_unique<NotedKind>(std::move(unit), now_) : nullptr;
+  }
+
+  std::unique_ptr<Port> port_;
+  Now& now_;
+};
+
+}  // namespace
+
+Result<PortCalls> PortCalls::make() {
+  void* const memory =
+      ::mmap(nullptr, sizeof(Now), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) {
+    return fail(
+        fmt::format("cannot share memory with the port's process: {}", std::strerror(errno)));
+  }
+  return PortCalls(new (memory) Now);
+}
+
+void PortCalls::Unmap::operator()(Now* now) const { ::munmap(now, sizeof(Now)); }
+
+std::string PortCalls::current() const {
+  switch (now_->call.load(std::memory_order_relaxed)) {
+    case Call::create:
+      return " in create()";
+    case Call::set_parameter:
+      return " in set_parameter()";
+    case Call::step:
+      return fmt::format(" in step() at tick {}", now_->tick.load(std::memory_order_relaxed));
+    case Call::destroy:
+      return " in destroy()";
+    case Call::none:
+      break;
+  }
+  return "";
+}
+
+std::unique_ptr<Port> PortCalls::noted(std::unique_ptr<Port> port) const {
+  return std::make_unique<NotedPort>(std::move(port), *now_);
+}
+
+}  // namespace attest

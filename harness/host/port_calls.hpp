@@ -1,0 +1,36 @@
+// The call of the port that runs now, in memory that the port's process shares with its judge.
+// After a crash or a timeout the judge reads there in which call, and at which tick, the port was.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "harness/core/result.hpp"
+#include "harness/port/port.hpp"
+
+namespace attest {
+
+class PortCalls {
+ public:
+  // Errors: no shared memory.
+  static Result<PortCalls> make();
+
+  // " in step() at tick 17", " in create()"; empty between the calls. A port can write there, so
+  // only messages may depend on it.
+  std::string current() const;
+
+  // The port, with each of its calls noted. Used in the port's process. The memory must outlive it.
+  std::unique_ptr<Port> noted(std::unique_ptr<Port> port) const;
+
+  struct Now;
+
+ private:
+  struct Unmap {
+    void operator()(Now* now) const;
+  };
+  explicit PortCalls(Now* now) : now_(now) {}
+
+  std::unique_ptr<Now, Unmap> now_;
+};
+
+}  // namespace attest

@@ -1,0 +1,98 @@
+// The note of the running call: written around each call of a port, in whichever module.
+#include "harness/host/port_calls.hpp"
+
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include "harness/port/builtin.hpp"
+
+namespace attest {
+namespace {
+
+const std::string mixer = "R: 4x 10000 10000 10000 0";
+
+// A controller that calls back in each of its functions.
+class CallingUnit final : public Unit {
+ public:
+  explicit CallingUnit(const std::function<void()>& call) : call_(call) {}
+  ~CallingUnit() override { call_(); }
+  int set_parameter(const std::string&, float) override { return called(); }
+  int step(const attest_inputs&, attest_outputs&) override { return called(); }
+
+ private:
+  int called() {
+    call_();
+    return ATTEST_OK;
+  }
+  const std::function<void()>& call_;
+};
+
+class CallingPort final : public Port {
+ public:
+  explicit CallingPort(const std::function<void()>& call) : call_(call) {}
+  std::string name() const override { return "calling"; }
+  std::string version() const override { return "1"; }
+  std::unique_ptr<Unit> create(const std::string&) override {
+    call_();
+    return std::make_unique<CallingUnit>(call_);
+  }
+
+ private:
+  const std::function<void()>& call_;
+};
+
+TEST(PortCalls, TheRunningCallIsNamed) {
+  const auto calls = PortCalls::make();
+  ASSERT_TRUE(calls) << calls.error().to_string();
+  std::string seen;
+  const std::function<void()> look = [&] { seen = calls->current(); };
+  const auto port = calls->noted(std::make_unique<CallingPort>(look));
+  EXPECT_EQ(calls->current(), "");
+  auto unit = port->create("px4-v1.5.5");
+  EXPECT_EQ(seen, " in create()");
+  EXPECT_EQ(calls->current(), "");
+  attest_outputs out{};
+  for (const char* expected : {" in step() at tick 0", " in step() at tick 1"}) {
+    EXPECT_EQ(unit->step({}, out), ATTEST_OK);
+    EXPECT_EQ(seen, expected);
+  }
+  EXPECT_EQ(unit->set_parameter("MC_ROLL_P", 6), ATTEST_OK);
+  EXPECT_EQ(seen, " in set_parameter()");
+  unit.reset();
+  EXPECT_EQ(seen, " in destroy()");
+  EXPECT_EQ(calls->current(), "");
+}
+
+TEST(PortCalls, EachInstanceCountsItsOwnTicks) {
+  const auto calls = PortCalls::make();
+  ASSERT_TRUE(calls);
+  std::string seen;
+  const std::function<void()> look = [&] { seen = calls->current(); };
+  const auto port = calls->noted(std::make_unique<CallingPort>(look));
+  const auto one = port->create(""), other = port->create("");
+  attest_outputs out{};
+  one->step({}, out);
+  one->step({}, out);
+  EXPECT_EQ(seen, " in step() at tick 1");
+  other->step({}, out);
+  EXPECT_EQ(seen, " in step() at tick 0");
+}
+
+TEST(PortCalls, TheNotedPortIsThePort) {
+  const auto calls = PortCalls::make();
+  ASSERT_TRUE(calls);
+  const auto port = calls->noted(open_builtin());
+  const auto original = open_builtin();
+  EXPECT_EQ(port->name(), original->name());
+  EXPECT_EQ(port->version(), original->version());
+  EXPECT_TRUE(port->has_mixer());
+  EXPECT_TRUE(port->has_battery_status());
+  EXPECT_EQ(port->create("px4-v0.1"), nullptr);
+  EXPECT_EQ(calls->current(), "");
+  EXPECT_NE(port->create_mixer("px4-v1.5.5", mixer), nullptr);
+  EXPECT_NE(port->create_battery_status("px4-v1.5.5"), nullptr);
+}
+
+}  // namespace
+}  // namespace attest
