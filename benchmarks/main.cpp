@@ -45,7 +45,7 @@ int main(int argc, char** argv) {
   const bool of_memory = filter.empty() || filter == "memory";
   const std::string memory = of_memory ? "\n" + attest::bench::memory_table(met) : "";
   attest::bench::PairReporter reporter;
-  if (!attest::bench::run_by_turns(filter, reporter) && !of_memory) {
+  if (!attest::bench::run_alternating(filter, reporter) && !of_memory) {
     fmt::print(stderr, "--benchmark_filter={}: no benchmark of that name\n", filter);
     return 2;
   }

@@ -65,7 +65,7 @@ int turns(const std::string& floor) { return floor.starts_with("suite/") ? 3 : 1
 
 }  // namespace
 
-bool run_by_turns(const std::string& filter, PairReporter& reporter) {
+bool run_alternating(const std::string& filter, PairReporter& reporter) {
   auto wanted = groups(filter);
   for (Group& group : wanted) {
     const int count = turns(group.floor);

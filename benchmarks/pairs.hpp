@@ -46,6 +46,6 @@ class PairReporter : public benchmark::BenchmarkReporter {
 };
 
 // Runs the pairs with `filter` in the name of a benchmark; "": all. False if no pair matches.
-bool run_by_turns(const std::string& filter, PairReporter& reporter);
+bool run_alternating(const std::string& filter, PairReporter& reporter);
 
 }  // namespace attest::bench

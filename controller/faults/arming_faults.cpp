@@ -88,24 +88,24 @@ const Fault arming_list[] = {
     {"armed-at-start", "arming", Stage::arming, "assumes armed before the first actuator_armed",
      "no actuator_armed yet", "initial state",
      [](FaultyLaw& law) {
-       auto told = std::make_shared<bool>(false);
-       also_before(law, [told](attest_inputs& in) {
-         *told = *told || (in.updated & ATTEST_UPDATED_ACTUATOR_ARMED) != 0;
+       auto received = std::make_shared<bool>(false);
+       also_before(law, [received](attest_inputs& in) {
+         *received = *received || (in.updated & ATTEST_UPDATED_ACTUATOR_ARMED) != 0;
        });
-       law.step.is_flying = [told](const Topics& topics) {
-         return (topics.armed || !*told) && topics.is_rotary_wing;
+       law.step.is_flying = [received](const Topics& topics) {
+         return (topics.armed || !*received) && topics.is_rotary_wing;
        };
      }},
     {"fixed-wing-at-start", "arming", Stage::arming,
      "assumes a fixed wing before the first vehicle_status", "no vehicle_status yet",
      "initial state",
      [](FaultyLaw& law) {
-       auto told = std::make_shared<bool>(false);
-       also_before(law, [told](attest_inputs& in) {
-         *told = *told || (in.updated & ATTEST_UPDATED_VEHICLE_STATUS) != 0;
+       auto received = std::make_shared<bool>(false);
+       also_before(law, [received](attest_inputs& in) {
+         *received = *received || (in.updated & ATTEST_UPDATED_VEHICLE_STATUS) != 0;
        });
-       law.step.is_flying = [told](const Topics& topics) {
-         return StepStages::Law::is_flying(topics) && *told;
+       law.step.is_flying = [received](const Topics& topics) {
+         return StepStages::Law::is_flying(topics) && *received;
        };
      }},
     {"status-not-needed", "arming", Stage::output, "publishes before the first vehicle_status",
@@ -179,9 +179,9 @@ const Fault arming_list[] = {
     {"setpoint-level-at-start", "arming", Stage::input,
      "assumes a level setpoint before the first one", "no setpoint yet", "initial state",
      [](FaultyLaw& law) {
-       also_before(law, [told = false](attest_inputs& in) mutable {
-         told = told || (in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;
-         if (told) return;
+       also_before(law, [received = false](attest_inputs& in) mutable {
+         received = received || (in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;
+         if (received) return;
          in.vehicle_attitude_setpoint = {};
          in.vehicle_attitude_setpoint.q_d[0] = 1;
          in.updated |= ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT;

@@ -223,7 +223,7 @@ void parse_duration(const TomlTable& root, Case& parsed) {
 }
 
 // The folder of models: <suite>/cases/<profile>/<group>/<name>.toml uses <suite>/models.
-fs::path models_beside(const fs::path& file) {
+fs::path models_of_suite(const fs::path& file) {
   const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
   return folder.parent_path().parent_path().parent_path() / "models";
 }
@@ -251,7 +251,7 @@ void parse_body(const TomlTable& root, Case& parsed) {
   check_unit(root, parsed);
   parsed.parameters = parse_parameters(root, parsed);
   parsed.topics = parse_topics(root, parsed.module, root.has("flight"));
-  if (root.has("flight")) parse_flight(root, models_beside(parsed.file), parsed);
+  if (root.has("flight")) parse_flight(root, models_of_suite(parsed.file), parsed);
   parse_tolerances(root, parsed);
 }
 

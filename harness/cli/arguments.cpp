@@ -17,8 +17,9 @@ namespace attest::cli {
 namespace {
 
 constexpr const char* description =
-    "Says whether a port of the PX4 multicopter attitude controller is the same controller as the\n"
-    "reference, at every loop rate, and if not: at which tick, on which signal, in which stage.\n";
+    "Judges whether a port of the PX4 multicopter attitude controller conforms to the\n"
+    "reference at every loop rate. Reports the first divergence: its tick, signal and stage of the "
+    "law.\n";
 
 constexpr const char* footer =
     "\nFirst steps (`attest help COMMAND` has more):\n"
@@ -29,20 +30,22 @@ constexpr const char* footer =
     "  attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv\n"
     "  attest stress --port lib:./libmine.so          in real time, at 250 Hz to 8 kHz\n"
     "\n"
-    "Exit codes: 0 nothing failed, 1 something did not conform, 2 usage or environment.\n";
+    "Exit codes: 0 no failure, 1 a failure, 2 wrong usage or environment.\n";
 
 void add_replay(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<ReplayOptions>();
-  CLI::App* command = app.add_subcommand(
-      "replay", "Feed the inputs of recorded traces to a port and compare with what was recorded");
+  CLI::App* command = app.add_subcommand("replay",
+                                         "Feed the inputs of recorded traces to a port and compare "
+                                         "its outputs with the recorded ones");
   command->add_option("files", options->files, "Traces (CSV) of a controller, or of a mixer")
       ->type_name("TRACE")
       ->required();
   add_port(*command, options->host.port);
   command
-      ->add_option("--profile", options->profile,
-                   "Version of the law; default: what the provenance.toml beside the trace says, "
-                   "else px4-v1.5.5")
+      ->add_option(
+          "--profile", options->profile,
+          "Version of the law; default: that of the provenance.toml next to the trace, else "
+          "px4-v1.5.5")
       ->type_name("PROFILE");
   command->add_option("--param", options->parameters, "Set a parameter from the first step on")
       ->type_name("NAME=VALUE")
@@ -54,11 +57,10 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
                    "Definition of the mixer of a mixer trace; default: from its name")
       ->type_name("TEXT");
   add_timeout(*command, options->host.timeout_s);
-  add_examples(
-      *command,
-      {{"attest replay TRACE.csv --port lib:./libmine.so",
-        "a trace that was recorded from the firmware, or written by `attest sim`"},
-       {"attest replay TRACE.csv --param MC_ROLL_P=7", "with another value of a parameter"}});
+  add_examples(*command, {{"attest replay TRACE.csv --port lib:./libmine.so",
+                           "a trace recorded from the firmware, or written by `attest sim`"},
+                          {"attest replay TRACE.csv --param MC_ROLL_P=7",
+                           "with another value of a parameter"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return replay_command(*options, globals); };
   });
@@ -70,11 +72,13 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
       "sim", "Let a port fly one case, and write the flown trace, which `replay` can feed again");
   command->add_option("case", options->case_name, "A flight: its name or id, or a case file")
       ->type_name("CASE");
-  command->add_option("--rate", options->rate, "Loop rate [Hz]; any, not only the case's own")
+  command
+      ->add_option("--rate", options->rate, "Loop rate [Hz]; also one that the case does not list")
       ->type_name("HZ");
   command
       ->add_option("--timing", options->timing,
-                   "Instead: the flight of `stress --record-timing`, at the very times it had")
+                   "Instead of a case and a rate: the flight of `stress --record-timing`, at the "
+                   "recorded times")
       ->type_name("F");
   add_plant(*command, options->vehicle, options->plant);
   add_port(*command, options->host.port);
@@ -93,8 +97,8 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
 
 void add_faults(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<FaultOptions>();
-  CLI::App* command = app.add_subcommand(
-      "faults", "How good the suite is: which wrong controllers of the catalogue it catches");
+  CLI::App* command =
+      app.add_subcommand("faults", "Measure the suite: which faults of the catalogue it catches");
   CLI::Option* const ids =
       command->add_option("fault", options->ids, "Only these faults")->type_name("ID");
   command
@@ -102,18 +106,18 @@ void add_faults(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("PROFILE")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command->add_flag("--list", options->list, "What is in the catalogue; runs nothing");
+  command->add_flag("--list", options->list, "List the catalogue; run nothing");
   CLI::Option* const bits =
       command
           ->add_option("--fraction-bits", options->fraction_bits,
-                       "With the tolerances of a port in fixed point that has so many")
+                       "Use the tolerances of a port in fixed point with so many fraction bits")
           ->check(CLI::Range(20, 32));
   command
       ->add_flag("--diagnose", options->diagnose,
-                 "How good diagnosis is, instead: is each fault recognised?")
+                 "Measure the diagnosis instead: is each fault recognised?")
       ->excludes(bits, ids);
   add_jobs(*command, options->jobs, "Faults at a time");
-  add_examples(*command, {{"attest faults", "which wrong controllers the whole suite catches"},
+  add_examples(*command, {{"attest faults", "which faults the whole suite catches"},
                           {"attest faults --list --profile px4-v1.3.4",
                            "the catalogue of one version of the law"}});
   command->callback([options, &globals, &action] {
@@ -141,20 +145,21 @@ void add_compare(CLI::App& app, const Globals& globals, Action& action) {
 void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<VectorOptions>();
   CLI::App* command = app.add_subcommand(
-      "vectors", "Write the inputs of the cases as CSV, for a port that runs elsewhere");
+      "vectors", "Write the inputs of the vectors as CSV, for a port that runs on other hardware");
   CLI::Option* const folder =
       command->add_option("folder", options->folder, "Where: DIR/PROFILE/GROUP/NAME/RATEhz.csv")
           ->type_name("DIR");
   command
-      ->add_flag("--lint", options->lint,
-                 "Write nothing; refuse numeric cases that come too near to a decision of the law, "
-                 "where right controllers differ")
+      ->add_flag(
+          "--lint", options->lint,
+          "Write nothing; report numeric vectors that are too near to a decision of the law, "
+          "where correct controllers may differ")
       ->excludes(folder);
   add_selection(*command, options->select);
   add_examples(
       *command,
       {{"attest vectors DIR --group attitude --rate 250", "the inputs of some cases, a file each"},
-       {"attest vectors --lint", "is a case too near to a decision of the law?"}});
+       {"attest vectors --lint", "is a vector too near to a decision of the law?"}});
   command->callback([options, &globals, &action] {
     if (!options->lint && options->folder.empty()) throw CLI::RequiredError("folder");
     action = [=, &globals] {
@@ -166,15 +171,16 @@ void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
 void add_list(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<ListOptions>();
   CLI::App* command =
-      app.add_subcommand("list", "List the cases, with why each exists; or one of the tables");
+      app.add_subcommand("list", "List the cases with their reasons, or one of the tables");
   add_selection(*command, options->select);
-  command->add_flag("--groups", options->groups, "Only the groups, with how many cases");
+  command->add_flag("--groups", options->groups,
+                    "Only the groups, with their numbers of cases and vectors");
   command->add_flag("--parameters", options->parameters, "The parameters of the law");
   command->add_flag("--channels", options->channels, "The signals: trace columns and ABI members");
   command->add_flag("--flight-modes", options->modes, "Flight modes and the flags they set");
   command->add_flag("--vehicles", options->vehicles, "The vehicles that fly, with their numbers");
   add_examples(*command,
-               {{"attest list --filter 'tpa/*'", "the cases of a group, with why each exists"},
+               {{"attest list --filter 'tpa/*'", "the cases of a group, with their reasons"},
                 {"attest list --parameters --profile px4-v1.3.4",
                  "the parameters of one version of the law"}});
   command->callback([options, &globals, &action] {
@@ -186,14 +192,14 @@ void add_bless(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<BlessOptions>();
   CLI::App* command = app.add_subcommand(
       "bless",
-      "Make the golden traces of cases anew from the reference, after showing what changes; one at "
-      "a time (golden/.bless.lock)");
+      "Make new golden traces from the reference, after showing the changes; one process at a time "
+      "(golden/.bless.lock)");
   add_selection(*command, options->select);
   command->add_option("--reason", options->reason, "Why, for provenance.toml (required)")
       ->type_name("TEXT");
   command->add_flag("--yes", options->yes, "Do not ask");
   add_examples(*command, {{"attest bless --filter 'px4-v1.5.5/tpa/*' --reason \"...\"",
-                           "shows what changes, and asks"}});
+                           "shows the changes, and asks before it replaces the goldens"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return bless_command(*options, globals); };
   });
@@ -202,7 +208,7 @@ void add_bless(CLI::App& app, const Globals& globals, Action& action) {
 void add_doctor(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<DoctorOptions>();
   CLI::App* command = app.add_subcommand(
-      "doctor", "Check the machine, the suite, the reference and a port, and say what is wrong");
+      "doctor", "Check the machine, the suite, the reference and a port, and report errors");
   add_port(*command, options->host.port);
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command, {{"attest doctor --port lib:./libmine.so",
@@ -227,7 +233,8 @@ int show_help(const CLI::App& app, const std::string& name) {
 void add_help(CLI::App& app, Action& action) {
   auto name = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("help", "Show the options and examples of a command");
-  command->add_option("command", *name, "Which; none: all commands")->type_name("COMMAND");
+  command->add_option("command", *name, "The command; default: an overview of all commands")
+      ->type_name("COMMAND");
   add_examples(*command, {{"attest help run", "the same as `attest run --help`"}});
   command->callback(
       [name, &app, &action] { action = [=, &app] { return show_help(app, *name); }; });
@@ -258,7 +265,7 @@ int run_command_line(int argc, char** argv) {
   add_bless(app, globals, action);
   add_doctor(app, globals, action);
   add_help(app, action);
-  app.footer(footer);  // last, as a command takes over what there is
+  app.footer(footer);  // last: commands copy the footer that exists when they are added
 
   const std::string word = argc > 1 ? argv[1] : "";
   if (!word.empty() && !word.starts_with('-')) {

@@ -18,25 +18,25 @@
 namespace attest::cli {
 namespace {
 
-// What was written so far is removed on the way out.
+// The error ends the command; the destructor of PendingGoldens removes the files written so far.
 Result<void> check_not_interrupted() {
   if (interrupted()) return fail("interrupted; no golden was changed");
   return {};
 }
 
-// A golden that only our own code has seen proves nothing: the reference must first agree with what
-// the firmware computed.
+// A golden is only as correct as the reference that computes it. The reference must first agree
+// with the recordings of the firmware.
 Result<void> check_reference(const SuiteFolder& suite) {
   const auto check = check_recorded(suite.recorded());
   if (!check) return tl::unexpected(check.error());
   if (check->conforming == check->traces) return {};
   return fail(
-      fmt::format("nothing is blessed: the reference of this build differs from {} of {} "
+      fmt::format("no golden is blessed: the reference of this build differs from {} of {} "
                   "traces recorded from the firmware; first: {}",
                   check->traces - check->conforming, check->traces, check->first_difference));
 }
 
-// Who blesses has to know which goldens only our own code has seen.
+// The user must know which goldens no recording of the firmware confirms.
 Result<void> note_uncovered(const std::vector<SelectedCase>& cases, const SuiteFolder& suite) {
   const auto covered = covered_groups(suite.recorded());
   if (!covered) return tl::unexpected(covered.error());
@@ -55,7 +55,7 @@ bool confirmed(const BlessOptions& options, std::size_t count) {
   if (options.yes) return true;
   fmt::print("replace the golden of {} case{}? [y/N] ", count, count == 1 ? "" : "s");
   std::fflush(stdout);
-  constexpr int look_every_ms = 100;  // at whether Ctrl-C was pressed, which does not end getline()
+  constexpr int look_every_ms = 100;  // for Ctrl-C, which does not end getline()
   pollfd terminal{STDIN_FILENO, POLLIN, 0};
   while (!interrupted() && ::poll(&terminal, 1, look_every_ms) <= 0) {
   }
@@ -78,7 +78,7 @@ Result<int> bless_selected(const BlessOptions& options, const Globals& globals) 
   BlessingOptions blessing{suite->golden(), suite->models(), options.reason};
   blessing.on_change = [](const std::string& line) { fmt::print("{}\n", line); };
   blessing.stop = interrupted;
-  auto pending = write_beside(*cases, blessing);
+  auto pending = write_new_goldens(*cases, blessing);
   if (auto go_on = check_not_interrupted(); !go_on) return tl::unexpected(go_on.error());
   if (!pending) return tl::unexpected(pending.error());
 
@@ -87,7 +87,7 @@ Result<int> bless_selected(const BlessOptions& options, const Globals& globals) 
   const bool wanted = confirmed(options, pending->goldens.size());
   if (auto go_on = check_not_interrupted(); !go_on) return tl::unexpected(go_on.error());
   if (!wanted) {
-    fmt::print("nothing was changed\n");
+    fmt::print("no golden was changed\n");
     return exit_failed;
   }
   for (NewGolden& golden : pending->goldens) {
@@ -105,11 +105,12 @@ int bless_command(const BlessOptions& options, const Globals& globals) {
   }
   if (!options.select.excludes.empty()) {
     return report_error(
-        {"bless does each file with all its profiles and rates; select with "
+        {"bless replaces the goldens of a case file for all its profiles and rates; select with "
          "--filter or --group instead of --exclude"});
   }
   if (!options.yes && !::isatty(STDIN_FILENO)) {
-    return report_error({"nobody is there to ask; pass --yes to replace goldens unasked"});
+    return report_error(
+        {"stdin is not a terminal; pass --yes to replace goldens without a question"});
   }
   const auto code = bless_selected(options, globals);
   if (code) return *code;

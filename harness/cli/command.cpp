@@ -9,7 +9,7 @@
 namespace attest::cli {
 
 int report_error(const Error& error) {
-  // Not through fmt::print: it throws when nobody can be told.
+  // Not through fmt::print: it throws when stderr cannot be written.
   std::fputs(fmt::format("attest: error: {}\n", error.to_string()).c_str(), stderr);
   return exit_usage;
 }

@@ -17,7 +17,7 @@ namespace attest::cli {
 
 enum Exit : int {
   exit_ok = 0,
-  exit_failed = 1,        // something did not conform
+  exit_failed = 1,        // at least one result does not conform
   exit_usage = 2,         // wrong usage, or the environment: files, ports, goldens
   exit_interrupted = 130  // Ctrl-C, as a shell reports it
 };
@@ -42,11 +42,11 @@ struct SelectionOptions {
            rates.empty() && vehicles.empty() && plants.empty() && shard == "1/1";
   }
 
-  // What of these selects less than all of the cases of a profile: "--group tpa --rate 250".
+  // The options that select fewer than all vectors of a profile: "--group tpa --rate 250".
   std::string narrowing() const;
 
-  // The cases below `folder` that are selected. Errors: those of select_cases, and text that is no
-  // rate or shard.
+  // The selected cases below `folder`. Errors: those of select_cases, and text that is not a rate
+  // or a shard.
   Result<std::vector<SelectedCase>> cases_in(const std::filesystem::path& folder) const;
 };
 
@@ -85,7 +85,7 @@ int compare_command(const CompareOptions& options, const Globals& globals);
 struct SimOptions {
   std::string case_name;  // this and `rate`, or `timing`
   std::string rate;
-  std::string vehicle, plant;  // empty: what the case flies first
+  std::string vehicle, plant;  // empty: the first of the case
   std::string timing;
   HostOptions host;
   std::string out;
@@ -97,7 +97,7 @@ struct StressOptions {
   std::vector<std::string> rates = {"250", "500", "1000", "2000", "4000", "8000"};
   double duration_s = 10;
   std::string case_name = "flight/hover";
-  std::string vehicle, plant;  // empty: what the case flies first
+  std::string vehicle, plant;  // empty: the first of the case
   int load = 0;
   std::string load_kind = "cpu";
   std::string policy = "fifo";
@@ -113,7 +113,7 @@ int stress_command(const StressOptions& options, const Globals& globals);
 struct SweepOptions {
   std::string case_name = "flight/tilt_step_30";
   std::vector<std::string> rates = {"50", "100", "250", "500", "1000"};
-  std::vector<std::string> vehicles, plants;  // empty: all that the case flies
+  std::vector<std::string> vehicles, plants;  // empty: all of the case
   HostOptions host;
   int jobs = 1;
   std::string csv;

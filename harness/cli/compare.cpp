@@ -9,7 +9,7 @@
 namespace attest::cli {
 namespace {
 
-// What the report tells of a result; files have neither port nor case.
+// The part of a result that the report shows; files have neither port nor case.
 CaseResult as_result(const Comparison& comparison) {
   CaseResult result;
   result.ticks = comparison.ticks;

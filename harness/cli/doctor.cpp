@@ -21,7 +21,7 @@
 namespace attest::cli {
 namespace {
 
-// Prints one line a check and remembers whether any was bad.
+// Prints one line per check and stores whether any was bad.
 class Examination {
  public:
   void good(const std::string& what, const std::string& finding) const {
@@ -41,7 +41,7 @@ class Examination {
 };
 
 void examine_arithmetic(Examination& examination) {
-  // volatile: the question is what this machine does now, not what the compiler knows.
+  // volatile: this machine must compute the product now, not the compiler.
   volatile float tiny = std::numeric_limits<float>::denorm_min();
   volatile float product = tiny * 1.0f;
   examination.check(product != 0 && std::fegetround() == FE_TONEAREST, "arithmetic",
@@ -59,13 +59,13 @@ void examine_cases(const SuiteFolder& suite, Examination& examination) {
       stale.push_back(golden.error().to_string());
     }
   }
-  examination.good("cases", fmt::format("{} cases, {} with all their configurations, in {}",
-                                        cases->size(), vectors, suite.cases().string()));
-  if (stale.empty()) return examination.good("golden", "one for each case, none stale");
+  examination.good("cases", fmt::format("{} cases, {} vectors, in {}", cases->size(), vectors,
+                                        suite.cases().string()));
+  if (stale.empty()) return examination.good("golden", "one for each case, all current");
   examination.bad("golden", fmt::format("{} missing or stale; first: {}", stale.size(), stale[0]));
 }
 
-// No fault of the machine, but what a reader of a verdict should know.
+// A group without a recording is not an error, but limits the weight of its verdicts.
 void examine_coverage(const SuiteFolder& suite, Examination& examination) {
   const auto covered = covered_groups(suite.recorded());
   if (!covered) return examination.bad("recordings", covered.error().to_string());
@@ -75,8 +75,8 @@ void examine_coverage(const SuiteFolder& suite, Examination& examination) {
   }
   examination.good("recordings", uncovered.empty()
                                      ? std::string("cover every group")
-                                     : fmt::format("no recording covers {}; what is right there "
-                                                   "rests on the description of the law",
+                                     : fmt::format("no recording covers {}; the goldens there "
+                                                   "rely on the description of the law",
                                                    fmt::join(uncovered, ", ")));
 }
 
@@ -89,13 +89,13 @@ void examine_reference(const SuiteFolder& suite, Examination& examination) {
   examination.bad("reference", fmt::format("{}; first: {}", finding, check->first_difference));
 }
 
-// What a port cannot do to the machine, whatever it does.
+// The limits of a port's process.
 void examine_limits(const DoctorOptions& options, Examination& examination) {
   const std::string memory = memory_is_limited() ? fmt::format("{} GiB of memory", max_memory_gib)
                                                  : "memory without limit (sanitizers)";
   examination.good("limits",
-                   fmt::format("of a port's process: {:g} s an answer, {}, {} MiB a file; "
-                               "it ends with all that it started",
+                   fmt::format("of a port's process: {:g} s per answer, {}, {} MiB per file; "
+                               "all processes that it started end with it",
                                options.host.timeout_s, memory, max_file_mib));
 }
 

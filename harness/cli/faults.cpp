@@ -30,7 +30,7 @@ Result<std::vector<const Fault*>> chosen(const FaultOptions& options) {
     const Fault* const fault = faults::find_fault(id);
     if (fault == nullptr) {
       return fail(
-          fmt::format("{}: the table has one fault a line; two at once are a port: attest "
+          fmt::format("{}: the table has one fault per line; run two at once as a port: attest "
                       "run --port fault:{}",
                       id, id));
     }
@@ -39,7 +39,7 @@ Result<std::vector<const Fault*>> chosen(const FaultOptions& options) {
   return list;
 }
 
-// Flights catch what open loop catches, but take a thousand times as long.
+// Flights catch the same faults as open loop, but take a thousand times as long.
 Result<std::vector<SelectedCase>> open_loop_cases(const SuiteFolder& suite,
                                                   const std::string& profile) {
   Selection selection;
@@ -75,7 +75,7 @@ int verdict(const std::vector<FaultFinding>& findings) {
                finding->fault->id, finding->fault->what);
   }
   for (const FaultFinding* finding : summary.false_alarms) {
-    fmt::print(stderr, "attest: said to be equivalent, and caught: {} by {}\n", finding->fault->id,
+    fmt::print(stderr, "attest: listed as equivalent, but caught: {} by {}\n", finding->fault->id,
                finding->found.by);
   }
   const bool good =
@@ -90,19 +90,20 @@ int diagnose_all(const std::vector<SelectedCase>& cases, faults::Profile profile
     named += result.is_named() ? 1 : 0;
     stages += result.is_stage_named() ? 1 : 0;
     if (result.is_named()) continue;
-    fmt::print("{} is taken for something else:\n{}", result.fault->id,
-               result.diagnosis ? diagnosis_text(*result.diagnosis) : "the law itself\n");
+    fmt::print(
+        "{} is not named; the diagnosis is:\n{}", result.fault->id,
+        result.diagnosis ? diagnosis_text(*result.diagnosis) : "no deviation from the law\n");
   }
   const double part = 100 * static_cast<double>(named) / static_cast<double>(results.size());
   fmt::print(
-      "{}: {} of {} faults are named first, or with those that they cannot be told from "
-      "({:.1f}%); the stage of {} is\n",
+      "{}: {} of {} faults are named first, alone or with faults that match equally well "
+      "({:.1f}%); the stage of {} is named\n",
       name_of(profile), named, results.size(), part, stages);
   constexpr double enough = 95;
   return part >= enough ? exit_ok : exit_failed;
 }
 
-// Whether every fault that the profile can tell is caught, by its own group.
+// Whether every fault that is detectable in the profile is caught, by its own group.
 Result<int> measure(const FaultOptions& options, const SuiteFolder& suite, faults::Profile profile,
                     const std::vector<const Fault*>& faults) {
   const std::string name(name_of(profile));
@@ -126,7 +127,7 @@ Result<int> measure(const FaultOptions& options, const SuiteFolder& suite, fault
   return verdict(findings);
 }
 
-// Those asked for; all when none is.
+// The requested profiles; by default all.
 Result<std::vector<faults::Profile>> chosen_profiles(const FaultOptions& options) {
   const auto known = reference::profile_names();
   std::vector<std::string> names = options.profiles;

@@ -22,7 +22,7 @@ Result<Case> find_case(const std::string& name, const SuiteFolder& suite) {
   selection.filters = {name};
   const auto found = select_cases(suite.cases(), selection);
   if (!found) return tl::unexpected(found.error());
-  // One file that is a case of several profiles is meant in the first of them.
+  // A file with several profiles stands for its first.
   std::set<std::filesystem::path> files;
   for (const SelectedCase& one : *found) files.insert(one.the_case.file);
   const Case& first = found->front().the_case;

@@ -11,12 +11,13 @@
 
 namespace attest::cli {
 
-// `name` is a case file, or the name, pattern or id of exactly one. Of a file with several profiles
-// it is the case of the first, unless the id says another. Errors: it is no flight; it names none
-// or several.
+// `name` is a case file, or the name, pattern or id of exactly one. A file with several profiles
+// gives the case of its first profile, unless the id has another. Errors: the case is not a flight;
+// no case or several cases match.
 Result<Case> find_flight(const std::string& name, const SuiteFolder& suite);
 
-// With what flies it: empty texts leave that to the case, whose lead vehicle and first plant fly.
+// The flight with its vehicle and plant. Empty texts select the case's lead vehicle and first
+// plant.
 struct ChosenFlight {
   Case the_case;
   PlantConfiguration plant_configuration;
@@ -25,15 +26,15 @@ struct ChosenFlight {
 Result<ChosenFlight> choose_flight(const std::string& name, const std::string& vehicle,
                                    const std::string& plant, const SuiteFolder& suite);
 
-// A recorded timing with what it is flown with.
+// A recorded timing with its case and vehicle.
 struct TimedFlight {
-  Case the_case;  // as long as it was
+  Case the_case;  // with the duration of the recording
   TimingFile timing;
   std::shared_ptr<const VehicleModel> vehicle_model;
 };
 
-// Errors, with the file: it is no timing; its case is not in the suite, or is another than when it
-// was recorded.
+// Errors, with the file: it is not a timing file; its case is not in the suite, or has changed
+// since the recording.
 Result<TimedFlight> find_timed_flight(const std::string& file, const SuiteFolder& suite);
 
 }  // namespace attest::cli

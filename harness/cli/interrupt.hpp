@@ -3,7 +3,7 @@
 
 namespace attest::cli {
 
-// From now on the signals are noted instead of ending the process at once. A second one does.
+// From now on the first signal of each kind is only noted; the second one ends the process.
 void note_interrupts();
 
 bool interrupted();

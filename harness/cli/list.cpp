@@ -19,7 +19,7 @@
 namespace attest::cli {
 namespace {
 
-// The profiles that are asked for; all of them when none is.
+// The requested profiles; by default all.
 Result<std::vector<reference::Profile>> chosen_profiles(const std::vector<std::string>& names) {
   const auto all = reference::profile_names();
   std::vector<reference::Profile> profiles;
@@ -36,7 +36,7 @@ Result<std::vector<reference::Profile>> chosen_profiles(const std::vector<std::s
   return profiles;
 }
 
-// The names of those that have it.
+// The names of the profiles for which `has` is true.
 template <typename Has>
 std::string names_of(const std::vector<reference::Profile>& profiles, Has has) {
   std::vector<std::string> names;
@@ -120,12 +120,11 @@ void list_groups(const std::vector<SelectedCase>& cases) {
     results += configurations.size();
   }
   for (const auto& [name, counts] : groups) {
-    fmt::print("{:<40} {:>4} cases {:>6} with all configurations\n", name, counts.first,
-               counts.second);
+    fmt::print("{:<40} {:>4} cases {:>6} vectors\n", name, counts.first, counts.second);
   }
 }
 
-// Numbers that tell vehicles apart; all of them are in models/<vehicle>.toml.
+// The numbers that distinguish the vehicles. models/<vehicle>.toml has all numbers.
 Result<void> list_vehicles(const std::filesystem::path& models) {
   fmt::print("{:<14}{:>8}{:>8}{:>7}{:>7}{:>10}  {}\n", "vehicle", "mass kg", "rotors", "arm m",
              "hover", "tau ms", "what it is");

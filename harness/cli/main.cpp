@@ -15,7 +15,8 @@
 
 namespace {
 
-// A file that is opened in the place of a closed stdin, stdout or stderr would be taken for it.
+// A file that is opened while stdin, stdout or stderr is closed would get the descriptor of that
+// stream.
 void open_standard_streams() {
   int descriptor = 0;
   do {
@@ -24,8 +25,8 @@ void open_standard_streams() {
   if (descriptor > STDERR_FILENO) ::close(descriptor);
 }
 
-// Whether a run with one job can open its files, sockets and processes. With fewer the error would
-// come where nobody expects it, in a port too, whose fault it is not.
+// Whether a run with one job can open its files, sockets and processes. With fewer descriptors the
+// error would come at an arbitrary place. In a port it would look like an error of the port.
 bool enough_descriptors() {
   std::array<int, 24> opened{};
   std::generate(opened.begin(), opened.end(), [] { return ::open("/dev/null", O_RDONLY); });
@@ -36,7 +37,7 @@ bool enough_descriptors() {
   return !exhausted;
 }
 
-// A summary that nobody received is not a success.
+// A run whose summary could not be written is not a success.
 int flushed(int code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
   std::fputs("attest: error: stdout: cannot be written\n", stderr);

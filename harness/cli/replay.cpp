@@ -17,7 +17,7 @@
 namespace attest::cli {
 namespace {
 
-// "NAME=VALUE" becomes a change at tick 0 that replaces whatever the trace says of NAME.
+// "NAME=VALUE" becomes a change at tick 0 that replaces all changes of NAME in the trace.
 Result<void> override_parameter(Trace& trace, const Subject& subject, const std::string& text) {
   const auto equals = std::min(text.find('='), text.size());
   const std::string name = text.substr(0, equals);
@@ -49,7 +49,7 @@ Result<Recorded> recorded_in(const std::string& file, const ReplayOptions& optio
   return recorded;
 }
 
-// One line a trace, more for one that differs.
+// One line per trace, more if it differs.
 void print_result(const CaseResult& result, Level level) {
   fmt::print("{:<12}{}  {}", name_of(result.verdict), result.name, result.profile);
   if (result.ticks > 0) fmt::print("  {} ticks, {}", result.ticks, name_of(level));
@@ -82,7 +82,7 @@ class Replay {
     }
     if (failed_ > 0) return exit_failed;
     if (passed_ > 0) return exit_ok;
-    return report_error({"nothing was compared: every trace was skipped or unsupported"});
+    return report_error({"no trace was compared: every trace was skipped or unsupported"});
   }
 
  private:
@@ -93,8 +93,7 @@ class Replay {
     if (!recorded) return tl::unexpected(recorded.error());
     const CaseResult result =
         evaluate_trace(recorded->trace, recorded->subject, *host_, Tolerances(level_));
-    if (result.verdict == Verdict::timeout)
-      host_.reset();  // the next trace has a chance of its own
+    if (result.verdict == Verdict::timeout) host_.reset();  // the next trace gets a new process
     const bool passed = result.verdict == Verdict::pass;
     passed_ += passed ? 1 : 0;
     failed_ += fails_a_run(result.verdict) ? 1 : 0;
@@ -105,7 +104,7 @@ class Replay {
   const ReplayOptions& options_;
   const Globals& globals_;
   Level level_;
-  std::string arithmetic_;  // how the port computes, if not in floats
+  std::string arithmetic_;  // of the port, if it is not floating point
   std::unique_ptr<PortHost> host_;
   std::size_t passed_ = 0;
   std::size_t failed_ = 0;

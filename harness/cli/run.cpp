@@ -28,7 +28,7 @@
 namespace attest::cli {
 namespace {
 
-// A report file, opened before the run so that a path that cannot be written is said at once.
+// A report file, opened before the run so that a path that cannot be written is reported at once.
 struct ReportFile {
   AtomicFile file;
   const ReportFormat& format;
@@ -55,7 +55,7 @@ Result<void> write_reports(std::vector<ReportFile>& reports, const RunResult& ru
   return {};
 }
 
-// What is to be run, complete and checked, before the first case runs.
+// The whole run, complete and checked before the first vector runs.
 struct RunPlan {
   RunResult run;
   std::optional<ExpectedFailures> expected;
@@ -65,8 +65,8 @@ struct RunPlan {
   std::size_t results = 0;
 };
 
-// What the port says of itself, and which of the profiles it makes a unit of: it is held to that
-// during the run. One that hangs says nothing, and is not asked again.
+// Stores the port's description and the profiles that it supports. The port must give the same
+// answers during the run. A port that hangs here has no description and is not asked again.
 Result<void> ask_port(const std::vector<std::string>& profiles, RunPlan& plan) {
   const auto port = describe_port(plan.host, profiles);
   if (!port) return tl::unexpected(port.error());
@@ -79,7 +79,7 @@ Result<void> ask_port(const std::vector<std::string>& profiles, RunPlan& plan) {
   return {};
 }
 
-// The cases that are selected, each at its own times.
+// The selected cases, each at its own times.
 Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, RunPlan& plan) {
   auto cases = options.select.cases_in(suite.cases());
   if (!cases) return tl::unexpected(cases.error());
@@ -109,7 +109,8 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
 
 // The one flight of a recorded timing.
 Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, RunPlan& plan) {
-  if (!options.select.selects_all()) return fail("--timing says what to run; select nothing else");
+  if (!options.select.selects_all())
+    return fail("--timing selects the flight; leave out all other selections");
   auto flight = find_timed_flight(options.timing, suite);
   if (!flight) return tl::unexpected(flight.error());
   if (auto asked = ask_port({flight->the_case.profile}, plan); !asked) return asked;
@@ -122,20 +123,20 @@ Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, Run
   return {};
 }
 
-// Of the day, in UTC; SOURCE_DATE_EPOCH makes reports the same on every day.
+// The date in UTC. With SOURCE_DATE_EPOCH, reports do not depend on the day.
 Result<std::string> date_of_run() {
   std::time_t now = std::time(nullptr);
   if (const char* given = std::getenv("SOURCE_DATE_EPOCH"); given && *given) {
     const std::string_view text(given);
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), now);
     if (error != std::errc() || end != text.data() + text.size() || now < 0) {
-      return fail(fmt::format("SOURCE_DATE_EPOCH is `{}`; it is a count of seconds", text));
+      return fail(fmt::format("SOURCE_DATE_EPOCH is `{}`; it must be a count of seconds", text));
     }
   }
   return fmt::format("{:%Y-%m-%d}", fmt::gmtime(now));
 }
 
-// What a statement of conformance is about: which suite, which port, when.
+// Adds the subject of the conformance statement: suite, port and date.
 Result<void> identify(const RunOptions& options, const SuiteFolder& suite, RunResult& run) {
   run.suite = suite.cases_by_group();
   run.cases_version = suite.version_of(suite.cases());
@@ -174,14 +175,15 @@ Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
   const auto planned =
       options.timing.empty() ? plan_cases(options, suite, plan) : plan_timed(options, suite, plan);
   if (!planned) return tl::unexpected(planned.error());
-  // After the port was loaded: what is no library is said to be none.
+  // After the port was loaded, because loading gives the better error for a file that is not a
+  // library.
   if (auto known = identify(options, suite, plan.run); !known) {
     return tl::unexpected(known.error());
   }
   return plan;
 }
 
-// What the failures look like; nothing that goes wrong here spoils the verdicts that are there.
+// The diagnosis of the failures. Its errors are printed and do not change verdicts.
 std::optional<Diagnosis> diagnosed(const RunPlan& plan, int processes) {
   JobOptions<VectorDiagnosis> options;
   options.processes = processes;
@@ -207,13 +209,15 @@ std::optional<Diagnosis> diagnosed(const RunPlan& plan, int processes) {
   return diagnosis;
 }
 
-// 0 only when something was compared: a port that supports nothing has not conformed.
+// 0 requires that at least one vector was compared: a port without support for any does not
+// conform.
 int exit_code(const RunResult& run) {
   if (!run.errors.empty()) return exit_usage;
   if (run.failed()) return exit_failed;
   const bool compared = run.count(Verdict::pass) + run.count(Verdict::xfail) > 0;
   if (!compared) {
-    return report_error({"nothing was compared: every selected case was skipped or unsupported"});
+    return report_error(
+        {"no vector was compared: every selected vector was skipped or unsupported"});
   }
   return exit_ok;
 }
@@ -222,7 +226,7 @@ int exit_code(const RunResult& run) {
 
 int run_command(const RunOptions& options, const Globals& globals) {
   const auto begin = std::chrono::steady_clock::now();
-  note_interrupts();  // before the port is asked anything, which may hang
+  note_interrupts();  // before the first request to the port, which may hang
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
   std::vector<std::string> outputs;
@@ -266,7 +270,7 @@ int run_command(const RunOptions& options, const Globals& globals) {
   if (plan->expected) plan->expected->apply(is_complete, run);
   std::optional<Diagnosis> diagnosis;
   if (options.diagnose && run.failed()) diagnosis = diagnosed(*plan, options.jobs);
-  // Before the summary: whoever reads that may stop reading, and end the program.
+  // Before the summary: if its reader closes the pipe early, SIGPIPE ends this process.
   const auto written = write_reports(*reports, run, diagnosis);
   const int code = exit_code(run);
   if (!globals.quiet || code != exit_ok) {

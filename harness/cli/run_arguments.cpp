@@ -20,15 +20,15 @@ void add_strictness(CLI::App& command, RunOptions& options) {
       ->group(option_group::strictness);
   command
       .add_option("--expected-failures", options.expected_failures,
-                  "Failures that are accepted, with reasons (TOML), by group or case; one that "
-                  "passes fails the run")
+                  "Failures that are accepted, with reasons (TOML), by group or case; an entry "
+                  "that passes fails the run")
       ->type_name("F")
       ->group(option_group::strictness);
 }
 
 void add_execution(CLI::App& command, RunOptions& options) {
-  add_jobs(command, options.jobs, "Cases at a time");
-  command.add_flag("--fail-fast", options.fail_fast, "Stop after the first failing case")
+  add_jobs(command, options.jobs, "Number of worker processes");
+  command.add_flag("--fail-fast", options.fail_fast, "Stop after the first failure")
       ->group(option_group::execution);
   add_timeout(command, options.host.timeout_s);
   command
@@ -41,7 +41,7 @@ void add_execution(CLI::App& command, RunOptions& options) {
 void add_reports(CLI::App& command, RunOptions& options) {
   command
       .add_flag("--diagnose,!--no-diagnose", options.diagnose,
-                "When something fails, name the mistakes it looks like (on by default)")
+                "After a failure, name the faults of the catalogue that match it (on by default)")
       ->group(option_group::reports);
   for (const ReportFormat& format : report_formats()) {
     command.add_option(format.option, options.reports[format.option], format.help)
@@ -80,10 +80,10 @@ void add_run_command(CLI::App& app, const Globals& globals, Action& action) {
   add_reports(*command, *options);
   add_examples(
       *command,
-      {{"attest run", "the built-in reference, all cases at all rates"},
+      {{"attest run", "the built-in reference, all vectors"},
        {"attest run --port lib:./libmine.so", "your port"},
        {"attest run --port lib:./libmine.so --level exact --filter 'attitude/*@250hz'",
-        "some cases, to the bit"},
+        "some vectors, to the bit"},
        {"attest run --port lib:./libmine.so --exclude 'flight*/*' --junit attest.junit.xml",
         "without the flights, with a report for CI"}});
   command->callback([options, &globals, &action] {

@@ -78,7 +78,7 @@ int schedule_command(const ScheduleOptions& options, const Globals& globals) {
   for (const CaseResult& result : outcome.results) {
     if (fails_a_run(result.verdict)) return exit_failed;
     if (result.verdict != Verdict::pass) {
-      return report_error({fmt::format("nothing was flown: {}", result.reason)});
+      return report_error({fmt::format("no flight took place: {}", result.reason)});
     }
   }
   return exit_ok;

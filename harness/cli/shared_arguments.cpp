@@ -64,10 +64,10 @@ void add_selection(CLI::App& command, SelectionOptions& options) {
         ->group(option_group::selection);
   };
   add("--filter", options.filters,
-      "Only cases whose id matches this shell pattern; quote it. Ids are "
+      "Only vectors whose id matches this shell pattern; quote it. Ids are "
       "PROFILE/GROUP/NAME@CONFIGURATION; profile and configuration may be left out",
       "GLOB");
-  add("--exclude", options.excludes, "Without the cases whose id matches this shell pattern",
+  add("--exclude", options.excludes, "Without the vectors whose id matches this shell pattern",
       "GLOB");
   add("--group", options.groups, "Only this group of cases", "GROUP");
   add("--profile", options.profiles, "Only this version of the law", "PROFILE");

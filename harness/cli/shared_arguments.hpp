@@ -15,29 +15,29 @@ class Option;
 
 namespace attest::cli {
 
-// The work of the command that was chosen; its result is the exit code.
+// The work of the chosen command; it returns the exit code.
 using Action = std::function<int()>;
 
 // The headings of --help.
 namespace option_group {
-inline constexpr const char* selection = "Which cases";
-inline constexpr const char* strictness = "How strictly";
+inline constexpr const char* selection = "Selection";
+inline constexpr const char* strictness = "Strictness";
 inline constexpr const char* reports = "Reports";
 inline constexpr const char* execution = "Execution";
 }  // namespace option_group
 
-// A command line, and what it does.
+// A command line, and its purpose.
 struct Example {
   const char* line;
   const char* what;
 };
 void add_examples(CLI::App& command, std::initializer_list<Example> examples);
 
-void add_selection(CLI::App& command, SelectionOptions& options);  // --filter and its kin
+void add_selection(CLI::App& command, SelectionOptions& options);  // --filter and related
 CLI::Option* add_rates(CLI::App& command, std::vector<std::string>& rates, const char* what);
 void add_plant(CLI::App& command, std::string& vehicle, std::string& plant);
 void add_port(CLI::App& command, std::string& port);
 void add_timeout(CLI::App& command, double& timeout_s);
-void add_jobs(CLI::App& command, int& jobs, const char* what);  // default: one a CPU
+void add_jobs(CLI::App& command, int& jobs, const char* what);  // default: one per CPU
 
 }  // namespace attest::cli

@@ -25,7 +25,7 @@ struct Sim {
 Result<Sim> prepare_timed(const SimOptions& options, const SuiteFolder& suite) {
   if (!options.case_name.empty() || !options.rate.empty() || !options.vehicle.empty() ||
       !options.plant.empty()) {
-    return fail("--timing says case, rate, vehicle and plant; leave them out");
+    return fail("--timing sets case, rate, vehicle and plant; leave them out");
   }
   auto flight = find_timed_flight(options.timing, suite);
   if (!flight) return tl::unexpected(flight.error());

@@ -27,7 +27,7 @@ Nanoseconds nanoseconds(double seconds) {
   return Nanoseconds(static_cast<std::int64_t>(seconds * 1e9));
 }
 
-// The unit on the second CPU: the first serves most interrupts.
+// The unit runs on the second CPU, because the first serves most interrupts.
 Result<LiveOptions> live_options(const StressOptions& options) {
   LiveOptions live;
   const std::vector<int> cpus = usable_cpus();
@@ -86,7 +86,7 @@ Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& su
   return plan;
 }
 
-// A line a second on stderr, over the last one on a terminal.
+// Prints a line per second on stderr. On a terminal each line replaces the previous one.
 class StressProgressLine {
  public:
   StressProgressLine(bool visible, TerminalStyle style) : visible_(visible), style_(style) {}
@@ -96,7 +96,7 @@ class StressProgressLine {
     if (!visible_) return;
     const std::string what =
         now.idle
-            ? "the machine alone"
+            ? "idle machine"
             : fmt::format("{:.0f} of {:g} s, {} deadlines, {} missed", in_seconds(now.live.time),
                           task.the_case.duration.amount, now.live.deadlines, now.live.missed);
     const bool terminal = style_.width > 0;
@@ -129,7 +129,7 @@ Result<void> write_report(std::optional<AtomicFile>& file, const std::string& te
   return file->commit();
 }
 
-// A cyclictest that is installed and does not answer is said: its row is missing then.
+// Prints a note if cyclictest is installed but fails, because its row is then missing.
 std::optional<Cyclictest> idle_by_cyclictest(const StressTask& task) {
   auto idle = run_cyclictest(task.configuration.rate, task.idle_duration, task.live, interrupted);
   if (!idle && !interrupted() && is_installed("cyclictest")) {
@@ -155,8 +155,8 @@ Result<void> run_all(const StressPlan& plan, const StressOptions& options, const
     line.erase();
     if (run.results.empty() && !globals.quiet)
       fmt::print("{}", render_privileges(stress->privileges));
-    const bool told = !globals.quiet || stress->result.verdict != Verdict::pass;
-    if (told) fmt::print("{}", render_stress(*stress, style));
+    const bool shown = !globals.quiet || stress->result.verdict != Verdict::pass;
+    if (shown) fmt::print("{}", render_stress(*stress, style));
     std::fflush(stdout);
     run.results.push_back(std::move(*stress));
   }

@@ -56,7 +56,7 @@ Result<std::string> SuiteFolder::sha256() const {
   std::set<std::string> paths;
   for (const fs::path& folder : {cases(), golden()}) {
     std::error_code error;
-    if (!fs::is_directory(folder, error)) continue;  // a run says what is missing
+    if (!fs::is_directory(folder, error)) continue;  // a run reports the missing folder
     for (auto at = fs::recursive_directory_iterator(folder, error);
          at != fs::recursive_directory_iterator(); at.increment(error)) {
       if (at->path() == recorded()) at.disable_recursion_pending();

@@ -19,26 +19,27 @@ struct SuiteFolder {
   std::filesystem::path golden() const { return root / "golden"; }
   std::filesystem::path recorded() const { return golden() / "recorded"; }
 
-  // Of cases() or golden(): what the file VERSION there says, or "unversioned".
+  // The first word of the file VERSION in `folder`, which is cases() or golden(); else
+  // "unversioned".
   std::string version_of(const std::filesystem::path& folder) const;
 
-  // The groups that there are, profile by profile: "px4-v1.5.5/tpa", sorted. Reads the case files;
-  // none when one of them is malformed, which select_cases() reports.
+  // The groups of all profiles, sorted: "px4-v1.5.5/tpa". Reads the case files. Empty when one of
+  // them is malformed, which select_cases() reports.
   std::vector<std::string> groups() const;
 
-  // "profile/group" -> how many cases there are at each rate. Reads the case files, as groups().
+  // "profile/group" -> the number of vectors at each rate. Reads the case files, same as groups().
   std::map<std::string, std::map<Rate, std::size_t>> cases_by_group() const;
 
   // SHA-256 of the lines that `sha256sum` prints for the case files and the provenance files of the
-  // goldens, in the order of their paths: "<hash>  cases/px4-v1.5.5/tpa/each_axis.toml". A case
-  // file says all inputs, a provenance file has the hashes of its traces and vehicles, and both are
-  // checked when a case is run: the content that verdicts depend on is in this one number.
-  // `ci/suite-hash` prints the same. Errors: a file that cannot be read.
+  // goldens, in the order of their paths: "<hash>  cases/px4-v1.5.5/tpa/each_axis.toml". The
+  // hash covers all content that verdicts depend on: a case file has all inputs, a provenance file
+  // has the hashes of its traces and vehicles, and a run checks both. `ci/suite-hash` prints the
+  // same hash. Errors: a file that cannot be read.
   Result<std::string> sha256() const;
 };
 
-// The same of the suite that this attest was released with (golden/SUITE.sha256 when it was built):
-// a suite cannot say of itself that it is that one.
+// The hash of the suite that this attest was released with, compiled in from golden/SUITE.sha256: a
+// suite cannot prove that it is the released one.
 std::string released_suite_sha256();
 
 // `given` if it is not empty; else $ATTEST_SUITE; else share/attest of the installation this

@@ -37,8 +37,8 @@ Result<std::vector<PlantConfiguration>> plant_configurations_of(const Case& the_
   }
   if (!plant_configurations.empty()) return plant_configurations;
   return fail(
-      fmt::format("{} is flown by no such vehicle on no such plant; see `attest list "
-                  "--vehicles`, and the case's own `vehicles` and `plants`",
+      fmt::format("{} has no run configuration with this vehicle and plant; see `attest list "
+                  "--vehicles`, and the `vehicles` and `plants` of the case",
                   the_case.id()));
 }
 

@@ -18,8 +18,8 @@
 namespace attest::cli {
 namespace {
 
-// Of the controller. A flight's steps cannot be repeated without flying it again, and their inputs
-// are no others.
+// The open-loop cases of the controller. The steps of a flight cannot be repeated without flying it
+// again, and their inputs add no new kind of step.
 Result<std::vector<SelectedCase>> open_loop_cases(const TimeCommandOptions& options,
                                                   const SuiteFolder& suite) {
   auto cases = options.select.cases_in(suite.cases());
@@ -27,14 +27,15 @@ Result<std::vector<SelectedCase>> open_loop_cases(const TimeCommandOptions& opti
   std::erase_if(*cases, [](const SelectedCase& one) {
     return one.the_case.flight || one.the_case.module != Module::mc_att_control;
   });
-  if (cases->empty()) return fail("nothing of the controller in open loop is selected to be timed");
+  if (cases->empty())
+    return fail("no open-loop case of the controller is selected, and only these can be timed");
   return cases;
 }
 
-// Under callgrind, with the time to start; measured are factors of 50 to 100.
+// Under callgrind, including its start; the measured factors are 50 to 100.
 constexpr double counting_is_slower_by = 100;
 
-// This program again, on that vector only, once.
+// Runs this program again, once, on that vector only.
 std::vector<std::uint64_t> counted(const TimeCommandOptions& options, const SuiteFolder& suite,
                                    const std::string& id) {
   std::error_code ignored;
@@ -81,7 +82,7 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
       fmt::print("{}", what_went_wrong(run));
       return exit_failed;
     }
-    return report_error({"nothing was timed: every selected case was skipped or unsupported"});
+    return report_error({"no vector was timed: every selected vector was skipped or unsupported"});
   }
   if (!options.measure.worst.empty()) {
     const auto written = write_slowest(run.times, *cases, host, options.measure.worst);

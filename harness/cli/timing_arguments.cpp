@@ -8,14 +8,16 @@ namespace attest::cli {
 
 namespace {
 
-// The machine on which it flies: load, scheduling, CPUs.
+// The conditions of the flight: load, scheduling, CPUs.
 void add_machine(CLI::App& command, StressOptions& options) {
-  command.add_option("--load", options.load, "Number of processes that keep the machine busy")
+  command.add_option("--load", options.load, "Number of processes that load the machine")
       ->check(CLI::Range(0, 1024))
       ->type_name("N")
       ->capture_default_str()
       ->group(option_group::execution);
-  command.add_option("--load-kind", options.load_kind, "What they use: `cpu`, `cache` or `io`")
+  command
+      .add_option("--load-kind", options.load_kind,
+                  "Resource that they use: `cpu`, `cache` or `io`")
       ->type_name("KIND")
       ->capture_default_str()
       ->group(option_group::execution);
@@ -43,7 +45,7 @@ void add_machine(CLI::App& command, StressOptions& options) {
 void add_budgets(CLI::App& command, StressOptions& options) {
   command
       .add_option("--misses-per-million", options.misses_per_million,
-                  "Deadline misses allowed, and overruns; replaces the bound of the case")
+                  "Deadline misses and overruns allowed; replaces the bound of the case")
       ->check(CLI::NonNegativeNumber)
       ->group(option_group::strictness);
   command
@@ -53,7 +55,7 @@ void add_budgets(CLI::App& command, StressOptions& options) {
       ->group(option_group::strictness);
   command
       .add_option("--budget", options.execution_us,
-                  "Execution time [us]; a longer step is an overrun, and counts like a miss")
+                  "Execution time [us]; a longer step is an overrun, which counts as a miss")
       ->check(CLI::NonNegativeNumber)
       ->group(option_group::strictness);
 }
@@ -64,7 +66,7 @@ void add_stress_reports(CLI::App& command, StressOptions& options) {
                   "Write the times of all ticks, for `run --timing`; one rate only")
       ->type_name("F")
       ->group(option_group::reports);
-  command.add_option("--json", options.json, "Write all that was measured")
+  command.add_option("--json", options.json, "Write all measurements")
       ->type_name("F")
       ->group(option_group::reports);
   command.add_option("--junit", options.junit, "Write a report for CI servers")
@@ -80,7 +82,7 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
   add_port(*command, options->host.port);
   add_rates(*command, options->rates, "Loop rates [Hz], separated by commas")
       ->default_str("250,500,1000,2000,4000,8000");
-  command->add_option("--duration", options->duration_s, "Of the flight at each rate [s]")
+  command->add_option("--duration", options->duration_s, "Duration of the flight at each rate [s]")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
   command->add_option("--case", options->case_name, "A flight: its name or id, or a case file")
@@ -104,13 +106,14 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
 
 void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<SweepOptions>();
-  CLI::App* command = app.add_subcommand(
-      "sweep-rate",
-      "Where each vehicle stops holding: lowest loop rate, largest delay of the motor commands");
-  command->add_option("--case", options->case_name, "A flight, whose metrics say what holding is")
+  CLI::App* command = app.add_subcommand("sweep-rate",
+                                         "For each vehicle: the lowest loop rate, and the largest "
+                                         "delay of the motor commands, at which "
+                                         "the metrics of a flight are within their bounds");
+  command->add_option("--case", options->case_name, "A flight, whose metrics have the bounds")
       ->type_name("CASE")
       ->capture_default_str();
-  add_rates(*command, options->rates, "Rates to find the largest delay at [Hz]")
+  add_rates(*command, options->rates, "Loop rates at which to find the largest delay [Hz]")
       ->default_str("50,100,250,500,1000");
   command->add_option("--vehicle", options->vehicles, "Only this vehicle")
       ->type_name("VEHICLE")
@@ -124,8 +127,9 @@ void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
       ->group(option_group::reports);
   add_timeout(*command, options->host.timeout_s);
   add_jobs(*command, options->jobs, "Vehicles at a time");
-  add_examples(*command, {{"attest sweep-rate --port lib:./libmine.so --vehicle iris",
-                           "the lowest rate at which the Iris holds, and the largest delay"}});
+  add_examples(*command,
+               {{"attest sweep-rate --port lib:./libmine.so --vehicle iris",
+                 "the lowest rate and the largest delay with which the Iris flies within bounds"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return sweep_rate_command(*options, globals); };
   });
@@ -134,9 +138,9 @@ void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
 void add_schedule(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<ScheduleOptions>();
   CLI::App* command = app.add_subcommand("schedule",
-                                         "What a loop feels of the tasks beside it: fixed "
-                                         "priorities on one or two CPUs, and a flight");
-  command->add_option("tasks", options->tasks, "The tasks (TOML): [task.unit] and those beside it")
+                                         "How other tasks delay the loop: response times with "
+                                         "fixed priorities on one or two CPUs, and a flight");
+  command->add_option("tasks", options->tasks, "The tasks (TOML): [task.unit] and the others")
       ->type_name("TASKS.toml")
       ->required();
   command->add_option("--case", options->case_name, "A flight: its name or id, or a case file")
@@ -146,12 +150,12 @@ void add_schedule(CLI::App& app, const Globals& globals, Action& action) {
   add_port(*command, options->host.port);
   command
       ->add_option("--record-timing", options->record_timing,
-                   "Write when everything happens, for `run --timing` and `sim --timing`")
+                   "Write the times of all ticks, for `run --timing` and `sim --timing`")
       ->type_name("F")
       ->group(option_group::reports);
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command, {{"attest schedule TASKS.toml --port lib:./libmine.so",
-                           "worst response times of the tasks, and the flight that they allow"}});
+                           "worst response times of the tasks, and a flight with these delays"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return schedule_command(*options, globals); };
   });
@@ -161,14 +165,15 @@ void add_time(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<TimeCommandOptions>();
   CLI::App* command = app.add_subcommand(
       "time",
-      "How long a port's steps take over the corpus, which input takes longest, and how "
-      "much stack they use");
+      "Measure the execution times of a port's steps over all vectors, the slowest input, and the "
+      "stack use");
   add_port(*command, options->host.port);
   add_selection(*command, options->select);
   command
-      ->add_option("--repeat", options->measure.repeats,
-                   "Runs of each vector; of each step the quickest counts, which is the port's and "
-                   "not the machine's")
+      ->add_option(
+          "--repeat", options->measure.repeats,
+          "Runs of each vector; the shortest time of each step counts, because the machine "
+          "can only add to it")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   CLI::Option* const budget = command
@@ -198,7 +203,7 @@ void add_time(CLI::App& app, const Globals& globals, Action& action) {
                  "Run the port in attest's own process: for valgrind, perf or a debugger")
       ->group(option_group::execution);
   add_examples(*command, {{"attest time --port lib:./libmine.so --worst slowest.csv",
-                           "the slowest step of the corpus, written for `attest replay`"},
+                           "the slowest step of all vectors, written for `attest replay`"},
                           {"attest time --port lib:./libmine.so --budget 20 --rate 250",
                            "fail if a step takes more than 20 us"}});
   command->callback([options, &globals, &action] {

@@ -15,7 +15,7 @@
 namespace attest::cli {
 namespace {
 
-// All inputs and no outputs, constants too, so that one file is all a port on a board needs.
+// All inputs, constants too, and no outputs: a port on a board needs only this file.
 Result<void> write_vector(const Case& the_case, const Rate& rate,
                           const std::filesystem::path& path) {
   Trace trace = stimulate(the_case, rate);
@@ -23,7 +23,7 @@ Result<void> write_vector(const Case& the_case, const Rate& rate,
   return write_csv(path, trace, all_columns(trace));
 }
 
-// Which law, and which mixer, the inputs are for; beside what the folder holds already.
+// Adds the profile and the mixer of the inputs to the provenance that the folder already has.
 Result<void> write_origin(const Case& the_case, const std::vector<RunConfiguration>& configurations,
                           const std::filesystem::path& folder) {
   auto provenance = provenance_in(folder);
@@ -46,7 +46,7 @@ Result<std::size_t> write_vectors(const VectorOptions& options, const Globals& g
   if (!cases) return tl::unexpected(cases.error());
   std::size_t count = 0;
   for (const auto& [the_case, configurations] : *cases) {
-    if (the_case.flight) continue;  // what a port is given in a flight depends on its answers
+    if (the_case.flight) continue;  // the inputs of a flight depend on the port's outputs
     const std::filesystem::path folder = std::filesystem::path(options.folder) / the_case.id();
     std::error_code error;
     std::filesystem::create_directories(folder, error);
@@ -63,8 +63,8 @@ Result<std::size_t> write_vectors(const VectorOptions& options, const Globals& g
   }
   if (count == 0) {
     return fail(
-        "only flights are selected, and a flight has no vectors: its inputs depend on what "
-        "the port answers; `attest sim` writes a flown trace");
+        "only flights are selected, and the inputs of a flight depend on the port's outputs; "
+        "`attest sim` writes a flown trace");
   }
   return count;
 }

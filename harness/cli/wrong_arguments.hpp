@@ -1,5 +1,5 @@
-// What is wrong with a command line, where CLI11 says too little: each is one line, empty where
-// nothing is wrong.
+// Errors of a command line for which CLI11's messages are too short. Each function returns one
+// line, empty if there is no error.
 #pragma once
 
 #include <string>
@@ -12,12 +12,11 @@ namespace attest::cli {
 
 std::string unknown_command(const CLI::App& app, const std::string& word);
 
-// For a command line that CLI11 did not expect: the first word that looks like an option and is
-// not.
+// For a command line that CLI11 rejects: the first word that starts with `--` and is not an option.
 std::string unknown_option(const CLI::App& app, int argc, char** argv);
 
-// After parsing. A value that no option can have: an empty text, as from a variable that is not
-// set, or NaN and infinity, which pass every check of a range.
+// After parsing. Finds values that every option rejects: an empty text, for example from an unset
+// shell variable, and NaN and infinity, which pass the range checks of CLI11.
 std::string wrong_value(const CLI::App& app);
 
 }  // namespace attest::cli

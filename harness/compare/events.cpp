@@ -33,10 +33,10 @@ State finite(const Trace& trace, std::size_t tick, const Channel& channel) {
 // the deviation that correct ports may have in all.
 State moving(const Trace& trace, std::size_t tick, const Channel& channel) {
   constexpr double still = 1e-6, surely = 4e-6;
-  const auto is_told = [&](std::size_t at) {
+  const auto is_published = [&](std::size_t at) {
     return trace.samples[at].out.mc_att_ctrl_status.published != 0;
   };
-  if (tick == 0 || !is_told(tick) || !is_told(tick - 1)) return State::unclear;
+  if (tick == 0 || !is_published(tick) || !is_published(tick - 1)) return State::unclear;
   const double step = std::abs(static_cast<double>(float_of(channel, trace.samples[tick])) -
                                static_cast<double>(float_of(channel, trace.samples[tick - 1])));
   if (step > surely) return State::yes;

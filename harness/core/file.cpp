@@ -183,7 +183,7 @@ constexpr mode_t new_file_mode = 0644;  // the umask applies, as for any new fil
 // Calls `create` with names in the folder of `target` until one is free. Returns the result of
 // `create`, or -1 with errno.
 template <typename Create>
-int named_beside(const fs::path& target, fs::path& temporary, Create create) {
+int with_free_name(const fs::path& target, fs::path& temporary, Create create) {
   constexpr int attempts = 100;
   for (int i = 0; i < attempts; ++i) {
     temporary = target;
@@ -197,19 +197,19 @@ int named_beside(const fs::path& target, fs::path& temporary, Create create) {
 // Creates a new file in the folder of `target`. Returns its descriptor, or -1 with errno. It has no
 // name, so that it disappears when this process is killed. If the file system does not support
 // that, the file gets the name `temporary`.
-int create_beside(const fs::path& target, fs::path& temporary) {
+int create_in_folder_of(const fs::path& target, fs::path& temporary) {
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   const int nameless = ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, new_file_mode);
   if (nameless >= 0) return nameless;
-  return named_beside(target, temporary, [](const fs::path& name) {
+  return with_free_name(target, temporary, [](const fs::path& name) {
     return ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, new_file_mode);
   });
 }
 
 // Gives a file without a name a name in the folder of `target`.
-int name_beside(int file, const fs::path& target, fs::path& temporary) {
+int name_in_folder_of(int file, const fs::path& target, fs::path& temporary) {
   const std::string source = fmt::format("/proc/self/fd/{}", file);
-  return named_beside(target, temporary, [&](const fs::path& name) {
+  return with_free_name(target, temporary, [&](const fs::path& name) {
     return ::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW);
   });
 }
@@ -258,7 +258,7 @@ Result<AtomicFile> AtomicFile::open(const fs::path& path) {
   fs::path target = exists ? fs::canonical(path, failed) : path;
   if (failed) return fail_at(path.string(), "cannot find the file: " + failed.message());
   fs::path temporary;
-  const int file = create_beside(target, temporary);
+  const int file = create_in_folder_of(target, temporary);
   if (file < 0) return system_failure(path, "cannot create the file");
   return AtomicFile(path, std::move(target), std::move(temporary), file);
 }
@@ -279,7 +279,7 @@ Result<void> AtomicFile::commit() {
   if (!in_place && ::fsync(descriptor_) != 0) {
     return system_failure(path_, "cannot write the file");
   }
-  if (!in_place && temporary_.empty() && name_beside(descriptor_, target_, temporary_) != 0) {
+  if (!in_place && temporary_.empty() && name_in_folder_of(descriptor_, target_, temporary_) != 0) {
     temporary_.clear();
     return system_failure(path_, "cannot replace the file");
   }

@@ -22,7 +22,7 @@ struct Blessing {
 };
 
 // A case file in all its profiles: the goldens of the others are based on that of the first.
-Result<void> write_file_beside(const Case& first, Blessing& blessing, PendingGoldens& pending) {
+Result<void> write_goldens_of_file(const Case& first, Blessing& blessing, PendingGoldens& pending) {
   MadeGolden of_first;
   std::filesystem::path base_folder = golden_folder(blessing.options.golden, first);
   bool base_changes = false;
@@ -61,8 +61,8 @@ Result<void> write_file_beside(const Case& first, Blessing& blessing, PendingGol
 
 }  // namespace
 
-Result<PendingGoldens> write_beside(const std::vector<SelectedCase>& cases,
-                                    const BlessingOptions& options) {
+Result<PendingGoldens> write_new_goldens(const std::vector<SelectedCase>& cases,
+                                         const BlessingOptions& options) {
   Blessing blessing{options, open_builtin(), VehicleModels(options.models)};
   PendingGoldens pending;
   std::set<std::filesystem::path> done;
@@ -70,7 +70,7 @@ Result<PendingGoldens> write_beside(const std::vector<SelectedCase>& cases,
     const Case& the_case = selected.the_case;
     if (!done.insert(the_case.file).second) continue;
     const Case first = the_case.in_profile(the_case.profiles.front());
-    if (auto written = write_file_beside(first, blessing, pending); !written) {
+    if (auto written = write_goldens_of_file(first, blessing, pending); !written) {
       return tl::unexpected(written.error());
     }
   }

@@ -29,7 +29,7 @@ struct PendingGoldens {
 // REQUIRES: the caller holds the GoldenLock of the folder. A case file is blessed in all its
 // profiles, whichever of them is selected: the goldens of the others are based on that of the
 // first. Errors: those of make_golden() and NewGolden::write().
-Result<PendingGoldens> write_beside(const std::vector<SelectedCase>& cases,
-                                    const BlessingOptions& options);
+Result<PendingGoldens> write_new_goldens(const std::vector<SelectedCase>& cases,
+                                         const BlessingOptions& options);
 
 }  // namespace attest

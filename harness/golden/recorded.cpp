@@ -133,9 +133,9 @@ Result<Recorded> read_recorded(const std::filesystem::path& file, const std::str
                                const std::string& mixer) {
   auto trace = open_trace(file, TraceNeed::inputs_and_outputs);
   if (!trace) return tl::unexpected(trace.error());
-  const auto beside = provenance_in(file.parent_path());
-  if (!beside) return tl::unexpected(beside.error());
-  const Provenance& provenance = *beside;
+  const auto folder_provenance = provenance_in(file.parent_path());
+  if (!folder_provenance) return tl::unexpected(folder_provenance.error());
+  const Provenance& provenance = *folder_provenance;
   Recorded recorded{std::move(*trace), {profile, Module::mc_att_control, ""}, {}};
   Subject& subject = recorded.subject;
   subject.module = module_of(recorded.trace.present);

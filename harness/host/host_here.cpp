@@ -13,8 +13,8 @@ HostHere::HostHere(std::unique_ptr<Port> port, std::optional<PortSays> said, Cou
 
 std::optional<PortFault> HostHere::held(std::optional<PortFault> fault,
                                         const std::string& profile) const {
-  if (const std::string told = change(says_, PortSays::asked(*port_)); !told.empty()) {
-    return PortFault{PortFault::Kind::protocol, 0, told};
+  if (const std::string difference = change(says_, PortSays::asked(*port_)); !difference.empty()) {
+    return PortFault{PortFault::Kind::protocol, 0, difference};
   }
   if (fault && fault->kind == PortFault::Kind::profile) return no_unit_of(profile, says_);
   return fault;

@@ -124,9 +124,9 @@ class PortProcess final : public PortHost {
   template <typename Read>
   auto ask(const std::string& question, const std::vector<Blob>& blobs, Read read)
       -> std::invoke_result_t<Read, const Arrived&> {
-    const bool is_told = std::exchange(is_told_, true);
+    const bool was_asked = std::exchange(was_asked_, true);
     if (fault_) {
-      if (is_told && !is_spent()) fault_->what = "not run: the port had timed out before";
+      if (was_asked && !is_spent()) fault_->what = "not run: the port had timed out before";
       return std::nullopt;
     }
     ++request_;
@@ -191,7 +191,7 @@ class PortProcess final : public PortHost {
   std::optional<Child> child_;
   PortSays says_;
   std::uint64_t request_ = 0;
-  bool is_told_ = false;            // a request was made: after a timeout the next is `not run`
+  bool was_asked_ = false;          // a request was made: after a timeout the next is `not run`
   std::optional<PortFault> fault_;  // permanent
 };
 

@@ -27,14 +27,14 @@ std::string change(const PortSays& said, const PortSays& now) {
   const auto yes = [](bool is) { return std::string(is ? "there" : "not there"); };
   const std::string groups = fmt::format("{}", fmt::join(said.unsupported_groups, ","));
   const std::string groups_now = fmt::format("{}", fmt::join(now.unsupported_groups, ","));
-  for (const std::string& told :
+  for (const std::string& difference :
        {changed("name", said.name, now.name), changed("version", said.version, now.version),
         changed("attest.unsupported_groups", groups, groups_now),
         changed("attest.arithmetic", text_of(said.fraction_bits), text_of(now.fraction_bits)),
         changed("attest.fixed_step", text_of(said.fixed_step), text_of(now.fixed_step)),
         changed("mixer", yes(said.has_mixer), yes(now.has_mixer)),
         changed("battery estimate", yes(said.has_battery_status), yes(now.has_battery_status))}) {
-    if (!told.empty()) return told;
+    if (!difference.empty()) return difference;
   }
   return "";
 }

@@ -28,15 +28,15 @@ ControlState control_state_of(const PlantState& state) {
 
 ControlState NoisyEstimator::sample(const PlantState& state) {
   constexpr double radians = std::numbers::pi / 180;
-  PlantState told = state;
+  PlantState estimated = state;
   if (options_.attitude_noise_deg > 0) {
-    told.attitude = turned(state.attitude, normal(options_.attitude_noise_deg * radians / 2));
+    estimated.attitude = turned(state.attitude, normal(options_.attitude_noise_deg * radians / 2));
   }
   if (options_.rate_noise_rad_s > 0) {
     const Vector3 noise = normal(options_.rate_noise_rad_s);
-    for (std::size_t i = 0; i < 3; ++i) told.rate_rad_s[i] += noise[i];
+    for (std::size_t i = 0; i < 3; ++i) estimated.rate_rad_s[i] += noise[i];
   }
-  return control_state_of(told);
+  return control_state_of(estimated);
 }
 
 // The sum of twelve uniform numbers has variance 1 and is close enough to normal, within +-6

@@ -56,8 +56,8 @@ Trace mirrored(Trace trace) {
 }
 
 template <typename ModuleUnit>
-std::optional<PortFault> drive_by_turns(ModuleUnit& judged, Trace& trace, ModuleUnit& other,
-                                        Trace& of_other) {
+std::optional<PortFault> drive_alternately(ModuleUnit& judged, Trace& trace, ModuleUnit& other,
+                                           Trace& of_other) {
   Drive<ModuleUnit> drive(judged, trace), along(other, of_other);
   while (!drive.is_over()) {
     if (auto fault = along.step()) return fault;
@@ -94,7 +94,7 @@ std::optional<PortFault> drive_in_company(std::unique_ptr<ModuleUnit> first, Cre
   }
   const std::unique_ptr<ModuleUnit> judged = create();
   if (!judged) return instances == Instances::again ? makes_no_other() : makes_only_one();
-  if (instances == Instances::together) return drive_by_turns(*judged, trace, *first, of_first);
+  if (instances == Instances::together) return drive_alternately(*judged, trace, *first, of_first);
   if (instances == Instances::crossed) {
     if (auto fault = drive_first()) return fault;
     first.reset();

@@ -161,7 +161,7 @@ class UntilDeath {
   UntilDeath& operator=(const UntilDeath&) = delete;
 
   const Patience& patience() const { return patience_; }
-  Received::Kind told(Received::Kind kind) const {
+  Received::Kind resolved(Received::Kind kind) const {
     return kind == Received::Kind::given_up && has_died_ ? Received::Kind::ended : kind;
   }
 
@@ -175,13 +175,13 @@ class UntilDeath {
 Received Child::receive(const Patience& patience) {
   const UntilDeath until_death(process_, patience);
   Received received = socket_.receive(until_death.patience());
-  received.kind = until_death.told(received.kind);
+  received.kind = until_death.resolved(received.kind);
   return received;
 }
 
 Received::Kind Child::receive_blob(void* place, std::size_t size, const Patience& patience) {
   const UntilDeath until_death(process_, patience);
-  return until_death.told(socket_.receive_blob(place, size, until_death.patience()));
+  return until_death.resolved(socket_.receive_blob(place, size, until_death.patience()));
 }
 
 std::string Child::end() {

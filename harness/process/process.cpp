@@ -191,13 +191,13 @@ Result<Process> Process::start(const std::function<void()>& work, bool with_guar
   const pid_t guard = leader > 0 && with_guard ? ::fork() : -1;
   if (guard == 0) guard_group(parent, ready, leader);
   const int reason = errno;
-  const bool is_told = !with_guard && leader > 0 && ::write(ready[1], "", 1) == 1;
+  const bool is_released = !with_guard && leader > 0 && ::write(ready[1], "", 1) == 1;
   for (const int end : ready) {
     if (end >= 0) ::close(end);
   }
   if (leader > 0) owned().processes.insert(leader);
   if (guard > 0) owned().processes.insert(guard);
-  if (guard > 0 || is_told) return Process(leader, guard);
+  if (guard > 0 || is_released) return Process(leader, guard);
   if (leader > 0) {
     ::kill(leader, SIGKILL);
     Ending ignored;

@@ -21,7 +21,7 @@ std::string suspect_text(const Suspect& suspect) {
   std::vector<std::string> others;
   for (const faults::Fault* other : suspect.ambiguity_group)
     others.push_back(fmt::format("`{}`", other->id));
-  return out + fmt::format("      as well as {}\n", fmt::join(others, ", "));
+  return out + fmt::format("      equally well: {}\n", fmt::join(others, ", "));
 }
 
 }  // namespace
@@ -29,8 +29,8 @@ std::string suspect_text(const Suspect& suspect) {
 std::string diagnosis_text(const Diagnosis& diagnosis) {
   if (diagnosis.suspects.empty()) {
     return fmt::format(
-        "it looks like no mistake of the catalogue; what deviates is most like a mistake in the "
-        "stage {}\n  ({:.0f}% of the values, as of `{}`: {})\n",
+        "it looks like no fault of the catalogue; the deviations are most similar to a fault in "
+        "the stage {}\n  ({:.0f}% of the values in common with `{}`: {})\n",
         name_of(diagnosis.stage), 100 * diagnosis.jaccard_index, diagnosis.nearest->id,
         diagnosis.nearest->what);
   }

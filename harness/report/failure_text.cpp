@@ -10,7 +10,7 @@
 namespace attest {
 namespace {
 
-// Said when a result carries no reason of its own.
+// The text for a result without a reason.
 std::string_view meaning_of(Verdict verdict) {
   switch (verdict) {
     case Verdict::pass:
@@ -68,7 +68,7 @@ std::string times(double ratio) {
   return ratio < 1e6 ? fmt::format("{:.0f}", ratio) : fmt::format("{:.0e}", ratio);
 }
 
-// How far off, and how far it may be. Empty where a difference means nothing (flags).
+// The difference and the allowed difference. Empty for flags, which have no distance.
 std::string distance(const Channel& channel, const Deviation& deviation, Level level) {
   if (channel.type != ChannelType::f32 || level == Level::events) return {};
   if (!std::isfinite(deviation.want)) return "    the golden is not finite here, on purpose\n";
@@ -93,13 +93,13 @@ std::string first_deviation(const Deviation& deviation, Level level) {
       values(channel, deviation), distance(channel, deviation, level), name_of(channel.stage));
 }
 
-// "attest", with the suite if it was named.
+// "attest", with --suite if it was given.
 std::string attest_with_suite(const RunResult& run) {
   if (run.suite_folder.empty()) return "attest";
   return "attest --suite " + shell_word(run.suite_folder);
 }
 
-// To watch the flight that failed.
+// The command that writes the trace of the failing flight.
 std::string sim_command(const CaseResult& result, const RunResult& run) {
   return one_line(
       fmt::format("{} sim {} --rate {} --vehicle {} --plant {} --port {} "

@@ -1,6 +1,6 @@
-// The one text about a failing result that the terminal and JUnit share. It is read in a CI log by
-// someone who has nothing else at hand: what is wrong, where it first shows, which stage of the law
-// to look at, and the command that runs this one case again.
+// The text about a failing result, shared by the terminal and JUnit. A CI log may be all that its
+// reader has. So it has the error, the first divergence, the stage of the law to look at, and the
+// command that runs this vector again.
 #pragma once
 
 #include <string>
@@ -16,8 +16,8 @@ std::string failure_headline(const CaseResult& result);
 // level for the command to reproduce it.
 std::string failure_text(const CaseResult& result, const RunResult& run);
 
-// What differs and where, without id and commands: for traces that are no cases. Empty when only
-// the verdict is known.
+// The first divergence and the number of deviating ticks, without id and commands: for traces
+// outside the suite. Empty when only the verdict is known.
 std::string finding_text(const CaseResult& result, Level level);
 
 // "at most 1.2", "at least 0", "0 to 3".

@@ -106,8 +106,8 @@ std::string render_fault_table(const std::vector<FaultFinding>& findings) {
   }
   const FaultSummary summary = summary_of(findings);
   out += fmt::format(
-      "\n{}: {} faults; {} of {} that can be told from the law are caught ({:.1f}%), {} by their "
-      "own group; {} are equivalent to it. A hover trace catches {} ({:.0f}%), random attitude "
+      "\n{}: {} faults; {} of {} detectable faults are caught ({:.1f}%), {} by their own group; {} "
+      "are equivalent to the law. A hover trace catches {} ({:.0f}%), random attitude "
       "pairs {} ({:.0f}%), both together {} ({:.0f}%).\n",
       findings.empty() ? "" : findings.front().profile, findings.size(), summary.caught,
       summary.detectable, percent(summary.caught, summary.detectable),

@@ -1,4 +1,4 @@
-// What a suite is worth: which wrong controllers it catches.
+// The worth of a suite: which faults of the catalogue it catches.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct FaultFinding {
   FaultCatch found;
   bool by_hover = false, by_random_attitudes = false;
 
-  // In the profile, is there an input that tells it from the law?
+  // Does an input exist in the profile for which the fault differs from the law?
   bool is_detectable() const;
   bool is_caught() const { return found.is_caught(); }
   bool is_caught_by_own_group() const;
@@ -23,17 +23,17 @@ struct FaultFinding {
 
 struct FaultSummary {
   std::size_t detectable = 0, caught = 0, by_hover = 0, by_random_attitudes = 0, by_naive = 0;
-  std::vector<const FaultFinding*> survivors;     // detectable, caught by nothing
+  std::vector<const FaultFinding*> survivors;     // detectable, not caught
   std::vector<const FaultFinding*> not_by_own;    // caught, but not by a case of their group
-  std::vector<const FaultFinding*> false_alarms;  // equivalent to the law, and yet caught
+  std::vector<const FaultFinding*> false_alarms;  // equivalent to the law, but caught
 };
 FaultSummary summary_of(const std::vector<FaultFinding>& findings);
 
-// Markdown: a row a group with what of it is caught, a row a fault, and the figures. Of one
-// profile.
+// Markdown, of one profile: a row per group with its numbers of caught faults, a row per fault, and
+// the totals.
 std::string render_fault_table(const std::vector<FaultFinding>& findings);
 
-// One line a fault: id, group, stage, profiles that can tell it, what it does.
+// One line per fault: id, group, stage, profiles in which it is detectable, description.
 std::string render_fault_list();
 
 }  // namespace attest

@@ -38,7 +38,7 @@ ordered_json errors(const RunResult& run) {
   return out;
 }
 
-// In an order to read in, and without the time it took.
+// In an order for reading, and without the elapsed times.
 ordered_json results(const RunResult& run) {
   ordered_json out = ordered_json::array();
   for (const CaseResult& result : run.results) {

@@ -1,6 +1,6 @@
-// The machine-readable report. Its format is report.schema.json, beside this file; a change that
+// The machine-readable report. Its format is report.schema.json, next to this file; a change that
 // readers can notice changes `schema`. Deterministic: the same run on the same day gives the same
-// bytes, so it holds a date and no times.
+// bytes. So it has a date, but no times.
 #pragma once
 
 #include <optional>

@@ -130,12 +130,13 @@ std::string suite_name(const CaseResult& result) {
   return one_line(result.profile + "." + result.group);
 }
 
-// What a reader of one test's page needs: CI servers do not show what is said of the whole run.
+// With the diagnosis in each failure: on the page of one test, CI servers do not show the rest of
+// the run.
 std::string failure_content(const CaseResult& result, const RunResult& run,
                             const std::optional<Diagnosis>& diagnosis) {
   const std::string text = failure_text(result, run);
   if (!diagnosis || !result.first) return text;
-  return text + "\nFrom all that fails in this run, " + diagnosis_text(*diagnosis);
+  return text + "\nFrom all failures in this run, " + diagnosis_text(*diagnosis);
 }
 
 void add_result(pugi::xml_node suite, const CaseResult& result, const RunResult& run,
@@ -215,7 +216,7 @@ std::string junit_report(const RunResult& run, const std::optional<Diagnosis>& d
   set_attribute(declaration, "encoding", "UTF-8");
   pugi::xml_node root = document.append_child("testsuites");
   set_attribute(root, "name", "attest");
-  // No `skipped` here: the schema of Jenkins' xUnit plugin has none and rejects the file.
+  // No `skipped` here: the schema of Jenkins' xUnit plugin does not allow it and rejects the file.
   set_counts(root, all);
   set_attribute(root, "time", seconds(all.time_s));
   for (const Suite& suite : suites) {

@@ -1,12 +1,12 @@
 // The report for CI servers, in the JUnit dialect that Jenkins, GitLab and GitHub's reporters have
 // in common (tests/harness/report/junit.xsd).
 //
-// A group is a testsuite, a case at one rate a testcase, and the failure text is the content of
+// A group is a testsuite, a vector is a testcase, and the failure text is the content of
 // <failure> (fail, non-finite, xpass) or <error> (crash, timeout, protocol): GitLab shows content,
-// not `message`. A diagnosis of the run stands in each. unsupported, skip and xfail are <skipped>.
+// not `message`. Each has the diagnosis of the run. unsupported, skip and xfail are <skipped>.
 // GitLab drops all but the first of equal classname and name, so the name has the rate. Errors of
-// the environment are a testsuite of their own, "attest.environment". Times are those of the single
-// cases and their sums.
+// the environment are a testsuite of their own, "attest.environment". Times are those of the
+// vectors and their sums.
 #pragma once
 
 #include <optional>

@@ -43,7 +43,7 @@ void Progress::draw(const CaseResult& latest) const {
       fmt::format("[{:#<{}}{:-<{}}] {}/{}", "", filled, "", bar_width - filled, done_, total_);
   if (failed_ > 0) line += fmt::format(", {} failed", failed_);
   line += "  " + one_line(latest.id());
-  // A line that wraps could not be erased.
+  // A line that wraps cannot be erased.
   line.resize(std::min(line.size(), static_cast<std::size_t>(std::max(options_.width - 1, 0))));
   std::fputs((erase_line + line).c_str(), options_.stream);
   std::fflush(options_.stream);

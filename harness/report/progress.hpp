@@ -1,4 +1,4 @@
-// One line on a terminal that says how far a run is; nothing anywhere else.
+// One line with the progress of a run, on a terminal only.
 #pragma once
 
 #include <chrono>
@@ -9,8 +9,8 @@
 
 namespace attest {
 
-// Used from one thread. The line is erased when the object goes, so that what is printed next
-// starts on a clean line; finish() does it earlier.
+// Used from one thread. The destructor erases the line, so that the next output starts on a clean
+// line; finish() erases it earlier.
 class Progress {
  public:
   using Clock = std::chrono::steady_clock;
@@ -30,7 +30,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // One more result is there. Draws at most once an interval.
+  // Counts one more result. Draws at most once per interval.
   void add(const CaseResult& result, Clock::time_point now = Clock::now());
   void finish();
 

@@ -8,7 +8,7 @@
 namespace attest {
 namespace {
 
-// Of a report that has no place for a diagnosis.
+// For a report without a diagnosis.
 auto without_diagnosis(std::string (*render)(const RunResult&)) {
   return [render](const RunResult& run, const std::optional<Diagnosis>&) { return render(run); };
 }
@@ -24,7 +24,7 @@ std::span<const ReportFormat> report_formats() {
        "partial, red when something fails",
        without_diagnosis(badge)},
       {"--write-expected",
-       "Write what fails as a file for --expected-failures, to fill in the reasons",
+       "Write the failures as a file for --expected-failures; fill in the reasons",
        without_diagnosis(expected_failures_of)},
   };
   return formats;

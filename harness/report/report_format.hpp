@@ -1,5 +1,5 @@
-// The reports that a run can write to a file: the one list from which the options of `attest run`
-// and the writing of files come.
+// The reports that a run can write to a file. The options of `attest run` and the writing of files
+// both use this list.
 #pragma once
 
 #include <functional>

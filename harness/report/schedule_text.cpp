@@ -47,10 +47,9 @@ std::string render_delays(const std::vector<TaskJob>& unit, const LoopTiming& ti
     commands.push_back(unit[i].finish - unit[i].release);
     if (timing[i].sampled >= Nanoseconds(0)) ages.push_back(unit[i].finish - timing[i].sampled);
   }
-  return fmt::format("what the loop feels{:>25}{:>10}{:>10}\n", "least", "median", "most") +
-         spread("a tick begins after its release", begins) +
-         spread("its command comes after that", commands) +
-         spread("age of the sample behind it", ages);
+  return fmt::format("delays of the loop{:>26}{:>10}{:>10}\n", "least", "median", "most") +
+         spread("start after the release", begins) + spread("command after the release", commands) +
+         spread("sample age at the command", ages);
 }
 
 std::string render_flights(const CaseResult& in_time, const CaseResult& scheduled) {

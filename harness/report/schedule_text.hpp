@@ -1,4 +1,4 @@
-// A schedule for people: each task's responses, and what the loop feels of them.
+// A schedule as text: each task's response times, and the delays of the loop.
 #pragma once
 
 #include <string>
@@ -9,14 +9,14 @@
 
 namespace attest {
 
-// One row a task: analysed and simulated longest response. A response longer than the period is
+// One row per task: analysed and simulated longest response. A response longer than the period is
 // marked.
 std::string render_tasks(const TaskSet& set, const std::vector<std::vector<TaskJob>>& jobs);
 
-// How late ticks begin and commands come, and how old the samples are that they rest on.
+// The delays of starts and commands after the release, and the sample ages at the commands.
 std::string render_delays(const std::vector<TaskJob>& unit, const LoopTiming& timing);
 
-// The metrics of a flight with that timing beside the same flight with every tick in time.
+// The metrics of a flight with that timing, compared with the same flight with every tick in time.
 std::string render_flights(const CaseResult& in_time, const CaseResult& scheduled);
 
 }  // namespace attest

@@ -36,7 +36,7 @@ std::string which_groups(const Claim& claim) {
   return out;
 }
 
-// Where allowances were made for it: at the numeric level, and for flights at all.
+// Fixed point has wider tolerances at the numeric level, and for flights at every level.
 std::string arithmetic_of(const RunResult& run) {
   const bool flew =
       std::any_of(run.results.begin(), run.results.end(),
@@ -45,7 +45,7 @@ std::string arithmetic_of(const RunResult& run) {
   return fmt::format(" for fixed point with {} fraction bits", *run.fraction_bits);
 }
 
-// "11 rates", or the one that the port has.
+// "11 rates", or the fixed step of the port.
 std::string rates_of(const RunResult& run) {
   if (run.fixed_step) return fmt::format("fixed step of {} Hz", run.fixed_step->to_string());
   return counted(run.rates.size(), "rate");
@@ -67,10 +67,10 @@ std::string text_of(const Claim& claim, const RunResult& run) {
                      one_line(fmt::format("{}", fmt::join(claim.missing, "; "))));
 }
 
-// Enough of a hash to tell two files apart; the JSON report has all of it.
+// Enough of a hash to distinguish two files; the JSON report has the whole hash.
 std::string short_hash(const std::string& sha256) { return sha256.substr(0, 12); }
 
-// Which suite, which port, when.
+// Suite, port and date.
 std::string subject_of(const RunResult& run) {
   std::string out = fmt::format("cases {}, golden {}", run.cases_version, run.golden_version);
   if (!run.suite_sha256.empty()) {
@@ -84,7 +84,7 @@ std::string subject_of(const RunResult& run) {
   return out;
 }
 
-// "px4-v1.5.5 numeric, fixed point": of the last profile to which the port conforms, or that it
+// "px4-v1.5.5 numeric, fixed point": the last profile to which the port conforms, or else that it
 // passes in part.
 std::string on_the_badge(const RunResult& run, Standing standing) {
   std::string profile;
@@ -131,7 +131,7 @@ std::string conformance_statement(const RunResult& run) {
   const bool fails = std::any_of(claims.begin(), claims.end(),
                                  [](const Claim& claim) { return !claim.failing.empty(); });
   if (!fails && (!run.errors.empty() || run.stopped_early)) return "none: the run is not complete";
-  if (claims.empty()) return "none: nothing passed";
+  if (claims.empty()) return "none: no vector passed";
   std::vector<std::string> texts;
   for (const Claim& claim : claims) texts.push_back(text_of(claim, run));
   return fmt::format("{}; {}", fmt::join(texts, "; "), subject_of(run));

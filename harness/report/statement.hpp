@@ -1,4 +1,4 @@
-// What a run says of conformance, in one line, and as a picture.
+// The conformance statement of a run, as one line and as a badge.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace attest {
 
-// A profile after the other, then which suite and port it was, and when:
+// The claim for each profile, then suite, port and date:
 //
 //     conformant: px4-v1.5.5, numeric, 11 rates, all groups; cases 1.4, golden 1.4 (released suite
 //     a8370e8fe0dc), port 5f1d2c3b4a59, 2026-03-31

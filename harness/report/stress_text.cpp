@@ -16,7 +16,7 @@
 namespace attest {
 namespace {
 
-// A percentile for which there are too few samples is left out; the maximum is always there.
+// A percentile with too few samples is left out; the maximum is always present.
 std::string percentile(const std::optional<Nanoseconds>& time) {
   return time ? human_time(*time) : "-";
 }
@@ -57,8 +57,7 @@ std::string counts(const StressResult& stress) {
   const Usage& unit = stress.unit_usage;
   out += fmt::format(
       "  unit: {:.1f}% CPU, {} waits, {} preemptions, {} page faults, {} allocations; plant: "
-      "{:.1f}% "
-      "CPU, {} of {} steps too late\n",
+      "{:.1f}% CPU, {} of {} steps too late\n",
       share(unit.cpu, stress.wall), unit.yields, unit.preemptions, unit.page_faults,
       unit.allocations, share(stress.plant_usage.cpu, stress.wall), stress.plant_late_steps,
       stress.plant_steps);
@@ -86,7 +85,7 @@ std::string outputs(const CaseResult& result) {
                                  "  outputs agree with the reference's for the same inputs "
                                  "and times, headroom {:.3g}\n",
                                  result.tightest->ratio)
-                           : "  outputs are the reference's for the same inputs and times\n";
+                           : "  outputs equal the reference's for the same inputs and times\n";
   }
   return finding_text(result, Level::numeric);
 }
@@ -131,7 +130,7 @@ std::string render_privileges(const std::vector<RealtimePrivilege>& privileges) 
     (has ? got : refused).push_back(has ? name : fmt::format("{} ({})", name, why));
   }
   std::string out =
-      fmt::format("got: {}\n", got.empty() ? "nothing" : fmt::to_string(fmt::join(got, ", ")));
+      fmt::format("granted: {}\n", got.empty() ? "none" : fmt::to_string(fmt::join(got, ", ")));
   if (!refused.empty()) out += fmt::format("refused: {}\n", fmt::join(refused, ", "));
   return out;
 }

@@ -1,4 +1,4 @@
-// A stress run for people: a block a rate, the machine beside the port.
+// A stress run as text: a block per rate, with the idle machine for comparison.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ namespace attest {
 struct StressRun {
   std::string suite_folder;     // as --suite gives it; empty: the suite was found
   std::string port;             // as given
-  PortDescription description;  // as it says
+  PortDescription description;  // as it declares
   std::string load;             // "none"
   LiveOptions live;
   std::vector<StressResult> results;
@@ -27,14 +27,14 @@ std::string_view verdict_of(const StressRun& run);
 // The rates whose result is neither a pass nor a failure: "1000".
 std::vector<std::string> rates_not_judged(const StressRun& run);
 
-// One result as it is there, several lines.
+// One result, several lines, printed when its flight has ended.
 std::string render_stress(const StressResult& stress, TerminalStyle style);
 
-// What was got and refused of the operating system; the last line, with the totals.
+// The privileges that the operating system granted and refused; the last line, with the totals.
 std::string render_privileges(const std::vector<RealtimePrivilege>& privileges);
 std::string render_stress_end(const StressRun& run, TerminalStyle style);
 
-// The same for the common reports: what JUnit is made of.
+// The same run for the common reports: JUnit uses it.
 RunResult run_of(const StressRun& run);
 
 // As stress.schema.json describes it.

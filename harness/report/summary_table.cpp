@@ -41,11 +41,11 @@ struct Cell {
 
 struct Row {
   std::string label;
-  std::vector<Cell> cells;  // a rate each, then the total
+  std::vector<Cell> cells;  // one per rate, then the total
 };
 
 struct Table {
-  std::vector<std::string> header;  // a rate each, then "total"
+  std::vector<std::string> header;  // one per rate, then "total"
   std::vector<Row> rows;
 };
 
@@ -99,7 +99,7 @@ std::size_t column_width(const Table& table, std::size_t column) {
   return width + 2;
 }
 
-// The columns [begin, result) fit beside the labels; always at least one.
+// The columns [begin, result) fit next to the labels; always at least one.
 std::size_t last_that_fits(const Table& table, std::size_t begin, std::size_t labels, int limit) {
   std::size_t used = labels + column_width(table, begin);
   std::size_t end = begin + 1;
@@ -122,7 +122,7 @@ std::string block(const Table& table, std::size_t begin, std::size_t end, std::s
     out += fmt::format("{:<{}}", row.label, labels);
     for (std::size_t column = begin; column < end; ++column) {
       const std::string text = row.cells[column].text();
-      // The padding stands outside the colour, or it would count the escape codes.
+      // Padded outside the colour: a padded field would count the escape codes.
       out += std::string(column_width(table, column) - text.size(), ' ');
       out += painted(text, row.cells[column].colour(), style);
     }
@@ -131,7 +131,7 @@ std::string block(const Table& table, std::size_t begin, std::size_t end, std::s
   return out;
 }
 
-constexpr const char* legend = "n/m: n of m passed; +k: k counted apart\n";
+constexpr const char* legend = "n/m: n of m vectors passed; +k: k counted apart\n";
 
 bool needs_legend(const Table& table) {
   return std::any_of(table.rows.begin(), table.rows.end(), [](const Row& row) {

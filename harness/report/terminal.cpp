@@ -20,17 +20,17 @@
 namespace attest {
 namespace {
 
-// Results that are told together, in the order of the run.
+// Results that are shown together, in the order of the run.
 using Together = std::vector<const CaseResult*>;
 
-// Puts the results for which `wanted` into groups whose members are all `alike`.
-template <typename Wanted, typename Alike>
-std::vector<Together> grouped(const RunResult& run, Wanted wanted, Alike alike) {
+// Groups the results for which `wanted` is true. The members of a group are `equal`.
+template <typename Wanted, typename Equal>
+std::vector<Together> grouped(const RunResult& run, Wanted wanted, Equal equal) {
   std::vector<Together> groups;
   for (const CaseResult& result : run.results) {
     if (!wanted(result)) continue;
     const auto group = std::find_if(groups.begin(), groups.end(), [&](const Together& known) {
-      return alike(*known.front(), result);
+      return equal(*known.front(), result);
     });
     if (group != groups.end())
       group->push_back(&result);
@@ -53,7 +53,7 @@ std::string header(const RunResult& run) {
   return out + "\n";
 }
 
-// Where else a case fails alike: rates, or how many more flights.
+// The other vectors of a case with the same verdict: their rates, or the number of flights.
 std::string others(const Together& group) {
   if (group.front()->plant_configuration) return "in " + counted(group.size() - 1, "more flight");
   std::vector<std::string> rates;
@@ -63,18 +63,18 @@ std::string others(const Together& group) {
 }
 
 std::string failure(const Together& group, const RunResult& run, TerminalStyle style) {
-  const CaseResult& told = *group.front();
-  const std::string text = failure_text(told, run);
+  const CaseResult& shown = *group.front();
+  const std::string text = failure_text(shown, run);
   const std::size_t line = text.find('\n');
   std::string out = painted(text.substr(0, line), Colour::red, style) + text.substr(line) + "\n";
   if (group.size() > 1) {
     out += fmt::format("  also {}: --filter {}\n", others(group),
-                       shell_quoted(one_line(told.case_id()) + "@*"));
+                       shell_quoted(one_line(shown.case_id()) + "@*"));
   }
   return out + "\n";
 }
 
-// Which stage is to blame for most: one line for a log with hundreds of failures.
+// The number of first divergences in each stage: one line for a log with hundreds of failures.
 std::string stages(const RunResult& run) {
   std::array<std::size_t, stage_count> counts{};
   for (const CaseResult& result : run.results) {
@@ -97,14 +97,14 @@ std::string failures(const RunResult& run, TerminalStyle style) {
         return a.verdict == b.verdict && a.case_id() == b.case_id();
       });
   std::string out;
-  std::size_t untold = 0;
+  std::size_t hidden = 0;
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    if (i < failures_told)
+    if (i < failures_shown)
       out += failure(groups[i], run, style);
     else
-      untold += groups[i].size();
+      hidden += groups[i].size();
   }
-  if (untold > 0) out += fmt::format("and {} more; see --json or --junit\n\n", untold);
+  if (hidden > 0) out += fmt::format("and {} more; see --json or --junit\n\n", hidden);
   return out + stages(run);
 }
 
@@ -160,8 +160,8 @@ Quantity quantity_of(const CaseResult& result) {
   return channels()[result.tightest->channel].quantity;
 }
 
-// A result knows its one tightest channel, so a quantity is listed only where it is the tightest of
-// some case, and the first line is the tightest of all.
+// A result stores its tightest channel only. So a quantity is listed only if it is the tightest of
+// some vector, and the first line is the tightest of all.
 std::string headroom(const RunResult& run) {
   if (run.level != Level::numeric || run.count(Verdict::pass) == 0) return {};
   const auto groups = grouped(
@@ -180,7 +180,9 @@ std::string headroom(const RunResult& run) {
     tightest.push_back(*std::min_element(group.begin(), group.end(), tighter));
   }
   std::stable_sort(tightest.begin(), tightest.end(), tighter);
-  std::string out = "tightest headroom (tolerance / difference, where it is a case's tightest):\n";
+  std::string out =
+      "tightest headroom (tolerance / difference), by quantity, where it is the tightest of a "
+      "vector:\n";
   for (const CaseResult* result : tightest) {
     const Headroom& headroom = *result->tightest;
     out += fmt::format("  {:<9}  {:.1f}x on {} in {} at tick {}\n", plural_of(quantity_of(*result)),
@@ -190,32 +192,32 @@ std::string headroom(const RunResult& run) {
   return out + "\n";
 }
 
-// A golden that is missing is missing at every rate: equal errors are told once.
+// A golden that is missing is missing at every rate: equal errors are shown once.
 std::string errors(const RunResult& run, TerminalStyle style) {
-  std::vector<std::pair<std::string, std::size_t>> told;
+  std::vector<std::pair<std::string, std::size_t>> distinct;
   for (const Error& error : run.errors) {
     const std::string text = printable(error.to_string());
-    const auto same = std::find_if(told.begin(), told.end(),
+    const auto same = std::find_if(distinct.begin(), distinct.end(),
                                    [&text](const auto& known) { return known.first == text; });
-    if (same == told.end())
-      told.emplace_back(text, 1);
+    if (same == distinct.end())
+      distinct.emplace_back(text, 1);
     else
       ++same->second;
   }
   std::string out;
-  for (std::size_t i = 0; i < std::min(told.size(), errors_told); ++i) {
-    const auto& [text, times] = told[i];
+  for (std::size_t i = 0; i < std::min(distinct.size(), errors_shown); ++i) {
+    const auto& [text, times] = distinct[i];
     out += fmt::format("{} {}{}\n", painted("error:", Colour::red, style), text,
                        times > 1 ? fmt::format(" ({} times)", times) : "");
   }
-  if (told.size() > errors_told) {
+  if (distinct.size() > errors_shown) {
     out += fmt::format("and {}; see --json or --junit\n",
-                       counted(told.size() - errors_told, "other error"));
+                       counted(distinct.size() - errors_shown, "other error"));
   }
   return out.empty() ? out : out + "\n";
 }
 
-// "9 fail, 2 crash", of the verdicts for which `wanted`.
+// "9 fail, 2 crash", of the verdicts for which `wanted` is true.
 template <typename Wanted>
 std::string verdict_counts(const RunResult& run, Wanted wanted) {
   std::vector<std::string> parts;
@@ -257,7 +259,7 @@ std::string last_line(const RunResult& run, double wall_s, TerminalStyle style) 
     out += fmt::format("{} failed ({}); ", failed, verdict_counts(run, fails_a_run));
   }
   if (!run.errors.empty()) out += counted(run.errors.size(), "error") + "; ";
-  out += fmt::format("{} of {} conform", passed, counted(all, "case"));
+  out += fmt::format("{} of {} conform", passed, counted(all, "vector"));
   const std::string apart = verdict_counts(
       run, [](Verdict verdict) { return verdict != Verdict::pass && !fails_a_run(verdict); });
   if (!apart.empty()) out += ", " + apart;

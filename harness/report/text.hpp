@@ -1,4 +1,4 @@
-// Text for people: words of a port (its name, why it failed) made harmless before they reach a
+// Makes texts of a port (its name, the reason of its failure) harmless before they reach a
 // terminal, an XML file or a shell.
 #pragma once
 

@@ -13,7 +13,7 @@
 namespace attest {
 namespace {
 
-constexpr std::size_t slowest_told = 5;
+constexpr std::size_t slowest_shown = 5;
 
 std::vector<const VectorTimes*> timed(const CorpusTimes& times) {
   std::vector<const VectorTimes*> vectors;
@@ -29,7 +29,7 @@ std::string slowest(const CorpusTimes& times) {
     return a->slowest() > b->slowest();
   });
   std::string out;
-  for (std::size_t i = 0; i < std::min(order.size(), slowest_told); ++i) {
+  for (std::size_t i = 0; i < std::min(order.size(), slowest_shown); ++i) {
     out += fmt::format("  {:>9}  {} tick {}\n", human_time(order[i]->slowest()),
                        one_line(order[i]->result.id()), order[i]->slowest_tick());
   }
@@ -112,9 +112,10 @@ std::string render_times(const TimeRun& run) {
   const CorpusTimes& times = run.times;
   const Histogram& steps = times.steps;
   std::string out = fmt::format(
-      "{}: {} steps of {}, each the quickest of {}; reading the clock ({}) is taken off\n",
-      one_line(run.port), steps.count(), counted(timed(times).size(), "vector"), run.repeats,
-      human_time(times.clock));
+      "{}: {} steps of {}, each the shortest of {}; the time to read the clock ({}) is "
+      "subtracted\n",
+      one_line(run.port), steps.count(), counted(timed(times).size(), "vector"),
+      counted(static_cast<std::size_t>(run.repeats), "run"), human_time(times.clock));
   out += fmt::format("  {:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n  ", "min", "median", "p90", "p99",
                      "p99.9", "max");
   for (const Nanoseconds time : {steps.min(), steps.percentile(0.5), steps.percentile(0.9),

@@ -1,4 +1,4 @@
-// Execution times for people and for programs.
+// Execution times as text and as JSON.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +18,11 @@ struct TimeRun {
   std::vector<std::uint64_t> instructions;  // of the slowest vector's steps; empty: not counted
 };
 
-// REQUIRES: something was timed.
+// REQUIRES: at least one vector was timed.
 std::string render_times(const TimeRun& run);
 
-// A line for each vector that fails a run; those in a row that have the same reason are counted.
-// Empty when none does.
+// A line for each vector that fails a run. Consecutive vectors with the same reason are counted in
+// one line. Empty if no vector fails.
 std::string what_went_wrong(const TimeRun& run);
 
 // {"schema": "attest-time-1", "attest_version": ..., "port": ..., "repeats": 5, "budget_us": null,

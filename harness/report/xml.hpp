@@ -1,4 +1,4 @@
-// What the reports in XML share.
+// Shared by the reports in XML.
 #pragma once
 
 #include <string>

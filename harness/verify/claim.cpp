@@ -82,7 +82,7 @@ bool is_whole(const Group& group, const RunResult& run) {
          });
 }
 
-// "3 cases unsupported (modes, tpa)"; left out when the count is 0.
+// "3 vectors unsupported (modes, tpa)"; left out when the count is 0.
 void say(const Groups& groups, std::size_t Group::*count, const char* singular, const char* plural,
          std::vector<std::string>& missing) {
   std::size_t all = 0;
@@ -97,7 +97,8 @@ void say(const Groups& groups, std::size_t Group::*count, const char* singular, 
       fmt::format("{} {} ({})", all, all == 1 ? singular : plural, fmt::join(names, ", ")));
 }
 
-// Adds the mandatory groups and the rates without any case run, and the number of cases not run.
+// Adds the mandatory groups and the rates without any vector run, and the number of vectors not
+// run.
 void say_what_was_not_run(const Groups& groups, const RunResult& run,
                           std::vector<std::string>& missing) {
   std::vector<std::string> names, rates;
@@ -116,10 +117,10 @@ void say_what_was_not_run(const Groups& groups, const RunResult& run,
   }
   if (left_out == 0) return;
   if (!run.selection.empty()) missing.push_back("only " + run.selection);
-  if (!names.empty()) missing.push_back(fmt::format("no case of {}", fmt::join(names, ", ")));
-  if (!rates.empty()) missing.push_back(fmt::format("no case at {} Hz", fmt::join(rates, ", ")));
+  if (!names.empty()) missing.push_back(fmt::format("no vector of {}", fmt::join(names, ", ")));
+  if (!rates.empty()) missing.push_back(fmt::format("no vector at {} Hz", fmt::join(rates, ", ")));
   missing.push_back(
-      fmt::format("{} not run", left_out == 1 ? "1 case" : fmt::format("{} cases", left_out)));
+      fmt::format("{} not run", left_out == 1 ? "1 vector" : fmt::format("{} vectors", left_out)));
 }
 
 std::vector<std::string> missing_of(const Groups& groups, const RunResult& run) {
@@ -131,8 +132,8 @@ std::vector<std::string> missing_of(const Groups& groups, const RunResult& run) 
     missing.push_back(fmt::format("fixed step of {} Hz", run.fixed_step->to_string()));
   }
   say_what_was_not_run(groups, run, missing);
-  say(groups, &Group::unsupported, "case unsupported", "cases unsupported", missing);
-  say(groups, &Group::skipped, "case skipped", "cases skipped", missing);
+  say(groups, &Group::unsupported, "vector unsupported", "vectors unsupported", missing);
+  say(groups, &Group::skipped, "vector skipped", "vectors skipped", missing);
   say(groups, &Group::expected_failures, "expected failure", "expected failures", missing);
   return missing;
 }
@@ -153,7 +154,7 @@ Claim claim_of(const std::string& profile, const Groups& groups, const RunResult
     }
   }
   claim.missing = missing_of(groups, run);
-  if (claim.whole.empty() && claim.missing.empty()) claim.missing.emplace_back("nothing passed");
+  if (claim.whole.empty() && claim.missing.empty()) claim.missing.emplace_back("no vector passed");
   return claim;
 }
 

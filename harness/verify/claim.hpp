@@ -19,8 +19,9 @@ struct Claim {
   std::vector<std::string> whole, in_part, failing;
   // Optional modules that are whole. A module that fails is in `failing` instead.
   std::vector<std::string> modules;
-  bool has_all_groups = false;       // `whole` has all mandatory groups
-  std::vector<std::string> missing;  // "custom suite", "2 cases unsupported (tpa)"; empty: conforms
+  bool has_all_groups = false;  // `whole` has all mandatory groups
+  std::vector<std::string>
+      missing;  // "custom suite", "2 vectors unsupported (tpa)"; empty: conforms
 
   bool conforms() const { return failing.empty() && missing.empty(); }
 };

@@ -78,9 +78,9 @@ void judge(const Comparison& comparison, CaseResult& result) {
   result.reason = comparison.mismatch.empty() ? comparison.event : comparison.mismatch;
   if (comparison.agrees()) return;
   result.verdict = comparison.got_non_finite ? Verdict::non_finite : Verdict::fail;
-  const bool is_told =
+  const bool is_shown =
       !comparison.got_non_finite || !comparison.first || !std::isfinite(comparison.first->got);
-  if (is_told) return;
+  if (is_shown) return;
   result.reason = fmt::format("{}{}an output is NaN or infinite where the golden has a number",
                               result.reason, result.reason.empty() ? "" : "; ");
 }

@@ -60,7 +60,7 @@ golden=suite/golden/px4-v1.5.5/attitude/roll
   before=$(cat $golden/*)
   # script gives attest a terminal to ask on.
   run script -qec "\"$ATTEST\" --suite suite bless --reason r" /dev/null <<<"n"
-  has "nothing was changed"
+  has "no golden was changed"
   [ "$before" = "$(cat $golden/*)" ]
   [ -z "$(find suite -name '*.new' -o -name '*.old')" ]
 }
@@ -73,7 +73,7 @@ golden=suite/golden/px4-v1.5.5/attitude/roll
   sed -i "s/^\"tracking_100hz.csv\".*/\"tracking_100hz.csv\" = \"$hash\"/" $folder/provenance.toml
   run "$ATTEST" --suite suite bless --yes --reason "should not be"
   [ "$status" -eq 2 ]
-  has "nothing is blessed"
+  has "no golden is blessed"
   [ ! -e $golden ]
 }
 

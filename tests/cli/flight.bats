@@ -78,7 +78,7 @@ assert {one["first"]["channel"] for one in failed} == {"out/actuator_controls_0.
 CHECK
 }
 
-@test "the same flight is the same bytes, whatever flew beside it" {
+@test "the same flight is the same bytes, in any company" {
   for plant in mujoco ode; do
     "$ATTEST" sim hover --rate 333 --plant $plant --out one.csv
     "$ATTEST" sim hover --rate 333 --plant $plant --out two.csv

@@ -32,7 +32,7 @@ commands=(run replay sim stress sweep-rate schedule time compare faults list vec
   has 'unknown command `rnu`; did you mean `run`?'
 }
 
-@test "a misspelt option, case or rate is told what may be meant" {
+@test "a misspelt option, case or rate gets a suggestion" {
   run "$ATTEST" run --fitler 'rates/*'
   [ "$status" -eq 2 ]
   has 'unknown option `--fitler`; did you mean `--filter`?; attest run --help shows them'

@@ -20,7 +20,7 @@ load common
   has "RATTITUDE"
 }
 
-@test "parameters are listed by profile, and a profile that is none is refused" {
+@test "parameters are listed by profile, and an unknown profile is refused" {
   run "$ATTEST" list --parameters --profile px4-v1.3.4
   [ "$status" -eq 0 ]
   has "MC_ROLL_P"
@@ -41,7 +41,7 @@ load common
 
 @test "doctor finds this tree in good health" {
   run "$ATTEST" doctor
-  has "of a port's process: 10 s an answer"
+  has "of a port's process: 10 s per answer"
   [ "$status" -eq 0 ]
   has "agrees with 43 of 43 traces recorded from the firmware"
   lacks "BAD"

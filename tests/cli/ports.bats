@@ -32,7 +32,7 @@ judged() {
   xmllint --noout junit.xml
 }
 
-@test "a port that exits is told apart from one that answers" {
+@test "a port that exits is distinguished from one that answers" {
   judged exits
   [ "$status" -eq 1 ]
   has "exited with status 0"
@@ -112,14 +112,14 @@ TASKS
   has "ATTEST_FAILED"
   judged unsupported_step
   [ "$status" -eq 2 ]
-  has "nothing was compared"
+  has "no vector was compared"
 }
 
 @test "a profile that the port refuses is skipped, and nothing compared is not success" {
   judged refuses_profile
   [ "$status" -eq 2 ]
   has "does not support profile px4-v1.5.5"
-  has "nothing was compared"
+  has "no vector was compared"
 }
 
 @test "writing past the outputs breaks the ABI" {
@@ -152,7 +152,7 @@ TASKS
   has "step at tick 2 returned ATTEST_FAILED"
 }
 
-@test "a library that is none" {
+@test "a file that is not a library" {
   run "$ATTEST" run --port lib:./missing.so
   [ "$status" -eq 2 ]
   has "missing.so: no such library"

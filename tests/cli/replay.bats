@@ -13,7 +13,7 @@ recorded() { ls "$SOURCE"/golden/recorded/*/*.csv | grep -v tailsitter; }
   [ "$status" -eq 0 ]
 }
 
-@test "the profile comes from the provenance beside the trace, or from the option" {
+@test "the profile comes from the provenance next to the trace, or from the option" {
   trace="$SOURCE"/golden/recorded/px4-v1.3.4/fuzz_250hz.csv
   run "$ATTEST" replay "$trace"
   has "px4-v1.3.4"
@@ -89,7 +89,7 @@ recorded() { ls "$SOURCE"/golden/recorded/*/*.csv | grep -v tailsitter; }
   has "out/actuator_outputs"
   run "$ATTEST" replay "$trace" --port "lib:$PORTS/port_prints.so"
   [ "$status" -eq 2 ]
-  has "nothing was compared"
+  has "no trace was compared"
   has "unsupported"
   has "the port has no mixer (extension attest.mixer.v1)"
 }

@@ -4,7 +4,7 @@ load common
 # change. The budgets are wide, so that only the port can fail.
 open=(--policy other --no-cyclictest --misses-per-million 1000000 --p99-latency 1000000)
 
-@test "a port is measured at each rate, beside the machine alone" {
+@test "a port is measured at each rate, compared with the idle machine" {
   run "$ATTEST" stress --rates 100,250 --duration 0.5 "${open[@]}" --json s.json --junit s.xml
   [ "$status" -eq 0 ] || [[ $output == *"does not step the plant"* ]]
   has "flight/hover@100hz-iris-mujoco"
@@ -34,9 +34,9 @@ for result, rate in zip(report["results"], (100, 250)):
 CHECK
 }
 
-@test "progress is told once a second" {
+@test "progress is shown once a second" {
   run "$ATTEST" stress --rates 100 --duration 1.5 "${open[@]}"
-  has "100 Hz: the machine alone"
+  has "100 Hz: idle machine"
   has "of 1.5 s,"
 }
 
@@ -111,14 +111,14 @@ CHECK
   nothing_is_left
 }
 
-@test "figures of cyclictest stand beside ours" {
+@test "figures of cyclictest are printed next to ours" {
   fake cyclictest <<<"echo '{\"thread\": {\"0\": {\"histogram\": {\"40\": 9}, \"max\": 41}}}'"
   run timeout -k 1 100 env PATH="$PWD/fakes" "$ATTEST" stress --rates 100 --duration 0.3 \
     --policy other --misses-per-million 1000000 --p99-latency 1000000
   has "cyclictest, idle"
 }
 
-@test "a wrong port fails, and the way to see it again is told" {
+@test "a wrong port fails, and the command to reproduce it is shown" {
   run "$ATTEST" stress --port "lib:$PORTS/port_sign_flip.so" --rates 250 --duration 0.5 \
     "${open[@]}" --junit s.xml
   [ "$status" -eq 1 ]

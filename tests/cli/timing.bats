@@ -14,13 +14,13 @@ priority = 3
 TASKS
 }
 
-@test "a schedule says what the loop feels" {
+@test "a schedule shows the delays of the loop" {
   tasks
   run "$ATTEST" schedule tasks.toml --record-timing t.json
   [ "$status" -eq 0 ]
   [[ $output =~ unit\ .*\ 76\ us\ +476\ us\ +476\ us ]]
   [[ $output =~ estimator\ .*\ 400\ us\ +400\ us\ +400\ us ]]
-  [[ $output =~ begins\ after\ its\ release\ +400\ us ]]
+  [[ $output =~ start\ after\ the\ release\ +400\ us ]]
   has "scheduled"
   run "$ATTEST" run --timing t.json
   [ "$status" -eq 0 ]
@@ -32,8 +32,8 @@ TASKS
   run "$ATTEST" schedule tasks.toml --record-timing t.json
   [ "$status" -eq 0 ]
   [[ $output =~ unit\ .*\ 76\ us\ +76\ us\ +76\ us ]]
-  [[ $output =~ begins\ after\ its\ release\ +0\ ns ]]
-  [[ $output =~ age\ of\ the\ sample\ behind\ it\ +476\ us ]]
+  [[ $output =~ start\ after\ the\ release\ +0\ ns ]]
+  [[ $output =~ sample\ age\ at\ the\ command\ +476\ us ]]
   python3 - <<'CHECK'
 import json
 ticks = json.load(open("t.json"))["ticks_ns"]
@@ -178,17 +178,17 @@ CHECK
   has "crash: the port's process"
   run "$ATTEST" time --port "lib:$PORTS/port_refuses_profile.so" --filter 'rates/*@250hz'
   [ "$status" -eq 2 ]
-  has "nothing was timed"
+  has "no vector was timed"
 }
 
 @test "a schedule that no port flew is no success" {
   tasks
   run "$ATTEST" schedule tasks.toml --port "lib:$PORTS/port_refuses_profile.so"
   [ "$status" -eq 2 ]
-  has "nothing was flown: the port does not support profile"
+  has "no flight took place: the port does not support profile"
 }
 
-@test "a timing file that is none is refused by name" {
+@test "a file that is not a timing file is refused by name" {
   echo '{"attest_timing": "x"}' >late.json
   run "$ATTEST" run --timing late.json
   [ "$status" -eq 2 ]

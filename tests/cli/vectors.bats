@@ -55,7 +55,7 @@ T
   head -1 out/px4-v1.5.5/mixer/linear_hexa_x/250hz.csv | grep -q "in/actuator_controls_0.control"
 }
 
-@test "vectors say which law they are for, and keep what stands beside them" {
+@test "vectors record their profile, and keep the provenance of the folder" {
   "$ATTEST" vectors out --profile px4-v1.3.4 --group anti_windup --rate 250
   grep -q "px4-v1.3.4" out/px4-v1.3.4/anti_windup/*/provenance.toml
   "$ATTEST" vectors out --profile px4-v1.5.5 --filter 'rates/*' --rate 250

@@ -4,6 +4,7 @@ import posixpath
 import re
 
 import cxx
+import vocabulary
 from tree import CXX_HEADERS, Finding, Tree
 
 MAX_COLUMNS = 100
@@ -155,6 +156,23 @@ def finished(tree: Tree):
                 yield Finding(path, number, f"{match[0]}: do it, or say why not as a plain comment")
 
 
+# The list of the words, its test, and texts that are quoted as they were.
+_FREE_WORDING = re.compile(
+    r"tests/tidy/(?:vocabulary|selftest)\.py|golden/.+/provenance\.toml|(?:.+/)?LICENSE"
+)
+
+
+def plain_words(tree: Tree):
+    for path in tree.paths():
+        if _FREE_WORDING.fullmatch(path):
+            continue
+        text = tree.text(path)
+        for match in vocabulary.PATTERN.finditer(text):
+            line = text.count("\n", 0, match.start()) + 1
+            phrase = vocabulary.phrase_of(match)
+            yield Finding(path, line, f"`{phrase}`: write {vocabulary.INSTEAD[phrase]}")
+
+
 _MACHINE_PATH = re.compile(r"(?<![\w.$})/-])/(?:home|root|work|tmp)/\w[\w./-]*")
 
 
@@ -217,6 +235,7 @@ RULES = (
     sources_are_built,
     cmake_lists_by_hand,
     finished,
+    plain_words,
     no_machine_paths,
     header_shape,
     header_namespace,

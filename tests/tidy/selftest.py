@@ -6,6 +6,7 @@ import unittest
 
 import cxx
 import rules
+import vocabulary
 from tree import Tree
 
 LONG_LINE = "x" * 101
@@ -90,6 +91,14 @@ EXAMPLES = {
         ({"README.md": "TO" "DO: write"}, {"ci/check": "mktemp -d XXXXXX\n"}),
         ({"cases/a.toml": "# FIX" "ME later"}, {"a.cpp": "// fixed\n"}),
     ],
+    "plain_words": [
+        ({"README.md": "A port beside it."}, {"cases/a.toml": "[yaw_beside_roll]\n"}),
+        ({"a.cpp": "// a port is\n  // told the rate\n"}, {"a.cpp": "// is it told? besides\n"}),
+        ({"a.cpp": 'f("both turn "\n  "by "\n "turns");'}, {"a.cpp": "by_turns(turns);\n"}),
+        ({"ci/check": "# lasts for\n# ever\n"}, {"ci/check": "for each of ever more\n"}),
+        ({"a.bats": '@test "All the same" {'}, {"LICENSE": "alike", "b/LICENSE": "alike"}),
+        ({"golden/a.toml": "as of"}, {"golden/a/b/provenance.toml": "as of"}),
+    ],
     "no_machine_paths": [
         ({"README.md": "run `/ho" "me/me/attest`"}, {"README.md": "see build/work/a, ../tmp/b"}),
         ({"a.cpp": 'open("/t' 'mp/x.csv")'}, {"a.sh": "open $directory/tmp/x.csv"}),
@@ -139,6 +148,11 @@ class Rules(unittest.TestCase):
     def test_a_finding_says_where(self):
         (finding,) = rules.line_length(Tree({"a.cpp": f"\n\n// {LONG_LINE}\n"}))
         self.assertTrue(str(finding).startswith("a.cpp:3: 104 columns"), str(finding))
+
+    def test_each_banned_phrase_is_found_with_its_replacement(self):
+        for phrase, instead in vocabulary.INSTEAD.items():
+            (finding,) = rules.plain_words(Tree({"a.md": f"\n{phrase.title()}."}))
+            self.assertEqual(str(finding), f"a.md:2: `{phrase}`: write {instead}")
 
 
 class Functions(unittest.TestCase):

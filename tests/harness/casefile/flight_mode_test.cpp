@@ -43,7 +43,7 @@ TEST(FlightMode, SetsTheFlags) {
   }
 }
 
-TEST(FlightMode, AFlagBesideItReplacesThatOfTheMode) {
+TEST(FlightMode, AFlagInTheSameTableReplacesThatOfTheMode) {
   const Trace trace =
       with_mode("flight_mode = \"AUTO_MISSION\"\nflag_control_velocity_enabled = false\n");
   EXPECT_THAT(flags_at(trace, 0), ElementsAre(0, 1, 1, 1, 0, 0));
@@ -77,14 +77,14 @@ TEST(FlightMode, ModeAndTransitionChangeEachAtItsOwnTimes) {
   EXPECT_THAT(velocity, ElementsAre(1, 1, 0, 0, 1, 1, 1, 1, 0, 1));
 }
 
-TEST(FlightMode, AFlagBesideATransitionReplacesThatToo) {
+TEST(FlightMode, AFlagReplacesThatOfATransitionToo) {
   const Trace trace = with_mode(
       "flight_mode = \"AUTO_LANDENGFAIL\"\nin_transition = true\n"
       "flag_control_velocity_enabled = 1\n");
   EXPECT_THAT(flags_at(trace, 0), ElementsAre(0, 1, 1, 1, 0, 1));
 }
 
-TEST(FlightMode, ATransitionIsAFlagBesideAMode) {
+TEST(FlightMode, ATransitionIsAFlagAndNeedsAMode) {
   const auto errors = [](const std::string& lines) {
     return errors_of("[vehicle_control_mode]\n" + lines);
   };

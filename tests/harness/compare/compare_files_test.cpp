@@ -49,7 +49,7 @@ TEST_F(CompareFilesTest, SayWhatTracesSay) {
   EXPECT_EQ(off->first->tick, 17u);
 }
 
-TEST_F(CompareFilesTest, ThatAreOfAnotherLengthAreNotAlike) {
+TEST_F(CompareFilesTest, OfDifferentLengthDiffer) {
   const Trace want = sample_trace(50);
   Trace got = want;
   got.samples.resize(20);
@@ -67,7 +67,7 @@ TEST_F(CompareFilesTest, ATimestampThatIsAnotherEndsIt) {
   EXPECT_FALSE(other->first);
 }
 
-TEST_F(CompareFilesTest, AMistakeBehindTheShorterTraceIsTold) {
+TEST_F(CompareFilesTest, AMistakeBehindTheShorterTraceIsReported) {
   const auto a = write("got.csv", sample_trace(2)), b = write("want.csv", sample_trace(5));
   std::string text = *read_file(b);
   text.replace(text.rfind(',') + 1, std::string::npos, "x\n");

@@ -109,7 +109,7 @@ TEST(Gross, WhereTheReferenceIsNotFiniteOneTickLaterIsRight) {
 }
 
 // A port may turn the other way, a tick sooner or later.
-TEST(Gross, BesideAHalfTurnAnyValueIsRight) {
+TEST(Gross, AroundAHalfTurnAnyValueIsAccepted) {
   Trace want = constant(2, 0.4, 0.2);
   for (std::size_t tick : {8, 9}) {
     set(want, tick, "in/updated.vehicle_attitude_setpoint", 1);

@@ -40,7 +40,7 @@ const Outputs& of(const char* id, const FaultAnswers& faults) {
   return faults.distinct.at(faults.of_fault.at(static_cast<std::size_t>(found - all.begin())));
 }
 
-bool are_alike(const Outputs& a, const Outputs& b) {
+bool are_equal(const Outputs& a, const Outputs& b) {
   return !a.empty() && a.size() == b.size() && !distinct_similarity(a, b, {}).deviates;
 }
 
@@ -49,10 +49,11 @@ TEST(AnswersOfFaults, AreThoseOfEachFault) {
   ASSERT_THAT(faults.of_fault, SizeIs(faults::catalogue().size()));
   const Outputs law = answers(*open_builtin());
   for (const char* const id : {"yaw-weight-dropped", "tpa-missing", "outputs-late"}) {
-    EXPECT_TRUE(are_alike(of(id, faults), answers(**open_fault(id)))) << id;
-    EXPECT_FALSE(are_alike(of(id, faults), law)) << id;
+    EXPECT_TRUE(are_equal(of(id, faults), answers(**open_fault(id)))) << id;
+    EXPECT_FALSE(are_equal(of(id, faults), law)) << id;
   }
-  EXPECT_TRUE(are_alike(of("limits-exchanged", faults), law)) << "nothing tells it from the law";
+  EXPECT_TRUE(are_equal(of("limits-exchanged", faults), law))
+      << "no input distinguishes it from the law";
 }
 
 TEST(AnswersOfFaults, ThatAreTheSameAreKeptOnce) {
@@ -72,15 +73,15 @@ TEST(AnswersOfFaults, OutputsThatAreThereAlreadyDoNotMatter) {
   Trace answered = given();
   EXPECT_FALSE(drive(**open_fault("yaw-reversed"), subject, answered));
   const FaultAnswers faults = answers_of_faults(answered, subject);
-  EXPECT_TRUE(are_alike(of("tpa-missing", faults), answers(**open_fault("tpa-missing"))));
+  EXPECT_TRUE(are_equal(of("tpa-missing", faults), answers(**open_fault("tpa-missing"))));
 }
 
 TEST(AnswersOfFaults, WithAPartnerAreThoseOfTheTwo) {
   const FaultAnswers faults =
       answers_of_faults(given(), subject, faults::find_fault("tpa-missing"));
-  EXPECT_TRUE(are_alike(of("yaw-weight-dropped", faults),
+  EXPECT_TRUE(are_equal(of("yaw-weight-dropped", faults),
                         answers(**open_fault("yaw-weight-dropped+tpa-missing"))));
-  EXPECT_TRUE(are_alike(of("limits-exchanged", faults), answers(**open_fault("tpa-missing"))));
+  EXPECT_TRUE(are_equal(of("limits-exchanged", faults), answers(**open_fault("tpa-missing"))));
 }
 
 TEST(AnswersOfFaults, OfAProfileThatTheyDoNotDoAreEmpty) {

@@ -96,10 +96,10 @@ const char* const the_fault = "yaw-weight-dropped";
 const char* const another = "tpa-missing";
 const char* const a_third = "tilt-in-world";
 
-Suspect suspect(const char* first, const std::vector<const char*>& beside = {}) {
+Suspect suspect(const char* first, const std::vector<const char*>& others = {}) {
   Suspect one;
   one.fault = faults::find_fault(first);
-  for (const char* const id : beside) one.ambiguity_group.push_back(faults::find_fault(id));
+  for (const char* const id : others) one.ambiguity_group.push_back(faults::find_fault(id));
   return one;
 }
 

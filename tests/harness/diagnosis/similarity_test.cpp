@@ -34,7 +34,7 @@ bool are_same(const Answer& port, const Answer& law) {
 }
 
 // The similarity of one fault.
-Similarity beside(const Outputs& fault, const Outputs& port, const Outputs& law) {
+Similarity similarity_of_one(const Outputs& fault, const Outputs& port, const Outputs& law) {
   const std::vector<Outputs> distinct{fault};
   return distinct_similarity(port, law, distinct).similarities.at(0);
 }
@@ -148,34 +148,34 @@ TEST(Similarity, ATickMatchesWhereTheFaultAnswersAsThePort) {
   const Outputs law{zero, zero, zero, zero};
   const Outputs port{rates(1), rates(2), zero, rates(0, 4)};
   const Outputs fault{rates(1), rates(3), zero, rates(4)};
-  EXPECT_EQ(beside(fault, port, law).matched, 2u);
-  EXPECT_EQ(beside(port, port, law).matched, 4u);
-  EXPECT_EQ(beside(law, port, law).matched, 1u);
+  EXPECT_EQ(similarity_of_one(fault, port, law).matched, 2u);
+  EXPECT_EQ(similarity_of_one(port, port, law).matched, 4u);
+  EXPECT_EQ(similarity_of_one(law, port, law).matched, 1u);
 }
 
 TEST(Similarity, AValueIsInBothWhereBothDeviateFromTheLaw) {
   // Roll in both, though by another amount; pitch of the port; yaw of the fault.
-  const Similarity one = beside({rates(5, 0, 3)}, {rates(1, 2, 0)}, {zero});
+  const Similarity one = similarity_of_one({rates(5, 0, 3)}, {rates(1, 2, 0)}, {zero});
   EXPECT_EQ(one.matched, 0u);
   EXPECT_EQ(one.intersection, 1u);
   EXPECT_EQ(one.union_size, 3u);
 }
 
 TEST(Similarity, OtherValuesAreNotInBothThoughTheyAreAsMany) {
-  const Similarity one = beside({rates(0, 0, 1)}, {rates(1)}, {zero});
+  const Similarity one = similarity_of_one({rates(0, 0, 1)}, {rates(1)}, {zero});
   EXPECT_EQ(one.intersection, 0u);
   EXPECT_EQ(one.union_size, 2u);
 }
 
 TEST(Similarity, TheSameValueAtAnotherTickIsNotInBoth) {
-  const Similarity one = beside({zero, rates(1)}, {rates(1), zero}, {zero, zero});
+  const Similarity one = similarity_of_one({zero, rates(1)}, {rates(1), zero}, {zero, zero});
   EXPECT_EQ(one.intersection, 0u);
   EXPECT_EQ(one.union_size, 2u);
 }
 
 TEST(Similarity, ValuesAreCountedAtEachTick) {
   const Outputs both{rates(1, 1, 1), rates(1), zero};
-  const Similarity one = beside(both, both, {zero, zero, zero});
+  const Similarity one = similarity_of_one(both, both, {zero, zero, zero});
   EXPECT_EQ(one.intersection, 4u);
   EXPECT_EQ(one.union_size, 4u);
 }
@@ -185,8 +185,8 @@ TEST(Similarity, EveryOutputIsAValueOfItsOwn) {
   for (const Channel& of_port : outputs) {
     for (const Channel& of_fault : outputs) {
       const bool same = of_port.name == of_fault.name;
-      const Similarity one =
-          beside({answer_with(of_fault, 1)}, {answer_with(of_port, 1)}, {answer_with(of_port, 0)});
+      const Similarity one = similarity_of_one(
+          {answer_with(of_fault, 1)}, {answer_with(of_port, 1)}, {answer_with(of_port, 0)});
       EXPECT_EQ(one.intersection, same ? 1u : 0u) << of_port.name << ", " << of_fault.name;
       EXPECT_EQ(one.union_size, same ? 1u : 2u) << of_port.name << ", " << of_fault.name;
     }
@@ -194,7 +194,7 @@ TEST(Similarity, EveryOutputIsAValueOfItsOwn) {
 }
 
 TEST(Similarity, AFaultThatDoesNotAnswerMatchesNothing) {
-  const Similarity one = beside({}, {zero, rates(1)}, {zero, zero});
+  const Similarity one = similarity_of_one({}, {zero, rates(1)}, {zero, zero});
   EXPECT_EQ(one.matched, 0u);
   EXPECT_EQ(one.intersection, 0u);
 }

@@ -172,7 +172,7 @@ TEST(Suspects, LastTheOneThatMatchesMoreOfThePassingTicksIsFirst) {
   }
 }
 
-TEST(Suspects, FaultsThatMatchAsWellAreNamedBesideTheFirst) {
+TEST(Suspects, FaultsThatMatchAsWellAreNamedWithTheFirst) {
   HandMade vectors(2, 1);
   for (const char* const id : {tilt_fault, yaw_fault}) vectors.matches(id, 0, 3);
   vectors.matches(tpa_fault, 1, 3);
@@ -183,7 +183,7 @@ TEST(Suspects, FaultsThatMatchAsWellAreNamedBesideTheFirst) {
 }
 
 // The vectors distinguish the two.
-TEST(Suspects, AFaultThatExplainsAsManyOthersIsNotBesideTheFirst) {
+TEST(Suspects, AFaultThatExplainsAsManyOthersIsNotNamedWithTheFirst) {
   HandMade vectors(4, 1);
   vectors.matches(tilt_fault, 0, 2).matches(yaw_fault, 2, 4);
   for (const char* const id : {tilt_fault, yaw_fault}) vectors.matches(id, 4, 5);
@@ -313,7 +313,7 @@ TEST(Partner, IsTheOneThatExplainsMost) {
   EXPECT_EQ(found.unexplained, 0u);
 }
 
-TEST(Partner, HasThoseBesideItThatMatchAsWellTogetherWithTheFirst) {
+TEST(Partner, HasAGroupOfThoseThatMatchAsWellTogetherWithTheFirst) {
   HandMade vectors = together(5, 20);
   vectors.matches(tilt_fault, 0, 5).matches(tilt_fault, 5, 25);
   Diagnosis found = diagnose(alone()).value();

@@ -293,7 +293,7 @@ TEST_F(GoldenOfAFlight, OfAVehicleThatItDoesNotListOrThatChangedItIsStale) {
   EXPECT_THAT(read_at(100).error().message, HasSubstr("bee.toml has changed since it was blessed"));
 }
 
-TEST_F(GoldenOfAFlight, WhatBlessingWouldChangeIsTold) {
+TEST_F(GoldenOfAFlight, ReportsWhatBlessingWouldChange) {
   const MadeGolden made{flown(), vehicle_.files()};
   EXPECT_THAT(change_of_golden(a_case(), made, root()), HasSubstr("new, 2 traces"));
   bless_with(vehicle_.files());

@@ -215,7 +215,7 @@ TEST(PortProcess, DeathInTheMiddleOfAnAnswerIsACrash) {
   EXPECT_THAT(fault->what, HasSubstr("exited with status 3"));
 }
 
-TEST(PortSaysTest, EachThingThatAPortSaysOtherwiseIsTold) {
+TEST(PortSaysTest, EachChangedAnswerOfAPortIsReported) {
   const PortSays said{"a", "1", {"rates"}, 22, Rate::hz(250), true, true, {}};
   EXPECT_EQ(change(said, said), "");
   std::vector<PortSays> others(8, said);

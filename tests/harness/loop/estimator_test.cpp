@@ -15,13 +15,13 @@ PlantState tumbling() {
 }
 
 TEST(Estimator, WithoutNoiseTellsTheTruth) {
-  const ControlState told = NoisyEstimator({}).sample(tumbling());
-  EXPECT_EQ(told.q[0], 0.5f);
-  EXPECT_EQ(told.q[1], -0.5f);
-  EXPECT_EQ(told.q[3], 0.5f);
-  EXPECT_EQ(told.roll_rate, 1);
-  EXPECT_EQ(told.pitch_rate, -2);
-  EXPECT_EQ(told.yaw_rate, 3);
+  const ControlState estimate = NoisyEstimator({}).sample(tumbling());
+  EXPECT_EQ(estimate.q[0], 0.5f);
+  EXPECT_EQ(estimate.q[1], -0.5f);
+  EXPECT_EQ(estimate.q[3], 0.5f);
+  EXPECT_EQ(estimate.roll_rate, 1);
+  EXPECT_EQ(estimate.pitch_rate, -2);
+  EXPECT_EQ(estimate.yaw_rate, 3);
 }
 
 TEST(Estimator, NoiseHasTheDeviationAskedFor) {
@@ -33,15 +33,15 @@ TEST(Estimator, NoiseHasTheDeviationAskedFor) {
   constexpr int samples = 20000;
   double rate_sum = 0, rate_squares = 0, angle_squares = 0;
   for (int i = 0; i < samples; ++i) {
-    const ControlState told = estimator.sample(state);
-    const double error = static_cast<double>(told.roll_rate) - 1;
+    const ControlState estimate = estimator.sample(state);
+    const double error = static_cast<double>(estimate.roll_rate) - 1;
     rate_sum += error;
     rate_squares += error * error;
     double along = 0, norm = 0;
     const double truth[] = {0.5, -0.5, 0.5, 0.5};
     for (int k = 0; k < 4; ++k) {
-      along += truth[k] * static_cast<double>(told.q[k]);
-      norm += static_cast<double>(told.q[k]) * static_cast<double>(told.q[k]);
+      along += truth[k] * static_cast<double>(estimate.q[k]);
+      norm += static_cast<double>(estimate.q[k]) * static_cast<double>(estimate.q[k]);
     }
     EXPECT_NEAR(norm, 1, 1e-6);
     const double angle_deg = 2 * std::acos(std::min(1.0, along)) * 57.29577951308232;
@@ -67,10 +67,10 @@ TEST(Estimator, EachAxisHasNoiseOfItsOwn) {
   Estimator options;
   options.rate_noise_rad_s = 0.1;
   NoisyEstimator estimator(options);
-  const ControlState told = estimator.sample(PlantState{});
-  EXPECT_NE(told.roll_rate, told.pitch_rate);
-  EXPECT_NE(told.pitch_rate, told.yaw_rate);
-  EXPECT_NE(told.roll_rate, told.yaw_rate);
+  const ControlState estimate = estimator.sample(PlantState{});
+  EXPECT_NE(estimate.roll_rate, estimate.pitch_rate);
+  EXPECT_NE(estimate.pitch_rate, estimate.yaw_rate);
+  EXPECT_NE(estimate.roll_rate, estimate.yaw_rate);
 }
 
 }  // namespace

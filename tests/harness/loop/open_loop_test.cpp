@@ -294,7 +294,7 @@ TEST_F(Company, AgainDestroysTheOtherBeforeTheJudgedIsMade) {
   EXPECT_EQ(trace_.samples[1].out.actuator_controls_0.control[0], 1);
 }
 
-TEST_F(Company, TogetherStepsThemByTurns) {
+TEST_F(Company, TogetherStepsThemAlternately) {
   EXPECT_FALSE(drive_with(Instances::together));
   EXPECT_THAT(port_.calls, ElementsAre("create 1", "create 2", "step 1 -1", "step 2 1", "step 1 -1",
                                        "step 2 1", "destroy 2", "destroy 1"));

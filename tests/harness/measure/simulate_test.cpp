@@ -102,7 +102,7 @@ TEST_F(Simulate, AMetricThatIsNoNumberFails) {
   EXPECT_EQ(verdict_on({holds_height(), turns_slowly()}), Verdict::fail);
 }
 
-TEST_F(Simulate, EachMetricIsToldBesideItsBounds) {
+TEST_F(Simulate, EachMetricIsReportedWithItsBounds) {
   case_.flight->metrics = {sinks_too_far(), turns_slowly()};
   const auto result = simulated();
   ASSERT_EQ(result->metrics.size(), 2u);

@@ -83,7 +83,7 @@ TEST(StressSummary, StartsLaterThanTheBudgetOfTheLatencyAreCounted) {
   EXPECT_EQ(summary_of(flight, {500, 100, {}}).misses.late_starts, 2u);
 }
 
-TEST(StressSummary, EachHistogramIsToldUnderItsName) {
+TEST(StressSummary, EachHistogramIsReportedUnderItsName) {
   LiveFlight flight;
   flight.unit.latency.add(ns(11));
   flight.unit.execution.add(ns(12));
@@ -98,7 +98,7 @@ TEST(StressSummary, EachHistogramIsToldUnderItsName) {
   EXPECT_EQ(stress.plant.max, ns(15));
 }
 
-TEST(StressSummary, CountersOfUnitAndPlantAreToldApart) {
+TEST(StressSummary, CountersOfUnitAndPlantAreDistinguished) {
   LiveFlight flight;
   flight.unit.longest_gap = ms(3);
   flight.unit.usage.allocations = 1;

@@ -62,7 +62,7 @@ Events clusters(Random& random, std::size_t ticks) {
 }
 
 // Ticks of a machine that is alternately busy and idle.
-Events by_turns(Random& random, std::size_t ticks) {
+Events alternating(Random& random, std::size_t ticks) {
   Events events;
   const double length = random.uniform(5, 200), busy = random.uniform(0.05, 0.9);
   bool is_busy = false;
@@ -109,8 +109,8 @@ TEST_P(RhythmAtRandom, IsClaimedLessThanOnceInAThousandSamples) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, RhythmAtRandom,
                          testing::Values(Kind{"uniform", uniform}, Kind{"runs", runs},
-                                         Kind{"clusters", clusters}, Kind{"by_turns", by_turns},
-                                         Kind{"spaced", spaced}),
+                                         Kind{"clusters", clusters},
+                                         Kind{"alternating", alternating}, Kind{"spaced", spaced}),
                          [](const auto& kind) { return kind.param.name; });
 
 // Half a minute at 1 kHz, as the flights that stress measures.

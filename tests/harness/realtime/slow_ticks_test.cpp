@@ -15,7 +15,7 @@ std::vector<LiveTick> quick(std::size_t count) {
   return std::vector<LiveTick>(count, tick);
 }
 
-TEST(SlowTicks, AreNoneWhereAllAreAlike) {
+TEST(SlowTicks, AreEmptyWhereAllAreEqual) {
   const SlowTicks slow = slow_ticks(quick(1000), us(1));
   EXPECT_EQ(slow.count, 0u);
   EXPECT_FALSE(slow.rhythm);

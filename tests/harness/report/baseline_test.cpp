@@ -48,7 +48,7 @@ TEST_F(Baseline, AMissingLastNewlineIsADifference) {
   EXPECT_THAT(baseline_complaint(folder_, "a.txt", "one\ntwo", false), HasSubstr("line 2"));
 }
 
-TEST_F(Baseline, AcceptingWritesBesideAndStillFails) {
+TEST_F(Baseline, AcceptingWritesAFileAndStillFails) {
   const std::string complaint = baseline_complaint(folder_, "a.txt", "new\n", true);
   EXPECT_THAT(complaint, HasSubstr("diff -u "));
   EXPECT_EQ(content("a.txt"), "one\ntwo\n");

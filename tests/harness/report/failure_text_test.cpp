@@ -53,7 +53,7 @@ TEST(FailureText, TheShortestDecimalIsThatOfFloat32) {
   EXPECT_THAT(text, HasSubstr("off by 7.45e-09 (1 ulp); the exact level allows no other bits\n"));
 }
 
-TEST(FailureText, ZerosOfBothSignsAreToldApart) {
+TEST(FailureText, ZerosOfBothSignsAreDistinguished) {
   const CaseResult result =
       failing(deviation("out/vehicle_rates_setpoint.roll", 0, -0.0F, 0.0F, 0));
   const std::string text = failure_text(result, passing_run());

@@ -47,9 +47,9 @@ TEST(Statement, OfAPartSaysWhatIsMissing) {
   run.results[2].verdict = Verdict::unsupported;
   EXPECT_THAT(conformance_statement(run),
               HasSubstr("partial: px4-v1.5.5, numeric, 2 rates, groups attitude, tpa and parts of "
-                        "modes (missing: 1 case unsupported (modes)); cases"));
+                        "modes (missing: 1 vector unsupported (modes)); cases"));
   run.suite_is_released = false;
-  EXPECT_THAT(conformance_statement(run), HasSubstr("(missing: custom suite; 1 case"));
+  EXPECT_THAT(conformance_statement(run), HasSubstr("(missing: custom suite; 1 vector"));
   EXPECT_THAT(conformance_statement(run), HasSubstr("(custom suite aaaaaaaaaaaa)"));
 }
 
@@ -77,7 +77,7 @@ TEST(Statement, SaysWhyThereIsNone) {
   RunResult run = run_of({"tpa"});
   run.stopped_early = true;
   EXPECT_EQ(conformance_statement(run), "none: the run is not complete");
-  EXPECT_EQ(conformance_statement(run_of({})), "none: nothing passed");
+  EXPECT_EQ(conformance_statement(run_of({})), "none: no vector passed");
 }
 
 TEST(Badge, IsAnSvgThatSaysIt) {

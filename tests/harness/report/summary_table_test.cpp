@@ -31,7 +31,7 @@ TEST(SummaryTable, ACellSaysHowManyPassedOfThoseThatRan) {
             "attitude     2  1/2+1       -  3/4+1\n"
             "b            -      -     0+1    0+1\n"
             "total        2  1/2+1     0+1  3/4+2\n"
-            "n/m: n of m passed; +k: k counted apart\n");
+            "n/m: n of m vectors passed; +k: k counted apart\n");
 }
 
 TEST(SummaryTable, OneGroupNeedsNoTotal) {

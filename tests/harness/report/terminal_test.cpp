@@ -35,14 +35,14 @@ TEST(Summary, WithoutColourHasNoEscapeCodes) {
 TEST(Summary, TheLastLineIsTheConformanceStatement) {
   RunResult run = passing_run();
   EXPECT_THAT(summary(run),
-              EndsWith("\nPASS 6 of 6 cases conform (px4-v1.5.5, exact, 2 rates) in 1.2 s\n"));
+              EndsWith("\nPASS 6 of 6 vectors conform (px4-v1.5.5, exact, 2 rates) in 1.2 s\n"));
   run.results[0].verdict = Verdict::skip;
   run.results[1].verdict = Verdict::xfail;
-  EXPECT_THAT(summary(run), EndsWith("\nPASS 4 of 6 cases conform, 1 skip, 1 xfail (px4-v1.5.5, "
+  EXPECT_THAT(summary(run), EndsWith("\nPASS 4 of 6 vectors conform, 1 skip, 1 xfail (px4-v1.5.5, "
                                      "exact, 2 rates) in 1.2 s\n"));
   run.results[2].verdict = Verdict::crash;
   run.stopped_early = true;
-  EXPECT_THAT(summary(run), EndsWith("\nFAIL 1 failed (1 crash); 3 of 6 cases conform, 1 skip, 1 "
+  EXPECT_THAT(summary(run), EndsWith("\nFAIL 1 failed (1 crash); 3 of 6 vectors conform, 1 skip, 1 "
                                      "xfail (px4-v1.5.5, exact, 2 rates) in 1.2 s; stopped early, "
                                      "the rest was not run\n"));
 }
@@ -51,10 +51,10 @@ TEST(Summary, AnErrorIsNoPass) {
   RunResult run = passing_run();
   run.errors.push_back(Error{"cannot read", "golden/a.csv", 3, 0});
   EXPECT_THAT(summary(run), HasSubstr("\nerror: golden/a.csv:3: cannot read\n"));
-  EXPECT_THAT(summary(run), HasSubstr("\nFAIL 1 error; 6 of 6 cases conform"));
+  EXPECT_THAT(summary(run), HasSubstr("\nFAIL 1 error; 6 of 6 vectors conform"));
 }
 
-TEST(Summary, EqualErrorsAreToldOnceAndTwentyOfThem) {
+TEST(Summary, EqualErrorsAreShownOnceAndAtMostTwenty) {
   RunResult run = passing_run();
   for (int i = 0; i < 22; ++i) {
     for (int rate = 0; rate < 11; ++rate) {
@@ -71,14 +71,14 @@ TEST(Summary, EqualErrorsAreToldOnceAndTwentyOfThem) {
 TEST(Summary, NothingComparedIsNoPass) {
   RunResult run = passing_run();
   for (CaseResult& result : run.results) result.verdict = Verdict::unsupported;
-  EXPECT_THAT(summary(run), HasSubstr("\nNONE 0 of 6 cases conform, 6 unsupported"));
+  EXPECT_THAT(summary(run), HasSubstr("\nNONE 0 of 6 vectors conform, 6 unsupported"));
   run.results[0].verdict = Verdict::xfail;
-  EXPECT_THAT(summary(run), HasSubstr("\nPASS 0 of 6 cases conform, 5 unsupported, 1 xfail"));
+  EXPECT_THAT(summary(run), HasSubstr("\nPASS 0 of 6 vectors conform, 5 unsupported, 1 xfail"));
   run.results.clear();
-  EXPECT_THAT(summary(run), HasSubstr("\nNONE 0 of 0 cases conform (exact, 2 rates)"));
+  EXPECT_THAT(summary(run), HasSubstr("\nNONE 0 of 0 vectors conform (exact, 2 rates)"));
 }
 
-TEST(Summary, ACaseThatFailsAlikeAtSeveralRatesIsToldOnce) {
+TEST(Summary, ACaseThatFailsEquallyAtSeveralRatesIsShownOnce) {
   RunResult run = passing_run();
   for (CaseResult& result : run.results) result.verdict = Verdict::fail;
   run.results[1].verdict = Verdict::crash;

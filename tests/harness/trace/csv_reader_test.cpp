@@ -174,7 +174,7 @@ TEST_F(CsvReader, TurnsParameterColumnsIntoChanges) {
   EXPECT_TRUE(std::signbit(trace.parameters[4].value));
 }
 
-TEST_F(CsvReader, TakesConstantsFromTheProvenanceBesideTheFile) {
+TEST_F(CsvReader, TakesConstantsFromTheProvenanceNextToTheFile) {
   directory_.write("provenance.toml",
                    "[constants]\n"
                    "'in/battery_status.scale' = 0.5\n"

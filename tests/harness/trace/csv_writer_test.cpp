@@ -112,7 +112,7 @@ TEST_F(CsvWriter, RefusesAParameterWithoutAValueAtTheFirstTick) {
             "0");
 }
 
-TEST_F(CsvWriter, RefusesAChangeThatTheUnitIsNotToldOf) {
+TEST_F(CsvWriter, RefusesAChangeThatTheUnitDoesNotReceive) {
   trace_.parameters = {{0, "MC_ROLL_P", 6.5f}, {1, "MC_ROLL_P", 7.0f}};
   EXPECT_EQ(error(),
             "trace: parameter MC_ROLL_P changes at tick 1, which does not have "

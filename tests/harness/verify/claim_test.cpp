@@ -64,11 +64,11 @@ TEST(Claim, WhatWasNotRunIsMissing) {
   std::erase_if(run.results, [](const CaseResult& result) { return result.group == "modes"; });
   run.selection = "--group attitude --group tpa";
   EXPECT_THAT(only_claim(run).missing, ElementsAre("only --group attitude --group tpa",
-                                                   "no case of modes", "2 cases not run"));
+                                                   "no vector of modes", "2 vectors not run"));
   run = complete_run({"attitude", "tpa"});
   run.rates = {Rate::hz(250)};
   std::erase_if(run.results, [](const CaseResult& result) { return result.rate == Rate::hz(100); });
-  EXPECT_THAT(only_claim(run).missing, ElementsAre("no case at 100 Hz", "2 cases not run"));
+  EXPECT_THAT(only_claim(run).missing, ElementsAre("no vector at 100 Hz", "2 vectors not run"));
   EXPECT_TRUE(only_claim(run).has_all_groups) << "at the rates of the run";
 }
 
@@ -79,12 +79,12 @@ TEST(Claim, AGroupOfWhichSomeCasesWereLeftOutIsNotWhole) {
   EXPECT_THAT(claim.whole, ElementsAre("attitude"));
   EXPECT_THAT(claim.in_part, ElementsAre("tpa"));
   EXPECT_FALSE(claim.has_all_groups);
-  EXPECT_THAT(claim.missing, ElementsAre("1 case not run"));
+  EXPECT_THAT(claim.missing, ElementsAre("1 vector not run"));
 }
 
 TEST(Claim, WhatIsCountedApartIsMissing) {
-  for (const auto& [verdict, said] : {std::pair{Verdict::unsupported, "1 case unsupported (tpa)"},
-                                      {Verdict::skip, "1 case skipped (tpa)"},
+  for (const auto& [verdict, said] : {std::pair{Verdict::unsupported, "1 vector unsupported (tpa)"},
+                                      {Verdict::skip, "1 vector skipped (tpa)"},
                                       {Verdict::xfail, "1 expected failure (tpa)"}}) {
     RunResult run = complete_run({"attitude", "tpa"});
     run.results.back().verdict = verdict;
@@ -122,7 +122,7 @@ TEST(Claim, AFixedStepIsPartialAndNamesOnlyItself) {
   EXPECT_TRUE(only_claim(run).has_all_groups);
   run.results.back().verdict = Verdict::unsupported;
   run.results.push_back(result_of("attitude", Rate::hz(250)));
-  EXPECT_THAT(only_claim(run).missing, Contains(HasSubstr("1 case unsupported")));
+  EXPECT_THAT(only_claim(run).missing, Contains(HasSubstr("1 vector unsupported")));
 }
 
 TEST(Claim, EachProfileHasItsOwn) {

@@ -31,7 +31,7 @@ TEST(LeaveOutFrom, TheTicksBeforeAreAsTheyWereAnswered) {
   EXPECT_EQ(rates, (std::vector<float>{-1, -2, 3, 4}));
 }
 
-TEST(TolerancesOf, TheLsbOfAPortIsAllowedBesideTheToleranceOfTheCase) {
+TEST(TolerancesOf, TheLsbOfAPortIsAllowedInAdditionToTheToleranceOfTheCase) {
   const Case strict =
       case_of("[tolerance]\nwhy = \"x\"\nvehicle_rates_setpoint = { absolute = 1e-9 }\n");
   const std::size_t channel = *find_channel(roll);

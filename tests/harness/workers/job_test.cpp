@@ -192,22 +192,22 @@ TEST(Jobs, AFailureInTheLastJobStopsNothing) {
   }
 }
 
-TEST(Jobs, EveryResultIsToldOnce) {
+TEST(Jobs, EveryResultIsReportedOnce) {
   for (auto options : {with(3), in_process()}) {
-    std::vector<std::string> told;
-    options.on_result = [&](const std::string& result) { told.push_back(result); };
+    std::vector<std::string> seen;
+    options.on_result = [&](const std::string& result) { seen.push_back(result); };
     run_jobs(jobs_of({{says("a"), says("b")}, {says("c")}, {says("d")}}), options);
-    EXPECT_THAT(told, testing::UnorderedElementsAre("a", "b", "c", "d"));
+    EXPECT_THAT(seen, testing::UnorderedElementsAre("a", "b", "c", "d"));
   }
 }
 
-TEST(Jobs, StopWhenTheyAreTold) {
+TEST(Jobs, StopOnRequest) {
   for (auto options : {with(1), in_process()}) {
-    int told = 0;
-    options.on_result = [&](const std::string&) { ++told; };
-    options.stop = [&] { return told > 0; };
+    int seen = 0;
+    options.on_result = [&](const std::string&) { ++seen; };
+    options.stop = [&] { return seen > 0; };
     run_jobs(jobs_of({{says("a")}, {says("b")}, {says("c")}}), options);
-    EXPECT_EQ(told, 1);
+    EXPECT_EQ(seen, 1);
   }
 }
 
