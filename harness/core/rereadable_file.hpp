@@ -12,8 +12,7 @@ namespace attest {
 // from a pipe. The copy is in memory and ends with this object.
 class RereadableFile {
  public:
-  // Reads a pipe to its end, and waits for its writer. Opens nothing else. Errors: the pipe cannot
-  // be read or copied.
+  // Reads a pipe to its end. Opens nothing else. Errors: no data within 5 s, or more than 1 GiB.
   static Result<RereadableFile> open(const std::filesystem::path& path);
   RereadableFile(RereadableFile&& other) noexcept;
   RereadableFile& operator=(RereadableFile&&) = delete;

@@ -50,7 +50,7 @@ std::string header(const RunResult& run) {
         "are shifted by the reference\n",
         run.fixed_step->to_string());
   }
-  return out + "\n";
+  return out;
 }
 
 // The other vectors of a case with the same verdict: their rates, or the number of flights.
@@ -87,7 +87,7 @@ std::string stages(const RunResult& run) {
     parts.push_back(fmt::format("{} in {}", name_of(static_cast<Stage>(i)), counts[i]));
   }
   if (parts.empty()) return {};
-  return fmt::format("first stage to differ: {}\n\n", fmt::join(parts, ", "));
+  return fmt::format("first stage to differ: {}\n", fmt::join(parts, ", "));
 }
 
 std::string failures(const RunResult& run, TerminalStyle style) {
@@ -105,7 +105,7 @@ std::string failures(const RunResult& run, TerminalStyle style) {
       hidden += groups[i].size();
   }
   if (hidden > 0) out += fmt::format("and {} more; see --json or --junit\n\n", hidden);
-  return out + stages(run);
+  return out;
 }
 
 std::string cases_of(const Together& group) {
@@ -243,7 +243,7 @@ std::string setting(const RunResult& run) {
   return fmt::format("{}{}, {}", out, name_of(run.level), counted(run.rates.size(), "rate"));
 }
 
-std::string last_line(const RunResult& run, double wall_s, TerminalStyle style) {
+std::string verdict_line(const RunResult& run, double wall_s, TerminalStyle style) {
   const std::size_t all = run.results.size();
   const std::size_t passed = run.count(Verdict::pass);
   const bool bad = run.failed() || !run.errors.empty();
@@ -256,7 +256,9 @@ std::string last_line(const RunResult& run, double wall_s, TerminalStyle style) 
       std::count_if(run.results.begin(), run.results.end(),
                     [](const CaseResult& result) { return fails_a_run(result.verdict); }));
   if (failed > 0) {
-    out += fmt::format("{} failed ({}); ", failed, verdict_counts(run, fails_a_run));
+    const std::string kinds = verdict_counts(run, fails_a_run);
+    const bool only_fail = kinds == fmt::format("{} {}", failed, name_of(Verdict::fail));
+    out += fmt::format("{} failed{}; ", failed, only_fail ? "" : fmt::format(" ({})", kinds));
   }
   if (!run.errors.empty()) out += counted(run.errors.size(), "error") + "; ";
   out += fmt::format("{} of {} conform", passed, counted(all, "vector"));
@@ -292,15 +294,17 @@ std::string painted(std::string_view text, Colour colour, TerminalStyle style) {
 
 std::string render_summary(const RunResult& run, double wall_s, TerminalStyle style,
                            const std::optional<Diagnosis>& diagnosis) {
-  std::string out = header(run);
+  const std::string verdict = verdict_line(run, wall_s, style);
+  std::string out = header(run) + verdict;
+  if (diagnosis) out += diagnosis_text(*diagnosis);
+  out += stages(run);
+  out += fmt::format("conformance: {}\n\n", conformance_statement(run));
+  out += errors(run, style);
   if (const std::string table = render_table(run, style); !table.empty()) out += table + "\n";
   out += failures(run, style);
-  if (diagnosis) out += diagnosis_text(*diagnosis) + "\n";
   out += counted_apart(run);
   out += headroom(run);
-  out += errors(run, style);
-  out += fmt::format("conformance: {}\n", conformance_statement(run));
-  return out + last_line(run, wall_s, style);
+  return out + verdict;
 }
 
 }  // namespace attest

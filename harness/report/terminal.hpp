@@ -30,10 +30,11 @@ std::string painted(std::string_view text, Colour colour, TerminalStyle style);
 inline constexpr std::size_t failures_shown = 20;
 inline constexpr std::size_t errors_shown = 20;
 
-// Pure. In order: the port; the table of groups and rates; the failures, one block for the vectors
-// of a case with the same verdict; the results that are counted apart (unsupported, skip, xfail)
-// with their reasons; the tightest headroom (numeric level); errors; the conformance statement; and
-// one last line:
+// Pure. First the conclusion: the port, the verdict line, the diagnosis, the stages that differ
+// first, the conformance statement, errors. Then the details: the table of groups and rates; the
+// failures, one block for the vectors of a case with the same verdict; the results that are counted
+// apart (unsupported, skip, xfail) with their reasons; the tightest headroom (numeric level). The
+// last line repeats the verdict line, because the first one of a long report is out of sight:
 //
 //     PASS 715 of 715 vectors conform (px4-v1.5.5, exact, 11 rates) in 1.2 s
 //

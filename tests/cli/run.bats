@@ -248,3 +248,17 @@ quick=(--group attitude --group battery --group rates)
   [ "$status" -eq 2 ]
   has "is a folder of the suite"
 }
+
+@test "the excerpt of a report in README.md is what a run prints" {
+  excerpt=$(sed -n '/^    \$ attest run/,/^$/p' "$SOURCE/README.md" | sed 's/^    //')
+  run "$ATTEST" $(head -1 <<<"$excerpt" | cut -d' ' -f3-)
+  [ "$status" -eq 1 ]
+  python3 - "$excerpt" "$output" <<'EXCERPT'
+import sys
+excerpt, report = sys.argv[1].splitlines()[1:], iter(sys.argv[2].splitlines())
+for line in excerpt:
+    if line != "...":
+        start, is_start = line.removesuffix("..."), line.endswith("...")
+        assert any(got == start or (is_start and got.startswith(start)) for got in report), line
+EXCERPT
+}

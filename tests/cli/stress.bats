@@ -193,7 +193,7 @@ CHECK
   [ ! -e f.csv ]
   run "$ATTEST" run --timing t.json --group flight
   [ "$status" -eq 2 ]
-  has "select nothing else"
+  has "leave out all other selections"
   run "$ATTEST" sim hover --rate 250 --timing t.json --out f.csv
   [ "$status" -eq 2 ]
   run "$ATTEST" sim --out f.csv

@@ -90,7 +90,7 @@ CHECK
   has "crash"
   run "$ATTEST" sweep-rate --vehicle zeppelin
   [ "$status" -eq 2 ]
-  has "is flown by no such vehicle"
+  has "has no run configuration with this vehicle and plant"
 }
 
 @test "steps are timed over the corpus, and the slowest input can be replayed" {
@@ -124,7 +124,7 @@ CHECK
 @test "flights are not timed" {
   run "$ATTEST" time --group flight
   [ "$status" -eq 2 ]
-  has "nothing of the controller in open loop is selected"
+  has "no open-loop case of the controller is selected"
 }
 
 @test "the stack that a step uses is measured" {

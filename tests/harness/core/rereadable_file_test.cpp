@@ -24,6 +24,16 @@ TEST(RereadableFile, APipeCanBeReadTwice) {
   for (int twice = 0; twice < 2; ++twice) EXPECT_EQ(*read_file(file->path()), text);
 }
 
+TEST(RereadableFile, APipeWithoutAWriterIsAnError) {
+  const TemporaryDirectory folder;
+  const auto pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const auto file = RereadableFile::open(pipe);
+  ASSERT_FALSE(file);
+  EXPECT_EQ(file.error().to_string(),
+            pipe.string() + ": cannot read the pipe: no data within 5 s; is it written to?");
+}
+
 TEST(RereadableFile, ARegularFileIsItself) {
   const TemporaryDirectory folder;
   const auto path = folder.write("a.csv", "text");
