@@ -25,10 +25,17 @@ if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
                          INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
 endif()
 
-# attest_library(NAME SOURCES a.cpp ... [PUBLIC target ...] [PRIVATE target ...])
+# Half of the compile time is optimisation. Code that runs seldom takes longer to optimise than to
+# run: reading files, talking to processes, writing reports.
+set(ATTEST_RUNS_SELDOM $<$<CONFIG:Release>:-O1>)
+
+# attest_library(NAME [RUNS_SELDOM] SOURCES a.cpp ... [PUBLIC target ...] [PRIVATE target ...])
 function(attest_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "RUNS_SELDOM" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
+  if(ARG_RUNS_SELDOM)
+    target_compile_options(${name} PRIVATE ${ATTEST_RUNS_SELDOM})
+  endif()
   target_link_libraries(${name} PUBLIC attest_flags ${ARG_PUBLIC} PRIVATE attest_warnings
                                                                           ${ARG_PRIVATE})
 endfunction()
