@@ -19,7 +19,7 @@ void suite(benchmark::State& state, int processes, bool isolated = true) {
     HostOptions host;
     host.in_process = !isolated;
     const auto jobs =
-        case_jobs(*cases, ATTEST_SOURCE_DIR "/golden", vehicle_models, Level::numeric, host);
+        case_jobs(*cases, ATTEST_SOURCE_DIR "/golden", vehicle_models, {Level::numeric}, host);
     JobOptions<CaseResult> options;
     options.processes = processes;
     const auto outcome = run_jobs(*jobs, options);

@@ -46,8 +46,9 @@ typedef struct attest_mixer_outputs {
 
 typedef struct attest_mixer {
   /* A new mixer. With a deadband of 0 the outputs before the first call are NaN, and delta_out_max
-   * does not limit the first call. With another deadband they are 0, and it does. `definition` is a
-   * line of a PX4 mixer file, "R: <geometry> <roll> <pitch> <yaw> <deadband>"
+   * does not limit the first call. With another deadband those outputs are 0, and delta_out_max
+   * limits the first call too. `definition` is a line of a PX4 mixer file,
+   * "R: <geometry> <roll> <pitch> <yaw> <deadband>"
    * with numbers in 1/10000, such as "R: 4x 10000 10000 10000 0". It is valid during the call only.
    * NULL: not supported; its cases are then counted as unsupported. */
   void* (*create)(const char* profile, const char* definition);
@@ -79,11 +80,12 @@ typedef struct attest_battery_status {
   /* A new estimate, before its first sample. NULL: profile not supported. */
   void* (*create)(const char* profile);
   void (*destroy)(void* self);
-  /* BAT_N_CELLS, BAT_V_EMPTY, BAT_V_CHARGED, BAT_V_LOAD_DROP, BAT_R_INTERNAL (negative: unknown),
-   * before the first step. Their defaults are 0, 3.4 V, 4.05 V, 0.3 V and -1. With 0 cells, the
+  /* Sets BAT_N_CELLS, BAT_V_EMPTY, BAT_V_CHARGED, BAT_V_LOAD_DROP or BAT_R_INTERNAL (negative:
+   * unknown). Called before the first step only.
+   * Their defaults are 0, 3.4 V, 4.05 V, 0.3 V and -1. With 0 cells, the
    * firmware's default, the estimate is not finite and the scale stays 1. */
   int (*set_parameter)(void* self, const char* name, float value);
-  /* One sample of 100 Hz. */
+  /* Takes one sample. The samples are 10 ms apart (100 Hz). */
   int (*step)(void* self, const attest_battery_inputs* in, attest_battery_outputs* out);
 } attest_battery_status;
 

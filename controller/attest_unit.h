@@ -59,8 +59,9 @@ extern "C" {
  *
  * `updated` has a bit for each topic, set if the topic was published since the previous step. A
  * topic whose bit is clear holds its last published sample, or zeros before its first publication.
- * A port copies a topic only when its bit is set. Where the law latches a topic in some modes only,
- * the port keeps the bit pending until then. control_state is new in every step and has no bit.
+ * A port copies a topic only when its bit is set. The law latches some topics in some modes only:
+ * in the other modes the port remembers the bit, and copies the topic at the first step in such a
+ * mode. control_state is new in every step and has no bit.
  *
  * Flags are bytes: zero is false and ANY other value is true (multirotor_motor_limits arrives as
  * bit masks 1, 2, 4).
@@ -199,8 +200,8 @@ typedef struct attest_unit {
   /* A new instance in its power-on state with default parameters. `profile` names the version of
    * the law, such as "px4-v1.5.5". NULL: profile not supported, its cases are skipped. A profile
    * that was supported once must stay supported. A port that allows only one instance returns NULL
-   * while that exists, and can create another after it was destroyed. Legal at any time, also while
-   * other instances exist. May allocate. */
+   * while that instance exists. After destroy() it must create another. Legal at any time, also
+   * while other instances exist. May allocate. */
   void* (*create)(const char* profile);
 
   /* Frees an instance. Called once per successful create(), as the last call for the instance. */
@@ -230,7 +231,7 @@ typedef struct attest_unit {
 #define ATTEST_EXTENSION_UNSUPPORTED_GROUPS "attest.unsupported_groups"
 
 /* Extension: const char*, the arithmetic of a port in fixed point: "fixed:22" when its signals have
- * 22 bits behind the point; 20 to 32 are allowed. The numeric level then allows, in addition to the
+ * 22 fraction bits; 20 to 32 are allowed. The numeric level then allows, in addition to the
  * tolerances for floats, some multiples of the last bit (LSB). Every report says so. */
 #define ATTEST_EXTENSION_ARITHMETIC "attest.arithmetic"
 

@@ -54,7 +54,7 @@ const Fault modes[] = {
          in.updated |= ATTEST_UPDATED_VEHICLE_CONTROL_MODE;
        });
      }},
-    {"rattitude-for-good", "modes", Stage::mode, "stays in rates after every new mode",
+    {"rattitude-for-good", "modes", Stage::mode, "stays in rates mode when a new mode is published",
      "a new mode after a large deflection", "a latch",
      [](FaultyLaw& law) {
        law.step.sticks_beyond = [latched = false](const Manual& manual, float threshold) mutable {

@@ -69,7 +69,7 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
 void add_sim(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<SimOptions>();
   CLI::App* command = app.add_subcommand(
-      "sim", "Let a port fly one case, and write the flown trace, which `replay` can feed again");
+      "sim", "Let a port fly one case, and write the trace of the flight, for `attest replay`");
   command->add_option("case", options->case_name, "A flight: its name or id, or a case file")
       ->type_name("CASE");
   command
@@ -82,7 +82,7 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("F");
   add_plant(*command, options->vehicle, options->plant);
   add_port(*command, options->host.port);
-  command->add_option("--out", options->out, "The flown trace (CSV)")
+  command->add_option("--out", options->out, "The flown trace (CSV); `-` is stdout")
       ->type_name("F.csv")
       ->required();
   add_timeout(*command, options->host.timeout_s);
@@ -102,7 +102,7 @@ void add_faults(CLI::App& app, const Globals& globals, Action& action) {
   CLI::Option* const ids =
       command->add_option("fault", options->ids, "Only these faults")->type_name("ID");
   command
-      ->add_option("--profile", options->profiles, "Only by the cases of this version of the law")
+      ->add_option("--profile", options->profiles, "Only this version of the law (cases, faults)")
       ->type_name("PROFILE")
       ->delimiter(',')
       ->allow_extra_args(false);
@@ -178,7 +178,7 @@ void add_list(CLI::App& app, const Globals& globals, Action& action) {
   command->add_flag("--parameters", options->parameters, "The parameters of the law");
   command->add_flag("--channels", options->channels, "The signals: trace columns and ABI members");
   command->add_flag("--flight-modes", options->modes, "Flight modes and the flags they set");
-  command->add_flag("--vehicles", options->vehicles, "The vehicles that fly, with their numbers");
+  command->add_flag("--vehicles", options->vehicles, "The vehicles, with mass, rotors, arm, ...");
   add_examples(*command,
                {{"attest list --filter 'tpa/*'", "the cases of a group, with their reasons"},
                 {"attest list --parameters --profile px4-v1.3.4",

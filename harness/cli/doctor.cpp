@@ -108,9 +108,13 @@ void examine_port(const DoctorOptions& options, Examination& examination) {
     if (!trouble.empty()) return examination.bad("port", specification + ": " + trouble);
   }
   const std::string who = fmt::format("{}: {} {}", specification, port->name, port->version);
+  std::string printed;
+  for (const auto& [profile, words] : port->refusals) {
+    if (!words.empty()) printed += fmt::format("; for {} it printed: {}", profile, words);
+  }
   if (port->profiles.empty()) {
     return examination.bad("port", fmt::format("{}; create() returned NULL for each of {}{}", who,
-                                               fmt::join(known, ", "), port->refusal));
+                                               fmt::join(known, ", "), printed));
   }
   examination.good("port", fmt::format("{}, profiles {}", who, fmt::join(port->profiles, ", ")));
   for (const std::string& profile : port->profiles) {

@@ -1,9 +1,12 @@
 #include "harness/cli/outputs.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <set>
 #include <system_error>
+
+#include <unistd.h>
 
 #include "harness/port/port.hpp"
 
@@ -14,6 +17,7 @@ namespace fs = std::filesystem;
 
 // The same for each way to name a file; it need not exist.
 fs::path identity(const fs::path& path) {
+  if (path == "-") return identity("/dev/stdout");
   std::error_code failed;
   const fs::path absolute = fs::absolute(path, failed);
   const fs::path canonical = fs::weakly_canonical(absolute, failed);
@@ -66,6 +70,21 @@ Result<void> check_output_folder(const std::string& folder, const SuiteFolder& s
   if (!is_of_suite(identity(folder), suite)) return {};
   return fail_at(folder,
                  "is a folder of the suite, whose files would be overwritten; name another folder");
+}
+
+Result<void> prepare_trace_folder(const std::string& folder, const SuiteFolder& suite) {
+  if (folder.empty()) return {};
+  if (auto apart = check_output_folder(folder, suite); !apart) return apart;
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) return fail_at(folder, "cannot be made: " + failed.message());
+  if (!fs::is_empty(folder, failed)) {
+    return fail_at(folder,
+                   "is not empty: traces of an earlier run could be mistaken for new ones; "
+                   "name another folder, or remove it");
+  }
+  if (::access(folder.c_str(), W_OK) == 0) return {};
+  return fail_at(folder, "cannot be written: " + std::generic_category().message(errno));
 }
 
 }  // namespace attest::cli

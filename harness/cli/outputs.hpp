@@ -21,6 +21,11 @@ struct Inputs {
 Result<void> check_outputs(const std::vector<std::string>& outputs, const Inputs& inputs,
                            const SuiteFolder& suite);
 
+// Makes the folder for saved traces; an empty name: does nothing. Errors: it is not empty, so that
+// traces of an earlier run could be mistaken for those of this run; it cannot be written; it is a
+// folder of the suite.
+Result<void> prepare_trace_folder(const std::string& folder, const SuiteFolder& suite);
+
 // Errors: `folder`, the output folder of many files, is a folder of the suite or lies in one.
 Result<void> check_output_folder(const std::string& folder, const SuiteFolder& suite);
 

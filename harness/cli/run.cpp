@@ -22,6 +22,7 @@
 #include "harness/report/progress.hpp"
 #include "harness/report/report_format.hpp"
 #include "harness/report/terminal.hpp"
+#include "harness/report/text.hpp"
 #include "harness/verify/case_job.hpp"
 #include "harness/verify/expected.hpp"
 
@@ -70,6 +71,11 @@ struct RunPlan {
 Result<void> ask_port(const std::vector<std::string>& profiles, RunPlan& plan) {
   const auto port = describe_port(plan.host, profiles);
   if (!port) return tl::unexpected(port.error());
+  for (const auto& [profile, words] : port->refusals) {
+    if (words.empty()) continue;
+    fmt::print(stderr, "attest: note: the port made no unit of {}; it printed: {}\n", profile,
+               one_line(words));
+  }
   plan.run.port_name = port->name;
   plan.run.port_version = port->version;
   plan.run.fraction_bits = port->fraction_bits;
@@ -117,9 +123,9 @@ Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, Run
   plan.results = 1;
   plan.run.timing = options.timing;
   plan.run.rates = {flight->timing.configuration.rate};
-  plan.jobs.push_back(std::make_unique<TimedJob>(
-      std::move(flight->the_case), std::move(flight->timing), std::move(flight->vehicle_model),
-      JudgeOptions(plan.run.level, options.save_traces), plan.host));
+  plan.jobs.push_back(
+      std::make_unique<TimedJob>(std::move(flight->the_case), std::move(flight->timing),
+                                 std::move(flight->vehicle_model), options.save_traces, plan.host));
   return {};
 }
 
@@ -234,9 +240,8 @@ int run_command(const RunOptions& options, const Globals& globals) {
   const auto checked = check_outputs(
       outputs, {options.host.port, {options.expected_failures, options.timing}}, *suite);
   if (!checked) return report_error(checked.error());
-  if (!options.save_traces.empty()) {
-    const auto apart = check_output_folder(options.save_traces, *suite);
-    if (!apart) return report_error(apart.error());
+  if (const auto ready = prepare_trace_folder(options.save_traces, *suite); !ready) {
+    return report_error(ready.error());
   }
   auto plan = make_plan(options, *suite);
   if (!plan) return report_error(plan.error());
@@ -278,8 +283,7 @@ int run_command(const RunOptions& options, const Globals& globals) {
     fmt::print("{}", render_summary(run, wall.count(), terminal_style(stdout), diagnosis));
   }
   if (!options.save_traces.empty() && run.failed()) {
-    fmt::print("traces: {}/PROFILE/GROUP/NAME/RATE.got.csv and .want.csv of each failing vector\n",
-               options.save_traces);
+    fmt::print("traces of the failing vectors: {}\n", options.save_traces);
   }
   if (!written) return report_error(written.error());
   return code;

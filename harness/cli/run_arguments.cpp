@@ -13,15 +13,16 @@ namespace {
 void add_strictness(CLI::App& command, RunOptions& options) {
   command
       .add_option("--level", options.level,
-                  "How strictly: `exact` (float32 bits), `numeric` (a tolerance a channel) or "
-                  "`events` (what happens, within a tick, and no value of another sign or size); "
+                  "How strictly: `exact` (float32 bits), `numeric` (a tolerance for each channel) "
+                  "or `events` (the same events, at most one tick apart, and values of the "
+                  "same sign and about the same size); "
                   "flights are judged the same way at each level")
       ->capture_default_str()
       ->group(option_group::strictness);
   command
       .add_option("--expected-failures", options.expected_failures,
-                  "Failures that are accepted, with reasons (TOML), by group or case; an entry "
-                  "that passes fails the run")
+                  "Failures that are accepted, with reasons (TOML), by group or case; if "
+                  "a listed case passes, the run fails")
       ->type_name("F")
       ->group(option_group::strictness);
 }
@@ -50,8 +51,9 @@ void add_reports(CLI::App& command, RunOptions& options) {
   }
   command
       .add_option("--save-traces", options.save_traces,
-                  "Write the traces of each failing vector: DIR/PROFILE/GROUP/NAME/RATE.got.csv "
-                  "with the port's outputs, .want.csv with the expected ones")
+                  "Write the traces of each failing vector to a new folder: "
+                  "DIR/PROFILE/GROUP/NAME/CONFIGURATION.got.csv with the port's outputs, "
+                  ".want.csv with the expected ones")
       ->type_name("DIR")
       ->group(option_group::reports);
   command.get_option("--write-expected")->excludes(command.get_option("--expected-failures"));

@@ -45,7 +45,7 @@ Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder
   in_time.ticks = case_timing(the_case, configuration.rate);
   for (const TimingFile& timing : {in_time, plan.scheduled}) {
     plan.flights.push_back(std::make_unique<TimedJob>(the_case, timing, chosen->vehicle_model,
-                                                      Level::numeric, options.host));
+                                                      std::filesystem::path(), options.host));
   }
   plan.set = std::move(*set);
   plan.jobs = std::move(*jobs);

@@ -65,7 +65,8 @@ void add_selection(CLI::App& command, SelectionOptions& options) {
   };
   add("--filter", options.filters,
       "Only vectors whose id matches this shell pattern; quote it. Ids are "
-      "PROFILE/GROUP/NAME@CONFIGURATION; profile and configuration may be left out",
+      "PROFILE/GROUP/NAME@RATEhz, of flights PROFILE/GROUP/NAME@RATEhz-VEHICLE-PLANT; the profile "
+      "and the part from the @ on may be left out",
       "GLOB");
   add("--exclude", options.excludes, "Without the vectors whose id matches this shell pattern",
       "GLOB");

@@ -17,7 +17,7 @@ void add_machine(CLI::App& command, StressOptions& options) {
       ->group(option_group::execution);
   command
       .add_option("--load-kind", options.load_kind,
-                  "Resource that they use: `cpu`, `cache` or `io`")
+                  "Resource that the processes of --load use: `cpu`, `cache` or `io`")
       ->type_name("KIND")
       ->capture_default_str()
       ->group(option_group::execution);
@@ -26,7 +26,8 @@ void add_machine(CLI::App& command, StressOptions& options) {
                   "Scheduling policy of unit and plant: `fifo` (where it is permitted) or `other`")
       ->capture_default_str()
       ->group(option_group::execution);
-  command.add_option("--cpus", options.cpus, "2: unit and plant on one each; 1: both on one")
+  command
+      .add_option("--cpus", options.cpus, "2: unit and plant have a CPU each; 1: they share one")
       ->check(CLI::Range(1, 2))
       ->capture_default_str()
       ->group(option_group::execution);
@@ -55,7 +56,7 @@ void add_budgets(CLI::App& command, StressOptions& options) {
       ->group(option_group::strictness);
   command
       .add_option("--budget", options.execution_us,
-                  "Execution time [us]; a longer step is an overrun, which counts as a miss")
+                  "Execution time [us]; a longer step is an overrun, with the same bound as misses")
       ->check(CLI::NonNegativeNumber)
       ->group(option_group::strictness);
 }
@@ -110,7 +111,7 @@ void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
                                          "For each vehicle: the lowest loop rate, and the largest "
                                          "delay of the motor commands, at which "
                                          "the metrics of a flight are within their bounds");
-  command->add_option("--case", options->case_name, "A flight, whose metrics have the bounds")
+  command->add_option("--case", options->case_name, "A flight; the bounds are those of its metrics")
       ->type_name("CASE")
       ->capture_default_str();
   add_rates(*command, options->rates, "Loop rates at which to find the largest delay [Hz]")
@@ -180,7 +181,7 @@ void add_time(CLI::App& app, const Globals& globals, Action& action) {
                                   ->add_option("--budget", options->measure.budget_us,
                                                "Fail when steps take longer than this [us]")
                                   ->check(CLI::PositiveNumber);
-  command->add_option("--allow", options->allowed, "So many steps may be over the budget")
+  command->add_option("--allow", options->allowed, "Number of steps that may be over the budget")
       ->check(CLI::NonNegativeNumber)
       ->needs(budget)
       ->capture_default_str();

@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <map>
 #include <string>
 #include <system_error>
 
@@ -8,7 +9,6 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
-#include "harness/core/file.hpp"
 #include "harness/trace/csv.hpp"
 #include "harness/trace/provenance.hpp"
 
@@ -23,17 +23,14 @@ Result<void> write_vector(const Case& the_case, const Rate& rate,
   return write_csv(path, trace, all_columns(trace));
 }
 
-// Adds the profile and the mixer of the inputs to the provenance that the folder already has.
 Result<void> write_origin(const Case& the_case, const std::vector<RunConfiguration>& configurations,
                           const std::filesystem::path& folder) {
-  auto provenance = provenance_in(folder);
-  if (!provenance) return tl::unexpected(provenance.error());
-  provenance->profile = the_case.profile;
+  std::map<std::string, std::string> mixers;
   if (the_case.module == Module::mixer) {
     for (const RunConfiguration& configuration : configurations)
-      provenance->mixers[configuration.label()] = the_case.mixer;
+      mixers[configuration.label()] = the_case.mixer;
   }
-  return write_file(folder / provenance_name, to_toml(*provenance));
+  return add_origin(folder, the_case.profile, mixers);
 }
 
 Result<std::size_t> write_vectors(const VectorOptions& options, const Globals& globals) {

@@ -170,7 +170,7 @@ Deviation deviation_at(std::size_t tick, std::size_t channel, const Trace& got,
           0};
 }
 
-// The events level, which searches the neighbouring ticks, too.
+// The comparison at the level events: it also searches the neighbouring ticks.
 void compare_events(const Trace& got, const Trace& want, Comparison& result) {
   if (!tells_events(want.present)) {
     result = {};

@@ -1,5 +1,7 @@
 #include "harness/compare/compare_files.hpp"
 
+#include <system_error>
+
 #include "harness/trace/csv.hpp"
 #include "harness/trace/trace_file.hpp"
 
@@ -33,6 +35,12 @@ Result<Comparison> compare_whole(const std::filesystem::path& got,
 
 Result<Comparison> compare_files(const std::filesystem::path& got,
                                  const std::filesystem::path& want, const Tolerances& tolerances) {
+  for (const auto& file : {got, want}) {
+    std::error_code unknown;
+    if (std::filesystem::is_fifo(file, unknown)) {
+      return fail_at(file.string(), "is a pipe; write its content to a file first");
+    }
+  }
   const bool are_streamed = is_streamed(got) && is_streamed(want);
   if (!are_streamed || tolerances.level() == Level::events) {
     return compare_whole(got, want, tolerances);

@@ -12,7 +12,7 @@ namespace {
 
 enum class State { no, yes, unclear };
 
-// A kind of state of one output; it has one value per tick.
+// A property of one output, such as `published`: yes, no or unclear at each tick.
 struct Kind {
   const char* channel;
   State (*at)(const Trace& trace, std::size_t tick, const Channel& channel);

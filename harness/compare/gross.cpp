@@ -56,7 +56,8 @@ double similarity_of(const float (&q)[4], const float (&q_d)[4]) {
   return std::abs(product) / std::sqrt(of_q * of_q_d);
 }
 
-// The ticks at which the law is near the change of its direction of rotation, or has no attitude.
+// The ticks near a half turn, where the direction of rotation changes, and those at which attitude
+// or setpoint is zero or not finite. Only ticks at which the law controls the attitude.
 std::vector<bool> half_turns_in(const Trace& want) {
   constexpr double near = 0.1;  // cos of half an angle that is 11 deg short of a half turn
   std::vector<bool> is_half_turn;

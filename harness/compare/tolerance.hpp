@@ -24,12 +24,12 @@ struct Tolerance {
   double relative = 0;
 };
 
-// The tolerance of every channel. That of the rates setpoint widens near a tilt of 180 deg.
+// The tolerance of every channel. That of the rates setpoint widens near a tilt error of 180 deg.
 class Tolerances {
  public:
-  // Defaults of rate, control and integral, far from both of these measurements, over 10 s of open
-  // loop. Correct builds (other optimisation, FMA, double, another atan2, a quaternion form) stay
-  // within 5e-6 rad/s, 8e-7 and 5e-7. Wrong controllers deviate by more than 1e-3 at some tick.
+  // Defaults of rate, control and integral. Measured over 10 s of open loop: correct builds (other
+  // optimisation, FMA, double, another atan2, a quaternion form) stay within 5e-6 rad/s, 8e-7 and
+  // 5e-7, and wrong controllers deviate by more than 1e-3 at some tick. The defaults are between.
   static constexpr Tolerance rate{2e-4, 1e-5};
   static constexpr Tolerance control{1e-4, 1e-5};
   static constexpr Tolerance integral{2e-5, 1e-5};
@@ -47,8 +47,8 @@ class Tolerances {
   // "out/"): "vehicle_rates_setpoint" or "actuator_controls_0.control[2]". False: no such channel.
   bool set(std::string_view prefix, Tolerance tolerance);
 
-  // Widens the tolerances for a port in fixed point with so many bits behind the point: each
-  // becomes at least the number of LSB (last bits) below. At the numeric level only. Measured at 20
+  // Widens the tolerances for a port in fixed point with so many fraction bits: each becomes at
+  // least the number of LSBs (last bits) below. At the numeric level only. Measured at 20
   // to 24 bits, with a correct port that rounds:
   // - rates setpoints: up to 740 LSB, near a half turn
   // - controls: 750 LSB, or a fraction of a control that is mostly D, because 1 / dt is up to 500

@@ -2,57 +2,81 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstddef>
 #include <cstring>
 #include <string>
+#include <thread>
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
 namespace attest {
 namespace {
 
-constexpr int first_data_within_ms = 5000;
 constexpr std::size_t most_bytes = std::size_t{1} << 30;
 
+using Clock = std::chrono::steady_clock;
+
+// Without a writer, read() returns 0 at once. With one that is idle, it returns EAGAIN.
+bool has_writer(int pipe, std::string& begin) {
+  std::array<char, 4096> block;
+  const ssize_t count = ::read(pipe, block.data(), block.size());
+  if (count > 0) begin.assign(block.data(), static_cast<std::size_t>(count));
+  return count != 0;
+}
+
 // Returns the error; empty: all is copied.
-std::string copy_all(int from, int to) {
-  pollfd data{from, POLLIN, 0};
-  if (::poll(&data, 1, first_data_within_ms) == 0) return "no data within 5 s; is it written to?";
-  std::array<char, std::size_t{64} * 1024> block;
+std::string copy_all(int pipe, int copy, std::string begin) {
+  ::fcntl(pipe, F_SETFL, ::fcntl(pipe, F_GETFL) & ~O_NONBLOCK);
+  std::string block = std::move(begin);
   std::size_t copied = 0;
   while (copied <= most_bytes) {
-    const ssize_t count = ::read(from, block.data(), block.size());
+    // A file in memory takes all bytes or fails.
+    const ssize_t written = ::write(copy, block.data(), block.size());
+    if (written < 0) return std::strerror(errno);
+    copied += block.size();
+    block.resize(std::size_t{64} * 1024);
+    ssize_t count = -1;
+    do count = ::read(pipe, block.data(), block.size());
+    while (count < 0 && errno == EINTR);
     if (count == 0) return "";
-    if (count < 0 && errno == EINTR) continue;
     if (count < 0) return std::strerror(errno);
-    // A file in memory takes all bytes or has none left.
-    if (::write(to, block.data(), static_cast<std::size_t>(count)) != count) return "no memory";
-    copied += static_cast<std::size_t>(count);
+    block.resize(static_cast<std::size_t>(count));
   }
   return "it has more than 1024 MiB, the most that a trace may have there";
 }
 
-// Opens without waiting for a writer, but reads with waiting.
-int open_pipe(const std::filesystem::path& path) {
+std::string copy_from(const std::filesystem::path& path, int copy,
+                      std::chrono::milliseconds writer_within) {
+  // Without O_NONBLOCK, opening waits for a writer.
   const int pipe = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
-  if (pipe >= 0) ::fcntl(pipe, F_SETFL, ::fcntl(pipe, F_GETFL) & ~O_NONBLOCK);
-  return pipe;
+  if (pipe < 0) return std::strerror(errno);
+  const auto end = Clock::now() + writer_within;
+  std::string begin;
+  bool is_written = has_writer(pipe, begin);
+  while (!is_written && Clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    is_written = has_writer(pipe, begin);
+  }
+  const std::string wrong = is_written ? copy_all(pipe, copy, std::move(begin))
+                                       : "no program writes to it, or it is empty";
+  ::close(pipe);
+  return wrong;
 }
 
 }  // namespace
 
-Result<RereadableFile> RereadableFile::open(const std::filesystem::path& path) {
+Result<RereadableFile> RereadableFile::open(const std::filesystem::path& path,
+                                            std::chrono::milliseconds writer_within) {
   std::error_code unknown;
   if (!std::filesystem::is_fifo(path, unknown)) return RereadableFile(path, -1);
   const int copy = ::memfd_create("attest", MFD_CLOEXEC);
+  if (copy < 0) return fail_at(path.string(), fmt::format("no memory: {}", std::strerror(errno)));
   RereadableFile file(fmt::format("/proc/self/fd/{}", copy), copy);
-  const int pipe = open_pipe(path);
-  const std::string wrong = copy < 0 || pipe < 0 ? std::strerror(errno) : copy_all(pipe, copy);
-  if (pipe >= 0) ::close(pipe);
+  const std::string wrong = copy_from(path, copy, writer_within);
   if (!wrong.empty()) return fail_at(path.string(), "cannot read the pipe: " + wrong);
   return file;
 }

@@ -1,6 +1,7 @@
 // Input from a pipe, for readers that open their file more than once.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <utility>
 
@@ -12,8 +13,11 @@ namespace attest {
 // from a pipe. The copy is in memory and ends with this object.
 class RereadableFile {
  public:
-  // Reads a pipe to its end. Opens nothing else. Errors: no data within 5 s, or more than 1 GiB.
-  static Result<RereadableFile> open(const std::filesystem::path& path);
+  // Reads a pipe to its end, and waits for its writer. Opens nothing else. Errors: the pipe has no
+  // writer and no data within that time; it has more than 1 GiB.
+  static Result<RereadableFile> open(
+      const std::filesystem::path& path,
+      std::chrono::milliseconds writer_within = std::chrono::seconds(5));
   RereadableFile(RereadableFile&& other) noexcept;
   RereadableFile& operator=(RereadableFile&&) = delete;
   ~RereadableFile();

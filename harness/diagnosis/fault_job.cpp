@@ -76,7 +76,7 @@ Result<FaultCatch> FaultJob::run(std::size_t) {
     // A fault that is equivalent to the law still differs from it by rounding.
     if (the_case->exact_only && !fault_.is_detectable(profile_)) continue;
     const Level level = the_case->exact_only ? Level::exact : Level::numeric;
-    const auto result = evaluate_case(*the_case, rate, *golden, host, level);
+    const auto result = evaluate_case(*the_case, rate, *golden, host, {level});
     if (!result) return tl::unexpected(result.error());
     if (!fails_a_run(result->verdict)) continue;
     found.verdict = result->verdict;

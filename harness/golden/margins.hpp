@@ -34,7 +34,7 @@ enum class Decision {
   recovery_latch,     // the tailsitter's 30 and 5 deg
   recovery_rotation,  // its q_e.w > 0
   mixer_limit,        // a rotor's share of roll, pitch and thrust against 0 and 1
-  mixer_branch,       // whether one end has as much room as the other lacks
+  mixer_branch,       // one end of 0..1 exceeded: its excess against the room at the other end
   mixer_yaw,          // yaw against the rotors' limits, where its flag is set
 };
 inline constexpr auto decision_count = static_cast<std::size_t>(Decision::mixer_yaw) + 1;
@@ -57,7 +57,7 @@ struct Margin {
 };
 
 // Whether `one` is nearer to the decision than `other`: the smaller distance; of the norm, the
-// larger. A distance that was never measured is nearer than no other.
+// larger. False if `one` was never measured.
 bool is_nearer(Decision decision, const Margin& one, const Margin& other);
 
 struct Margins {

@@ -18,6 +18,13 @@ namespace {
 
 constexpr const char* default_profile = "px4-v1.5.5";
 
+// A pipe has none: the folder's is of the files there.
+Result<Provenance> provenance_of(const std::filesystem::path& file) {
+  std::error_code unknown;
+  if (std::filesystem::is_fifo(file, unknown)) return Provenance{};
+  return provenance_in(file.parent_path());
+}
+
 std::string mixer_of(const std::filesystem::path& file, const Provenance& provenance) {
   const std::string stem = file.stem().string();
   const auto found = provenance.mixers.find(stem);
@@ -133,7 +140,7 @@ Result<Recorded> read_recorded(const std::filesystem::path& file, const std::str
                                const std::string& mixer) {
   auto trace = open_trace(file, TraceNeed::inputs_and_outputs);
   if (!trace) return tl::unexpected(trace.error());
-  const auto folder_provenance = provenance_in(file.parent_path());
+  const auto folder_provenance = provenance_of(file);
   if (!folder_provenance) return tl::unexpected(folder_provenance.error());
   const Provenance& provenance = *folder_provenance;
   Recorded recorded{std::move(*trace), {profile, Module::mc_att_control, ""}, {}};

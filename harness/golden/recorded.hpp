@@ -19,7 +19,8 @@ struct Recorded {
 };
 
 // Reads inputs and outputs; of mixers also as mixer_csv.hpp. An empty `profile` or `mixer` is taken
-// from the provenance.toml in the folder of the file. Without an entry there, the profile is
+// from the provenance.toml in the folder of the file; a pipe
+// has none. Without an entry there, the profile is
 // px4-v1.5.5, and the mixer is the unscaled geometry that the file is named after ("4x.csv").
 // Parameters that the profile does not have are left out. A battery without BAT_N_CELLS has 3
 // cells, as in the recordings of the firmware. Errors: of reading, and a mixer trace whose

@@ -6,8 +6,11 @@
 
 namespace attest {
 
-HostHere::HostHere(std::unique_ptr<Port> port, std::optional<PortSays> said, Course course)
+HostHere::HostHere(std::unique_ptr<Port> port, std::optional<PortSays> said, Course course,
+                   const PortCalls* calls)
     : port_(std::move(port)),
+      calls_(calls),
+      noted_(calls ? calls->noted(*port_) : nullptr),
       says_(said ? *std::move(said) : PortSays::asked(*port_)),
       course_(course) {}
 
@@ -21,13 +24,13 @@ std::optional<PortFault> HostHere::held(std::optional<PortFault> fault,
 }
 
 std::optional<PortFault> HostHere::drive(const Subject& subject, Trace& trace) {
-  return ports_.run([&] { return held(attest::drive(*port_, subject, trace), subject.profile); });
+  return ports_.run([&] { return held(attest::drive(driven(), subject, trace), subject.profile); });
 }
 
 Result<Flown> HostHere::fly(const FlightPlan& plan) {
   const Case& whole = *course_.the_case;
   return ports_.run([&]() -> Result<Flown> {
-    const auto unit = port_->create(whole.profile);
+    const auto unit = driven().create(whole.profile);
     if (!unit) {
       Flown none;
       none.fault = held(no_unit_of(whole.profile, says_), whole.profile);
@@ -50,8 +53,10 @@ Result<StepTimes> HostHere::time_steps(const std::string& profile, const Trace& 
   times.fault = ports_.run([&]() -> std::optional<PortFault> {
     const auto unit = port_->create(profile);
     if (!unit) return held(no_unit_of(profile, says_), profile);
-    TimedUnit timed(*unit, *clock_, times.steps);
-    return held(attest::drive(timed, trace), profile);
+    // The note is outside of what is timed.
+    std::unique_ptr<Unit> timed = std::make_unique<TimedUnit>(*unit, *clock_, times.steps);
+    if (calls_) timed = calls_->noted(std::move(timed));
+    return held(attest::drive(*timed, trace), profile);
   });
   if (!with_stack || times.fault) return times;
   if (auto measured = measure_stack(profile, std::move(trace), times); !measured) {
@@ -78,7 +83,7 @@ Result<void> HostHere::measure_stack(const std::string& profile, Trace trace, St
 }
 
 bool HostHere::supports(const std::string& profile) {
-  return ports_.run([&] { return port_->create(profile) != nullptr; });
+  return ports_.run([&] { return driven().create(profile) != nullptr; });
 }
 
 Result<std::unique_ptr<PortHost>> open_host_here(const std::string& port,
@@ -87,8 +92,7 @@ Result<std::unique_ptr<PortHost>> open_host_here(const std::string& port,
   const DefaultFloatEnvironment callers;  // which a library may change when it is loaded
   auto opened = open_port(port);
   if (!opened) return tl::unexpected(opened.error());
-  if (calls) *opened = calls->noted(*std::move(opened));
-  return std::make_unique<HostHere>(*std::move(opened), std::move(said), course);
+  return std::make_unique<HostHere>(*std::move(opened), std::move(said), course, calls);
 }
 
 }  // namespace attest

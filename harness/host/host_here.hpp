@@ -14,8 +14,10 @@ namespace attest {
 class HostHere final : public PortHost {
  public:
   // `said`: the port's declarations before the run, which must stay the same; empty: its
-  // declarations now.
-  HostHere(std::unique_ptr<Port> port, std::optional<PortSays> said = {}, Course course = {});
+  // declarations now. `calls`: where the port's calls are noted, which must outlive this; null:
+  // they are not noted.
+  HostHere(std::unique_ptr<Port> port, std::optional<PortSays> said = {}, Course course = {},
+           const PortCalls* calls = nullptr);
 
   const PortSays& says() const override { return says_; }
   std::optional<PortFault> drive(const Subject& subject, Trace& trace) override;
@@ -27,9 +29,12 @@ class HostHere final : public PortHost {
  private:
   // The fault of a request, or a fault of kind protocol if the port's declarations have changed.
   std::optional<PortFault> held(std::optional<PortFault> fault, const std::string& profile) const;
+  Port& driven() { return noted_ ? *noted_ : *port_; }
   Result<void> measure_stack(const std::string& profile, Trace trace, StepTimes& times);
 
   std::unique_ptr<Port> port_;
+  const PortCalls* calls_;
+  std::unique_ptr<Port> noted_;  // port_, with its calls noted; null: they are not
   PortFloatEnvironment ports_;
   PortSays says_;
   Course course_;
@@ -38,8 +43,7 @@ class HostHere final : public PortHost {
 };
 
 // Opens the port (open_port); a change that it makes to the floating point environment does not
-// reach the caller. The port's calls are noted in `calls`, which must outlive the host; null: not
-// noted. Errors: those of open_port().
+// reach the caller. The other arguments are those of HostHere. Errors: those of open_port().
 Result<std::unique_ptr<PortHost>> open_host_here(const std::string& port,
                                                  std::optional<PortSays> said = {},
                                                  Course course = {},

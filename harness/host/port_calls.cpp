@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <new>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,7 +14,14 @@ namespace attest {
 
 namespace {
 
-enum class Call : std::uint32_t { none, create, set_parameter, step, destroy };
+enum class Call : std::uint32_t {
+  none,
+  create,
+  set_parameter,
+  set_timestamp_sample,
+  step,
+  destroy
+};
 
 }  // namespace
 
@@ -21,7 +29,9 @@ struct PortCalls::Now {
   std::atomic<Call> call{Call::none};
   std::atomic<std::uint64_t> tick{0};  // of the instance whose step() runs
 };
-static_assert(std::atomic<std::uint64_t>::is_always_lock_free);  // shared by two processes
+// Shared by two processes.
+static_assert(std::atomic<Call>::is_always_lock_free);
+static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
 namespace {
 
@@ -61,6 +71,7 @@ class NotedUnit : public Base {
 
  protected:
   Base& unit() { return *unit_; }
+  Noted note(Call call) { return Noted(now_, call); }
 
  private:
   std::unique_ptr<Base> unit_;
@@ -72,33 +83,34 @@ class NotedControllerUnit final : public NotedUnit<Unit> {
  public:
   using NotedUnit::NotedUnit;
   int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
+    const Noted noted = note(Call::set_timestamp_sample);
     return unit().set_timestamp_sample(timestamp_sample_us);
   }
 };
 
 class NotedPort final : public Port {
  public:
-  NotedPort(std::unique_ptr<Port> port, Now& now) : port_(std::move(port)), now_(now) {}
+  NotedPort(Port& port, Now& now) : port_(port), now_(now) {}
 
-  std::string name() const override { return port_->name(); }
-  std::string version() const override { return port_->version(); }
+  std::string name() const override { return port_.name(); }
+  std::string version() const override { return port_.version(); }
   std::vector<std::string> unsupported_groups() const override {
-    return port_->unsupported_groups();
+    return port_.unsupported_groups();
   }
-  std::optional<int> fraction_bits() const override { return port_->fraction_bits(); }
-  std::optional<Rate> fixed_step() const override { return port_->fixed_step(); }
-  bool has_mixer() const override { return port_->has_mixer(); }
-  bool has_battery_status() const override { return port_->has_battery_status(); }
+  std::optional<int> fraction_bits() const override { return port_.fraction_bits(); }
+  std::optional<Rate> fixed_step() const override { return port_.fixed_step(); }
+  bool has_mixer() const override { return port_.has_mixer(); }
+  bool has_battery_status() const override { return port_.has_battery_status(); }
 
   std::unique_ptr<Unit> create(const std::string& profile) override {
-    return made<NotedControllerUnit>([&] { return port_->create(profile); });
+    return made<NotedControllerUnit>([&] { return port_.create(profile); });
   }
   std::unique_ptr<MixerUnit> create_mixer(const std::string& profile,
                                           const std::string& definition) override {
-    return made<NotedUnit<MixerUnit>>([&] { return port_->create_mixer(profile, definition); });
+    return made<NotedUnit<MixerUnit>>([&] { return port_.create_mixer(profile, definition); });
   }
   std::unique_ptr<BatteryUnit> create_battery_status(const std::string& profile) override {
-    return made<NotedUnit<BatteryUnit>>([&] { return port_->create_battery_status(profile); });
+    return made<NotedUnit<BatteryUnit>>([&] { return port_.create_battery_status(profile); });
   }
 
  private:
@@ -109,7 +121,7 @@ class NotedPort final : public Port {
     return unit ? std::make_unique<NotedKind>(std::move(unit), now_) : nullptr;
   }
 
-  std::unique_ptr<Port> port_;
+  Port& port_;
   Now& now_;
 };
 
@@ -133,6 +145,8 @@ std::string PortCalls::current() const {
       return " in create()";
     case Call::set_parameter:
       return " in set_parameter()";
+    case Call::set_timestamp_sample:
+      return " in set_timestamp_sample()";
     case Call::step:
       return fmt::format(" in step() at tick {}", now_->tick.load(std::memory_order_relaxed));
     case Call::destroy:
@@ -143,8 +157,12 @@ std::string PortCalls::current() const {
   return "";
 }
 
-std::unique_ptr<Port> PortCalls::noted(std::unique_ptr<Port> port) const {
-  return std::make_unique<NotedPort>(std::move(port), *now_);
+std::unique_ptr<Port> PortCalls::noted(Port& port) const {
+  return std::make_unique<NotedPort>(port, *now_);
+}
+
+std::unique_ptr<Unit> PortCalls::noted(std::unique_ptr<Unit> unit) const {
+  return std::make_unique<NotedControllerUnit>(std::move(unit), *now_);
 }
 
 }  // namespace attest

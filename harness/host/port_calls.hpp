@@ -19,8 +19,10 @@ class PortCalls {
   // only messages may depend on it.
   std::string current() const;
 
-  // The port, with each of its calls noted. Used in the port's process. The memory must outlive it.
-  std::unique_ptr<Port> noted(std::unique_ptr<Port> port) const;
+  // The port, with create() and each call of its units noted. Used in the port's process. This and
+  // `port` must outlive it.
+  std::unique_ptr<Port> noted(Port& port) const;
+  std::unique_ptr<Unit> noted(std::unique_ptr<Unit> unit) const;
 
   struct Now;
 

@@ -74,17 +74,14 @@ class PortProcess final : public PortHost {
             [&](const Arrived& arrived) { return read_driven(arrived, inputs.size()); });
     if (!driven) return fault_;
     set_outputs(driven->samples, trace);
-    return with_words(driven->fault);
+    return driven->fault;
   }
 
   Result<Flown> fly(const FlightPlan& plan) override {
     auto flown = ask(fly_request(plan), {blob_of(plan.timing)}, [&](const Arrived& arrived) {
       return read_flown(arrived, plan.timing.size());
     });
-    if (flown) {
-      if (*flown) (*flown)->fault = with_words(std::move((*flown)->fault));
-      return *std::move(flown);
-    }
+    if (flown) return *std::move(flown);
     Flown none;
     none.fault = fault_;
     return none;
@@ -95,10 +92,7 @@ class PortProcess final : public PortHost {
     auto times =
         ask(time_request(profile, inputs, with_stack), {blob_of(inputs.samples)},
             [&](const Arrived& arrived) { return read_times(arrived, inputs.samples.size()); });
-    if (times) {
-      if (*times) (*times)->fault = with_words(std::move((*times)->fault));
-      return *std::move(times);
-    }
+    if (times) return *std::move(times);
     StepTimes none;
     none.fault = fault_;
     return none;
@@ -113,11 +107,7 @@ class PortProcess final : public PortHost {
 
   const std::optional<PortFault>& fault() const { return fault_; }
 
-  // "; it last printed: no memory"; empty if the port has printed nothing.
-  std::string printed() const {
-    const std::string words = child_ ? child_->last_words() : "";
-    return words.empty() ? "" : fmt::format("; it last printed: {}", words);
-  }
+  std::string last_words() const { return child_ ? child_->last_words() : ""; }
 
  private:
   // Empty after a fault of the port, in this request or before; fault_ has it.
@@ -165,25 +155,20 @@ class PortProcess final : public PortHost {
     const std::string where = when.empty() ? calls_.current() : ", " + when;
     switch (why) {
       case Kind::ended:
-        fault_ = PortFault{PortFault::Kind::crash, 0,
-                           fmt::format("the port's process {}{}{}", how, where, printed())};
+        fault_ =
+            PortFault{PortFault::Kind::crash, 0,
+                      fmt::format("the port's process {}{}{}", how, where, child_->last_printed())};
         return;
       case Kind::too_late:
       case Kind::given_up:
-        fault_ = PortFault{
-            PortFault::Kind::timeout, 0,
-            fmt::format("no answer within {} s{}{}", options_.timeout_s, where, printed())};
+        fault_ = PortFault{PortFault::Kind::timeout, 0,
+                           fmt::format("no answer within {} s{}{}", options_.timeout_s, where,
+                                       child_->last_printed())};
         return;
       default:
         fault_ = PortFault{PortFault::Kind::protocol, 0,
                            "the port wrote on the socket on which its process answers"};
     }
-  }
-
-  // A port that makes no unit may have printed the reason.
-  std::optional<PortFault> with_words(std::optional<PortFault> fault) const {
-    if (fault && fault->kind == PortFault::Kind::profile) fault->what += printed();
-    return fault;
   }
 
   HostOptions options_;
@@ -254,7 +239,7 @@ Result<PortDescription> describe_port(const HostOptions& options,
     if (supports) {
       description.profiles.push_back(profile);
     } else {
-      description.refusal = (*host)->printed();
+      description.refusals[profile] = (*host)->last_words();
     }
   }
   return description;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,15 +44,16 @@ struct HostOptions {
 // error: each request ends with that fault.
 Result<std::unique_ptr<PortHost>> start_host(const HostOptions& options, const Course& course = {});
 
-// Starts one in place of `host` if that is null or its process has ended. Errors as start_host().
+// Starts one, without a course, in place of `host` if that is null or its process has ended. Errors
+// as start_host().
 Result<void> ensure_host(std::unique_ptr<PortHost>& host, const HostOptions& options);
 
 // The declarations of a port, read in a process of its own.
 struct PortDescription : PortSays {
   std::string hangs;       // the fault, if it did not answer in time when it was loaded
   std::string goes_wrong;  // its fault when it made a unit; empty: no fault
-  // "; it last printed: ...", when it made no unit of a profile; empty if it printed nothing.
-  std::string refusal;
+  // Profile -> what the port last printed when it made no unit of it; empty if it printed nothing.
+  std::map<std::string, std::string> refusals;
 };
 
 // Includes those of `profiles` that the port supports. Each is requested in a process of its own. A

@@ -34,7 +34,7 @@ Nanoseconds sampled(const LoopTick& tick) { return tick.sampled; }
 Nanoseconds begins(const LoopTick& tick) { return tick.begins; }
 Nanoseconds commanded(const LoopTick& tick) { return tick.commanded.value_or(tick.begins); }
 
-// The largest number of ticks for which `from` has passed and `to` has not.
+// The largest number of ticks that are between their `from` and their `to` at the same time.
 template <typename From, typename To>
 std::size_t most_between(const LoopTiming& timing, const From& from, const To& to) {
   std::size_t most = 0, passed = 0;

@@ -101,7 +101,7 @@ void work(const StressTask& task, const std::string& specification, const PortCa
     parent.send(text_of({{"error", to_json(port.error())}}));
     return;
   }
-  *port = calls.noted(*std::move(port));
+  const std::unique_ptr<Port> noted = calls.noted(**port);
   Clock::time_point reported{};
   const auto progress = [&](const StressProgress& now) {
     if (!now.idle && Clock::now() - reported < report_every) return;
@@ -113,7 +113,7 @@ void work(const StressTask& task, const std::string& specification, const PortCa
                            {"idle", now.idle}}}}));
   };
   const auto measured = measure_live(
-      task, **port, [] { return asked_to_stop.load(); }, progress);
+      task, *noted, [] { return asked_to_stop.load(); }, progress);
   if (measured) {
     send_measured(*measured, parent);
   } else {
@@ -170,9 +170,9 @@ class Listener {
   StressResult end_of(Received::Kind why) {
     if (why == Received::Kind::ended) {
       const std::string how = child_.end(), words = child_.last_words();
-      return gone_wrong(task_, Verdict::crash,
-                        fmt::format("the process {}{}{}", how, calls_.current(),
-                                    words.empty() ? "" : "; it last printed: " + words));
+      return gone_wrong(
+          task_, Verdict::crash,
+          fmt::format("the process {}{}{}", how, calls_.current(), child_.last_printed()));
     }
     child_.kill();
     if (why == Received::Kind::too_late || why == Received::Kind::given_up) {
@@ -201,9 +201,10 @@ class Listener {
     const double limit_s = in_seconds(task_.timeout);
     const double flown_s = in_seconds(flown_);
     return is_made_
-               ? fmt::format("the port did not return within {:g} s, {:.3f} s into the flight",
-                             limit_s, flown_s)
-               : fmt::format("no answer within {:g} s, when it was loaded and created", limit_s);
+               ? fmt::format("the port did not return{} within {:g} s, {:.3f} s into the flight",
+                             calls_.current(), limit_s, flown_s)
+               : fmt::format("no answer{} within {:g} s, when it was loaded and created",
+                             calls_.current(), limit_s);
   }
 
   // Empty: it is not the last message. The port shares the process, so no message is trusted.

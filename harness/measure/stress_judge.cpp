@@ -12,7 +12,7 @@
 namespace attest {
 namespace {
 
-// A plant that falls behind more often than this is not the plant of the case.
+// If a larger share of the plant's steps is late, the flight was not in real time: verdict `skip`.
 constexpr double plant_late_share = 0.01;
 // The share that a budget of the 99th percentile allows. Late starts are counted, so no percentile
 // is needed.
@@ -20,7 +20,7 @@ constexpr double late_starts_share = 0.01;
 
 int gravity(Verdict verdict) { return fails_a_run(verdict) ? 2 : verdict == Verdict::pass ? 0 : 1; }
 
-// The gravest verdict holds, its reason first.
+// Keeps the more severe verdict, and puts its reason first.
 void add(CaseResult& result, Verdict verdict, std::string reason) {
   const bool is_graver = gravity(verdict) > gravity(result.verdict);
   if (is_graver) result.verdict = verdict;
@@ -50,7 +50,7 @@ void judge_port(const RealtimeBudget& budget, StressResult& stress) {
   }
   if (const double missed = stress.per_million(misses.by_port); missed > allowed) {
     fail(
-        fmt::format("{} deadline misses of {} are the port's, by its execution time: {:.0f} per "
+        fmt::format("{} of {} deadline misses are caused by the port's execution time: {:.0f} per "
                     "million, budget {:g}",
                     misses.by_port, misses.total(), missed, allowed));
   }
@@ -66,11 +66,10 @@ void judge_machine(const RealtimeBudget& budget, StressResult& stress) {
   const DeadlineMisses& misses = stress.misses;
   const double allowed = budget.misses_per_million;
   if (const double missed = stress.per_million(misses.total()); missed > allowed) {
-    add_skip(
-        stress.result,
-        fmt::format("caused by the machine, not by the port: {} of {} deadlines missed, {:.0f} per "
-                    "million, budget {:g}; {} of them by the port's execution time",
-                    misses.total(), stress.deadlines, missed, allowed, misses.by_port));
+    add_skip(stress.result,
+             fmt::format("too many deadlines missed on this machine: {} of {}, {:.0f} "
+                         "per million, budget {:g}; {} of them by the port's execution time",
+                         misses.total(), stress.deadlines, missed, allowed, misses.by_port));
   }
   if (share_of(misses.late_starts, stress.ticks) > late_starts_share) {
     add_skip(
@@ -133,7 +132,7 @@ void judge_flight_end(const StressTask& task, const LiveFlight& flight, CaseResu
       fly(to_the_end, task.configuration, *task.vehicle_model, *reference, flight.timing());
   if (!again) return add_skip(result, how + "; " + again.error().to_string());
   if (again->divergence) return add_skip(result, how + "; the reference loses the vehicle too");
-  add(result, Verdict::fail, how + "; the reference keeps the vehicle at the same times");
+  add(result, Verdict::fail, how + "; the reference does not lose the vehicle at the same times");
 }
 
 void judge_timing(const RealtimeBudget& budget, StressResult& stress) {

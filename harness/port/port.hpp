@@ -54,7 +54,7 @@ class Port {
   // The groups of cases that the port declares as unsupported.
   virtual std::vector<std::string> unsupported_groups() const { return {}; }
 
-  // Bits behind the point of a port in fixed point; empty for other arithmetic.
+  // Fraction bits of a port in fixed point; empty for other arithmetic.
   virtual std::optional<int> fraction_bits() const { return std::nullopt; }
 
   // The rate of a port with a fixed step; empty for other ports.

@@ -146,7 +146,7 @@ Child::~Child() { close_all({output_}); }
 
 namespace {
 
-// Patience that ends when a process has died.
+// A time limit that also ends the wait when the process has died.
 class UntilDeath {
  public:
   UntilDeath(Process& process, const Patience& patience) : patience_(patience) {
@@ -191,6 +191,11 @@ std::string Child::end() {
   const bool went_on = ending.was_killed && !was_killed;
   has_exited_well_ = ending.is_success() && !ending.was_killed;
   return went_on ? "closed the socket on which it answers, and went on" : ending.to_string();
+}
+
+std::string Child::last_printed() const {
+  const std::string words = last_words();
+  return words.empty() ? "" : "; it last printed: " + words;
 }
 
 std::string Child::last_words() const {

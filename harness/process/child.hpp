@@ -52,6 +52,7 @@ class Child {
 
   // The last line that the child printed on stdout or stderr; empty when it printed nothing.
   std::string last_words() const;
+  std::string last_printed() const;  // "; it last printed: LAST WORDS", or empty
 
  private:
   Child(Process process, MessageSocket socket, int output)

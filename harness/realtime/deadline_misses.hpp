@@ -16,14 +16,14 @@
 //     steps take no time is the machine's.
 //  2. In the port's timeline it is missed. A miss may need both causes, for example a wake-up that
 //     is late by nearly a period, and then a short step. On a bad machine a correct port would have
-//     such misses, so a port must tolerate the usual delay only. A machine whose usual delay is
-//     above a tenth of the period says little about a port. So a port whose steps all take less
-//     than nine tenths of a period never has a miss of its own.
+//     such misses, so a port must tolerate the usual delay only, and of that at most a tenth of
+//     the period. So a port whose steps all take less than nine tenths of a period never has a
+//     miss of its own.
 //
 // All other misses are the machine's.
 //
-// A release that is passed over is a miss too: its deadline passes before it can start. It belongs
-// to the step that ran meanwhile. The same two conditions hold, with the deadline of the release
+// A skipped release is a miss too: its deadline passes before a step can start. It is counted with
+// the step that ran meanwhile. The same two conditions hold, with the deadline of the release
 // and the finish of that step.
 //
 // Limit: the CPU time is that of the kernel's accounting. Cold caches, interrupts and, on a virtual
@@ -40,7 +40,7 @@ namespace attest {
 
 struct DeadlineMisses {
   std::uint64_t late = 0;                 // responses longer than the period
-  std::uint64_t skipped = 0;              // releases passed over after the first tick
+  std::uint64_t skipped = 0;              // skipped releases after the first tick
   std::uint64_t by_port = 0;              // of both together
   std::uint64_t late_starts = 0;          // wake-up latencies above the limit
   std::uint64_t late_starts_by_port = 0;  // of those, by the same rule, with starts

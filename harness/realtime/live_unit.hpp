@@ -24,7 +24,7 @@ struct LiveUnitRecord {
   Histogram response;          // as in LiveTick
   Histogram age;               // of the sample used, at the finish of the step
   std::uint64_t late = 0;      // responses longer than the period
-  std::uint64_t skipped = 0;   // releases passed over; all misses are late + skipped
+  std::uint64_t skipped = 0;   // skipped releases; all misses are late + skipped
   Nanoseconds longest_gap{0};  // between the begins of two ticks
   Usage usage;                 // after the first tick, which sets the parameters
   std::vector<LiveTick> ticks;
@@ -33,15 +33,15 @@ struct LiveUnitRecord {
   std::optional<PortFault> fault;
 };
 
-// One release a period. A tick whose release passed while the one before ran starts at once; of
-// several such releases only the last is used, the others are skipped.
+// One release per period. If releases come during a step, the next tick starts as soon as that step
+// ends. It uses the last of these releases; the others are skipped.
 //
 // A unit that the estimator triggers waits for a sample instead. Its release is the publication,
 // and of several that came while a step ran only the newest is used, the others are skipped.
 class LiveUnit {
  public:
-  // Records all ticks, and the samples of the first `samples`. Allocates and touches the memory for
-  // this here only. REQUIRES: a flight; all outlive this.
+  // Records all ticks, and the samples of the first `samples`. Only this constructor
+  // allocates and touches that memory. REQUIRES: a flight; all outlive this.
   LiveUnit(const Case& the_case, const Rate& rate, UnitTask& task, Clock& clock, Links& links,
            std::size_t samples);
 

@@ -52,7 +52,7 @@ double tail(const Examined& sample, std::size_t every, std::size_t hits) {
   return boost::math::cdf(boost::math::complement(null, static_cast<double>(hits) - 1));
 }
 
-// By first tick; all zero before and after each period.
+// The number of events at each place within a block; all zero before and after each call.
 class Hits {
  public:
   explicit Hits(std::size_t longest) : counts_(longest) {}

@@ -11,8 +11,8 @@
 //
 // Statistic. The number K of blocks that have an event at their tick `first`. Under the null
 // hypothesis a block with b events has one there with probability b / every, so K is a sum of
-// independent Bernoulli variables. From one above the mean on, its upper tail is at most that of a
-// binomial distribution: the one with the same mean over the blocks that have events. Source:
+// independent Bernoulli variables. For k of at least its mean plus one, P(K >= k) is at most that
+// of the binomial distribution with the same mean and a trial for each block with events. Source:
 // Hoeffding, "On the distribution of the number of successes in independent trials", Ann. Math.
 // Stat. 27 (1956).
 //

@@ -14,7 +14,7 @@ std::string suspect_text(const Suspect& suspect) {
       suspect.with ? fmt::format(", together with `{}`", suspect.with->id) : std::string();
   std::string out = fmt::format(
       "  `{}`{}: {} ({}; in the stage {})\n"
-      "      matches on {} of {} ticks, all of {} of {}\n",
+      "      matches on {} of {} ticks, and on every tick of {} of {}\n",
       fault.id, with, fault.what, fault.kind, name_of(fault.stage), suspect.matched, suspect.ticks,
       suspect.explained, counted(suspect.failing, "failing vector"));
   if (suspect.ambiguity_group.empty()) return out;

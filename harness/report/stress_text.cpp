@@ -36,7 +36,7 @@ std::string cyclictest_row(const StressResult& stress) {
                   human_time(stress.cyclictest->max));
   if (const auto& ours = stress.idle.median) {
     const double ratio = static_cast<double>(ours->count()) / theirs;
-    out += fmt::format("   idle median {:.2f}x its", ratio);
+    out += fmt::format("   idle machine: {:.2f} times this median", ratio);
   }
   return out + "\n";
 }

@@ -3,10 +3,11 @@
 // accepted.
 //
 // A flown trace may have columns `plant/...` with the true state of the vehicle at each tick, for
-// people and their plots. They are written, but ignored when read (plant_columns.hpp).
+// people and their plots. They are written, but not read, so their cells may have any text
+// (plant_columns.hpp).
 //
-// Other columns of a file with a `timestamp` are ignored, too, unless their names begin with in/ or
-// out/, or resemble a channel's name.
+// In a trace to be replayed (TraceNeed::inputs_and_outputs), which other programs write, unknown
+// columns are ignored, too, unless their names begin with in/ or out/ or resemble a channel's name.
 //
 // If there is a provenance.toml in the folder of the file, its constants count as columns, too, and
 // the file leaves them out (provenance.hpp).

@@ -29,14 +29,16 @@ struct Layout {
 };
 
 // The file is a trace, and the column is not a misspelt one of attest's.
-bool may_be_ignored(std::string_view name, const CsvRows& rows, const std::string& suggestion) {
+bool may_be_ignored(std::string_view name, const CsvRows& rows, const std::string& suggestion,
+                    TraceNeed need) {
   const auto& header = rows.header();
   const bool is_a_trace =
       std::find(header.begin(), header.end(), channels()[timestamp_channel].name) != header.end();
-  return is_a_trace && suggestion.empty() && !name.starts_with("in/") && !name.starts_with("out/");
+  return need == TraceNeed::inputs_and_outputs && is_a_trace && suggestion.empty() &&
+         !name.starts_with("in/") && !name.starts_with("out/");
 }
 
-Result<Layout> layout_of(const CsvRows& rows) {
+Result<Layout> layout_of(const CsvRows& rows, TraceNeed need) {
   Layout layout;
   for (std::size_t i = 0; i < rows.header().size(); ++i) {
     const std::string_view name = rows.header()[i];
@@ -54,7 +56,7 @@ Result<Layout> layout_of(const CsvRows& rows) {
       std::vector<std::string> names;
       for (const Channel& channel : channels()) names.emplace_back(channel.name);
       const std::string meant = suggestion(name, names);
-      if (!may_be_ignored(name, rows, meant)) {
+      if (!may_be_ignored(name, rows, meant, need)) {
         return rows.fail_at_name(i, fmt::format("unknown column {}{}", in_backquotes(name), meant));
       }
       layout.columns.push_back(ignored_column);
@@ -247,7 +249,7 @@ Result<bool> TraceReader::next(Sample& sample, std::vector<ParameterChange>& cha
 Result<TraceReader> TraceReader::open(const std::filesystem::path& path, TraceNeed need) {
   auto rows = CsvRows::open(path);
   if (!rows) return tl::unexpected(rows.error());
-  auto layout = layout_of(*rows);
+  auto layout = layout_of(*rows, need);
   if (!layout) return tl::unexpected(layout.error());
   const auto provenance = provenance_in(path.parent_path());
   if (!provenance) return tl::unexpected(provenance.error());

@@ -258,4 +258,13 @@ Division divide(const std::vector<Trace>& traces, const std::vector<Trace>& base
   return division;
 }
 
+Result<void> add_origin(const std::filesystem::path& folder, const std::string& profile,
+                        const std::map<std::string, std::string>& mixers) {
+  auto provenance = provenance_in(folder);
+  if (!provenance) return tl::unexpected(provenance.error());
+  provenance->profile = profile;
+  for (const auto& [stem, mixer] : mixers) provenance->mixers[stem] = mixer;
+  return write_file(folder / provenance_name, to_toml(*provenance));
+}
+
 }  // namespace attest

@@ -50,6 +50,11 @@ Result<Provenance> provenance_in(const std::filesystem::path& folder);
 
 std::string to_toml(const Provenance& provenance);
 
+// Adds the profile, and the mixers of traces by their stems, to the folder's provenance. Errors: as
+// above; it cannot be written.
+Result<void> add_origin(const std::filesystem::path& folder, const std::string& profile,
+                        const std::map<std::string, std::string>& mixers);
+
 // Appends the SHA-256 of the text as a last line, which is a comment in TOML.
 std::string sealed(const std::string& toml);
 

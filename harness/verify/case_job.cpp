@@ -31,14 +31,15 @@ Result<void> CaseJob::open() {
 Result<CaseResult> CaseJob::run(std::size_t task) {
   const RunConfiguration& configuration = configurations_[task];
   if (!vehicle_model_) return evaluate_case(case_, configuration.rate, *golden_, *host_, judge_);
-  return evaluate_flight(case_, configuration, *vehicle_model_, *golden_, *host_, judge_);
+  return evaluate_flight(case_, configuration, *vehicle_model_, *golden_, *host_,
+                         judge_.save_traces);
 }
 
 Result<CaseResult> TimedJob::run(std::size_t) {
   const auto host = start_host(options_, {&case_, vehicle_model_.get()});
   if (!host) return tl::unexpected(host.error());
   return evaluate_timed_flight(case_, timing_.configuration, *vehicle_model_, timing_.ticks, **host,
-                               judge_);
+                               saved_traces_);
 }
 
 Result<Jobs<CaseResult>> case_jobs(const std::vector<SelectedCase>& cases,

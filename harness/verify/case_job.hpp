@@ -65,11 +65,11 @@ class CaseJob final : public Job<CaseResult> {
 class TimedJob final : public Job<CaseResult> {
  public:
   TimedJob(Case the_case, TimingFile timing, std::shared_ptr<const VehicleModel> vehicle_model,
-           JudgeOptions judge, HostOptions options)
+           std::filesystem::path saved_traces, HostOptions options)
       : case_(std::move(the_case)),
         timing_(std::move(timing)),
         vehicle_model_(std::move(vehicle_model)),
-        judge_(std::move(judge)),
+        saved_traces_(std::move(saved_traces)),
         options_(std::move(options)) {}
 
   std::size_t size() const override { return 1; }
@@ -79,7 +79,7 @@ class TimedJob final : public Job<CaseResult> {
   Case case_;
   TimingFile timing_;
   std::shared_ptr<const VehicleModel> vehicle_model_;
-  JudgeOptions judge_;
+  std::filesystem::path saved_traces_;
   HostOptions options_;
 };
 

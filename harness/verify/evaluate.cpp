@@ -1,5 +1,6 @@
 #include "harness/verify/evaluate.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -20,29 +21,42 @@
 namespace attest {
 namespace {
 
+// The inputs and expected outputs of a vector.
+struct Expected {
+  Trace want;
+  BranchAlternatives branch_alternatives;
+};
+
 // Drives a fresh unit through `answered`, whose inputs are those of `want`, and compares. Branch
 // alternatives are equally correct, but the exact level accepts the law's branch only.
-void run_and_judge(Trace& answered, const Trace& want, const BranchAlternatives& others,
-                   const Subject& subject, PortHost& host, const Tolerances& tolerances,
-                   const Tolerances& of_branches, CaseResult& result) {
+void run_and_judge(Trace& answered, const Expected& expected, const Subject& subject,
+                   PortHost& host, const Tolerances& tolerances, const Tolerances& of_branches,
+                   const std::filesystem::path& saved_traces, CaseResult& result) {
   if (declines(host.says(), result)) return;
   const auto fault = host.drive(subject, answered);
-  if (fault && !leaves_ticks_to_judge(*fault)) return judge(*fault, result);
-  if (fault) leave_out_from(fault->tick, want, answered);
-  if (others.empty() || tolerances.level() == Level::exact) {
-    judge(compare(answered, want, tolerances), result);
+  const Trace* want = &expected.want;
+  Trace on_branch;
+  if (fault && !leaves_ticks_to_judge(*fault)) {
+    judge(*fault, result);
   } else {
-    const Trace allowed = on_the_branch_of(answered, want, others, of_branches);
-    judge(compare(answered, allowed, tolerances), result);
+    if (fault) leave_out_from(fault->tick, expected.want, answered);
+    if (!expected.branch_alternatives.empty() && tolerances.level() != Level::exact) {
+      on_branch =
+          on_the_branch_of(answered, expected.want, expected.branch_alternatives, of_branches);
+      want = &on_branch;
+    }
+    judge(compare(answered, *want, tolerances), result);
+    if (fault) judge_after(*fault, result);
   }
-  if (fault) judge_after(*fault, result);
+  if (!saves_traces(saved_traces, result)) return;
+  if (fault) answered.samples.resize(std::min(fault->tick, answered.samples.size()));
+  save_traces(saved_traces, subject, answered, *want, result);
 }
 
 // A case's inputs for the unit, and the reference's outputs for exactly these inputs.
 struct Prepared {
   Trace answered;  // inputs only, so far
-  Trace want;
-  BranchAlternatives branch_alternatives;
+  Expected expected;
 };
 
 Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& golden) {
@@ -52,7 +66,7 @@ Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& g
   if (!keeps_every_tick(made.samples.size())) {
     auto whole = filled_in(made, *want, subject_of(the_case), !the_case.numeric_only);
     if (!whole) return tl::unexpected(whole.error());
-    return Prepared{std::move(made), std::move(*whole), {}};
+    return Prepared{std::move(made), {std::move(*whole), {}}};
   }
   if (const ChannelSet missing = made.present & ~want->present; missing.any()) {
     return fail_at(want->source,
@@ -68,7 +82,7 @@ Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& g
   }
   auto others = golden.read_branch_alternatives({rate, std::nullopt});
   if (!others) return tl::unexpected(others.error());
-  return Prepared{std::move(made), std::move(*want), std::move(*others)};
+  return Prepared{std::move(made), {std::move(*want), std::move(*others)}};
 }
 
 // The same for a port with a fixed step (fixed_step.hpp): the reference's outputs from one period
@@ -76,7 +90,7 @@ Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& g
 Result<Prepared> prepare_from_one_period_on(const Case& the_case, const Rate& rate,
                                             const Golden& golden) {
   HostHere reference(open_builtin());
-  const auto checked = evaluate_case(the_case, rate, golden, reference, Level::exact);
+  const auto checked = evaluate_case(the_case, rate, golden, reference, {Level::exact});
   if (!checked) return tl::unexpected(checked.error());
   if (checked->verdict != Verdict::pass) {
     return fail_at(the_case.file.string(),
@@ -85,14 +99,14 @@ Result<Prepared> prepare_from_one_period_on(const Case& the_case, const Rate& ra
                                rate.label()));
   }
   const Case begun = the_case.from_one_period_on();
-  Prepared prepared{stimulate(begun, rate), stimulate(begun, rate), {}};
-  if (const auto fault = reference.drive(subject_of(begun), prepared.want)) {
+  Prepared prepared{stimulate(begun, rate), {stimulate(begun, rate), {}}};
+  if (const auto fault = reference.drive(subject_of(begun), prepared.expected.want)) {
     return fail_at(the_case.file.string(), "the reference: " + fault->what);
   }
   if (!begun.either_branch.any()) return prepared;
-  auto others = branch_alternatives(begun, prepared.want);
+  auto others = branch_alternatives(begun, prepared.expected.want);
   if (!others) return tl::unexpected(others.error());
-  prepared.branch_alternatives = std::move(*others);
+  prepared.expected.branch_alternatives = std::move(*others);
   return prepared;
 }
 
@@ -135,13 +149,9 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
   if (numeric_for_exact || numeric_for_events) level = Level::numeric;
   const auto bits = host.says().fraction_bits;
   const std::size_t ticks = prepared->answered.samples.size();
-  run_and_judge(prepared->answered, prepared->want, prepared->branch_alternatives,
-                subject_of(the_case), host, tolerances_of(the_case, level, bits, ticks),
-                tolerances_of(the_case, Level::numeric, bits, ticks), result);
-  const bool has_outputs = result.ticks > 0;
-  const auto saved = save_traces(options.save_traces, result,
-                                 has_outputs ? &prepared->answered : nullptr, prepared->want);
-  if (!saved) return tl::unexpected(saved.error());
+  run_and_judge(prepared->answered, prepared->expected, subject_of(the_case), host,
+                tolerances_of(the_case, level, bits, ticks),
+                tolerances_of(the_case, Level::numeric, bits, ticks), options.save_traces, result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }
@@ -160,7 +170,7 @@ CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHos
   Tolerances allowed = numeric_for_events ? Tolerances(Level::numeric) : tolerances;
   if (const auto bits = host.says().fraction_bits)
     allowed.allow_lsb(*bits, recorded.samples.size());
-  run_and_judge(answered, recorded, {}, subject, host, allowed, allowed, result);
+  run_and_judge(answered, {recorded, {}}, subject, host, allowed, allowed, {}, result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <string>
-#include <utility>
 
 #include "harness/casefile/case.hpp"
 #include "harness/compare/tolerance.hpp"
@@ -18,12 +17,8 @@
 namespace attest {
 
 struct JudgeOptions {
-  // Implicit: most judge at a level, and save nothing.
-  JudgeOptions(Level of, std::filesystem::path folder = {})
-      : level(of), save_traces(std::move(folder)) {}
-
-  Level level;
-  std::filesystem::path save_traces;  // the folder of save_traces(); empty: not saved
+  Level level = Level::numeric;            // of open-loop cases
+  std::filesystem::path save_traces = {};  // the folder of save_traces(); empty: not saved
 };
 
 // The identity of a result, before there is a verdict.
@@ -32,6 +27,7 @@ CaseResult result_for(const Trace& recorded, const std::string& profile);
 
 // Makes the case's inputs at that rate anew, gives them to a fresh unit, and compares the outputs
 // with the golden. Errors are those of the environment: a golden that is missing or stale.
+// `saved_traces`, here and below: the folder of save_traces(); empty: not saved.
 Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const Golden& golden,
                                  PortHost& host, const JudgeOptions& options);
 
@@ -42,7 +38,7 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
 // to the bit. Errors: as above.
 Result<CaseResult> evaluate_flight(const Case& the_case, const RunConfiguration& configuration,
                                    const VehicleModel& vehicle_model, const Golden& golden,
-                                   PortHost& host, const JudgeOptions& options);
+                                   PortHost& host, const std::filesystem::path& saved_traces = {});
 
 // The same at recorded times. These have no golden: the reference flies at the same times for
 // comparison. A bound of the case's metrics that the reference misses at these times is not
@@ -51,7 +47,7 @@ Result<CaseResult> evaluate_timed_flight(const Case& the_case,
                                          const RunConfiguration& configuration,
                                          const VehicleModel& vehicle_model,
                                          const LoopTiming& timing, PortHost& host,
-                                         const JudgeOptions& options);
+                                         const std::filesystem::path& saved_traces = {});
 
 // "the flight ended at 0.412 s (tick 103): the body rate is 81 rad/s, beyond 80". REQUIRES: a
 // divergence.

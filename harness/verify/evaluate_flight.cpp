@@ -97,10 +97,10 @@ Comparison with_tightest(Comparison loop, const Comparison& answers) {
 // NaN and infinity fail at every tick.
 Result<void> judge_ticks(const Case& the_case, const Flown& flown, const ReferenceFlight& reference,
                          std::optional<int> fraction_bits, CaseResult& result) {
-  // The horizon holds for floats. In flight, a port's rounding comes back as an input. A port with
-  // 22 fraction bits was measured to deviate from the golden by seven times the tolerance of its
-  // LSBs. With 30 bits that is a tenth of the tolerance of floats. With fewer bits, the metrics
-  // judge the loop as a whole.
+  // The horizon was measured with floats. In flight, a port's rounding changes its later inputs. A
+  // port with 22 fraction bits was measured to deviate from the golden by seven times the tolerance
+  // of its LSBs. With 30 bits, seven times that tolerance is a tenth of the tolerance of floats.
+  // With fewer bits, the loop as a whole is judged by the metrics only.
   constexpr int as_near_as_floats_bits = 30;
   const double horizon_s = fraction_bits.value_or(as_near_as_floats_bits) < as_near_as_floats_bits
                                ? 0
@@ -148,21 +148,21 @@ std::string how_it_ended(const Flown& flown) {
 
 namespace {
 
-// `want` is what the reference answers to the inputs of that flight.
-Result<void> save_flight(const std::filesystem::path& folder, const CaseResult& result,
-                         const Flown& flown) {
-  if (folder.empty() || flown.trace.samples.empty()) return {};
-  Trace want = flown.trace;
-  if (const auto fault = drive(*open_builtin(), Subject{result.profile}, want)) {
-    return fail("the reference: " + fault->what);
+// The expected outputs are those of the reference for the inputs of that flight.
+void save_flight(const std::filesystem::path& folder, const Trace& flown, CaseResult& result) {
+  if (!saves_traces(folder, result) || flown.samples.empty()) return;
+  const Subject subject{result.profile};
+  Trace want = flown;
+  if (const auto fault = drive(*open_builtin(), subject, want)) {
+    want.samples.resize(fault->tick);
   }
-  return save_traces(folder, result, &flown.trace, want);
+  save_traces(folder, subject, flown, want, result);
 }
 
 // A fresh unit flies at those times, and is compared with the reference.
 Result<CaseResult> evaluate_with(const Case& the_case, const FlightPlan& plan,
                                  const ReferenceFlight& reference, PortHost& host,
-                                 const JudgeOptions& options) {
+                                 const std::filesystem::path& saved_traces) {
   const Stopwatch stopwatch;
   CaseResult result = result_for(the_case, plan.configuration);
   if (declines(host.says(), result)) return result;
@@ -178,8 +178,8 @@ Result<CaseResult> evaluate_with(const Case& the_case, const FlightPlan& plan,
   } else {
     judge(*flown->fault, result);
   }
-  if (judged) judged = save_flight(options.save_traces, result, *flown);
   if (!judged) return tl::unexpected(judged.error());
+  save_flight(saved_traces, flown->trace, result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }
@@ -189,9 +189,9 @@ Result<CaseResult> evaluate_with(const Case& the_case, const FlightPlan& plan,
 Result<CaseResult> evaluate_from_one_period_on(const Case& the_case, FlightPlan plan,
                                                const VehicleModel& vehicle_model,
                                                const ReferenceFlight& golden, PortHost& host,
-                                               const JudgeOptions& options) {
+                                               const std::filesystem::path& saved_traces) {
   HostHere builtin(open_builtin(), {}, {&the_case, &vehicle_model});
-  const auto checked = evaluate_with(the_case, plan, golden, builtin, Level::numeric);
+  const auto checked = evaluate_with(the_case, plan, golden, builtin, {});
   if (!checked) return tl::unexpected(checked.error());
   if (checked->verdict != Verdict::pass) {
     return fail_at(the_case.file.string(),
@@ -203,31 +203,31 @@ Result<CaseResult> evaluate_from_one_period_on(const Case& the_case, FlightPlan 
   const auto reference = reference_flight(begun, plan.configuration, vehicle_model, plan.timing);
   if (!reference) return tl::unexpected(reference.error());
   plan.from_one_period_on = true;
-  return evaluate_with(begun, plan, *reference, host, options);
+  return evaluate_with(begun, plan, *reference, host, saved_traces);
 }
 
 }  // namespace
 
 Result<CaseResult> evaluate_flight(const Case& the_case, const RunConfiguration& configuration,
                                    const VehicleModel& vehicle_model, const Golden& golden,
-                                   PortHost& host, const JudgeOptions& options) {
+                                   PortHost& host, const std::filesystem::path& saved_traces) {
   const auto reference = golden.read_flight(configuration, vehicle_model.vehicle());
   if (!reference) return tl::unexpected(reference.error());
   const FlightPlan plan{configuration, case_timing(the_case, configuration.rate)};
   if (!has_fixed_step(host.says(), the_case)) {
-    return evaluate_with(the_case, plan, *reference, host, options);
+    return evaluate_with(the_case, plan, *reference, host, saved_traces);
   }
   CaseResult result = result_for(the_case, configuration);
   if (has_other_steps(host.says(), the_case, configuration.rate, plan.timing, result))
     return result;
-  return evaluate_from_one_period_on(the_case, plan, vehicle_model, *reference, host, options);
+  return evaluate_from_one_period_on(the_case, plan, vehicle_model, *reference, host, saved_traces);
 }
 
 Result<CaseResult> evaluate_timed_flight(const Case& the_case,
                                          const RunConfiguration& configuration,
                                          const VehicleModel& vehicle_model,
                                          const LoopTiming& timing, PortHost& host,
-                                         const JudgeOptions& options) {
+                                         const std::filesystem::path& saved_traces) {
   CaseResult result = result_for(the_case, configuration);
   if (has_other_steps(host.says(), the_case, configuration.rate, timing, result)) return result;
   const FlightPlan plan{configuration, timing, has_fixed_step(host.says(), the_case)};
@@ -239,7 +239,7 @@ Result<CaseResult> evaluate_timed_flight(const Case& the_case,
     if (value < metric.min) metric.min = -std::numeric_limits<double>::infinity();
     if (value > metric.max) metric.max = std::numeric_limits<double>::infinity();
   }
-  return evaluate_with(relaxed, plan, *reference, host, options);
+  return evaluate_with(relaxed, plan, *reference, host, saved_traces);
 }
 
 }  // namespace attest

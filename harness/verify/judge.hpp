@@ -30,8 +30,8 @@ bool leaves_ticks_to_judge(const PortFault& fault);
 // From `tick` on, `answered` gets the outputs of `want`, so that only the ticks before it decide.
 void leave_out_from(std::size_t tick, const Trace& want, Trace& answered);
 
-// Call after the ticks before the fault have been judged. A failure stays a failure, and the reason
-// names both.
+// Call after the ticks before the fault have been judged. A failure stays a failure; its reason
+// then names the fault too.
 void judge_after(const PortFault& fault, CaseResult& result);
 
 void judge(const Comparison& comparison, CaseResult& result);

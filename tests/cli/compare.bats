@@ -41,3 +41,16 @@ load common
   [ "$status" -eq 1 ]
   has "output[1]"
 }
+
+@test "an unknown column and a pipe are refused, at every level" {
+  trace="$SOURCE"/golden/recorded/px4-v1.5.5/fuzz_250hz.csv
+  sed '1s/$/,roll_sp/;2,$s/$/,1/' "$trace" >extended.csv
+  for level in exact numeric events; do
+    run "$ATTEST" compare "$trace" extended.csv --level $level
+    [ "$status" -eq 2 ]
+    has 'unknown column `roll_sp`'
+    run bash -c "cat '$trace' | '$ATTEST' compare /dev/stdin '$trace' --level $level"
+    [ "$status" -eq 2 ]
+    has "/dev/stdin: is a pipe"
+  done
+}

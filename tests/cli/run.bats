@@ -215,7 +215,7 @@ quick=(--group attitude --group battery --group rates)
   run "$ATTEST" run --group tpa --rate 250 --profile px4-v1.5.5 --port fault:tpa-missing \
     --no-diagnose --save-traces traces
   [ "$status" -eq 1 ]
-  has "traces: traces/PROFILE/GROUP/NAME/RATE.got.csv"
+  has "traces of the failing vectors: traces"
   place=traces/px4-v1.5.5/tpa/each_axis/250hz
   run "$ATTEST" compare "$place.got.csv" "$place.want.csv"
   [ "$status" -eq 1 ]
@@ -240,13 +240,45 @@ quick=(--group attitude --group battery --group rates)
     --port "lib:$PORTS/port_crash.so" --save-traces traces
   [ "$status" -eq 1 ]
   has "in step() at tick 20"
-  [ "$(cd traces/px4-v1.5.5/tpa/each_axis && echo *)" = 250hz.want.csv ]
+  [ "$(cd traces/px4-v1.5.5/tpa/each_axis && echo *)" = "250hz.want.csv provenance.toml" ]
 }
 
-@test "traces are not saved among the files of the suite" {
-  run "$ATTEST" run --group tpa --save-traces "$SOURCE/golden"
+@test "saved traces of another profile, and of a mixer, replay with their own" {
+  run "$ATTEST" run --profile px4-v1.3.4 --group attitude --rate 250 --no-diagnose \
+    --port fault:quat-order-xyzw --save-traces old
+  [ "$status" -eq 1 ]
+  "$ATTEST" replay --level exact old/px4-v1.3.4/attitude/antipodal_setpoint/250hz.want.csv
+  run "$ATTEST" run --group mixer --rate 250 --no-diagnose --port fault:mixer-output-0-to-1 \
+    --save-traces mixers
+  [ "$status" -eq 1 ]
+  "$ATTEST" replay --level exact "$(find mixers -name '*.want.csv' | sort | head -1)"
+}
+
+@test "a saved trace ends where the outputs of the port end" {
+  run "$ATTEST" run --filter 'px4-v1.5.5/tpa/each_axis@250hz' --no-diagnose \
+    --port "lib:$PORTS/port_step_fails.so" --save-traces traces
+  [ "$status" -eq 1 ]
+  [ "$(wc -l <traces/px4-v1.5.5/tpa/each_axis/250hz.got.csv)" -eq 21 ]
+  run "$ATTEST" run --group tpa --filter 'px4-v1.5.5/*@250hz' --no-diagnose \
+    --port "lib:$PORTS/hostile_wrong_unsupported.so" --save-traces unsupported
+  [ "$status" -eq 1 ]
+  for file in unsupported/px4-v1.5.5/tpa/*/250hz.got.csv; do [ "$(wc -l <"$file")" -eq 21 ]; done
+}
+
+@test "the folder for traces must be new, writable and not of the suite" {
+  for folder in "$SOURCE/golden" "$SOURCE/golden/new"; do
+    run "$ATTEST" run --group tpa --save-traces "$folder"
+    [ "$status" -eq 2 ]
+    has "is a folder of the suite"
+  done
+  mkdir old
+  touch old/file
+  run "$ATTEST" run --group tpa --save-traces old
   [ "$status" -eq 2 ]
-  has "is a folder of the suite"
+  has "old: is not empty"
+  run "$ATTEST" run --group tpa --save-traces /proc/traces
+  [ "$status" -eq 2 ]
+  has "/proc/traces: cannot be made"
 }
 
 @test "the excerpt of a report in README.md is what a run prints" {

@@ -20,7 +20,7 @@ INSTEAD = {
 }
 
 # Line breaks, markers of comments and the quotes of adjacent string literals do not hide a phrase.
-_BETWEEN = r'[\s/*#>"]+'
+_BETWEEN = r'[\s/*#>"+-]+'
 _PHRASES = "|".join(_BETWEEN.join(phrase.split()) for phrase in INSTEAD)
 PATTERN = re.compile(rf"\b(?:{_PHRASES})\b", re.IGNORECASE)
 

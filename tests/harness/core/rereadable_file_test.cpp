@@ -2,8 +2,10 @@
 
 #include <thread>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "harness/core/file.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
@@ -28,10 +30,26 @@ TEST(RereadableFile, APipeWithoutAWriterIsAnError) {
   const TemporaryDirectory folder;
   const auto pipe = folder.path() / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  const auto file = RereadableFile::open(pipe);
+  const auto file = RereadableFile::open(pipe, std::chrono::milliseconds(20));
   ASSERT_FALSE(file);
   EXPECT_EQ(file.error().to_string(),
-            pipe.string() + ": cannot read the pipe: no data within 5 s; is it written to?");
+            pipe.string() + ": cannot read the pipe: no program writes to it, or it is empty");
+}
+
+TEST(RereadableFile, AWriterMayBeSlow) {
+  const TemporaryDirectory folder;
+  const auto pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const int writer = ::open(pipe.c_str(), O_RDWR | O_CLOEXEC);  // does not wait for a reader
+  std::thread slow([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_EQ(::write(writer, "text", 4), 4);
+    ::close(writer);
+  });
+  const auto file = RereadableFile::open(pipe, std::chrono::milliseconds(1));
+  slow.join();
+  ASSERT_TRUE(file) << file.error().to_string();
+  EXPECT_EQ(*read_file(file->path()), "text");
 }
 
 TEST(RereadableFile, ARegularFileIsItself) {

@@ -49,7 +49,7 @@ TEST(DescribePort, OneThatRefusesEveryProfileIsStillAPort) {
   const auto description = described(test_port("refuses_profile"));
   ASSERT_TRUE(description);
   EXPECT_THAT(description->profiles, IsEmpty());
-  EXPECT_EQ(description->refusal, "; it last printed: no gains for px4-v9.9.9");
+  EXPECT_EQ(description->refusals.at("px4-v1.5.5"), "no gains for px4-v1.5.5");
 }
 
 TEST(DescribePort, OneThatCannotBeLoadedSaysWhy) {

@@ -18,6 +18,7 @@ class CallingUnit final : public Unit {
   explicit CallingUnit(const std::function<void()>& call) : call_(call) {}
   ~CallingUnit() override { call_(); }
   int set_parameter(const std::string&, float) override { return called(); }
+  int set_timestamp_sample(std::uint64_t) override { return called(); }
   int step(const attest_inputs&, attest_outputs&) override { return called(); }
 
  private:
@@ -47,7 +48,8 @@ TEST(PortCalls, TheRunningCallIsNamed) {
   ASSERT_TRUE(calls) << calls.error().to_string();
   std::string seen;
   const std::function<void()> look = [&] { seen = calls->current(); };
-  const auto port = calls->noted(std::make_unique<CallingPort>(look));
+  CallingPort original(look);
+  const auto port = calls->noted(original);
   EXPECT_EQ(calls->current(), "");
   auto unit = port->create("px4-v1.5.5");
   EXPECT_EQ(seen, " in create()");
@@ -59,6 +61,8 @@ TEST(PortCalls, TheRunningCallIsNamed) {
   }
   EXPECT_EQ(unit->set_parameter("MC_ROLL_P", 6), ATTEST_OK);
   EXPECT_EQ(seen, " in set_parameter()");
+  EXPECT_EQ(unit->set_timestamp_sample(7), ATTEST_OK);
+  EXPECT_EQ(seen, " in set_timestamp_sample()");
   unit.reset();
   EXPECT_EQ(seen, " in destroy()");
   EXPECT_EQ(calls->current(), "");
@@ -69,7 +73,8 @@ TEST(PortCalls, EachInstanceCountsItsOwnTicks) {
   ASSERT_TRUE(calls);
   std::string seen;
   const std::function<void()> look = [&] { seen = calls->current(); };
-  const auto port = calls->noted(std::make_unique<CallingPort>(look));
+  CallingPort original(look);
+  const auto port = calls->noted(original);
   const auto one = port->create(""), other = port->create("");
   attest_outputs out{};
   one->step({}, out);
@@ -79,19 +84,35 @@ TEST(PortCalls, EachInstanceCountsItsOwnTicks) {
   EXPECT_EQ(seen, " in step() at tick 0");
 }
 
+// Has other values than the defaults of Port, and no module.
+class DeclaringPort final : public Port {
+ public:
+  std::string name() const override { return "declaring"; }
+  std::string version() const override { return "2"; }
+  std::vector<std::string> unsupported_groups() const override { return {"rates"}; }
+  std::optional<int> fraction_bits() const override { return 24; }
+  std::optional<Rate> fixed_step() const override { return Rate::hz(250); }
+  std::unique_ptr<Unit> create(const std::string&) override { return nullptr; }
+};
+
 TEST(PortCalls, TheNotedPortIsThePort) {
   const auto calls = PortCalls::make();
   ASSERT_TRUE(calls);
-  const auto port = calls->noted(open_builtin());
-  const auto original = open_builtin();
-  EXPECT_EQ(port->name(), original->name());
-  EXPECT_EQ(port->version(), original->version());
-  EXPECT_TRUE(port->has_mixer());
-  EXPECT_TRUE(port->has_battery_status());
-  EXPECT_EQ(port->create("px4-v0.1"), nullptr);
+  DeclaringPort original;
+  const auto port = calls->noted(original);
+  EXPECT_EQ(port->name(), "declaring");
+  EXPECT_EQ(port->version(), "2");
+  EXPECT_EQ(port->unsupported_groups(), std::vector<std::string>{"rates"});
+  EXPECT_EQ(port->fraction_bits(), 24);
+  EXPECT_EQ(port->fixed_step(), Rate::hz(250));
+  EXPECT_FALSE(port->has_mixer());
+  EXPECT_FALSE(port->has_battery_status());
+  EXPECT_EQ(port->create("px4-v1.5.5"), nullptr);
   EXPECT_EQ(calls->current(), "");
-  EXPECT_NE(port->create_mixer("px4-v1.5.5", mixer), nullptr);
-  EXPECT_NE(port->create_battery_status("px4-v1.5.5"), nullptr);
+  const auto builtin = open_builtin();
+  const auto whole = calls->noted(*builtin);
+  EXPECT_NE(whole->create_mixer("px4-v1.5.5", mixer), nullptr);
+  EXPECT_NE(whole->create_battery_status("px4-v1.5.5"), nullptr);
 }
 
 }  // namespace

@@ -116,10 +116,10 @@ TEST_F(StressJudge, AFlightThatTheReferenceKeepsFails) {
   add_skip(result, "outputs not judged");
   judge_flight_end(task_, flight_, result);
   EXPECT_EQ(result.verdict, Verdict::fail);
-  EXPECT_EQ(
-      result.reason,
-      "the flight ended at 0.300 s: it fell; the reference keeps the vehicle at the same times; "
-      "outputs not judged");
+  EXPECT_EQ(result.reason,
+            "the flight ended at 0.300 s: it fell; the reference does not lose the vehicle at the "
+            "same times; "
+            "outputs not judged");
 }
 
 TEST_F(StressJudge, AFlightThatTheReferenceLosesTooIsNotJudged) {
@@ -154,7 +154,7 @@ TEST_F(StressJudge, OverrunsAndMissesAndLateStartsOfThePortFail) {
   stress_.result = {};
   stress_.overruns = 0;
   stress_.misses = {5, 5, 6, 0, 0};
-  EXPECT_THAT(timing().reason, HasSubstr("6 deadline misses of 10 are the port's"));
+  EXPECT_THAT(timing().reason, HasSubstr("6 of 10 deadline misses are caused by the port"));
   EXPECT_EQ(stress_.result.verdict, Verdict::fail);
   stress_.result = {};
   stress_.misses = {0, 0, 0, 101, 101};

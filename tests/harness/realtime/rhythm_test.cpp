@@ -90,6 +90,8 @@ Events spaced(Random& random, std::size_t ticks) {
 struct Kind {
   std::string name;
   std::function<Events(Random&, std::size_t)> events;
+
+  friend void PrintTo(const Kind& kind, std::ostream* out) { *out << kind.name; }
 };
 
 class RhythmAtRandom : public testing::TestWithParam<Kind> {};

@@ -29,7 +29,7 @@ class EvaluateTest : public testing::Test {
     const auto golden = Golden::open(suite_.golden(), suite_[0]);
     if (!golden) return tl::unexpected(golden.error());
     const auto host = opened(port);
-    return evaluate_case(suite_[0], Rate::hz(100), *golden, *host, level);
+    return evaluate_case(suite_[0], Rate::hz(100), *golden, *host, {level});
   }
 
   Verdict verdict_of(const std::string& port, Level level = Level::numeric) {
@@ -120,7 +120,7 @@ TEST_F(EvaluateTest, AnotherSideIsAsRightButNotAtTheExactLevel) {
   const auto golden = Golden::open(suite_.golden(), turned);
   const auto verdict_on = [&](const Trace& answers, Level level) {
     Reciting port(answers);
-    return evaluate_case(turned, Rate::hz(100), *golden, port, level)->verdict;
+    return evaluate_case(turned, Rate::hz(100), *golden, port, {level})->verdict;
   };
   const Trace& law = traces[0].trace;
   const Trace& other = traces[0].branch_alternatives.at("yaw_wrap");
@@ -164,7 +164,7 @@ TEST_F(EvaluateTest, AtTheEventsLevelAControllerIsJudgedByItsEvents) {
   Reciting port(answers);
   const auto golden = Golden::open(suite_.golden(), suite_[0]);
   const auto verdict_at = [&](Level level) {
-    return evaluate_case(suite_[0], Rate::hz(100), *golden, port, level)->verdict;
+    return evaluate_case(suite_[0], Rate::hz(100), *golden, port, {level})->verdict;
   };
   EXPECT_EQ(verdict_at(Level::events), Verdict::pass);
   EXPECT_EQ(verdict_at(Level::numeric), Verdict::fail);

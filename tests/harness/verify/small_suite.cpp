@@ -44,7 +44,7 @@ JobResults<CaseResult> SmallSuite::run(const HostOptions& host, int processes) c
   Jobs<CaseResult> jobs;
   for (const Case& the_case : cases_) {
     jobs.push_back(std::make_unique<CaseJob>(the_case, the_case.configurations(), nullptr, golden(),
-                                             Level::numeric, host));
+                                             JudgeOptions{}, host));
   }
   JobOptions<CaseResult> options;
   options.processes = processes;
