@@ -1,4 +1,5 @@
-// The gains of the loops: the parameters in SI units, scaled by the time constants.
+// The gains of the loops: the parameters in SI units. The time constants of roll and pitch scale
+// the proportional and the derivative gains.
 //
 // Body axes are FRD and vectors are in the order roll, pitch, yaw. Plain values; any thread.
 #pragma once

@@ -1,8 +1,7 @@
 // A case: a situation that a controller must handle like the reference, as plain data.
 //
-// parse.hpp reads it from cases/<profile>/<group>/<behaviour>.toml (SCHEMA.md). stimulus.hpp makes
-// it into the inputs of a unit at one loop rate. A file that names several profiles is a case of
-// each.
+// parse.hpp reads it from cases/<profile>/<group>/<name>.toml (SCHEMA.md). stimulus.hpp makes it
+// into the inputs of a unit at one loop rate. A file that names several profiles is a case of each.
 #pragma once
 
 #include <array>

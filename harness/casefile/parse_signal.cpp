@@ -10,7 +10,7 @@
 namespace attest {
 namespace {
 
-// The key that is present of two; the unit of the value is part of the key.
+// One of two alternative keys: the one that is present. A key names the unit of its value.
 struct Spelled {
   std::string key;
   bool first = true;
@@ -96,7 +96,8 @@ Samples parse_samples(const TomlTable& table) {
   Samples samples{parse_spans(table, "times"), table.numbers("values"),
                   table.boolean("linear", false)};
   if (samples.times.empty() || samples.times.size() != samples.values.size()) {
-    table.error("values", fmt::format("has {} values for {} times; give one a time, at least one",
+    table.error("values", fmt::format("has {} values for {} times; give one value for each time, "
+                                      "at least one",
                                       samples.values.size(), samples.times.size()));
     return {{Span{}}, {0}, false};
   }

@@ -37,7 +37,9 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
   CLI::App* command = app.add_subcommand("replay",
                                          "Feed the inputs of recorded traces to a port and compare "
                                          "its outputs with the recorded ones");
-  command->add_option("files", options->files, "Traces (CSV) of a controller, or of a mixer")
+  command
+      ->add_option("files", options->files,
+                   "Traces (CSV) of a controller, a mixer or a battery estimate")
       ->type_name("TRACE")
       ->required();
   add_port(*command, options->host.port);
@@ -54,7 +56,8 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
       ->capture_default_str();
   command
       ->add_option("--mixer", options->mixer,
-                   "Definition of the mixer of a mixer trace; default: from its name")
+                   "Definition of the mixer of a mixer trace; default: that of the provenance.toml "
+                   "next to the trace, else the geometry in the file name (`4x.csv`)")
       ->type_name("TEXT");
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command, {{"attest replay TRACE.csv --port lib:./libmine.so",
@@ -87,7 +90,7 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
       ->required();
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command, {{"attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv",
-                           "hover on the first vehicle and plant of the case"},
+                           "hover with the lead vehicle of the case, on its first plant"},
                           {"attest sim gust --rate 500 --vehicle hexa --plant ode --out flown.csv",
                            "another vehicle on the other plant"}});
   command->callback([options, &globals, &action] {

@@ -24,11 +24,11 @@ enum Exit : int {
 
 // The options before the command.
 struct Globals {
-  std::string suite;   // folder with cases/ and golden/; empty: found
+  std::string suite;   // folder with cases/ and golden/; empty: find_suite() searches for it
   bool quiet = false;  // no progress, no summary: failures, errors and the exit code only
 };
 
-// "attest: error: <file:line: message>" on stderr; the exit code for it.
+// Prints "attest: error: <file:line: message>" on stderr, and returns the exit code for it.
 int report_error(const Error& error);
 
 // --filter, --exclude, --group, --profile, --rate, --vehicle, --plant and --shard, as text until
@@ -85,7 +85,7 @@ int compare_command(const CompareOptions& options, const Globals& globals);
 struct SimOptions {
   std::string case_name;  // this and `rate`, or `timing`
   std::string rate;
-  std::string vehicle, plant;  // empty: the first of the case
+  std::string vehicle, plant;  // empty: the lead vehicle and the first plant of the case
   std::string timing;
   HostOptions host;
   std::string out;
@@ -97,7 +97,7 @@ struct StressOptions {
   std::vector<std::string> rates = {"250", "500", "1000", "2000", "4000", "8000"};
   double duration_s = 10;
   std::string case_name = "flight/hover";
-  std::string vehicle, plant;  // empty: the first of the case
+  std::string vehicle, plant;  // empty: the lead vehicle and the first plant of the case
   int load = 0;
   std::string load_kind = "cpu";
   std::string policy = "fifo";

@@ -27,8 +27,8 @@ Result<Case> find_case(const std::string& name, const SuiteFolder& suite) {
   for (const SelectedCase& one : *found) files.insert(one.the_case.file);
   const Case& first = found->front().the_case;
   if (files.size() == 1) return found->size() == 1 ? first : first.in_profile(first.profiles[0]);
-  return fail(fmt::format("`{}` names {} cases, the first {} and {}; name one", name, found->size(),
-                          (*found)[0].the_case.id(), (*found)[1].the_case.id()));
+  return fail(fmt::format("`{}` matches {} cases, for example {} and {}; give the id of one", name,
+                          found->size(), (*found)[0].the_case.id(), (*found)[1].the_case.id()));
 }
 
 Result<PlantConfiguration> find_plant_configuration(const Case& the_case,

@@ -166,8 +166,8 @@ void add_time(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<TimeCommandOptions>();
   CLI::App* command = app.add_subcommand(
       "time",
-      "Measure the execution times of a port's steps over all vectors, the slowest input, and the "
-      "stack use");
+      "Measure the execution times and the stack use of a port's steps over all vectors, and find "
+      "the slowest input");
   add_port(*command, options->host.port);
   add_selection(*command, options->select);
   command

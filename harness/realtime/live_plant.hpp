@@ -18,8 +18,9 @@ namespace attest {
 struct LivePlantRecord {
   Histogram latency;
   std::uint64_t steps = 0;
-  std::uint64_t late_steps = 0;  // whose time had passed; advanced together with the next
-  // For each tick of the unit: when the motors began to follow its command; empty: overtaken.
+  std::uint64_t late_steps = 0;  // made together with a later step, whose time had come too
+  // For each tick of the unit: when the motors began to follow its command. Empty if a later
+  // command, or the end of the flight, came first.
   std::vector<std::optional<Nanoseconds>> commanded;
   std::optional<Divergence> divergence;
   Usage usage;
@@ -29,7 +30,7 @@ struct LivePlantPlan {
   Rate physics;
   Nanoseconds duration{0};
   std::size_t ticks = 0;                   // of the unit, at most
-  std::vector<Nanoseconds> battery_times;  // when the battery is sampled, of a flight with one
+  std::vector<Nanoseconds> battery_times;  // of the battery's samples; empty: no battery
   std::optional<Rate> estimator;           // whose samples trigger the unit
 };
 
@@ -39,7 +40,7 @@ class LivePlant {
   LivePlant(PlantTask& task, LivePlantPlan plan, Clock& clock, Links& links);
 
   // Runs until `duration`, Links::stop, or the loss of the vehicle. Call once. The estimator's
-  // sample k is published with the first state of its time, rate.tick(k), or later.
+  // sample k is due at rate.tick(k), and is published with the first state that is not earlier.
   void run();
 
   // After run().
@@ -61,7 +62,7 @@ class LivePlant {
   std::int64_t estimates_ = 0;  // samples published
   float throttle_ = 0;          // of the command that the motors follow
   bool armed_ = false;
-  std::optional<LiveCommand> pending_;  // made after the time of the step that read it
+  std::optional<LiveCommand> pending_;  // read by a step whose time is before the command's
   LivePlantRecord record_;
 };
 

@@ -66,9 +66,9 @@ void LiveUnit::run_on_estimates() {
   constexpr auto look_for_the_end_every = std::chrono::milliseconds(10);
   std::int64_t last = -1;  // sample that was used
   while (last + 1 < deadlines_ && !links_.stop.load(std::memory_order_relaxed)) {
-    const bool published = links_.published.try_acquire_for(look_for_the_end_every);
-    // Read before the sample, so that no sample published before it is missed.
+    // Read before the wait: if it is set and the wait finds no sample, the last one was taken.
     const bool is_over = links_.all_published.load(std::memory_order_acquire);
+    const bool published = links_.published.try_acquire_for(look_for_the_end_every);
     const bool is_new = published && take_sample();
     const Nanoseconds woke = clock_.now();
     const std::int64_t sample = is_new ? rate_.ticks_in(latest_.time + Nanoseconds(1)) - 1 : last;
