@@ -123,7 +123,7 @@ CHECK
   run "$ATTEST" sim hover --rate 0 --out x.csv
   [ "$status" -eq 2 ]
   run "$ATTEST" sim 'tilt*' --rate 100 --out x.csv
-  has "name one"
+  has "give the id of one"
   [ ! -e x.csv ]
 }
 
