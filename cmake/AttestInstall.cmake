@@ -18,7 +18,7 @@ install(
   DIRECTORY controller/starters
   DESTINATION ${ATTEST_INSTALL_DATADIR}
   REGEX "/(build|target|__pycache__)$" EXCLUDE)
-# The schemas of the JSON reports.
+# Programs that read the JSON reports validate them with these schemas.
 install(FILES harness/report/report.schema.json harness/report/stress.schema.json
         DESTINATION ${ATTEST_INSTALL_DATADIR}/schemas)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

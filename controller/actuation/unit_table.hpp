@@ -19,7 +19,7 @@ inline bool is_profile(const char* name) {
   return name != nullptr && std::strcmp(name, profile_name) == 0;
 }
 
-// Inputs and outputs are binary32 for every Scalar.
+// The inputs and outputs of the ABI are float, whatever type Scalar is.
 template <typename Scalar, typename Stages>
 void step_mixer(BasicMixer<Scalar, Stages>& mixer, const attest_mixer_inputs& in,
                 attest_mixer_outputs& out) {

@@ -278,12 +278,13 @@ int run_command(const RunOptions& options, const Globals& globals) {
   // Before the summary: if its reader closes the pipe early, SIGPIPE ends this process.
   const auto written = write_reports(*reports, run, diagnosis);
   const int code = exit_code(run);
+  if (!options.save_traces.empty() && run.failed()) {
+    fmt::print(stderr, "attest: note: the traces of the failing vectors are in {}\n",
+               options.save_traces);
+  }
   if (!globals.quiet || code != exit_ok) {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
     fmt::print("{}", render_summary(run, wall.count(), terminal_style(stdout), diagnosis));
-  }
-  if (!options.save_traces.empty() && run.failed()) {
-    fmt::print("traces of the failing vectors: {}\n", options.save_traces);
   }
   if (!written) return report_error(written.error());
   return code;

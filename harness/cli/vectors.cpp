@@ -15,7 +15,7 @@
 namespace attest::cli {
 namespace {
 
-// All inputs, constants too, and no outputs: a port on a board needs only this file.
+// The file has all inputs, including the constants, so that a port on a board needs this file only.
 Result<void> write_vector(const Case& the_case, const Rate& rate,
                           const std::filesystem::path& path) {
   Trace trace = stimulate(the_case, rate);

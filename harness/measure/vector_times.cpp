@@ -129,10 +129,7 @@ Result<void> write_slowest(const CorpusTimes& times, const std::vector<SelectedC
   const Case* the_case = slowest ? find_case(cases, slowest->result.case_id()) : nullptr;
   if (!the_case) return fail("no vector was timed, so there is no slowest step to write");
   Trace trace = stimulate(*the_case, slowest->result.rate);
-  const std::size_t tick = slowest->slowest_tick();
-  trace.samples.resize(tick + 1);
-  std::erase_if(trace.parameters,
-                [&](const ParameterChange& change) { return change.tick > tick; });
+  trace.keep_first(slowest->slowest_tick() + 1);
   const auto started = start_host(host);
   if (!started) return tl::unexpected(started.error());
   if (const auto fault = (*started)->drive({the_case->profile}, trace)) return fail(fault->what);

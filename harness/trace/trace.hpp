@@ -1,6 +1,7 @@
 // A recorded run: the inputs and outputs of the unit at each tick.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -67,6 +68,13 @@ struct Trace {
   ChannelSet present;                          // the channels that were recorded; the others are 0
   std::vector<PlantSample> plant;              // of a flown trace: one per sample; else empty
   std::vector<std::string> ignored_columns{};  // of its file: names that attest does not have
+
+  // Drops all ticks but the first `ticks`, with their parameter changes.
+  void keep_first(std::size_t ticks) {
+    samples.resize(std::min(ticks, samples.size()));
+    plant.resize(std::min(ticks, plant.size()));
+    std::erase_if(parameters, [&](const ParameterChange& change) { return change.tick >= ticks; });
+  }
 };
 
 }  // namespace attest

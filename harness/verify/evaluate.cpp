@@ -1,6 +1,5 @@
 #include "harness/verify/evaluate.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -49,7 +48,7 @@ void run_and_judge(Trace& answered, const Expected& expected, const Subject& sub
     if (fault) judge_after(*fault, result);
   }
   if (!saves_traces(saved_traces, result)) return;
-  if (fault) answered.samples.resize(std::min(fault->tick, answered.samples.size()));
+  if (fault) answered.keep_first(fault->tick);
   save_traces(saved_traces, subject, answered, *want, result);
 }
 

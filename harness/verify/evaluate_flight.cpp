@@ -154,7 +154,7 @@ void save_flight(const std::filesystem::path& folder, const Trace& flown, CaseRe
   const Subject subject{result.profile};
   Trace want = flown;
   if (const auto fault = drive(*open_builtin(), subject, want)) {
-    want.samples.resize(fault->tick);
+    want.keep_first(fault->tick);
   }
   save_traces(folder, subject, flown, want, result);
 }
