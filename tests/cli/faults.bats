@@ -27,15 +27,14 @@ load common
 }
 
 @test "a mistake that is in no catalogue is caught and its stage named" {
-  run "$ATTEST" run --port "lib:$PORTS/port_blend_from_100.so" --rate 250 --group large_angle \
-    --group attitude
+  run "$ATTEST" run --port "lib:$PORTS/port_blend_from_100.so" --rate 250 --group large_angle
   [ "$status" -eq 1 ]
   has "blend"
   [[ $output == *"in the stage blend"* ]]
 }
 
 @test "a port that crashes is not diagnosed, and does not end the run" {
-  run "$ATTEST" run --port "lib:$PORTS/port_crash.so" --rate 250 --group attitude
+  run "$ATTEST" run --port "lib:$PORTS/port_crash.so" --rate 250 --group rates
   [ "$status" -eq 1 ]
   lacks "it looks like"
 }
