@@ -36,7 +36,7 @@ bool is_of_suite(const fs::path& path, const SuiteFolder& suite) {
 
 std::set<fs::path> identities_of(const Inputs& inputs) {
   std::set<fs::path> files;
-  if (const auto library = library_of(inputs.port)) files.insert(identity(*library));
+  for (const std::string& file : files_of(inputs.port)) files.insert(identity(file));
   for (const std::string& file : inputs.files) {
     if (!file.empty()) files.insert(identity(file));
   }

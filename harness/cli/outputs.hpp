@@ -11,7 +11,7 @@ namespace attest::cli {
 
 // The files that a command reads, in addition to the suite. Empty texts are ignored.
 struct Inputs {
-  std::string port;                // as for open_port: `lib:PATH` is a file
+  std::string port;                // as for open_port: its files are read
   std::vector<std::string> files;  // expected failures, timing, tasks, a case by its path
 };
 

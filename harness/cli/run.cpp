@@ -142,6 +142,18 @@ Result<std::string> date_of_run() {
   return fmt::format("{:%Y-%m-%d}", fmt::gmtime(now));
 }
 
+// Of the port's file, or of the hashes of its files if it has several. Empty: it has none.
+Result<std::string> sha256_of_port(const std::string& port) {
+  std::vector<std::string> hashes;
+  for (const std::string& file : files_of(port)) {
+    auto hash = sha256_of_file(file);
+    if (!hash) return tl::unexpected(hash.error());
+    hashes.push_back(*std::move(hash));
+  }
+  if (hashes.size() <= 1) return hashes.empty() ? "" : hashes.front();
+  return sha256(fmt::format("{}\n", fmt::join(hashes, "\n")));
+}
+
 // Adds the subject of the conformance statement: suite, port and date.
 Result<void> identify(const RunOptions& options, const SuiteFolder& suite, RunResult& run) {
   run.suite = suite.cases_by_group();
@@ -155,11 +167,9 @@ Result<void> identify(const RunOptions& options, const SuiteFolder& suite, RunRe
   if (!hash) return tl::unexpected(hash.error());
   run.suite_sha256 = *hash;
   run.suite_is_released = run.suite_sha256 == released_suite_sha256();
-  if (const auto library = library_of(run.port)) {
-    auto of_port = sha256_of_file(*library);
-    if (!of_port) return tl::unexpected(of_port.error());
-    run.port_sha256 = *of_port;
-  }
+  auto of_port = sha256_of_port(run.port);
+  if (!of_port) return tl::unexpected(of_port.error());
+  run.port_sha256 = *std::move(of_port);
   auto date = date_of_run();
   if (!date) return tl::unexpected(date.error());
   run.date = *date;

@@ -173,7 +173,7 @@ std::optional<Driven> read_driven(const Arrived& arrived, std::size_t ticks) {
   return read_answer(arrived, [&](const json& head) -> std::optional<Driven> {
     auto samples = arrived.blobs.read<Sample>(ticks);
     if (!samples) return std::nullopt;
-    return Driven{*std::move(samples), fault_from(head)};
+    return Driven{*std::move(samples), fault_from(head, arrived.of_program)};
   });
 }
 
@@ -182,7 +182,7 @@ std::optional<Result<Flown>> read_flown(const Arrived& arrived, std::size_t tick
   return read_answer(arrived, [&](const json& head) -> Answer {
     if (head.contains("error")) return error_in(head);
     Flown flown;
-    flown.fault = fault_from(head);
+    flown.fault = fault_from(head, arrived.of_program);
     flown.divergence = divergence_from(head);
     const auto count = head.at("ticks").get<std::size_t>();
     const bool ends_early = flown.fault || flown.divergence;
@@ -202,7 +202,7 @@ std::optional<Result<StepTimes>> read_times(const Arrived& arrived, std::size_t 
   return read_answer(arrived, [&](const json& head) -> Answer {
     if (head.contains("error")) return error_in(head);
     StepTimes times;
-    times.fault = fault_from(head);
+    times.fault = fault_from(head, arrived.of_program);
     const auto count = head.at("steps").get<std::size_t>();
     if (count > ticks || (count < ticks && !times.fault)) return std::nullopt;
     auto steps = arrived.blobs.read<Nanoseconds>(count);
@@ -220,6 +220,13 @@ std::optional<bool> read_supports(const Arrived& arrived) {
   });
 }
 
+std::optional<PortFault> read_fault(const Arrived& arrived) {
+  return read_answer(arrived, [&](const json& head) -> std::optional<PortFault> {
+    constexpr std::size_t request_and_fault = 2;
+    return head.size() == request_and_fault ? fault_from(head, arrived.of_program) : std::nullopt;
+  });
+}
+
 std::optional<Result<PortSays>> read_greeting(const Arrived& arrived) {
   using Answer = std::optional<Result<PortSays>>;
   return read_answer(arrived, [&](const json& head) -> Answer {
@@ -234,6 +241,12 @@ bool greet(const PortSays& says, MessageSocket& judge) {
 
 bool refuse(const Error& error, std::uint64_t request, MessageSocket& judge) {
   return judge.send(text_of({{"request", request}, {"error", attest::to_json(error)}}));
+}
+
+bool give_fault(const PortFault& fault, std::uint64_t request, MessageSocket& judge) {
+  json head = {{"request", request}};
+  set_end(fault, {}, head);
+  return judge.send(text_of(head));
 }
 
 bool answer(const Arrived& question, PortHost& host, MessageSocket& judge) {

@@ -13,6 +13,9 @@
 //     judge   -> {"do": "supports", "profile": ...}
 //     process -> {"request": 4, "supports": true}
 //
+// {"request": n, "fault": {...}} alone is the answer to any request if a program ended, or broke
+// its protocol, outside of a step.
+//
 // {"request": n, "error": {...}} replaces the greeting if the port cannot be loaded, and the answer
 // to "fly" or "time" if that cannot be done. The port's code runs in that process, so the judge
 // does not trust its messages. A message that does not answer its request, is incomplete or has the
@@ -41,6 +44,7 @@ struct Arrived {
   const std::string& head;
   BlobReader& blobs;
   std::uint64_t request;
+  bool of_program = false;  // the port is a program, which may end while its host goes on
 };
 
 // Empty: no valid answer to that request. A valid answer has all `ticks` ticks. A flight or a
@@ -53,11 +57,14 @@ std::optional<Driven> read_driven(const Arrived& arrived, std::size_t ticks);
 std::optional<Result<Flown>> read_flown(const Arrived& arrived, std::size_t ticks);
 std::optional<Result<StepTimes>> read_times(const Arrived& arrived, std::size_t ticks);
 std::optional<bool> read_supports(const Arrived& arrived);
+// The fault of a port that answers nothing else.
+std::optional<PortFault> read_fault(const Arrived& arrived);
 std::optional<Result<PortSays>> read_greeting(const Arrived& arrived);
 
 // Of the port's process.
 bool greet(const PortSays& says, MessageSocket& judge);
 bool refuse(const Error& error, std::uint64_t request, MessageSocket& judge);
+bool give_fault(const PortFault& fault, std::uint64_t request, MessageSocket& judge);
 
 // Handles the request and sends the answer. False when the judge has gone.
 bool answer(const Arrived& question, PortHost& host, MessageSocket& judge);

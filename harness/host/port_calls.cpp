@@ -20,6 +20,7 @@ enum class Call : std::uint32_t {
   set_parameter,
   set_timestamp_sample,
   step,
+  batch,
   destroy
 };
 
@@ -28,6 +29,7 @@ enum class Call : std::uint32_t {
 struct PortCalls::Now {
   std::atomic<Call> call{Call::none};
   std::atomic<std::uint64_t> tick{0};  // of the instance whose step() runs
+  std::atomic<std::uint64_t> count{0};
 };
 // Shared by two processes.
 static_assert(std::atomic<Call>::is_always_lock_free);
@@ -37,10 +39,13 @@ namespace {
 
 using Now = PortCalls::Now;
 
-// Notes a call for as long as it exists.
+// Notes a call for as long as it exists. Only one process writes.
 class Noted {
  public:
-  Noted(Now& now, Call call) : now_(now) { now_.call.store(call, std::memory_order_relaxed); }
+  Noted(Now& now, Call call) : now_(now) {
+    now_.call.store(call, std::memory_order_relaxed);
+    now_.count.store(now_.count.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  }
   ~Noted() { now_.call.store(Call::none, std::memory_order_relaxed); }
   Noted(const Noted&) = delete;
   Noted& operator=(const Noted&) = delete;
@@ -67,6 +72,14 @@ class NotedUnit : public Base {
     now_.tick.store(tick_++, std::memory_order_relaxed);
     const Noted noted(now_, Call::step);
     return unit_->step(in, out);
+  }
+  std::size_t max_batch() const override { return unit_->max_batch(); }
+  Batched batch(std::span<const typename Base::Inputs> in, std::span<typename Base::Outputs> out,
+                std::span<const std::uint64_t> timestamp_samples_us) override {
+    now_.tick.store(tick_, std::memory_order_relaxed);
+    tick_ += in.size();
+    const Noted noted(now_, Call::batch);
+    return unit_->batch(in, out, timestamp_samples_us);
   }
 
  protected:
@@ -149,6 +162,9 @@ std::string PortCalls::current() const {
       return " in set_timestamp_sample()";
     case Call::step:
       return fmt::format(" in step() at tick {}", now_->tick.load(std::memory_order_relaxed));
+    case Call::batch:
+      return fmt::format(" in the batch of steps from tick {} on",
+                         now_->tick.load(std::memory_order_relaxed));
     case Call::destroy:
       return " in destroy()";
     case Call::none:
@@ -156,6 +172,8 @@ std::string PortCalls::current() const {
   }
   return "";
 }
+
+std::uint64_t PortCalls::count() const { return now_->count.load(std::memory_order_relaxed); }
 
 std::unique_ptr<Port> PortCalls::noted(Port& port) const {
   return std::make_unique<NotedPort>(port, *now_);

@@ -1,7 +1,9 @@
 // The call of the port that runs now, in memory that the port's process shares with its judge.
 // After a crash or a timeout the judge reads there in which call, and at which tick, the port was.
+// While it waits for a program, the judge sees there whether the program still answers.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -18,6 +20,9 @@ class PortCalls {
   // " in step() at tick 17", " in create()"; empty between the calls. A port can write there, so
   // only messages may depend on it.
   std::string current() const;
+
+  // How many calls have begun so far.
+  std::uint64_t count() const;
 
   // The port, with create() and each call of its units noted. Used in the port's process. This and
   // `port` must outlive it.

@@ -1,5 +1,6 @@
 #include "harness/host/port_process.hpp"
 
+#include <chrono>
 #include <type_traits>
 #include <utility>
 
@@ -14,6 +15,7 @@ namespace attest {
 namespace {
 
 using Kind = Received::Kind;
+using SteadyClock = std::chrono::steady_clock;
 
 // In the child.
 void serve(const HostOptions& options, const Course& course, const PortCalls& calls,
@@ -30,7 +32,14 @@ void serve(const HostOptions& options, const Course& course, const PortCalls& ca
     BlobReader blobs(question.blobs, [&](void* place, std::size_t size) {
       return judge.receive_blob(place, size) == Kind::message;
     });
-    goes_on = answer({question.head, blobs, request}, **host, judge);
+    try {
+      goes_on = answer({question.head, blobs, request}, **host, judge);
+    } catch (const PortBroke& broke) {  // by a program, when it made a unit
+      const bool has_ended = broke.how() == PortBroke::How::ended;
+      goes_on = give_fault(
+          {has_ended ? PortFault::Kind::crash : PortFault::Kind::protocol, 0, broke.what()},
+          request, judge);
+    }
   }
 }
 
@@ -74,14 +83,17 @@ class PortProcess final : public PortHost {
             [&](const Arrived& arrived) { return read_driven(arrived, inputs.size()); });
     if (!driven) return fault_;
     set_outputs(driven->samples, trace);
-    return driven->fault;
+    return with_words(driven->fault);
   }
 
   Result<Flown> fly(const FlightPlan& plan) override {
     auto flown = ask(fly_request(plan), {blob_of(plan.timing)}, [&](const Arrived& arrived) {
       return read_flown(arrived, plan.timing.size());
     });
-    if (flown) return *std::move(flown);
+    if (flown) {
+      if (*flown) (*flown)->fault = with_words((*flown)->fault);
+      return *std::move(flown);
+    }
     Flown none;
     none.fault = fault_;
     return none;
@@ -92,7 +104,10 @@ class PortProcess final : public PortHost {
     auto times =
         ask(time_request(profile, inputs, with_stack), {blob_of(inputs.samples)},
             [&](const Arrived& arrived) { return read_times(arrived, inputs.samples.size()); });
-    if (times) return *std::move(times);
+    if (times) {
+      if (*times) (*times)->fault = with_words((*times)->fault);
+      return *std::move(times);
+    }
     StepTimes none;
     none.fault = fault_;
     return none;
@@ -126,10 +141,28 @@ class PortProcess final : public PortHost {
     return answer_from("", limit, std::move(read));
   }
 
+  // A library answers with a whole trace in time. A program may take longer for a trace, so it has
+  // that time for each call. It cannot write where the calls are counted.
   Patience patience() const {
     Patience limit = Patience::seconds(options_.timeout_s);
     limit.given_up = options_.stop;
+    if (!is_program(options_.port)) return limit;
+    limit.until = SteadyClock::time_point::max();
+    limit.given_up = [this, count = calls_.count(), heard = SteadyClock::now()]() mutable {
+      if (std::exchange(count, calls_.count()) != calls_.count()) heard = SteadyClock::now();
+      return options_.stop() ||
+             SteadyClock::now() - heard > std::chrono::duration<double>(options_.timeout_s);
+    };
     return limit;
+  }
+
+  // With the last line that a program printed before it ended or broke the protocol.
+  std::optional<PortFault> with_words(std::optional<PortFault> fault) const {
+    if (fault && is_program(options_.port) &&
+        (fault->kind == PortFault::Kind::crash || fault->kind == PortFault::Kind::protocol)) {
+      fault->what += child_->last_printed();
+    }
+    return fault;
   }
 
   template <typename Read>
@@ -143,7 +176,12 @@ class PortProcess final : public PortHost {
         if (came != Kind::message) kind = came;
         return came == Kind::message;
       });
-      if (auto answer = read(Arrived{received.head, blobs, request_})) return answer;
+      const Arrived arrived{received.head, blobs, request_, is_program(options_.port)};
+      if (auto answer = read(arrived)) return answer;
+      if (auto fault = read_fault(arrived)) {
+        fault_ = with_words(std::move(fault));
+        return std::nullopt;
+      }
     }
     give_up(kind, when);
     return std::nullopt;

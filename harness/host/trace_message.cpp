@@ -30,12 +30,13 @@ void set_end(const std::optional<PortFault>& fault, const std::optional<Divergen
   if (lost) head["divergence"] = {{"at_ns", lost->at.count()}, {"what", lost->what}};
 }
 
-std::optional<PortFault> fault_from(const json& head) {
+std::optional<PortFault> fault_from(const json& head, bool of_program) {
   if (!head.contains("fault")) return std::nullopt;
   const json& fault = head.at("fault");
   PortFault found{fault.at("kind").get<PortFault::Kind>(), fault.at("tick").get<std::size_t>(),
                   fault.at("what").get<std::string>()};
-  if (found.kind > PortFault::Kind::protocol) found.kind = PortFault::Kind::protocol;
+  const auto last = of_program ? PortFault::Kind::crash : PortFault::Kind::protocol;
+  if (found.kind > last) found.kind = PortFault::Kind::protocol;
   return found;
 }
 

@@ -25,10 +25,10 @@ nlohmann::json changes_json(const std::vector<ParameterChange>& changes);
 std::vector<ParameterChange> changes_from(const nlohmann::json& list);
 
 // How a port's outputs, or its flight, ended. A process cannot report its own crash or timeout:
-// such a fault is read as one of kind protocol.
+// such a fault is read as one of kind protocol. It can report the crash of a program.
 void set_end(const std::optional<PortFault>& fault, const std::optional<Divergence>& lost,
              nlohmann::json& head);
-std::optional<PortFault> fault_from(const nlohmann::json& head);
+std::optional<PortFault> fault_from(const nlohmann::json& head, bool of_program);
 std::optional<Divergence> divergence_from(const nlohmann::json& head);
 
 // Reads the blobs that follow a head, one after the other.

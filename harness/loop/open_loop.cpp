@@ -1,6 +1,8 @@
 #include "harness/loop/open_loop.hpp"
 
+#include <algorithm>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,7 +15,7 @@ template <typename ModuleUnit>
 class Drive {
  public:
   Drive(ModuleUnit& unit, Trace& trace)
-      : driver_(unit), trace_(trace), changes_(trace.parameters) {}
+      : driver_(unit), max_batch_(unit.max_batch()), trace_(trace), changes_(trace.parameters) {}
 
   bool is_over() const { return tick_ == trace_.samples.size(); }
 
@@ -23,8 +25,20 @@ class Drive {
     return fault;
   }
 
+  // As many steps as the unit takes at once: up to the next change of a parameter.
+  std::optional<PortFault> advance() {
+    if (max_batch_ == 0) return step();
+    const auto due = changes_.take_until(tick_);
+    const std::size_t end =
+        std::min({tick_ + max_batch_, changes_.next_tick(), trace_.samples.size()});
+    auto fault = driver_.batch(tick_, due, std::span(trace_.samples).subspan(tick_, end - tick_));
+    tick_ = end;
+    return fault;
+  }
+
  private:
   ModuleDriver<ModuleUnit> driver_;
+  std::size_t max_batch_;
   Trace& trace_;
   PendingChanges changes_;
   std::size_t tick_ = 0;
@@ -34,7 +48,7 @@ template <typename ModuleUnit>
 std::optional<PortFault> drive_module(ModuleUnit& unit, Trace& trace) {
   Drive<ModuleUnit> drive(unit, trace);
   while (!drive.is_over()) {
-    if (auto fault = drive.step()) return fault;
+    if (auto fault = drive.advance()) return fault;
   }
   return std::nullopt;
 }

@@ -2,6 +2,7 @@
 
 #include <cstring>
 #include <type_traits>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -31,6 +32,19 @@ std::optional<PortFault> fault_of(int code, std::size_t tick, const std::string&
     default:
       return PortFault{Kind::protocol, tick,
                        fmt::format("{} returned {}, which is no ATTEST_ result", call, code)};
+  }
+}
+
+// Runs `work`. The end of a program, or an answer that breaks the rules, is a fault at `tick`. In a
+// batch it may belong to a later tick.
+template <typename Work>
+std::optional<PortFault> unless_broken(std::size_t tick, std::string_view or_later, Work work) {
+  try {
+    return work();
+  } catch (const PortBroke& broke) {
+    const bool has_ended = broke.how() == PortBroke::How::ended;
+    return PortFault{has_ended ? Kind::crash : Kind::protocol, tick,
+                     fmt::format("{} at tick {}{}", broke.what(), tick, or_later)};
   }
 }
 
@@ -65,11 +79,54 @@ template <typename ModuleUnit>
 std::optional<PortFault> ModuleDriver<ModuleUnit>::step(
     std::size_t tick, std::span<const ParameterChange> changes, Sample& sample,
     std::optional<std::uint64_t> timestamp_sample_us) {
+  return unless_broken(tick, "", [&]() -> std::optional<PortFault> {
+    if (auto fault = set_parameters(tick, changes)) return fault;
+    return step_once(tick, sample, timestamp_sample_us);
+  });
+}
+
+template <typename ModuleUnit>
+std::optional<PortFault> ModuleDriver<ModuleUnit>::batch(std::size_t tick,
+                                                         std::span<const ParameterChange> changes,
+                                                         std::span<Sample> samples) {
+  return unless_broken(tick, " or later", [&]() -> std::optional<PortFault> {
+    if (auto fault = set_parameters(tick, changes)) return fault;
+    return step_all(tick, samples);
+  });
+}
+
+template <typename ModuleUnit>
+std::optional<PortFault> ModuleDriver<ModuleUnit>::set_parameters(
+    std::size_t tick, std::span<const ParameterChange> changes) {
   for (const ParameterChange& change : changes) {
     const int code = unit_.set_parameter(change.name, change.value);
     if (code == ATTEST_OK) continue;
     return fault_of(code, tick, fmt::format("set_parameter({}) at tick {}", change.name, tick));
   }
+  return std::nullopt;
+}
+
+template <typename ModuleUnit>
+std::optional<PortFault> ModuleDriver<ModuleUnit>::step_all(std::size_t tick,
+                                                            std::span<Sample> samples) {
+  std::vector<Inputs> in;
+  std::vector<std::uint64_t> timestamps_us;
+  for (const Sample& sample : samples) {
+    in.push_back(sample.*Place<ModuleUnit>::in);
+    timestamps_us.push_back(sample.in.timestamp);
+  }
+  std::vector<Outputs> out(samples.size());
+  out.front() = exchange_.out;
+  const Batched batched = unit_.batch(in, out, timestamps_us);
+  for (std::size_t i = 0; i < batched.done; ++i) samples[i].*Place<ModuleUnit>::out = out[i];
+  if (batched.done > 0) exchange_.out = out[batched.done - 1];
+  const std::size_t next = tick + batched.done;
+  return fault_of(batched.result, next, fmt::format("step at tick {}", next));
+}
+
+template <typename ModuleUnit>
+std::optional<PortFault> ModuleDriver<ModuleUnit>::step_once(
+    std::size_t tick, Sample& sample, std::optional<std::uint64_t> timestamp_sample_us) {
   const Inputs& given = sample.*Place<ModuleUnit>::in;
   exchange_.in = given;
   if (const int code = tell_time(given, timestamp_sample_us); code != ATTEST_OK) {

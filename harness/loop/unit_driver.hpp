@@ -50,6 +50,11 @@ class ModuleDriver {
                                 Sample& sample,
                                 std::optional<std::uint64_t> timestamp_sample_us = std::nullopt);
 
+  // The same for several ticks from `tick` on, of which only the first changes parameters. Samples
+  // before the fault have outputs. REQUIRES: 1 <= samples.size() <= ModuleUnit::max_batch().
+  std::optional<PortFault> batch(std::size_t tick, std::span<const ParameterChange> changes,
+                                 std::span<Sample> samples);
+
  private:
   using Inputs = typename ModuleUnit::Inputs;
   using Outputs = typename ModuleUnit::Outputs;
@@ -63,6 +68,11 @@ class ModuleDriver {
     std::array<unsigned char, 64> canary_out;
   };
 
+  std::optional<PortFault> set_parameters(std::size_t tick,
+                                          std::span<const ParameterChange> changes);
+  std::optional<PortFault> step_once(std::size_t tick, Sample& sample,
+                                     std::optional<std::uint64_t> timestamp_sample_us);
+  std::optional<PortFault> step_all(std::size_t tick, std::span<Sample> samples);
   int tell_time(const Inputs& given, std::optional<std::uint64_t> timestamp_sample_us);
   std::optional<PortFault> broken_rule(const Inputs& given, std::size_t tick) const;
 

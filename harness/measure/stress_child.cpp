@@ -64,8 +64,9 @@ std::optional<std::vector<T>> read_some(const json& count, std::size_t most, Blo
 // Empty: not a message of a stress run's child. A flight may be shorter than its case only after a
 // request to stop, a fault or a divergence, or with a unit that the estimator triggers. Throws
 // json::exception, too.
-std::optional<StressMeasurement> measurement_from(const StressTask& task, bool was_asked_to_stop,
-                                                  const json& head, BlobReader& blobs) {
+std::optional<StressMeasurement> measurement_from(const StressTask& task, bool of_program,
+                                                  bool was_asked_to_stop, const json& head,
+                                                  BlobReader& blobs) {
   auto stress = stress_from_json(head.at("stress"));
   if (!stress) return std::nullopt;
   StressMeasurement measured{*std::move(stress), {}};
@@ -84,7 +85,7 @@ std::optional<StressMeasurement> measurement_from(const StressTask& task, bool w
   flight.unit.ticks = *std::move(ticks);
   flight.plant.commanded = *std::move(commanded);
   flight.unit.changes = changes_from(head.at("parameters"));
-  flight.unit.fault = fault_from(head);
+  flight.unit.fault = fault_from(head, of_program);
   flight.plant.divergence = divergence_from(head);
   const bool may_be_short = was_asked_to_stop || flight.unit.fault || flight.plant.divergence ||
                             task.the_case.unit.on_estimate;
@@ -145,9 +146,9 @@ StressResult gone_wrong(const StressTask& task, Verdict verdict, std::string rea
 // Listens until the child has sent its result, has died, or hangs.
 class Listener {
  public:
-  Listener(const StressTask& task, const PortCalls& calls, Child& child,
+  Listener(const StressTask& task, bool of_program, const PortCalls& calls, Child& child,
            const std::function<void(const StressProgress&)>& progress)
-      : task_(task), calls_(calls), child_(child), progress_(progress) {}
+      : task_(task), of_program_(of_program), calls_(calls), child_(child), progress_(progress) {}
 
   Result<StressResult> listen(const std::function<bool()>& stop) {
     Patience patience;
@@ -226,7 +227,7 @@ class Listener {
           if (came != Received::Kind::message) kind = came;
           return came == Received::Kind::message;
         });
-        auto measured = measurement_from(task_, is_stopping_, head, blobs);
+        auto measured = measurement_from(task_, of_program_, is_stopping_, head, blobs);
         if (!measured) return end_of(kind);
         return judge_live(task_, *std::move(measured));
       }
@@ -249,6 +250,7 @@ class Listener {
   }
 
   const StressTask& task_;
+  bool of_program_;
   const PortCalls& calls_;
   Child& child_;
   const std::function<void(const StressProgress&)>& progress_;
@@ -271,7 +273,7 @@ Result<StressResult> run_stress(const StressTask& task, const std::string& port,
   auto child = Child::spawn(Child::Runs::code_of_others,
                             [&](MessageSocket& parent) { work(task, port, *calls, parent); });
   if (!child) return tl::unexpected(child.error());
-  return Listener(task, *calls, *child, progress).listen(stop);
+  return Listener(task, is_program(port), *calls, *child, progress).listen(stop);
 }
 
 }  // namespace attest

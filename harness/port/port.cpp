@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
+#include <system_error>
 
 #include <fmt/format.h>
 
 #include "harness/port/builtin.hpp"
 #include "harness/port/fault_port.hpp"
+#include "harness/port/program_port.hpp"
 #include "harness/port/shared_library.hpp"
+#include "harness/process/program.hpp"
 
 namespace attest {
 
@@ -30,19 +34,41 @@ Result<int> parse_fraction_bits(std::string_view arithmetic) {
   return bits;
 }
 
-std::optional<std::string> library_of(const std::string& specification) {
-  constexpr std::string_view prefix = "lib:";
+namespace {
+
+// What follows the prefix; empty if it is not there.
+std::optional<std::string> after(std::string_view prefix, const std::string& specification) {
   if (!specification.starts_with(prefix)) return std::nullopt;
   return specification.substr(prefix.size());
 }
 
-Result<std::unique_ptr<Port>> open_port(const std::string& specification) {
-  constexpr std::string_view fault_prefix = "fault:";
-  if (specification == "builtin") return open_builtin();
-  if (specification.starts_with(fault_prefix)) {
-    return open_fault(std::string_view(specification).substr(fault_prefix.size()));
+std::vector<std::string> files_of_program(const std::string& command) {
+  const auto words = words_of(command);
+  if (!words) return {};
+  std::vector<std::string> files;
+  if (auto program = find_program(words->front())) files.push_back(*std::move(program));
+  for (std::size_t i = 1; i < words->size(); ++i) {
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file((*words)[i], ignored)) files.push_back((*words)[i]);
   }
-  if (const auto library = library_of(specification)) return open_shared_library(*library);
+  return files;
+}
+
+}  // namespace
+
+std::vector<std::string> files_of(const std::string& specification) {
+  if (auto library = after("lib:", specification)) return {*std::move(library)};
+  if (const auto command = after("proc:", specification)) return files_of_program(*command);
+  return {};
+}
+
+bool is_program(const std::string& specification) { return specification.starts_with("proc:"); }
+
+Result<std::unique_ptr<Port>> open_port(const std::string& specification) {
+  if (specification == "builtin") return open_builtin();
+  if (const auto fault = after("fault:", specification)) return open_fault(*fault);
+  if (const auto library = after("lib:", specification)) return open_shared_library(*library);
+  if (const auto command = after("proc:", specification)) return open_program(*command);
   return fail(fmt::format("unknown port `{}`; use {}", specification, port_kinds));
 }
 

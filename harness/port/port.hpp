@@ -2,12 +2,15 @@
 // instance of it.
 //
 // The kinds of port are `builtin` (the reference), `lib:PATH` (a shared library with the ABI of
-// attest_unit.h) and `fault:ID` (the reference with a fault of the catalogue).
+// attest_unit.h), `proc:COMMAND` (a program, PROTOCOL.md) and `fault:ID` (the reference with a
+// fault of the catalogue).
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +21,24 @@
 #include "harness/schedule/rate.hpp"
 
 namespace attest {
+
+// A port that is a program has ended, or has broken the rules of PROTOCOL.md. Thrown by create()
+// and by the functions of the units. `what()` is one line.
+class PortBroke : public std::runtime_error {
+ public:
+  enum class How { ended, rules };
+  PortBroke(How how, const std::string& what) : std::runtime_error(what), how_(how) {}
+  How how() const { return how_; }
+
+ private:
+  How how_;
+};
+
+// The end of a batch: `result` is ATTEST_OK, or that of the step after the `done` ones.
+struct Batched {
+  std::size_t done = 0;
+  int result = 0;
+};
 
 // One instance, used by one thread at a time.
 template <typename In, typename Out>
@@ -32,6 +53,16 @@ class Steppable {
   // reported as an error of the port.
   virtual int set_parameter(const std::string& name, float value) = 0;
   virtual int step(const Inputs& in, Outputs& out) = 0;
+
+  // How many steps batch() takes at most; 0: it takes none.
+  virtual std::size_t max_batch() const { return 0; }
+  // The same as one step() after the other, with set_timestamp_sample() before each. out[i] are the
+  // outputs of step i; before the call, out[0] has those of the step before.
+  // REQUIRES: 1 <= in.size() <= max_batch(), and all three have the same size.
+  virtual Batched batch(std::span<const Inputs> /*in*/, std::span<Outputs> /*out*/,
+                        std::span<const std::uint64_t> /*timestamp_samples_us*/) {
+    return {0, ATTEST_UNSUPPORTED};
+  }
 };
 
 class Unit : public Steppable<attest_inputs, attest_outputs> {
@@ -82,15 +113,20 @@ class Port {
 // range.
 Result<int> parse_fraction_bits(std::string_view arithmetic);
 
-// The PATH of "lib:PATH"; empty for a port of another kind.
-std::optional<std::string> library_of(const std::string& specification);
+// The files of which a port consists: PATH of "lib:PATH"; of "proc:COMMAND" the program, and each
+// of its arguments that is a file. Empty for a port without files.
+std::vector<std::string> files_of(const std::string& specification);
+
+// True for "proc:COMMAND".
+bool is_program(const std::string& specification);
 
 // For help and messages.
-inline constexpr const char* port_kinds = "`builtin`, `lib:PATH` or `fault:ID`";
+inline constexpr const char* port_kinds = "`builtin`, `lib:PATH`, `proc:COMMAND` or `fault:ID`";
 
-// Opens "builtin", "lib:PATH" or "fault:ID". Loading a library runs its code: a program that must
-// survive a bad port calls this in a child process. Errors: unknown kind, unknown fault, missing
-// library, missing symbol, wrong ABI version, incomplete function table.
+// Opens a port of one of these kinds. Loading a library runs its code, and a program may not
+// answer: a caller that must survive a bad port does this in a child process. Errors: unknown kind,
+// unknown fault; missing library, missing symbol, wrong ABI version, incomplete function table;
+// those of open_program().
 Result<std::unique_ptr<Port>> open_port(const std::string& specification);
 
 }  // namespace attest

@@ -24,22 +24,21 @@ constexpr int look_every_ms = 20;  // period of the check for its end, or for a 
 
 constexpr int cannot_be_executed = 127;  // the exit status that shells use
 
-// REQUIRES: in a child. `output` is its stdout, or -1.
-[[noreturn]] void become(const std::vector<char*>& arguments, int output) {
+bool may_be_executed(const std::string& file) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(file, ignored) && ::access(file.c_str(), X_OK) == 0;
+}
+
+// REQUIRES: in a child.
+[[noreturn]] void become(const std::vector<char*>& arguments, const StandardFiles& files) {
   const int nothing = ::open("/dev/null", O_RDWR);
-  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    ::dup2(descriptor == STDOUT_FILENO && output >= 0 ? output : nothing, descriptor);
-  }
+  const auto given = [&](int descriptor) { return descriptor >= 0 ? descriptor : nothing; };
+  ::dup2(given(files.in), STDIN_FILENO);
+  ::dup2(given(files.out), STDOUT_FILENO);
+  ::dup2(given(files.error), STDERR_FILENO);
   ::close_range(STDERR_FILENO + 1, ~0u, 0);
   ::execvp(arguments[0], arguments.data());
   ::_exit(cannot_be_executed);
-}
-
-Result<Process> start_with_output(const std::vector<std::string>& command, int output) {
-  std::vector<char*> arguments;  // execvp() does not write to them
-  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-  return Process::start([&] { become(arguments, output); });
 }
 
 double seconds_until(Clock::time_point deadline) {
@@ -68,21 +67,25 @@ std::optional<std::string> read_all(int pipe, Process& program, Clock::time_poin
 
 }  // namespace
 
-bool is_installed(const std::string& program) {
+std::optional<std::string> find_program(const std::string& program) {
+  if (program.find('/') != std::string::npos) {
+    return may_be_executed(program) ? std::optional(program) : std::nullopt;
+  }
   const char* const path = std::getenv("PATH");
   std::istringstream folders(path == nullptr ? "" : path);
   for (std::string folder; std::getline(folders, folder, ':');) {
-    const std::string file = folder + "/" + program;
-    std::error_code ignored;
-    if (std::filesystem::is_regular_file(file, ignored) && ::access(file.c_str(), X_OK) == 0) {
-      return true;
-    }
+    if (std::string file = folder + "/" + program; may_be_executed(file)) return file;
   }
-  return false;
+  return std::nullopt;
 }
 
-Result<Process> start_program(const std::vector<std::string>& command) {
-  return start_with_output(command, -1);
+bool is_installed(const std::string& program) { return find_program(program).has_value(); }
+
+Result<Process> start_program(const std::vector<std::string>& command, const StandardFiles& files) {
+  std::vector<char*> arguments;  // execvp() does not write to them
+  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  return Process::start([&] { become(arguments, files); });
 }
 
 std::optional<std::string> output_of(const std::vector<std::string>& command,
@@ -91,7 +94,7 @@ std::optional<std::string> output_of(const std::vector<std::string>& command,
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) return std::nullopt;
   const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                            std::chrono::duration<double>(limits.timeout_s));
-  auto program = start_with_output(command, ends[1]);
+  auto program = start_program(command, {.out = ends[1]});
   ::close(ends[1]);
   std::optional<std::string> output;
   if (program) output = read_all(ends[0], *program, deadline, limits);

@@ -11,12 +11,20 @@
 
 namespace attest {
 
-// True if a folder of PATH has this program.
+// The file that would be executed: `program` itself if it has a slash, or else a file in a folder
+// of PATH. Empty: there is none that may be executed.
+std::optional<std::string> find_program(const std::string& program);
 bool is_installed(const std::string& program);
 
-// Starts a program of PATH without input and discards its output. The process exits with status 127
-// when the program cannot be executed.
-Result<Process> start_program(const std::vector<std::string>& command);
+// Descriptors for a program, which remain the caller's. -1: no input, or the output is discarded.
+struct StandardFiles {
+  int in = -1, out = -1, error = -1;
+};
+
+// Starts a program of PATH. It has no other descriptors. The process exits with status 127 when the
+// program cannot be executed.
+Result<Process> start_program(const std::vector<std::string>& command,
+                              const StandardFiles& files = {});
 
 struct ProgramLimits {
   double timeout_s = 10;

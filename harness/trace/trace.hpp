@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,6 +36,11 @@ class PendingChanges {
     const auto due = pending_.first(count);
     pending_ = pending_.subspan(count);
     return due;
+  }
+
+  // The tick of the next change; the largest number if there is none.
+  std::size_t next_tick() const {
+    return pending_.empty() ? std::numeric_limits<std::size_t>::max() : pending_.front().tick;
   }
 
  private:

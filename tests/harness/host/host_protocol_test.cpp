@@ -79,6 +79,21 @@ TEST(HostProtocol, AProcessDoesNotAnnounceItsOwnDeath) {
   EXPECT_EQ(driven->fault->kind, PortFault::Kind::protocol);
 }
 
+// A program runs in a process of its own, so its host can.
+TEST(HostProtocol, TheHostOfAProgramAnnouncesItsEnd) {
+  for (const auto& [told, read] :
+       {std::pair(PortFault::Kind::crash, PortFault::Kind::crash),
+        std::pair(PortFault::Kind::timeout, PortFault::Kind::protocol)}) {
+    const json fault = {{"kind", told}, {"tick", 2}, {"what", "x"}};
+    Sent sent({{"request", 5}, {"fault", fault}}, {three_samples});
+    Arrived arrived = sent.as_answer_to(5);
+    arrived.of_program = true;
+    const auto driven = read_driven(arrived, 3);
+    ASSERT_TRUE(driven && driven->fault);
+    EXPECT_EQ(driven->fault->kind, read);
+  }
+}
+
 bool is_flown(json head, std::size_t ticks) {
   head.update({{"request", 5}, {"source", "x"}, {"parameters", json::array()}});
   Sent sent(head, {three_samples, three_of_plant});

@@ -59,10 +59,11 @@ TEST(Builtin, UnitsAreIndependent) {
 }
 
 TEST(OpenPort, NamesTheKindsThereAre) {
-  for (const char* specification : {"", "bultin", "libmine.so", "LIB:x", "proc:x"}) {
+  for (const char* specification : {"", "bultin", "libmine.so", "LIB:x", "prog:x"}) {
     const auto port = open_port(specification);
     ASSERT_FALSE(port) << specification;
-    EXPECT_THAT(port.error().message, HasSubstr("use `builtin`, `lib:PATH` or `fault:ID`"));
+    EXPECT_THAT(port.error().message,
+                HasSubstr("use `builtin`, `lib:PATH`, `proc:COMMAND` or `fault:ID`"));
   }
 }
 

@@ -1,0 +1,192 @@
+// Binary frames: the structs of the ABI as they are in memory, each behind a header.
+#include <bit>
+#include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "harness/port/conversation.hpp"
+#include "harness/port/port.hpp"
+
+namespace attest {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "frames are little-endian");
+
+struct Header {
+  std::uint32_t size;  // of the payload
+  Request kind;
+  std::uint32_t unit;
+  std::uint32_t sequence;
+};
+static_assert(sizeof(Header) == 16);
+
+// The structs of a module within a sample.
+std::string_view inputs_of(Module module, const Sample& sample) {
+  const auto bytes = [](const auto& in) {
+    return std::string_view(reinterpret_cast<const char*>(&in), sizeof in);
+  };
+  switch (module) {
+    case Module::mc_att_control:
+      return bytes(sample.in);
+    case Module::mixer:
+      return bytes(sample.mixer_in);
+    case Module::battery_status:
+      return bytes(sample.battery_in);
+  }
+  return {};
+}
+
+std::span<char> outputs_of(Module module, Sample& sample) {
+  const auto bytes = [](auto& out) { return std::span(reinterpret_cast<char*>(&out), sizeof out); };
+  switch (module) {
+    case Module::mc_att_control:
+      return bytes(sample.out);
+    case Module::mixer:
+      return bytes(sample.mixer_out);
+    case Module::battery_status:
+      return bytes(sample.battery_out);
+  }
+  return {};
+}
+
+std::uint32_t number(Request kind) { return static_cast<std::uint32_t>(kind); }
+
+void append(std::string& bytes, const auto& value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+class BinaryConversation final : public Conversation {
+ public:
+  BinaryConversation(PipedProgram program, Hello hello)
+      : Conversation(std::move(program), std::move(hello)) {}
+
+  int create(std::uint32_t unit, Module module, const std::string& profile,
+             const std::string& definition) override {
+    begin(Request::create, unit);
+    append(frame_, static_cast<std::uint32_t>(module));
+    append(frame_, static_cast<std::uint32_t>(profile.size()));
+    frame_ += profile;
+    frame_ += definition;
+    return result_of_request(0);
+  }
+
+  int destroy(std::uint32_t unit) override {
+    begin(Request::destroy, unit);
+    return result_of_request(0);
+  }
+
+  int set_parameter(std::uint32_t unit, const std::string& name, float value) override {
+    begin(Request::set_parameter, unit);
+    append(frame_, value);
+    frame_ += name;
+    return result_of_request(0);
+  }
+
+  int step(std::uint32_t unit, Module module, ProgramStep& step) override {
+    begin(Request::step, unit);
+    append(frame_, step.timestamp_sample_us);
+    frame_ += inputs_of(module, step.sample);
+    const std::span<char> out = outputs_of(module, step.sample);
+    const int result = result_of_request(out.size());
+    take(out.data(), out.size());
+    return result;
+  }
+
+  int batch(std::uint32_t unit, Module module, std::span<ProgramStep> steps,
+            std::size_t& done) override {
+    begin(Request::batch, unit);
+    append(frame_, static_cast<std::uint32_t>(steps.size()));
+    append(frame_, std::uint32_t{0});
+    for (const ProgramStep& step : steps) {
+      append(frame_, step.timestamp_sample_us);
+      frame_ += inputs_of(module, step.sample);
+    }
+    return result_of_batch(module, steps, done);
+  }
+
+ private:
+  void begin(Request kind, std::uint32_t unit) {
+    frame_.clear();
+    append(frame_, Header{0, kind, unit, next_sequence()});
+  }
+
+  Header sent() const {
+    Header header;
+    std::memcpy(&header, frame_.data(), sizeof header);
+    return header;
+  }
+
+  // Sends the frame, and reads the header of the answer.
+  Header exchange() {
+    const auto payload = static_cast<std::uint32_t>(frame_.size() - sizeof(Header));
+    std::memcpy(frame_.data(), &payload, sizeof payload);
+    if (!program().write(frame_)) ended(sent().kind);
+    Header answer;
+    take(&answer, sizeof answer);
+    const Header question = sent();
+    if (answer.kind != question.kind || answer.unit != question.unit ||
+        answer.sequence != question.sequence) {
+      broken(question.kind,
+             fmt::format("has kind {}, unit {}, sequence number {}; they must be those of the "
+                         "request: {}, {}, {}",
+                         number(answer.kind), answer.unit, answer.sequence, number(question.kind),
+                         question.unit, question.sequence));
+    }
+    return answer;
+  }
+
+  // Of an answer that has `rest` bytes after its result.
+  int result_of_request(std::size_t rest) {
+    const Header answer = exchange();
+    check_size(answer, sizeof(std::uint32_t) + rest);
+    return take_number();
+  }
+
+  int result_of_batch(Module module, std::span<ProgramStep> steps, std::size_t& done) {
+    constexpr std::size_t head = 2 * sizeof(std::uint32_t);
+    const std::size_t each = outputs_of(module, steps.front().sample).size();
+    const Header answer = exchange();
+    if (answer.size < head || answer.size > head + steps.size() * each) {
+      broken(Request::batch, fmt::format("has a payload of {} bytes; {} to {} are possible",
+                                         answer.size, head, head + steps.size() * each));
+    }
+    const int result = take_number();
+    done = static_cast<std::uint32_t>(take_number());
+    if (done > steps.size() || (done < steps.size()) != (result != ATTEST_OK)) {
+      broken(Request::batch,
+             fmt::format("has the result {} after {} of {} steps", result, done, steps.size()));
+    }
+    check_size(answer, head + done * each);
+    for (ProgramStep& step : steps.first(done)) {
+      const std::span<char> out = outputs_of(module, step.sample);
+      take(out.data(), out.size());
+    }
+    return result;
+  }
+
+  void check_size(const Header& answer, std::size_t size) {
+    if (answer.size == size) return;
+    broken(answer.kind, fmt::format("has a payload of {} bytes instead of {}", answer.size, size));
+  }
+
+  int take_number() {
+    std::int32_t number = 0;
+    take(&number, sizeof number);
+    return number;
+  }
+
+  void take(void* place, std::size_t size) {
+    if (!program().read(place, size)) ended(sent().kind);
+  }
+
+  std::string frame_;  // the request
+};
+
+}  // namespace
+
+std::unique_ptr<Conversation> binary_conversation(PipedProgram program, Hello hello) {
+  return std::make_unique<BinaryConversation>(std::move(program), std::move(hello));
+}
+
+}  // namespace attest

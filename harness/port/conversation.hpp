@@ -1,0 +1,74 @@
+// The requests to a running program, and its answers (PROTOCOL.md).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "harness/core/result.hpp"
+#include "harness/port/hello.hpp"
+#include "harness/process/piped_program.hpp"
+#include "harness/trace/channels.hpp"
+
+namespace attest {
+
+// The request that an error message names. The numbers are those of binary frames.
+enum class Request : std::uint32_t { create = 1, destroy, set_parameter, step, batch };
+std::string_view name_of(Request request);  // "set_parameter"
+
+inline constexpr std::size_t max_batch = 1024;      // steps in one request
+inline constexpr std::size_t max_line = 64u << 10;  // bytes of a handshake or a text frame
+
+// One step: timestamp_sample, then inputs and outputs of a module in the sample.
+struct ProgramStep {
+  std::uint64_t timestamp_sample_us = 0;
+  Sample sample{};
+};
+
+// A program that has answered the handshake. Every function throws PortBroke when the program has
+// ended, or when its answer breaks the rules. After that no more requests are made of it.
+class Conversation {
+ public:
+  // Errors: it cannot be started, it ended, its answer to the handshake is not valid.
+  static Result<std::unique_ptr<Conversation>> begin(const std::vector<std::string>& command);
+
+  virtual ~Conversation() = default;
+
+  const Hello& hello() const { return hello_; }
+  bool is_over() const { return is_over_; }
+
+  // Each returns the program's result: ATTEST_OK, or another number.
+  virtual int create(std::uint32_t unit, Module module, const std::string& profile,
+                     const std::string& definition) = 0;
+  virtual int destroy(std::uint32_t unit) = 0;
+  virtual int set_parameter(std::uint32_t unit, const std::string& name, float value) = 0;
+  // Replaces the outputs. Text frames keep those that the program leaves out.
+  virtual int step(std::uint32_t unit, Module module, ProgramStep& step) = 0;
+  // REQUIRES: hello().has_batch, at most max_batch steps. `done`: the steps that have outputs.
+  virtual int batch(std::uint32_t unit, Module module, std::span<ProgramStep> steps,
+                    std::size_t& done);
+
+ protected:
+  Conversation(PipedProgram program, Hello hello)
+      : program_(std::move(program)), hello_(std::move(hello)) {}
+
+  PipedProgram& program() { return program_; }
+  std::uint32_t next_sequence() { return ++sequence_; }
+  // Both throw PortBroke.
+  [[noreturn]] void ended(Request request);
+  [[noreturn]] void broken(Request request, const std::string& what);
+
+ private:
+  PipedProgram program_;
+  Hello hello_;
+  std::uint32_t sequence_ = 0;
+  bool is_over_ = false;
+};
+
+std::unique_ptr<Conversation> binary_conversation(PipedProgram program, Hello hello);
+std::unique_ptr<Conversation> text_conversation(PipedProgram program, Hello hello);
+
+}  // namespace attest

@@ -1,0 +1,148 @@
+#include "harness/port/hello.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "harness/core/json_text.hpp"
+#include "harness/core/suggestion.hpp"
+#include "harness/core/version.hpp"
+#include "harness/port/port.hpp"
+#include "harness/trace/csv_cells.hpp"
+
+namespace attest {
+namespace {
+
+using nlohmann::json;
+
+// Reads the members of the answer one by one. The first error is kept.
+class Members {
+ public:
+  explicit Members(const json& object) : object_(object) {}
+
+  template <typename T>
+  T required(const char* name, const char* what) {
+    if (!object_.contains(name)) {
+      set_error(fmt::format("lacks `{}`, which is {}", name, what));
+    }
+    return optional<T>(name, what);
+  }
+
+  // T() if the member is missing.
+  template <typename T>
+  T optional(const char* name, const char* what) {
+    known_.emplace_back(name);
+    if (!object_.contains(name)) return {};
+    try {
+      return object_.at(name).get<T>();
+    } catch (const json::exception&) {
+      set_error(fmt::format("has `{}` = {}; it is {}", name, text_of(object_.at(name)), what));
+      return {};
+    }
+  }
+
+  void set_error(std::string error) {
+    if (error_.empty()) error_ = std::move(error);
+  }
+
+  // Empty: there is none, and every member is known.
+  std::string error() const {
+    if (!error_.empty()) return error_;
+    for (const auto& [name, value] : object_.items()) {
+      if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+      return fmt::format("has the unknown member `{}`{}", name, suggestion(name, known_));
+    }
+    return "";
+  }
+
+ private:
+  const json& object_;
+  std::vector<std::string> known_;
+  std::string error_;
+};
+
+void read_modules(Members& members, Hello& hello) {
+  const char* const what = "a list of `mixer` and `battery_status`";
+  for (const std::string& module : members.optional<std::vector<std::string>>("modules", what)) {
+    if (module == "mixer") {
+      hello.has_mixer = true;
+    } else if (module == "battery_status") {
+      hello.has_battery_status = true;
+    } else {
+      members.set_error(fmt::format("has the module `{}`; `modules` is {}", module, what));
+    }
+  }
+}
+
+void read_frames(Members& members, Hello& hello) {
+  const char* const what = "`binary` or `text`";
+  const auto frames = members.required<std::string>("frames", what);
+  if (frames == "text") {
+    hello.frames = FrameForm::text;
+  } else if (frames != "binary") {
+    members.set_error(fmt::format("has `frames` = `{}`; it is {}", frames, what));
+  }
+  hello.has_batch = members.optional<bool>("batch", "true or false");
+  if (hello.has_batch && hello.frames == FrameForm::text) {
+    members.set_error("has `batch`, which only binary frames have");
+  }
+}
+
+void read_numbers(Members& members, Hello& hello) {
+  const auto arithmetic = members.optional<std::string>("arithmetic", "text such as `fixed:22`");
+  if (!arithmetic.empty()) {
+    if (const auto bits = parse_fraction_bits(arithmetic)) {
+      hello.fraction_bits = *bits;
+    } else {
+      members.set_error(bits.error().message);
+    }
+  }
+  const auto step = members.optional<std::string>("fixed_step", "a rate in Hz as text");
+  if (!step.empty()) {
+    if (const auto rate = Rate::parse(step)) {
+      hello.fixed_step = *rate;
+    } else {
+      members.set_error("its fixed step: " + rate.error().message);
+    }
+  }
+}
+
+}  // namespace
+
+std::string greeting() {
+  return text_of({{"attest", version}, {"protocol", protocol_version}}) + '\n';
+}
+
+Result<Hello> parse_hello(std::string_view line) {
+  const json object = json::parse(line, nullptr, false);
+  if (!object.is_object()) {
+    return fail(
+        fmt::format("its first line on stdout is {}, which is no JSON object; only the "
+                    "handshake belongs there, and text for people on stderr",
+                    in_backquotes(line)));
+  }
+  Members members(object);
+  Hello hello;
+  const auto spoken = members.required<int>("protocol", "the version of the protocol, a number");
+  if (spoken != protocol_version) {
+    members.set_error(
+        fmt::format("has `protocol` {}; this attest speaks {}", spoken, protocol_version));
+  }
+  hello.name = members.required<std::string>("name", "the name of the port");
+  hello.version = members.required<std::string>("version", "the version of the port, as text");
+  hello.profiles = members.required<std::vector<std::string>>(
+      "profiles", "a list of profiles such as `px4-v1.5.5`");
+  read_frames(members, hello);
+  read_modules(members, hello);
+  hello.unsupported_groups =
+      members.optional<std::vector<std::string>>("unsupported_groups", "a list of groups");
+  read_numbers(members, hello);
+  if (const std::string error = members.error(); !error.empty()) {
+    return fail("its answer to the handshake " + error);
+  }
+  return hello;
+}
+
+}  // namespace attest

@@ -1,0 +1,37 @@
+// The handshake with a port that is a program: one line of JSON each way (PROTOCOL.md).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/core/result.hpp"
+#include "harness/schedule/rate.hpp"
+
+namespace attest {
+
+inline constexpr int protocol_version = 1;
+
+enum class FrameForm { binary, text };
+
+// What a program says of itself.
+struct Hello {
+  std::string name, version;
+  std::vector<std::string> profiles;
+  FrameForm frames = FrameForm::binary;
+  bool has_mixer = false, has_battery_status = false;
+  bool has_batch = false;
+  std::vector<std::string> unsupported_groups;
+  std::optional<int> fraction_bits;
+  std::optional<Rate> fixed_step;
+};
+
+// What attest writes first, with its line feed.
+std::string greeting();
+
+// Parses the answer. Errors: no JSON object; a member that is missing, unknown or of another type;
+// another version of the protocol.
+Result<Hello> parse_hello(std::string_view line);
+
+}  // namespace attest

@@ -1,0 +1,58 @@
+// A program that reads requests on stdin and answers on stdout. Both are pipes to this process; its
+// stderr is that of this process.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/core/result.hpp"
+#include "harness/process/process.hpp"
+
+namespace attest {
+
+// One thread at a time. Neither reading nor writing has a time limit: a caller that needs one runs
+// in a process that can be killed, and the program ends with it.
+class PipedProgram {
+ public:
+  // Ignores SIGPIPE in this process, so that a program that does not read is an error of write().
+  static Result<PipedProgram> start(const std::vector<std::string>& command);
+
+  PipedProgram(PipedProgram&& other) noexcept;
+  PipedProgram& operator=(PipedProgram&&) = delete;
+  ~PipedProgram();  // end()
+
+  // Writes all. Keeps what the program writes meanwhile, so that neither waits for the other.
+  // False: the program does not read any more.
+  bool write(std::string_view bytes);
+
+  // Reads exactly `size` bytes. False: the program has ended or closed its stdout before.
+  bool read(void* place, std::size_t size);
+
+  // Reads until the next line feed, which is left out. Empty: the program has ended or closed its
+  // stdout before, or the line is longer than `most`.
+  std::optional<std::string> read_line(std::size_t most);
+
+  // What was read of a line that is not complete, or of an answer.
+  std::string_view unread() const { return {inbox_.data() + begin_, end_ - begin_}; }
+
+  // After read() or read_line() has failed. "exited with status 1", "was killed by signal 11
+  // (Segmentation fault)", or "closed its stdout" if it goes on; then it is killed.
+  std::string end();
+
+ private:
+  PipedProgram(Process process, int requests, int answers)
+      : process_(std::move(process)), requests_(requests), answers_(answers) {}
+
+  bool receive();  // more bytes into the inbox; false: there are no more
+
+  Process process_;
+  int requests_, answers_;  // our ends of the pipes
+  std::vector<char> inbox_;
+  std::size_t begin_ = 0, end_ = 0;  // of what was read from the pipe and not used yet
+};
+
+}  // namespace attest
