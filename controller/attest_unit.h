@@ -59,9 +59,10 @@ extern "C" {
  *
  * `updated` has a bit for each topic, set if the topic was published since the previous step. A
  * topic whose bit is clear holds its last published sample, or zeros before its first publication.
- * A port copies a topic only when its bit is set. The law latches some topics in some modes only:
- * in the other modes the port remembers the bit, and copies the topic at the first step in such a
- * mode. control_state is new in every step and has no bit.
+ * A port copies a topic only when its bit is set. The law copies vehicle_attitude_setpoint only in
+ * steps that control attitude, and vehicle_rates_setpoint only in offboard rates mode. In other
+ * steps the port remembers the bit. It copies the topic at the next step that needs it.
+ * control_state is new in every step and has no bit.
  *
  * Flags are bytes: zero is false and ANY other value is true (multirotor_motor_limits arrives as
  * bit masks 1, 2, 4).
@@ -253,7 +254,7 @@ typedef struct attest_timestamp_sample {
    * `timestamp`, at which the control_state sample of that step was taken. It is not later than the
    * step's `timestamp` and never decreases. It repeats when two steps use the same sample. It
    * equals `timestamp` where no delay is modelled, as in scripted cases. In a flight, a step before
-   * the arrival of the first sample gets the state at the begin of the flight, and the time of that
+   * the arrival of the first sample gets the state at the start of the flight, and the time of that
    * state. Returns ATTEST_OK or another of the results. */
   int (*set_timestamp_sample)(void* self, uint64_t timestamp_sample);
 } attest_timestamp_sample;

@@ -133,8 +133,7 @@ struct MixerStages {
     return clamp(idle + out * (1 - idle), idle, 1);
   }
 
-  // With a deadband the outputs before the first call are 0. Without one they are unknown, and the
-  // first call is not limited.
+  // With a deadband, the first call is limited from 0. Without one, it is not limited.
   static bool starts_at_0(Scalar idle) { return idle > Scalar(-1); }
 
   static Scalar slew(Scalar wanted, Scalar previous, Scalar delta_out_max) {

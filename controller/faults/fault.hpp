@@ -57,8 +57,8 @@ struct Fault {
   void (*inject)(FaultyLaw& law);
   // Not empty: the reason why no input can distinguish the fault from the law.
   std::string_view equivalent = {};
-  // The profiles in which some input can: those with the part of the law that is wrong here. Empty:
-  // those of the fault's subject, which the catalogue fills in.
+  // The profiles in which some input distinguishes the fault from the law. If empty, the catalogue
+  // fills in the profiles that have the part of the law concerned.
   std::optional<reference::ProfileSet> profiles = {};
 
   bool is_detectable(Profile profile) const {

@@ -40,8 +40,9 @@ class McAttControl {
  public:
   explicit McAttControl(Profile profile, const Law& law = {});
 
-  // Sets one parameter by its PX4 name; it takes effect in the first step, then in the next one
-  // that has ATTEST_UPDATED_PARAMETER_UPDATE set. False: see set_parameter() in parameters.hpp.
+  // Sets one parameter by its PX4 name. A value set before the first step takes effect in the first
+  // step. A later value takes effect in the next step that has ATTEST_UPDATED_PARAMETER_UPDATE set.
+  // False: see set_parameter() in parameters.hpp.
   bool set_parameter(std::string_view name, float value);
 
   // One step. Writes the fields of a topic only when it publishes the topic.

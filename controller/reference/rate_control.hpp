@@ -47,7 +47,7 @@ template <typename Scalar>
 struct RateStages {
   using Vector = Vector3<Scalar>;
 
-  // Factor on the P term. A NaN thrust gives 1: neither comparison holds.
+  // Factor on the P term. A NaN thrust gives 1, because `factor < one` is then false.
   ATTEST_INLINE static Scalar throttle_attenuation(Scalar thrust, const RateGains<Scalar>& gains) {
     const Scalar one = 1;
     using std::abs;

@@ -1,7 +1,7 @@
 // Signals: how one field of a topic changes over the time of a case.
 //
 // All arithmetic is double; a value is rounded once, when it is written into the ABI struct. Times
-// count from the begin of the case, in seconds or in ticks of the unit. With ticks, one case
+// count from the start of the case, in seconds or in ticks of the unit. With ticks, one case
 // exercises the same steps at every loop rate.
 #pragma once
 

@@ -12,7 +12,7 @@ namespace attest {
 
 Timeline timeline_of(const Case& the_case, const Rate& rate);
 
-// The times at which the unit's ticks begin, since the begin of the case, with the case's jitter
+// The times at which the unit's ticks begin, since the start of the case, with the case's jitter
 // and dropped ticks. With Case::unit.on_estimate: the times at which their samples are taken. On a
 // clock that is `faster` by this fraction each is at floor(t / (1 + faster)) ns, up to the end of
 // the case.

@@ -247,6 +247,7 @@ void add_help(CLI::App& app, Action& action) {
 
 int run_command_line(int argc, char** argv) {
   CLI::App app(description, "attest");
+  use_plain_flag_names(app);
   app.set_version_flag("--version", fmt::format("attest {}", version));
   app.require_subcommand(1);
   app.fallthrough();

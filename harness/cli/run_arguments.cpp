@@ -14,8 +14,8 @@ void add_strictness(CLI::App& command, RunOptions& options) {
   command
       .add_option("--level", options.level,
                   "How strictly: `exact` (float32 bits), `numeric` (a tolerance for each channel) "
-                  "or `events` (the same events, at most one tick apart, and values of the "
-                  "same sign and about the same size); "
+                  "or `events` (the same events, at most one tick apart, and values that "
+                  "differ by at most about half their size plus a small floor); "
                   "flights are judged the same way at each level")
       ->capture_default_str()
       ->group(option_group::strictness);

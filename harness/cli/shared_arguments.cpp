@@ -1,6 +1,9 @@
 #include "harness/cli/shared_arguments.hpp"
 
 #include <algorithm>
+#include <memory>
+#include <string>
+#include <string_view>
 #include <thread>
 
 #include <CLI/CLI.hpp>
@@ -9,6 +12,21 @@
 #include "harness/port/port.hpp"
 
 namespace attest::cli {
+namespace {
+
+class PlainFlagNames final : public CLI::Formatter {
+ public:
+  std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
+    constexpr std::string_view value = "{false}";
+    std::string name = CLI::Formatter::make_option_name(option, is_positional);
+    const auto at = name.find(value);
+    return at == std::string::npos ? name : name.erase(at, value.size());
+  }
+};
+
+}  // namespace
+
+void use_plain_flag_names(CLI::App& app) { app.formatter(std::make_shared<PlainFlagNames>()); }
 
 void add_examples(CLI::App& command, std::initializer_list<Example> examples) {
   std::string text = "\nExamples:\n";
@@ -64,9 +82,9 @@ void add_selection(CLI::App& command, SelectionOptions& options) {
         ->group(option_group::selection);
   };
   add("--filter", options.filters,
-      "Only vectors whose id matches this shell pattern; quote it. Ids are "
-      "PROFILE/GROUP/NAME@RATEhz, of flights PROFILE/GROUP/NAME@RATEhz-VEHICLE-PLANT; the profile "
-      "and the part from the @ on may be left out",
+      "Only vectors whose id matches this shell pattern; quote it. The id of a vector is "
+      "PROFILE/GROUP/NAME@RATEhz. The id of a flight is PROFILE/GROUP/NAME@RATEhz-VEHICLE-PLANT. "
+      "PROFILE/ and the part from @ on are optional",
       "GLOB");
   add("--exclude", options.excludes, "Without the vectors whose id matches this shell pattern",
       "GLOB");

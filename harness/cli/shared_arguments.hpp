@@ -33,6 +33,10 @@ struct Example {
 };
 void add_examples(CLI::App& command, std::initializer_list<Example> examples);
 
+// Makes --help show the negation of a flag as `--no-stack`; CLI11 shows `--no-stack{false}`. Must
+// be called before the commands are added: they copy the formatter that exists then.
+void use_plain_flag_names(CLI::App& app);
+
 void add_selection(CLI::App& command, SelectionOptions& options);  // --filter and related
 CLI::Option* add_rates(CLI::App& command, std::vector<std::string>& rates, const char* what);
 void add_plant(CLI::App& command, std::string& vehicle, std::string& plant);

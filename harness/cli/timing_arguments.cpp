@@ -33,13 +33,15 @@ void add_machine(CLI::App& command, StressOptions& options) {
       ->group(option_group::execution);
   command
       .add_option("--spin", options.spin_us,
-                  "Wake up this long before the release and spin until it [us]")
+                  "Time [us] before each release at which the unit wakes up; it spins until the "
+                  "release")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str()
       ->group(option_group::execution);
   command
       .add_flag("--cyclictest,!--no-cyclictest", options.cyclictest,
-                "Let cyclictest measure the idle machine too, where it is installed")
+                "Let cyclictest measure the idle machine too, where it is installed (on by "
+                "default)")
       ->group(option_group::execution);
 }
 
@@ -187,7 +189,8 @@ void add_time(CLI::App& app, const Globals& globals, Action& action) {
       ->capture_default_str();
   command
       ->add_option("--worst", options->measure.worst,
-                   "Write the vector up to its slowest step, for `attest replay`")
+                   "Write the vector that contains the slowest step, up to that step, for "
+                   "`attest replay`")
       ->type_name("F.csv");
   command->add_flag("--instructions", options->instructions,
                     "Count the instructions of the slowest vector's steps, with valgrind");

@@ -1,8 +1,10 @@
-// Compares a port's outputs with the golden. Strict on length, timestamps, publication flags and
-// non-finite values. The exact level compares bits; the numeric level has a tolerance per channel.
+// Compares a port's outputs with the golden. Length and timestamps must always agree. Publication
+// flags and non-finite values must agree at the levels exact and numeric. The exact level compares
+// bits; the numeric level has a tolerance per channel.
 //
-// Only outputs that the golden recorded are compared, each tick with the same tick. Traces of
-// different rates are not compared, and values are not interpolated.
+// Only outputs that the golden recorded are compared, each tick with the same tick, except at the
+// events level, which also uses the neighbouring ticks. Traces of different rates are not compared,
+// and values are not interpolated.
 #pragma once
 
 #include <cstddef>
@@ -77,9 +79,10 @@ class TickComparer {
 
   const Tolerances& tolerances_;
   std::vector<std::size_t> chosen_;  // channels that both have and that are compared
-  std::string not_recorded_;         // the error of the channels
-  std::size_t tick_ = 0;             // the next
-  attest_inputs setpoint_{};         // the inputs with the last new attitude setpoint
+  // The message if an output of `want` is missing in `got`, or `want` has no output; else empty.
+  std::string not_recorded_;
+  std::size_t tick_ = 0;      // the next
+  attest_inputs setpoint_{};  // the inputs with the last new attitude setpoint
   AttitudeGain gain_;
   Comparison result_;
 };

@@ -30,7 +30,7 @@ State finite(const Trace& trace, std::size_t tick, const Channel& channel) {
 }
 
 // An integral moves if its step is above a fraction of the integrals' tolerance. That tolerance is
-// the deviation that correct ports may have in all.
+// the total deviation allowed over the run.
 State moving(const Trace& trace, std::size_t tick, const Channel& channel) {
   constexpr double still = 1e-6, surely = 4e-6;
   const auto is_published = [&](std::size_t at) {

@@ -1,5 +1,5 @@
-// Values at the events level: a port may deviate from the reference, but its values must have the
-// same sign and about the same size.
+// Values at the events level: a port may deviate from the reference, but by at most about half the
+// value plus a small floor.
 //
 // A port that passes at this level may be a tick late, or compute with coarse numbers. Its output
 // at a tick is therefore near the reference's outputs from the tick before to the tick after. With
@@ -9,10 +9,10 @@
 //
 // - (high - low) once more: one input may reach the port a tick later than another.
 // - Half the size: a gain, a filter or a table may be that coarse. An inverted sign and twice the
-//   value are outside.
-// - floor: 0.1 rad/s for rates setpoints, 0.05 for controls and thrust, 0.02 for integrals. With it
-//   a correct controller in fixed point passes all cases that its events pass with 14 bits behind
-//   the point, and all but 2 of 451 with 11 bits.
+//   value are outside, if the value is well above the floor.
+// - floor: 0.1 rad/s for rates setpoints, 0.05 for controls and thrust, 0.02 for integrals. With
+//   this floor, a correct controller in fixed point with 14 fraction bits passes the value check in
+//   every case whose events agree. With 11 bits it fails in 2 of 451.
 //
 // Values are not compared
 // - at the first and the last tick, and where one of the three ticks does not publish the topic

@@ -16,7 +16,7 @@ namespace attest {
 // Attitude error: the angle of the rotation from the true attitude to q_d. Attitudes and rates are
 // true ones (Trace::plant), not estimates.
 enum class Measure {
-  settling_time_s,         // from the window's begin until the attitude error stays within the band
+  settling_time_s,         // from the window's start until the attitude error stays within the band
   overshoot_deg,           // largest attitude error after it was first within the band
   rms_attitude_error_deg,  //
   rms_rate_error_rad_s,    // of the three axes together, against the rates setpoint in force

@@ -51,8 +51,8 @@ class Tolerances {
   // least the number of LSBs (last bits) below. At the numeric level only. Measured at 20
   // to 24 bits, with a correct port that rounds:
   // - rates setpoints: up to 740 LSB, near a half turn
-  // - controls: 750 LSB, or a fraction of a control that is mostly D, because 1 / dt is up to 500
-  //   and dt has an error of half an LSB
+  // - controls: 750 LSB. A control that consists mostly of its D part has an error in proportion to
+  //   its size, because 1 / dt is up to 500 and dt has an error of half an LSB.
   // - integrals: 60 LSB
   // - motors: 13 LSB, where the mixer fits roll and pitch into the motor range
   // - battery estimate: its filter adds up a hundred roundings, each up to one LSB if a port

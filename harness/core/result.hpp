@@ -1,7 +1,8 @@
 // A value, or an error that a person can act on.
 //
 // Each kind of failure has its own channel. Bad input is an Error with its place. A bug of attest
-// aborts. A failure of a port under test is a verdict (verify/verdict.hpp), never an Error.
+// ends the program with an error (or, in a child process, an abort). A failure of a port under test
+// is a verdict (verify/verdict.hpp), never an Error.
 #pragma once
 
 #include <string>

@@ -28,7 +28,8 @@ struct Diagnosis {
   std::vector<Suspect> suspects;
   // Of the first suspect; without a suspect, of `nearest`.
   faults::Stage stage = faults::Stage::input;
-  const faults::Fault* nearest = nullptr;  // deviates most nearly where the port does
+  // The fault whose deviations overlap most with the port's (see jaccard_index).
+  const faults::Fault* nearest = nullptr;
   double jaccard_index = 0;  // of the nearest, 0 .. 1: values at which both deviate / either does
 };
 

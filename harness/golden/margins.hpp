@@ -23,9 +23,11 @@
 namespace attest {
 
 enum class Decision {
-  quaternion_norm,    // | |q| - 1 |: here a small distance is safe, and a large one not
-  thrust_gate,        // thrust > 0.2
-  integrator_gate,    // |u| < thrust, -0.3 < n < 0.3, -0.3 < u < 0.3: the first that would flip
+  quaternion_norm,  // | |q| - 1 |: here a small distance is safe, and a large one not
+  thrust_gate,      // thrust > 0.2
+  // |u| < thrust, -0.3 < n < 0.3, -0.3 < u < 0.3 (u: control, n: next integral): the condition
+  // whose change would change the decision
+  integrator_gate,
   rattitude,          // a stick against MC_RATT_TH
   shorter_rotation,   // q_e.w >= 0, beyond 90 deg
   yaw_wrap,           // the yaw error at +-pi

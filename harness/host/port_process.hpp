@@ -28,8 +28,8 @@ struct HostOptions {
   std::optional<PortSays> said = {};
   double timeout_s = default_timeout_s;
   bool in_process = false;  // for a debugger: no process of its own, no protection
-  // For a port that hangs when it is loaded, which is not started again: the fault of the first
-  // request; later ones are "not run". Empty: the port is started.
+  // Set for a port that hung when it was loaded; it is not started again. The first request ends
+  // with this fault, and later requests with `not run`. Empty: start the port.
   std::string hangs = {};
   // Called while an answer is awaited; true: stop waiting, the answer is not needed any more.
   std::function<bool()> stop = [] { return false; };
@@ -44,8 +44,8 @@ struct HostOptions {
 // error: each request ends with that fault.
 Result<std::unique_ptr<PortHost>> start_host(const HostOptions& options, const Course& course = {});
 
-// Starts one, without a course, in place of `host` if that is null or its process has ended. Errors
-// as start_host().
+// Replaces `host` by a new one without a course if it is null or spent (PortHost::is_spent(): after
+// a crash or broken protocol, not after a timeout). Errors as start_host().
 Result<void> ensure_host(std::unique_ptr<PortHost>& host, const HostOptions& options);
 
 // The declarations of a port, read in a process of its own.
@@ -59,7 +59,7 @@ struct PortDescription : PortSays {
 // Includes those of `profiles` that the port supports. Each is requested in a process of its own. A
 // port that makes a single unit per process is thus distinguished from one that does not support
 // the second profile. After a fault of the port, the remaining profiles are not requested. Errors:
-// the port cannot be loaded, or its process ends when it is.
+// the port cannot be loaded, or its process ends while the port is being loaded.
 Result<PortDescription> describe_port(const HostOptions& options,
                                       const std::vector<std::string>& profiles = {});
 

@@ -11,7 +11,7 @@ namespace attest {
 
 using ControlState = decltype(attest_inputs::control_state);
 
-// A sample of the plant, with its time since the begin of the case.
+// A sample of the plant, with its time since the start of the case.
 struct Estimate {
   Nanoseconds sampled{0};
   ControlState state{};

@@ -75,9 +75,10 @@ void judge_machine(const RealtimeBudget& budget, StressResult& stress) {
     add_skip(
         stress.result,
         fmt::format(
-            "caused by the machine, not by the port: {} of {} wake-up latencies above {:g} us, "
-            "budget 1%; at most {:.3g} us on the idle machine",
-            misses.late_starts, stress.ticks, budget.p99_latency_us,
+            "too many late starts on this machine: {} of {} steps start more than {:g} us after "
+            "their release, budget 1%; {} of them because the step before runs too long; at most "
+            "{:.3g} us on the idle machine",
+            misses.late_starts, stress.ticks, budget.p99_latency_us, misses.late_starts_by_port,
             static_cast<double>(stress.idle.max.count()) / 1000));
   }
 }

@@ -33,7 +33,7 @@ class Child {
   MessageSocket& socket() { return socket_; }
 
   // Same as in MessageSocket. Both also return `ended` when the child has died, because a process
-  // that it started may keep its end open.
+  // started by the child may keep the child's side of the socket open.
   Received receive(const Patience& patience = {});
   Received::Kind receive_blob(void* place, std::size_t size, const Patience& patience = {});
 

@@ -9,8 +9,9 @@
 //     port's:    finish_i = max(release_i, finish_(i-1)) + min(delay_i, usual) + execution_i
 //
 // delay_i is the delay by the machine: wake-up latency, preemption within the step, and attest's
-// own work around it. It carries over to later ticks as backlog does. `usual` is the median of the
-// delays, and at most a tenth of the period. A miss is the port's if both hold:
+// own work around it. A delay postpones the finish of its tick, and so also the later ticks that
+// wait for that finish. `usual` is the median of the delays, and at most a tenth of the period. A
+// miss is the port's if both hold:
 //
 //  1. In the machine's timeline the deadline is kept. A miss that also happens to a port whose
 //     steps take no time is the machine's.
@@ -39,11 +40,13 @@
 namespace attest {
 
 struct DeadlineMisses {
-  std::uint64_t late = 0;                 // responses longer than the period
-  std::uint64_t skipped = 0;              // skipped releases after the first tick
-  std::uint64_t by_port = 0;              // of both together
-  std::uint64_t late_starts = 0;          // wake-up latencies above the limit
-  std::uint64_t late_starts_by_port = 0;  // of those, by the same rule, with starts
+  std::uint64_t late = 0;         // responses longer than the period
+  std::uint64_t skipped = 0;      // skipped releases after the first tick
+  std::uint64_t by_port = 0;      // of both together
+  std::uint64_t late_starts = 0;  // wake-up latencies above the limit
+  // Late starts attributed to the port: the same two conditions, applied to the start instead of
+  // the finish.
+  std::uint64_t late_starts_by_port = 0;
 
   std::uint64_t total() const { return late + skipped; }
 

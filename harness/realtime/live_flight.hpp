@@ -32,8 +32,10 @@ struct LiveProgress {
 struct LiveFlight {
   LiveUnitRecord unit;
   LivePlantRecord plant;
-  std::vector<RealtimePrivilege> privileges;  // of process, unit; of the plant refused ones only
-  Nanoseconds wall{0};                        // duration of the flight
+  // All of the process and of the unit's thread; of the plant's thread, only those that were
+  // refused.
+  std::vector<RealtimePrivilege> privileges;
+  Nanoseconds wall{0};  // duration of the flight
 
   // The times of the flight, with which a simulated flight can repeat it.
   LoopTiming timing() const;

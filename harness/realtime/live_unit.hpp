@@ -25,7 +25,7 @@ struct LiveUnitRecord {
   Histogram age;               // of the sample used, at the finish of the step
   std::uint64_t late = 0;      // responses longer than the period
   std::uint64_t skipped = 0;   // skipped releases; all misses are late + skipped
-  Nanoseconds longest_gap{0};  // between the begins of two ticks
+  Nanoseconds longest_gap{0};  // between the starts of two ticks
   Usage usage;                 // after the first tick, which sets the parameters
   std::vector<LiveTick> ticks;
   std::vector<Sample> samples;  // of the first ticks
@@ -40,8 +40,10 @@ struct LiveUnitRecord {
 // and of several that came while a step ran only the newest is used, the others are skipped.
 class LiveUnit {
  public:
-  // Records all ticks, and the samples of the first `samples`. Only this constructor
-  // allocates and touches that memory. REQUIRES: a flight; all outlive this.
+  // Records all ticks, and the samples of the first `samples`. The constructor allocates that
+  // memory and touches every page, so that recording them in run() causes no page fault. Parameter
+  // changes have no reserved memory: a tick that records some may allocate. REQUIRES: a flight; all
+  // outlive this.
   LiveUnit(const Case& the_case, const Rate& rate, UnitTask& task, Clock& clock, Links& links,
            std::size_t samples);
 

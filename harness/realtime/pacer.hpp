@@ -6,7 +6,8 @@
 namespace attest {
 
 struct Wait {
-  // Sleeps to so long before the release and spins for the rest: trades CPU time for latency.
+  // Time before the release at which the sleep ends. The thread spins until the release: this
+  // trades CPU time for latency.
   Nanoseconds spin{0};
 };
 

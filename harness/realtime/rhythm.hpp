@@ -1,7 +1,7 @@
 // Whether events among ticks come in a rhythm: one every so many ticks, throughout the run.
 //
-// A rhythm is claimed against a null hypothesis only, because among some dozens of events at random
-// ticks several are always equally far apart.
+// A rhythm is claimed only if a null hypothesis is rejected, because among some dozens of events at
+// random ticks several are always equally far apart.
 //
 // Null hypothesis. The ticks are cut into blocks of `every` ticks. The number of events of each
 // block is given. Their places within the block are random, independently of other blocks. So
@@ -16,9 +16,11 @@
 // Hoeffding, "On the distribution of the number of successes in independent trials", Ann. Math.
 // Stat. 27 (1956).
 //
-// Claim. There are at least five blocks, and four blocks in five have their event at `first`. The
-// tail times the number of all pairs (every, first) that could be tried is at most 1e-4
-// (Bonferroni).
+// Claim. A rhythm is claimed if all of these hold:
+// - There are at least five blocks.
+// - At least four of five blocks have an event at their tick `first`.
+// - The tail times the number of all pairs (every, first) that could be tried is at most 1e-4
+//   (Bonferroni).
 #pragma once
 
 #include <cstddef>

@@ -34,7 +34,7 @@ struct ScheduledTask {
   Nanoseconds worst_execution() const;
 };
 
-// Times since the begin of the simulation.
+// Times since the start of the simulation.
 struct TaskJob {
   Nanoseconds release{0};
   Nanoseconds start{0};  // it first ran

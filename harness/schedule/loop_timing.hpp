@@ -8,7 +8,7 @@
 
 namespace attest {
 
-// Since the begin of the case. REQUIRES: sampled <= begins <= commanded.
+// Since the start of the case. REQUIRES: sampled <= begins <= commanded.
 struct LoopTick {
   Nanoseconds sampled{0};  // time of the plant's state that the unit receives
   Nanoseconds begins{0};   // the unit's step begins; its timestamp

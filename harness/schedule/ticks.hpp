@@ -1,5 +1,5 @@
 // The ticks of the unit's task and the releases of the topics that it reads, as times since the
-// begin of the case.
+// start of the case.
 //
 // Order at one instant: a topic released at the time of a tick is seen by that tick.
 #pragma once
@@ -36,8 +36,8 @@ struct TickSchedule {
   Stall stall;                  // its times do not include the phase
 };
 
-// The ticks with k in [0, periods), at least a microsecond apart. A tick that would be nearer to
-// the one before, or before it, is left out; with `stall.catches_up` it runs later. The same
+// The ticks with k in [0, periods). A tick is left out if it would come less than 1 us after the
+// previous tick, or earlier than that tick; with `stall.catches_up` it runs later. The same
 // arguments give the same ticks on every machine.
 std::vector<Nanoseconds> ticks(const TickSchedule& schedule, std::int64_t periods);
 

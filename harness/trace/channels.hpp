@@ -1,6 +1,6 @@
-// The only table of signals. CSV columns, ULog fields, case keys and report lines all take their
-// names from it. A channel is a member of Sample, found by its offset, so the table always agrees
-// with the ABI structs.
+// The only table of signals. CSV columns, case keys and report lines all take their names from it.
+// A channel is a member of Sample, found by its offset, so the table always agrees with the ABI
+// structs.
 //
 // Names are `in/<topic>.<field>` and `out/<topic>.<field>`; `in/updated.<topic>` are the bits of
 // attest_inputs.updated. `timestamp` has no prefix. Parameters are not channels: they are the

@@ -28,9 +28,9 @@ struct Codec<CaseResult> {
   static Result<CaseResult> decode(const std::string& text);
 };
 
-// A case in some of its run configurations: any of an open-loop case, or those of one plant
-// configuration. The port's own process starts before the golden is read, so that its memory has no
-// golden.
+// A case in some of its run configurations. For an open-loop case: any of its run configurations.
+// For a flight: those with one vehicle and one plant. The port's own process starts before the
+// golden is read, so that its memory has no golden.
 class CaseJob final : public Job<CaseResult> {
  public:
   // `vehicle_model` is the plant configuration's; null for open loop.

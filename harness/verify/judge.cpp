@@ -62,7 +62,8 @@ void leave_out_from(std::size_t tick, const Trace& want, Trace& answered) {
 
 void judge_after(const PortFault& fault, CaseResult& result) {
   if (result.verdict != Verdict::pass) {
-    result.reason += fmt::format("{}before {}", result.reason.empty() ? "" : "; ", fault.what);
+    result.reason += fmt::format("{}an output was wrong before {}",
+                                 result.reason.empty() ? "" : "; ", fault.what);
     return;
   }
   result.tightest.reset();

@@ -8,6 +8,7 @@ commands=(run replay sim stress sweep-rate schedule time compare faults list vec
     [ "$status" -eq 0 ]
     has "Examples:"
     lacks "First steps"
+    lacks "{false}"
     examples=$(sed -n '/^Examples:/,$p' <<<"$output" | grep '^  attest')
     [ -n "$examples" ]
     while read -r line; do

@@ -41,7 +41,7 @@ judged() {
 @test "outputs before ATTEST_UNSUPPORTED are judged" {
   judged wrong_unsupported
   [ "$status" -eq 1 ]
-  has "before step at tick 20 returned ATTEST_UNSUPPORTED"
+  has "an output was wrong before step at tick 20 returned ATTEST_UNSUPPORTED"
   has "out/actuator_controls_0.control"
   run "$ATTEST" run --port "lib:$PORTS/hostile_wrong_unsupported.so" \
     --filter '*/hover@250hz-iris-mujoco' --no-diagnose
