@@ -21,7 +21,7 @@ install(
 # Programs that read the JSON reports validate them with these schemas.
 install(FILES harness/report/report.schema.json harness/report/stress.schema.json
         DESTINATION ${ATTEST_INSTALL_DATADIR}/schemas)
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES LICENSE harness/port/PROTOCOL.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 install(EXPORT attestTargets NAMESPACE attest:: DESTINATION ${ATTEST_INSTALL_CMAKEDIR})
 configure_package_config_file(cmake/attestConfig.cmake.in attestConfig.cmake

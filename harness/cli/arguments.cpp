@@ -221,6 +221,22 @@ void add_doctor(CLI::App& app, const Globals& globals, Action& action) {
   });
 }
 
+void add_smoke(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<SmokeOptions>();
+  CLI::App* command = app.add_subcommand(
+      "smoke",
+      "Check step by step whether a new port keeps the rules of attest_unit.h, or of "
+      "harness/port/PROTOCOL.md if it is a program, before any law is compared");
+  add_port(*command, options->host.port);
+  add_timeout(*command, options->host.timeout_s);
+  add_examples(*command,
+               {{"attest smoke --port \"proc:python3 my_port.py\"", "the exchange with a program"},
+                {"attest smoke --port lib:./libmine.so", "the functions of a shared library"}});
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return smoke_command(*options, globals); };
+  });
+}
+
 int show_help(const CLI::App& app, const std::string& name) {
   if (name.empty()) {  // app.help() would be that of this command
     fmt::print("{}",
@@ -268,6 +284,7 @@ int run_command_line(int argc, char** argv) {
   add_vectors(app, globals, action);
   add_bless(app, globals, action);
   add_doctor(app, globals, action);
+  add_smoke(app, globals, action);
   add_help(app, action);
   app.footer(footer);  // last: commands copy the footer that exists when they are added
 

@@ -175,4 +175,9 @@ struct DoctorOptions {
 };
 int doctor_command(const DoctorOptions& options, const Globals& globals);
 
+struct SmokeOptions {
+  HostOptions host;
+};
+int smoke_command(const SmokeOptions& options, const Globals& globals);
+
 }  // namespace attest::cli

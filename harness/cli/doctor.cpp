@@ -10,35 +10,16 @@
 #include "controller/reference/profile.hpp"
 #include "harness/casefile/select.hpp"
 #include "harness/cli/command.hpp"
+#include "harness/cli/examination.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/version.hpp"
 #include "harness/golden/golden.hpp"
-#include "harness/host/first_steps.hpp"
 #include "harness/host/port_process.hpp"
 #include "harness/process/child.hpp"
 #include "harness/verify/recorded_check.hpp"
 
 namespace attest::cli {
 namespace {
-
-// Prints one line per check and stores whether any was bad.
-class Examination {
- public:
-  void good(const std::string& what, const std::string& finding) const {
-    fmt::print("ok     {:<10} {}\n", what, finding);
-  }
-  void bad(const std::string& what, const std::string& finding) {
-    fmt::print("BAD    {:<10} {}\n", what, finding);
-    all_good_ = false;
-  }
-  void check(bool is_good, const std::string& what, const std::string& finding) {
-    is_good ? good(what, finding) : bad(what, finding);
-  }
-  bool all_good() const { return all_good_; }
-
- private:
-  bool all_good_ = true;
-};
 
 void examine_arithmetic(Examination& examination) {
   // volatile: this machine must compute the product now, not the compiler.
@@ -99,32 +80,6 @@ void examine_limits(const DoctorOptions& options, Examination& examination) {
                                options.host.timeout_s, memory, max_file_mib));
 }
 
-void examine_port(const DoctorOptions& options, Examination& examination) {
-  const auto known = reference::profile_names();
-  const std::string& specification = options.host.port;
-  const auto port = describe_port(options.host, {known.begin(), known.end()});
-  if (!port) return examination.bad("port", port.error().to_string());
-  for (const std::string& trouble : {port->hangs, port->goes_wrong}) {
-    if (!trouble.empty()) return examination.bad("port", specification + ": " + trouble);
-  }
-  const std::string who = fmt::format("{}: {} {}", specification, port->name, port->version);
-  std::string printed;
-  for (const auto& [profile, words] : port->refusals) {
-    if (!words.empty()) printed += fmt::format("; for {} it printed: {}", profile, words);
-  }
-  if (port->profiles.empty()) {
-    return examination.bad("port", fmt::format("{}; create() returned NULL for each of {}{}", who,
-                                               fmt::join(known, ", "), printed));
-  }
-  examination.good("port", fmt::format("{}, profiles {}", who, fmt::join(port->profiles, ", ")));
-  for (const std::string& profile : port->profiles) {
-    const std::string wrong = wrong_in_first_steps(options.host, profile);
-    examination.check(
-        wrong.empty(), "steps",
-        fmt::format("{} of {}{}{}", first_steps, profile, wrong.empty() ? "" : ": ", wrong));
-  }
-}
-
 }  // namespace
 
 int doctor_command(const DoctorOptions& options, const Globals& globals) {
@@ -140,7 +95,7 @@ int doctor_command(const DoctorOptions& options, const Globals& globals) {
     examination.bad("suite", suite.error().to_string());
   }
   examine_limits(options, examination);
-  examine_port(options, examination);
+  examine_port(options.host, examination);
   return examination.all_good() ? exit_ok : exit_usage;
 }
 

@@ -7,6 +7,7 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/outputs.hpp"
+#include "harness/cli/pipes_note.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/host/step_timer.hpp"
@@ -54,6 +55,11 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
   const auto checked =
       check_outputs({options.json, options.measure.worst}, {options.host.port, {}}, *suite);
   if (!checked) return report_error(checked.error());
+  if (options.instructions && is_program(options.host.port)) {
+    return report_error(
+        {"--instructions counts those of a library: a program has a process of its "
+         "own; run valgrind on the program itself"});
+  }
   auto cases = open_loop_cases(options, *suite);
   if (!cases) return report_error(cases.error());
   const auto port = describe_port(options.host);
@@ -66,8 +72,10 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
   HostOptions host = options.host;
   host.stop = interrupted;
   host.hangs = port->hangs;
-  auto times = time_corpus(*cases, options.measure, host,
-                           [&](const CaseResult& result) { progress.add(result); });
+  TimeOptions measure = options.measure;
+  measure.stack = measure.stack && !is_program(host.port);  // it is in another process
+  auto times =
+      time_corpus(*cases, measure, host, [&](const CaseResult& result) { progress.add(result); });
   progress.finish();
   if (interrupted()) return exit_interrupted;
   if (!times) return report_error(times.error());
@@ -98,7 +106,7 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
     return report_error(written.error());
   const bool over = run.times.steps.over_limit() > static_cast<std::uint64_t>(options.allowed);
   const bool failed = over || wrong;
-  if (!globals.quiet || failed) fmt::print("{}", render_times(run));
+  if (!globals.quiet || failed) fmt::print("{}{}", render_times(run), pipes_note(run.port));
   return failed ? exit_failed : exit_ok;
 }
 

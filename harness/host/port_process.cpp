@@ -69,7 +69,11 @@ class PortProcess final : public PortHost {
   Result<void> greet() {
     if (!child_) return {};
     const auto greeted = answer_from("when it was loaded", patience(), read_greeting);
-    if (greeted && !*greeted) return tl::unexpected(greeted->error());
+    if (greeted && !*greeted) {
+      Error error = greeted->error();
+      if (is_program(options_.port)) error.message += child_->last_printed();
+      return tl::unexpected(std::move(error));
+    }
     if (greeted && !options_.said) says_ = **greeted;
     return {};
   }

@@ -44,7 +44,7 @@ std::optional<PortFault> unless_broken(std::size_t tick, std::string_view or_lat
   } catch (const PortBroke& broke) {
     const bool has_ended = broke.how() == PortBroke::How::ended;
     return PortFault{has_ended ? Kind::crash : Kind::protocol, tick,
-                     fmt::format("{} at tick {}{}", broke.what(), tick, or_later)};
+                     fmt::format("at tick {}{}: {}", tick, or_later, broke.what())};
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "harness/port/conversation.hpp"
 #include "harness/port/port.hpp"
+#include "harness/trace/csv_cells.hpp"
 
 namespace attest {
 namespace {
@@ -125,6 +126,12 @@ class BinaryConversation final : public Conversation {
     Header answer;
     take(&answer, sizeof answer);
     const Header question = sent();
+    if (answer.kind < Request::create || answer.kind > Request::batch) {
+      const std::string_view bytes(reinterpret_cast<const char*>(&answer), sizeof answer);
+      broken(question.kind, fmt::format("begins with the bytes {}, which are no header of a frame; "
+                                        "text for people belongs on stderr",
+                                        in_backquotes(bytes)));
+    }
     if (answer.kind != question.kind || answer.unit != question.unit ||
         answer.sequence != question.sequence) {
       broken(question.kind,

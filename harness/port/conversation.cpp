@@ -57,7 +57,7 @@ void Conversation::ended(Request request) {
   const std::string begun = program_.unread().empty() ? ""
                                                       : fmt::format(" after {} bytes of an answer",
                                                                     program_.unread().size());
-  throw PortBroke(PortBroke::How::ended, fmt::format("the program {}{}, in the request `{}`",
+  throw PortBroke(PortBroke::How::ended, fmt::format("the program {}{} in the request `{}`",
                                                      program_.end(), begun, name_of(request)));
 }
 

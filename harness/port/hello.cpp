@@ -96,7 +96,7 @@ void read_numbers(Members& members, Hello& hello) {
     if (const auto bits = parse_fraction_bits(arithmetic)) {
       hello.fraction_bits = *bits;
     } else {
-      members.set_error(bits.error().message);
+      members.set_error("is wrong: " + bits.error().message);
     }
   }
   const auto step = members.optional<std::string>("fixed_step", "a rate in Hz as text");
@@ -104,7 +104,7 @@ void read_numbers(Members& members, Hello& hello) {
     if (const auto rate = Rate::parse(step)) {
       hello.fixed_step = *rate;
     } else {
-      members.set_error("its fixed step: " + rate.error().message);
+      members.set_error("is wrong: its fixed step: " + rate.error().message);
     }
   }
 }

@@ -1,4 +1,4 @@
-# Set by CTest: ATTEST (the binary), SOURCE (the tree), PORTS (test ports), STARTER (the C starter).
+# Set by CTest: ATTEST (the binary), SOURCE (the tree), PORTS (test ports), STARTER (the C starter), PYTHON.
 
 setup() {
   cd "$BATS_TEST_TMPDIR"

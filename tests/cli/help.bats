@@ -1,6 +1,7 @@
 load common
 
-commands=(run replay sim stress sweep-rate schedule time compare faults list vectors bless doctor)
+commands=(run replay sim stress sweep-rate schedule time compare faults list vectors bless doctor
+  smoke)
 
 @test "each command shows examples of itself, with options that it has" {
   for command in "${commands[@]}"; do

@@ -1,0 +1,58 @@
+#include "harness/cli/examination.hpp"
+
+#include <string>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "controller/reference/profile.hpp"
+#include "harness/cli/command.hpp"
+#include "harness/host/smoke.hpp"
+
+namespace attest::cli {
+
+void Examination::good(const std::string& what, const std::string& finding) const {
+  fmt::print("ok     {:<10} {}\n", what, finding);
+}
+
+void Examination::bad(const std::string& what, const std::string& finding) {
+  fmt::print("BAD    {:<10} {}\n", what, finding);
+  all_good_ = false;
+}
+
+void Examination::check(bool is_good, const std::string& what, const std::string& finding) {
+  is_good ? good(what, finding) : bad(what, finding);
+}
+
+void examine_port(const HostOptions& options, Examination& examination) {
+  const auto known = reference::profile_names();
+  const std::string& specification = options.port;
+  const auto port = describe_port(options, {known.begin(), known.end()});
+  if (!port) return examination.bad("port", port.error().to_string());
+  for (const std::string& trouble : {port->hangs, port->goes_wrong}) {
+    if (!trouble.empty()) return examination.bad("port", specification + ": " + trouble);
+  }
+  const std::string who = fmt::format("{}: {} {}", specification, port->name, port->version);
+  std::string printed;
+  for (const auto& [profile, words] : port->refusals) {
+    if (!words.empty()) printed += fmt::format("; for {} it printed: {}", profile, words);
+  }
+  if (port->profiles.empty()) {
+    return examination.bad("port", fmt::format("{}; create() returned NULL for each of {}{}", who,
+                                               fmt::join(known, ", "), printed));
+  }
+  examination.good("port", fmt::format("{}, profiles {}", who, fmt::join(port->profiles, ", ")));
+  for (const std::string& profile : port->profiles) {
+    smoke(options, profile, [&](const SmokeFinding& finding) {
+      examination.check(finding.is_good, finding.check, finding.what);
+    });
+  }
+}
+
+int smoke_command(const SmokeOptions& options, const Globals&) {
+  Examination examination;
+  examine_port(options.host, examination);
+  return examination.all_good() ? exit_ok : exit_failed;
+}
+
+}  // namespace attest::cli

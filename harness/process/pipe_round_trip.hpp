@@ -1,0 +1,14 @@
+// The time that the exchange with a program takes at least: pipes, and nothing to compute.
+#pragma once
+
+#include <cstddef>
+
+#include "harness/core/result.hpp"
+#include "harness/core/time.hpp"
+
+namespace attest {
+
+// The median time in which `cat` sends `bytes` bytes back. Errors: a program cannot be started.
+Result<Nanoseconds> pipe_round_trip(std::size_t bytes);
+
+}  // namespace attest

@@ -1,0 +1,190 @@
+load common
+
+setup_file() {
+  export PYTHONDONTWRITEBYTECODE=1 # the starter's folder stays as it is
+}
+
+program() { echo "proc:$PYTHON $SOURCE/tests/ports/programs/$1"; }
+starter() { echo "proc:$PYTHON $SOURCE/controller/starters/python/port.py"; }
+
+# judged PROGRAM: runs it on one vector.
+judged() {
+  run "$ATTEST" run --port "$(program "$1")" --filter px4-v1.5.5/rates/p_alone@250hz \
+    --timeout 3 --no-diagnose --json report.json
+}
+
+# refused PROGRAM TEXT: the error, before anything runs.
+refused() {
+  judged "$1"
+  [ "$status" -eq 2 ]
+  has "$2"
+  [ ! -e report.json ]
+}
+
+@test "the starter in Python conforms, and keeps the rules of the exchange" {
+  run "$ATTEST" smoke --port "$(starter)"
+  [ "$status" -eq 0 ]
+  lacks BAD
+  [ "$(grep -c '^ok' <<<"$output")" -eq 13 ]
+  run "$ATTEST" run --port "$(starter)" --rate 250 --group attitude --group rates \
+    --group tailsitter --group instances
+  [ "$status" -eq 0 ]
+  has "PASS"
+}
+
+@test "the starter answers the example of PROTOCOL.md byte for byte" {
+  run "$PYTHON" "$SOURCE/tests/ports/programs/example.py" check "$PYTHON" \
+    "$SOURCE/controller/starters/python/port.py"
+  [ "$status" -eq 0 ]
+}
+
+@test "step by step, in batches, byte by byte and in text: the same bits" {
+  for port in "program.py right" "program.py hello_in_batches" "program.py byte_by_byte" \
+    in_text.py; do
+    "$ATTEST" run --port "$(program "$port")" --filter 'px4-v1.5.5/rates/*@250hz' \
+      --filter px4-v1.5.5/attitude/tilt_by_size@250hz --json report.json
+    "$PYTHON" - >>headrooms <<'HEADROOM'
+import json
+print([(one["id"], one["tightest"]) for one in json.load(open("report.json"))["results"]])
+HEADROOM
+  done
+  [ "$(wc -l <headrooms)" -eq 4 ]
+  [ "$(sort -u headrooms | wc -l)" -eq 1 ]
+}
+
+@test "every command that takes a port takes a program" {
+  local trace="$SOURCE/golden/recorded/px4-v1.5.5/fuzz_250hz.csv"
+  "$ATTEST" replay --port "$(starter)" "$trace"
+  "$ATTEST" sim hover --rate 250 --port "$(starter)" --out flight.csv
+  run "$ATTEST" time --port "$(starter)" --filter rates/p_alone@250hz
+  [ "$status" -eq 0 ]
+  lacks "stack of a step"
+  "$ATTEST" doctor --port "$(starter)" >/dev/null
+  run "$ATTEST" stress --port "$(starter)" --rates 50 --duration 0.5 --no-cyclictest
+  [ "$status" -ne 2 ] || has "not judged"
+  has "outputs agree"
+}
+
+@test "a wrong program fails like a wrong library, and the stage is named" {
+  cp -r "$SOURCE/controller/starters/python" wrong
+  sed -i 's/(abs(thrust) - gains.tpa_break)/(thrust * thrust - gains.tpa_break)/' wrong/law.py
+  grep -q 'thrust \* thrust' wrong/law.py
+  run "$ATTEST" run --port "proc:$PYTHON wrong/port.py" --rate 250 --group tpa
+  [ "$status" -eq 1 ]
+  has "in the stage thrust attenuation"
+}
+
+@test "a program that cannot be started is an error before anything runs" {
+  run "$ATTEST" run --port proc:no-such-program
+  [ "$status" -eq 2 ]
+  has "no-such-program: no program of this name is in PATH"
+  echo text >file
+  run "$ATTEST" run --port "proc:./file"
+  [ "$status" -eq 2 ]
+  has "is no file that may be executed (chmod +x)"
+  run "$ATTEST" run --port "proc:$PYTHON 'port.py"
+  [ "$status" -eq 2 ]
+  has "has a quote or a brace that is not closed"
+  run "$ATTEST" run --port "proc:$PYTHON port.py | tee log"
+  [ "$status" -eq 2 ]
+  has "no shell runs"
+  run "$ATTEST" run --port "proc:"
+  [ "$status" -eq 2 ]
+  has "needs a command"
+}
+
+@test "a wrong answer to the handshake is an error that names the member" {
+  refused "program.py hello_is_no_json" "its first line on stdout is \`ready\`, which is no JSON object"
+  refused "program.py hello_is_a_list" "which is no JSON object"
+  refused "program.py hello_lacks_name" "lacks \`name\`, which is the name of the port"
+  refused "program.py hello_misspells" "unknown member \`fixed_setp\`; did you mean \`fixed_step\`?"
+  refused "program.py hello_of_version_2" "has \`protocol\` 2; this attest speaks 1"
+  refused "program.py hello_has_text_for_number" "has \`protocol\` = \"1\""
+  refused "program.py hello_of_other_arithmetic" "its arithmetic is \`fixed:5\`"
+  refused "program.py hello_has_unknown_module" "has the module \`gimbal\`"
+  refused "program.py hello_batches_text" "has \`batch\`, which only binary frames have"
+  refused "program.py hello_has_no_end" "has no end within 65536 bytes"
+  refused "program.py ends_at_once" "exited with status 1 before it answered the handshake"
+  has "it last printed: no license found"
+}
+
+@test "a wrong answer to a step breaks the protocol, and the message says how" {
+  local -A says=(
+    [garbage]="begins with the bytes"
+    [prints]="begins with the bytes \`roll = 0.3"
+    [huge]="has a payload of 4294967295 bytes instead of 76"
+    [short]="has a payload of 72 bytes instead of 76"
+    [stale]="sequence number 28; they must be those of the request: 4, 1, 29"
+    [wrong_unit]="has kind 4, unit 99"
+    [wrong_kind]="has kind 1, unit 1"
+    [no_result]="step at tick 19 returned 77, which is no ATTEST_ result"
+  )
+  for mode in "${!says[@]}"; do
+    judged "program.py $mode"
+    [ "$status" -eq 1 ]
+    has "protocol: "
+    has "at tick 19"
+    has "${says[$mode]}"
+  done
+}
+
+@test "a wrong line of text breaks the protocol, and the message says how" {
+  local -A says=(
+    [no_object]="is \`[1]\`; it must be a JSON object"
+    [no_sequence]="with \`sequence\` and \`result\`"
+    [stale]="has the sequence number 28; that of the request is 29"
+    [other_result]="has the result \"fine\""
+    [unknown_output]="has \`out/roll\`, which is no output of that module"
+    [text_for_number]="\`out/vehicle_rates_setpoint.roll\` = \"0.1\", which is no value"
+    [half_a_flag]="= 0.5, which is no value of that signal"
+  )
+  for mode in "${!says[@]}"; do
+    judged "in_text.py $mode"
+    [ "$status" -eq 1 ]
+    has "protocol: at tick 19: "
+    has "${says[$mode]}"
+  done
+}
+
+@test "a program that ends is a crash with its status, signal and last words" {
+  judged "program.py exits"
+  [ "$status" -eq 1 ]
+  has "crash: at tick 19: the program exited with status 3 in the request \`step\`; it last printed: motor table lost"
+  judged "program.py killed"
+  has "crash: at tick 19: the program was killed by signal 11 (Segmentation fault)"
+  judged "program.py half"
+  has "crash: at tick 19: the program exited with status 0 after 20 bytes of an answer"
+  judged "program.py leaves_a_child"
+  has "crash: at tick 19: the program exited with status 4"
+  judged "program.py closes_stdout"
+  has "crash: at tick 19: the program closed its stdout"
+  judged "program.py floods_stderr"
+  has "crash: at tick 19: "
+  nothing_is_left
+}
+
+@test "a program that does not answer is a timeout, and nothing of it is left" {
+  judged "program.py hangs"
+  [ "$status" -eq 1 ]
+  has "timeout: no answer within 3 s in step() at tick 19"
+  judged "program.py never_answers"
+  has "timeout: no answer within 3 s, when it was loaded"
+  judged "program.py does_not_read"
+  has "timeout: no answer within 3 s in create()"
+  nothing_is_left
+}
+
+@test "the statement has a hash of the program and of its files" {
+  cp -r "$SOURCE/controller/starters/python" mine
+  local run=("$ATTEST" run --port "proc:$PYTHON mine/port.py" --filter rates/p_alone@250hz)
+  hash_of() { grep -o 'port [0-9a-f]\{12\}' <<<"$output" | head -n 1; }
+  run "${run[@]}"
+  local first
+  first=$(hash_of)
+  [ -n "$first" ]
+  run "${run[@]}"
+  [ "$(hash_of)" = "$first" ]
+  echo "# another version" >>mine/port.py
+  run "${run[@]}"
+  [ "$(hash_of)" != "$first" ]
+}

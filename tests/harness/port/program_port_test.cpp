@@ -1,0 +1,179 @@
+// Ports that are programs. What a whole run says of those that break the protocol is in
+// tests/cli/programs.bats.
+#include "harness/port/program_port.hpp"
+
+#include <array>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/port/hello.hpp"
+
+namespace attest {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::string programs =
+    std::string(ATTEST_PYTHON) + " " + ATTEST_SOURCE_DIR + "/tests/ports/programs/";
+
+TEST(WordsOf, SplitsAsAShellDoes) {
+  ::setenv("ATTEST_TEST_VARIABLE", "one two", 1);
+  const auto words = words_of(R"(run 'a b' "c d" e\ f "$ATTEST_TEST_VARIABLE")");
+  ASSERT_TRUE(words) << words.error().to_string();
+  EXPECT_THAT(*words, ElementsAre("run", "a b", "c d", "e f", "one two"));
+}
+
+TEST(WordsOf, RefusesWhatOnlyAShellCanDo) {
+  for (const auto& [command, why] :
+       {std::pair("a | b", "has one of the characters |"), std::pair("a > b", "no shell"),
+        std::pair("a 'b", "not closed"), std::pair("$(a)", "command substitution"),
+        std::pair("$ATTEST_NO_SUCH_VARIABLE", "not set"), std::pair("", "needs a command"),
+        std::pair("  ", "needs a command")}) {
+    const auto words = words_of(command);
+    ASSERT_FALSE(words) << command;
+    EXPECT_THAT(words.error().message, HasSubstr(why)) << command;
+  }
+}
+
+TEST(FilesOf, AreTheProgramAndItsArgumentsThatAreFiles) {
+  const std::string file = std::string(ATTEST_SOURCE_DIR) + "/README.md";
+  EXPECT_THAT(files_of("proc:/bin/cat -n " + file), ElementsAre("/bin/cat", file));
+  EXPECT_THAT(files_of("lib:mine.so"), ElementsAre("mine.so"));
+  EXPECT_THAT(files_of("builtin"), ElementsAre());
+}
+
+TEST(ParseHello, TakesAllThatAPortMaySay) {
+  const auto hello = parse_hello(
+      R"({"protocol":1,"name":"n","version":"2","profiles":["px4-v1.5.5"],"frames":"binary",)"
+      R"("batch":true,"modules":["mixer"],"unsupported_groups":["tpa"],"arithmetic":"fixed:22",)"
+      R"("fixed_step":"1000/3"})");
+  ASSERT_TRUE(hello) << hello.error().to_string();
+  EXPECT_EQ(hello->name, "n");
+  EXPECT_EQ(hello->version, "2");
+  EXPECT_THAT(hello->profiles, ElementsAre("px4-v1.5.5"));
+  EXPECT_EQ(hello->frames, FrameForm::binary);
+  EXPECT_TRUE(hello->has_batch);
+  EXPECT_TRUE(hello->has_mixer);
+  EXPECT_FALSE(hello->has_battery_status);
+  EXPECT_THAT(hello->unsupported_groups, ElementsAre("tpa"));
+  EXPECT_EQ(hello->fraction_bits, 22);
+  EXPECT_EQ(hello->fixed_step->to_string(), "1000/3");
+}
+
+// tests/cli/programs.bats has the other errors.
+TEST(ParseHello, EveryPrefixOfAnAnswerIsAnError) {
+  const std::string whole =
+      R"({"protocol":1,"name":"n","version":"2","profiles":["px4-v1.5.5"],"frames":"text"})";
+  ASSERT_TRUE(parse_hello(whole));
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    EXPECT_FALSE(parse_hello(whole.substr(0, size))) << size;
+  }
+}
+
+attest_inputs level_and_rolling() {
+  attest_inputs in{};
+  in.timestamp = 5'000'000;
+  in.updated = 0x1ff;
+  in.control_state.q[0] = 1;
+  in.control_state.roll_rate = 0.5f;
+  in.vehicle_attitude_setpoint.q_d[0] = 1;
+  in.vehicle_attitude_setpoint.thrust = 0.5f;
+  in.battery_status.scale = 1;
+  in.vehicle_control_mode.flag_control_rates_enabled = 1;
+  in.vehicle_control_mode.flag_control_attitude_enabled = 1;
+  in.actuator_armed.armed = 1;
+  in.vehicle_status.is_rotary_wing = 1;
+  return in;
+}
+
+TEST(ProgramPort, SendsAndTakesTheBytesOfTheExample) {
+  auto port = open_program(programs + "example.py");
+  ASSERT_TRUE(port) << port.error().to_string();
+  EXPECT_EQ((*port)->name(), "example");
+  const auto unit = (*port)->create("px4-v1.5.5");
+  ASSERT_TRUE(unit);
+  EXPECT_EQ(unit->set_parameter("MC_ROLL_P", 6.5f), ATTEST_OK);
+  EXPECT_EQ(unit->set_timestamp_sample(5'000'000), ATTEST_OK);
+  attest_outputs out{};
+  EXPECT_EQ(unit->step(level_and_rolling(), out), ATTEST_OK);
+  EXPECT_EQ(out.actuator_controls_0.control[0], -0.15f);
+  EXPECT_EQ(out.actuator_controls_0.control[3], 0.5f);
+  EXPECT_EQ(out.mc_att_ctrl_status.roll_rate_integ, -0.0005f);
+  EXPECT_EQ(out.mc_att_ctrl_status.published, 1);
+}
+
+TEST(ProgramPort, AsksForNoProfileThatTheProgramDoesNotName) {
+  auto port = open_program(programs + "example.py");
+  ASSERT_TRUE(port) << port.error().to_string();
+  // The example would end at this request, so create() would throw.
+  EXPECT_FALSE((*port)->create("px4-v1.3.4"));
+}
+
+TEST(ProgramPort, StartsAProgramAgainThatHasEnded) {
+  auto port = open_program(programs + "program.py exits");
+  ASSERT_TRUE(port) << port.error().to_string();
+  for (int start = 0; start < 2; ++start) {
+    const auto unit = (*port)->create("px4-v1.5.5");
+    ASSERT_TRUE(unit);
+    attest_outputs out{};
+    for (int i = 0; i < 19; ++i) ASSERT_EQ(unit->step(level_and_rolling(), out), ATTEST_OK);
+    try {
+      unit->step(level_and_rolling(), out);
+      FAIL() << "it answered the 20th step";
+    } catch (const PortBroke& broke) {
+      EXPECT_EQ(broke.how(), PortBroke::How::ended);
+      EXPECT_STREQ(broke.what(), "the program exited with status 3 in the request `step`");
+    }
+  }
+}
+
+// The outputs that a program gives for unpublished topics do not matter.
+TEST(ProgramPort, TopicsThatAreNotPublishedKeepTheirValues) {
+  auto port = open_program(programs + "program.py right");
+  ASSERT_TRUE(port) << port.error().to_string();
+  const auto unit = (*port)->create("px4-v1.5.5");
+  ASSERT_TRUE(unit);
+  attest_outputs out{};
+  attest_inputs in = level_and_rolling();
+  in.vehicle_control_mode = {};  // nothing is controlled, nothing published
+  out.vehicle_rates_setpoint.roll = 7;
+  ASSERT_EQ(unit->step(in, out), ATTEST_OK);
+  EXPECT_EQ(out.vehicle_rates_setpoint.published, 0);
+  EXPECT_EQ(out.vehicle_rates_setpoint.roll, 7);
+}
+
+TEST(ProgramPort, ABatchIsTheSameAsItsSteps) {
+  auto batches = open_program(programs + "program.py hello_in_batches");
+  auto steps = open_program(programs + "program.py right");
+  ASSERT_TRUE(batches && steps);
+  const auto batched = (*batches)->create("px4-v1.5.5"), stepped = (*steps)->create("px4-v1.5.5");
+  ASSERT_TRUE(batched && stepped);
+  EXPECT_EQ(stepped->max_batch(), 0u);
+  ASSERT_GE(batched->max_batch(), 50u);
+  std::vector<attest_inputs> in(50, level_and_rolling());
+  std::vector<std::uint64_t> times;
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    in[i].timestamp += 4000 * i;
+    if (i > 0) in[i].updated = 0;
+    times.push_back(in[i].timestamp);
+  }
+  std::vector<attest_outputs> together(in.size());
+  const Batched done = batched->batch(in, together, times);
+  EXPECT_EQ(done.done, in.size());
+  EXPECT_EQ(done.result, ATTEST_OK);
+  attest_outputs one{};
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    ASSERT_EQ(stepped->step(in[i], one), ATTEST_OK);
+    EXPECT_EQ(together[i].actuator_controls_0.control[0], one.actuator_controls_0.control[0]) << i;
+    EXPECT_EQ(together[i].mc_att_ctrl_status.roll_rate_integ,
+              one.mc_att_ctrl_status.roll_rate_integ);
+  }
+}
+
+}  // namespace
+}  // namespace attest
