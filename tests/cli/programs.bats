@@ -42,10 +42,10 @@ refused() {
   for port in "program.py right" "program.py hello_in_batches" "program.py byte_by_byte" \
     in_text.py; do
     "$ATTEST" run --port "$(program "$port")" --filter 'px4-v1.5.5/rates/*@250hz' \
-      --filter px4-v1.5.5/attitude/tilt_by_size@250hz --json report.json
+      --filter px4-v1.5.5/attitude/tilt_by_size@250hz --json report.json >/dev/null
     "$PYTHON" - >>headrooms <<'HEADROOM'
 import json
-print([(one["id"], one["tightest"]) for one in json.load(open("report.json"))["results"]])
+print([(one["id"], one.get("tightest")) for one in json.load(open("report.json"))["results"]])
 HEADROOM
   done
   [ "$(wc -l <headrooms)" -eq 4 ]
@@ -71,7 +71,7 @@ HEADROOM
   grep -q 'thrust \* thrust' wrong/law.py
   run "$ATTEST" run --port "proc:$PYTHON wrong/port.py" --rate 250 --group tpa
   [ "$status" -eq 1 ]
-  has "in the stage thrust attenuation"
+  has "to a fault in the stage TPA"
 }
 
 @test "a program that cannot be started is an error before anything runs" {
