@@ -84,6 +84,10 @@ const std::vector<Pair>& pairs() {
   static const std::vector<Pair> list = {
       {"controller step", "step/reference", "step/by_hand", 1.15,
        "at most 1.15x the law written by hand in C"},
+      {"step of a program, on one CPU", "program/step", "program/bare_pipe", 1.25,
+       "at most 1.25x a bare pipe"},
+      {"trace of a program, in one batch", "program/trace_in_batch", "program/trace_in_steps",
+       1 / 20.0, "at least 20x the speed of single steps"},
       {"trace CSV, read", "csv/read_csv", "csv/from_chars", 1 / 0.8,
        "at least 0.8x the speed of a bare from_chars loop"},
       {"trace CSV, write", "csv/write_csv", "csv/to_chars", 1 / 0.8,

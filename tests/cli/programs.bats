@@ -94,7 +94,7 @@ HEADROOM
 }
 
 @test "a wrong answer to the handshake is an error that names the member" {
-  refused "program.py hello_is_no_json" "its first line on stdout is \`ready\`, which is no JSON object"
+  refused "program.py hello_is_no_json" "its first line on stdout is \`ready\`, which is no JSON"
   refused "program.py hello_is_a_list" "which is no JSON object"
   refused "program.py hello_lacks_name" "lacks \`name\`, which is the name of the port"
   refused "program.py hello_misspells" "unknown member \`fixed_setp\`; did you mean \`fixed_step\`?"
@@ -149,7 +149,8 @@ HEADROOM
 @test "a program that ends is a crash with its status, signal and last words" {
   judged "program.py exits"
   [ "$status" -eq 1 ]
-  has "crash: at tick 19: the program exited with status 3 in the request \`step\`; it last printed: motor table lost"
+  has "crash: at tick 19: the program exited with status 3 in the request \`step\`"
+  has "it last printed: motor table lost"
   judged "program.py killed"
   has "crash: at tick 19: the program was killed by signal 11 (Segmentation fault)"
   judged "program.py half"
