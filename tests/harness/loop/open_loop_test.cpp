@@ -2,6 +2,8 @@
 
 #include <cstring>
 #include <functional>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -131,6 +133,19 @@ TEST(Drive, StopsAtTheFaultAndKeepsWhatWasBefore) {
   EXPECT_THAT(unit.calls, ElementsAre("step 0", "step 1"));
   EXPECT_EQ(trace.samples[0].out.actuator_controls_0.control[0], 5);
   EXPECT_EQ(trace.samples[1].out.actuator_controls_0.control[0], 0);
+}
+
+TEST(Drive, AnAnswerThatBreaksTheProtocolIsAFaultOfItsTick) {
+  FakeUnit unit([](const attest_inputs& in, auto&) {
+    if (in.timestamp == 2) throw PortBroke(PortBroke::How::rules, "the answer is no frame");
+    return ATTEST_OK;
+  });
+  Trace trace = trace_of(4);
+  const auto fault = drive(unit, trace);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->kind, Kind::protocol);
+  EXPECT_EQ(fault->tick, 2u);
+  EXPECT_EQ(fault->what, "at tick 2: the answer is no frame");
 }
 
 TEST(Drive, InputsAreConst) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -75,6 +76,15 @@ TEST(ParseHello, EveryPrefixOfAnAnswerIsAnError) {
   }
 }
 
+TEST(ParseHello, RefusesAnotherVersionOfTheProtocol) {
+  for (const int version : {0, 2}) {
+    const auto hello = parse_hello(fmt::format(
+        R"({{"protocol":{},"name":"n","version":"2","profiles":[],"frames":"text"}})", version));
+    ASSERT_FALSE(hello) << version;
+    EXPECT_THAT(hello.error().message, HasSubstr("this attest speaks 1"));
+  }
+}
+
 attest_inputs level_and_rolling() {
   attest_inputs in{};
   in.timestamp = 5'000'000;
@@ -132,6 +142,34 @@ TEST(ProgramPort, StartsAProgramAgainThatHasEnded) {
   }
 }
 
+// Of program.py, whose answer to the 20th step is wrong.
+std::string wrong_answer_of(const std::string& program) {
+  auto port = open_program(programs + program);
+  if (!port) return port.error().to_string();
+  const auto unit = (*port)->create("px4-v1.5.5");
+  attest_outputs out{};
+  try {
+    for (int i = 0; i < 20; ++i) unit->step(level_and_rolling(), out);
+  } catch (const PortBroke& broke) {
+    return broke.how() == PortBroke::How::rules ? broke.what() : "it ended";
+  }
+  return "none";
+}
+
+TEST(ProgramPort, AnAnswerThatBreaksTheRulesIsNotTaken) {
+  EXPECT_EQ(wrong_answer_of("program.py right"), "none");
+  EXPECT_THAT(wrong_answer_of("program.py garbage"), HasSubstr("no header of a frame"));
+  EXPECT_THAT(wrong_answer_of("program.py huge"), HasSubstr("a payload of 4294967295 bytes"));
+  EXPECT_THAT(wrong_answer_of("program.py short"), HasSubstr("72 bytes instead of 76"));
+  EXPECT_THAT(wrong_answer_of("program.py stale"), HasSubstr("sequence number 20; they must be"));
+  EXPECT_THAT(wrong_answer_of("program.py wrong_unit"), HasSubstr("unit 99"));
+  EXPECT_THAT(wrong_answer_of("program.py wrong_kind"), HasSubstr("has kind 1"));
+  EXPECT_EQ(wrong_answer_of("in_text.py"), "none");
+  EXPECT_THAT(wrong_answer_of("in_text.py stale"), HasSubstr("sequence number 20"));
+  EXPECT_THAT(wrong_answer_of("in_text.py unknown_output"), HasSubstr("no output of that module"));
+  EXPECT_THAT(wrong_answer_of("in_text.py half_a_flag"), HasSubstr("no value of that signal"));
+}
+
 // The outputs that a program gives for unpublished topics do not matter.
 TEST(ProgramPort, TopicsThatAreNotPublishedKeepTheirValues) {
   auto port = open_program(programs + "program.py right");
@@ -160,6 +198,10 @@ TEST(ProgramPort, ABatchIsTheSameAsItsSteps) {
   for (std::size_t i = 0; i < in.size(); ++i) {
     in[i].timestamp += 4000 * i;
     if (i > 0) in[i].updated = 0;
+    if (i == 40) {  // from here on nothing is controlled, and nothing published
+      in[i].updated = ATTEST_UPDATED_VEHICLE_CONTROL_MODE;
+      in[i].vehicle_control_mode = {};
+    }
     times.push_back(in[i].timestamp);
   }
   std::vector<attest_outputs> together(in.size());
@@ -172,6 +214,7 @@ TEST(ProgramPort, ABatchIsTheSameAsItsSteps) {
     EXPECT_EQ(together[i].actuator_controls_0.control[0], one.actuator_controls_0.control[0]) << i;
     EXPECT_EQ(together[i].mc_att_ctrl_status.roll_rate_integ,
               one.mc_att_ctrl_status.roll_rate_integ);
+    EXPECT_EQ(together[i].vehicle_rates_setpoint.thrust, one.vehicle_rates_setpoint.thrust) << i;
   }
 }
 
