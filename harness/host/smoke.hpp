@@ -21,7 +21,7 @@ struct SmokeFinding {
 //     steps       every step returns ATTEST_OK
 //     outputs     the rates setpoint and the controls are published, and are numbers
 //     repeatable  a second process of the port gives the same bits
-//     parameters  MC_ROLL_P is accepted, an unknown name is not
+//     parameters  MC_ROLL_P is accepted; says if an unknown name is, too
 //     instances   a unit gives the same bits after another one, and together with one; of a
 //                 program, also step by step as in batches
 //     NaN         inputs that are no numbers end no step

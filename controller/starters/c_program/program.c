@@ -133,7 +133,7 @@ int main(void) {
       port->name, port->version);
   fflush(stdout);
   while (fread(&head, sizeof head, 1, stdin) == 1) {
-    if (head.size >= sizeof of || (head.size && fread(&of, head.size, 1, stdin) != 1)) {
+    if (head.size > sizeof of || (head.size && fread(&of, head.size, 1, stdin) != 1)) {
       return EXIT_FAILURE;
     }
     if (head.size < MAX_TEXT) of.text[head.size] = '\0'; /* ends the name of a parameter */
