@@ -8,6 +8,7 @@
 #include "controller/reference/profile.hpp"
 #include "harness/cli/command.hpp"
 #include "harness/host/smoke.hpp"
+#include "harness/report/text.hpp"
 
 namespace attest::cli {
 
@@ -32,7 +33,8 @@ void examine_port(const HostOptions& options, Examination& examination) {
   for (const std::string& trouble : {port->hangs, port->goes_wrong}) {
     if (!trouble.empty()) return examination.bad("port", specification + ": " + trouble);
   }
-  const std::string who = fmt::format("{}: {} {}", specification, port->name, port->version);
+  const std::string who =
+      fmt::format("{}: {} {}", specification, one_line(port->name), one_line(port->version));
   std::string printed;
   for (const auto& [profile, words] : port->refusals) {
     if (!words.empty()) printed += fmt::format("; for {} it printed: {}", profile, words);

@@ -16,6 +16,7 @@ HostHere::HostHere(std::unique_ptr<Port> port, std::optional<PortSays> said, Cou
 
 std::optional<PortFault> HostHere::held(std::optional<PortFault> fault,
                                         const std::string& profile) const {
+  port_->finish();
   if (const std::string difference = change(says_, PortSays::asked(*port_)); !difference.empty()) {
     return PortFault{PortFault::Kind::protocol, 0, difference};
   }
@@ -83,7 +84,11 @@ Result<void> HostHere::measure_stack(const std::string& profile, Trace trace, St
 }
 
 bool HostHere::supports(const std::string& profile) {
-  return ports_.run([&] { return driven().create(profile) != nullptr; });
+  return ports_.run([&] {
+    const bool is_made = driven().create(profile) != nullptr;
+    port_->finish();
+    return is_made;
+  });
 }
 
 Result<std::unique_ptr<PortHost>> open_host_here(const std::string& port,

@@ -115,6 +115,7 @@ void work(const StressTask& task, const std::string& specification, const PortCa
   };
   const auto measured = measure_live(
       task, *noted, [] { return asked_to_stop.load(); }, progress);
+  (*port)->finish();
   if (measured) {
     send_measured(*measured, parent);
   } else {

@@ -52,6 +52,23 @@ int Conversation::batch(std::uint32_t, Module, std::span<ProgramStep>, std::size
   return ATTEST_FAILED;
 }
 
+void Conversation::destroy_quietly(std::uint32_t unit) noexcept {
+  if (is_over_) return;
+  try {
+    const int result = destroy(unit);
+    if (result != ATTEST_OK) {
+      broken(Request::destroy, fmt::format("has the result {}; only {} (ok) is possible", result,
+                                           static_cast<int>(ATTEST_OK)));
+    }
+  } catch (const PortBroke& broke) {
+    late_ = broke;
+  }
+}
+
+void Conversation::throw_late() {
+  if (late_) throw *std::exchange(late_, std::nullopt);
+}
+
 void Conversation::ended(Request request) {
   is_over_ = true;
   const std::string begun = program_.unread().empty() ? ""

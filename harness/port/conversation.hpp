@@ -4,12 +4,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "harness/core/result.hpp"
 #include "harness/port/hello.hpp"
+#include "harness/port/port.hpp"
 #include "harness/process/piped_program.hpp"
 #include "harness/trace/channels.hpp"
 
@@ -40,6 +42,10 @@ class Conversation {
   const Hello& hello() const { return hello_; }
   bool is_over() const { return is_over_; }
 
+  // destroy() for a destructor: what it throws is kept for throw_late().
+  void destroy_quietly(std::uint32_t unit) noexcept;
+  void throw_late();
+
   // Each returns the program's result: ATTEST_OK, or another number.
   virtual int create(std::uint32_t unit, Module module, const std::string& profile,
                      const std::string& definition) = 0;
@@ -65,6 +71,7 @@ class Conversation {
   PipedProgram program_;
   Hello hello_;
   std::uint32_t sequence_ = 0;
+  std::optional<PortBroke> late_;
   bool is_over_ = false;
 };
 

@@ -95,6 +95,10 @@ class Port {
   // The port must outlive the unit.
   virtual std::unique_ptr<Unit> create(const std::string& profile) = 0;
 
+  // Throws PortBroke if a program broke when one of its units was destroyed: a destructor cannot.
+  // Called when the units of a request are destroyed.
+  virtual void finish() {}
+
   // True if the port has this module.
   virtual bool has_mixer() const { return false; }
   virtual bool has_battery_status() const { return false; }

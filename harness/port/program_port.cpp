@@ -68,13 +68,7 @@ class ProgramUnit : public Base {
   using Its = ModuleOf<Base>;
 
   ProgramUnit(Talk talk, std::uint32_t number) : talk_(std::move(talk)), number_(number) {}
-  ~ProgramUnit() override {
-    if (talk_->is_over()) return;
-    try {
-      talk_->destroy(number_);
-    } catch (const PortBroke&) {  // the next create() starts the program again
-    }
-  }
+  ~ProgramUnit() override { talk_->destroy_quietly(number_); }
   ProgramUnit(const ProgramUnit&) = delete;
   ProgramUnit& operator=(const ProgramUnit&) = delete;
 
@@ -145,6 +139,8 @@ class ProgramPort final : public Port {
   bool has_mixer() const override { return hello_.has_mixer; }
   bool has_battery_status() const override { return hello_.has_battery_status; }
 
+  void finish() override { talk_->throw_late(); }
+
   std::unique_ptr<Unit> create(const std::string& profile) override {
     return made<ProgramController>(Module::mc_att_control, profile, "");
   }
@@ -165,7 +161,13 @@ class ProgramPort final : public Port {
     if (talk_->is_over()) start_again();
     const std::uint32_t number = ++units_;
     const int result = talk_->create(number, module, profile, definition);
-    return result == ATTEST_OK ? std::make_unique<Made>(talk_, number) : nullptr;
+    if (result == ATTEST_OK) return std::make_unique<Made>(talk_, number);
+    if (result == ATTEST_UNSUPPORTED) return nullptr;
+    throw PortBroke(
+        PortBroke::How::rules,
+        fmt::format("the answer to the request `create` has the result {}; it is {} (ok) "
+                    "or {} (unsupported)",
+                    result, static_cast<int>(ATTEST_OK), static_cast<int>(ATTEST_UNSUPPORTED)));
   }
 
   void start_again() {

@@ -164,6 +164,21 @@ HEADROOM
   nothing_is_left
 }
 
+@test "a unit that cannot be made or destroyed is a failure, too" {
+  judged "program.py exits_in_destroy"
+  [ "$status" -eq 1 ]
+  has "crash: the program exited with status 5 in the request \`destroy\`"
+  judged "program.py destroy_fails"
+  [ "$status" -eq 1 ]
+  has "protocol: the answer to the request \`destroy\` has the result 3"
+  judged "program.py create_fails"
+  [ "$status" -eq 1 ]
+  has "protocol: the answer to the request \`create\` has the result 3"
+  run "$ATTEST" smoke --port "$(program "program.py exits_in_destroy")"
+  [ "$status" -eq 1 ]
+  has "BAD"
+}
+
 @test "a program that does not answer is a timeout, and nothing of it is left" {
   judged "program.py hangs"
   [ "$status" -eq 1 ]

@@ -93,12 +93,24 @@ def of_step(mode, request, payload, earlier):
     return right
 
 
+# What a mode does at a request that is not a step; the result that it answers, or None.
+def of_other(mode, kind):
+    if kind == port.DESTROY and mode == "exits_in_destroy":
+        sys.exit(5)
+    if kind == port.DESTROY and mode == "destroy_fails":
+        return port.RESULT.pack(3)
+    if kind == port.CREATE and mode == "create_fails":
+        return port.RESULT.pack(3)
+    return None
+
+
 def serve(mode, requests, answers):
     program, steps, earlier = port.Program(), 0, b""
     while len(header := requests.read(port.HEADER.size)) == port.HEADER.size:
         request = port.HEADER.unpack(header)
         size, kind, unit, _ = request
         payload = program.functions[kind](unit, requests.read(size))
+        payload = of_other(mode, kind) or payload
         steps += kind == port.STEP
         is_special = kind == port.STEP and steps == 20
         frame = of_step(mode, request, payload, earlier) if is_special else answer(request, payload)
