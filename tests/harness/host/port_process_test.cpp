@@ -44,18 +44,6 @@ Trace pitching() {
   return stimulate(the_case, Rate::hz(250));
 }
 
-std::vector<attest_outputs> outputs_of(const Trace& trace) {
-  std::vector<attest_outputs> outputs;
-  for (const Sample& sample : trace.samples) outputs.push_back(sample.out);
-  return outputs;
-}
-
-template <typename T>
-bool same_bits(const std::vector<T>& one, const std::vector<T>& other) {
-  return one.size() == other.size() &&
-         std::memcmp(one.data(), other.data(), one.size() * sizeof(T)) == 0;
-}
-
 // Compared by channel, because the padding of a struct has no meaning.
 bool same_samples(const std::vector<Sample>& one, const std::vector<Sample>& other) {
   return std::equal(
@@ -77,7 +65,7 @@ TEST(PortProcess, DrivesAsHere) {
     const auto host = host_of(port);
     for (int twice = 0; twice < 2; ++twice) {
       EXPECT_FALSE(host->drive(unit, apart));
-      EXPECT_TRUE(same_bits(outputs_of(here), outputs_of(apart))) << port;
+      EXPECT_TRUE(same_samples(here.samples, apart.samples)) << port;
     }
     EXPECT_NE(here.samples[5].out.actuator_controls_0.control[1], 0);
     EXPECT_EQ(apart.parameters, here.parameters);
