@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "harness/process/child.hpp"
+
 namespace attest {
 namespace {
 
@@ -50,7 +52,8 @@ TEST(PaintedStack, WorkThatDoesNothingUsesNothing) {
   auto stack = PaintedStack::make();
   ASSERT_TRUE(stack);
   stack->run([] {});
-  EXPECT_LE(stack->used(), 96u);
+  // Of the test's own, unoptimised call; a sanitizer adds to it.
+  EXPECT_LE(stack->used(), memory_is_limited() ? 96u : 128u);
 }
 
 }  // namespace
