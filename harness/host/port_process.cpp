@@ -35,10 +35,7 @@ void serve(const HostOptions& options, const Course& course, const PortCalls& ca
     try {
       goes_on = answer({question.head, blobs, request}, **host, judge);
     } catch (const PortBroke& broke) {  // by a program, when it made a unit
-      const bool has_ended = broke.how() == PortBroke::How::ended;
-      goes_on = give_fault(
-          {has_ended ? PortFault::Kind::crash : PortFault::Kind::protocol, 0, broke.what()},
-          request, judge);
+      goes_on = give_fault(fault_of(broke), request, judge);
     }
   }
 }
@@ -276,6 +273,10 @@ Result<PortDescription> describe_port(const HostOptions& options,
     const bool supports = (*host)->supports(profile);
     if (const auto& fault = (*host)->fault()) {
       description.goes_wrong = fmt::format("profile {}: {}", profile, fault->what);
+      break;
+    }
+    if (std::string changed = change(description, (*host)->says()); !changed.empty()) {
+      description.goes_wrong = fmt::format("profile {}: {}", profile, changed);
       break;
     }
     if (supports) {

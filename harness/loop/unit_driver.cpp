@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "harness/port/module_place.hpp"
+
 namespace attest {
 namespace {
 
@@ -42,32 +44,19 @@ std::optional<PortFault> unless_broken(std::size_t tick, std::string_view or_lat
   try {
     return work();
   } catch (const PortBroke& broke) {
-    const bool has_ended = broke.how() == PortBroke::How::ended;
-    return PortFault{has_ended ? Kind::crash : Kind::protocol, tick,
-                     fmt::format("at tick {}{}: {}", tick, or_later, broke.what())};
+    PortFault fault = fault_of(broke);
+    fault.tick = tick;
+    fault.what = fmt::format("at tick {}{}: {}", tick, or_later, broke.what());
+    return fault;
   }
 }
 
-// Where in a sample the inputs and outputs of a module are.
-template <typename ModuleUnit>
-struct Place;
-template <>
-struct Place<Unit> {
-  static constexpr auto in = &Sample::in;
-  static constexpr auto out = &Sample::out;
-};
-template <>
-struct Place<MixerUnit> {
-  static constexpr auto in = &Sample::mixer_in;
-  static constexpr auto out = &Sample::mixer_out;
-};
-template <>
-struct Place<BatteryUnit> {
-  static constexpr auto in = &Sample::battery_in;
-  static constexpr auto out = &Sample::battery_out;
-};
-
 }  // namespace
+
+PortFault fault_of(const PortBroke& broke) {
+  const bool has_ended = broke.how() == PortBroke::How::ended;
+  return {has_ended ? Kind::crash : Kind::protocol, 0, broke.what()};
+}
 
 template <typename ModuleUnit>
 ModuleDriver<ModuleUnit>::ModuleDriver(ModuleUnit& unit) : unit_(unit) {
@@ -112,13 +101,13 @@ std::optional<PortFault> ModuleDriver<ModuleUnit>::step_all(std::size_t tick,
   std::vector<Inputs> in;
   std::vector<std::uint64_t> timestamps_us;
   for (const Sample& sample : samples) {
-    in.push_back(sample.*Place<ModuleUnit>::in);
+    in.push_back(sample.*ModulePlace<ModuleUnit>::in);
     timestamps_us.push_back(sample.in.timestamp);
   }
   std::vector<Outputs> out(samples.size());
   out.front() = exchange_.out;
   const Batched batched = unit_.batch(in, out, timestamps_us);
-  for (std::size_t i = 0; i < batched.done; ++i) samples[i].*Place<ModuleUnit>::out = out[i];
+  for (std::size_t i = 0; i < batched.done; ++i) samples[i].*ModulePlace<ModuleUnit>::out = out[i];
   if (batched.done > 0) exchange_.out = out[batched.done - 1];
   const std::size_t next = tick + batched.done;
   return fault_of(batched.result, next, fmt::format("step at tick {}", next));
@@ -127,7 +116,7 @@ std::optional<PortFault> ModuleDriver<ModuleUnit>::step_all(std::size_t tick,
 template <typename ModuleUnit>
 std::optional<PortFault> ModuleDriver<ModuleUnit>::step_once(
     std::size_t tick, Sample& sample, std::optional<std::uint64_t> timestamp_sample_us) {
-  const Inputs& given = sample.*Place<ModuleUnit>::in;
+  const Inputs& given = sample.*ModulePlace<ModuleUnit>::in;
   exchange_.in = given;
   if (const int code = tell_time(given, timestamp_sample_us); code != ATTEST_OK) {
     return fault_of(code, tick, fmt::format("set_timestamp_sample at tick {}", tick));
@@ -136,7 +125,7 @@ std::optional<PortFault> ModuleDriver<ModuleUnit>::step_once(
     return fault_of(code, tick, fmt::format("step at tick {}", tick));
   }
   if (auto fault = broken_rule(given, tick)) return fault;
-  sample.*Place<ModuleUnit>::out = exchange_.out;
+  sample.*ModulePlace<ModuleUnit>::out = exchange_.out;
   return std::nullopt;
 }
 

@@ -30,6 +30,9 @@ struct PortFault {
   std::string what;      // one line
 };
 
+// A crash or a broken protocol, at tick 0.
+PortFault fault_of(const PortBroke& broke);
+
 // ModuleUnit is Unit, MixerUnit or BatteryUnit.
 template <typename ModuleUnit>
 class ModuleDriver {

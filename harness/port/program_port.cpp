@@ -8,16 +8,14 @@
 #include <wordexp.h>
 
 #include "harness/port/conversation.hpp"
+#include "harness/port/module_place.hpp"
 #include "harness/process/program.hpp"
 
 namespace attest {
 namespace {
 
-// The structs of a module: where they are in a sample, and how an answer changes the outputs of the
-// step before. Fields of a topic that is not published keep their value.
-template <typename Base>
-struct ModuleOf;
-
+// Changes the outputs of the step before into those that were answered. Fields of a topic that is
+// not published keep their value.
 template <typename Topic>
 void take_topic(const Topic& answered, Topic& out) {
   if (answered.published != 0) {
@@ -27,35 +25,17 @@ void take_topic(const Topic& answered, Topic& out) {
   }
 }
 
-template <>
-struct ModuleOf<Unit> {
-  static constexpr auto in = &Sample::in;
-  static constexpr auto out = &Sample::out;
-  static constexpr Module module = Module::mc_att_control;
-  static void take(const attest_outputs& answered, attest_outputs& out) {
-    take_topic(answered.vehicle_rates_setpoint, out.vehicle_rates_setpoint);
-    take_topic(answered.actuator_controls_0, out.actuator_controls_0);
-    take_topic(answered.mc_att_ctrl_status, out.mc_att_ctrl_status);
-  }
-};
-template <>
-struct ModuleOf<MixerUnit> {
-  static constexpr auto in = &Sample::mixer_in;
-  static constexpr auto out = &Sample::mixer_out;
-  static constexpr Module module = Module::mixer;
-  static void take(const attest_mixer_outputs& answered, attest_mixer_outputs& out) {
-    out = answered;
-  }
-};
-template <>
-struct ModuleOf<BatteryUnit> {
-  static constexpr auto in = &Sample::battery_in;
-  static constexpr auto out = &Sample::battery_out;
-  static constexpr Module module = Module::battery_status;
-  static void take(const attest_battery_outputs& answered, attest_battery_outputs& out) {
-    out = answered;
-  }
-};
+void take(const attest_outputs& answered, attest_outputs& out) {
+  take_topic(answered.vehicle_rates_setpoint, out.vehicle_rates_setpoint);
+  take_topic(answered.actuator_controls_0, out.actuator_controls_0);
+  take_topic(answered.mc_att_ctrl_status, out.mc_att_ctrl_status);
+}
+
+// Mixer and battery estimate have no topic that they may leave out.
+template <typename Outputs>
+void take(const Outputs& answered, Outputs& out) {
+  out = answered;
+}
 
 // Shared by the port and its units, because a unit may outlive the conversation of its port.
 using Talk = std::shared_ptr<Conversation>;
@@ -65,7 +45,7 @@ class ProgramUnit : public Base {
  public:
   using typename Base::Inputs;
   using typename Base::Outputs;
-  using Its = ModuleOf<Base>;
+  using Its = ModulePlace<Base>;
 
   ProgramUnit(Talk talk, std::uint32_t number) : talk_(std::move(talk)), number_(number) {}
   ~ProgramUnit() override { talk_->destroy_quietly(number_); }
@@ -80,7 +60,7 @@ class ProgramUnit : public Base {
     set(step_, in, timestamp_sample_us_);
     step_.sample.*Its::out = out;
     const int result = talk_->step(number_, Its::module, step_);
-    if (result == ATTEST_OK) Its::take(step_.sample.*Its::out, out);
+    if (result == ATTEST_OK) take(step_.sample.*Its::out, out);
     return result;
   }
 
@@ -96,7 +76,7 @@ class ProgramUnit : public Base {
     batched.result = talk_->batch(number_, Its::module, batch_, batched.done);
     for (std::size_t i = 0; i < batched.done; ++i) {
       if (i > 0) out[i] = out[i - 1];
-      Its::take(batch_[i].sample.*Its::out, out[i]);
+      take(batch_[i].sample.*Its::out, out[i]);
     }
     return batched;
   }

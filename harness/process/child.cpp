@@ -20,6 +20,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "harness/core/sanitizers.hpp"
+
 namespace attest {
 namespace {
 
@@ -83,19 +85,7 @@ void keep_only(int nothing, int output, int socket) {
 
 }  // namespace
 
-bool memory_is_limited() {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  return false;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-  return false;
-#else
-  return true;
-#endif
-#else
-  return true;
-#endif
-}
+bool memory_is_limited() { return !built_with_sanitizers; }
 
 Result<Child> Child::spawn(Runs runs, const std::function<void(MessageSocket&)>& work) {
   // All files are opened before the fork, so that a failure is not attributed to the work.

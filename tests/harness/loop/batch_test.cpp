@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/loop/open_loop.hpp"
+#include "tests/harness/loop/numbered_trace.hpp"
 
 namespace attest {
 namespace {
@@ -17,16 +18,6 @@ namespace {
 using testing::ElementsAre;
 
 using Kind = PortFault::Kind;
-
-Trace numbered(std::size_t ticks) {
-  Trace trace;
-  for (std::size_t tick = 0; tick < ticks; ++tick) {
-    Sample sample{};
-    sample.in.timestamp = tick;
-    trace.samples.push_back(sample);
-  }
-  return trace;
-}
 
 // Takes at most three steps in a batch. Its output is the sum of the one before and the time.
 class FakeProgram final : public Unit {
@@ -64,7 +55,7 @@ std::vector<float> rolls(const Trace& trace) {
 
 TEST(DriveInBatches, EndsABatchWhereAParameterChanges) {
   FakeProgram unit;
-  Trace trace = numbered(6);
+  Trace trace = trace_of(6);
   trace.parameters = {{0, "A", 1}, {4, "A", 2}};
   EXPECT_FALSE(drive(unit, trace));
   EXPECT_THAT(unit.calls, ElementsAre("A=1", "batch 0..2", "batch 3..3", "A=2", "batch 4..5"));
@@ -72,7 +63,7 @@ TEST(DriveInBatches, EndsABatchWhereAParameterChanges) {
 
 TEST(DriveInBatches, GivesEachStepTheOutputsOfTheOneBefore) {
   FakeProgram unit;
-  Trace trace = numbered(5);
+  Trace trace = trace_of(5);
   EXPECT_FALSE(drive(unit, trace));
   EXPECT_THAT(rolls(trace), ElementsAre(0, 1, 3, 6, 10));
 }
@@ -80,7 +71,7 @@ TEST(DriveInBatches, GivesEachStepTheOutputsOfTheOneBefore) {
 TEST(DriveInBatches, KeepsTheOutputsBeforeTheStepThatFailed) {
   FakeProgram unit;
   unit.fails_at = 4;
-  Trace trace = numbered(6);
+  Trace trace = trace_of(6);
   const auto fault = drive(unit, trace);
   ASSERT_TRUE(fault);
   EXPECT_EQ(fault->kind, Kind::failed);
@@ -92,7 +83,7 @@ TEST(DriveInBatches, KeepsTheOutputsBeforeTheStepThatFailed) {
 TEST(DriveInBatches, TheEndOfAProgramIsACrashAtTheBatch) {
   FakeProgram unit;
   unit.ends_at = 5;
-  Trace trace = numbered(6);
+  Trace trace = trace_of(6);
   const auto fault = drive(unit, trace);
   ASSERT_TRUE(fault);
   EXPECT_EQ(fault->kind, Kind::crash);

@@ -10,6 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/harness/loop/numbered_trace.hpp"
+
 namespace attest {
 namespace {
 
@@ -41,16 +43,6 @@ class FakeUnit final : public Unit {
  private:
   Step step_;
 };
-
-Trace trace_of(std::size_t ticks) {
-  Trace trace;
-  for (std::size_t tick = 0; tick < ticks; ++tick) {
-    Sample sample{};
-    sample.in.timestamp = tick;
-    trace.samples.push_back(sample);
-  }
-  return trace;
-}
 
 // The fault of a unit whose step at tick 1 returns `code`.
 std::optional<PortFault> fault_of_code(int code) {

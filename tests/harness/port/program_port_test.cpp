@@ -5,11 +5,12 @@
 #include <array>
 #include <cstdlib>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "harness/port/hello.hpp"
 
@@ -66,7 +67,6 @@ TEST(ParseHello, TakesAllThatAPortMaySay) {
   EXPECT_EQ(hello->fixed_step->to_string(), "1000/3");
 }
 
-// tests/cli/programs.bats has the other errors.
 TEST(ParseHello, EveryPrefixOfAnAnswerIsAnError) {
   const std::string whole =
       R"({"protocol":1,"name":"n","version":"2","profiles":["px4-v1.5.5"],"frames":"text"})";
@@ -76,13 +76,33 @@ TEST(ParseHello, EveryPrefixOfAnAnswerIsAnError) {
   }
 }
 
-TEST(ParseHello, RefusesAnotherVersionOfTheProtocol) {
-  for (const int version : {0, 2}) {
-    const auto hello = parse_hello(fmt::format(
-        R"({{"protocol":{},"name":"n","version":"2","profiles":[],"frames":"text"}})", version));
-    ASSERT_FALSE(hello) << version;
-    EXPECT_THAT(hello.error().message, HasSubstr("this attest speaks 1"));
-  }
+// The error of an answer in which `member` replaces or follows those of a right one.
+std::string wrong_with(const std::string& member, const std::string& value) {
+  nlohmann::json hello = {{"protocol", 1},
+                          {"name", "n"},
+                          {"version", "2"},
+                          {"profiles", nlohmann::json::array()},
+                          {"frames", "text"}};
+  hello[member] = nlohmann::json::parse(value);
+  const auto parsed = parse_hello(hello.dump());
+  return parsed ? "none" : parsed.error().message;
+}
+
+TEST(ParseHello, SaysWhichMemberIsWrong) {
+  EXPECT_EQ(wrong_with("name", "\"m\""), "none");
+  EXPECT_THAT(wrong_with("protocol", "0"), HasSubstr("has `protocol` 0; this attest speaks 1"));
+  EXPECT_THAT(wrong_with("protocol", "2"), HasSubstr("has `protocol` 2; this attest speaks 1"));
+  EXPECT_THAT(wrong_with("protocol", "\"1\""),
+              HasSubstr("has `protocol` = \"1\"; it is the version"));
+  EXPECT_THAT(wrong_with("arithmetic", "\"fixed:5\""), HasSubstr("its arithmetic is `fixed:5`"));
+  EXPECT_THAT(wrong_with("fixed_step", "\"0\""), HasSubstr("its fixed step: "));
+  EXPECT_THAT(wrong_with("modules", "[\"gimbal\"]"), HasSubstr("has the module `gimbal`"));
+  EXPECT_THAT(wrong_with("frames", "\"xml\""), HasSubstr("has `frames` = `xml`"));
+  EXPECT_THAT(wrong_with("batch", "true"), HasSubstr("`batch`, which only binary frames have"));
+  EXPECT_THAT(wrong_with("fixed_setp", "\"250\""), HasSubstr("did you mean `fixed_step`?"));
+  EXPECT_THAT(parse_hello("[1]").error().message, HasSubstr("is `[1]`, which is no JSON object"));
+  EXPECT_THAT(parse_hello(R"({"protocol":1})").error().message,
+              HasSubstr("lacks `name`, which is the name of the port"));
 }
 
 attest_inputs level_and_rolling() {
@@ -157,17 +177,27 @@ std::string wrong_answer_of(const std::string& program) {
 }
 
 TEST(ProgramPort, AnAnswerThatBreaksTheRulesIsNotTaken) {
-  EXPECT_EQ(wrong_answer_of("program.py right"), "none");
-  EXPECT_THAT(wrong_answer_of("program.py garbage"), HasSubstr("no header of a frame"));
-  EXPECT_THAT(wrong_answer_of("program.py huge"), HasSubstr("a payload of 4294967295 bytes"));
-  EXPECT_THAT(wrong_answer_of("program.py short"), HasSubstr("72 bytes instead of 76"));
-  EXPECT_THAT(wrong_answer_of("program.py stale"), HasSubstr("sequence number 20; they must be"));
-  EXPECT_THAT(wrong_answer_of("program.py wrong_unit"), HasSubstr("unit 99"));
-  EXPECT_THAT(wrong_answer_of("program.py wrong_kind"), HasSubstr("has kind 1"));
-  EXPECT_EQ(wrong_answer_of("in_text.py"), "none");
-  EXPECT_THAT(wrong_answer_of("in_text.py stale"), HasSubstr("sequence number 20"));
-  EXPECT_THAT(wrong_answer_of("in_text.py unknown_output"), HasSubstr("no output of that module"));
-  EXPECT_THAT(wrong_answer_of("in_text.py half_a_flag"), HasSubstr("no value of that signal"));
+  const std::pair<const char*, const char*> answers[] = {
+      {"program.py right", "none"},
+      {"program.py garbage", "which are no header of a frame"},
+      {"program.py prints", "begins with the bytes `roll = 0.3"},
+      {"program.py huge", "has a payload of 4294967295 bytes instead of 76"},
+      {"program.py short", "has a payload of 72 bytes instead of 76"},
+      {"program.py stale", "sequence number 20; they must be those of the request: 4, 1, 21"},
+      {"program.py wrong_unit", "has kind 4, unit 99"},
+      {"program.py wrong_kind", "has kind 1, unit 1"},
+      {"in_text.py", "none"},
+      {"in_text.py no_object", "is `[1]`; it must be a JSON object with `sequence` and `result`"},
+      {"in_text.py no_sequence", "it must be a JSON object with `sequence` and `result`"},
+      {"in_text.py stale", "has the sequence number 20; that of the request is 21"},
+      {"in_text.py other_result", "has the result \"fine\""},
+      {"in_text.py unknown_output", "has `out/roll`, which is no output of that module"},
+      {"in_text.py text_for_number", "roll` = \"0.1\", which is no value of that signal"},
+      {"in_text.py half_a_flag", "published` = 0.5, which is no value of that signal"},
+  };
+  for (const auto& [program, wrong] : answers) {
+    EXPECT_THAT(wrong_answer_of(program), HasSubstr(wrong)) << program;
+  }
 }
 
 // The outputs that a program gives for unpublished topics do not matter.
