@@ -145,19 +145,30 @@ Result<std::vector<faults::Profile>> chosen_profiles(const FaultOptions& options
   return profiles;
 }
 
+// Those of `faults` that at least one of `profiles` can tell from the law.
+std::vector<const Fault*> detectable(std::vector<const Fault*> faults,
+                                     const std::vector<faults::Profile>& profiles) {
+  std::erase_if(faults, [&](const Fault* fault) {
+    return std::none_of(profiles.begin(), profiles.end(),
+                        [&](faults::Profile profile) { return fault->is_detectable(profile); });
+  });
+  return faults;
+}
+
 }  // namespace
 
 int faults_command(const FaultOptions& options, const Globals& globals) {
-  if (options.list) {
-    fmt::print("{}", render_fault_list());
-    return exit_ok;
-  }
-  const auto suite = find_suite(globals.suite);
-  if (!suite) return report_error(suite.error());
   const auto faults = chosen(options);
   if (!faults) return report_error(faults.error());
   const auto profiles = chosen_profiles(options);
   if (!profiles) return report_error(profiles.error());
+  if (options.list) {
+    fmt::print("{}", render_fault_list(options.profiles.empty() ? *faults
+                                                                : detectable(*faults, *profiles)));
+    return exit_ok;
+  }
+  const auto suite = find_suite(globals.suite);
+  if (!suite) return report_error(suite.error());
   note_interrupts();
   int worst = exit_ok;
   for (const faults::Profile profile : *profiles) {

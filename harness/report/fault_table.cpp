@@ -118,9 +118,9 @@ std::string render_fault_table(const std::vector<FaultFinding>& findings) {
   return out;
 }
 
-std::string render_fault_list() {
+std::string render_fault_list(const std::vector<const faults::Fault*>& faults) {
   std::string out;
-  for (const faults::Fault* fault : faults::catalogue()) {
+  for (const faults::Fault* fault : faults) {
     std::string profiles;
     for (const std::string_view name : reference::profile_names()) {
       if (!fault->is_detectable(*reference::profile_from_name(name))) continue;

@@ -34,6 +34,6 @@ FaultSummary summary_of(const std::vector<FaultFinding>& findings);
 std::string render_fault_table(const std::vector<FaultFinding>& findings);
 
 // One line per fault: id, group, stage, profiles in which it is detectable, description.
-std::string render_fault_list();
+std::string render_fault_list(const std::vector<const faults::Fault*>& faults);
 
 }  // namespace attest

@@ -1,8 +1,11 @@
 load common
 
+# ci/quality also runs the faults of parts of the law that px4-v1.3.4 does not have: they must pass
+# every case, which takes three times as long as all the others together.
 @test "every detectable fault is caught, by a case of its own group" {
   for profile in px4-v1.5.5 px4-v1.3.4; do
-    run "$ATTEST" faults --profile "$profile"
+    run "$ATTEST" faults --profile "$profile" \
+      $("$ATTEST" faults --list --profile "$profile" | cut -d " " -f 1)
     [ "$status" -eq 0 ]
     has "$profile: "
     has "are caught (100.0%)"

@@ -5,6 +5,11 @@ load common
   [ "$status" -eq 0 ]
   [ "${#lines[@]}" -ge 150 ]
   has "quat-order-xyzw"
+  has "auto-by-velocity"
+  run "$ATTEST" faults --list --profile px4-v1.3.4
+  [ "$status" -eq 0 ]
+  has "quat-order-xyzw"
+  lacks "auto-by-velocity"
   run "$ATTEST" faults yaw-dropped tpa-missing
   [ "$status" -eq 0 ]
   has "px4-v1.5.5: 2 faults; 2 of 2"
