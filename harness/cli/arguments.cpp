@@ -148,20 +148,35 @@ void add_compare(CLI::App& app, const Globals& globals, Action& action) {
 void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<VectorOptions>();
   CLI::App* command = app.add_subcommand(
-      "vectors", "Write the inputs of the vectors as CSV, for a port that runs on other hardware");
+      "vectors",
+      "Write the inputs of the vectors to files, for a port that attest cannot call; `attest run "
+      "--port recorded:DIR` judges its outputs");
   CLI::Option* const folder =
-      command->add_option("folder", options->folder, "Where: DIR/PROFILE/GROUP/NAME/RATEhz.csv")
+      command
+          ->add_option("folder", options->folder,
+                       "Where: DIR/PROFILE/GROUP/NAME/RATEhz.csv, with DIR/manifest.toml")
           ->type_name("DIR");
+  CLI::Option* const lint = command->add_flag(
+      "--lint", options->lint,
+      "Write nothing; report numeric vectors that are too near to a decision of the law, "
+      "where correct controllers may differ");
+  lint->excludes(folder);
+  command->add_option("--format", options->format, "`csv`, `mat` (MATLAB) or `npy` (numpy)")
+      ->type_name("FORMAT")
+      ->capture_default_str()
+      ->excludes(lint);
   command
-      ->add_flag(
-          "--lint", options->lint,
-          "Write nothing; report numeric vectors that are too near to a decision of the law, "
-          "where correct controllers may differ")
-      ->excludes(folder);
+      ->add_option("--fixed-step", options->fixed_step,
+                   "For a port with a fixed sample time: only vectors with regular ticks at this "
+                   "rate, from one period after zero on")
+      ->type_name("HZ")
+      ->excludes(lint);
   add_selection(*command, options->select);
   add_examples(
       *command,
       {{"attest vectors DIR --group attitude --rate 250", "the inputs of some cases, a file each"},
+       {"attest vectors DIR --format mat --fixed-step 250",
+        "all that a Simulink model with a sample time of 4 ms can run"},
        {"attest vectors --lint", "is a vector too near to a decision of the law?"}});
   command->callback([options, &globals, &action] {
     if (!options->lint && options->folder.empty()) throw CLI::RequiredError("folder");

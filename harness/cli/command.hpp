@@ -158,6 +158,8 @@ int list_command(const ListOptions& options, const Globals& globals);
 struct VectorOptions {
   SelectionOptions select;
   std::string folder;
+  std::string format = "csv";
+  std::string fixed_step;  // as text; empty: none
   bool lint = false;
 };
 int vectors_command(const VectorOptions& options, const Globals& globals);

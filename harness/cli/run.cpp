@@ -8,6 +8,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/cli/command.hpp"
 #include "harness/cli/find_case.hpp"
@@ -25,6 +26,7 @@
 #include "harness/report/text.hpp"
 #include "harness/verify/case_job.hpp"
 #include "harness/verify/expected.hpp"
+#include "harness/verify/recorded_vectors.hpp"
 
 namespace attest::cli {
 namespace {
@@ -80,8 +82,24 @@ Result<void> ask_port(const std::vector<std::string>& profiles, RunPlan& plan) {
   plan.run.port_version = port->version;
   plan.run.fraction_bits = port->fraction_bits;
   plan.run.fixed_step = port->fixed_step;
+  plan.run.not_recorded = port->not_recorded;
   plan.host.hangs = port->hangs;
   if (port->hangs.empty()) plan.host.said = *port;
+  return {};
+}
+
+// Of a recorded port: whether its outputs are for the inputs of these cases.
+Result<void> check_recorded(const std::vector<SelectedCase>& cases, const RunPlan& plan) {
+  const auto folder = recorded_folder(plan.host.port);
+  if (!folder || !plan.host.said) return {};
+  const auto found = check_recorded_vectors(*folder, *plan.host.said, cases);
+  if (!found) return tl::unexpected(found.error());
+  fmt::print(stderr, "attest: note: {} of {} selected vectors have outputs in {}\n",
+             found->answered, found->selected, *folder);
+  if (!found->ignored.empty()) {
+    fmt::print(stderr, "attest: note: {}: these columns are ignored: {}\n", found->first,
+               fmt::join(found->ignored, ", "));
+  }
   return {};
 }
 
@@ -101,6 +119,7 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
   std::set<std::string> profiles;
   for (const SelectedCase& selected : *cases) profiles.insert(selected.the_case.profile);
   if (auto asked = ask_port({profiles.begin(), profiles.end()}, plan); !asked) return asked;
+  if (auto checked = check_recorded(*cases, plan); !checked) return checked;
   VehicleModels vehicle_models(suite.models());
   auto jobs = case_jobs(*cases, suite.golden(), vehicle_models,
                         {plan.run.level, options.save_traces}, plan.host);

@@ -65,7 +65,7 @@ void add_run_command(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand(
       "run", "Run a port through the cases and compare it with the golden traces");
-  add_port(*command, options->host.port);
+  add_port(*command, options->host.port, Ports::any);
   add_selection(*command, options->select);
   command->add_option("--shard", options->select.shard, "Only part I of N of the cases")
       ->type_name("I/N")
@@ -84,6 +84,8 @@ void add_run_command(CLI::App& app, const Globals& globals, Action& action) {
       *command,
       {{"attest run", "the built-in reference, all vectors"},
        {"attest run --port lib:./libmine.so", "your port"},
+       {"attest run --port recorded:DIR",
+        "outputs in files, for inputs that `attest vectors DIR` wrote"},
        {"attest run --port lib:./libmine.so --level exact --filter 'attitude/*@250hz'",
         "some vectors, to the bit"},
        {"attest run --port lib:./libmine.so --exclude 'flight*/*' --junit attest.junit.xml",

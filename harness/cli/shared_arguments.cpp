@@ -34,10 +34,22 @@ void add_examples(CLI::App& command, std::initializer_list<Example> examples) {
   command.footer(text);
 }
 
-void add_port(CLI::App& command, std::string& port) {
-  command.add_option("--port", port, fmt::format("{}; `builtin` is the reference", port_kinds))
-      ->type_name("PORT")
-      ->capture_default_str();
+void add_port(CLI::App& command, std::string& port, Ports accepted) {
+  const std::string kinds = accepted == Ports::any
+                                ? fmt::format("{}, `recorded:DIR`", callable_port_kinds)
+                                : callable_port_kinds;
+  CLI::Option* const option =
+      command.add_option("--port", port, fmt::format("{}; `builtin` is the reference", kinds))
+          ->type_name("PORT")
+          ->capture_default_str();
+  if (accepted == Ports::any) return;
+  option->check([](const std::string& given) -> std::string {
+    if (!recorded_folder(given)) return "";
+    return fmt::format(
+        "{}: this command must call the port, and the outputs of a recorded port are files; use "
+        "`attest run`",
+        given);
+  });
 }
 
 void add_timeout(CLI::App& command, double& timeout_s) {

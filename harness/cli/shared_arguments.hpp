@@ -40,7 +40,9 @@ void use_plain_flag_names(CLI::App& app);
 void add_selection(CLI::App& command, SelectionOptions& options);  // --filter and related
 CLI::Option* add_rates(CLI::App& command, std::vector<std::string>& rates, const char* what);
 void add_plant(CLI::App& command, std::string& vehicle, std::string& plant);
-void add_port(CLI::App& command, std::string& port);
+// A recorded port has outputs, but no functions: only `run` can judge it.
+enum class Ports { callable, any };
+void add_port(CLI::App& command, std::string& port, Ports accepted = Ports::callable);
 void add_timeout(CLI::App& command, double& timeout_s);
 void add_jobs(CLI::App& command, int& jobs, const char* what);  // default: one per CPU
 

@@ -317,14 +317,8 @@ Result<void> TomlFile::finish() const {
 
 struct TomlWriter::Impl {
   toml::table root;
-
-  template <typename Value>
-  void set(std::string_view table, std::string_view key, const Value& value) {
-    if (table.empty()) {
-      root.insert_or_assign(key, value);
-    } else {
-      root.emplace<toml::table>(table).first->second.as_table()->insert_or_assign(key, value);
-    }
+  toml::table& at(std::string_view table) {
+    return table.empty() ? root : *root.emplace<toml::table>(table).first->second.as_table();
   }
 };
 
@@ -332,13 +326,19 @@ TomlWriter::TomlWriter() : impl_(std::make_unique<Impl>()) {}
 TomlWriter::~TomlWriter() = default;
 
 void TomlWriter::set(std::string_view table, std::string_view key, std::string_view value) {
-  impl_->set(table, key, std::string(value));
+  impl_->at(table).insert_or_assign(key, std::string(value));
 }
 void TomlWriter::set(std::string_view table, std::string_view key, double value) {
-  impl_->set(table, key, value);
+  impl_->at(table).insert_or_assign(key, value);
 }
 void TomlWriter::set(std::string_view table, std::string_view key, std::int64_t value) {
-  impl_->set(table, key, value);
+  impl_->at(table).insert_or_assign(key, value);
+}
+void TomlWriter::set(std::string_view table, std::string_view key,
+                     const std::vector<std::string>& values) {
+  toml::array array;
+  for (const std::string& value : values) array.push_back(value);
+  impl_->at(table).insert_or_assign(key, array);
 }
 
 std::string TomlWriter::to_string() const {

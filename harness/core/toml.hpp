@@ -99,6 +99,7 @@ class TomlWriter {
   void set(std::string_view table, std::string_view key, std::string_view value);
   void set(std::string_view table, std::string_view key, double value);
   void set(std::string_view table, std::string_view key, std::int64_t value);
+  void set(std::string_view table, std::string_view key, const std::vector<std::string>& values);
 
   std::string to_string() const;
 

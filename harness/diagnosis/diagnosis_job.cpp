@@ -97,12 +97,13 @@ Result<VectorDiagnosis> DiagnosisJob::run(std::size_t) {
   if (!host) return tl::unexpected(host.error());
   const PortSays& port = (*host)->says();
   if (declines(port, case_.group)) return std::nullopt;
-  Trace law = stimulate(has_fixed_step(port, case_) ? case_.from_one_period_on() : case_, rate_);
+  Trace law = inputs_for(port, case_, rate_);
   Trace got = law;
   const Subject subject = subject_of(case_);
   if ((*host)->drive(subject, got)) return std::nullopt;
   const auto reference = open_builtin();
   if (drive(*reference, subject, law)) return std::nullopt;
+  if (port.is_recorded) fill_in(port.not_recorded, law, got);
   const Tolerances tolerances =
       tolerances_of(case_, Level::numeric, port.fraction_bits, law.samples.size());
   if (case_.either_branch.any()) {

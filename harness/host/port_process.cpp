@@ -9,6 +9,7 @@
 #include "harness/host/host_here.hpp"
 #include "harness/host/host_protocol.hpp"
 #include "harness/host/port_calls.hpp"
+#include "harness/host/recorded_host.hpp"
 #include "harness/process/child.hpp"
 
 namespace attest {
@@ -240,6 +241,7 @@ Result<std::unique_ptr<PortProcess>> start_process(const HostOptions& options,
 
 Result<std::unique_ptr<PortHost>> start_host(const HostOptions& options, const Course& course) {
   if (options.start) return options.start(options, course);
+  if (const auto folder = recorded_folder(options.port)) return open_recorded_host(*folder);
   if (options.in_process) return open_host_here(options.port, options.said, course);
   auto process = start_process(options, course);
   if (!process) return tl::unexpected(process.error());
@@ -257,6 +259,12 @@ Result<void> ensure_host(std::unique_ptr<PortHost>& host, const HostOptions& opt
 Result<PortDescription> describe_port(const HostOptions& options,
                                       const std::vector<std::string>& profiles) {
   PortDescription description;
+  if (const auto folder = recorded_folder(options.port)) {
+    const auto host = open_recorded_host(*folder);
+    if (!host) return tl::unexpected(host.error());
+    static_cast<PortSays&>(description) = (*host)->says();
+    return description;
+  }
   {
     const auto first = start_process(options, {});
     if (!first) return tl::unexpected(first.error());

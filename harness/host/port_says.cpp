@@ -51,8 +51,16 @@ PortFault no_unit_of(const std::string& profile, const PortSays& said) {
 }
 
 PortSays PortSays::asked(const Port& port) {
-  return {port.name(),       port.version(),   port.unsupported_groups(), port.fraction_bits(),
-          port.fixed_step(), port.has_mixer(), port.has_battery_status(), {}};
+  return {port.name(),
+          port.version(),
+          port.unsupported_groups(),
+          port.fraction_bits(),
+          port.fixed_step(),
+          port.has_mixer(),
+          port.has_battery_status(),
+          {},
+          false,
+          {}};
 }
 
 }  // namespace attest

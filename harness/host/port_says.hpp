@@ -18,6 +18,8 @@ struct PortSays {
   std::optional<Rate> fixed_step;    // of a port with a fixed sample time
   bool has_mixer = false, has_battery_status = false;
   std::vector<std::string> profiles;  // of which it made a unit; empty unless requested
+  bool is_recorded = false;           // its outputs are files; it cannot be called
+  ChannelSet not_recorded = {};       // outputs that these files do not have: not judged
 
   // Of a port that is loaded; the profiles stay empty.
   static PortSays asked(const Port& port);

@@ -24,6 +24,7 @@ struct PortFault {
     protocol,     // broke the rules of the ABI
     crash,        // its process died
     timeout,      // no answer in time
+    unanswered,   // by a recorded port, which cannot be called
   };
   Kind kind = Kind::failed;
   std::size_t tick = 0;  // of the judged trace: the ticks before it have outputs

@@ -54,11 +54,26 @@ std::vector<std::string> files_of_program(const std::string& command) {
   return files;
 }
 
+std::vector<std::string> files_below(const std::string& folder) {
+  std::vector<std::string> files;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, ignored)) {
+    if (entry.is_regular_file(ignored)) files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 }  // namespace
+
+std::optional<std::string> recorded_folder(const std::string& specification) {
+  return after("recorded:", specification);
+}
 
 std::vector<std::string> files_of(const std::string& specification) {
   if (auto library = after("lib:", specification)) return {*std::move(library)};
   if (const auto command = after("proc:", specification)) return files_of_program(*command);
+  if (const auto folder = recorded_folder(specification)) return files_below(*folder);
   return {};
 }
 
@@ -69,7 +84,7 @@ Result<std::unique_ptr<Port>> open_port(const std::string& specification) {
   if (const auto fault = after("fault:", specification)) return open_fault(*fault);
   if (const auto library = after("lib:", specification)) return open_shared_library(*library);
   if (const auto command = after("proc:", specification)) return open_program(*command);
-  return fail(fmt::format("unknown port `{}`; use {}", specification, port_kinds));
+  return fail(fmt::format("unknown port `{}`; use one of {}", specification, callable_port_kinds));
 }
 
 }  // namespace attest

@@ -2,8 +2,8 @@
 // instance of it.
 //
 // The kinds of port are `builtin` (the reference), `lib:PATH` (a shared library with the ABI of
-// attest_unit.h), `proc:COMMAND` (a program, PROTOCOL.md) and `fault:ID` (the reference with a
-// fault of the catalogue).
+// attest_unit.h), `proc:COMMAND` (a program, PROTOCOL.md), `recorded:DIR` (outputs in files, which
+// are judged without a call) and `fault:ID` (the reference with a fault of the catalogue).
 #pragma once
 
 #include <cstdint>
@@ -118,14 +118,20 @@ class Port {
 Result<int> parse_fraction_bits(std::string_view arithmetic);
 
 // The files of which a port consists: PATH of "lib:PATH"; of "proc:COMMAND" the program, and each
-// of its arguments that is a file. Empty for a port without files.
+// of its arguments that is a file; of "recorded:DIR" all files below DIR, sorted. Empty for a port
+// without files.
 std::vector<std::string> files_of(const std::string& specification);
 
 // True for "proc:COMMAND".
 bool is_program(const std::string& specification);
 
-// For help and messages.
-inline constexpr const char* port_kinds = "`builtin`, `lib:PATH`, `proc:COMMAND` or `fault:ID`";
+// For help and messages: the kinds that open_port() opens.
+inline constexpr const char* callable_port_kinds =
+    "`builtin`, `lib:PATH`, `proc:COMMAND`, `fault:ID`";
+
+// DIR of "recorded:DIR"; empty for other ports. open_port() does not open it, because it has no
+// functions to call: start_host() does.
+std::optional<std::string> recorded_folder(const std::string& specification);
 
 // Opens a port of one of these kinds. Loading a library runs its code, and a program may not
 // answer: a caller that must survive a bad port does this in a child process. Errors: unknown kind,

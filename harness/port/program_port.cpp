@@ -9,26 +9,17 @@
 
 #include "harness/port/conversation.hpp"
 #include "harness/port/module_place.hpp"
+#include "harness/port/published.hpp"
 #include "harness/process/program.hpp"
 
 namespace attest {
 namespace {
 
-// Changes the outputs of the step before into those that were answered. Fields of a topic that is
-// not published keep their value.
-template <typename Topic>
-void take_topic(const Topic& answered, Topic& out) {
-  if (answered.published != 0) {
-    out = answered;
-  } else {
-    out.published = 0;
-  }
-}
-
+// Changes the outputs of the step before into those that were answered.
 void take(const attest_outputs& answered, attest_outputs& out) {
-  take_topic(answered.vehicle_rates_setpoint, out.vehicle_rates_setpoint);
-  take_topic(answered.actuator_controls_0, out.actuator_controls_0);
-  take_topic(answered.mc_att_ctrl_status, out.mc_att_ctrl_status);
+  attest_outputs now = answered;
+  keep_unpublished(out, now);
+  out = now;
 }
 
 // Mixer and battery estimate have no topic that they may leave out.

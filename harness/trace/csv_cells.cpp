@@ -54,24 +54,27 @@ std::string in_backquotes(std::string_view text) {
   return fmt::format("`{}{}`", shown, text.size() > longest ? "..." : "");
 }
 
-std::string cell_error(std::string_view cell, ChannelType type, std::string_view column) {
+std::string cell_error(std::string_view cell, CellType type, std::string_view column) {
   const std::string shown = cell.empty() ? "an empty cell" : in_backquotes(cell);
   switch (type) {
-    case ChannelType::u64:
+    case CellType::u64:
       return fmt::format(
           "{} is not an integer for {}; write an integer from 0 to 18446744073709551615", shown,
           column);
-    case ChannelType::u8:
+    case CellType::u8:
       return fmt::format("{} is not a flag for {}; write an integer from 0 to 255", shown, column);
-    case ChannelType::bit:
+    case CellType::bit:
       return fmt::format("{} is not a bit for {}; write 0 or 1", shown, column);
-    case ChannelType::f32:
+    case CellType::f32:
+    case CellType::f64:
+    case CellType::ignored:
       break;
   }
   float value = 0;
   const char* const last = cell.data() + cell.size();
   const auto parsed = std::from_chars(cell.data(), last, value);
-  if (parsed.ec == std::errc::result_out_of_range && parsed.ptr == last) {
+  const bool is_too_large = parsed.ec == std::errc::result_out_of_range && parsed.ptr == last;
+  if (is_too_large && type == CellType::f32) {
     return fmt::format("{} is too large for {}, a 32-bit float; write inf or -inf for infinity",
                        shown, column);
   }

@@ -19,7 +19,7 @@ constexpr std::size_t timestamp_channel = 0;  // of channels()
 
 // A row in memory is a Sample and the values of the parameter columns.
 constexpr std::size_t parameters_offset = sizeof(Sample);
-constexpr CsvColumn ignored_column{ChannelType::f32, 0, 0, true};
+constexpr CsvColumn ignored_column{CellType::ignored, 0};
 
 struct Layout {
   std::vector<CsvColumn> columns;
@@ -44,11 +44,11 @@ Result<Layout> layout_of(const CsvRows& rows, TraceNeed need) {
     const std::string_view name = rows.header()[i];
     if (const auto index = find_channel(name)) {
       const Channel& channel = channels()[*index];
-      layout.columns.push_back({channel.type, channel.offset, channel.bit});
+      layout.columns.push_back({cell_type(channel.type), channel.offset, channel.bit});
       layout.present.set(*index);
     } else if (const auto parameter = parameter_of(name)) {
       const std::size_t offset = parameters_offset + sizeof(float) * layout.parameters.size();
-      layout.columns.push_back({ChannelType::f32, offset, 0});
+      layout.columns.push_back({CellType::f32, offset});
       layout.parameters.emplace_back(*parameter);
     } else if (name.starts_with(plant_prefix)) {
       layout.columns.push_back(ignored_column);

@@ -35,7 +35,7 @@ int place_of(std::string_view line, std::string_view cell) {
 
 }  // namespace
 
-Result<CsvRows> CsvRows::open(const std::filesystem::path& path) {
+Result<CsvRows> CsvRows::open(const std::filesystem::path& path, Unnamed unnamed) {
   CsvRows rows;
   rows.file_ = path.string();
   const auto opened = open_regular_file(path);
@@ -48,11 +48,11 @@ Result<CsvRows> CsvRows::open(const std::filesystem::path& path) {
   }
   std::setvbuf(rows.stream_.get(), nullptr, _IONBF, 0);  // buffer_ is the buffer
   rows.buffer_ = std::make_unique_for_overwrite<char[]>(buffer_size + 1);
-  if (const auto done = rows.read_header(); !done) return tl::unexpected(done.error());
+  if (const auto done = rows.read_header(unnamed); !done) return tl::unexpected(done.error());
   return rows;
 }
 
-Result<void> CsvRows::read_header() {
+Result<void> CsvRows::read_header(Unnamed unnamed) {
   const auto more = next_line();
   if (!more) return tl::unexpected(more.error());
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
@@ -62,7 +62,7 @@ Result<void> CsvRows::read_header() {
   }
   for (const std::string_view name : split(line_)) {
     const int place = place_of(line_, name);
-    if (name.empty()) {
+    if (name.empty() && unnamed == Unnamed::refused) {
       return fail_at(file_, "a column without a name; name it or remove the comma", 1, place);
     }
     if (std::find(header_.begin(), header_.end(), name) != header_.end()) {

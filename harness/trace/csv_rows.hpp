@@ -27,8 +27,11 @@ namespace attest {
 
 class CsvRows {
  public:
-  // Errors: unreadable file, no header, a repeated column, a column without a name.
-  static Result<CsvRows> open(const std::filesystem::path& path);
+  // A column of row numbers may have no name, if `unnamed` allows it. Errors: unreadable file, no
+  // header, a repeated column, a column without a name.
+  enum class Unnamed { refused, allowed };
+  static Result<CsvRows> open(const std::filesystem::path& path,
+                              Unnamed unnamed = Unnamed::refused);
 
   const std::string& file() const { return file_; }
   const std::vector<std::string>& header() const { return header_; }
@@ -53,7 +56,7 @@ class CsvRows {
   CsvRows() = default;
   Result<bool> next_line();
   Result<void> fill();
-  Result<void> read_header();
+  Result<void> read_header(Unnamed unnamed);
   bool parse_line(char* row) const;
   tl::unexpected<Error> diagnose(char* row) const;
   tl::unexpected<Error> fail_at_place(std::string_view place, std::string message) const;

@@ -5,6 +5,7 @@
 #include "harness/core/file.hpp"
 #include "harness/trace/csv.hpp"
 #include "harness/trace/csv_text.hpp"
+#include "harness/trace/parameter_values.hpp"
 #include "harness/trace/plant_columns.hpp"
 
 namespace attest {
@@ -49,27 +50,6 @@ void write_cell(const Channel& channel, const Sample& sample, CsvText& text) {
       return text.integer(static_cast<std::uint64_t>(value_of(channel, sample)));
   }
 }
-
-// The values of the parameter columns, tick by tick.
-class ParameterValues {
- public:
-  ParameterValues(const Trace& trace, const std::vector<std::string>& names)
-      : names_(names), pending_(trace.parameters), values_(names.size()) {}
-
-  const std::vector<float>& at(std::size_t tick) {
-    for (const ParameterChange& change : pending_.take_until(tick)) {
-      const auto name = std::find(names_.begin(), names_.end(), change.name);
-      if (name == names_.end()) continue;
-      values_[static_cast<std::size_t>(name - names_.begin())] = change.value;
-    }
-    return values_;
-  }
-
- private:
-  const std::vector<std::string>& names_;
-  PendingChanges pending_;
-  std::vector<float> values_;
-};
 
 std::vector<const Channel*> chosen(const ChannelSet& set, bool outputs) {
   std::vector<const Channel*> list;

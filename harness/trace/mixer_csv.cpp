@@ -66,7 +66,7 @@ Result<std::vector<CsvColumn>> columns_of(const CsvRows& rows, ChannelSet& prese
                                               in_backquotes(name), suggestion(name, names)));
     }
     const std::size_t index = *find_channel(named->channel);
-    columns.push_back({channels()[index].type, channels()[index].offset, 0});
+    columns.push_back({cell_type(channels()[index].type), channels()[index].offset});
     present.set(index);
   }
   return columns;

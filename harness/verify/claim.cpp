@@ -123,10 +123,22 @@ void say_what_was_not_run(const Groups& groups, const RunResult& run,
       fmt::format("{} not run", left_out == 1 ? "1 vector" : fmt::format("{} vectors", left_out)));
 }
 
+// "2 outputs not recorded (out/mc_att_ctrl_status.published, ...)"
+std::string outputs_without(const ChannelSet& not_recorded) {
+  std::vector<std::string_view> names;
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    if (not_recorded[i]) names.push_back(channels()[i].name);
+  }
+  return fmt::format("{} not recorded ({})",
+                     names.size() == 1 ? "1 output" : fmt::format("{} outputs", names.size()),
+                     fmt::join(names, ", "));
+}
+
 std::vector<std::string> missing_of(const Groups& groups, const RunResult& run) {
   std::vector<std::string> missing;
   if (!run.suite_is_released) missing.emplace_back("custom suite");
   if (!run.limits.own_process) missing.emplace_back("port not isolated: --in-process");
+  if (run.not_recorded.any()) missing.push_back(outputs_without(run.not_recorded));
   if (!run.timing.empty()) missing.emplace_back("at recorded times");
   if (run.fixed_step) {
     missing.push_back(fmt::format("fixed step of {} Hz", run.fixed_step->to_string()));

@@ -33,6 +33,7 @@ void run_and_judge(Trace& answered, const Expected& expected, const Subject& sub
                    const std::filesystem::path& saved_traces, CaseResult& result) {
   if (declines(host.says(), result)) return;
   const auto fault = host.drive(subject, answered);
+  if (host.says().is_recorded) fill_in(host.says().not_recorded, expected.want, answered);
   const Trace* want = &expected.want;
   Trace on_branch;
   if (fault && !leaves_ticks_to_judge(*fault)) {
@@ -45,6 +46,9 @@ void run_and_judge(Trace& answered, const Expected& expected, const Subject& sub
       want = &on_branch;
     }
     judge(compare(answered, *want, tolerances), result);
+    if (host.says().is_recorded && fails_a_run(result.verdict)) {
+      explain_recording(answered, *want, result);
+    }
     if (fault) judge_after(*fault, result);
   }
   if (!saves_traces(saved_traces, result)) return;

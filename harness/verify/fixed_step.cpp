@@ -39,6 +39,10 @@ bool has_fixed_step(const PortSays& port, const Case& the_case) {
   return the_case.module == Module::mc_att_control && port.fixed_step.has_value();
 }
 
+Trace inputs_for(const PortSays& port, const Case& the_case, const Rate& rate) {
+  return stimulate(has_fixed_step(port, the_case) ? the_case.from_one_period_on() : the_case, rate);
+}
+
 bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
                      CaseResult& result) {
   return has_other_steps(port, the_case, rate, unit_ticks(the_case, rate), result);

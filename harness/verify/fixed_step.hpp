@@ -18,6 +18,9 @@ namespace attest {
 // and battery estimates have no clock, so their cases are not shifted.
 bool has_fixed_step(const PortSays& port, const Case& the_case);
 
+// The inputs of a vector for this port: Case::from_one_period_on() if it has a fixed step.
+Trace inputs_for(const PortSays& port, const Case& the_case, const Rate& rate);
+
 // Whether the port has a fixed step that the case does not keep: another rate, ticks that are not
 // exactly periodic, or a `start_s` of the case's own. If so, the verdict becomes unsupported, with
 // the reason.

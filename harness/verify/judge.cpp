@@ -5,6 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "harness/compare/misrecording.hpp"
+#include "harness/recording/recorded_outputs.hpp"
+
 namespace attest {
 
 Tolerances tolerances_of(const Case& the_case, Level level, std::optional<int> fraction_bits,
@@ -21,6 +24,11 @@ bool declines(const PortSays& port, const std::string& group) {
 }
 
 bool declines(const PortSays& port, CaseResult& result) {
+  if (port.is_recorded && result.plant_configuration) {
+    result.verdict = Verdict::skip;
+    result.reason = "a recorded port does not fly: the inputs of a flight depend on its outputs";
+    return true;
+  }
   if (!declines(port, result.group)) return false;
   result.verdict = Verdict::unsupported;
   result.reason = fmt::format("the port declares that it does not do {}", result.group);
@@ -31,6 +39,7 @@ void judge(const PortFault& fault, CaseResult& result) {
   result.reason = fault.what;
   switch (fault.kind) {
     case PortFault::Kind::profile:
+    case PortFault::Kind::unanswered:
       result.verdict = Verdict::skip;
       return;
     case PortFault::Kind::unsupported:
@@ -58,6 +67,22 @@ void leave_out_from(std::size_t tick, const Trace& want, Trace& answered) {
   for (std::size_t i = tick; i < answered.samples.size(); ++i) {
     answered.samples[i].copy_outputs(want.samples[i]);
   }
+}
+
+void fill_in(const ChannelSet& not_recorded, const Trace& want, Trace& answered) {
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    if (!not_recorded[i]) continue;
+    for (std::size_t tick = 0; tick < answered.samples.size(); ++tick) {
+      set_value(channels()[i], answered.samples[tick], value_of(channels()[i], want.samples[tick]));
+    }
+  }
+  keep_unpublished(answered);
+}
+
+void explain_recording(const Trace& answered, const Trace& want, CaseResult& result) {
+  const std::string mistake = misrecording(answered, want);
+  if (mistake.empty()) return;
+  result.reason += fmt::format("{}{}", result.reason.empty() ? "" : "; ", mistake);
 }
 
 void judge_after(const PortFault& fault, CaseResult& result) {

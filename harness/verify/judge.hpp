@@ -16,8 +16,8 @@ namespace attest {
 Tolerances tolerances_of(const Case& the_case, Level level, std::optional<int> fraction_bits,
                          std::size_t ticks);
 
-// Whether the port declares that it does not support the result's group. If so, the verdict becomes
-// unsupported.
+// Whether the port declares that it does not support the result's group, or is recorded and the
+// result is of a flight. If so, the verdict becomes unsupported, or skip.
 bool declines(const PortSays& port, CaseResult& result);
 bool declines(const PortSays& port, const std::string& group);
 
@@ -29,6 +29,13 @@ bool leaves_ticks_to_judge(const PortFault& fault);
 
 // From `tick` on, `answered` gets the outputs of `want`, so that only the ticks before it decide.
 void leave_out_from(std::size_t tick, const Trace& want, Trace& answered);
+
+// Gives `answered` the outputs `not_recorded` of `want`, so that these are not judged, and nor are
+// the values of a topic at ticks where it is then not published.
+void fill_in(const ChannelSet& not_recorded, const Trace& want, Trace& answered);
+
+// Adds to the reason what mistake in the recording looks like this (misrecording.hpp).
+void explain_recording(const Trace& answered, const Trace& want, CaseResult& result);
 
 // Call after the ticks before the fault have been judged. A failure stays a failure; its reason
 // then names the fault too.

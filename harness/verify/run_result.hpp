@@ -30,6 +30,7 @@ struct RunResult {
   std::string port_version;
   std::optional<int> fraction_bits;  // of a port in fixed point
   std::optional<Rate> fixed_step;    // of a port with a fixed sample time
+  ChannelSet not_recorded;           // outputs that a recorded port does not have
   Level level = Level::numeric;
   std::vector<Rate> rates;          // selected, ascending
   std::string selection;            // the options that selected a part: "--group tpa"; or empty

@@ -13,8 +13,8 @@ MAX_FILE_LINES = 350
 
 # A folder of harness/ includes itself and those before it.
 HARNESS_ORDER = (
-    "core process workers schedule trace plant port compare casefile loop realtime host golden"
-    " verify diagnosis measure report cli".split()
+    "core process workers schedule trace plant port recording compare casefile loop realtime host"
+    " golden verify diagnosis measure report cli".split()
 )
 
 
@@ -91,6 +91,7 @@ _OWNED_BY_ONE = {
     "MuJoCo": re.compile(r'\s*#\s*include\s*[<"]mujoco/'),
     "SUNDIALS": re.compile(r'\s*#\s*include\s*[<"](?:arkode|nvector|sun\w+)/'),
     "dlopen": re.compile(r".*\bdlopen\s*\("),
+    "libmatio": re.compile(r'\s*#\s*include\s*[<"]matio\.h'),
     "toml++": re.compile(r'\s*#\s*include\s*[<"]toml(?:\+\+|plusplus)?[./]'),
 }
 

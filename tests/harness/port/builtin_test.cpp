@@ -63,7 +63,7 @@ TEST(OpenPort, NamesTheKindsThereAre) {
     const auto port = open_port(specification);
     ASSERT_FALSE(port) << specification;
     EXPECT_THAT(port.error().message,
-                HasSubstr("use `builtin`, `lib:PATH`, `proc:COMMAND` or `fault:ID`"));
+                HasSubstr("use one of `builtin`, `lib:PATH`, `proc:COMMAND`, `fault:ID`"));
   }
 }
 

@@ -1,0 +1,118 @@
+#include "harness/host/recorded_host.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "harness/recording/manifest.hpp"
+#include "harness/recording/recorded_outputs.hpp"
+#include "harness/recording/table_file.hpp"
+
+namespace attest {
+namespace {
+
+PortFault unanswered(std::string why) { return {PortFault::Kind::unanswered, 0, std::move(why)}; }
+
+PortFault unusable(const Error& error) { return {PortFault::Kind::protocol, 0, error.to_string()}; }
+
+std::string profile_of(const std::string& vector_id) {
+  return vector_id.substr(0, vector_id.find('/'));
+}
+
+PortSays said_by(const Manifest& manifest) {
+  PortSays says;
+  says.name = manifest.port_name;
+  says.version = manifest.port_version;
+  says.unsupported_groups = manifest.unsupported_groups;
+  says.fraction_bits = manifest.fraction_bits;
+  says.fixed_step = manifest.fixed_step;
+  says.has_mixer = says.has_battery_status = true;
+  says.is_recorded = true;
+  says.not_recorded = manifest.not_recorded;
+  for (const auto& [id, hash] : manifest.vectors) {
+    const std::string profile = profile_of(id);
+    if (says.profiles.empty() || says.profiles.back() != profile) says.profiles.push_back(profile);
+  }
+  return says;
+}
+
+class RecordedHost final : public PortHost {
+ public:
+  RecordedHost(std::filesystem::path folder, Manifest manifest)
+      : folder_(std::move(folder)), manifest_(std::move(manifest)), says_(said_by(manifest_)) {}
+
+  const PortSays& says() const override { return says_; }
+
+  std::optional<PortFault> drive(const Subject& subject, Trace& trace) override {
+    if (subject.instances != Instances::one) {
+      return unanswered("a recorded port has one instance; this case needs two");
+    }
+    const auto file = find_output_file(folder_, trace.source);
+    if (!file) return unusable(file.error());
+    if (!*file || !manifest_.vectors.contains(trace.source)) {
+      return unanswered("not answered: the folder has no outputs of this vector");
+    }
+    const auto table = read_table((*file)->path, (*file)->format, manifest_.column_order);
+    if (!table) return unusable(table.error());
+    auto set = set_recorded_outputs(*table, manifest_, (*file)->path.string(), trace);
+    if (!set) return unusable(set.error());
+    return std::nullopt;
+  }
+
+  Result<Flown> fly(const FlightPlan&) override {
+    Flown none;
+    none.fault = unanswered("a recorded port does not fly");
+    return none;
+  }
+
+  Result<StepTimes> time_steps(const std::string&, const Trace&, bool) override {
+    StepTimes none;
+    none.fault = unanswered("a recorded port cannot be timed");
+    return none;
+  }
+
+  bool supports(const std::string& profile) override {
+    return std::find(says_.profiles.begin(), says_.profiles.end(), profile) != says_.profiles.end();
+  }
+
+ private:
+  std::filesystem::path folder_;
+  Manifest manifest_;
+  PortSays says_;
+};
+
+bool has_outputs(const std::filesystem::path& folder, const Manifest& manifest) {
+  return std::any_of(manifest.vectors.begin(), manifest.vectors.end(), [&](const auto& vector) {
+    const auto file = find_output_file(folder, vector.first);
+    return !file || *file;  // several files are outputs, too
+  });
+}
+
+}  // namespace
+
+Result<std::unique_ptr<PortHost>> open_recorded_host(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(folder / manifest_name, ignored)) {
+    return fail_at(
+        folder.string(),
+        fmt::format("has no {}; `attest vectors DIR` writes it, with the inputs to answer",
+                    manifest_name));
+  }
+  auto manifest = read_manifest(folder);
+  if (!manifest) return tl::unexpected(manifest.error());
+  if (manifest->vectors.empty()) {
+    return fail_at((folder / manifest_name).string(), "has no vectors");
+  }
+  if (!has_outputs(folder, *manifest)) {
+    return fail_at(folder.string(),
+                   fmt::format("has no outputs; write those of {} to {}, for example",
+                               input_file(manifest->vectors.begin()->first, TableFormat::csv)
+                                   .replace_extension()
+                                   .string(),
+                               wanted_output_file(folder, manifest->vectors.begin()->first)));
+  }
+  return std::make_unique<RecordedHost>(folder, *std::move(manifest));
+}
+
+}  // namespace attest

@@ -1,0 +1,175 @@
+#include "harness/recording/manifest.hpp"
+
+#include <bit>
+#include <cstring>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "harness/core/file.hpp"
+#include "harness/core/suggestion.hpp"
+#include "harness/core/toml.hpp"
+#include "harness/port/port.hpp"
+
+namespace attest {
+namespace {
+
+constexpr const char* heading =
+    "# The inputs that `attest vectors` wrote, and how their outputs are to be read.\n"
+    "#\n"
+    "# Write the outputs for PROFILE/GROUP/NAME/RATE.csv next to it, as RATE.out.csv, "
+    "RATE.out.mat\n"
+    "# or RATE.out.npy: a column for each output channel (`attest list --channels`), a row for "
+    "each\n"
+    "# row of the inputs. A column `timestamp` is checked if there is one. Then:\n"
+    "#\n"
+    "#     attest run --port recorded:FOLDER\n"
+    "#\n"
+    "# You may change the values of these tables:\n"
+    "#\n"
+    "#     [port]     name, version; arithmetic = \"fixed:22\" of a port in fixed point;\n"
+    "#                unsupported_groups\n"
+    "#     [outputs]  time: the unit of `timestamp`, \"s\", \"ms\" or \"us\"; column_order of an "
+    "NPY\n"
+    "#                file without names; not_recorded: outputs that you do not have\n"
+    "#     [columns]  your name = \"its channel\", for columns that have other names\n"
+    "\n";
+
+std::vector<std::string> texts(const TomlTable& table, std::string_view key) {
+  return table.has(key) ? table.texts(key) : std::vector<std::string>{};
+}
+
+// The output channel with that name. An error at `key` if there is none.
+std::optional<std::size_t> output_named(const std::string& name, const TomlTable& table,
+                                        std::string_view key) {
+  const auto index = find_channel(name);
+  if (index && (channels()[*index].is_output() || name == "timestamp")) return index;
+  std::vector<std::string> names{"timestamp"};
+  for (const Channel& channel : channels()) {
+    if (channel.is_output()) names.emplace_back(channel.name);
+  }
+  table.error(key, fmt::format("no output channel `{}`{}; `attest list --channels` shows all", name,
+                               suggestion(name, names)));
+  return std::nullopt;
+}
+
+void read_port(const TomlTable& table, Manifest& manifest) {
+  manifest.port_name = table.text("name", manifest.port_name);
+  manifest.port_version = table.text("version", "");
+  manifest.unsupported_groups = texts(table, "unsupported_groups");
+  if (const std::string arithmetic = table.text("arithmetic", ""); !arithmetic.empty()) {
+    const auto bits = parse_fraction_bits(arithmetic);
+    if (bits) manifest.fraction_bits = *bits;
+    if (!bits) table.error("arithmetic", bits.error().message);
+  }
+  if (const std::string step = table.text("fixed_step_hz", ""); !step.empty()) {
+    const auto rate = Rate::parse(step);
+    if (rate) manifest.fixed_step = *rate;
+    if (!rate) table.error("fixed_step_hz", rate.error().message);
+  }
+}
+
+void read_outputs(const TomlTable& table, Manifest& manifest) {
+  manifest.time = table.text("time", manifest.time);
+  if (manifest.time != "s" && manifest.time != "ms" && manifest.time != "us") {
+    table.error("time", fmt::format("`{}` is no unit of time; write s, ms or us", manifest.time));
+  }
+  manifest.column_order = texts(table, "column_order");
+  for (const std::string& name : texts(table, "not_recorded")) {
+    if (const auto index = output_named(name, table, "not_recorded")) {
+      manifest.not_recorded.set(*index);
+    }
+  }
+}
+
+}  // namespace
+
+Result<Manifest> read_manifest(const std::filesystem::path& folder) {
+  const auto toml = TomlFile::read(folder / manifest_name);
+  if (!toml) return tl::unexpected(toml.error());
+  const TomlTable root = toml->root();
+  Manifest manifest;
+  if (root.has("port")) read_port(root.table("port"), manifest);
+  if (root.has("outputs")) read_outputs(root.table("outputs"), manifest);
+  if (root.has("columns")) {
+    const TomlTable table = root.table("columns");
+    for (const std::string& name : table.keys()) {
+      manifest.columns[name] = table.text(name);
+      output_named(manifest.columns[name], table, name);
+    }
+  }
+  const TomlTable vectors = root.table("vectors");
+  for (const std::string& id : vectors.keys()) manifest.vectors[id] = vectors.text(id);
+  if (auto done = toml->finish(); !done) return tl::unexpected(done.error());
+  return manifest;
+}
+
+Result<void> write_manifest(const std::filesystem::path& folder, const Manifest& manifest) {
+  TomlWriter toml;
+  toml.set("port", "name", manifest.port_name);
+  toml.set("port", "version", manifest.port_version);
+  toml.set("port", "unsupported_groups", manifest.unsupported_groups);
+  const std::string arithmetic =
+      manifest.fraction_bits ? fmt::format("fixed:{}", *manifest.fraction_bits) : "";
+  toml.set("port", "arithmetic", arithmetic);
+  if (manifest.fixed_step) toml.set("port", "fixed_step_hz", manifest.fixed_step->to_string());
+  toml.set("outputs", "time", manifest.time);
+  toml.set("outputs", "column_order", manifest.column_order);
+  std::vector<std::string> not_recorded;
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    if (manifest.not_recorded[i]) not_recorded.emplace_back(channels()[i].name);
+  }
+  toml.set("outputs", "not_recorded", not_recorded);
+  for (const auto& [name, channel] : manifest.columns) toml.set("columns", name, channel);
+  for (const auto& [id, hash] : manifest.vectors) toml.set("vectors", id, hash);
+  return write_file(folder / manifest_name, heading + toml.to_string());
+}
+
+std::string sha256_of_inputs(const Trace& trace) {
+  std::string bytes;
+  for (const Column& column : inputs_of(trace)) {
+    bytes += column.name;
+    for (const double value : column.values) {
+      const auto bits = std::bit_cast<std::uint64_t>(value);
+      bytes.append(reinterpret_cast<const char*>(&bits), sizeof bits);
+    }
+  }
+  return sha256(bytes);
+}
+
+namespace {
+
+// PROFILE/GROUP/NAME/RATE: the files of a vector without their extension.
+std::string stem_of(const std::string& vector_id) {
+  std::string stem = vector_id;
+  if (const std::size_t at = stem.rfind('@'); at != std::string::npos) stem[at] = '/';
+  return stem;
+}
+
+}  // namespace
+
+std::filesystem::path input_file(const std::string& vector_id, TableFormat format) {
+  return fmt::format("{}.{}", stem_of(vector_id), name_of(format));
+}
+
+std::string wanted_output_file(const std::filesystem::path& folder, const std::string& vector_id) {
+  return (folder / (stem_of(vector_id) + ".out.csv")).string();
+}
+
+Result<std::optional<OutputFile>> find_output_file(const std::filesystem::path& folder,
+                                                   const std::string& vector_id) {
+  std::optional<OutputFile> found;
+  for (const TableFormat format : table_formats) {
+    const auto path = folder / fmt::format("{}.out.{}", stem_of(vector_id), name_of(format));
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) continue;
+    if (found) {
+      return fail_at(found->path.string(),
+                     fmt::format("there is also {}; remove one of them", path.string()));
+    }
+    found = OutputFile{path, format};
+  }
+  return found;
+}
+
+}  // namespace attest

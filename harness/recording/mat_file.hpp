@@ -1,0 +1,18 @@
+// Tables in MAT files. Only mat_file.cpp uses libmatio.
+#pragma once
+
+#include <filesystem>
+
+#include "harness/core/result.hpp"
+#include "harness/recording/table.hpp"
+
+namespace attest {
+
+// Variables that are no vectors of numbers are left out. Errors: no MAT file; an incomplete one.
+// Threads: one at a time.
+Result<Table> read_mat(const std::filesystem::path& path);
+
+// MAT 5, not compressed. Written aside and renamed. Errors: the file cannot be written.
+Result<void> write_mat(const std::filesystem::path& path, const Table& table);
+
+}  // namespace attest

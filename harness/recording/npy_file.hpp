@@ -1,0 +1,21 @@
+// Tables in NPY files, the format of numpy.save(). Published as NEP 1 of numpy.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "harness/core/result.hpp"
+#include "harness/recording/table.hpp"
+
+namespace attest {
+
+// A structured array of one dimension, or an array of two dimensions whose columns have the names
+// `names`. Elements: integers, floats and booleans, of this machine's byte order. Errors: no NPY
+// file; an incomplete one; another array; as many columns as ticks should be, or no names.
+Result<Table> read_npy(const std::filesystem::path& path, const std::vector<std::string>& names);
+
+// A structured array. Written aside and renamed. Errors: the file cannot be written.
+Result<void> write_npy(const std::filesystem::path& path, const Table& table);
+
+}  // namespace attest

@@ -1,0 +1,261 @@
+#include "harness/recording/recorded_outputs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "harness/port/published.hpp"
+
+namespace attest {
+namespace {
+
+constexpr std::size_t timestamp_channel = 0;  // of channels()
+
+// Identifier -> channel.
+std::map<std::string, std::size_t> channels_by_identifier() {
+  std::map<std::string, std::size_t> known;
+  for (std::size_t i = 0; i < channels().size(); ++i) known[identifier_of(channels()[i].name)] = i;
+  return known;
+}
+
+// The channel of each column of the table; empty for a column that is ignored.
+std::vector<std::optional<std::size_t>> channels_of_columns(const Table& table,
+                                                            const Manifest& manifest) {
+  const auto known = channels_by_identifier();
+  std::vector<std::optional<std::size_t>> found;
+  for (const Column& column : table) {
+    const auto renamed = manifest.columns.find(column.name);
+    const std::string name =
+        identifier_of(renamed == manifest.columns.end() ? column.name : renamed->second);
+    auto channel = known.find(name);
+    if (channel == known.end()) channel = known.find("out_" + name);
+    found.push_back(channel == known.end() ? std::nullopt : std::optional(channel->second));
+  }
+  return found;
+}
+
+double microseconds(const std::string& unit) {
+  if (unit == "s") return 1e6;
+  return unit == "ms" ? 1e3 : 1;
+}
+
+// The least time between two ticks [us].
+double shortest_period_us(const Trace& trace) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < trace.samples.size(); ++i) {
+    const auto period = trace.samples[i].in.timestamp - trace.samples[i - 1].in.timestamp;
+    shortest = std::min(shortest, static_cast<double>(period));
+  }
+  return shortest;
+}
+
+// The times of the rows against those of the ticks.
+class Times {
+ public:
+  Times(const std::vector<double>& column, const std::string& unit, const Trace& trace)
+      : times_us_(column), unit_(unit), trace_(trace) {
+    for (double& time : times_us_) time *= microseconds(unit);
+    // Enough for times in seconds with few digits, too little for another tick.
+    constexpr double part_of_a_period = 0.25;
+    allowed_us_ = std::max(0.5, part_of_a_period * shortest_period_us(trace));
+  }
+
+  // Empty if each row has the time of its tick.
+  std::string complaint() const {
+    const std::size_t rows = times_us_.size(), ticks = trace_.samples.size();
+    std::size_t row = 0;
+    while (row < std::min(rows, ticks) && is_at(row, row)) ++row;
+    if (row == rows && row == ticks) return "";
+    if (row == rows) {
+      return fmt::format("ends after tick {} of {}: it is cut off", rows - 1, ticks);
+    }
+    if (row == ticks) return fmt::format("has {} rows for {} ticks", rows, ticks);
+    if (std::string unit = other_unit(); !unit.empty()) return unit;
+    if (is_reordered()) {
+      return fmt::format(
+          "its rows are not in the order of time: row {} is at {:.0f} us, tick {} "
+          "at {} us; sort the rows by time",
+          row + 1, times_us_[row], row, at(row));
+    }
+    if (const auto tick = tick_at(row); tick && *tick > row) {
+      return fmt::format("has no row for tick {} at {} us; write a row for each tick", row,
+                         at(row));
+    }
+    if (row > 0 && is_at(row, row - 1)) {
+      return fmt::format("has two rows for tick {} at {} us", row - 1, at(row - 1));
+    }
+    return fmt::format(
+        "row {} is at {:.0f} us, tick {} at {} us; give each row the time of its "
+        "inputs, or leave out the column timestamp",
+        row + 1, times_us_[row], row, at(row));
+  }
+
+ private:
+  std::uint64_t at(std::size_t tick) const { return trace_.samples[tick].in.timestamp; }
+
+  bool is_at(std::size_t row, std::size_t tick) const {
+    return std::abs(times_us_[row] - static_cast<double>(at(tick))) <= allowed_us_;
+  }
+
+  std::optional<std::size_t> tick_at(std::size_t row) const {
+    for (std::size_t tick = 0; tick < trace_.samples.size(); ++tick) {
+      if (is_at(row, tick)) return tick;
+    }
+    return std::nullopt;
+  }
+
+  // The unit in which the first and the last row have the times of their ticks.
+  std::string other_unit() const {
+    constexpr std::array units{std::pair{"s", 1e6}, std::pair{"ms", 1e3}, std::pair{"us", 1.0},
+                               std::pair{"ns", 1e-3}};
+    const std::size_t last = std::min(times_us_.size(), trace_.samples.size()) - 1;
+    for (const auto& [name, factor] : units) {
+      if (name == unit_) continue;
+      const auto fits = [&, factor = factor](std::size_t row) {
+        const double time_us = times_us_[row] / microseconds(unit_) * factor;
+        return std::abs(time_us - static_cast<double>(at(row))) <= allowed_us_;
+      };
+      if (!fits(0) || !fits(last)) continue;
+      return fmt::format("its times are in {}, not in {}; {}", name, unit_,
+                         std::string_view(name) == "ns"
+                             ? "write them in s, ms or us"
+                             : fmt::format("write time = \"{}\" in {}", name, manifest_name));
+    }
+    return "";
+  }
+
+  bool is_reordered() const {
+    if (times_us_.size() != trace_.samples.size()) return false;
+    std::vector<double> sorted = times_us_;
+    std::sort(sorted.begin(), sorted.end());
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+      if (std::abs(sorted[i] - static_cast<double>(at(i))) > allowed_us_) return false;
+    }
+    return true;
+  }
+
+  std::vector<double> times_us_;
+  std::string unit_;
+  const Trace& trace_;
+  double allowed_us_ = 0;
+};
+
+std::string wrong_rows(const Table& table,
+                       const std::vector<std::optional<std::size_t>>& channel_of,
+                       const Manifest& manifest, const Trace& trace) {
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (channel_of[i] == timestamp_channel) {
+      return Times(table[i].values, manifest.time, trace).complaint();
+    }
+  }
+  const std::size_t rows = table.front().values.size(), ticks = trace.samples.size();
+  if (rows == ticks) return "";
+  return fmt::format("has {} rows for {} ticks; write a row for each row of the inputs", rows,
+                     ticks);
+}
+
+// The outputs of the trace's module that the table lacks.
+std::string missing_outputs(const Table& table, const ChannelSet& present, const Manifest& manifest,
+                            const Trace& trace) {
+  const ChannelSet wanted =
+      channels_of(module_of(trace.present), "out/") & ~manifest.not_recorded & ~present;
+  if (wanted.none()) return "";
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    if (wanted[i]) names.emplace_back(channels()[i].name);
+  }
+  constexpr std::size_t most = 3;
+  const std::size_t others = names.size() - std::min(names.size(), most);
+  names.resize(std::min(names.size(), most));
+  std::string message = fmt::format(
+      "no column {}{}; add it, name it in [columns] of {}, or list it under not_recorded there",
+      fmt::join(names, ", "), others == 0 ? "" : fmt::format(" (nor {} others)", others),
+      manifest_name);
+  if (const auto ignored = ignored_columns(table, manifest); !ignored.empty()) {
+    message += fmt::format(
+        ". The file also has {}",
+        fmt::join(ignored.begin(),
+                  ignored.begin() + static_cast<std::ptrdiff_t>(std::min(ignored.size(), most)),
+                  ", "));
+  }
+  return message;
+}
+
+bool is_value_of(const Channel& channel, double value) {
+  if (channel.type == ChannelType::f32) return true;
+  const double highest = channel.type == ChannelType::bit ? 1 : 255;
+  return value >= 0 && value <= highest && value == std::floor(value);
+}
+
+bool is_published_flag(const Channel& channel) { return channel.name.ends_with(".published"); }
+
+}  // namespace
+
+void keep_unpublished(Trace& trace) {
+  attest_outputs before{};
+  for (Sample& sample : trace.samples) {
+    keep_unpublished(before, sample.out);
+    before = sample.out;
+  }
+}
+
+std::vector<std::string> ignored_columns(const Table& table, const Manifest& manifest) {
+  const auto channel_of = channels_of_columns(table, manifest);
+  const std::string parameter = identifier_of(parameter_prefix) + '_';
+  std::vector<std::string> ignored;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (channel_of[i] || table[i].name.empty()) continue;
+    if (!identifier_of(table[i].name).starts_with(parameter)) ignored.push_back(table[i].name);
+  }
+  return ignored;
+}
+
+Result<void> set_recorded_outputs(const Table& table, const Manifest& manifest,
+                                  const std::string& file, Trace& trace) {
+  if (table.front().values.empty()) return fail_at(file, "has no rows");
+  const auto channel_of = channels_of_columns(table, manifest);
+  ChannelSet present;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (!channel_of[i]) continue;
+    if (present[*channel_of[i]]) {
+      return fail_at(file, fmt::format("two columns are {}; `{}` is the second",
+                                       channels()[*channel_of[i]].name, table[i].name));
+    }
+    present.set(*channel_of[i]);
+  }
+  for (std::string complaint : {missing_outputs(table, present, manifest, trace),
+                                wrong_rows(table, channel_of, manifest, trace)}) {
+    if (!complaint.empty()) return fail_at(file, std::move(complaint));
+  }
+  for (Sample& sample : trace.samples) {
+    sample.clear_outputs();
+    for (std::size_t i = 0; i < channels().size(); ++i) {
+      if (manifest.not_recorded[i] && is_published_flag(channels()[i])) {
+        set_value(channels()[i], sample, 1);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (!channel_of[i] || !channels()[*channel_of[i]].is_output()) continue;
+    const Channel& channel = channels()[*channel_of[i]];
+    for (std::size_t tick = 0; tick < trace.samples.size(); ++tick) {
+      const double value = table[i].values[tick];
+      if (!is_value_of(channel, value)) {
+        return fail_at(file, fmt::format("tick {}: {} is no flag for {}; write 0 or 1", tick, value,
+                                         channel.name));
+      }
+      set_value(channel, trace.samples[tick], value);
+    }
+  }
+  keep_unpublished(trace);
+  return {};
+}
+
+}  // namespace attest

@@ -1,0 +1,125 @@
+#include "harness/verify/recorded_vectors.hpp"
+
+#include <map>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "harness/recording/manifest.hpp"
+#include "harness/recording/recorded_outputs.hpp"
+#include "harness/trace/provenance.hpp"
+#include "harness/verify/evaluate.hpp"
+#include "harness/verify/fixed_step.hpp"
+
+namespace attest {
+namespace {
+
+bool can_run(const PortSays& port, const Case& the_case, const RunConfiguration& configuration) {
+  CaseResult ignored;
+  return !the_case.flight && the_case.instances == Instances::one &&
+         !has_other_steps(port, the_case, configuration.rate, ignored);
+}
+
+std::string id_of(const Case& the_case, const RunConfiguration& configuration) {
+  return result_for(the_case, configuration).id();
+}
+
+// The manifest of the folder, or a new one.
+Result<Manifest> manifest_for(const std::filesystem::path& folder, std::optional<Rate> fixed_step) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(folder / manifest_name, ignored)) {
+    Manifest made;
+    made.fixed_step = fixed_step;
+    return made;
+  }
+  auto manifest = read_manifest(folder);
+  if (!manifest || manifest->fixed_step == fixed_step) return manifest;
+  return fail_at(
+      (folder / manifest_name).string(),
+      fmt::format("is for a fixed step of {}; write these vectors to another folder",
+                  manifest->fixed_step ? manifest->fixed_step->to_string() + " Hz" : "none"));
+}
+
+Result<void> write_vector(const std::filesystem::path& folder, TableFormat format,
+                          const Case& the_case, const std::string& id, const Trace& inputs) {
+  const std::filesystem::path file = folder / input_file(id, format);
+  std::error_code failed;
+  std::filesystem::create_directories(file.parent_path(), failed);
+  if (failed) {
+    return fail_at(file.parent_path().string(), "cannot be made: " + failed.message());
+  }
+  std::map<std::string, std::string> mixers;
+  if (the_case.module == Module::mixer) mixers[file.stem().string()] = the_case.mixer;
+  if (auto added = add_origin(file.parent_path(), the_case.profile, mixers); !added) return added;
+  return write_inputs(file, format, inputs);
+}
+
+}  // namespace
+
+Result<std::size_t> write_recorded_vectors(const std::filesystem::path& folder, TableFormat format,
+                                           const std::vector<SelectedCase>& cases,
+                                           std::optional<Rate> fixed_step) {
+  auto manifest = manifest_for(folder, fixed_step);
+  if (!manifest) return tl::unexpected(manifest.error());
+  PortSays port;
+  port.fixed_step = fixed_step;
+  std::size_t count = 0;
+  for (const auto& [the_case, configurations] : cases) {
+    for (const RunConfiguration& configuration : configurations) {
+      if (!can_run(port, the_case, configuration)) continue;
+      const Trace inputs = inputs_for(port, the_case, configuration.rate);
+      const std::string id = id_of(the_case, configuration);
+      if (auto written = write_vector(folder, format, the_case, id, inputs); !written) {
+        return tl::unexpected(written.error());
+      }
+      manifest->vectors[id] = sha256_of_inputs(inputs);
+      ++count;
+    }
+  }
+  if (count == 0) {
+    return fail(
+        "no vector that can be recorded is selected: the inputs of a flight depend on the port's "
+        "outputs (`attest sim` writes a flown trace), some cases need two instances of a port, and "
+        "with --fixed-step only regular ticks at that rate are left");
+  }
+  if (auto written = write_manifest(folder, *manifest); !written) {
+    return tl::unexpected(written.error());
+  }
+  return count;
+}
+
+Result<RecordedVectors> check_recorded_vectors(const std::filesystem::path& folder,
+                                               const PortSays& port,
+                                               const std::vector<SelectedCase>& cases) {
+  const auto manifest = read_manifest(folder);
+  if (!manifest) return tl::unexpected(manifest.error());
+  RecordedVectors found;
+  for (const auto& [the_case, configurations] : cases) {
+    for (const RunConfiguration& configuration : configurations) {
+      if (!can_run(port, the_case, configuration)) continue;
+      ++found.selected;
+      const std::string id = id_of(the_case, configuration);
+      const auto known = manifest->vectors.find(id);
+      const auto file = find_output_file(folder, id);
+      if (!file) return tl::unexpected(file.error());
+      if (known == manifest->vectors.end() || !*file) continue;
+      if (known->second != sha256_of_inputs(inputs_for(port, the_case, configuration.rate))) {
+        return fail_at((folder / manifest_name).string(),
+                       fmt::format("the inputs of {} are not those of this suite: another version "
+                                   "of it wrote them. Write them again with `attest vectors`, and "
+                                   "record new outputs",
+                                   id));
+      }
+      if (found.answered++ > 0) continue;
+      found.first = (*file)->path.string();
+      const auto table = read_table(found.first, (*file)->format, manifest->column_order);
+      if (table) found.ignored = ignored_columns(*table, *manifest);
+    }
+  }
+  if (found.answered > 0) return found;
+  return fail_at(folder.string(),
+                 fmt::format("has outputs of none of the {} selected vectors", found.selected));
+}
+
+}  // namespace attest

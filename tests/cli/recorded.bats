@@ -1,0 +1,142 @@
+load common
+
+# The program that answers knows the CSV files and nothing of attest (tests/ports/recorded).
+answer() {
+  PYTHONDONTWRITEBYTECODE=1 "$PYTHON" "$SOURCE/tests/ports/recorded/board.py" \
+    "$SOURCE/controller/starters/python" vectors "$@"
+}
+
+# answered MISTAKE TEXT...: one vector, recorded with a mistake, is not passed, and the mistake named.
+answered() {
+  rm -rf vectors
+  "$ATTEST" vectors vectors --filter px4-v1.5.5/attitude/roll_pitch_and_yaw@250hz >/dev/null
+  answer --mistake "$1"
+  run "$ATTEST" run --port recorded:vectors --filter px4-v1.5.5/attitude/roll_pitch_and_yaw@250hz
+  [ "$status" -eq 1 ]
+  for text in "${@:2}"; do has "$text"; done
+}
+
+@test "recorded outputs are judged as those of any port" {
+  "$ATTEST" vectors vectors --rate 250 --exclude 'mixer/*' >/dev/null
+  answer
+  run "$ATTEST" run --port recorded:vectors --rate 250
+  [ "$status" -eq 0 ]
+  has "note: 447 of 476 selected vectors have outputs in vectors"
+  has "PASS 404 of 616 vectors conform, 212 skip"
+  has "134 skip: a recorded port does not fly"
+  has "27 skip: not answered"
+  has "partial: px4-v1.5.5, numeric, 1 rate, groups actuators, anti_windup, arming"
+  lacks "with mixer"
+  rm vectors/px4-v1.5.5/rates/p_alone/250hz.out.csv
+  run "$ATTEST" run --port recorded:vectors --profile px4-v1.5.5 --rate 250
+  [ "$status" -eq 0 ]
+  has "and parts of rates"
+}
+
+@test "a mistake in the port is diagnosed" {
+  "$ATTEST" vectors vectors --rate 250 --profile px4-v1.5.5 --group attitude --group rates >/dev/null
+  answer --mistake law
+  run "$ATTEST" run --port recorded:vectors --rate 250 --profile px4-v1.5.5 --group attitude
+  [ "$status" -eq 1 ]
+  has "look first at the attitude law"
+  has "out/vehicle_rates_setpoint.yaw looks like the expected values with the other sign"
+}
+
+@test "a mistake in the recording is named" {
+  answered degrees "out/vehicle_rates_setpoint.roll" "57.3 times the expected values: in degrees"
+  answered exchanged \
+    "out/vehicle_rates_setpoint.roll has the values expected of out/vehicle_rates_setpoint.pitch"
+  answered late "every output looks a tick late"
+  answered milliseconds 'its times are in ms, not in us; write time = "ms" in manifest.toml'
+  answered cut "ends after tick" "it is cut off"
+  answered gap "has no row for tick"
+  answered unsorted "its rows are not in the order of time: row 1 is at"
+  answered no-integrals "no column out/mc_att_ctrl_status.published" "not_recorded"
+  answered other-names "The file also has vehicle_p_sp"
+}
+
+@test "the manifest declares units, names and what was not recorded" {
+  filter=(--filter px4-v1.5.5/attitude/roll_pitch_and_yaw@250hz)
+  "$ATTEST" vectors vectors "${filter[@]}" >/dev/null
+  answer --mistake milliseconds
+  sed -i "s/^time = .*/time = 'ms'/" vectors/manifest.toml
+  run "$ATTEST" run --port recorded:vectors "${filter[@]}"
+  [ "$status" -eq 0 ]
+  sed -i "s/^time = .*/time = 'hours'/" vectors/manifest.toml
+  run "$ATTEST" run --port recorded:vectors "${filter[@]}"
+  [ "$status" -eq 2 ]
+  has "vectors/manifest.toml:"
+  has "\`hours\` is no unit of time; write s, ms or us"
+  sed -i "s/^time = .*/time = 'us'/" vectors/manifest.toml
+
+  answer --mistake no-integrals
+  integrals="'out/mc_att_ctrl_status.published'"
+  for axis in roll pitch yaw; do integrals+=", 'out/mc_att_ctrl_status.${axis}_rate_integ'"; done
+  sed -i "s#^not_recorded = .*#not_recorded = [$integrals]#" vectors/manifest.toml
+  run "$ATTEST" run --port recorded:vectors "${filter[@]}"
+  [ "$status" -eq 0 ]
+  has "4 outputs not recorded (out/mc_att_ctrl_status.published,"
+}
+
+@test "columns have any order and names, and others are ignored with a note" {
+  filter=(--filter px4-v1.5.5/attitude/roll_pitch_and_yaw@250hz)
+  "$ATTEST" vectors vectors "${filter[@]}" >/dev/null
+  answer
+  out=vectors/px4-v1.5.5/attitude/roll_pitch_and_yaw/250hz.out.csv
+  # As pandas and MATLAB write it: a column of row numbers without a name, and names as identifiers.
+  tr -d '\r' <$out | awk -F, -v OFS=, 'NR == 1 { gsub(/[^a-zA-Z0-9,]/, "_"); $1 = "timestamp" }
+    { print (NR == 1 ? "" : NR - 2), $19, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14,
+            $15, $16, $17, $18, $1, (NR == 1 ? "temperature" : 20) }' >reordered
+  sed -i '1s/out_vehicle_rates_setpoint_roll/p_sp/' reordered
+  mv reordered $out
+  printf "\n[columns]\np_sp = 'out/vehicle_rates_setpoint.roll'\n" >>vectors/manifest.toml
+  run "$ATTEST" run --port recorded:vectors "${filter[@]}"
+  [ "$status" -eq 0 ]
+  has "note: $out: these columns are ignored: temperature"
+}
+
+@test "inputs as MAT and NPY files; a fixed step begins one period after zero" {
+  filter=(--filter px4-v1.5.5/attitude/roll_pitch_and_yaw@250hz)
+  "$ATTEST" vectors mat --format mat "${filter[@]}" >/dev/null
+  head -c 19 mat/px4-v1.5.5/attitude/roll_pitch_and_yaw/250hz.mat | grep -q "MATLAB 5.0 MAT-file"
+  "$ATTEST" vectors npy --format npy "${filter[@]}" >/dev/null
+  head -c 200 npy/px4-v1.5.5/attitude/roll_pitch_and_yaw/250hz.npy | grep -aq "('timestamp', '<u8')"
+  run "$ATTEST" vectors xls --format xls "${filter[@]}"
+  [ "$status" -eq 2 ]
+  has "no format \`xls\`; there are csv, mat, npy"
+
+  "$ATTEST" vectors vectors --fixed-step 250 --group attitude --profile px4-v1.5.5 >/dev/null
+  [ "$(awk -F, 'NR == 2 { print $1 }' vectors/px4-v1.5.5/attitude/roll_pitch_and_yaw/250hz.csv)" = 4000 ]
+  answer
+  run "$ATTEST" run --port recorded:vectors --group attitude --profile px4-v1.5.5
+  [ "$status" -eq 0 ]
+  has "fixed step of 250 Hz"
+  run "$ATTEST" vectors vectors "${filter[@]}"
+  [ "$status" -eq 2 ]
+  has "is for a fixed step of 250 Hz; write these vectors to another folder"
+}
+
+@test "a folder that cannot be judged is an error before anything runs" {
+  filter=(--filter px4-v1.5.5/attitude/roll_pitch_and_yaw@250hz)
+  refused() {
+    run "$ATTEST" run --port recorded:vectors "${filter[@]}" --json report.json
+    [ "$status" -eq 2 ]
+    has "$1"
+    [ ! -e report.json ]
+  }
+  refused "vectors: has no manifest.toml"
+  "$ATTEST" vectors vectors "${filter[@]}" >/dev/null
+  refused "vectors: has no outputs; write those of px4-v1.5.5/attitude/roll_pitch_and_yaw/250hz"
+  answer
+  cp vectors/px4-v1.5.5/attitude/roll_pitch_and_yaw/250hz.out.csv{,.kept}
+  cp vectors/px4-v1.5.5/attitude/roll_pitch_and_yaw/250hz.out.{csv,mat}
+  refused "there is also"
+  rm vectors/px4-v1.5.5/attitude/roll_pitch_and_yaw/250hz.out.mat
+  sed -i "s/^\('px4-v1.5.5.*= '\)....../\1000000/" vectors/manifest.toml
+  refused "the inputs of px4-v1.5.5/attitude/roll_pitch_and_yaw@250hz are not those of this suite"
+  filter=(--filter px4-v1.5.5/attitude/both_tilted@250hz)
+  refused "vectors: has outputs of none of the 1 selected vectors"
+  run "$ATTEST" time --port recorded:vectors
+  [ "$status" -eq 2 ]
+  has "this command must call the port"
+}

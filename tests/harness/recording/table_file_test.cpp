@@ -1,0 +1,164 @@
+#include "harness/recording/table_file.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/core/file.hpp"
+#include "tests/harness/core/temporary_directory.hpp"
+
+namespace attest {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class TableFile : public testing::Test {
+ protected:
+  std::filesystem::path path(const std::string& name) const { return directory_.path() / name; }
+
+  Result<Table> read(const std::string& name, TableFormat format, const std::string& bytes,
+                     const std::vector<std::string>& names = {}) {
+    EXPECT_TRUE(write_file(path(name), bytes));
+    return read_table(path(name), format, names);
+  }
+
+  std::string error(const std::string& name, TableFormat format, const std::string& bytes,
+                    const std::vector<std::string>& names = {}) {
+    const auto table = read(name, format, bytes, names);
+    return table ? "no error" : table.error().to_string();
+  }
+
+  TemporaryDirectory directory_;
+};
+
+// A file as numpy.save() writes it: the header is padded so that the elements begin at 64 bytes.
+std::string npy(const std::string& descr, const std::string& shape, const std::string& elements,
+                const std::string& fortran_order = "False") {
+  std::string header =
+      "{'descr': " + descr + ", 'fortran_order': " + fortran_order + ", 'shape': " + shape + ", }";
+  header.resize((header.size() + 10) / 64 * 64 + 64 - 10 - 1, ' ');
+  header += '\n';
+  std::string bytes("\x93NUMPY\x01\x00", 8);
+  bytes += static_cast<char>(header.size() % 256);
+  bytes += static_cast<char>(header.size() / 256);
+  return bytes + header + elements;
+}
+
+// 1.5 and -2 as little-endian floats.
+const std::string one_and_a_half("\x00\x00\xc0\x3f", 4), minus_two("\x00\x00\x00\xc0", 4);
+
+Trace two_ticks() {
+  Trace trace;
+  for (const std::uint64_t timestamp : {5'000'000u, 5'004'000u}) {
+    Sample sample{};
+    sample.in.timestamp = timestamp;
+    sample.in.control_state.roll_rate = timestamp == 5'000'000u ? 0.1f : std::nanf("");
+    sample.in.updated = ATTEST_UPDATED_PARAMETER_UPDATE;
+    sample.in.actuator_armed.armed = 1;
+    trace.samples.push_back(sample);
+  }
+  trace.parameters = {{0, "MC_ROLL_P", 6.5f}, {1, "MC_ROLL_P", 7}};
+  trace.present = channels_of(Module::mc_att_control);
+  return trace;
+}
+
+TEST_F(TableFile, InputsReadBackTheSameInEachFormat) {
+  const Trace trace = two_ticks();
+  const Table inputs = inputs_of(trace);
+  for (const TableFormat format : table_formats) {
+    const auto file = path(std::string("inputs.") + std::string(name_of(format)));
+    ASSERT_TRUE(write_inputs(file, format, trace));
+    const auto table = read_table(file, format, {});
+    ASSERT_TRUE(table) << table.error().to_string();
+    ASSERT_EQ(table->size(), inputs.size()) << name_of(format);
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      EXPECT_EQ(identifier_of((*table)[i].name), identifier_of(inputs[i].name));
+      ASSERT_EQ((*table)[i].values.size(), 2u);
+      for (std::size_t row = 0; row < 2; ++row) {
+        const auto read = static_cast<float>((*table)[i].values[row]);
+        const auto written = static_cast<float>(inputs[i].values[row]);
+        EXPECT_TRUE(read == written || (std::isnan(read) && std::isnan(written)))
+            << name_of(format) << " " << inputs[i].name;
+      }
+    }
+    EXPECT_THAT(table->back().name, HasSubstr("MC_ROLL_P"));
+    EXPECT_THAT(table->back().values, ElementsAre(6.5, 7));
+  }
+}
+
+TEST_F(TableFile, AStructuredArrayOfNumpyHasNames) {
+  const auto table = read("a.npy", TableFormat::npy,
+                          npy("[('x', '<f4'), ('', '|V2'), ('n', '|u1')]", "(2,)",
+                              one_and_a_half + "zz\x07" + minus_two + "zz\x08"));
+  ASSERT_TRUE(table) << table.error().to_string();
+  ASSERT_EQ(table->size(), 2u);
+  EXPECT_EQ((*table)[0].name, "x");
+  EXPECT_THAT((*table)[0].values, ElementsAre(1.5, -2));
+  EXPECT_EQ((*table)[1].name, "n");
+  EXPECT_THAT((*table)[1].values, ElementsAre(7, 8));
+}
+
+TEST_F(TableFile, AnArrayOfTwoDimensionsNeedsNamesInTheOrderOfItsColumns) {
+  const std::string elements = one_and_a_half + minus_two + minus_two + minus_two;
+  const std::string rows = npy("'<f4'", "(2, 2)", elements);
+  auto table = read("a.npy", TableFormat::npy, rows, {"x", "y"});
+  ASSERT_TRUE(table) << table.error().to_string();
+  EXPECT_THAT((*table)[0].values, ElementsAre(1.5, -2));
+  EXPECT_THAT((*table)[1].values, ElementsAre(-2, -2));
+  const std::string first_column_first =
+      npy("'<f4'", "(2, 2)", minus_two + minus_two + one_and_a_half + minus_two, "True");
+  table = read("a.npy", TableFormat::npy, first_column_first, {"x", "y"});
+  ASSERT_TRUE(table);
+  EXPECT_THAT((*table)[0].values, ElementsAre(-2, -2));
+  EXPECT_THAT((*table)[1].values, ElementsAre(1.5, -2));
+
+  EXPECT_THAT(error("a.npy", TableFormat::npy, rows), HasSubstr("has no names; write a"));
+  EXPECT_THAT(error("a.npy", TableFormat::npy, npy("'<f4'", "(1, 4)", elements), {"x"}),
+              HasSubstr("it is transposed: save the array's .T"));
+  EXPECT_THAT(error("a.npy", TableFormat::npy, npy("'<f4'", "(4,)", elements), {"x"}),
+              HasSubstr("is an array of 1 dimension(s); it needs two"));
+}
+
+TEST_F(TableFile, ADamagedNpyFileIsAnError) {
+  const std::string whole = npy("[('x', '<f4')]", "(2,)", one_and_a_half + minus_two);
+  ASSERT_TRUE(read("a.npy", TableFormat::npy, whole));
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    EXPECT_THAT(error("a.npy", TableFormat::npy, whole.substr(0, size)),
+                testing::AnyOf(HasSubstr("is no NPY file"), HasSubstr("is cut off")));
+  }
+  const std::string huge = npy("[('x', '<f4')]", "(18446744073709551615,)", one_and_a_half);
+  EXPECT_THAT(error("a.npy", TableFormat::npy, huge), HasSubstr("is cut off"));
+  for (const char* descr : {"[('x', '>f4')]", "[('x', '<c8')]", "[('x', '<f2')]", "'<O8'", "[]"}) {
+    EXPECT_THAT(error("a.npy", TableFormat::npy, npy(descr, "(1,)", one_and_a_half)),
+                HasSubstr("is no NPY file of little-endian integers, floats or booleans"));
+  }
+}
+
+TEST_F(TableFile, ADamagedMatFileIsAnErrorOrLacksVariables) {
+  ASSERT_TRUE(write_inputs(path("a.mat"), TableFormat::mat, two_ticks()));
+  const std::string whole = read_file(path("a.mat")).value();
+  const std::size_t columns = read_table(path("a.mat"), TableFormat::mat, {})->size();
+  for (std::size_t size = 0; size < whole.size(); size += 61) {
+    const auto table = read("b.mat", TableFormat::mat, whole.substr(0, size));
+    EXPECT_TRUE(!table || table->size() < columns);
+  }
+  EXPECT_THAT(error("b.mat", TableFormat::mat, "timestamp,x\n"), HasSubstr("is no MAT file"));
+}
+
+TEST_F(TableFile, ACsvTableMayHaveRowNumbersWithoutAName) {
+  const auto table = read("a.csv", TableFormat::csv, ",x,y\n0,1.5,+2e3\n1,nan,-inf\n");
+  ASSERT_TRUE(table) << table.error().to_string();
+  ASSERT_EQ(table->size(), 3u);
+  EXPECT_EQ((*table)[1].name, "x");
+  EXPECT_TRUE(std::isnan((*table)[1].values[1]));
+  EXPECT_THAT((*table)[2].values, ElementsAre(2000, -std::numeric_limits<double>::infinity()));
+  EXPECT_THAT(error("a.csv", TableFormat::csv, "x,y\n1,2,3\n"), HasSubstr("a.csv:2:5"));
+  EXPECT_THAT(error("a.csv", TableFormat::csv, "x,y\n1,yes\n"),
+              HasSubstr("`yes` is not a number for y"));
+}
+
+}  // namespace
+}  // namespace attest
