@@ -5,6 +5,7 @@
 
 Takes the ```sh blocks of DOCUMENT in order, in one shell, in a fresh copy of the repository below
 the scratch directory: at its root, or for a starter in the starter's folder, where its reader is.
+The copy for a starter has only controller/, because it uses the installed attest for all else.
 A command has to succeed. A command that ends in the comment `# exit 1` has to exit with that
 status. With `# exit 0 or 2` both are accepted, because the result depends on the machine.
 
@@ -125,9 +126,12 @@ def runnable(document_blocks: list[Block], root: pathlib.Path) -> list[Block]:
     return found
 
 
-def copy_repository(root: pathlib.Path, scratch: pathlib.Path) -> None:
+def copy_repository(root: pathlib.Path, scratch: pathlib.Path, folder: str = "") -> None:
+    """Only the files whose path starts with `folder`."""
     shutil.rmtree(scratch, ignore_errors=True)
     for path in repository.files(root):
+        if not path.startswith(folder):
+            continue
         target = scratch / path
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(root / path, target)
@@ -143,10 +147,9 @@ def run(document: str, root: pathlib.Path, scratch: pathlib.Path, environment: d
     if not to_run:
         print(f"{document}: nothing to run")
         return 0
-    copy_repository(root, scratch)
-    folder = scratch
-    if document.startswith("controller/starters/"):
-        folder = (scratch / document).parent
+    of_starter = document.startswith("controller/starters/")
+    copy_repository(root, scratch, "controller/" if of_starter else "")
+    folder = (scratch / document).parent if of_starter else scratch
     # A file, because commands may read their standard input.
     commands = scratch.with_name(scratch.name + ".sh")
     commands.write_text(script(to_run), encoding="utf-8")

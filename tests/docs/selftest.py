@@ -72,7 +72,8 @@ class Documents(unittest.TestCase):
         self.assertIn("seen", (self.root / "cases/a.toml").read_text())
 
     def test_a_starter_runs_in_its_folder(self):
-        text = "```sh\ntest -f README.md && test -d ../../../cases\n```\n"
+        self.write("controller/a.h", "")
+        text = "```sh\ntest -f README.md\ntest -f ../../a.h\ntest -e ../../../cases # exit 1\n```\n"
         self.assert_passes(text, "controller/starters/c/README.md")
 
     def test_a_failing_command_is_named_with_its_line(self):
