@@ -17,7 +17,13 @@ install(DIRECTORY cases golden models DESTINATION ${ATTEST_INSTALL_DATADIR})
 install(
   DIRECTORY controller/starters
   DESTINATION ${ATTEST_INSTALL_DATADIR}
+  USE_SOURCE_PERMISSIONS
   REGEX "/(build|target|__pycache__)$" EXCLUDE)
+# For `attest new-port`.
+install(FILES controller/attest_unit.h controller/attest_actuation.h
+        DESTINATION ${ATTEST_INSTALL_DATADIR}/include)
+install(FILES ci/examples/github-actions.yml ci/examples/gitlab-ci.yml
+        DESTINATION ${ATTEST_INSTALL_DATADIR}/ci)
 # Programs that read the JSON reports validate them with these schemas.
 install(FILES harness/report/report.schema.json harness/report/stress.schema.json
         DESTINATION ${ATTEST_INSTALL_DATADIR}/schemas)

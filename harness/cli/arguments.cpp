@@ -9,6 +9,7 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/run_arguments.hpp"
 #include "harness/cli/shared_arguments.hpp"
+#include "harness/cli/suite_arguments.hpp"
 #include "harness/cli/timing_arguments.hpp"
 #include "harness/cli/wrong_arguments.hpp"
 #include "harness/core/version.hpp"
@@ -98,36 +99,6 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
   });
 }
 
-void add_faults(CLI::App& app, const Globals& globals, Action& action) {
-  auto options = std::make_shared<FaultOptions>();
-  CLI::App* command =
-      app.add_subcommand("faults", "Measure the suite: which faults of the catalogue it catches");
-  CLI::Option* const ids =
-      command->add_option("fault", options->ids, "Only these faults")->type_name("ID");
-  command
-      ->add_option("--profile", options->profiles, "Only this version of the law (cases, faults)")
-      ->type_name("PROFILE")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command->add_flag("--list", options->list, "List the catalogue; run nothing");
-  CLI::Option* const bits =
-      command
-          ->add_option("--fraction-bits", options->fraction_bits,
-                       "Use the tolerances of a port in fixed point with so many fraction bits")
-          ->check(CLI::Range(20, 32));
-  command
-      ->add_flag("--diagnose", options->diagnose,
-                 "Measure the diagnosis instead: is each fault recognised?")
-      ->excludes(bits, ids);
-  add_jobs(*command, options->jobs, "Faults at a time");
-  add_examples(*command, {{"attest faults", "which faults the whole suite catches"},
-                          {"attest faults --list --profile px4-v1.3.4",
-                           "the catalogue of one version of the law"}});
-  command->callback([options, &globals, &action] {
-    action = [=, &globals] { return faults_command(*options, globals); };
-  });
-}
-
 void add_compare(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<CompareOptions>();
   CLI::App* command =
@@ -142,84 +113,6 @@ void add_compare(CLI::App& app, const Globals& globals, Action& action) {
                            "is the first the same as the second, within the tolerances?"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return compare_command(*options, globals); };
-  });
-}
-
-void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
-  auto options = std::make_shared<VectorOptions>();
-  CLI::App* command = app.add_subcommand(
-      "vectors",
-      "Write the inputs of the vectors to files, for a port that attest cannot call; `attest run "
-      "--port recorded:DIR` judges its outputs");
-  CLI::Option* const folder =
-      command
-          ->add_option("folder", options->folder,
-                       "Where: DIR/PROFILE/GROUP/NAME/RATEhz.csv, with DIR/manifest.toml")
-          ->type_name("DIR");
-  CLI::Option* const lint = command->add_flag(
-      "--lint", options->lint,
-      "Write nothing; report numeric vectors that are too near to a decision of the law, "
-      "where correct controllers may differ");
-  lint->excludes(folder);
-  command->add_option("--format", options->format, "`csv`, `mat` (MATLAB) or `npy` (numpy)")
-      ->type_name("FORMAT")
-      ->capture_default_str()
-      ->excludes(lint);
-  command
-      ->add_option("--fixed-step", options->fixed_step,
-                   "For a port with a fixed sample time: only vectors with regular ticks at this "
-                   "rate, from one period after zero on")
-      ->type_name("HZ")
-      ->excludes(lint);
-  add_selection(*command, options->select);
-  add_examples(
-      *command,
-      {{"attest vectors DIR --group attitude --rate 250", "the inputs of some cases, a file each"},
-       {"attest vectors DIR --format mat --fixed-step 250",
-        "all that a Simulink model with a sample time of 4 ms can run"},
-       {"attest vectors --lint", "is a vector too near to a decision of the law?"}});
-  command->callback([options, &globals, &action] {
-    if (!options->lint && options->folder.empty()) throw CLI::RequiredError("folder");
-    action = [=, &globals] {
-      return options->lint ? lint_command(*options, globals) : vectors_command(*options, globals);
-    };
-  });
-}
-
-void add_list(CLI::App& app, const Globals& globals, Action& action) {
-  auto options = std::make_shared<ListOptions>();
-  CLI::App* command =
-      app.add_subcommand("list", "List the cases with their reasons, or one of the tables");
-  add_selection(*command, options->select);
-  command->add_flag("--groups", options->groups,
-                    "Only the groups, with their numbers of cases and vectors");
-  command->add_flag("--parameters", options->parameters, "The parameters of the law");
-  command->add_flag("--channels", options->channels, "The signals: trace columns and ABI members");
-  command->add_flag("--flight-modes", options->modes, "Flight modes and the flags they set");
-  command->add_flag("--vehicles", options->vehicles, "The vehicles, with mass, rotors, arm, ...");
-  add_examples(*command,
-               {{"attest list --filter 'tpa/*'", "the cases of a group, with their reasons"},
-                {"attest list --parameters --profile px4-v1.3.4",
-                 "the parameters of one version of the law"}});
-  command->callback([options, &globals, &action] {
-    action = [=, &globals] { return list_command(*options, globals); };
-  });
-}
-
-void add_bless(CLI::App& app, const Globals& globals, Action& action) {
-  auto options = std::make_shared<BlessOptions>();
-  CLI::App* command = app.add_subcommand(
-      "bless",
-      "Make new golden traces from the reference, after showing the changes; one process at a time "
-      "(golden/.bless.lock)");
-  add_selection(*command, options->select);
-  command->add_option("--reason", options->reason, "Why, for provenance.toml (required)")
-      ->type_name("TEXT");
-  command->add_flag("--yes", options->yes, "Do not ask");
-  add_examples(*command, {{"attest bless --filter 'px4-v1.5.5/tpa/*' --reason \"...\"",
-                           "shows the changes, and asks before it replaces the goldens"}});
-  command->callback([options, &globals, &action] {
-    action = [=, &globals] { return bless_command(*options, globals); };
   });
 }
 
@@ -249,6 +142,44 @@ void add_smoke(CLI::App& app, const Globals& globals, Action& action) {
                 {"attest smoke --port lib:./libmine.so", "the functions of a shared library"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return smoke_command(*options, globals); };
+  });
+}
+
+void add_record(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<RecordOptions>();
+  CLI::App* command = app.add_subcommand(
+      "record", "Write the trace of a port in one open-loop case: its inputs and outputs");
+  command->add_option("case", options->case_name, "The case: its name, its id or its file")
+      ->type_name("CASE")
+      ->required();
+  command->add_option("--rate", options->rate, "The loop rate [Hz]")->type_name("HZ")->required();
+  add_port(*command, options->host.port);
+  command->add_option("--out", options->out, "The trace (CSV); `-` is stdout")
+      ->type_name("F.csv")
+      ->capture_default_str();
+  add_timeout(*command, options->host.timeout_s);
+  add_examples(*command, {{"attest record rates/p_alone --rate 250 --port lib:./libmine.so --out "
+                           "mine.csv",
+                           "for a plot, or for `attest replay` and `attest compare`"}});
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return record_command(*options, globals); };
+  });
+}
+
+void add_new_port(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<NewPortOptions>();
+  CLI::App* command = app.add_subcommand(
+      "new-port", "Make a folder with a complete port, to be changed into yours, and its CI jobs");
+  command->add_option("folder", options->folder, "The new folder")->type_name("DIR")->required();
+  command->add_option("--lang", options->language, "`c`, `cpp`, `python`, `rust` or `simulink`")
+      ->type_name("LANG")
+      ->required();
+  add_examples(
+      *command,
+      {{"attest new-port mine --lang c", "a port in C; mine/check builds and runs it"},
+       {"attest new-port mine --lang simulink", "a wrapper for C code that Simulink generated"}});
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return new_port_command(*options, globals); };
   });
 }
 
@@ -293,11 +224,10 @@ int run_command_line(int argc, char** argv) {
   add_replay(app, globals, action);
   add_sim(app, globals, action);
   add_timing_commands(app, globals, action);
+  add_record(app, globals, action);
   add_compare(app, globals, action);
-  add_faults(app, globals, action);
-  add_list(app, globals, action);
-  add_vectors(app, globals, action);
-  add_bless(app, globals, action);
+  add_suite_commands(app, globals, action);
+  add_new_port(app, globals, action);
   add_doctor(app, globals, action);
   add_smoke(app, globals, action);
   add_help(app, action);

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <set>
 #include <string>
@@ -11,8 +13,10 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/core/file.hpp"
 #include "harness/golden/blessing.hpp"
 #include "harness/golden/golden_lock.hpp"
+#include "harness/report/text.hpp"
 #include "harness/verify/recorded_check.hpp"
 
 namespace attest::cli {
@@ -65,23 +69,81 @@ bool confirmed(const BlessOptions& options, std::size_t count) {
   return answer == "y" || answer == "yes";
 }
 
+// A suite has one reference. A suite of attest's own goldens gets no others.
+Result<void> check_kind(const BlessOptions& options, const Globals& globals,
+                        const SuiteFolder& suite) {
+  const std::string reference = suite.reference();
+  if (options.port.empty()) {
+    if (reference.empty()) return {};
+    return fail_at(
+        suite.reference_file().string(),
+        fmt::format("the reference of this suite is {}; bless it with --port", reference));
+  }
+  if (globals.suite.empty()) {
+    return fail(
+        "bless --port makes a suite of your own: name its folder, which has your cases/, with "
+        "--suite DIR");
+  }
+  std::error_code ignored;
+  if (!reference.empty() || !std::filesystem::exists(suite.golden(), ignored)) return {};
+  const auto is_golden = [](const auto& entry) { return entry.is_directory(); };
+  const std::filesystem::directory_iterator goldens(suite.golden(), ignored);
+  if (std::none_of(begin(goldens), end(goldens), is_golden)) return {};
+  return fail_at(suite.golden().string(),
+                 "has goldens of attest's own reference; copy cases/ to a folder of your own, and "
+                 "name that with --suite");
+}
+
+// "starter-c 1.0 (lib:./mine.so, SHA-256 ab12...)"
+Result<std::string> description_of(const HostOptions& port) {
+  const auto description = describe_port(port);
+  if (!description) return tl::unexpected(description.error());
+  std::string hashes;
+  for (const std::string& file : files_of(port.port)) {
+    const auto hash = sha256_of_file(file);
+    if (!hash) return tl::unexpected(hash.error());
+    hashes += ", SHA-256 " + *hash;
+  }
+  return one_line(
+      fmt::format("{} {} ({}{})", description->name, description->version, port.port, hashes));
+}
+
+void print_left_out(const PendingGoldens& pending) {
+  for (const auto& [why, cases] : pending.left_out) {
+    fmt::print(stderr, "attest: note: {} without golden: {}\n",
+               cases == 1 ? "1 case" : fmt::format("{} cases", cases), why);
+  }
+}
+
 Result<int> bless_selected(const BlessOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return tl::unexpected(suite.error());
   const auto cases = options.select.cases_in(suite->cases());
   if (!cases) return tl::unexpected(cases.error());
+  if (auto checked = check_kind(options, globals, *suite); !checked) {
+    return tl::unexpected(checked.error());
+  }
   note_interrupts();
   const auto lock = GoldenLock::take(suite->golden());
   if (!lock) return tl::unexpected(lock.error());
-  if (auto checked = check_reference(*suite); !checked) return tl::unexpected(checked.error());
-  if (auto noted = note_uncovered(*cases, *suite); !noted) return tl::unexpected(noted.error());
-  BlessingOptions blessing{suite->golden(), suite->models(), options.reason};
+  BlessingOptions blessing{suite->golden(), suite->models(), {options.reason}};
+  if (options.port.empty()) {
+    if (auto checked = check_reference(*suite); !checked) return tl::unexpected(checked.error());
+    if (auto noted = note_uncovered(*cases, *suite); !noted) return tl::unexpected(noted.error());
+  } else {
+    blessing.port = options.host;
+    blessing.port->port = options.port;
+    auto description = description_of(*blessing.port);
+    if (!description) return tl::unexpected(description.error());
+    blessing.making.reference = *std::move(description);
+  }
   blessing.on_change = [](const std::string& line) { fmt::print("{}\n", line); };
   blessing.stop = interrupted;
   auto pending = write_new_goldens(*cases, blessing);
   if (auto go_on = check_not_interrupted(); !go_on) return tl::unexpected(go_on.error());
   if (!pending) return tl::unexpected(pending.error());
 
+  print_left_out(*pending);
   if (pending->unchanged > 0) fmt::print("{} unchanged\n", pending->unchanged);
   if (pending->goldens.empty()) return exit_ok;
   const bool wanted = confirmed(options, pending->goldens.size());
@@ -89,6 +151,10 @@ Result<int> bless_selected(const BlessOptions& options, const Globals& globals) 
   if (!wanted) {
     fmt::print("no golden was changed\n");
     return exit_failed;
+  }
+  if (!options.port.empty()) {
+    auto named = write_file(suite->reference_file(), blessing.making.reference + "\n");
+    if (!named) return tl::unexpected(named.error());
   }
   for (NewGolden& golden : pending->goldens) {
     if (auto placed = golden.put_in_place(); !placed) return tl::unexpected(placed.error());

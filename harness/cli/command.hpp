@@ -57,6 +57,7 @@ struct RunOptions {
   HostOptions host;
   int jobs = 1;
   bool fail_fast = false;
+  std::vector<std::string> parameters;  // NAME=VALUE
   std::string level = "numeric";
   std::map<std::string, std::string> reports;  // files, by ReportFormat::option; empty: not wanted
   std::string expected_failures;
@@ -167,10 +168,23 @@ int lint_command(const VectorOptions& options, const Globals& globals);
 
 struct BlessOptions {
   SelectionOptions select;
+  HostOptions host;
+  std::string port;  // the reference of the suite; empty: attest's own
   std::string reason;
   bool yes = false;
 };
 int bless_command(const BlessOptions& options, const Globals& globals);
+
+struct RecordOptions {
+  HostOptions host;
+  std::string case_name, rate, out = "-";
+};
+int record_command(const RecordOptions& options, const Globals& globals);
+
+struct NewPortOptions {
+  std::string folder, language;
+};
+int new_port_command(const NewPortOptions& options, const Globals& globals);
 
 struct DoctorOptions {
   HostOptions host;

@@ -54,6 +54,14 @@ Result<Case> find_flight(const std::string& name, const SuiteFolder& suite) {
   return the_case;
 }
 
+Result<Case> find_open_loop_case(const std::string& name, const SuiteFolder& suite) {
+  auto the_case = find_case(name, suite);
+  if (the_case && the_case->flight) {
+    return fail_at(the_case->file.string(), "is a flight; `attest sim` flies it");
+  }
+  return the_case;
+}
+
 Result<ChosenFlight> choose_flight(const std::string& name, const std::string& vehicle,
                                    const std::string& plant, const SuiteFolder& suite) {
   auto the_case = find_flight(name, suite);

@@ -16,6 +16,9 @@ namespace attest::cli {
 // no case or several cases match.
 Result<Case> find_flight(const std::string& name, const SuiteFolder& suite);
 
+// The same for a case in open loop.
+Result<Case> find_open_loop_case(const std::string& name, const SuiteFolder& suite);
+
 // The flight with its vehicle and plant. Empty texts select the case's lead vehicle and first
 // plant.
 struct ChosenFlight {

@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <charconv>
 #include <memory>
 #include <string>
 #include <utility>
@@ -17,31 +15,16 @@
 namespace attest::cli {
 namespace {
 
-// "NAME=VALUE" becomes a change at tick 0 that replaces all changes of NAME in the trace.
-Result<void> override_parameter(Trace& trace, const Subject& subject, const std::string& text) {
-  const auto equals = std::min(text.find('='), text.size());
-  const std::string name = text.substr(0, equals);
-  const char* const end = text.data() + text.size();
-  float value = 0;
-  const auto [rest, error] = std::from_chars(std::min(text.data() + equals + 1, end), end, value);
-  if (equals == text.size() || error != std::errc{} || rest != end) {
-    return fail(fmt::format("--param {}: write NAME=VALUE, such as MC_ROLL_P=6.5", text));
-  }
-  const ParameterChange change{0, name, value};
-  if (auto checked = check_parameter(subject, change); !checked) {
-    return fail(fmt::format("--param {}: {}", text, checked.error().message));
-  }
-  std::erase_if(trace.parameters, [&](const ParameterChange& c) { return c.name == name; });
-  trace.parameters.insert(trace.parameters.begin(), change);
-  return {};
-}
-
 Result<Recorded> recorded_in(const std::string& file, const ReplayOptions& options) {
   auto recorded = read_recorded(file, options.profile, options.mixer);
   if (!recorded) return recorded;
   for (const std::string& parameter : options.parameters) {
-    auto set = override_parameter(recorded->trace, recorded->subject, parameter);
-    if (!set) return tl::unexpected(set.error());
+    const auto change = parse_parameter(parameter);
+    if (!change) return tl::unexpected(change.error());
+    if (auto checked = check_parameter(recorded->subject, *change); !checked) {
+      return fail(fmt::format("--param {}: {}", parameter, checked.error().message));
+    }
+    override_parameter(*change, recorded->trace);
   }
   for (const std::string& note : recorded->notes) {
     fmt::print(stderr, "attest: note: {}: {}\n", file, note);

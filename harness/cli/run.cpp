@@ -1,32 +1,19 @@
-#include <charconv>
 #include <chrono>
-#include <cstdlib>
-#include <ctime>
 #include <optional>
-#include <set>
 #include <utility>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "harness/cli/command.hpp"
-#include "harness/cli/find_case.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/outputs.hpp"
+#include "harness/cli/run_plan.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
-#include "harness/core/version.hpp"
 #include "harness/diagnosis/diagnosis_job.hpp"
-#include "harness/port/port.hpp"
-#include "harness/process/child.hpp"
 #include "harness/report/progress.hpp"
 #include "harness/report/report_format.hpp"
 #include "harness/report/terminal.hpp"
-#include "harness/report/text.hpp"
-#include "harness/verify/case_job.hpp"
-#include "harness/verify/expected.hpp"
-#include "harness/verify/recorded_vectors.hpp"
 
 namespace attest::cli {
 namespace {
@@ -56,166 +43,6 @@ Result<void> write_reports(std::vector<ReportFile>& reports, const RunResult& ru
     if (auto committed = file.commit(); !committed) return committed;
   }
   return {};
-}
-
-// The whole run, complete and checked before the first vector runs.
-struct RunPlan {
-  RunResult run;
-  std::optional<ExpectedFailures> expected;
-  std::vector<SelectedCase> cases;
-  HostOptions host;
-  Jobs<CaseResult> jobs;
-  std::size_t results = 0;
-};
-
-// Stores the port's description and the profiles that it supports. The port must give the same
-// answers during the run. A port that hangs here has no description and is not asked again.
-Result<void> ask_port(const std::vector<std::string>& profiles, RunPlan& plan) {
-  const auto port = describe_port(plan.host, profiles);
-  if (!port) return tl::unexpected(port.error());
-  for (const auto& [profile, words] : port->refusals) {
-    if (words.empty()) continue;
-    fmt::print(stderr, "attest: note: the port made no unit of {}; it printed: {}\n", profile,
-               one_line(words));
-  }
-  plan.run.port_name = port->name;
-  plan.run.port_version = port->version;
-  plan.run.fraction_bits = port->fraction_bits;
-  plan.run.fixed_step = port->fixed_step;
-  plan.run.not_recorded = port->not_recorded;
-  plan.host.hangs = port->hangs;
-  if (port->hangs.empty()) plan.host.said = *port;
-  return {};
-}
-
-// Of a recorded port: whether its outputs are for the inputs of these cases.
-Result<void> check_recorded(const std::vector<SelectedCase>& cases, const RunPlan& plan) {
-  const auto folder = recorded_folder(plan.host.port);
-  if (!folder || !plan.host.said) return {};
-  const auto found = check_recorded_vectors(*folder, *plan.host.said, cases);
-  if (!found) return tl::unexpected(found.error());
-  fmt::print(stderr, "attest: note: {} of {} selected vectors have outputs in {}\n",
-             found->answered, found->selected, *folder);
-  if (!found->ignored.empty()) {
-    fmt::print(stderr, "attest: note: {}: these columns are ignored: {}\n", found->first,
-               fmt::join(found->ignored, ", "));
-  }
-  return {};
-}
-
-// The selected cases, each at its own times.
-Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, RunPlan& plan) {
-  auto cases = options.select.cases_in(suite.cases());
-  if (!cases) return tl::unexpected(cases.error());
-  std::set<Rate> rates;
-  bool all_configurations = options.select.shard == "1/1";
-  for (const SelectedCase& selected : *cases) {
-    all_configurations &=
-        selected.configurations.size() == selected.the_case.configurations().size();
-    for (const RunConfiguration& configuration : selected.configurations)
-      rates.insert(configuration.rate);
-    plan.results += selected.configurations.size();
-  }
-  std::set<std::string> profiles;
-  for (const SelectedCase& selected : *cases) profiles.insert(selected.the_case.profile);
-  if (auto asked = ask_port({profiles.begin(), profiles.end()}, plan); !asked) return asked;
-  if (auto checked = check_recorded(*cases, plan); !checked) return checked;
-  VehicleModels vehicle_models(suite.models());
-  auto jobs = case_jobs(*cases, suite.golden(), vehicle_models,
-                        {plan.run.level, options.save_traces}, plan.host);
-  if (!jobs) return tl::unexpected(jobs.error());
-  plan.jobs = *std::move(jobs);
-  plan.run.selection = options.select.narrowing();
-  plan.run.all_configurations = all_configurations;
-  plan.run.rates.assign(rates.begin(), rates.end());
-  plan.cases = std::move(*cases);
-  return {};
-}
-
-// The one flight of a recorded timing.
-Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, RunPlan& plan) {
-  if (!options.select.selects_all())
-    return fail("--timing selects the flight; leave out all other selections");
-  auto flight = find_timed_flight(options.timing, suite);
-  if (!flight) return tl::unexpected(flight.error());
-  if (auto asked = ask_port({flight->the_case.profile}, plan); !asked) return asked;
-  plan.results = 1;
-  plan.run.timing = options.timing;
-  plan.run.rates = {flight->timing.configuration.rate};
-  plan.jobs.push_back(
-      std::make_unique<TimedJob>(std::move(flight->the_case), std::move(flight->timing),
-                                 std::move(flight->vehicle_model), options.save_traces, plan.host));
-  return {};
-}
-
-// The date in UTC. With SOURCE_DATE_EPOCH, reports do not depend on the day.
-Result<std::string> date_of_run() {
-  std::time_t now = std::time(nullptr);
-  if (const char* given = std::getenv("SOURCE_DATE_EPOCH"); given && *given) {
-    const std::string_view text(given);
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), now);
-    if (error != std::errc() || end != text.data() + text.size() || now < 0) {
-      return fail(fmt::format("SOURCE_DATE_EPOCH is `{}`; it must be a count of seconds", text));
-    }
-  }
-  return fmt::format("{:%Y-%m-%d}", fmt::gmtime(now));
-}
-
-// Of the port's file, or of the hashes of its files if it has several. Empty: it has none.
-Result<std::string> sha256_of_port(const std::string& port) {
-  std::vector<std::string> hashes;
-  for (const std::string& file : files_of(port)) {
-    auto hash = sha256_of_file(file);
-    if (!hash) return tl::unexpected(hash.error());
-    hashes.push_back(*std::move(hash));
-  }
-  if (hashes.size() <= 1) return hashes.empty() ? "" : hashes.front();
-  return sha256(fmt::format("{}\n", fmt::join(hashes, "\n")));
-}
-
-// Adds the subject of the conformance statement: suite, port and date.
-Result<void> identify(const RunOptions& options, const SuiteFolder& suite, RunResult& run) {
-  run.suite = suite.cases_by_group();
-  run.cases_version = suite.version_of(suite.cases());
-  run.golden_version = suite.version_of(suite.golden());
-  run.attest_version = version;
-  run.port = options.host.port;
-  run.limits = {!options.host.in_process, options.host.timeout_s,
-                memory_is_limited() ? std::optional(max_memory_gib) : std::nullopt, max_file_mib};
-  auto hash = suite.sha256();
-  if (!hash) return tl::unexpected(hash.error());
-  run.suite_sha256 = *hash;
-  run.suite_is_released = run.suite_sha256 == released_suite_sha256();
-  auto of_port = sha256_of_port(run.port);
-  if (!of_port) return tl::unexpected(of_port.error());
-  run.port_sha256 = *std::move(of_port);
-  auto date = date_of_run();
-  if (!date) return tl::unexpected(date.error());
-  run.date = *date;
-  return {};
-}
-
-Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
-  auto level = parse_level(options.level);
-  if (!level) return tl::unexpected(level.error());
-  RunPlan plan;
-  plan.host = options.host;
-  plan.host.stop = interrupted;
-  plan.run.level = *level;
-  if (!options.expected_failures.empty()) {
-    auto expected = ExpectedFailures::read(options.expected_failures);
-    if (!expected) return tl::unexpected(expected.error());
-    plan.expected = std::move(*expected);
-  }
-  const auto planned =
-      options.timing.empty() ? plan_cases(options, suite, plan) : plan_timed(options, suite, plan);
-  if (!planned) return tl::unexpected(planned.error());
-  // After the port was loaded, because loading gives the better error for a file that is not a
-  // library.
-  if (auto known = identify(options, suite, plan.run); !known) {
-    return tl::unexpected(known.error());
-  }
-  return plan;
 }
 
 // The diagnosis of the failures. Its errors are printed and do not change verdicts.
@@ -303,7 +130,11 @@ int run_command(const RunOptions& options, const Globals& globals) {
                            !run.stopped_early && run.errors.empty();
   if (plan->expected) plan->expected->apply(is_complete, run);
   std::optional<Diagnosis> diagnosis;
-  if (options.diagnose && run.failed()) diagnosis = diagnosed(*plan, options.jobs);
+  if (!run.suite_reference.empty()) {
+    fmt::print(stderr, "attest: note: {}\n", own_law_only);
+  } else if (options.diagnose && run.failed() && run.parameters.empty()) {
+    diagnosis = diagnosed(*plan, options.jobs);
+  }
   // Before the summary: if its reader closes the pipe early, SIGPIPE ends this process.
   const auto written = write_reports(*reports, run, diagnosis);
   const int code = exit_code(run);

@@ -20,6 +20,13 @@ void add_strictness(CLI::App& command, RunOptions& options) {
       ->capture_default_str()
       ->group(option_group::strictness);
   command
+      .add_option("--param", options.parameters,
+                  "Set a parameter from the first step on, in each open-loop case, for port and "
+                  "reference; without flights")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false)
+      ->group(option_group::strictness);
+  command
       .add_option("--expected-failures", options.expected_failures,
                   "Failures that are accepted, with reasons (TOML), by group or case; if "
                   "a listed case passes, the run fails")

@@ -35,6 +35,13 @@ std::string SuiteFolder::version_of(const fs::path& folder) const {
   return text >> version ? version : "unversioned";
 }
 
+std::string SuiteFolder::reference() const {
+  std::istringstream text(read_file(reference_file()).value_or(""));
+  std::string line;
+  std::getline(text, line);
+  return line;
+}
+
 std::vector<std::string> SuiteFolder::groups() const {
   std::vector<std::string> names;
   for (const auto& group : cases_by_group()) names.push_back(group.first);
@@ -75,19 +82,24 @@ Result<std::string> SuiteFolder::sha256() const {
 
 std::string released_suite_sha256() { return ATTEST_SUITE_SHA256; }
 
+std::optional<fs::path> data_folder() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path installed = program.parent_path().parent_path() / "share" / "attest";
+  if (is_suite(installed)) return installed;
+  for (fs::path above = program.parent_path(); above.has_relative_path();
+       above = above.parent_path()) {
+    if (is_suite(above) && fs::is_directory(above / "golden", error)) return above;
+  }
+  return std::nullopt;
+}
+
 Result<SuiteFolder> find_suite(const std::string& given) {
   if (!given.empty()) return named(given, "--suite");
   if (const char* folder = std::getenv("ATTEST_SUITE"); folder && *folder) {
     return named(folder, "ATTEST_SUITE");
   }
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const fs::path installed = program.parent_path().parent_path() / "share" / "attest";
-  if (is_suite(installed)) return SuiteFolder{installed};
-  for (fs::path above = program.parent_path(); above.has_relative_path();
-       above = above.parent_path()) {
-    if (is_suite(above) && fs::is_directory(above / "golden", error)) return SuiteFolder{above};
-  }
+  if (const auto folder = data_folder()) return SuiteFolder{*folder};
   return fail(
       "no suite found; name the folder that holds cases/ and golden/ with --suite DIR or "
       "ATTEST_SUITE");

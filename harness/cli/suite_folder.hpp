@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,11 @@ struct SuiteFolder {
   // "unversioned".
   std::string version_of(const std::filesystem::path& folder) const;
 
+  // The port whose outputs the goldens are, as `bless --port` wrote it to golden/REFERENCE. Empty:
+  // attest's own reference.
+  std::string reference() const;
+  std::filesystem::path reference_file() const { return golden() / "REFERENCE"; }
+
   // The groups of all profiles, sorted: "px4-v1.5.5/tpa". Reads the case files. Empty when one of
   // them is malformed, which select_cases() reports.
   std::vector<std::string> groups() const;
@@ -42,9 +48,12 @@ struct SuiteFolder {
 // suite cannot prove that it is the released one.
 std::string released_suite_sha256();
 
-// `given` if it is not empty; else $ATTEST_SUITE; else share/attest of the installation this
-// program is in; else the nearest folder above the program that has cases/ and golden/, which is
-// the source tree of a build in it.
+// The data of this attest: share/attest of the installation that this program is in; else the
+// nearest folder above the program that has cases/ and golden/, which is the source tree of a build
+// in it. Empty: neither exists.
+std::optional<std::filesystem::path> data_folder();
+
+// `given` if it is not empty; else $ATTEST_SUITE; else data_folder().
 Result<SuiteFolder> find_suite(const std::string& given);
 
 }  // namespace attest::cli

@@ -10,14 +10,13 @@
 #include "harness/golden/golden_change.hpp"
 #include "harness/golden/make_golden.hpp"
 #include "harness/plant/vehicle_models.hpp"
-#include "harness/port/builtin.hpp"
 
 namespace attest {
 namespace {
 
 struct Blessing {
   const BlessingOptions& options;
-  std::unique_ptr<Port> reference;
+  Reference reference;
   VehicleModels vehicle_models;
 };
 
@@ -29,8 +28,12 @@ Result<void> write_goldens_of_file(const Case& first, Blessing& blessing, Pendin
   for (const std::string& profile : first.profiles) {
     const Case the_case = first.in_profile(profile);
     auto made =
-        make_golden(the_case, *blessing.reference, blessing.vehicle_models, blessing.options.stop);
+        make_golden(the_case, blessing.reference, blessing.vehicle_models, blessing.options.stop);
     if (!made) return tl::unexpected(made.error());
+    if (!made->left_out.empty()) {
+      ++pending.left_out[made->left_out];
+      continue;
+    }
     const bool is_first = the_case.is_of_first_profile();
     if (is_first) of_first = *made;
     std::string line = change_of_golden(the_case, *made, blessing.options.golden);
@@ -43,12 +46,12 @@ Result<void> write_goldens_of_file(const Case& first, Blessing& blessing, Pendin
     blessing.options.on_change(line);
     const GoldenBase base{of_first.traces, base_folder};
     // Keyframes have no base: another profile keeps other ticks.
-    const bool rests_on_base =
-        !is_first && std::all_of(made->traces.begin(), made->traces.end(),
-                                 [](const GoldenTrace& trace) { return trace.is_whole; });
+    const bool rests_on_base = !is_first && !of_first.traces.empty() &&
+                               std::all_of(made->traces.begin(), made->traces.end(),
+                                           [](const GoldenTrace& trace) { return trace.is_whole; });
     auto golden =
         NewGolden::write(blessing.options.golden, the_case, made->traces, made->vehicle_files,
-                         blessing.options.reason, rests_on_base ? &base : nullptr);
+                         blessing.options.making, rests_on_base ? &base : nullptr);
     if (!golden) return tl::unexpected(golden.error());
     if (is_first) {
       base_folder = golden->written();
@@ -63,7 +66,10 @@ Result<void> write_goldens_of_file(const Case& first, Blessing& blessing, Pendin
 
 Result<PendingGoldens> write_new_goldens(const std::vector<SelectedCase>& cases,
                                          const BlessingOptions& options) {
-  Blessing blessing{options, open_builtin(), VehicleModels(options.models)};
+  auto reference =
+      options.port ? Reference::of_port(*options.port) : Result<Reference>(Reference::own());
+  if (!reference) return tl::unexpected(reference.error());
+  Blessing blessing{options, *std::move(reference), VehicleModels(options.models)};
   PendingGoldens pending;
   std::set<std::filesystem::path> done;
   for (const SelectedCase& selected : cases) {

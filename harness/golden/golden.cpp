@@ -62,7 +62,7 @@ Result<void> note_base(const GoldenBase& base, const Case& the_case, Provenance&
 // Columns that stay the same are stored once, in the provenance.
 Result<void> write_folder(const fs::path& folder, const Case& the_case,
                           const std::vector<GoldenTrace>& traces,
-                          const std::vector<fs::path>& vehicle_files, const std::string& reason,
+                          const std::vector<fs::path>& vehicle_files, const Making& making,
                           const GoldenBase* base) {
   const Division division =
       base ? divide(samples_of(traces), samples_of(base->traces)) : divide(samples_of(traces));
@@ -70,9 +70,9 @@ Result<void> write_folder(const fs::path& folder, const Case& the_case,
   provenance.profile = the_case.profile;
   provenance.case_id = the_case.id();
   provenance.case_sha256 = the_case.sha256;
-  provenance.reference = fmt::format("attest {}", version);
+  provenance.reference = making.reference;
   provenance.compiler = compiler();
-  provenance.reason = reason;
+  provenance.reason = making.reason;
   provenance.constants = division.constants;
   const auto write = [&](const std::string& name, const Trace& trace) -> Result<void> {
     auto hash = write_trace(folder / name, trace, division.columns);
@@ -246,10 +246,12 @@ NewGolden::~NewGolden() {
   fs::remove(written_.parent_path().parent_path(), ignored);
 }
 
+std::string Making::own_reference() { return fmt::format("attest {}", version); }
+
 Result<NewGolden> NewGolden::write(const fs::path& golden_root, const Case& the_case,
                                    const std::vector<GoldenTrace>& traces,
-                                   const std::vector<fs::path>& vehicle_files,
-                                   const std::string& reason, const GoldenBase* base) {
+                                   const std::vector<fs::path>& vehicle_files, const Making& making,
+                                   const GoldenBase* base) {
   const fs::path folder = golden_folder(golden_root, the_case);
   NewGolden golden(folder, fs::path(folder).concat(".new"));
   std::error_code error;
@@ -258,7 +260,7 @@ Result<NewGolden> NewGolden::write(const fs::path& golden_root, const Case& the_
   if (error) {
     return fail_at(golden.written_.string(), fmt::format("cannot be made: {}", error.message()));
   }
-  auto done = write_folder(golden.written_, the_case, traces, vehicle_files, reason, base);
+  auto done = write_folder(golden.written_, the_case, traces, vehicle_files, making, base);
   if (!done) return tl::unexpected(done.error());
   return golden;
 }

@@ -81,6 +81,13 @@ struct GoldenBase {
   std::filesystem::path folder;  // where its files are now, perhaps not yet in place
 };
 
+// What the provenance of a new golden says about its making.
+struct Making {
+  std::string reason;
+  std::string reference = own_reference();  // the controller whose outputs it has
+  static std::string own_reference();       // "attest 0.1.0"
+};
+
 // A new golden, complete, written next to its place and not yet put there. REQUIRES: the caller
 // holds the GoldenLock.
 class NewGolden {
@@ -90,7 +97,7 @@ class NewGolden {
   static Result<NewGolden> write(const std::filesystem::path& golden_root, const Case& the_case,
                                  const std::vector<GoldenTrace>& traces,
                                  const std::vector<std::filesystem::path>& vehicle_files,
-                                 const std::string& reason, const GoldenBase* base = nullptr);
+                                 const Making& making, const GoldenBase* base = nullptr);
   NewGolden(NewGolden&& other) noexcept;
   NewGolden& operator=(NewGolden&&) = delete;
   ~NewGolden();  // removes the golden that is not in place: this one, or the one it replaced

@@ -1,6 +1,7 @@
 #include "harness/golden/recorded.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <set>
 
 #include <fmt/format.h>
@@ -134,6 +135,23 @@ Result<void> check_parameter(const Subject& subject, const ParameterChange& chan
     return fail(fmt::format("{} cannot be {}", change.name, change.value));
   }
   return {};
+}
+
+Result<ParameterChange> parse_parameter(const std::string& text) {
+  const auto equals = std::min(text.find('='), text.size());
+  const char* const end = text.data() + text.size();
+  float value = 0;
+  const auto [rest, error] = std::from_chars(std::min(text.data() + equals + 1, end), end, value);
+  if (equals == text.size() || error != std::errc{} || rest != end) {
+    return fail(fmt::format("--param {}: write NAME=VALUE, such as MC_ROLL_P=6.5", text));
+  }
+  return ParameterChange{0, text.substr(0, equals), value};
+}
+
+void override_parameter(const ParameterChange& change, Trace& trace) {
+  std::erase_if(trace.parameters,
+                [&](const ParameterChange& other) { return other.name == change.name; });
+  trace.parameters.insert(trace.parameters.begin(), change);
 }
 
 Result<Recorded> read_recorded(const std::filesystem::path& file, const std::string& profile,

@@ -31,4 +31,10 @@ Result<Recorded> read_recorded(const std::filesystem::path& file, const std::str
 // Errors: in that profile the module does not have such a parameter, or does not accept the value.
 Result<void> check_parameter(const Subject& subject, const ParameterChange& change);
 
+// The text of --param: "MC_ROLL_P=6.5" is a change at tick 0. Errors: other text.
+Result<ParameterChange> parse_parameter(const std::string& text);
+
+// The change replaces all changes of that parameter in the trace.
+void override_parameter(const ParameterChange& change, Trace& trace);
+
 }  // namespace attest

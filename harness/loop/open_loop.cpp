@@ -53,8 +53,23 @@ std::optional<PortFault> drive_module(ModuleUnit& unit, Trace& trace) {
   return std::nullopt;
 }
 
-// Other inputs at the same times, so that the states of two instances differ in everything.
+// Other gains from the first step on: those of the trace, and some that it leaves at their default.
+void change_gains(Trace& trace) {
+  constexpr float factor = 0.75f;
+  for (ParameterChange& change : trace.parameters) {
+    if (change.name.starts_with("MC_")) change.value *= factor;
+  }
+  for (const char* name : {"MC_PITCH_P", "MC_YAW_P", "MC_ROLLRATE_P", "MC_PITCHRATE_D"}) {
+    const auto is_it = [&](const ParameterChange& change) { return change.name == name; };
+    if (std::any_of(trace.parameters.begin(), trace.parameters.end(), is_it)) continue;
+    trace.parameters.insert(trace.parameters.begin(), {0, name, 1.0f});
+  }
+}
+
+// Other inputs at the same times, and other gains, so that the states of two instances differ in
+// everything.
 Trace mirrored(Trace trace) {
+  if (module_of(trace.present) == Module::mc_att_control) change_gains(trace);
   for (Sample& sample : trace.samples) {
     auto& state = sample.in.control_state;
     for (float* const value : {&state.q[1], &state.q[2], &state.q[3], &state.roll_rate,

@@ -71,11 +71,11 @@ bool was_judged(const Groups& groups) {
   });
 }
 
-// At the rates that were run, or at the one of a fixed step.
+// At the rates that were run, or at the one of a fixed step, where some groups have no case: these
+// are not whole.
 bool is_whole(const Group& group, const RunResult& run) {
   const std::set<Rate> selected(run.rates.begin(), run.rates.end());
-  return group.was_run() &&
-         std::all_of(group.rates.begin(), group.rates.end(), [&](const auto& each) {
+  return group.passes && std::all_of(group.rates.begin(), group.rates.end(), [&](const auto& each) {
            const auto& [rate, tally] = each;
            if (run.fixed_step ? rate != *run.fixed_step : !selected.contains(rate)) return true;
            return tally.good >= std::max(tally.in_suite, tally.run);
@@ -136,8 +136,18 @@ std::string outputs_without(const ChannelSet& not_recorded) {
 
 std::vector<std::string> missing_of(const Groups& groups, const RunResult& run) {
   std::vector<std::string> missing;
-  if (!run.suite_is_released) missing.emplace_back("custom suite");
+  if (!run.suite_is_released) {
+    missing.push_back(
+        run.suite_reference.empty()
+            ? "custom suite"
+            : fmt::format("custom suite, reference {}",
+                          run.suite_reference.substr(
+                              0, run.suite_reference.find(" ("))));  // without its file
+  }
   if (!run.limits.own_process) missing.emplace_back("port not isolated: --in-process");
+  for (const ParameterChange& parameter : run.parameters) {
+    missing.push_back(fmt::format("with {}={}", parameter.name, parameter.value));
+  }
   if (run.not_recorded.any()) missing.push_back(outputs_without(run.not_recorded));
   if (!run.timing.empty()) missing.emplace_back("at recorded times");
   if (run.fixed_step) {

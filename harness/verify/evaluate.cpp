@@ -8,6 +8,7 @@
 #include "harness/compare/events.hpp"
 #include "harness/golden/branch_alternatives.hpp"
 #include "harness/golden/keyframes.hpp"
+#include "harness/golden/recorded.hpp"
 #include "harness/host/host_here.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/port/builtin.hpp"
@@ -66,7 +67,8 @@ Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& g
   auto want = golden.read({rate, std::nullopt});
   if (!want) return tl::unexpected(want.error());
   Trace made = stimulate(the_case, rate);
-  if (!keeps_every_tick(made.samples.size())) {
+  const bool has_keyframes = want->samples.size() < made.samples.size();
+  if (has_keyframes && !keeps_every_tick(made.samples.size())) {
     auto whole = filled_in(made, *want, subject_of(the_case), !the_case.numeric_only);
     if (!whole) return tl::unexpected(whole.error());
     return Prepared{std::move(made), {std::move(*whole), {}}};
@@ -88,21 +90,27 @@ Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& g
   return Prepared{std::move(made), {std::move(*want), std::move(*others)}};
 }
 
-// The same for a port with a fixed step (fixed_step.hpp): the reference's outputs from one period
-// after zero on. Errors: the reference does not agree with the golden.
-Result<Prepared> prepare_from_one_period_on(const Case& the_case, const Rate& rate,
-                                            const Golden& golden) {
+// The expected outputs for other inputs than those of the golden: for a port with a fixed step
+// (fixed_step.hpp) from one period after zero on, and with other parameters. They are those of the
+// reference. Errors: the reference does not agree with the golden.
+Result<Prepared> prepare_varied(const Case& the_case, const Case& begun, const Rate& rate,
+                                const Golden& golden,
+                                const std::vector<ParameterChange>& parameters) {
   HostHere reference(open_builtin());
   const auto checked = evaluate_case(the_case, rate, golden, reference, {Level::exact});
   if (!checked) return tl::unexpected(checked.error());
   if (checked->verdict != Verdict::pass) {
     return fail_at(the_case.file.string(),
                    fmt::format("at {}, the reference of this attest does not agree with the "
-                               "golden, which therefore cannot be shifted",
+                               "golden, so the expected outputs at other times or with other "
+                               "parameters are not known",
                                rate.label()));
   }
-  const Case begun = the_case.from_one_period_on();
-  Prepared prepared{stimulate(begun, rate), {stimulate(begun, rate), {}}};
+  Prepared prepared{stimulate(begun, rate), {}};
+  for (const ParameterChange& parameter : parameters) {
+    override_parameter(parameter, prepared.answered);
+  }
+  prepared.expected.want = prepared.answered;
   if (const auto fault = reference.drive(subject_of(begun), prepared.expected.want)) {
     return fail_at(the_case.file.string(), "the reference: " + fault->what);
   }
@@ -111,6 +119,15 @@ Result<Prepared> prepare_from_one_period_on(const Case& the_case, const Rate& ra
   if (!others) return tl::unexpected(others.error());
   prepared.expected.branch_alternatives = std::move(*others);
   return prepared;
+}
+
+// Those that the subject has.
+std::vector<ParameterChange> accepted_by(const Subject& subject,
+                                         std::vector<ParameterChange> parameters) {
+  std::erase_if(parameters, [&](const ParameterChange& parameter) {
+    return !check_parameter(subject, parameter).has_value();
+  });
+  return parameters;
 }
 
 }  // namespace
@@ -143,9 +160,13 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
     return result;
   }
   if (has_other_steps(host.says(), the_case, rate, result)) return result;
-  auto prepared = has_fixed_step(host.says(), the_case)
-                      ? prepare_from_one_period_on(the_case, rate, golden)
-                      : prepare(the_case, rate, golden);
+  const bool is_shifted = has_fixed_step(host.says(), the_case);
+  const auto parameters = accepted_by(subject_of(the_case), options.parameters);
+  auto prepared =
+      is_shifted || !parameters.empty()
+          ? prepare_varied(the_case, is_shifted ? the_case.from_one_period_on() : the_case, rate,
+                           golden, parameters)
+          : prepare(the_case, rate, golden);
   if (!prepared) return tl::unexpected(prepared.error());
   const bool numeric_for_exact = level == Level::exact && the_case.numeric_only;
   const bool numeric_for_events = level == Level::events && !has_events(the_case.module);

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "harness/casefile/case.hpp"
 #include "harness/compare/tolerance.hpp"
@@ -19,6 +20,9 @@ namespace attest {
 struct JudgeOptions {
   Level level = Level::numeric;            // of open-loop cases
   std::filesystem::path save_traces = {};  // the folder of save_traces(); empty: not saved
+  // These replace the parameters of each open-loop case whose module and profile has them. The
+  // expected outputs are then those of the reference, which must first agree with the golden.
+  std::vector<ParameterChange> parameters = {};
 };
 
 // The identity of a result, before there is a verdict.

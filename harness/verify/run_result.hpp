@@ -28,9 +28,10 @@ struct RunResult {
   std::string port;             // as given: "lib:./libmine.so"
   std::string port_name;        // declared by the port
   std::string port_version;
-  std::optional<int> fraction_bits;  // of a port in fixed point
-  std::optional<Rate> fixed_step;    // of a port with a fixed sample time
-  ChannelSet not_recorded;           // outputs that a recorded port does not have
+  std::optional<int> fraction_bits;         // of a port in fixed point
+  std::optional<Rate> fixed_step;           // of a port with a fixed sample time
+  std::vector<ParameterChange> parameters;  // of --param, in place of the cases'
+  ChannelSet not_recorded;                  // outputs that a recorded port does not have
   Level level = Level::numeric;
   std::vector<Rate> rates;          // selected, ascending
   std::string selection;            // the options that selected a part: "--group tpa"; or empty
@@ -39,7 +40,8 @@ struct RunResult {
   std::map<std::string, std::map<Rate, std::size_t>> suite;
   std::string suite_folder;  // as --suite gives it; empty: the suite was found
   std::string cases_version = "unversioned", golden_version = "unversioned";  // of the suite
-  std::string suite_sha256;                                                   // of its content
+  std::string suite_reference;     // the port whose outputs its goldens are; empty: attest's own
+  std::string suite_sha256;        // of its content
   bool suite_is_released = false;  // this attest was released with that content
   std::string port_sha256;         // of its library; empty: the port is part of attest
   Limits limits;                   // of the port

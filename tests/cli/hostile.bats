@@ -21,6 +21,14 @@ judged() {
   has "protocol: create() returned NULL after the first instance was destroyed"
 }
 
+@test "parameters that outlive their instance fail" {
+  run "$ATTEST" run --port "lib:$PORTS/hostile_keeps_parameters.so" --group instances --rate 250 \
+    --no-diagnose
+  [ "$status" -eq 1 ]
+  has "px4-v1.5.5/instances/made_again@250hz"
+  has "differs from the golden"
+}
+
 @test "what a port says of itself is asked once, and a change breaks the protocol" {
   judged arithmetic_later
   [ "$status" -eq 1 ]

@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "harness/golden/make_golden.hpp"
-#include "harness/port/builtin.hpp"
 
 namespace attest {
 
 std::vector<GoldenTrace> answers_of_reference(const Case& the_case) {
   VehicleModels none("");
-  auto made = make_golden(the_case, *open_builtin(), none, [] { return false; });
+  Reference reference = Reference::own();
+  auto made = make_golden(the_case, reference, none, [] { return false; });
   EXPECT_TRUE(made) << made.error().to_string();
   return made ? std::move(made->traces) : std::vector<GoldenTrace>();
 }
@@ -20,7 +20,7 @@ void bless(const std::filesystem::path& golden_root, const Case& the_case) {
   const auto of_first = answers_of_reference(first);
   const GoldenBase base{of_first, golden_folder(golden_root, first)};
   auto golden = NewGolden::write(golden_root, the_case, answers_of_reference(the_case), {},
-                                 "a test", the_case.is_of_first_profile() ? nullptr : &base);
+                                 {"a test"}, the_case.is_of_first_profile() ? nullptr : &base);
   ASSERT_TRUE(golden) << golden.error().to_string();
   const auto placed = golden->put_in_place();
   ASSERT_TRUE(placed) << placed.error().to_string();

@@ -196,7 +196,7 @@ TEST_F(TwoProfiles, WithoutTheFirstTheOtherIsAnError) {
 TEST_F(GoldenTest, IsNotInPlaceBeforeItIsPutThere) {
   {
     const auto written =
-        NewGolden::write(root(), a_case(), answers_of_reference(a_case()), {}, "a test");
+        NewGolden::write(root(), a_case(), answers_of_reference(a_case()), {}, {"a test"});
     ASSERT_TRUE(written);
     EXPECT_FALSE(fs::exists(folder()));
   }
@@ -224,7 +224,7 @@ TEST_F(GoldenTest, ReplacesTheOldOneAndItsRates) {
 
 TEST_F(GoldenTest, TheOldOneStaysWhenTheNewCannotBePutInPlace) {
   bless(root(), a_case());
-  auto written = NewGolden::write(root(), a_case(), answers_of_reference(a_case()), {}, "again");
+  auto written = NewGolden::write(root(), a_case(), answers_of_reference(a_case()), {}, {"again"});
   ASSERT_TRUE(written);
   fs::remove_all(folder().string() + ".new");
   EXPECT_FALSE(written->put_in_place());
@@ -236,7 +236,7 @@ TEST_F(GoldenTest, TheOldOneStaysWhenTheNewCannotBePutInPlace) {
 TEST_F(GoldenTest, AFolderThatCannotBeMadeIsAnError) {
   std::ofstream(root()) << "a file where the folder should be\n";
   const auto written =
-      NewGolden::write(root(), a_case(), answers_of_reference(a_case()), {}, "a test");
+      NewGolden::write(root(), a_case(), answers_of_reference(a_case()), {}, {"a test"});
   ASSERT_FALSE(written);
   EXPECT_THAT(written.error().message, HasSubstr("cannot be made"));
 }
@@ -260,7 +260,7 @@ class GoldenOfAFlight : public GoldenTest {
   }
 
   void bless_with(const std::vector<fs::path>& vehicle_files) {
-    auto golden = NewGolden::write(root(), a_case(), flown(), vehicle_files, "a test");
+    auto golden = NewGolden::write(root(), a_case(), flown(), vehicle_files, {"a test"});
     ASSERT_TRUE(golden) << golden.error().to_string();
     ASSERT_TRUE(golden->put_in_place());
   }

@@ -125,6 +125,16 @@ TEST(Claim, AFixedStepIsPartialAndNamesOnlyItself) {
   EXPECT_THAT(only_claim(run).missing, Contains(HasSubstr("1 vector unsupported")));
 }
 
+TEST(Claim, AModuleWithoutCasesAtAFixedStepIsNotClaimed) {
+  RunResult run = complete_run({"attitude", "mixer"});
+  run.fixed_step = Rate::hz(250);
+  run.suite[the_profile + std::string("/mixer")].erase(Rate::hz(250));
+  run.results.pop_back();  // the mixer at 250 Hz
+  run.results.back().verdict = Verdict::unsupported;
+  EXPECT_THAT(only_claim(run).whole, ElementsAre("attitude"));
+  EXPECT_THAT(only_claim(run).modules, IsEmpty());
+}
+
 TEST(Claim, EachProfileHasItsOwn) {
   RunResult run = complete_run({"tpa"});
   run.suite["px4-v1.3.4/tpa"][Rate::hz(250)] = 1;

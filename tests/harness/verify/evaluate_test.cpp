@@ -116,7 +116,7 @@ TEST_F(EvaluateTest, AnotherSideIsAsRightButNotAtTheExactLevel) {
   for (GoldenTrace& one : traces) {
     one.branch_alternatives = branch_alternatives(turned, one.trace).value();
   }
-  ASSERT_TRUE(NewGolden::write(suite_.golden(), turned, traces, {}, "a test")->put_in_place());
+  ASSERT_TRUE(NewGolden::write(suite_.golden(), turned, traces, {}, {"a test"})->put_in_place());
   const auto golden = Golden::open(suite_.golden(), turned);
   const auto verdict_on = [&](const Trace& answers, Level level) {
     Reciting port(answers);

@@ -1,0 +1,138 @@
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "harness/cli/command.hpp"
+#include "harness/cli/suite_folder.hpp"
+#include "harness/core/suggestion.hpp"
+#include "harness/process/program.hpp"
+
+namespace attest::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Language {
+  std::string_view name;   // also the folder of its starter
+  std::string_view title;  // "a port in C"
+  const char* toolchain;   // the program that its `check` needs
+  bool has_headers;        // it includes the ABI headers
+};
+
+constexpr std::array languages{
+    Language{"c", "C", "cc", true},
+    Language{"cpp", "C++", "c++", true},
+    Language{"python", "Python", "python3", false},
+    Language{"rust", "Rust", "cargo", false},
+    Language{"simulink", "C generated from a Simulink model", "cc", true},
+};
+
+Result<Language> language_named(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Language& language : languages) {
+    if (language.name == name) return language;
+    names.emplace_back(language.name);
+  }
+  return fail(fmt::format("no starter in `{}`{}; there are {}", name, suggestion(name, names),
+                          fmt::join(names, ", ")));
+}
+
+// Where the parts of a new port are: in the source tree, or in an installation.
+struct Parts {
+  fs::path starter, headers, ci;
+};
+
+Result<Parts> parts_of(const Language& language) {
+  const auto data = data_folder();
+  if (!data) return fail("the data of this attest is missing: share/attest of its installation");
+  std::error_code ignored;
+  const bool is_installed = fs::is_directory(*data / "starters", ignored);
+  const fs::path starters = *data / (is_installed ? "starters" : "controller/starters");
+  return Parts{starters / language.name, *data / (is_installed ? "include" : "controller"),
+               *data / (is_installed ? "ci" : "ci/examples")};
+}
+
+Result<void> check_folder(const fs::path& folder) {
+  std::error_code ignored;
+  if (!fs::exists(fs::symlink_status(folder, ignored))) return {};
+  if (fs::is_directory(folder, ignored) && fs::is_empty(folder, ignored)) return {};
+  return fail_at(folder.string(), "exists; name a new folder");
+}
+
+// What builds in a starter's folder leave there.
+bool is_build_result(const fs::path& path) {
+  const std::string name = path.filename().string();
+  return name == "build" || name == "target" || name == "__pycache__" || path.extension() == ".so";
+}
+
+// Throws fs::filesystem_error.
+void copy_starter(const fs::path& from, const fs::path& to) {
+  fs::create_directories(to);
+  for (const auto& entry : fs::directory_iterator(from)) {
+    if (is_build_result(entry.path())) continue;
+    fs::copy(entry.path(), to / entry.path().filename(), fs::copy_options::recursive);
+  }
+}
+
+// Throws fs::filesystem_error.
+void lay_out(const Parts& parts, const Language& language, const fs::path& folder) {
+  copy_starter(parts.starter, folder);
+  if (language.has_headers) {
+    fs::create_directories(folder / "include");
+    for (const char* header : {"attest_unit.h", "attest_actuation.h"}) {
+      fs::copy_file(parts.headers / header, folder / "include" / header);
+    }
+  }
+  fs::create_directories(folder / ".github" / "workflows");
+  fs::copy_file(parts.ci / "github-actions.yml", folder / ".github" / "workflows" / "attest.yml");
+  fs::copy_file(parts.ci / "gitlab-ci.yml", folder / ".gitlab-ci.yml");
+}
+
+Result<Language> make_port(const NewPortOptions& options) {
+  auto language = language_named(options.language);
+  if (!language) return language;
+  const auto parts = parts_of(*language);
+  if (!parts) return tl::unexpected(parts.error());
+  if (auto checked = check_folder(options.folder); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  // Made aside and renamed, so that no half of a port is left.
+  const fs::path aside = options.folder + ".part";
+  std::error_code ignored;
+  try {
+    lay_out(*parts, *language, aside);
+    fs::rename(aside, options.folder);
+  } catch (const fs::filesystem_error& error) {
+    fs::remove_all(aside, ignored);
+    return fail_at(options.folder, fmt::format("cannot be made: {}", error.code().message()));
+  }
+  return language;
+}
+
+}  // namespace
+
+int new_port_command(const NewPortOptions& options, const Globals& globals) {
+  const auto language = make_port(options);
+  if (!language) return report_error(language.error());
+  if (!find_program(language->toolchain)) {
+    fmt::print(stderr, "attest: note: {} is not installed; {}/packages.txt names its package\n",
+               language->toolchain, options.folder);
+  }
+  if (globals.quiet) return exit_ok;
+  fmt::print(
+      "{0} has a complete port in {1}. Replace its law by yours; README.md says where.\n"
+      "  {0}/check                   builds it and runs the whole suite\n"
+      "  {0}/check --group attitude  builds it and runs one group: all options of `attest run`\n"
+      "  .github/workflows/attest.yml and .gitlab-ci.yml there run check in CI\n",
+      options.folder, language->title);
+  return exit_ok;
+}
+
+}  // namespace attest::cli

@@ -1,0 +1,48 @@
+#include <map>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "harness/casefile/stimulus.hpp"
+#include "harness/cli/command.hpp"
+#include "harness/cli/find_case.hpp"
+#include "harness/cli/outputs.hpp"
+#include "harness/cli/suite_folder.hpp"
+#include "harness/trace/csv.hpp"
+#include "harness/verify/fixed_step.hpp"
+
+namespace attest::cli {
+namespace {
+
+Result<Trace> recorded(const RecordOptions& options, const SuiteFolder& suite) {
+  const auto the_case = find_open_loop_case(options.case_name, suite);
+  if (!the_case) return tl::unexpected(the_case.error());
+  const auto rate = Rate::parse(options.rate);
+  if (!rate) return tl::unexpected(rate.error());
+  const auto host = start_host(options.host);
+  if (!host) return tl::unexpected(host.error());
+  Trace trace = inputs_for((*host)->says(), *the_case, *rate);
+  const auto fault = (*host)->drive(subject_of(*the_case), trace);
+  if (!fault) return trace;
+  return fail_at(options.host.port, fmt::format("{}: {}", trace.source, fault->what));
+}
+
+Result<void> record(const RecordOptions& options, const Globals& globals) {
+  const auto suite = find_suite(globals.suite);
+  if (!suite) return tl::unexpected(suite.error());
+  const auto checked =
+      check_outputs({options.out}, {options.host.port, {options.case_name}}, *suite);
+  if (!checked) return tl::unexpected(checked.error());
+  const auto trace = recorded(options, *suite);
+  if (!trace) return tl::unexpected(trace.error());
+  return write_csv(options.out, *trace, all_columns(*trace));
+}
+
+}  // namespace
+
+int record_command(const RecordOptions& options, const Globals& globals) {
+  const auto written = record(options, globals);
+  return written ? exit_ok : report_error(written.error());
+}
+
+}  // namespace attest::cli

@@ -1,0 +1,205 @@
+#include "harness/cli/run_plan.hpp"
+
+#include <charconv>
+#include <cstdlib>
+#include <ctime>
+#include <set>
+#include <string>
+#include <utility>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "harness/cli/find_case.hpp"
+#include "harness/cli/interrupt.hpp"
+#include "harness/core/file.hpp"
+#include "harness/core/version.hpp"
+#include "harness/golden/recorded.hpp"
+#include "harness/port/port.hpp"
+#include "harness/process/child.hpp"
+#include "harness/report/text.hpp"
+#include "harness/verify/recorded_vectors.hpp"
+
+namespace attest::cli {
+namespace {
+
+// Stores the port's description and the profiles that it supports. The port must give the same
+// answers during the run. A port that hangs here has no description and is not asked again.
+Result<void> ask_port(const std::vector<std::string>& profiles, RunPlan& plan) {
+  const auto port = describe_port(plan.host, profiles);
+  if (!port) return tl::unexpected(port.error());
+  for (const auto& [profile, words] : port->refusals) {
+    if (words.empty()) continue;
+    fmt::print(stderr, "attest: note: the port made no unit of {}; it printed: {}\n", profile,
+               one_line(words));
+  }
+  plan.run.port_name = port->name;
+  plan.run.port_version = port->version;
+  plan.run.fraction_bits = port->fraction_bits;
+  plan.run.fixed_step = port->fixed_step;
+  plan.run.not_recorded = port->not_recorded;
+  plan.host.hangs = port->hangs;
+  if (port->hangs.empty()) plan.host.said = *port;
+  return {};
+}
+
+// Of a recorded port: whether its outputs are for the inputs of these cases.
+Result<void> check_recorded(const std::vector<SelectedCase>& cases, const RunPlan& plan) {
+  const auto folder = recorded_folder(plan.host.port);
+  if (!folder || !plan.host.said) return {};
+  const auto found = check_recorded_vectors(*folder, *plan.host.said, cases);
+  if (!found) return tl::unexpected(found.error());
+  fmt::print(stderr, "attest: note: {} of {} selected vectors have outputs in {}\n",
+             found->answered, found->selected, *folder);
+  if (!found->ignored.empty()) {
+    fmt::print(stderr, "attest: note: {}: these columns are ignored: {}\n", found->first,
+               fmt::join(found->ignored, ", "));
+  }
+  return {};
+}
+
+// The parameters of --param. Errors: none of the cases has one of them.
+Result<void> set_parameters(const RunOptions& options, const std::vector<SelectedCase>& cases,
+                            RunPlan& plan) {
+  for (const std::string& text : options.parameters) {
+    const auto change = parse_parameter(text);
+    if (!change) return tl::unexpected(change.error());
+    Result<void> accepted;
+    for (const SelectedCase& selected : cases) {
+      accepted = check_parameter(subject_of(selected.the_case), *change);
+      if (accepted) break;
+    }
+    if (!accepted) return fail(fmt::format("--param {}: {}", text, accepted.error().message));
+    plan.run.parameters.push_back(*change);
+  }
+  return {};
+}
+
+// The selected cases, each at its own times.
+Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, RunPlan& plan) {
+  auto cases = options.select.cases_in(suite.cases());
+  if (!cases) return tl::unexpected(cases.error());
+  if (auto set = set_parameters(options, *cases, plan); !set) return set;
+  if (!suite.reference().empty() || !plan.run.parameters.empty()) {
+    std::erase_if(*cases, [](const SelectedCase& one) { return one.the_case.flight.has_value(); });
+    if (cases->empty())
+      return fail(fmt::format("only flights are selected: {}", suite.reference().empty()
+                                                                   ? "--param leaves them out"
+                                                                   : own_law_only));
+  }
+  std::set<Rate> rates;
+  bool all_configurations = options.select.shard == "1/1";
+  for (const SelectedCase& selected : *cases) {
+    all_configurations &=
+        selected.configurations.size() == selected.the_case.configurations().size();
+    for (const RunConfiguration& configuration : selected.configurations)
+      rates.insert(configuration.rate);
+    plan.results += selected.configurations.size();
+  }
+  std::set<std::string> profiles;
+  for (const SelectedCase& selected : *cases) profiles.insert(selected.the_case.profile);
+  if (auto asked = ask_port({profiles.begin(), profiles.end()}, plan); !asked) return asked;
+  if (auto checked = check_recorded(*cases, plan); !checked) return checked;
+  VehicleModels vehicle_models(suite.models());
+  auto jobs = case_jobs(*cases, suite.golden(), vehicle_models,
+                        {plan.run.level, options.save_traces, plan.run.parameters}, plan.host);
+  if (!jobs) return tl::unexpected(jobs.error());
+  plan.jobs = *std::move(jobs);
+  plan.run.selection = options.select.narrowing();
+  plan.run.all_configurations = all_configurations;
+  plan.run.rates.assign(rates.begin(), rates.end());
+  plan.cases = std::move(*cases);
+  return {};
+}
+
+// The one flight of a recorded timing.
+Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, RunPlan& plan) {
+  if (!options.select.selects_all())
+    return fail("--timing selects the flight; leave out all other selections");
+  auto flight = find_timed_flight(options.timing, suite);
+  if (!flight) return tl::unexpected(flight.error());
+  if (auto asked = ask_port({flight->the_case.profile}, plan); !asked) return asked;
+  plan.results = 1;
+  plan.run.timing = options.timing;
+  plan.run.rates = {flight->timing.configuration.rate};
+  plan.jobs.push_back(
+      std::make_unique<TimedJob>(std::move(flight->the_case), std::move(flight->timing),
+                                 std::move(flight->vehicle_model), options.save_traces, plan.host));
+  return {};
+}
+
+// The date in UTC. With SOURCE_DATE_EPOCH, reports do not depend on the day.
+Result<std::string> date_of_run() {
+  std::time_t now = std::time(nullptr);
+  if (const char* given = std::getenv("SOURCE_DATE_EPOCH"); given && *given) {
+    const std::string_view text(given);
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), now);
+    if (error != std::errc() || end != text.data() + text.size() || now < 0) {
+      return fail(fmt::format("SOURCE_DATE_EPOCH is `{}`; it must be a count of seconds", text));
+    }
+  }
+  return fmt::format("{:%Y-%m-%d}", fmt::gmtime(now));
+}
+
+// Of the port's file, or of the hashes of its files if it has several. Empty: it has none.
+Result<std::string> sha256_of_port(const std::string& port) {
+  std::vector<std::string> hashes;
+  for (const std::string& file : files_of(port)) {
+    auto hash = sha256_of_file(file);
+    if (!hash) return tl::unexpected(hash.error());
+    hashes.push_back(*std::move(hash));
+  }
+  if (hashes.size() <= 1) return hashes.empty() ? "" : hashes.front();
+  return sha256(fmt::format("{}\n", fmt::join(hashes, "\n")));
+}
+
+// Adds the subject of the conformance statement: suite, port and date.
+Result<void> identify(const RunOptions& options, const SuiteFolder& suite, RunResult& run) {
+  run.suite = suite.cases_by_group();
+  run.cases_version = suite.version_of(suite.cases());
+  run.golden_version = suite.version_of(suite.golden());
+  run.suite_reference = suite.reference();
+  run.attest_version = version;
+  run.port = options.host.port;
+  run.limits = {!options.host.in_process, options.host.timeout_s,
+                memory_is_limited() ? std::optional(max_memory_gib) : std::nullopt, max_file_mib};
+  auto hash = suite.sha256();
+  if (!hash) return tl::unexpected(hash.error());
+  run.suite_sha256 = *hash;
+  run.suite_is_released = run.suite_sha256 == released_suite_sha256();
+  auto of_port = sha256_of_port(run.port);
+  if (!of_port) return tl::unexpected(of_port.error());
+  run.port_sha256 = *std::move(of_port);
+  auto date = date_of_run();
+  if (!date) return tl::unexpected(date.error());
+  run.date = *date;
+  return {};
+}
+
+}  // namespace
+
+Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
+  auto level = parse_level(options.level);
+  if (!level) return tl::unexpected(level.error());
+  RunPlan plan;
+  plan.host = options.host;
+  plan.host.stop = interrupted;
+  plan.run.level = *level;
+  if (!options.expected_failures.empty()) {
+    auto expected = ExpectedFailures::read(options.expected_failures);
+    if (!expected) return tl::unexpected(expected.error());
+    plan.expected = std::move(*expected);
+  }
+  const auto planned =
+      options.timing.empty() ? plan_cases(options, suite, plan) : plan_timed(options, suite, plan);
+  if (!planned) return tl::unexpected(planned.error());
+  // After the port was loaded, because loading gives the better error for a file that is not a
+  // library.
+  if (auto known = identify(options, suite, plan.run); !known) {
+    return tl::unexpected(known.error());
+  }
+  return plan;
+}
+
+}  // namespace attest::cli

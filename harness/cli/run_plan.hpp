@@ -1,0 +1,35 @@
+// What `attest run` will do: the selected vectors as jobs, and the context of the report.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "harness/casefile/select.hpp"
+#include "harness/cli/command.hpp"
+#include "harness/cli/suite_folder.hpp"
+#include "harness/verify/case_job.hpp"
+#include "harness/verify/expected.hpp"
+#include "harness/verify/run_result.hpp"
+
+namespace attest::cli {
+
+// The whole run, complete and checked before the first vector runs.
+struct RunPlan {
+  RunResult run;
+  std::optional<ExpectedFailures> expected;
+  std::vector<SelectedCase> cases;
+  HostOptions host;
+  Jobs<CaseResult> jobs;
+  std::size_t results = 0;
+};
+
+// Asks the port for its declarations, and prints notes about it. Errors: wrong options; the port
+// cannot be opened; recorded outputs are for other inputs; a file that cannot be read.
+Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite);
+
+// Why a suite whose reference is a port has neither flights nor diagnosis.
+inline constexpr const char* own_law_only =
+    "flights and the diagnosis need attest's own law, and the reference of this suite is a port";
+
+}  // namespace attest::cli

@@ -1,0 +1,138 @@
+#include "harness/cli/suite_arguments.hpp"
+
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "harness/cli/command.hpp"
+
+namespace attest::cli {
+namespace {
+
+void add_faults(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<FaultOptions>();
+  CLI::App* command =
+      app.add_subcommand("faults", "Measure the suite: which faults of the catalogue it catches");
+  CLI::Option* const ids =
+      command->add_option("fault", options->ids, "Only these faults")->type_name("ID");
+  command
+      ->add_option("--profile", options->profiles, "Only this version of the law (cases, faults)")
+      ->type_name("PROFILE")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command->add_flag("--list", options->list, "List the catalogue; run nothing");
+  CLI::Option* const bits =
+      command
+          ->add_option("--fraction-bits", options->fraction_bits,
+                       "Use the tolerances of a port in fixed point with so many fraction bits")
+          ->check(CLI::Range(20, 32));
+  command
+      ->add_flag("--diagnose", options->diagnose,
+                 "Measure the diagnosis instead: is each fault recognised?")
+      ->excludes(bits, ids);
+  add_jobs(*command, options->jobs, "Faults at a time");
+  add_examples(*command, {{"attest faults", "which faults the whole suite catches"},
+                          {"attest faults --list --profile px4-v1.3.4",
+                           "the catalogue of one version of the law"}});
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return faults_command(*options, globals); };
+  });
+}
+
+void add_list(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<ListOptions>();
+  CLI::App* command =
+      app.add_subcommand("list", "List the cases with their reasons, or one of the tables");
+  add_selection(*command, options->select);
+  command->add_flag("--groups", options->groups,
+                    "Only the groups, with their numbers of cases and vectors");
+  command->add_flag("--parameters", options->parameters, "The parameters of the law");
+  command->add_flag("--channels", options->channels, "The signals: trace columns and ABI members");
+  command->add_flag("--flight-modes", options->modes, "Flight modes and the flags they set");
+  command->add_flag("--vehicles", options->vehicles, "The vehicles, with mass, rotors, arm, ...");
+  add_examples(*command,
+               {{"attest list --filter 'tpa/*'", "the cases of a group, with their reasons"},
+                {"attest list --parameters --profile px4-v1.3.4",
+                 "the parameters of one version of the law"}});
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return list_command(*options, globals); };
+  });
+}
+
+void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<VectorOptions>();
+  CLI::App* command = app.add_subcommand(
+      "vectors",
+      "Write the inputs of the vectors to files, for a port that attest cannot call; `attest run "
+      "--port recorded:DIR` judges its outputs");
+  CLI::Option* const folder =
+      command
+          ->add_option("folder", options->folder,
+                       "Where: DIR/PROFILE/GROUP/NAME/RATEhz.csv, with DIR/manifest.toml")
+          ->type_name("DIR");
+  CLI::Option* const lint = command->add_flag(
+      "--lint", options->lint,
+      "Write nothing; report numeric vectors that are too near to a decision of the law, "
+      "where correct controllers may differ");
+  lint->excludes(folder);
+  command->add_option("--format", options->format, "`csv`, `mat` (MATLAB) or `npy` (numpy)")
+      ->type_name("FORMAT")
+      ->capture_default_str()
+      ->excludes(lint);
+  command
+      ->add_option("--fixed-step", options->fixed_step,
+                   "For a port with a fixed sample time: only vectors with regular ticks at this "
+                   "rate, from one period after zero on")
+      ->type_name("HZ")
+      ->excludes(lint);
+  add_selection(*command, options->select);
+  add_examples(
+      *command,
+      {{"attest vectors DIR --group attitude --rate 250", "the inputs of some cases, a file each"},
+       {"attest vectors DIR --format mat --fixed-step 250",
+        "all that a Simulink model with a sample time of 4 ms can run"},
+       {"attest vectors --lint", "is a vector too near to a decision of the law?"}});
+  command->callback([options, &globals, &action] {
+    if (!options->lint && options->folder.empty()) throw CLI::RequiredError("folder");
+    action = [=, &globals] {
+      return options->lint ? lint_command(*options, globals) : vectors_command(*options, globals);
+    };
+  });
+}
+
+void add_bless(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<BlessOptions>();
+  CLI::App* command = app.add_subcommand(
+      "bless",
+      "Make new golden traces from the reference, after showing the changes; one process at a time "
+      "(golden/.bless.lock)");
+  add_selection(*command, options->select);
+  command->add_option("--reason", options->reason, "Why, for provenance.toml (required)")
+      ->type_name("TEXT");
+  command->add_flag("--yes", options->yes, "Do not ask");
+  command
+      ->add_option("--port", options->port,
+                   "Make a suite of your own, which compares ports with this one: the cases of "
+                   "--suite DIR get its outputs as goldens")
+      ->type_name("PORT");
+  add_timeout(*command, options->host.timeout_s);
+  add_examples(*command, {{"attest bless --filter 'px4-v1.5.5/tpa/*' --reason \"...\"",
+                           "shows the changes, and asks before it replaces the goldens"},
+                          {"attest bless --suite ours --port lib:./ours.so --reason \"our law\"",
+                           "the cases in ours/cases, with your own law as the reference"}});
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return bless_command(*options, globals); };
+  });
+}
+
+}  // namespace
+
+void add_suite_commands(CLI::App& app, const Globals& globals, Action& action) {
+  add_faults(app, globals, action);
+  add_list(app, globals, action);
+  add_vectors(app, globals, action);
+  add_bless(app, globals, action);
+}
+
+}  // namespace attest::cli

@@ -1,0 +1,55 @@
+load common
+
+setup_file() {
+  export PYTHONDONTWRITEBYTECODE=1
+}
+
+# made LANGUAGE TOOL: a new port of that language conforms to a group, through its own check.
+made() {
+  command -v "$2" >/dev/null || skip "no $2"
+  run "$ATTEST" new-port mine --lang "$1"
+  [ "$status" -eq 0 ]
+  has "mine/check"
+  cp "$ATTEST" attest
+  export ATTEST_SUITE=$SOURCE PATH=$PWD:$PATH
+  run mine/check --group rates --rate 250
+  [ "$status" -eq 0 ]
+  has "PASS"
+  grep -q "./check --junit" mine/.github/workflows/attest.yml
+  grep -q "./check --junit" mine/.gitlab-ci.yml
+}
+
+@test "a new port in C" { made c cc; }
+@test "a new port in C++" { made cpp c++; }
+@test "a new port in Python" { made python python3; }
+@test "a new port in Rust" { made rust cargo; }
+@test "a new port of a Simulink model" { made simulink cc; }
+
+@test "nothing is overwritten, and a typo gets a suggestion" {
+  run "$ATTEST" new-port mine --lang pyton
+  [ "$status" -eq 2 ]
+  has "no starter in \`pyton\`; did you mean \`python\`?; there are c, cpp, python, rust, simulink"
+  [ ! -e mine ]
+  mkdir mine
+  echo mine >mine/file
+  run "$ATTEST" new-port mine --lang c
+  [ "$status" -eq 2 ]
+  has "mine: exists; name a new folder"
+  [ "$(ls mine)" = file ]
+  run "$ATTEST" new-port file/below --lang c
+  [ "$status" -eq 0 ]
+  run "$ATTEST" new-port mine/file/below --lang c
+  [ "$status" -eq 2 ]
+  has "mine/file/below: cannot be made"
+}
+
+@test "check and new-port say which tool is missing" {
+  mkdir bin
+  for tool in sh dirname; do ln -s "$(command -v $tool)" bin; done
+  PATH=$PWD/bin run "$ATTEST" new-port mine --lang python
+  [ "$status" -eq 0 ]
+  has "note: python3 is not installed; mine/packages.txt names its package"
+  PATH=$PWD/bin run mine/check
+  [ "$status" -eq 2 ]
+  has "check: python3 is missing: install it"
+}

@@ -1,0 +1,142 @@
+load common
+
+# A suite of the own law in ./ours: two cases, one of a profile that attest does not know.
+own_suite() {
+  mkdir -p ours/cases/px4-v1.5.5/rates ours/cases/our-law/rates
+  cp "$SOURCE/cases/px4-v1.5.5/rates/p_alone.toml" "$SOURCE/cases/px4-v1.5.5/rates/long_run.toml" \
+    ours/cases/px4-v1.5.5/rates
+  sed -e 's/^profiles = .*/profiles = ["our-law"]/' ours/cases/px4-v1.5.5/rates/p_alone.toml \
+    >ours/cases/our-law/rates/p_alone.toml
+}
+
+ours() { "$ATTEST" --suite ours "$@"; }
+
+@test "a port becomes the reference of a suite of its own" {
+  own_suite
+  run ours bless --port "lib:$PORTS/port_sign_flip.so" --profile px4-v1.5.5 --yes --reason "our law"
+  [ "$status" -eq 0 ]
+  has "blessed 4"
+  grep -q "^sign-flip .*SHA-256 [0-9a-f]\{64\})" ours/golden/REFERENCE
+  grep -q "reference = 'sign-flip" ours/golden/px4-v1.5.5/rates/p_alone/provenance.toml
+  # The golden of a long case keeps every tick, because attest's own law cannot fill them in.
+  [ "$(wc -l <ours/golden/px4-v1.5.5/rates/long_run/250hz.csv)" -gt 5000 ]
+
+  run ours run --port "lib:$PORTS/port_sign_flip.so" --profile px4-v1.5.5 --level exact
+  [ "$status" -eq 0 ]
+  has "custom suite, reference sign-flip"
+  run ours run --profile px4-v1.5.5 --rate 250 # attest's own law is another one
+  [ "$status" -eq 1 ]
+  has "note: flights and the diagnosis need attest's own law"
+  lacks "it looks like"
+  run ours run --port "lib:$PORTS/port_fixed_step.so" --profile px4-v1.5.5 --rate 250
+  [ "$status" -eq 2 ]
+  has "the expected outputs at other times or with other parameters are not known"
+}
+
+@test "a suite has one reference, and goldens of attest's own law stay as they are" {
+  own_suite
+  run ours bless --yes --reason "attest's" --profile px4-v1.5.5
+  [ "$status" -eq 2 ] # no recordings
+  run "$ATTEST" bless --port "lib:$PORTS/port_sign_flip.so" --yes --reason "our law"
+  [ "$status" -eq 2 ]
+  has "name its folder, which has your cases/, with --suite DIR"
+  run "$ATTEST" --suite "$SOURCE" bless --port "lib:$PORTS/port_sign_flip.so" --yes --reason "our law"
+  [ "$status" -eq 2 ]
+  has "has goldens of attest's own reference; copy cases/ to a folder of your own"
+  ours bless --port "lib:$PORTS/port_sign_flip.so" --profile px4-v1.5.5 --yes --reason "our law" >/dev/null
+  run ours bless --yes --reason "again" --profile px4-v1.5.5
+  [ "$status" -eq 2 ]
+  has "the reference of this suite is sign-flip"
+}
+
+@test "a law may have a profile name and parameters of its own" {
+  own_suite
+  cat >ours.py <<'P'
+# The Python starter, as the law of another project.
+import sys
+sys.path.insert(0, sys.argv[1])
+import controller, law, port
+controller.PROFILES = port.PROFILES = ("our-law",)
+default = law.default_parameters
+controller.default_parameters = lambda profile: dict(default(law.PX4_V155), OUR_GAIN=1.0)
+port.main()
+P
+  sed -i 's/^\[parameters\]/[parameters]\nOUR_GAIN = 2.5/' ours/cases/our-law/rates/p_alone.toml
+  grep -q OUR_GAIN ours/cases/our-law/rates/p_alone.toml
+  port="proc:$PYTHON ours.py $SOURCE/controller/starters/python"
+  export PYTHONDONTWRITEBYTECODE=1
+  run ours bless --port "$port" --profile our-law --yes --reason "our law"
+  [ "$status" -eq 0 ]
+  run ours run --port "$port" --profile our-law --rate 250
+  [ "$status" -eq 0 ]
+  has "partial: our-law"
+}
+
+@test "a reference must be repeatable, support its cases and not crash" {
+  own_suite
+  run ours bless --port "lib:$PORTS/port_crash.so" --profile px4-v1.5.5 --yes --reason "our law"
+  [ "$status" -eq 2 ]
+  has "the reference, at 100 Hz: the port's process"
+  cat >random.py <<'P'
+import sys
+sys.path.insert(0, sys.argv[1])
+import random, controller, port
+step = controller.Controller.step
+def noisy(self, inputs):
+  out = step(self, inputs)
+  return out._replace(controls=(random.random(), *out.controls[1:]))
+controller.Controller.step = noisy
+port.main()
+P
+  export PYTHONDONTWRITEBYTECODE=1
+  run ours bless --port "proc:$PYTHON random.py $SOURCE/controller/starters/python" \
+    --profile px4-v1.5.5 --yes --reason "our law"
+  [ "$status" -eq 2 ]
+  has "a reference must be repeatable"
+  [ ! -e ours/golden/REFERENCE ]
+  mkdir -p ours/cases/px4-v1.5.5/flight ours/cases/px4-v1.5.5/mixer
+  cp "$SOURCE/cases/px4-v1.5.5/flight/hover.toml" ours/cases/px4-v1.5.5/flight
+  cp "$SOURCE/cases/px4-v1.5.5/mixer/linear_quad_x.toml" ours/cases/px4-v1.5.5/mixer
+  cp -r "$SOURCE/models" ours
+  run ours bless --port "lib:$PORTS/port_sign_flip.so" --profile px4-v1.5.5 --yes --reason "our law"
+  [ "$status" -eq 0 ]
+  has "1 case without golden: flights are compared with attest's own law"
+  has "1 case without golden: the port has no mixer"
+}
+
+@test "record writes the trace of a port, which replays" {
+  run "$ATTEST" record px4-v1.5.5/rates/p_alone --rate 250 --port "lib:$STARTER" --out mine.csv
+  [ "$status" -eq 0 ]
+  run "$ATTEST" replay mine.csv --level exact
+  [ "$status" -eq 0 ]
+  "$ATTEST" record px4-v1.5.5/rates/p_alone --rate 250 | cmp - mine.csv
+  run "$ATTEST" record px4-v1.5.5/flight/hover --rate 250
+  [ "$status" -eq 2 ]
+  has "is a flight; \`attest sim\` flies it"
+  run "$ATTEST" record px4-v1.5.5/rates/p_alone --rate 250 --port "lib:$PORTS/port_crash.so" --out no.csv
+  [ "$status" -eq 2 ]
+  has "the port's process"
+  [ ! -e no.csv ]
+}
+
+@test "run --param sets a parameter for port and reference" {
+  filter=(--filter 'rates/*@250hz' --profile px4-v1.5.5)
+  run "$ATTEST" run --port "lib:$STARTER" --level exact "${filter[@]}" --param MC_ROLLRATE_P=0.3
+  [ "$status" -eq 0 ]
+  has "with MC_ROLLRATE_P=0.3"
+  # These cases leave the time constant at its default, with which the fault cannot be seen.
+  run "$ATTEST" run --port fault:tc-ignored --filter px4-v1.5.5/rates/p_alone@250hz
+  [ "$status" -eq 0 ]
+  run "$ATTEST" run --port fault:tc-ignored --filter px4-v1.5.5/rates/p_alone@250hz \
+    --param MC_ROLL_TC=0.3
+  [ "$status" -eq 1 ]
+  run "$ATTEST" run "${filter[@]}" --param MC_ROLLRATE_Q=0.3
+  [ "$status" -eq 2 ]
+  has "did you mean \`MC_ROLLRATE_P\`"
+  run "$ATTEST" run "${filter[@]}" --param MC_ROLLRATE_P
+  [ "$status" -eq 2 ]
+  has "write NAME=VALUE"
+  run "$ATTEST" run --filter '*/hover' --param MC_ROLLRATE_P=0.3
+  [ "$status" -eq 2 ]
+  has "--param leaves them out"
+}
