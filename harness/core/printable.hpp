@@ -1,4 +1,4 @@
-// Text from files and ports as it is shown in messages.
+// Makes texts from files and ports harmless before they reach a terminal or an XML file.
 #pragma once
 
 #include <string>
@@ -6,11 +6,11 @@
 
 namespace attest {
 
-// The text with control characters as \xNN. On a terminal they would move the cursor or change the
-// colours, so that a file could hide its error. UTF-8 stays.
+// Valid UTF-8 that XML 1.0 can hold and that does not move a cursor: control characters other than
+// newline and tab, U+FFFE, U+FFFF and bytes that are not UTF-8 become "\x1b".
 std::string printable(std::string_view text);
 
-// The same, but line ends stay.
-std::string printable_lines(std::string_view text);
+// The same for a part of a line: newlines and tabs become "\x0a" and "\x09", too.
+std::string printable_part(std::string_view text);
 
 }  // namespace attest

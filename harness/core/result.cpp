@@ -18,7 +18,7 @@ std::string Error::to_string() const {
 tl::unexpected<Error> fail(const std::string& message) { return fail_at("", message); }
 
 tl::unexpected<Error> fail_at(std::string file, const std::string& message, int line, int column) {
-  return tl::unexpected<Error>(Error{printable_lines(message), std::move(file), line, column});
+  return tl::unexpected<Error>(Error{printable(message), std::move(file), line, column});
 }
 
 }  // namespace attest

@@ -26,8 +26,8 @@ struct Error {
 template <typename T>
 using Result = tl::expected<T, Error>;
 
-// For the return statement: `return fail("no such group");` Control characters of the message,
-// which may be from a file or a port, are shown as \xNN; line ends stay.
+// For the return statement: `return fail("no such group");`. The message may quote a file or a
+// port, so it becomes printable().
 tl::unexpected<Error> fail(const std::string& message);
 tl::unexpected<Error> fail_at(std::string file, const std::string& message, int line = 0,
                               int column = 0);

@@ -97,7 +97,7 @@ struct TomlFile::Document {
   std::map<const toml::table*, Asked> visited;
 
   void complain(Place place, const std::string& message) {
-    const Complaint complaint{place, printable(message)};
+    const Complaint complaint{place, printable_part(message)};
     // The same key may be read twice.
     const auto same = std::find(complaints.begin(), complaints.end(), complaint);
     if (same == complaints.end()) complaints.push_back(complaint);
@@ -117,7 +117,7 @@ std::vector<Complaint> TomlFile::Document::unread_keys() const {
           asked.seen.contains(key.str())
               ? fmt::format("key `{}` has no effect here; remove it", key.str())
               : fmt::format("unknown key `{}`{}", key.str(), suggestion(key.str(), known));
-      unread.push_back({place_of(key.source()), printable(message)});
+      unread.push_back({place_of(key.source()), printable_part(message)});
     }
   }
   return unread;

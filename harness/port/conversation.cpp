@@ -85,7 +85,7 @@ void Conversation::ended(Request request) {
 void Conversation::broken(Request request, const std::string& what) {
   is_over_ = true;
   throw PortBroke(PortBroke::How::rules, fmt::format("the answer to the request `{}` {}",
-                                                     name_of(request), printable(what)));
+                                                     name_of(request), printable_part(what)));
 }
 
 }  // namespace attest

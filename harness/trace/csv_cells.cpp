@@ -47,7 +47,7 @@ const char* parse_unusual_float(const char* first, const char* last, float& valu
 
 std::string in_backquotes(std::string_view text) {
   constexpr std::size_t longest = 60;
-  return fmt::format("`{}{}`", printable(text.substr(0, longest)),
+  return fmt::format("`{}{}`", printable_part(text.substr(0, longest)),
                      text.size() > longest ? "..." : "");
 }
 
