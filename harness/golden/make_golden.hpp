@@ -35,7 +35,7 @@ class Reference {
 struct MadeGolden {
   std::vector<GoldenTrace> traces;  // one for each of the case's configurations, in that order
   std::vector<std::filesystem::path> vehicle_files;  // that its flights depend on
-  std::string left_out;  // why the case has no golden of this reference; empty: it has one
+  std::string left_out = {};  // why the case has no golden of this reference; empty: it has one
 };
 
 // The golden of a port keeps every tick and has no branch alternatives, which only attest's own law

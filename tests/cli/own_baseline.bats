@@ -40,10 +40,12 @@ ours() { "$ATTEST" --suite ours "$@"; }
   run "$ATTEST" bless --port "lib:$PORTS/port_sign_flip.so" --yes --reason "our law"
   [ "$status" -eq 2 ]
   has "name its folder, which has your cases/, with --suite DIR"
-  run "$ATTEST" --suite "$SOURCE" bless --port "lib:$PORTS/port_sign_flip.so" --yes --reason "our law"
+  run "$ATTEST" --suite "$SOURCE" bless --port "lib:$PORTS/port_sign_flip.so" --yes \
+    --reason "our law"
   [ "$status" -eq 2 ]
   has "has goldens of attest's own reference; copy cases/ to a folder of your own"
-  ours bless --port "lib:$PORTS/port_sign_flip.so" --profile px4-v1.5.5 --yes --reason "our law" >/dev/null
+  ours bless --port "lib:$PORTS/port_sign_flip.so" --yes --reason "our law" \
+    --profile px4-v1.5.5 >/dev/null
   run ours bless --yes --reason "again" --profile px4-v1.5.5
   [ "$status" -eq 2 ]
   has "the reference of this suite is sign-flip"
@@ -113,7 +115,8 @@ P
   run "$ATTEST" record px4-v1.5.5/flight/hover --rate 250
   [ "$status" -eq 2 ]
   has "is a flight; \`attest sim\` flies it"
-  run "$ATTEST" record px4-v1.5.5/rates/p_alone --rate 250 --port "lib:$PORTS/port_crash.so" --out no.csv
+  run "$ATTEST" record px4-v1.5.5/rates/p_alone --rate 250 --port "lib:$PORTS/port_crash.so" \
+    --out no.csv
   [ "$status" -eq 2 ]
   has "the port's process"
   [ ! -e no.csv ]
