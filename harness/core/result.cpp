@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "harness/core/printable.hpp"
+
 namespace attest {
 
 std::string Error::to_string() const {
@@ -13,10 +15,10 @@ std::string Error::to_string() const {
   return place.empty() ? message : fmt::format("{}: {}", place, message);
 }
 
-tl::unexpected<Error> fail(std::string message) { return fail_at("", std::move(message)); }
+tl::unexpected<Error> fail(const std::string& message) { return fail_at("", message); }
 
-tl::unexpected<Error> fail_at(std::string file, std::string message, int line, int column) {
-  return tl::unexpected<Error>(Error{std::move(message), std::move(file), line, column});
+tl::unexpected<Error> fail_at(std::string file, const std::string& message, int line, int column) {
+  return tl::unexpected<Error>(Error{printable(message), std::move(file), line, column});
 }
 
 }  // namespace attest

@@ -26,8 +26,10 @@ struct Error {
 template <typename T>
 using Result = tl::expected<T, Error>;
 
-// For the return statement: `return fail("no such group");`
-tl::unexpected<Error> fail(std::string message);
-tl::unexpected<Error> fail_at(std::string file, std::string message, int line = 0, int column = 0);
+// For the return statement: `return fail("no such group");`. The message may quote a file or a
+// port, so it becomes printable().
+tl::unexpected<Error> fail(const std::string& message);
+tl::unexpected<Error> fail_at(std::string file, const std::string& message, int line = 0,
+                              int column = 0);
 
 }  // namespace attest

@@ -43,6 +43,9 @@ std::string suggestion(std::string_view unknown, const std::vector<std::string>&
   const std::string* best = nullptr;
   std::size_t best_distance = allowed + 1;
   for (const std::string& candidate : candidates) {
+    // The distance is at least the difference of the lengths.
+    const std::size_t longer = std::max(unknown.size(), candidate.size());
+    if (2 * longer - unknown.size() - candidate.size() >= best_distance) continue;
     const std::size_t d = distance(unknown, candidate);
     if (d >= best_distance) continue;
     best = &candidate;

@@ -12,6 +12,7 @@
 #include <toml++/toml.h>
 
 #include "harness/core/file.hpp"
+#include "harness/core/printable.hpp"
 #include "harness/core/suggestion.hpp"
 #include "harness/core/toml_depth.hpp"
 
@@ -95,11 +96,11 @@ struct TomlFile::Document {
   std::vector<Complaint> complaints;
   std::map<const toml::table*, Asked> visited;
 
-  void complain(Place place, std::string message) {
-    Complaint complaint{place, std::move(message)};
+  void complain(Place place, const std::string& message) {
+    const Complaint complaint{place, printable_part(message)};
     // The same key may be read twice.
-    if (std::find(complaints.begin(), complaints.end(), complaint) != complaints.end()) return;
-    complaints.push_back(std::move(complaint));
+    const auto same = std::find(complaints.begin(), complaints.end(), complaint);
+    if (same == complaints.end()) complaints.push_back(complaint);
   }
 
   std::vector<Complaint> unread_keys() const;
@@ -116,7 +117,7 @@ std::vector<Complaint> TomlFile::Document::unread_keys() const {
           asked.seen.contains(key.str())
               ? fmt::format("key `{}` has no effect here; remove it", key.str())
               : fmt::format("unknown key `{}`{}", key.str(), suggestion(key.str(), known));
-      unread.push_back({place_of(key.source()), message});
+      unread.push_back({place_of(key.source()), printable_part(message)});
     }
   }
   return unread;
@@ -166,8 +167,7 @@ struct TomlTable::Impl {
 
   template <typename T>
   T value_or_complain(std::string_view key, const toml::node& found, T otherwise) const {
-    std::optional<T> value = convert<T>(found);
-    if (value) return *std::move(value);
+    if (std::optional<T> value = convert<T>(found)) return *std::move(value);
     mismatch(key, needed<T>(), found);
     return otherwise;
   }
@@ -271,9 +271,9 @@ bool TomlTable::boolean(std::string_view key, bool fallback) const {
   return impl_->optional<bool>(key, fallback);
 }
 
-void TomlTable::error(std::string_view key, std::string message) const {
+void TomlTable::error(std::string_view key, const std::string& message) const {
   impl_->mark_read(key);
-  impl_->document->complain(impl_->place_of_key(key), std::move(message));
+  impl_->document->complain(impl_->place_of_key(key), message);
 }
 
 Result<TomlFile> TomlFile::read(const std::filesystem::path& path) {

@@ -58,7 +58,7 @@ class TomlTable {
   bool boolean(std::string_view key, bool fallback) const;
 
   // Records an error at the key's place (at the table's when the key is absent). Counts as reading.
-  void error(std::string_view key, std::string message) const;
+  void error(std::string_view key, const std::string& message) const;
 
   struct Impl;
   explicit TomlTable(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}

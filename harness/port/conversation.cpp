@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/core/printable.hpp"
 #include "harness/port/port.hpp"
 #include "harness/trace/csv_cells.hpp"
 
@@ -28,7 +29,10 @@ std::string_view name_of(Request request) {
 Result<std::unique_ptr<Conversation>> Conversation::begin(const std::vector<std::string>& command) {
   auto started = PipedProgram::start(command);
   if (!started) return tl::unexpected(started.error());
-  PipedProgram program = *std::move(started);
+  return begin(*std::move(started));
+}
+
+Result<std::unique_ptr<Conversation>> Conversation::begin(PipedProgram program) {
   const bool is_written = program.write(greeting());
   const auto line = is_written ? program.read_line(max_line) : std::nullopt;
   if (!line) {
@@ -80,8 +84,8 @@ void Conversation::ended(Request request) {
 
 void Conversation::broken(Request request, const std::string& what) {
   is_over_ = true;
-  throw PortBroke(PortBroke::How::rules,
-                  fmt::format("the answer to the request `{}` {}", name_of(request), what));
+  throw PortBroke(PortBroke::How::rules, fmt::format("the answer to the request `{}` {}",
+                                                     name_of(request), printable_part(what)));
 }
 
 }  // namespace attest

@@ -36,6 +36,7 @@ class Conversation {
  public:
   // Errors: it cannot be started, it ended, its answer to the handshake is not valid.
   static Result<std::unique_ptr<Conversation>> begin(const std::vector<std::string>& command);
+  static Result<std::unique_ptr<Conversation>> begin(PipedProgram program);
 
   virtual ~Conversation() = default;
 

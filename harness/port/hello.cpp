@@ -63,6 +63,17 @@ class Members {
   std::string error_;
 };
 
+void read_protocol(Members& members) {
+  const char* const what = "the version of the protocol, a number";
+  const json spoken = members.required<json>("protocol", what);
+  if (!spoken.is_number_integer()) {
+    members.set_error(fmt::format("has `protocol` = {}; it is {}", text_of(spoken), what));
+  } else if (spoken != protocol_version) {
+    members.set_error(
+        fmt::format("has `protocol` {}; this attest speaks {}", text_of(spoken), protocol_version));
+  }
+}
+
 void read_modules(Members& members, Hello& hello) {
   const char* const what = "a list of `mixer` and `battery_status`";
   for (const std::string& module : members.optional<std::vector<std::string>>("modules", what)) {
@@ -125,11 +136,7 @@ Result<Hello> parse_hello(std::string_view line) {
   }
   Members members(object);
   Hello hello;
-  const auto spoken = members.required<int>("protocol", "the version of the protocol, a number");
-  if (spoken != protocol_version) {
-    members.set_error(
-        fmt::format("has `protocol` {}; this attest speaks {}", spoken, protocol_version));
-  }
+  read_protocol(members);
   hello.name = members.required<std::string>("name", "the name of the port");
   hello.version = members.required<std::string>("version", "the version of the port, as text");
   hello.profiles = members.required<std::vector<std::string>>(

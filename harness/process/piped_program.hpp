@@ -21,6 +21,10 @@ class PipedProgram {
   // Ignores SIGPIPE in this process, so that a program that does not read is an error of write().
   static Result<PipedProgram> start(const std::vector<std::string>& command);
 
+  // For tests: recorded answers instead of a process. Takes both descriptors. The answers are a
+  // file, whose end is the end of the program.
+  static PipedProgram recorded(int requests, int answers);
+
   PipedProgram(PipedProgram&& other) noexcept;
   PipedProgram& operator=(PipedProgram&&) = delete;
   ~PipedProgram();  // end()

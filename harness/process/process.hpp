@@ -39,6 +39,7 @@ class Process {
   // signal handlers and an empty signal mask, and leaves no core file. `work` must not throw.
   static Result<Process> start(const std::function<void()>& work, bool with_guard = true);
 
+  Process() = default;  // none, same as after end()
   Process(Process&& other) noexcept;
   Process& operator=(Process&& other) noexcept;
   ~Process();  // kills

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "harness/core/printable.hpp"
+
 namespace attest {
 namespace {
 
@@ -45,13 +47,8 @@ const char* parse_unusual_float(const char* first, const char* last, float& valu
 
 std::string in_backquotes(std::string_view text) {
   constexpr std::size_t longest = 60;
-  std::string shown;
-  for (const char c : text.substr(0, longest)) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool printable = byte >= 0x20 && byte != 0x7f;  // UTF-8 included
-    shown += printable ? std::string(1, c) : fmt::format("\\x{:02x}", byte);
-  }
-  return fmt::format("`{}{}`", shown, text.size() > longest ? "..." : "");
+  return fmt::format("`{}{}`", printable_part(text.substr(0, longest)),
+                     text.size() > longest ? "..." : "");
 }
 
 std::string cell_error(std::string_view cell, ChannelType type, std::string_view column) {

@@ -21,5 +21,12 @@ TEST(Error, IsMadeByTheReturnStatement) {
   EXPECT_EQ(g().error().file, "");
 }
 
+TEST(Error, ShowsControlCharactersInsteadOfSendingThemToTheTerminal) {
+  const auto made = [](const char* message) -> Result<int> { return fail_at("a.csv", message); };
+  EXPECT_EQ(made("no group `\x1b[2J\x7f`").error().message, "no group `\\x1b[2J\\x7f`");
+  EXPECT_EQ(made("one\na.csv:2: two").error().message, "one\na.csv:2: two");
+  EXPECT_EQ(made("größer").error().message, "größer");
+}
+
 }  // namespace
 }  // namespace attest

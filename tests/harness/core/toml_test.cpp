@@ -265,6 +265,11 @@ TEST(Toml, ViewsOutliveTheFile) {
   EXPECT_EQ(root.integer("a"), 1);
 }
 
+TEST(Toml, AKeyWithALineEndIsNoLineOfTheMessage) {
+  const TomlFile file = parsed("\"a\\nb.toml:1:1: fine\" = 1\n");
+  EXPECT_EQ(complaints(file), "case.toml:1:1: unknown key `a\\x0ab.toml:1:1: fine`");
+}
+
 TEST(Toml, CountsColumnsInCharacters) {
   const TomlFile file = parsed("u = { 'gr\xC3\xB6\xC3\x9F' = 1, no = 2 }\n");
   file.root().table("u").integer("gr\xC3\xB6\xC3\x9F");

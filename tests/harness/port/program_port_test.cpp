@@ -8,10 +8,14 @@
 #include <utility>
 #include <vector>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/mman.h>
+#include <unistd.h>
 
+#include "harness/port/conversation.hpp"
 #include "harness/port/hello.hpp"
 
 namespace attest {
@@ -94,6 +98,10 @@ TEST(ParseHello, SaysWhichMemberIsWrong) {
   EXPECT_THAT(wrong_with("protocol", "2"), HasSubstr("has `protocol` 2; this attest speaks 1"));
   EXPECT_THAT(wrong_with("protocol", "\"1\""),
               HasSubstr("has `protocol` = \"1\"; it is the version"));
+  EXPECT_THAT(wrong_with("protocol", "4294967297"), HasSubstr("has `protocol` 4294967297; this"));
+  for (const char* number : {"1.5", "true", "1e300"}) {
+    EXPECT_THAT(wrong_with("protocol", number), HasSubstr("it is the version of the protocol"));
+  }
   EXPECT_THAT(wrong_with("arithmetic", "\"fixed:5\""), HasSubstr("its arithmetic is `fixed:5`"));
   EXPECT_THAT(wrong_with("fixed_step", "\"0\""), HasSubstr("its fixed step: "));
   EXPECT_THAT(wrong_with("modules", "[\"gimbal\"]"), HasSubstr("has the module `gimbal`"));
@@ -103,6 +111,31 @@ TEST(ParseHello, SaysWhichMemberIsWrong) {
   EXPECT_THAT(parse_hello("[1]").error().message, HasSubstr("is `[1]`, which is no JSON object"));
   EXPECT_THAT(parse_hello(R"({"protocol":1})").error().message,
               HasSubstr("lacks `name`, which is the name of the port"));
+}
+
+// A file with the answers of a program.
+PipedProgram program_that_wrote(std::string_view answers) {
+  const int file = ::memfd_create("answers", MFD_CLOEXEC);
+  EXPECT_EQ(::write(file, answers.data(), answers.size()), static_cast<ssize_t>(answers.size()));
+  ::lseek(file, 0, SEEK_SET);
+  return PipedProgram::recorded(::open("/dev/null", O_WRONLY | O_CLOEXEC), file);
+}
+
+TEST(Conversation, ShowsControlCharactersOfAnAnswer) {
+  auto talk = Conversation::begin(
+      program_that_wrote(R"({"protocol":1,"name":"n","version":"2","profiles":[],"frames":"text"})"
+                         "\n"
+                         R"({"sequence":1,"result":"ok","out/\u001b[2J":1})"
+                         "\n"));
+  ASSERT_TRUE(talk) << talk.error().to_string();
+  ProgramStep step;
+  try {
+    (*talk)->step(1, Module::mc_att_control, step);
+    FAIL() << "the answer is taken";
+  } catch (const PortBroke& broke) {
+    EXPECT_THAT(broke.what(), HasSubstr("has `out/\\x1b[2J`, which is no output"));
+  }
+  EXPECT_TRUE((*talk)->is_over());
 }
 
 attest_inputs level_and_rolling() {
