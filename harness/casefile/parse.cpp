@@ -12,6 +12,7 @@
 #include "controller/reference/parameters.hpp"
 #include "controller/reference/profile.hpp"
 #include "harness/casefile/parse_flight.hpp"
+#include "harness/casefile/parse_limits.hpp"
 #include "harness/casefile/parse_signal.hpp"
 #include "harness/casefile/parse_topic.hpp"
 #include "harness/casefile/parse_unit.hpp"
@@ -26,9 +27,6 @@ namespace fs = std::filesystem;
 
 // The version of the format of case files. A file with another version is for another attest.
 constexpr std::int64_t schema_version = 1;
-
-// About twice the ticks of a minute at 8 kHz. A trace of a million samples fits in memory.
-constexpr std::int64_t max_ticks = 1'000'000;
 
 // A mixer has no clock. The firmware measures the battery 100 times a second.
 std::vector<Rate> default_rates(Module module) {
@@ -253,6 +251,7 @@ void parse_body(const TomlTable& root, Case& parsed) {
   parsed.topics = parse_topics(root, parsed.module, root.has("flight"));
   if (root.has("flight")) parse_flight(root, models_of_suite(parsed.file), parsed);
   parse_tolerances(root, parsed);
+  check_limits(root, parsed);
 }
 
 }  // namespace

@@ -120,6 +120,24 @@ TEST(CaseErrors, DroppedTicksAreTicksOfTheCase) {
               HasSubstr("leaves no tick at 50 Hz"));
 }
 
+// Otherwise a case of a few lines takes all memory.
+TEST(CaseErrors, NothingHappensMoreOftenThanTheLongestCaseHasTicks) {
+  const std::string topic = "[battery_status]\n";
+  const std::string slow = "rates_why = \"slow\"\nrates_hz = [0.1]\n" + topic;
+  const auto walk = [](const std::string& every) {
+    return "scale = { signal = \"random_walk\", seed = 1, step = 0.1, min = -1, max = 1, " + every +
+           " }\n";
+  };
+  EXPECT_EQ(errors_of(slow + walk("every_s = 1e-3")), "");
+  EXPECT_THAT(errors_of(slow + walk("every_s = 1e-6")),
+              HasSubstr("`battery_status` has a random walk with more than 1000000 steps"));
+  EXPECT_THAT(errors_of(topic + walk("every_ticks = 1e-6")), HasSubstr("a random walk with more"));
+  EXPECT_EQ(errors_of(slow + "rate_hz = 1000\n"), "");
+  EXPECT_EQ(errors_of(slow + "rate_hz = 1e6\n"), "");
+  EXPECT_THAT(errors_of(slow + "rate_hz = 1e6\njitter = 0.5\n"),
+              HasSubstr("`battery_status` is published more than 1000000 times at 1/10 Hz"));
+}
+
 TEST(CaseErrors, OfTheUnitsTicks) {
   EXPECT_EQ(errors_of("[unit]\njitter_shape = 'wide'\n"), "7:1: must be uniform or heavy");
   EXPECT_EQ(errors_of("[unit]\ndrop_every = 1\n"),
