@@ -42,14 +42,22 @@ void parse_release(const TomlTable& table, ScheduledTask& task) {
   task.phase = micros(phase_us);
 }
 
+constexpr std::int64_t most_priority = 1'000'000;
+
 ScheduledTask parse_task(const TomlTable& table, const std::string& name) {
   ScheduledTask task;
   task.name = name;
   if (!table.has("trigger")) parse_release(table, task);
   task.execution = parse_execution(table);
-  task.priority = static_cast<int>(table.integer("priority"));
-  task.cpu = static_cast<int>(table.integer("cpu", 0));
-  if (task.cpu < 0 || task.cpu > 1) table.error("cpu", "must be 0 or 1");
+  const std::int64_t priority = table.integer("priority");
+  if (priority < -most_priority || priority > most_priority) {
+    table.error("priority", fmt::format("must be from {} to {}", -most_priority, most_priority));
+  } else {
+    task.priority = static_cast<int>(priority);
+  }
+  const std::int64_t cpu = table.integer("cpu", 0);
+  if (cpu != 0 && cpu != 1) table.error("cpu", "must be 0 or 1");
+  task.cpu = cpu == 1 ? 1 : 0;
   return task;
 }
 

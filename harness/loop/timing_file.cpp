@@ -19,14 +19,21 @@ constexpr int format = 1;
 // Enough for the three times of each tick of an hour at 8 kHz.
 constexpr std::uintmax_t most_bytes = std::uintmax_t{2} << 30;
 
+// Ten times the longest duration, so that sums of times fit into 64 bits.
+constexpr std::int64_t most_ns = 10'000'000'000'000'000;
+
+std::optional<Nanoseconds> time_of(const json& value) {
+  if (!value.is_number_integer()) return std::nullopt;
+  const bool is_above = value.is_number_unsigned() && value.get<std::uint64_t>() > most_ns;
+  if (is_above || value.get<std::int64_t>() < -most_ns) return std::nullopt;
+  return Nanoseconds(value.get<std::int64_t>());
+}
+
 std::optional<LoopTick> tick_of(const json& value) {
   if (!value.is_array() || value.size() != 3) return std::nullopt;
-  if (!value[0].is_number_integer() || !value[1].is_number_integer()) return std::nullopt;
-  LoopTick tick{Nanoseconds(value[0].get<std::int64_t>()),
-                Nanoseconds(value[1].get<std::int64_t>()), std::nullopt};
-  if (value[2].is_number_integer()) tick.commanded = Nanoseconds(value[2].get<std::int64_t>());
-  if (!value[2].is_number_integer() && !value[2].is_null()) return std::nullopt;
-  return tick;
+  const auto sampled = time_of(value[0]), begins = time_of(value[1]), commanded = time_of(value[2]);
+  if (!sampled || !begins || (!commanded && !value[2].is_null())) return std::nullopt;
+  return LoopTick{*sampled, *begins, commanded};
 }
 
 // Whether `tick` follows `before` as LoopTiming requires. Timestamps are in whole microseconds.
@@ -47,7 +54,7 @@ Result<LoopTiming> ticks_of(const json& values, const std::string& file) {
     const auto tick = tick_of(value);
     if (!tick || !follows(*tick, ticks, last_commanded)) {
       return fail_at(file, fmt::format("tick {}: {} is not [sampled, begins, commanded] in "
-                                       "nanoseconds, each at or after the one before it",
+                                       "nanoseconds up to 1e16, each at or after the one before it",
                                        ticks.size(), value.dump()));
     }
     last_commanded = tick->commanded.value_or(last_commanded);

@@ -31,8 +31,10 @@ double not_negative(const TomlTable& table, const std::string& key, double fallb
 
 Vector3 vector_of(const TomlTable& table, const std::string& key) {
   const std::vector<double> numbers = table.numbers(key);
-  if (numbers.size() == 3) return {numbers[0], numbers[1], numbers[2]};
-  if (table.has(key)) table.error(key, "needs three numbers, along x, y and z");
+  const bool is_finite = std::all_of(numbers.begin(), numbers.end(),
+                                     [](double number) { return std::isfinite(number); });
+  if (numbers.size() == 3 && is_finite) return {numbers[0], numbers[1], numbers[2]};
+  if (table.has(key)) table.error(key, "needs three finite numbers, along x, y and z");
   return {};
 }
 
@@ -76,11 +78,17 @@ std::vector<VehicleRotor> read_rotors(const TomlTable& root) {
   return rotors;
 }
 
+constexpr int most_cells = 100;
+
 BatteryPack read_battery(const TomlTable& root) {
   const TomlTable table = root.table("battery");
   BatteryPack pack;
-  pack.cells = static_cast<int>(table.integer("cells"));
-  if (table.has("cells") && pack.cells < 1) table.error("cells", "must be at least 1");
+  const std::int64_t cells = table.integer("cells");
+  if (table.has("cells") && (cells < 1 || cells > most_cells)) {
+    table.error("cells", fmt::format("must be from 1 to {}", most_cells));
+  } else {
+    pack.cells = static_cast<int>(cells);
+  }
   pack.full_V = positive(table, "full_V");
   pack.fall_V = positive(table, "fall_V");
   if (pack.fall_V >= pack.full_V) table.error("fall_V", "must be below `full_V`");

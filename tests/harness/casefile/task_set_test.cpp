@@ -68,6 +68,13 @@ TEST(TaskSet, MistakesHaveTheirLine) {
               HasSubstr("3: is empty"));
 }
 
+TEST(TaskSet, NumbersThatDoNotFitAreRefused) {
+  const std::string head = "[task.unit]\nrate_hz = 250\nexecution_us = 1\n";
+  EXPECT_THAT(error_of(head + "priority = 4294967297\n"),
+              HasSubstr("4: must be from -1000000 to 1000000"));
+  EXPECT_THAT(error_of(std::string(unit) + "cpu = 4294967296\n"), HasSubstr("5: must be 0 or 1"));
+}
+
 constexpr const char* estimator =
     "[task.estimator]\nrate_hz = 333\nexecution_us = 400\npriority = 3\n";
 constexpr const char* triggered =

@@ -1,5 +1,6 @@
 #include "harness/loop/timing_file.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -74,6 +75,20 @@ TEST_F(TimingFileTest, TimesThatGoBackwardsAreRefused) {
   EXPECT_THAT(error_of(with_ticks("[[0,1000,9000],[0,2000,8000]]")), HasSubstr("tick 1"));
   EXPECT_THAT(error_of(with_ticks("[[0,1000]]")), HasSubstr("[0,1000] is not"));
   EXPECT_THAT(error_of(with_ticks("[[0,1000,\"x\"]]")), HasSubstr("tick 0"));
+}
+
+TEST_F(TimingFileTest, TimesThatDoNotFitAreRefused) {
+  const auto with_ticks = [](const std::string& ticks) {
+    return R"({"attest_timing":1,"case":"c","case_sha256":"0","rate":"100","vehicle":"iris",)"
+           R"("plant":"mujoco","duration_s":1,"ticks_ns":)" +
+           ticks + "}";
+  };
+  EXPECT_EQ(error_of(with_ticks("[[-10000000000000000,10000000000000000,null]]")), "");
+  for (const char* time : {"10000000000000001", "9223372036854775807", "18446744073709551615"}) {
+    EXPECT_THAT(error_of(with_ticks(fmt::format("[[0,{0},{0}],[0,{0},null]]", time))),
+                HasSubstr("tick 0: "));
+    EXPECT_THAT(error_of(with_ticks(fmt::format("[[-{0},0,null]]", time))), HasSubstr("tick 0: "));
+  }
 }
 
 TEST(Timed, IsAsLongAsItWasWithTheMetricsThatBegin) {

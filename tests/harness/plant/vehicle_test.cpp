@@ -76,6 +76,18 @@ TEST_F(VehicleFile, ImpossibleNumbersAreNamedWithTheirLine) {
   EXPECT_THAT(error("mass_kg = 1", "mass_kg = -1"), HasSubstr("brick.toml:2:1: must be positive"));
 }
 
+TEST_F(VehicleFile, NumbersThatAreNotFiniteAreRefused) {
+  EXPECT_THAT(error("[0.01, 0.015, 0.02]", "[inf, inf, inf]"), HasSubstr("brick.toml:3:1: "));
+  EXPECT_THAT(error("[inf, inf, inf]", "[0.01, 0.015, 0.02]"), "");
+  EXPECT_THAT(error("position_m = [0.1414, 0.1414, 0]", "position_m = [0.1414, 0.1414, nan]"),
+              HasSubstr("needs three finite numbers"));
+}
+
+TEST_F(VehicleFile, ABatteryHasASmallNumberOfCells) {
+  EXPECT_THAT(error("cells = 3", "cells = 0"), HasSubstr("must be from 1 to 100"));
+  EXPECT_THAT(error("cells = 0", "cells = 4294967299"), HasSubstr("must be from 1 to 100"));
+}
+
 TEST_F(VehicleFile, AnInertiaOfNoBodyIsRefused) {
   EXPECT_THAT(error("[0.01, 0.015, 0.02]", "[0.01, 0.015, 0.03]"),
               HasSubstr("brick.toml:3:1: is impossible"));
