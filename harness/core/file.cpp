@@ -206,12 +206,16 @@ int create_in_folder_of(const fs::path& target, fs::path& temporary) {
   });
 }
 
+// Gives a file without a name this name. Returns -1 with errno, EEXIST if the name is taken.
+int give_name(int file, const fs::path& name) {
+  const std::string source = fmt::format("/proc/self/fd/{}", file);
+  return ::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW);
+}
+
 // Gives a file without a name a name in the folder of `target`.
 int name_in_folder_of(int file, const fs::path& target, fs::path& temporary) {
-  const std::string source = fmt::format("/proc/self/fd/{}", file);
-  return with_free_name(target, temporary, [&](const fs::path& name) {
-    return ::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW);
-  });
+  return with_free_name(target, temporary,
+                        [&](const fs::path& name) { return give_name(file, name); });
 }
 
 }  // namespace
@@ -279,14 +283,18 @@ Result<void> AtomicFile::commit() {
   if (!in_place && ::fsync(descriptor_) != 0) {
     return system_failure(path_, "cannot write the file");
   }
-  if (!in_place && temporary_.empty() && name_in_folder_of(descriptor_, target_, temporary_) != 0) {
+  const bool has_no_name = !in_place && temporary_.empty();
+  // A new file gets its name at once. Only the replacement of an old file has another name before,
+  // which a kill at that moment would leave behind.
+  const bool is_in_place = in_place || (has_no_name && give_name(descriptor_, target_) == 0);
+  if (has_no_name && !is_in_place && name_in_folder_of(descriptor_, target_, temporary_) != 0) {
     temporary_.clear();
     return system_failure(path_, "cannot replace the file");
   }
   if (::close(std::exchange(descriptor_, -1)) != 0) {
     return system_failure(path_, "cannot write the file");
   }
-  if (in_place) return {};
+  if (is_in_place) return {};
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
     return system_failure(path_, "cannot replace the file");
   }

@@ -1,5 +1,7 @@
 #include "harness/core/file.hpp"
 
+#include <array>
+#include <cstring>
 #include <fstream>
 #include <thread>
 #include <utility>
@@ -7,6 +9,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/inotify.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -113,6 +116,21 @@ TEST(AtomicFile, LeavesNothingBehindWhenTheProcessIsKilled) {
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_EQ(status, 0);
   EXPECT_THAT(names_in(directory.path()), IsEmpty());
+}
+
+// A temporary name would be left by a kill before rename().
+TEST(AtomicFile, ANewFileHasNoOtherNameBefore) {
+  const TemporaryDirectory directory;
+  const int events = ::inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+  ASSERT_GE(::inotify_add_watch(events, directory.path().c_str(), IN_CREATE | IN_MOVED_TO), 0);
+  ASSERT_TRUE(write_file(directory.path() / "a.csv", "new"));
+  alignas(inotify_event) std::array<char, 4096> bytes{};
+  const ssize_t count = ::read(events, bytes.data(), bytes.size());
+  ::close(events);
+  inotify_event first;
+  std::memcpy(&first, bytes.data(), sizeof first);
+  EXPECT_EQ(count, static_cast<ssize_t>(sizeof first + first.len)) << "more than one event";
+  EXPECT_STREQ(bytes.data() + sizeof first, "a.csv");
 }
 
 TEST(AtomicFile, KeepsTheOldFileUntilCommit) {
