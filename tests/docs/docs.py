@@ -24,7 +24,7 @@ from typing import NamedTuple
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
 import repository  # noqa: E402  (the path had to be set first)
 
-SETUP_COMMANDS = ("ci/quickstart", "ci/check")
+SETUP_COMMANDS = ("ci/quickstart", "ci/check", "ci/quality", "ci/fuzz")
 SKIPPED = 77
 
 

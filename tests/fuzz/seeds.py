@@ -1,0 +1,140 @@
+"""Writes the first inputs of a fuzz target, from the corpus, and a dictionary of its words.
+
+    seeds.py TARGET FOLDER DICTIONARY
+"""
+
+import json
+import pathlib
+import re
+import struct
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+
+TRACE_ROWS = 4  # of a long trace: mutations of short inputs reach more
+MOST_BYTES = 16_384
+
+
+def case_seeds():
+    for file in sorted((ROOT / "cases").rglob("*.toml")):
+        yield file.read_bytes()
+    # The examples of the keys that no case uses.
+    schema = (ROOT / "harness/casefile/SCHEMA.md").read_text(encoding="utf-8")
+    for block in re.findall(r"```toml\n(.*?)```", schema, re.DOTALL):
+        yield block.encode()
+
+
+def shortened(file):
+    with file.open("rb") as lines:
+        return b"".join(line for _, line in zip(range(TRACE_ROWS + 1), lines))
+
+
+def csv_seeds():
+    for file in sorted((ROOT / "golden/recorded").rglob("*.csv")):
+        yield shortened(file)
+    # A golden has the columns that vary in its case, so each group has others.
+    for group in sorted((ROOT / "golden").glob("px4-*/*")):
+        for file in sorted(group.glob("*/*.csv"))[:3]:
+            yield shortened(file)
+
+
+def vehicle_seeds():
+    for file in sorted((ROOT / "models").glob("*.toml")):
+        yield file.read_bytes()
+
+
+def timing_seeds():
+    timing = {
+        "attest_timing": 1,
+        "case": "px4-v1.5.5/flight/hover",
+        "case_sha256": "00",
+        "rate": "1000/3",
+        "vehicle": "iris",
+        "plant": "mujoco",
+        "duration_s": 10,
+        "ticks_ns": [[-1, 8113, 1_000_000], [0, 1_009_001, None], [9, 3_000_000, 3_000_000]],
+    }
+    yield json.dumps(timing).encode()
+    other = {"plant": "ode", "rate": "62.5", "duration_s": 0.5}
+    yield json.dumps(timing | other, indent=1).encode()
+
+
+def task_set_seeds():
+    unit = "[task.unit]\nrate_hz = 1000\nexecution_us = 76\npriority = 2\n"
+    estimator = "[task.estimator]\nrate_hz = 1000\nexecution_us = [100, 400]\npriority = 3\n"
+    logger = "[task.logger]\nrate_hz = 62.5\nphase_us = 100.5\nexecution_us = 4000\npriority = 1\n"
+    triggered = '[task.unit]\ntrigger = "estimator"\nexecution_us = 76\npriority = -2\ncpu = 1\n'
+    yield unit.encode()
+    yield f"{unit}\n{estimator}\n{logger}".encode()
+    yield f"{triggered}\n{estimator}\n{logger}cpu = 1\n".encode()
+
+
+# As the requests in protocol.cpp: for each module create, set_parameter, step, step, a batch of
+# three steps if the program has batches, destroy.
+OUTPUT_BYTES = {"mc_att_control": 72, "mixer": 36, "battery_status": 4}
+CREATE, DESTROY, SET_PARAMETER, STEP, BATCH = 1, 2, 3, 4, 5
+OK, FAILED = 0, 3
+HELLO = {"protocol": 1, "name": "seed", "version": "1", "profiles": ["px4-v1.5.5"]}
+
+
+def binary_session(hello, modules, last_of_batch=OK):
+    answers, sequence = [json.dumps(hello).encode() + b"\n"], 0
+    for unit, module in enumerate(modules, 1):
+        outputs = bytes(range(OUTPUT_BYTES[module]))
+        result = struct.pack("<I", OK)
+        batch = struct.pack("<II", OK, 3) + 3 * outputs
+        if last_of_batch != OK:
+            batch = struct.pack("<II", last_of_batch, 1) + outputs
+        frames = [(CREATE, result), (SET_PARAMETER, result)] + 2 * [(STEP, result + outputs)]
+        frames += [(BATCH, batch)] if hello.get("batch") else []
+        for kind, payload in [*frames, (DESTROY, result)]:
+            sequence += 1
+            answers += [struct.pack("<IIII", len(payload), kind, unit, sequence), payload]
+    return b"".join(answers)
+
+
+def text_session():
+    step = {
+        "out/vehicle_rates_setpoint.roll": 0.25,
+        "out/vehicle_rates_setpoint.pitch": "nan",
+        "out/vehicle_rates_setpoint.yaw": "-inf",
+        "out/vehicle_rates_setpoint.published": 1,
+        "out/actuator_controls_0.control[0]": -0.15,
+        "out/actuator_controls_0.published": True,
+        "out/mc_att_ctrl_status.roll_rate_integ": 1e-3,
+        "out/mc_att_ctrl_status.published": 0,
+    }
+    lines = [HELLO | {"frames": "text", "fixed_step": "250", "arithmetic": "fixed:22"}]
+    members = [{}, {}, step, {}, {}]
+    lines += [{"sequence": i, "result": "ok"} | each for i, each in enumerate(members, 1)]
+    return b"".join(json.dumps(line).encode() + b"\n" for line in lines)
+
+
+def protocol_seeds():
+    binary = HELLO | {"frames": "binary"}
+    every_module = {"modules": ["mixer", "battery_status"], "unsupported_groups": ["tailsitter"]}
+    yield binary_session(binary, ["mc_att_control"])
+    yield binary_session(binary | {"batch": True}, ["mc_att_control"])
+    yield binary_session(binary | {"batch": True}, ["mc_att_control"], FAILED)
+    yield binary_session(binary | {"batch": True} | every_module, list(OUTPUT_BYTES))
+    yield text_session()
+
+
+def words_of(seeds):
+    word = re.compile(rb"[A-Za-z_][A-Za-z0-9_./\[\]]{2,40}")
+    numbers = {b"nan", b"-inf", b"1e308", b"1e-9", b"-1", b"9223372036854775807", b"true"}
+    return sorted(numbers.union(*(word.findall(seed) for seed in seeds)))
+
+
+def main():
+    target, folder, dictionary = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
+    seeds = [seed for seed in globals()[f"{target}_seeds"]() if len(seed) <= MOST_BYTES]
+    folder.mkdir(parents=True, exist_ok=True)
+    for number, seed in enumerate(seeds):
+        (folder / f"seed_{number:03}").write_bytes(seed)
+    lines = [f'"{word.decode()}"\n' for word in words_of(seeds)]
+    dictionary.write_text("".join(lines), encoding="ascii")
+
+
+if __name__ == "__main__":
+    main()
