@@ -1,7 +1,7 @@
 load common
 
-commands=(run replay sim stress sweep-rate schedule time compare faults list vectors bless doctor
-  smoke)
+commands=(run replay sim stress sweep-rate schedule time compare record faults list vectors bless
+  new-port doctor smoke)
 
 @test "each command shows examples of itself, with options that it has" {
   for command in "${commands[@]}"; do
@@ -14,7 +14,8 @@ commands=(run replay sim stress sweep-rate schedule time compare faults list vec
     [ -n "$examples" ]
     while read -r line; do
       [[ $line == "attest $command"* ]]
-      for option in $(grep -oE -- '--[a-z-]+' <<<"$line"); do
+      # --suite is an option of attest itself.
+      for option in $(grep -oE -- '--[a-z-]+' <<<"$line" | grep -vx -- --suite); do
         grep -qE -- "^ +(-j,)?([a-z,-]*,)?$option([ ,=]|$)" <<<"$output" || {
           echo "$command: $option"
           false
