@@ -234,6 +234,9 @@ Result<void> set_recorded_outputs(const Table& table, const Manifest& manifest,
                                 wrong_rows(table, channel_of, manifest, trace)}) {
     if (!complaint.empty()) return fail_at(file, std::move(complaint));
   }
+  if ((present & channels_of(module_of(trace.present), "out/")).none()) {
+    return fail_at(file, "has no output; not everything can be listed under not_recorded");
+  }
   for (Sample& sample : trace.samples) {
     sample.clear_outputs();
     for (std::size_t i = 0; i < channels().size(); ++i) {

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How far right ports that compute in other ways are from a failure.
 
-    headroom.py ATTEST FOLDER [--group GROUP]... [--rate HZ,...]
+    headroom.py ATTEST FOLDER [--group GROUP]... [--rate HZ,...] [--profile PROFILE]
 
 Runs each right port in FOLDER through the suite at the numeric level and prints a Markdown table:
 the number of vectors that failed, and the tightest headroom (tolerance / difference) of each kind
@@ -73,9 +73,11 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--group", action="append", default=[])
     parser.add_argument("--rate")
+    parser.add_argument("--profile")
     args = parser.parse_args()
     selection = [word for group in args.group for word in ("--group", group)]
     selection += ["--rate", args.rate] if args.rate else []
+    selection += ["--profile", args.profile] if args.profile else []
     good = True
     print(f"| right port | passed | accused | {' | '.join(KINDS)} |")
     print("|---|---|---|---|---|---|---|")

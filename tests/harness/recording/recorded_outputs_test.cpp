@@ -148,6 +148,9 @@ TEST(RecordedOutputs, EachOutputIsNeededOnceWithAValueOfItsKind) {
                 table.push_back({"out_vehicle_rates_setpoint_yaw", table.back().values});
               }),
               HasSubstr("two columns are out/vehicle_rates_setpoint.yaw"));
+  Manifest nothing;
+  nothing.not_recorded = channels_of(Module::mc_att_control, "out/");
+  EXPECT_THAT(error([](Table& table) { table.resize(1); }, nothing), HasSubstr("has no output"));
   for (const double wrong : {0.5, -1.0, 256.0}) {
     EXPECT_THAT(error([&](Table& table) {
                   column(table, "out/actuator_controls_0.published").values[4] = wrong;
