@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include "harness/cli/command.hpp"
 #include "harness/cli/suite_folder.hpp"
@@ -100,15 +101,15 @@ Result<Language> make_port(const NewPortOptions& options) {
   if (!language) return language;
   const auto parts = parts_of(*language);
   if (!parts) return tl::unexpected(parts.error());
-  if (auto checked = check_folder(options.folder); !checked) {
-    return tl::unexpected(checked.error());
-  }
+  fs::path folder = fs::path(options.folder).lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();  // "mine/"
+  if (auto checked = check_folder(folder); !checked) return tl::unexpected(checked.error());
   // Made aside and renamed, so that no half of a port is left.
-  const fs::path aside = options.folder + ".part";
+  const fs::path aside = folder.string() + fmt::format(".part-{}", ::getpid());
   std::error_code ignored;
   try {
     lay_out(*parts, *language, aside);
-    fs::rename(aside, options.folder);
+    fs::rename(aside, folder);
   } catch (const fs::filesystem_error& error) {
     fs::remove_all(aside, ignored);
     return fail_at(options.folder, fmt::format("cannot be made: {}", error.code().message()));

@@ -38,6 +38,10 @@ made() {
   [ "$(ls mine)" = file ]
   run "$ATTEST" new-port file/below --lang c
   [ "$status" -eq 0 ]
+  run "$ATTEST" new-port slash/ --lang c
+  [ "$status" -eq 0 ]
+  [ -x slash/check ]
+  [ "$(ls -d slash*)" = slash ]
   run "$ATTEST" new-port mine/file/below --lang c
   [ "$status" -eq 2 ]
   has "mine/file/below: cannot be made"
