@@ -14,9 +14,13 @@ struct Pair {
   std::string what;      // "controller step"
   std::string measured;  // names of the two benchmarks
   std::string floor;
-  double bound;         // of measured time / floor time; 0: beyond_s is the bound
-  std::string claim;    // the bound in words: "at most 1.15x the hand-written law"
-  double beyond_s = 0;  // bound of the difference of the two times
+  double bound;          // of measured time / floor time; 0: one of the bounds below
+  std::string claim;     // the bound in words: "at most 1.15x the hand-written law"
+  double beyond_s = 0;   // bound of the difference of the two times
+  double at_most_s = 0;  // bound of the measured time; the floor shows what the machine adds
+
+  // `measured_s` and `floor_s`: the times of each turn.
+  bool is_met(const std::vector<double>& measured_s, const std::vector<double>& floor_s) const;
 };
 
 // The claims, in the order of the table. Claims that share a floor, two at most, are adjacent.

@@ -1,10 +1,14 @@
 // A step of a port that is a program (PROTOCOL.md) against the least that it can cost: as many
 // bytes each way through two pipes, with a child that does nothing else. And the same steps in
 // batches. All processes share one CPU, where the exchange is two switches of process and no
-// wake-up of a CPU that sleeps.
+// wake-up of a CPU that sleeps. With shared memory each process has a CPU of its own.
+#include <algorithm>
 #include <array>
+#include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <string>
+#include <thread>
 
 #include <benchmark/benchmark.h>
 #include <sched.h>
@@ -20,18 +24,23 @@ namespace {
 
 constexpr std::size_t request_bytes = 144, answer_bytes = 92;  // of a step, with the headers
 
-class OnOneCpu {
+// For this thread, and for the processes that it starts meanwhile.
+class OnCpu {
  public:
-  OnOneCpu() {
+  // The index of a CPU among those that may be used. The last one if there are fewer.
+  explicit OnCpu(int index = 0) {
     ::sched_getaffinity(0, sizeof before_, &before_);
     cpu_set_t one;
     CPU_ZERO(&one);
-    int cpu = 0;
-    while (!CPU_ISSET(cpu, &before_)) ++cpu;
-    CPU_SET(cpu, &one);
+    for (int cpu = 0, found = -1; cpu < CPU_SETSIZE && found < index; ++cpu) {
+      if (!CPU_ISSET(cpu, &before_)) continue;
+      CPU_ZERO(&one);
+      CPU_SET(cpu, &one);
+      ++found;
+    }
     ::sched_setaffinity(0, sizeof one, &one);
   }
-  ~OnOneCpu() { ::sched_setaffinity(0, sizeof before_, &before_); }
+  ~OnCpu() { ::sched_setaffinity(0, sizeof before_, &before_); }
 
  private:
   cpu_set_t before_;
@@ -55,7 +64,7 @@ bool move_all(auto move, int pipe, char* bytes, std::size_t size) {
 }
 
 void bare_pipe(benchmark::State& state) {
-  const OnOneCpu on_one_cpu;
+  const OnCpu on_one_cpu;
   std::array<int, 2> in{}, out{};
   if (::pipe(in.data()) != 0 || ::pipe(out.data()) != 0) return state.SkipWithError("no pipe");
   const pid_t child = ::fork();
@@ -75,10 +84,11 @@ struct Flight {
       *read_csv(ATTEST_SOURCE_DIR "/golden/recorded/px4-v1.5.5/fuzz_250hz.csv", TraceNeed::inputs);
   std::vector<attest_inputs> in;
   std::vector<std::uint64_t> times;
-  std::unique_ptr<Port> port = *open_program(ATTEST_BENCHMARK_PROGRAM);
-  std::unique_ptr<Unit> unit = port->create("px4-v1.5.5");
+  std::unique_ptr<Port> port;
+  std::unique_ptr<Unit> unit;
 
-  Flight() {
+  explicit Flight(const std::string& command = ATTEST_BENCHMARK_PROGRAM)
+      : port(*open_program(command)), unit(port->create("px4-v1.5.5")) {
     for (const Sample& sample : trace.samples) {
       in.push_back(sample.in);
       times.push_back(sample.in.timestamp);
@@ -87,7 +97,7 @@ struct Flight {
 };
 
 void steps(benchmark::State& state) {
-  const OnOneCpu on_one_cpu;
+  const OnCpu on_one_cpu;
   Flight flight;
   attest_outputs out{};
   std::size_t tick = 0;
@@ -99,7 +109,7 @@ void steps(benchmark::State& state) {
 }
 
 void trace_in_steps(benchmark::State& state) {
-  const OnOneCpu on_one_cpu;
+  const OnCpu on_one_cpu;
   Flight flight;
   attest_outputs out{};
   for (auto _ : state) {
@@ -109,7 +119,7 @@ void trace_in_steps(benchmark::State& state) {
 }
 
 void trace_in_one_batch(benchmark::State& state) {
-  const OnOneCpu on_one_cpu;
+  const OnCpu on_one_cpu;
   Flight flight;
   std::vector<attest_outputs> out(flight.in.size());
   for (auto _ : state) {
@@ -118,10 +128,60 @@ void trace_in_one_batch(benchmark::State& state) {
   }
 }
 
+constexpr std::size_t exchanges = 20000;
+
+// Sets the time of the iteration to the 99.9th percentile of single exchanges.
+void percentile_of(benchmark::State& state, auto exchange) {
+  using Clock = std::chrono::steady_clock;
+  std::vector<double> seconds(exchanges);
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < exchanges; ++i) {
+      const auto begin = Clock::now();
+      exchange(i);
+      seconds[i] = std::chrono::duration<double>(Clock::now() - begin).count();
+    }
+    const auto rank = seconds.begin() + exchanges / 1000 * 999;
+    std::nth_element(seconds.begin(), rank, seconds.end());
+    state.SetIterationTime(*rank);
+  }
+}
+
+Flight flight_on_second_cpu() {
+  const OnCpu second(1);
+  return Flight(std::string(ATTEST_BENCHMARK_PROGRAM) + " --shared");
+}
+
+void shared_step(benchmark::State& state) {
+  Flight flight = flight_on_second_cpu();
+  const OnCpu first(0);
+  attest_outputs out{};
+  percentile_of(state, [&](std::size_t i) {
+    flight.unit->step(flight.in[i % flight.in.size()], out);
+    benchmark::DoNotOptimize(out);
+  });
+}
+
+// Two threads that do nothing but count.
+void bare_memory(benchmark::State& state) {
+  alignas(64) std::atomic<std::size_t> asked = 0, answered = 0;
+  std::jthread other([&](std::stop_token stop) {
+    const OnCpu second(1);
+    while (!stop.stop_requested()) answered = asked.load();
+  });
+  const OnCpu first(0);
+  percentile_of(state, [&](std::size_t) {
+    const std::size_t number = ++asked;
+    while (answered != number) {
+    }
+  });
+}
+
 BENCHMARK(bare_pipe)->Name("program/bare_pipe")->UseRealTime();
 BENCHMARK(steps)->Name("program/step")->UseRealTime();
 BENCHMARK(trace_in_steps)->Name("program/trace_in_steps")->UseRealTime();
 BENCHMARK(trace_in_one_batch)->Name("program/trace_in_batch")->UseRealTime();
+BENCHMARK(shared_step)->Name("program/shared_p999")->UseManualTime()->Iterations(1);
+BENCHMARK(bare_memory)->Name("program/memory_p999")->UseManualTime()->Iterations(1);
 
 }  // namespace
 }  // namespace attest::bench

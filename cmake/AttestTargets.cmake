@@ -25,18 +25,22 @@ if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
                          INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
 endif()
 
-# Half of the compile time is optimisation. -O1 saves a fifth of the compile time of attest. The
-# libraries that have it take a small part of a run: the whole suite takes as long as with -O3,
-# within 2%.
+# Half of the compile time is optimisation, so it depends on how much of a run a library takes.
+# RUNS_SELDOM: -O1 in a release; the whole suite takes as long as with -O3, within 2%.
+# RUNS_EVERY_TICK: -O1 with sanitizers (Debug), where everything else has -O0.
 set(ATTEST_RUNS_SELDOM $<$<CONFIG:Release>:-O1>)
+set(ATTEST_RUNS_EVERY_TICK $<$<CONFIG:Debug>:-O1>)
 
-# attest_library(NAME [RUNS_SELDOM] SOURCES a.cpp ... [PUBLIC target ...] [PRIVATE target ...])
+# attest_library(NAME [RUNS_SELDOM | RUNS_EVERY_TICK] SOURCES a.cpp ... [PUBLIC target ...] [PRIVATE
+# target ...])
 function(attest_library name)
-  cmake_parse_arguments(ARG "RUNS_SELDOM" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "RUNS_SELDOM;RUNS_EVERY_TICK" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
-  if(ARG_RUNS_SELDOM)
-    target_compile_options(${name} PRIVATE ${ATTEST_RUNS_SELDOM})
-  endif()
+  foreach(often RUNS_SELDOM RUNS_EVERY_TICK)
+    if(ARG_${often})
+      target_compile_options(${name} PRIVATE ${ATTEST_${often}})
+    endif()
+  endforeach()
   target_link_libraries(${name} PUBLIC attest_flags ${ARG_PUBLIC} PRIVATE attest_warnings
                                                                           ${ARG_PRIVATE})
 endfunction()

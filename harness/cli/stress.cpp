@@ -7,10 +7,10 @@
 #include <fmt/ranges.h>
 
 #include "harness/cli/command.hpp"
+#include "harness/cli/exchange_note.hpp"
 #include "harness/cli/find_case.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/outputs.hpp"
-#include "harness/cli/pipes_note.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/process/program.hpp"
@@ -155,7 +155,7 @@ Result<void> run_all(const StressPlan& plan, const StressOptions& options, const
     stress->cyclictest = judge;
     line.erase();
     if (run.results.empty() && !globals.quiet)
-      fmt::print("{}{}", render_privileges(stress->privileges), pipes_note(run.port));
+      fmt::print("{}{}", render_privileges(stress->privileges), exchange_note(run.port));
     const bool shown = !globals.quiet || stress->result.verdict != Verdict::pass;
     if (shown) fmt::print("{}", render_stress(*stress, style));
     std::fflush(stdout);

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include "harness/cli/command.hpp"
+#include "harness/cli/exchange_note.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/outputs.hpp"
-#include "harness/cli/pipes_note.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/host/step_timer.hpp"
@@ -106,7 +106,7 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
     return report_error(written.error());
   const bool over = run.times.steps.over_limit() > static_cast<std::uint64_t>(options.allowed);
   const bool failed = over || wrong;
-  if (!globals.quiet || failed) fmt::print("{}{}", render_times(run), pipes_note(run.port));
+  if (!globals.quiet || failed) fmt::print("{}{}", render_times(run), exchange_note(run.port));
   return failed ? exit_failed : exit_ok;
 }
 

@@ -46,9 +46,13 @@ Result<std::unique_ptr<Conversation>> Conversation::begin(PipedProgram program) 
   }
   auto hello = parse_hello(*line);
   if (!hello) return tl::unexpected(hello.error());
-  return hello->frames == FrameForm::binary
-             ? binary_conversation(std::move(program), *std::move(hello))
-             : text_conversation(std::move(program), *std::move(hello));
+  if (hello->frames == FrameForm::text) {
+    return text_conversation(std::move(program), *std::move(hello));
+  }
+  if (hello->frames == FrameForm::shared && !program.share_memory()) {
+    return fail("it has no memory for `frames` = `shared`");
+  }
+  return binary_conversation(std::move(program), *std::move(hello));
 }
 
 int Conversation::batch(std::uint32_t, Module, std::span<ProgramStep>, std::size_t& done) {

@@ -88,16 +88,18 @@ void read_modules(Members& members, Hello& hello) {
 }
 
 void read_frames(Members& members, Hello& hello) {
-  const char* const what = "`binary` or `text`";
+  const char* const what = "`binary`, `text` or `shared`";
   const auto frames = members.required<std::string>("frames", what);
   if (frames == "text") {
     hello.frames = FrameForm::text;
+  } else if (frames == "shared") {
+    hello.frames = FrameForm::shared;
   } else if (frames != "binary") {
     members.set_error(fmt::format("has `frames` = `{}`; it is {}", frames, what));
   }
   hello.has_batch = members.optional<bool>("batch", "true or false");
   if (hello.has_batch && hello.frames == FrameForm::text) {
-    members.set_error("has `batch`, which only binary frames have");
+    members.set_error("has `batch`, which text frames do not have");
   }
 }
 

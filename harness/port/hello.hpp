@@ -13,7 +13,7 @@ namespace attest {
 
 inline constexpr int protocol_version = 1;
 
-enum class FrameForm { binary, text };
+enum class FrameForm { binary, text, shared };
 
 // What a program says of itself.
 struct Hello {

@@ -37,7 +37,12 @@ Result<PipedProgram> PipedProgram::start(const std::vector<std::string>& command
     close_pipe(in);
     return fail(fmt::format("cannot open a pipe: {}", std::strerror(reason)));
   }
-  auto process = start_program(command, {.in = in[0], .out = out[1], .error = STDERR_FILENO});
+  auto memory = SharedFrames::make();
+  auto process =
+      memory ? start_program(
+                   command,
+                   {.in = in[0], .out = out[1], .error = STDERR_FILENO, .fourth = memory->file()})
+             : tl::unexpected(memory.error());
   if (!process) {
     close_pipe(in);
     close_pipe(out);
@@ -47,7 +52,9 @@ Result<PipedProgram> PipedProgram::start(const std::vector<std::string>& command
   ::close(out[1]);
   ::fcntl(in[1], F_SETFL, O_NONBLOCK);
   ::fcntl(out[0], F_SETFL, O_NONBLOCK);
-  return PipedProgram(*std::move(process), in[1], out[0]);
+  PipedProgram program(*std::move(process), in[1], out[0]);
+  program.memory_ = *std::move(memory);
+  return program;
 }
 
 PipedProgram PipedProgram::recorded(int requests, int answers) { return {{}, requests, answers}; }
@@ -58,11 +65,24 @@ PipedProgram::PipedProgram(PipedProgram&& other) noexcept
       answers_(std::exchange(other.answers_, -1)),
       inbox_(std::move(other.inbox_)),
       begin_(other.begin_),
-      end_(other.end_) {}
+      end_(other.end_),
+      memory_(std::move(other.memory_)),
+      is_shared_(other.is_shared_) {}
 
 PipedProgram::~PipedProgram() { end(); }
 
+bool PipedProgram::share_memory() { return is_shared_ = memory_.has_value(); }
+
 bool PipedProgram::write(std::string_view bytes) {
+  return is_shared_ ? memory_->write(bytes) : write_to_pipe(bytes);
+}
+
+bool PipedProgram::read(void* place, std::size_t size) {
+  if (!is_shared_) return read_from_pipe(place, size);
+  return memory_->read(place, size, [&] { return process_.ends_within(0); });
+}
+
+bool PipedProgram::write_to_pipe(std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(requests_, bytes.data(), bytes.size());
     if (written >= 0) {
@@ -97,7 +117,7 @@ bool PipedProgram::receive() {
   }
 }
 
-bool PipedProgram::read(void* place, std::size_t size) {
+bool PipedProgram::read_from_pipe(void* place, std::size_t size) {
   while (end_ - begin_ < size) {
     if (!receive()) return false;
   }

@@ -1,5 +1,5 @@
 // A program that reads requests on stdin and answers on stdout. Both are pipes to this process; its
-// stderr is that of this process.
+// stderr is that of this process. It can exchange frames in shared memory instead.
 #pragma once
 
 #include <chrono>
@@ -11,6 +11,7 @@
 
 #include "harness/core/result.hpp"
 #include "harness/process/process.hpp"
+#include "harness/process/shared_frames.hpp"
 
 namespace attest {
 
@@ -28,6 +29,10 @@ class PipedProgram {
   PipedProgram(PipedProgram&& other) noexcept;
   PipedProgram& operator=(PipedProgram&&) = delete;
   ~PipedProgram();  // end()
+
+  // From now on write() writes a frame to the shared memory, and read() reads the answer to it
+  // there. False: there is no memory, as with recorded answers.
+  bool share_memory();
 
   // Writes all. Keeps what the program writes meanwhile, so that neither waits for the other.
   // False: the program does not read any more.
@@ -51,12 +56,16 @@ class PipedProgram {
   PipedProgram(Process process, int requests, int answers)
       : process_(std::move(process)), requests_(requests), answers_(answers) {}
 
+  bool write_to_pipe(std::string_view bytes);
+  bool read_from_pipe(void* place, std::size_t size);
   bool receive();  // more bytes into the inbox; false: there are no more
 
   Process process_;
   int requests_, answers_;  // our ends of the pipes
   std::vector<char> inbox_;
   std::size_t begin_ = 0, end_ = 0;  // of what was read from the pipe and not used yet
+  std::optional<SharedFrames> memory_;
+  bool is_shared_ = false;
 };
 
 }  // namespace attest

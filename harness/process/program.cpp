@@ -30,13 +30,20 @@ bool may_be_executed(const std::string& file) {
 }
 
 // REQUIRES: in a child.
-[[noreturn]] void become(const std::vector<char*>& arguments, const StandardFiles& files) {
+[[noreturn]] void become(const std::vector<char*>& arguments, const ProgramFiles& files) {
   const int nothing = ::open("/dev/null", O_RDWR);
   const auto given = [&](int descriptor) { return descriptor >= 0 ? descriptor : nothing; };
   ::dup2(given(files.in), STDIN_FILENO);
   ::dup2(given(files.out), STDOUT_FILENO);
   ::dup2(given(files.error), STDERR_FILENO);
-  ::close_range(STDERR_FILENO + 1, ~0u, 0);
+  constexpr int fourth = STDERR_FILENO + 1;
+  // dup2() to the same descriptor would leave it marked to be closed at exec.
+  if (files.fourth == fourth) {
+    ::fcntl(fourth, F_SETFD, 0);
+  } else if (files.fourth >= 0) {
+    ::dup2(files.fourth, fourth);
+  }
+  ::close_range(files.fourth >= 0 ? fourth + 1 : fourth, ~0u, 0);
   ::execvp(arguments[0], arguments.data());
   ::_exit(cannot_be_executed);
 }
@@ -81,7 +88,7 @@ std::optional<std::string> find_program(const std::string& program) {
 
 bool is_installed(const std::string& program) { return find_program(program).has_value(); }
 
-Result<Process> start_program(const std::vector<std::string>& command, const StandardFiles& files) {
+Result<Process> start_program(const std::vector<std::string>& command, const ProgramFiles& files) {
   std::vector<char*> arguments;  // execvp() does not write to them
   for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);

@@ -17,14 +17,15 @@ std::optional<std::string> find_program(const std::string& program);
 bool is_installed(const std::string& program);
 
 // Descriptors for a program, which remain the caller's. -1: no input, or the output is discarded.
-struct StandardFiles {
+struct ProgramFiles {
   int in = -1, out = -1, error = -1;
+  int fourth = -1;  // descriptor 3 of the program; -1: it has none
 };
 
 // Starts a program of PATH. It has no other descriptors. The process exits with status 127 when the
 // program cannot be executed.
 Result<Process> start_program(const std::vector<std::string>& command,
-                              const StandardFiles& files = {});
+                              const ProgramFiles& files = {});
 
 struct ProgramLimits {
   double timeout_s = 10;

@@ -38,9 +38,9 @@ refused() {
   [ "$status" -eq 0 ]
 }
 
-@test "step by step, in batches, byte by byte and in text: the same bits" {
+@test "step by step, in batches, byte by byte, in shared memory and in text: the same bits" {
   for port in "program.py right" "program.py hello_in_batches" "program.py byte_by_byte" \
-    in_text.py; do
+    "program.py right --shared" in_text.py; do
     "$ATTEST" run --port "$(program "$port")" --filter 'px4-v1.5.5/rates/*@250hz' \
       --filter px4-v1.5.5/attitude/tilt_by_size@250hz --json report.json >/dev/null
     "$PYTHON" - >>headrooms <<'HEADROOM'
@@ -48,7 +48,7 @@ import json
 print([(one["id"], one.get("tightest")) for one in json.load(open("report.json"))["results"]])
 HEADROOM
   done
-  [ "$(wc -l <headrooms)" -eq 4 ]
+  [ "$(wc -l <headrooms)" -eq 5 ]
   [ "$(sort -u headrooms | wc -l)" -eq 1 ]
 }
 
@@ -162,6 +162,18 @@ HEADROOM
   has "timeout: no answer within 3 s, when it was loaded"
   judged "program.py does_not_read"
   has "timeout: no answer within 3 s in create()"
+  nothing_is_left
+}
+
+@test "in shared memory, too, a program that ends is a crash, and a silent one a timeout" {
+  judged "program.py exits --shared"
+  [ "$status" -eq 1 ]
+  has "crash: at tick 19: the program exited with status 3 in the request \`step\`"
+  judged "program.py closes_stdout --shared"
+  [ "$status" -eq 1 ]
+  has "timeout: no answer within 3 s in step() at tick 19"
+  judged "program.py prints --shared"
+  has "the answer to the request \`step\` begins with the bytes \`roll = 0.3"
   nothing_is_left
 }
 

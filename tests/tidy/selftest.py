@@ -44,6 +44,10 @@ EXAMPLES = {
         ),
         ({"controller/a.cpp": "#include <fmt/core.h>"}, {"controller/a.c": "#include <math.h>"}),
         ({"controller/a.c": "#include <unistd.h>\n"}, {"controller/a.cpp": "#include <array>"}),
+        (
+            {"controller/starters/c_program/law.c": "#include <unistd.h>\n"},
+            {"controller/starters/c_program/program.c": "#include <unistd.h>\n"},
+        ),
     ],
     "one_owner": [
         (

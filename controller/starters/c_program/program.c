@@ -2,15 +2,20 @@
 /*
  * program.c - makes a program of a port that implements attest_unit.h, for `--port proc:COMMAND`.
  *
- *     cc -std=c11 -O2 -ffp-contract=off -I<folder of attest_unit.h> mine/*.c program.c -o my_port
- * -lm
+ *     cc -std=c11 -O2 -ffp-contract=off -I<folder of attest_unit.h> YOUR_SOURCES program.c -lm
  *
  * It speaks the binary frames of PROTOCOL.md, for the controller only. A port on a board can keep
- * this file on the host, and send the structs to the board in its own functions.
+ * this file on the host, and send the structs to the board in its own functions. With the argument
+ * --shared the frames are in memory shared with attest instead of pipes.
  */
+#include <poll.h>
+#include <sched.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include "attest_unit.h"
 
@@ -120,27 +125,89 @@ static size_t serve(const attest_unit* port, const header* head, request* of, an
   return sizeof(uint32_t);
 }
 
-int main(void) {
+/* ---- frames through pipes -------------------------------------------------------------------- */
+
+static int read_frame(header* head, request* of) {
+  if (fread(head, sizeof *head, 1, stdin) != 1 || head->size > sizeof *of) return 0;
+  return head->size == 0 || fread(of, head->size, 1, stdin) == 1;
+}
+
+static void write_frame(const header* head, const answer* to) {
+  fwrite(head, sizeof *head, 1, stdout);
+  fwrite(to, head->size, 1, stdout);
+  fflush(stdout);
+}
+
+/* ---- frames in shared memory ----------------------------------------------------------------- */
+
+enum { SHARED_FILE = 3 };
+enum { LOOKS_ALONE = 4096, LOOKS_UNTIL_ASKED = 1024 };
+
+typedef struct {
+  _Alignas(64) _Atomic uint32_t requests;
+  _Alignas(64) _Atomic uint32_t answers;
+  _Alignas(4096) unsigned char request[262144];
+  unsigned char answer[262144];
+} shared_memory;
+
+static shared_memory* shared; /* NULL: pipes */
+
+static int share_memory(void) {
+  void* const at = mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED, SHARED_FILE, 0);
+  if (at == MAP_FAILED) return 0;
+  shared = at;
+  return 1;
+}
+
+/* Waits until attest has written one more request. 0: attest has closed stdin. */
+static int wait_for_request(void) {
+  const uint32_t last = atomic_load_explicit(&shared->answers, memory_order_relaxed);
+  struct pollfd in = {.fd = STDIN_FILENO, .events = POLLIN};
+  for (unsigned look = 0; atomic_load_explicit(&shared->requests, memory_order_acquire) == last;
+       ++look) {
+    if (look < LOOKS_ALONE) continue;
+    sched_yield(); /* so that attest has a turn if it runs on the same CPU */
+    if (look % LOOKS_UNTIL_ASKED == 0 && poll(&in, 1, 0) != 0) return 0;
+  }
+  return 1;
+}
+
+static int take_frame(header* head, request* of) {
+  if (!wait_for_request()) return 0;
+  memcpy(head, shared->request, sizeof *head);
+  if (head->size > sizeof *of) return 0;
+  memcpy(of, shared->request + sizeof *head, head->size);
+  return 1;
+}
+
+static void put_frame(const header* head, const answer* to) {
+  memcpy(shared->answer, head, sizeof *head);
+  memcpy(shared->answer + sizeof *head, to, head->size);
+  atomic_fetch_add_explicit(&shared->answers, 1, memory_order_release);
+}
+
+int main(int count, char** arguments) {
   static char line[65536];
   static request of;
   static answer to;
   const attest_unit* const port = attest_unit_v1();
+  const int is_shared = count > 1 && strcmp(arguments[1], "--shared") == 0;
   header head;
   if (!fgets(line, sizeof line, stdin)) return EXIT_FAILURE;
+  if (is_shared && !share_memory()) return EXIT_FAILURE;
   printf(
-      "{\"protocol\":1,\"name\":\"%s\",\"version\":\"%s\",\"frames\":\"binary\",\"batch\":true,"
+      "{\"protocol\":1,\"name\":\"%s\",\"version\":\"%s\",\"frames\":\"%s\",\"batch\":true,"
       "\"profiles\":[\"px4-v1.5.5\",\"px4-v1.3.4\"]}\n",
-      port->name, port->version);
+      port->name, port->version, is_shared ? "shared" : "binary");
   fflush(stdout);
-  while (fread(&head, sizeof head, 1, stdin) == 1) {
-    if (head.size > sizeof of || (head.size && fread(&of, head.size, 1, stdin) != 1)) {
-      return EXIT_FAILURE;
-    }
+  while (shared ? take_frame(&head, &of) : read_frame(&head, &of)) {
     if (head.size < MAX_TEXT) of.text[head.size] = '\0'; /* ends the name of a parameter */
     head.size = (uint32_t)serve(port, &head, &of, &to);
-    fwrite(&head, sizeof head, 1, stdout);
-    fwrite(&to, head.size, 1, stdout);
-    fflush(stdout);
+    if (shared) {
+      put_frame(&head, &to);
+    } else {
+      write_frame(&head, &to);
+    }
   }
   return EXIT_SUCCESS;
 }

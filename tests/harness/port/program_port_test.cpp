@@ -106,7 +106,7 @@ TEST(ParseHello, SaysWhichMemberIsWrong) {
   EXPECT_THAT(wrong_with("fixed_step", "\"0\""), HasSubstr("its fixed step: "));
   EXPECT_THAT(wrong_with("modules", "[\"gimbal\"]"), HasSubstr("has the module `gimbal`"));
   EXPECT_THAT(wrong_with("frames", "\"xml\""), HasSubstr("has `frames` = `xml`"));
-  EXPECT_THAT(wrong_with("batch", "true"), HasSubstr("`batch`, which only binary frames have"));
+  EXPECT_THAT(wrong_with("batch", "true"), HasSubstr("`batch`, which text frames do not have"));
   EXPECT_THAT(wrong_with("fixed_setp", "\"250\""), HasSubstr("did you mean `fixed_step`?"));
   EXPECT_THAT(parse_hello("[1]").error().message, HasSubstr("is `[1]`, which is no JSON object"));
   EXPECT_THAT(parse_hello(R"({"protocol":1})").error().message,
@@ -229,6 +229,21 @@ TEST(ProgramPort, AnAnswerThatBreaksTheRulesIsNotTaken) {
       {"in_text.py half_a_flag", "published` = 0.5, which is no value of that signal"},
   };
   for (const auto& [program, wrong] : answers) {
+    EXPECT_THAT(wrong_answer_of(program), HasSubstr(wrong)) << program;
+  }
+}
+
+TEST(ProgramPort, AWrongAnswerInSharedMemoryIsNotTakenEither) {
+  const std::pair<const char*, const char*> answers[] = {
+      {"right", "none"},
+      {"garbage", "which are no header of a frame"},
+      {"huge", "has a payload of 4294967295 bytes instead of 76"},
+      {"short", "has a payload of 72 bytes instead of 76"},
+      {"stale", "sequence number 20; they must be those of the request: 4, 1, 21"},
+      {"exits", "it ended"},
+  };
+  for (const auto& [mode, wrong] : answers) {
+    const std::string program = std::string("program.py ") + mode + " --shared";
     EXPECT_THAT(wrong_answer_of(program), HasSubstr(wrong)) << program;
   }
 }

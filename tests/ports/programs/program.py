@@ -2,14 +2,16 @@
 """Programs that break the protocol of harness/port/PROTOCOL.md, each in one way, and some that keep
 it in an unusual way:
 
-    program.py MODE
+    program.py MODE [--shared]
 
-Apart from that they are the starter in Python.
+Apart from that they are the starter in Python. With --shared the frames are in shared memory.
 """
 
 import json
+import mmap
 import os
 import pathlib
+import select
 import signal
 import struct
 import subprocess
@@ -97,6 +99,38 @@ def of_other(mode, kind):
     return None
 
 
+class SharedMemory:
+    """Frames in memory shared with attest; read() and write() are those of a pair of pipes."""
+
+    COUNTER = struct.Struct("<I")
+    SIZE, ANSWERS, REQUEST, ANSWER = 528_384, 64, 4096, 266_240
+
+    def __init__(self):
+        self.memory = mmap.mmap(3, self.SIZE)
+        self.answered = 0
+        self.place = 0  # in the request
+
+    def read(self, size):
+        looks = 0
+        while self.COUNTER.unpack_from(self.memory)[0] == self.answered:
+            os.sched_yield()
+            looks += 1
+            if looks % 1000 == 0 and select.select([0], [], [], 0)[0]:
+                return b""
+        begin = self.REQUEST + self.place
+        self.place += size
+        return self.memory[begin : begin + size]
+
+    def write(self, frame):
+        self.memory[self.ANSWER : self.ANSWER + len(frame)] = frame
+        self.place = 0
+        self.answered += 1
+        self.COUNTER.pack_into(self.memory, self.ANSWERS, self.answered)
+
+    def flush(self):
+        pass
+
+
 def serve(mode, requests, answers):
     program, steps, earlier = port.Program(), 0, b""
     while len(header := requests.read(port.HEADER.size)) == port.HEADER.size:
@@ -121,6 +155,8 @@ def main():
     mode = sys.argv[1]
     requests, answers = sys.stdin.buffer, sys.stdout.buffer
     requests.readline()
+    if "--shared" in sys.argv:
+        HELLO["frames"] = "shared"
     if mode == "never_answers":
         time.sleep(100)
     if mode == "ends_at_once":
@@ -138,6 +174,8 @@ def main():
     answers.flush()
     if mode == "does_not_read":
         time.sleep(100)
+    if "--shared" in sys.argv:
+        requests = answers = SharedMemory()
     serve(mode, requests, answers)
 
 

@@ -1,4 +1,4 @@
-// The time that the exchange with a program takes at least: pipes, and nothing to compute.
+// The time that the exchange with a program takes at least: nothing to compute.
 #pragma once
 
 #include <cstddef>
@@ -10,5 +10,8 @@ namespace attest {
 
 // The median time in which `cat` sends `bytes` bytes back. Errors: a program cannot be started.
 Result<Nanoseconds> pipe_round_trip(std::size_t bytes);
+
+// The median time in which a thread answers in shared memory. Errors: there is no memory.
+Result<Nanoseconds> memory_round_trip(std::size_t bytes);
 
 }  // namespace attest

@@ -5,7 +5,7 @@
 
 namespace attest::cli {
 
-// The share of pipes in the times of a program, in one line. Empty for another kind of port.
-std::string pipes_note(const std::string& port);
+// The share of the exchange in the times of a program. Empty for another kind of port.
+std::string exchange_note(const std::string& port);
 
 }  // namespace attest::cli

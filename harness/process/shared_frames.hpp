@@ -1,0 +1,57 @@
+// Requests and answers in memory that attest shares with a program (PROTOCOL.md, "Shared memory").
+// Each side watches a counter of the other one, so that an exchange takes no system call.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string_view>
+
+#include "harness/core/result.hpp"
+
+namespace attest {
+
+// The layout of the memory. All of it is zero at the start.
+struct SharedLayout {
+  static constexpr std::size_t requests = 0;  // byte of the u32 that counts the requests
+  static constexpr std::size_t answers = 64;  // in a cache line of its own
+  static constexpr std::size_t request = 4096;
+  static constexpr std::size_t most = 262144;  // bytes of a request, and of an answer
+  static constexpr std::size_t answer = request + most;
+  static constexpr std::size_t size = answer + most;
+};
+
+// attest's side. One thread at a time. The other side may write anything at any time: what was read
+// is never read again.
+class SharedFrames {
+ public:
+  // Errors: the system has no memory for it.
+  static Result<SharedFrames> make();
+
+  SharedFrames(SharedFrames&& other) noexcept;
+  SharedFrames& operator=(SharedFrames&& other) noexcept;
+  ~SharedFrames();
+
+  int file() const { return file_; }  // the memory, for another process; it cannot change its size
+
+  // Writes the next request. False: it is longer than the memory has room for.
+  bool write(std::string_view request);
+
+  // Waits for the answer to the last request, and copies its next `size` bytes. False: `has_ended`,
+  // which is asked about every millisecond, or the answer would be longer than there is room.
+  bool read(void* place, std::size_t size, const std::function<bool()>& has_ended);
+
+  // The memory, for the other side in this process.
+  std::byte* bytes() const { return bytes_; }
+
+ private:
+  SharedFrames(int file, std::byte* bytes) : file_(file), bytes_(bytes) {}
+
+  bool wait(const std::function<bool()>& has_ended) const;
+
+  int file_ = -1;
+  std::byte* bytes_ = nullptr;
+  unsigned sent_ = 0;     // requests
+  std::size_t read_ = 0;  // bytes of the answer to the last one
+};
+
+}  // namespace attest
