@@ -55,7 +55,7 @@ double peak_mb(const std::function<void()>& work) {
 }
 
 void whole_suite() {
-  const auto cases = select_cases(ATTEST_SOURCE_DIR "/cases", {});
+  const auto cases = select_cases({ATTEST_SOURCE_DIR "/cases"}, {});
   VehicleModels vehicle_models(ATTEST_SOURCE_DIR "/models");
   const auto suite_jobs = case_jobs(*cases, ATTEST_SOURCE_DIR "/golden", vehicle_models,
                                     {Level::numeric}, HostOptions());

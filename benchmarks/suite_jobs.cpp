@@ -14,7 +14,7 @@ namespace {
 
 void suite(benchmark::State& state, int processes, bool isolated = true) {
   for (auto _ : state) {
-    const auto cases = select_cases(ATTEST_SOURCE_DIR "/cases", {});
+    const auto cases = select_cases({ATTEST_SOURCE_DIR "/cases"}, {});
     VehicleModels vehicle_models(ATTEST_SOURCE_DIR "/models");
     HostOptions host;
     host.in_process = !isolated;

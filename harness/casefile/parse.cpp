@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <system_error>
 
@@ -285,18 +286,24 @@ Result<Case> parse_case(const fs::path& file) {
   return parsed;
 }
 
-Result<std::vector<fs::path>> find_case_files(const fs::path& folder) {
-  std::error_code error;
+Result<std::vector<fs::path>> find_case_files(const CaseFolders& folders) {
+  std::map<fs::path, fs::path> by_path;  // below its folder -> the file
+  for (const fs::path& folder : folders) {
+    std::error_code error;
+    bool is_empty = true;
+    for (fs::recursive_directory_iterator it(folder, error), end; it != end; it.increment(error)) {
+      if (error) break;
+      if (!it->is_regular_file() || it->path().extension() != ".toml") continue;
+      by_path[it->path().lexically_relative(folder)] = it->path();
+      is_empty = false;
+    }
+    if (error) return fail_at(folder.string(), fmt::format("cannot be read: {}", error.message()));
+    if (is_empty) {
+      return fail_at(folder.string(), "no case files (<profile>/<group>/<behaviour>.toml) in here");
+    }
+  }
   std::vector<fs::path> files;
-  for (fs::recursive_directory_iterator it(folder, error), end; it != end; it.increment(error)) {
-    if (error) break;
-    if (it->is_regular_file() && it->path().extension() == ".toml") files.push_back(it->path());
-  }
-  if (error) return fail_at(folder.string(), fmt::format("cannot be read: {}", error.message()));
-  if (files.empty()) {
-    return fail_at(folder.string(), "no case files (<profile>/<group>/<behaviour>.toml) in here");
-  }
-  std::sort(files.begin(), files.end());
+  for (auto& [path, file] : by_path) files.push_back(std::move(file));
   return files;
 }
 

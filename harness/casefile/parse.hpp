@@ -15,8 +15,12 @@ namespace attest {
 // of range, a first profile or a group that differs from the folder's.
 Result<Case> parse_case(const std::filesystem::path& file);
 
-// The case files below a folder, in the order of their paths. Errors: no such folder, no cases.
-Result<std::vector<std::filesystem::path>> find_case_files(const std::filesystem::path& folder);
+// Folders with case files. A file replaces the one with the same path below an earlier folder.
+using CaseFolders = std::vector<std::filesystem::path>;
+
+// The case files below the folders, in the order of their paths below them. Errors: no such folder,
+// a folder without cases.
+Result<std::vector<std::filesystem::path>> find_case_files(const CaseFolders& folders);
 
 // The names of the parameters that a case of that module and profile may set. For an unknown
 // profile: all that the module has.

@@ -203,8 +203,9 @@ std::vector<std::string> as_options(
   return options;
 }
 
-Result<std::vector<SelectedCase>> select_cases(const fs::path& folder, const Selection& selection) {
-  auto files = find_case_files(folder);
+Result<std::vector<SelectedCase>> select_cases(const CaseFolders& folders,
+                                               const Selection& selection) {
+  auto files = find_case_files(folders);
   if (!files) return tl::unexpected(files.error());
   if (auto known = check_groups(*files, selection); !known) return tl::unexpected(known.error());
   std::vector<SelectedCase> selected;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "harness/casefile/case.hpp"
+#include "harness/casefile/parse.hpp"
 #include "harness/core/result.hpp"
 
 namespace attest {
@@ -49,11 +50,11 @@ struct SelectedCase {
 std::vector<std::string> as_options(
     std::initializer_list<std::pair<const char*, const std::vector<std::string>&>> lists);
 
-// Reads the case files below `folder` that can match and keeps the selected ones, in the order of
+// Reads the case files below `folders` that can match and keeps the selected ones, in the order of
 // their ids. Errors: a malformed case file; an unknown group, profile, rate, vehicle or plant, with
 // the known ones; a filter or an exclusion that matches no case; an empty selection; two files of
 // one case.
-Result<std::vector<SelectedCase>> select_cases(const std::filesystem::path& folder,
+Result<std::vector<SelectedCase>> select_cases(const CaseFolders& folders,
                                                const Selection& selection);
 
 }  // namespace attest

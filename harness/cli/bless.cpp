@@ -81,17 +81,18 @@ Result<void> check_kind(const BlessOptions& options, const Globals& globals,
   }
   if (globals.suite.empty()) {
     return fail(
-        "bless --port makes a suite of your own: name its folder, which has your cases/, with "
-        "--suite DIR");
+        "bless --port makes a suite of your own: name its folder, which has your cases/ or a file "
+        "BASE, with --suite DIR");
   }
   std::error_code ignored;
   if (!reference.empty() || !std::filesystem::exists(suite.golden(), ignored)) return {};
   const auto is_golden = [](const auto& entry) { return entry.is_directory(); };
   const std::filesystem::directory_iterator goldens(suite.golden(), ignored);
   if (std::none_of(begin(goldens), end(goldens), is_golden)) return {};
-  return fail_at(suite.golden().string(),
-                 "has goldens of attest's own reference; copy cases/ to a folder of your own, and "
-                 "name that with --suite");
+  return fail_at(
+      suite.golden().string(),
+      "has goldens of attest's own reference; make a folder of your own with cases/ or a "
+      "file BASE, and name that with --suite");
 }
 
 // "starter-c 1.0 (lib:./mine.so, SHA-256 ab12...)"
@@ -118,7 +119,7 @@ void print_left_out(const PendingGoldens& pending) {
 Result<int> bless_selected(const BlessOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return tl::unexpected(suite.error());
-  const auto cases = options.select.cases_in(suite->cases());
+  const auto cases = options.select.cases_in(suite->case_folders());
   if (!cases) return tl::unexpected(cases.error());
   if (auto checked = check_kind(options, globals, *suite); !checked) {
     return tl::unexpected(checked.error());

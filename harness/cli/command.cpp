@@ -25,8 +25,7 @@ std::string SelectionOptions::narrowing() const {
   return fmt::format("{}", fmt::join(options, " "));
 }
 
-Result<std::vector<SelectedCase>> SelectionOptions::cases_in(
-    const std::filesystem::path& folder) const {
+Result<std::vector<SelectedCase>> SelectionOptions::cases_in(const CaseFolders& folders) const {
   Selection selection;
   selection.filters = filters;
   selection.excludes = excludes;
@@ -42,7 +41,7 @@ Result<std::vector<SelectedCase>> SelectionOptions::cases_in(
   const auto part = Shard::parse(shard);
   if (!part) return tl::unexpected(part.error());
   selection.shard = *part;
-  return select_cases(folder, selection);
+  return select_cases(folders, selection);
 }
 
 }  // namespace attest::cli

@@ -45,9 +45,9 @@ struct SelectionOptions {
   // The options that select fewer than all vectors of a profile: "--group tpa --rate 250".
   std::string narrowing() const;
 
-  // The selected cases below `folder`. Errors: those of select_cases, and text that is not a rate
+  // The selected cases below `folders`. Errors: those of select_cases, and text that is not a rate
   // or a shard.
-  Result<std::vector<SelectedCase>> cases_in(const std::filesystem::path& folder) const;
+  Result<std::vector<SelectedCase>> cases_in(const CaseFolders& folders) const;
 };
 
 // Each prints its results on stdout and its errors on stderr.

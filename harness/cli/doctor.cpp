@@ -30,7 +30,7 @@ void examine_arithmetic(Examination& examination) {
 }
 
 void examine_cases(const SuiteFolder& suite, Examination& examination) {
-  const auto cases = select_cases(suite.cases(), {});
+  const auto cases = select_cases(suite.case_folders(), {});
   if (!cases) return examination.bad("cases", cases.error().to_string());
   std::size_t vectors = 0;
   std::vector<std::string> stale;

@@ -44,7 +44,7 @@ Result<std::vector<SelectedCase>> open_loop_cases(const SuiteFolder& suite,
                                                   const std::string& profile) {
   Selection selection;
   selection.profiles = {profile};
-  auto cases = select_cases(suite.cases(), selection);
+  auto cases = select_cases(suite.case_folders(), selection);
   if (!cases) return cases;
   std::erase_if(*cases, [](const SelectedCase& one) { return one.the_case.flight.has_value(); });
   return cases;

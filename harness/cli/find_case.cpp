@@ -20,7 +20,7 @@ Result<Case> find_case(const std::string& name, const SuiteFolder& suite) {
   }
   Selection selection;
   selection.filters = {name};
-  const auto found = select_cases(suite.cases(), selection);
+  const auto found = select_cases(suite.case_folders(), selection);
   if (!found) return tl::unexpected(found.error());
   // A file with several profiles stands for its first.
   std::set<std::filesystem::path> files;

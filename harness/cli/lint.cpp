@@ -33,7 +33,7 @@ void print_nearest(const SuiteMargins& margins) {
 int lint_command(const VectorOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
-  const auto cases = options.select.cases_in(suite->cases());
+  const auto cases = options.select.cases_in(suite->case_folders());
   if (!cases) return report_error(cases.error());
   const SuiteMargins margins = suite_margins(*cases);
   for (const VectorMargin& vector : margins.too_near) print_refused(vector);

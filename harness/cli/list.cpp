@@ -158,7 +158,7 @@ int list_command(const ListOptions& options, const Globals& globals) {
     const auto listed = list_vehicles(suite->models());
     return listed ? exit_ok : report_error(listed.error());
   }
-  const auto cases = options.select.cases_in(suite->cases());
+  const auto cases = options.select.cases_in(suite->case_folders());
   if (!cases) return report_error(cases.error());
   options.groups ? list_groups(*cases) : list_cases(*cases);
   return exit_ok;

@@ -30,8 +30,10 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
 }
 
 bool is_of_suite(const fs::path& path, const SuiteFolder& suite) {
-  return lies_in(path, identity(suite.cases())) || lies_in(path, identity(suite.golden())) ||
-         lies_in(path, identity(suite.models()));
+  std::vector<fs::path> folders = suite.case_folders();
+  folders.insert(folders.end(), {suite.golden(), suite.models()});
+  return std::any_of(folders.begin(), folders.end(),
+                     [&](const fs::path& folder) { return lies_in(path, identity(folder)); });
 }
 
 std::set<fs::path> identities_of(const Inputs& inputs) {

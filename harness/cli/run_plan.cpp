@@ -78,7 +78,7 @@ Result<void> set_parameters(const RunOptions& options, const std::vector<Selecte
 
 // The selected cases, each at its own times.
 Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, RunPlan& plan) {
-  auto cases = options.select.cases_in(suite.cases());
+  auto cases = options.select.cases_in(suite.case_folders());
   if (!cases) return tl::unexpected(cases.error());
   if (auto set = set_parameters(options, *cases, plan); !set) return set;
   if (!suite.reference().empty() || !plan.run.parameters.empty()) {

@@ -1,7 +1,7 @@
 #include "harness/cli/suite_folder.hpp"
 
 #include <cstdlib>
-#include <set>
+#include <map>
 #include <sstream>
 #include <system_error>
 
@@ -15,19 +15,75 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_suite(const fs::path& folder) {
+constexpr const char* base_file = "BASE";
+
+bool has_cases(const fs::path& folder) {
   std::error_code ignored;
   return fs::is_directory(folder / "cases", ignored);
 }
 
+bool names_a_base(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::exists(folder / base_file, ignored);
+}
+
+Result<fs::path> base_of(const fs::path& folder) {
+  const fs::path file = folder / base_file;
+  const auto text = read_file(file);
+  if (!text) return tl::unexpected(text.error());
+  std::string line;
+  std::getline(std::istringstream(*text), line);
+  const auto base = line == "released" ? data_folder() : folder / line;
+  if (line.empty() || !base || !has_cases(*base)) {
+    return fail_at(file.string(), fmt::format("names `{}`, which has no cases/ folder; write "
+                                              "`released`, or the path of a suite from here",
+                                              line));
+  }
+  if (!names_a_base(*base)) return *base;
+  return fail_at(file.string(), fmt::format("names `{}`, which has a BASE itself", line));
+}
+
 Result<SuiteFolder> named(const fs::path& folder, const char* by) {
-  if (is_suite(folder)) return SuiteFolder{folder};
+  if (names_a_base(folder)) {
+    auto base = base_of(folder);
+    if (!base) return tl::unexpected(base.error());
+    return SuiteFolder{folder, *std::move(base)};
+  }
+  if (has_cases(folder)) return SuiteFolder{folder, {}};
   return fail_at(folder.string(), fmt::format("has no cases/ folder; {} names the folder that "
                                               "holds cases/ and golden/",
                                               by));
 }
 
+// Adds the paths of TOML files below `folder`, relative to the suite `root`, with their files.
+Result<void> add_files(const fs::path& root, const fs::path& folder,
+                       std::map<std::string, fs::path>& files) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) return {};  // a run reports the missing folder
+  for (auto at = fs::recursive_directory_iterator(folder, error);
+       at != fs::recursive_directory_iterator(); at.increment(error)) {
+    if (at->path() == root / "golden" / "recorded") at.disable_recursion_pending();
+    if (at->path().extension() != ".toml") continue;
+    files[at->path().lexically_relative(root)] = at->path();
+  }
+  if (error) return fail_at(folder.string(), error.message());
+  return {};
+}
+
 }  // namespace
+
+CaseFolders SuiteFolder::case_folders() const {
+  CaseFolders folders;
+  if (base) folders.push_back(*base / "cases");
+  if (!base || has_cases(root)) folders.push_back(cases());
+  return folders;
+}
+
+fs::path SuiteFolder::models() const {
+  std::error_code ignored;
+  const fs::path own = root / "models";
+  return base && !fs::is_directory(own, ignored) ? *base / "models" : own;
+}
 
 std::string SuiteFolder::version_of(const fs::path& folder) const {
   std::istringstream text(read_file(folder / "VERSION").value_or(""));
@@ -50,7 +106,7 @@ std::vector<std::string> SuiteFolder::groups() const {
 
 std::map<std::string, std::map<Rate, std::size_t>> SuiteFolder::cases_by_group() const {
   std::map<std::string, std::map<Rate, std::size_t>> groups;
-  const auto all = select_cases(cases(), {});
+  const auto all = select_cases(case_folders(), {});
   if (!all) return {};
   for (const auto& [the_case, configurations] : *all) {
     auto& rates = groups[the_case.profile + "/" + the_case.group];
@@ -60,20 +116,18 @@ std::map<std::string, std::map<Rate, std::size_t>> SuiteFolder::cases_by_group()
 }
 
 Result<std::string> SuiteFolder::sha256() const {
-  std::set<std::string> paths;
-  for (const fs::path& folder : {cases(), golden()}) {
-    std::error_code error;
-    if (!fs::is_directory(folder, error)) continue;  // a run reports the missing folder
-    for (auto at = fs::recursive_directory_iterator(folder, error);
-         at != fs::recursive_directory_iterator(); at.increment(error)) {
-      if (at->path() == recorded()) at.disable_recursion_pending();
-      if (at->path().extension() == ".toml") paths.insert(at->path().lexically_relative(root));
+  std::map<std::string, fs::path> files;
+  if (base) {
+    if (auto added = add_files(*base, *base / "cases", files); !added) {
+      return tl::unexpected(added.error());
     }
-    if (error) return fail_at(folder.string(), error.message());
+  }
+  for (const fs::path& folder : {cases(), golden()}) {
+    if (auto added = add_files(root, folder, files); !added) return tl::unexpected(added.error());
   }
   std::string lines;
-  for (const std::string& path : paths) {
-    auto hash = sha256_of_file(root / path);
+  for (const auto& [path, file] : files) {
+    auto hash = sha256_of_file(file);
     if (!hash) return tl::unexpected(hash.error());
     lines += fmt::format("{}  {}\n", *hash, path);
   }
@@ -86,10 +140,10 @@ std::optional<fs::path> data_folder() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   const fs::path installed = program.parent_path().parent_path() / "share" / "attest";
-  if (is_suite(installed)) return installed;
+  if (has_cases(installed)) return installed;
   for (fs::path above = program.parent_path(); above.has_relative_path();
        above = above.parent_path()) {
-    if (is_suite(above) && fs::is_directory(above / "golden", error)) return above;
+    if (has_cases(above) && fs::is_directory(above / "golden", error)) return above;
   }
   return std::nullopt;
 }
@@ -99,7 +153,7 @@ Result<SuiteFolder> find_suite(const std::string& given) {
   if (const char* folder = std::getenv("ATTEST_SUITE"); folder && *folder) {
     return named(folder, "ATTEST_SUITE");
   }
-  if (const auto folder = data_folder()) return SuiteFolder{*folder};
+  if (const auto folder = data_folder()) return SuiteFolder{*folder, {}};
   return fail(
       "no suite found; name the folder that holds cases/ and golden/ with --suite DIR or "
       "ATTEST_SUITE");

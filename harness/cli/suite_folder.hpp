@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/casefile/parse.hpp"
 #include "harness/core/result.hpp"
 #include "harness/schedule/rate.hpp"
 
@@ -14,9 +15,15 @@ namespace attest::cli {
 
 struct SuiteFolder {
   std::filesystem::path root;
+  // The suite whose cases this one takes over, as the file BASE in `root` names it: `released` for
+  // data_folder(), or else a path relative to `root`. A case in cases() replaces the one with the
+  // same path in the base. The goldens are those of this suite only.
+  std::optional<std::filesystem::path> base;
 
   std::filesystem::path cases() const { return root / "cases"; }
-  std::filesystem::path models() const { return root / "models"; }
+  CaseFolders case_folders() const;  // of the base, then cases() if it is there
+  // Without a folder models of its own, a suite uses that of its base.
+  std::filesystem::path models() const;
   std::filesystem::path golden() const { return root / "golden"; }
   std::filesystem::path recorded() const { return golden() / "recorded"; }
 
@@ -53,7 +60,8 @@ std::string released_suite_sha256();
 // in it. Empty: neither exists.
 std::optional<std::filesystem::path> data_folder();
 
-// `given` if it is not empty; else $ATTEST_SUITE; else data_folder().
+// `given` if it is not empty; else $ATTEST_SUITE; else data_folder(). Errors: no such suite, or a
+// BASE that names none, or one that has a base itself.
 Result<SuiteFolder> find_suite(const std::string& given);
 
 }  // namespace attest::cli

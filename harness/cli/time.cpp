@@ -23,7 +23,7 @@ namespace {
 // again, and their inputs add no new kind of step.
 Result<std::vector<SelectedCase>> open_loop_cases(const TimeCommandOptions& options,
                                                   const SuiteFolder& suite) {
-  auto cases = options.select.cases_in(suite.cases());
+  auto cases = options.select.cases_in(suite.case_folders());
   if (!cases) return cases;
   std::erase_if(*cases, [](const SelectedCase& one) {
     return one.the_case.flight || one.the_case.module != Module::mc_att_control;

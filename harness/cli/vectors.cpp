@@ -26,7 +26,7 @@ Result<std::size_t> write_vectors(const VectorOptions& options, const Globals& g
   if (auto checked = check_output_folder(options.folder, *suite); !checked) {
     return tl::unexpected(checked.error());
   }
-  const auto cases = options.select.cases_in(suite->cases());
+  const auto cases = options.select.cases_in(suite->case_folders());
   if (!cases) return tl::unexpected(cases.error());
   return write_recorded_vectors(options.folder, *format, *cases, fixed_step);
 }

@@ -97,29 +97,45 @@ ordered_json limits(const Limits& of) {
   return out;
 }
 
+ordered_json port(const RunResult& run) {
+  ordered_json out = {
+      {"specification", run.port}, {"name", run.port_name}, {"version", run.port_version}};
+  if (!run.port_sha256.empty()) out["sha256"] = run.port_sha256;
+  if (run.fraction_bits) out["fraction_bits"] = *run.fraction_bits;
+  if (run.fixed_step) out["fixed_step"] = run.fixed_step->to_string();
+  if (run.not_recorded.any()) {
+    ordered_json names = ordered_json::array();
+    for (std::size_t i = 0; i < channels().size(); ++i) {
+      if (run.not_recorded[i]) names.push_back(channels()[i].name);
+    }
+    out["not_recorded"] = names;
+  }
+  return out;
+}
+
+ordered_json suite(const RunResult& run) {
+  ordered_json out = {{"cases", run.cases_version},
+                      {"golden", run.golden_version},
+                      {"sha256", run.suite_sha256},
+                      {"released", run.suite_is_released}};
+  if (!run.suite_reference.empty()) out["reference"] = run.suite_reference;
+  return out;
+}
+
 }  // namespace
 
 std::string json_report(const RunResult& run, const std::optional<Diagnosis>& found) {
-  ordered_json port = {
-      {"specification", run.port}, {"name", run.port_name}, {"version", run.port_version}};
-  if (!run.port_sha256.empty()) port["sha256"] = run.port_sha256;
-  if (run.fraction_bits) port["fraction_bits"] = *run.fraction_bits;
-  if (run.fixed_step) port["fixed_step"] = run.fixed_step->to_string();
   ordered_json report = {
       {"schema", "attest-report-1"},
       {"attest_version", run.attest_version},
-      {"port", port},
+      {"port", port(run)},
       {"level", name_of(run.level)},
       {"rates", rates(run)},
       {"totals", totals(run)},
       {"conformant", standing_of(run) == Standing::conformant},
       {"conformance", conformance_statement(run)},
       {"claims", claims(run)},
-      {"suite",
-       {{"cases", run.cases_version},
-        {"golden", run.golden_version},
-        {"sha256", run.suite_sha256},
-        {"released", run.suite_is_released}}},
+      {"suite", suite(run)},
       {"date", run.date},
       {"limits", limits(run.limits)},
       {"stopped_early", run.stopped_early},

@@ -21,9 +21,11 @@ ours() { "$ATTEST" --suite ours "$@"; }
   # The golden of a long case keeps every tick, because attest's own law cannot fill them in.
   [ "$(wc -l <ours/golden/px4-v1.5.5/rates/long_run/1000hz.csv)" -eq 5001 ]
 
-  run ours run --port "lib:$PORTS/port_sign_flip.so" --profile px4-v1.5.5 --level exact
+  run ours run --port "lib:$PORTS/port_sign_flip.so" --profile px4-v1.5.5 --level exact \
+    --json report.json
   [ "$status" -eq 0 ]
   has "custom suite, reference sign-flip"
+  grep -q '"reference": "sign-flip' report.json
   run ours run --profile px4-v1.5.5 --rate 250 # attest's own law is another one
   [ "$status" -eq 1 ]
   has "note: flights and the diagnosis need attest's own law"
@@ -39,11 +41,11 @@ ours() { "$ATTEST" --suite ours "$@"; }
   [ "$status" -eq 2 ] # no recordings
   run "$ATTEST" bless --port "lib:$PORTS/port_sign_flip.so" --yes --reason "our law"
   [ "$status" -eq 2 ]
-  has "name its folder, which has your cases/, with --suite DIR"
+  has "name its folder, which has your cases/ or a file BASE, with --suite DIR"
   run "$ATTEST" --suite "$SOURCE" bless --port "lib:$PORTS/port_sign_flip.so" --yes \
     --reason "our law"
   [ "$status" -eq 2 ]
-  has "has goldens of attest's own reference; copy cases/ to a folder of your own"
+  has "has goldens of attest's own reference; make a folder of your own"
   ours bless --port "lib:$PORTS/port_sign_flip.so" --yes --reason "our law" \
     --profile px4-v1.5.5 >/dev/null
   run ours bless --yes --reason "again" --profile px4-v1.5.5
@@ -72,6 +74,45 @@ P
   run ours run --port "$port" --profile our-law --rate 250
   [ "$status" -eq 0 ]
   has "partial: our-law"
+}
+
+@test "a suite with a BASE takes over its cases and replaces those of the same name" {
+  mkdir -p ours/cases/px4-v1.5.5/rates
+  sed 's/duration_ticks = .*/duration_ticks = 12/' "$SOURCE/cases/px4-v1.5.5/rates/p_alone.toml" \
+    >ours/cases/px4-v1.5.5/rates/p_alone.toml
+  echo released >ours/BASE
+  local selection=(--group rates --profile px4-v1.5.5)
+  run ours bless --port "lib:$PORTS/port_sign_flip.so" "${selection[@]}" --yes --reason "our law"
+  [ "$status" -eq 0 ]
+  run ours run --port "lib:$PORTS/port_sign_flip.so" "${selection[@]}" --level exact
+  [ "$status" -eq 0 ]
+  has "custom suite, reference sign-flip"
+  [ "$(wc -l <ours/golden/px4-v1.5.5/rates/p_alone/250hz.csv)" -eq 13 ] # the case of ours
+  [ -e ours/golden/px4-v1.5.5/rates/long_run/1000hz.csv ]               # a case of the base
+  run ours run "${selection[@]}" --json ours/cases/px4-v1.5.5/rates/p_alone.toml
+  [ "$status" -eq 2 ]
+  has "is a file of the suite"
+
+  # The same cases without a base are the same suite.
+  cp -r ours copied
+  rm copied/BASE
+  cp -rn "$SOURCE/cases" copied/
+  hash() {
+    "$ATTEST" --suite "$1" run --port "lib:$PORTS/port_sign_flip.so" "${selection[@]}" --rate 250 \
+      --json report.json >/dev/null
+    "$PYTHON" -c 'import json; print(json.load(open("report.json"))["suite"]["sha256"])'
+  }
+  hash ours | grep -q '^[0-9a-f]\{64\}$'
+  [ "$(hash ours)" = "$(hash copied)" ]
+
+  echo ../nowhere >ours/BASE
+  run ours list
+  [ "$status" -eq 2 ]
+  has "ours/BASE: names \`../nowhere\`, which has no cases/ folder"
+  echo ../ours >ours/BASE
+  run ours list
+  [ "$status" -eq 2 ]
+  has "names \`../ours\`, which has a BASE itself"
 }
 
 @test "a reference must be repeatable, support its cases and not crash" {

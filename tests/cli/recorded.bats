@@ -74,8 +74,15 @@ answered() {
   integrals="'out/mc_att_ctrl_status.published'"
   for axis in roll pitch yaw; do integrals+=", 'out/mc_att_ctrl_status.${axis}_rate_integ'"; done
   sed -i "s#^not_recorded = .*#not_recorded = [$integrals]#" vectors/manifest.toml
-  run "$ATTEST" run --port recorded:vectors "${filter[@]}"
+  run "$ATTEST" run --port recorded:vectors "${filter[@]}" --json report.json
   [ "$status" -eq 0 ]
+  "$PYTHON" - "$SOURCE/harness/report/report.schema.json" <<'CHECK'
+import json, sys
+import jsonschema
+report = json.load(open("report.json"))
+jsonschema.Draft7Validator(json.load(open(sys.argv[1]))).validate(report)
+assert len(report["port"]["not_recorded"]) == 4, report["port"]
+CHECK
   has "4 outputs not recorded (out/mc_att_ctrl_status.published,"
 }
 

@@ -94,17 +94,28 @@ TEST(FindCaseFiles, AreAllBelowInTheOrderOfTheirPaths) {
   const fs::path a2 = files.write("a", "2", "");
   const fs::path a1 = files.write("a", "1", "");
   std::ofstream(files.folder() / "README.md") << "not a case\n";
-  const auto found = find_case_files(files.folder());
+  const auto found = find_case_files({files.folder()});
   ASSERT_TRUE(found);
   EXPECT_THAT(*found, ElementsAre(a1, a2, b));
 }
 
+TEST(FindCaseFiles, ALaterFolderReplacesFilesWithTheSamePath) {
+  const CaseFiles below, above;
+  below.write("a", "same", "");
+  const fs::path only_below = below.write("a", "other", "");
+  const fs::path same = above.write("a", "same", "");
+  const fs::path only_above = above.write("b", "new", "");
+  const auto found = find_case_files({below.folder(), above.folder()});
+  ASSERT_TRUE(found);
+  EXPECT_THAT(*found, ElementsAre(only_below, same, only_above));
+}
+
 TEST(FindCaseFiles, AnEmptyOrMissingFolderIsAnError) {
   const TemporaryDirectory empty;
-  const auto none = find_case_files(empty.path());
+  const auto none = find_case_files({empty.path()});
   ASSERT_FALSE(none);
   EXPECT_THAT(none.error().message, HasSubstr("no case files"));
-  const auto missing = find_case_files(empty.path() / "missing");
+  const auto missing = find_case_files({empty.path() / "missing"});
   ASSERT_FALSE(missing);
   EXPECT_THAT(missing.error().message, HasSubstr("cannot be read"));
 }

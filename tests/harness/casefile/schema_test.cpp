@@ -90,7 +90,7 @@ TEST(Schema, NamesEveryTopicFieldAndFlightMode) {
 }
 
 TEST(Schema, NamesEveryKeyOfTheCases) {
-  const auto files = find_case_files(source / "cases");
+  const auto files = find_case_files({source / "cases"});
   ASSERT_TRUE(files) << files.error().to_string();
   for (const fs::path& file : *files) {
     for (const std::string& key : matches(text_of(file), R"re((?:^|\n|[{,] *)([a-z_]+) *=)re")) {

@@ -31,7 +31,7 @@ class SelectTest : public testing::Test {
 
   // "group/name:number of rates" of what is selected.
   std::vector<std::string> select(const Selection& selection) const {
-    const auto selected = select_cases(files_.folder(), selection);
+    const auto selected = select_cases({files_.folder()}, selection);
     if (!selected) return {selected.error().to_string()};
     std::vector<std::string> names;
     for (const auto& [the_case, rates] : *selected) {
@@ -71,7 +71,7 @@ TEST_F(SelectTest, AFileIsACaseOfEachOfItsProfiles) {
                "why = \"a test\"\nduration_ticks = 10\n");
   Selection selection;
   selection.filters = {"shared"};
-  const auto both = select_cases(files_.folder(), selection);
+  const auto both = select_cases({files_.folder()}, selection);
   ASSERT_TRUE(both);
   ASSERT_EQ(both->size(), 2u);
   EXPECT_EQ((*both)[0].the_case.id(), "px4-v1.3.4/rates/shared");
