@@ -71,6 +71,30 @@ Result<void> check_groups(const std::vector<fs::path>& files, const Selection& s
   return check_names(selection.groups, groups, "group");
 }
 
+// Whether a pattern can match a case of this file, as far as its path tells. The text between the
+// last wildcard and the @ is the end of `<profile>/<group>/<name>`, or longer than what is known
+// here. A wildcard in a pattern without @ may match the @ of a vector.
+bool may_match(const std::string& pattern, const fs::path& file) {
+  const std::size_t at = pattern.find('@');
+  const std::string id = pattern.substr(0, at);
+  const std::size_t wildcard = id.find_last_of("*?");
+  const bool has_wildcard = wildcard != std::string::npos;
+  if (pattern.find_first_of("[\\") != std::string::npos ||
+      file.stem().string().find('@') != std::string::npos)
+    return true;
+  if (has_wildcard && at == std::string::npos) return true;
+  const std::string end = has_wildcard ? id.substr(wildcard + 1) : id;
+  const std::string known = "/" + group_of(file) + "/" + file.stem().string();
+  return known.ends_with(end) || end.ends_with(known);
+}
+
+bool may_be_selected(const fs::path& file, const Selection& selection) {
+  const auto& filters = selection.filters;
+  return filters.empty() || std::any_of(filters.begin(), filters.end(), [&](const auto& pattern) {
+           return may_match(pattern, file);
+         });
+}
+
 bool is_selected(const RunConfiguration& configuration, const Selection& selection) {
   if (!contains(selection.rates, configuration.rate)) return false;
   if (!configuration.plant_configuration)
@@ -180,39 +204,13 @@ Result<void> check_patterns(const Selection& selection, const std::set<std::stri
                           suggestion(idle.front(), names)));
 }
 
-}  // namespace
-
-Result<Shard> Shard::parse(const std::string& text) {
-  Shard shard;
-  const char* end = text.data() + text.size();
-  const auto [slash, bad_index] = std::from_chars(text.data(), end, shard.index);
-  if (bad_index == std::errc{} && slash != end && *slash == '/') {
-    const auto [rest, bad_count] = std::from_chars(slash + 1, end, shard.count);
-    const bool in_range = shard.index >= 1 && shard.index <= shard.count;
-    if (bad_count == std::errc{} && rest == end && in_range) return shard;
-  }
-  return fail(fmt::format("`{}` is not a shard; write I/N with I from 1 to N, such as 2/4", text));
-}
-
-std::vector<std::string> as_options(
-    std::initializer_list<std::pair<const char*, const std::vector<std::string>&>> lists) {
-  std::vector<std::string> options;
-  for (const auto& [option, values] : lists) {
-    if (!values.empty()) options.push_back(fmt::format("{} {}", option, fmt::join(values, ",")));
-  }
-  return options;
-}
-
-Result<std::vector<SelectedCase>> select_cases(const CaseFolders& folders,
-                                               const Selection& selection) {
-  auto files = find_case_files(folders);
-  if (!files) return tl::unexpected(files.error());
-  if (auto known = check_groups(*files, selection); !known) return tl::unexpected(known.error());
+// Of the cases in `files`.
+Result<std::vector<SelectedCase>> select_from(const std::vector<fs::path>& files,
+                                              const Selection& selection) {
   std::vector<SelectedCase> selected;
   Known known;
   std::set<std::string> matching;  // of the filters
-  for (const fs::path& file : *files) {
-    if (!contains(selection.groups, group_of(file))) continue;
+  for (const fs::path& file : files) {
     auto parsed = parse_case(file);
     if (!parsed) return tl::unexpected(parsed.error());
     known.add(*parsed);
@@ -242,6 +240,43 @@ Result<std::vector<SelectedCase>> select_cases(const CaseFolders& folders,
   selected = part_of(std::move(selected), selection.shard);
   if (selected.empty()) return fail("this shard is empty: there are more shards than cases");
   return selected;
+}
+
+}  // namespace
+
+Result<Shard> Shard::parse(const std::string& text) {
+  Shard shard;
+  const char* end = text.data() + text.size();
+  const auto [slash, bad_index] = std::from_chars(text.data(), end, shard.index);
+  if (bad_index == std::errc{} && slash != end && *slash == '/') {
+    const auto [rest, bad_count] = std::from_chars(slash + 1, end, shard.count);
+    const bool in_range = shard.index >= 1 && shard.index <= shard.count;
+    if (bad_count == std::errc{} && rest == end && in_range) return shard;
+  }
+  return fail(fmt::format("`{}` is not a shard; write I/N with I from 1 to N, such as 2/4", text));
+}
+
+std::vector<std::string> as_options(
+    std::initializer_list<std::pair<const char*, const std::vector<std::string>&>> lists) {
+  std::vector<std::string> options;
+  for (const auto& [option, values] : lists) {
+    if (!values.empty()) options.push_back(fmt::format("{} {}", option, fmt::join(values, ",")));
+  }
+  return options;
+}
+
+Result<std::vector<SelectedCase>> select_cases(const CaseFolders& folders,
+                                               const Selection& selection) {
+  auto files = find_case_files(folders);
+  if (!files) return tl::unexpected(files.error());
+  if (auto known = check_groups(*files, selection); !known) return tl::unexpected(known.error());
+  // An error names what there is in all files of the groups, so these are read then.
+  std::erase_if(*files,
+                [&](const fs::path& file) { return !contains(selection.groups, group_of(file)); });
+  std::vector<fs::path> likely = *files;
+  std::erase_if(likely, [&](const fs::path& file) { return !may_be_selected(file, selection); });
+  auto selected = select_from(likely, selection);
+  return selected || likely.size() == files->size() ? selected : select_from(*files, selection);
 }
 
 }  // namespace attest

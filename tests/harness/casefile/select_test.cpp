@@ -65,6 +65,31 @@ TEST_F(SelectTest, FiltersMatchTheIdOrParts) {
               AllOf(testing::Contains("attitude/pitch:11"), testing::Contains("rates/slow:2")));
 }
 
+// Only files that a filter can match are read. Two filters, because an idle one reads them all.
+TEST_F(SelectTest, AFileIsReadForEachFormOfAPattern) {
+  add("rates", "at@sign");
+  for (const char* pattern :
+       {"*/p?tch@250hz", "attitude/p*250hz", "*/pitch@250hz", "attitude/pitch@250hz",
+        "px4-v1.5.5/attitude/pitch@250hz", "*titude/pitch@250hz", "attitude/[p]itch@250hz",
+        "attitude/\\pitch@250hz", "attitude/p*@250hz"}) {
+    Selection selection;
+    selection.filters = {pattern, "rates/slow@250hz"};
+    EXPECT_THAT(select(selection), ElementsAre("attitude/pitch:1", "rates/slow:1")) << pattern;
+  }
+  Selection selection;
+  selection.filters = {"*/*250hz", "rates/slow@250hz"};
+  EXPECT_THAT(select(selection), testing::SizeIs(5));
+  selection.filters = {"at@sign", "pitch"};
+  EXPECT_THAT(select(selection), ElementsAre("attitude/pitch:11", "rates/at@sign:11"));
+}
+
+TEST_F(SelectTest, AFileThatNoFilterCanMatchIsNotRead) {
+  files_.write("rates", "malformed", "schema = ");
+  EXPECT_THAT(filter("pitch"), ElementsAre("attitude/pitch:11"));
+  EXPECT_THAT(filter("attitude/pitch@*"), ElementsAre("attitude/pitch:11"));
+  EXPECT_THAT(filter("p*tch"), ElementsAre(testing::HasSubstr("malformed.toml")));
+}
+
 TEST_F(SelectTest, AFileIsACaseOfEachOfItsProfiles) {
   files_.write("rates", "shared",
                "schema = 1\nprofiles = [\"px4-v1.5.5\", \"px4-v1.3.4\"]\ngroup = \"rates\"\n"
