@@ -25,6 +25,7 @@ bool matches(const std::string& pattern, const std::string& text) {
 // matches no vector is an error.
 bool matches_any(const std::vector<std::string>& filters, const Case& the_case,
                  const RunConfiguration& configuration, std::set<std::string>& matching) {
+  if (filters.empty()) return false;
   const std::string in_group = the_case.group + "/" + the_case.name;
   std::vector<std::string> names = {the_case.name};
   for (const std::string& name : {the_case.id(), in_group}) {
