@@ -35,7 +35,7 @@ class Pool {
 
   void start_workers() {
     const auto most = static_cast<std::size_t>(std::max(options_.processes, 1));
-    while (workers_.size() < most && next_ < end_) {
+    while (workers_.size() < most && next_ < end_ && !options_.stop()) {
       const std::size_t work = next_++;
       if (work_[work].tasks == 0 || start(work, 0)) continue;
       if (!workers_.empty()) return;  // a process may be available when one of these has ended
@@ -44,6 +44,9 @@ class Pool {
 
   bool start(std::size_t work, std::size_t first) {
     auto child = Child::spawn(Child::Runs::our_code, [&](MessageSocket& parent) {
+      // An interrupt just before the fork. The work would see it too, as a port that does not
+      // answer.
+      if (options_.stop()) return;
       work_[work].run(first, [&](const std::string& answer, std::size_t tasks) {
         parent.send(answer, {{&tasks, sizeof tasks}});
       });

@@ -211,6 +211,20 @@ TEST(Jobs, StopOnRequest) {
   }
 }
 
+// A worker that is forked just after an interrupt sees the request, its parent a moment later.
+TEST(Jobs, AWorkerThatIsAskedToStopRunsNoTask) {
+  const TemporaryDirectory folder;
+  const auto mark = folder.path() / "ran";
+  const Task leaves_a_mark = [&]() -> Result<std::string> {
+    std::ofstream(mark) << "x";
+    return "a";
+  };
+  auto options = with(1);
+  options.stop = [parent = ::getpid()] { return ::getpid() != parent; };
+  run_jobs(jobs_of({{leaves_a_mark}}), options);
+  EXPECT_FALSE(std::filesystem::exists(mark));
+}
+
 TEST(Jobs, NothingToDoIsDone) {
   EXPECT_THAT(run_jobs(Jobs<std::string>(), with(2)).results, IsEmpty());
   EXPECT_THAT(run_jobs(jobs_of({{}, {says("a")}}), with(1)).results, ElementsAre("a"));
