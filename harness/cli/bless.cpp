@@ -69,7 +69,7 @@ bool confirmed(const BlessOptions& options, std::size_t count) {
   return answer == "y" || answer == "yes";
 }
 
-// A suite has one reference. A suite of attest's own goldens gets no others.
+// A suite has one reference: its goldens all come from attest's own reference, or from one port.
 Result<void> check_kind(const BlessOptions& options, const Globals& globals,
                         const SuiteFolder& suite) {
   const std::string reference = suite.reference();

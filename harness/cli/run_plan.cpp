@@ -13,6 +13,7 @@
 
 #include "harness/cli/find_case.hpp"
 #include "harness/cli/interrupt.hpp"
+#include "harness/cli/released_suite.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/version.hpp"
 #include "harness/golden/recorded.hpp"
@@ -31,7 +32,7 @@ Result<void> ask_port(const std::vector<std::string>& profiles, RunPlan& plan) {
   if (!port) return tl::unexpected(port.error());
   for (const auto& [profile, words] : port->refusals) {
     if (words.empty()) continue;
-    fmt::print(stderr, "attest: note: the port made no unit of {}; it printed: {}\n", profile,
+    fmt::print(stderr, "attest: note: the port does not support {}; it printed: {}\n", profile,
                one_line(words));
   }
   plan.run.port_name = port->name;
@@ -59,7 +60,7 @@ Result<void> check_recorded(const std::vector<SelectedCase>& cases, const RunPla
   return {};
 }
 
-// The parameters of --param. Errors: none of the cases has one of them.
+// Stores the parameters of --param. Errors: a parameter that no selected case can have.
 Result<void> set_parameters(const RunOptions& options, const std::vector<SelectedCase>& cases,
                             RunPlan& plan) {
   for (const std::string& text : options.parameters) {
@@ -76,7 +77,7 @@ Result<void> set_parameters(const RunOptions& options, const std::vector<Selecte
   return {};
 }
 
-// The selected cases, each at its own times.
+// Plans the selected cases. Their ticks are those of the case files, not of a recorded timing.
 Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, RunPlan& plan) {
   auto cases = options.select.cases_in(suite.case_folders());
   if (!cases) return tl::unexpected(cases.error());
@@ -156,7 +157,6 @@ Result<std::string> sha256_of_port(const std::string& port) {
 
 // Adds the subject of the conformance statement: suite, port and date.
 Result<void> identify(const RunOptions& options, const SuiteFolder& suite, RunResult& run) {
-  run.suite = suite.cases_by_group();
   run.cases_version = suite.version_of(suite.cases());
   run.golden_version = suite.version_of(suite.golden());
   run.suite_reference = suite.reference();
@@ -167,6 +167,7 @@ Result<void> identify(const RunOptions& options, const SuiteFolder& suite, RunRe
   auto hash = suite.sha256();
   if (!hash) return tl::unexpected(hash.error());
   run.suite_sha256 = *hash;
+  run.suite = vectors_by_group(suite, *hash);
   run.suite_is_released = run.suite_sha256 == released_suite_sha256();
   auto of_port = sha256_of_port(run.port);
   if (!of_port) return tl::unexpected(of_port.error());

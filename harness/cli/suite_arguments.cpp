@@ -82,8 +82,8 @@ void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
       ->excludes(lint);
   command
       ->add_option("--fixed-step", options->fixed_step,
-                   "For a port with a fixed sample time: only vectors with regular ticks at this "
-                   "rate, from one period after zero on")
+                   "For a port with a fixed sample time: only the vectors at this rate whose ticks "
+                   "are one period apart; the first tick is one period after zero")
       ->type_name("HZ")
       ->excludes(lint);
   add_selection(*command, options->select);
@@ -92,7 +92,8 @@ void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
       {{"attest vectors DIR --group attitude --rate 250", "the inputs of some cases, a file each"},
        {"attest vectors DIR --format mat --fixed-step 250",
         "all that a Simulink model with a sample time of 4 ms can run"},
-       {"attest vectors --lint", "is a vector too near to a decision of the law?"}});
+       {"attest vectors --lint",
+        "is a vector so near to a threshold of the law that rounding decides?"}});
   command->callback([options, &globals, &action] {
     if (!options->lint && options->folder.empty()) throw CLI::RequiredError("folder");
     action = [=, &globals] {
@@ -113,8 +114,8 @@ void add_bless(CLI::App& app, const Globals& globals, Action& action) {
   command->add_flag("--yes", options->yes, "Do not ask");
   command
       ->add_option("--port", options->port,
-                   "Make a suite of your own, which compares ports with this one: the cases of "
-                   "--suite DIR get its outputs as goldens")
+                   "Make a suite of your own: the outputs of this port become the goldens of the "
+                   "cases in --suite DIR")
       ->type_name("PORT");
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command, {{"attest bless --filter 'px4-v1.5.5/tpa/*' --reason \"...\"",

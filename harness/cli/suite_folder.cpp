@@ -100,12 +100,12 @@ std::string SuiteFolder::reference() const {
 
 std::vector<std::string> SuiteFolder::groups() const {
   std::vector<std::string> names;
-  for (const auto& group : cases_by_group()) names.push_back(group.first);
+  for (const auto& group : vectors_by_group()) names.push_back(group.first);
   return names;
 }
 
-std::map<std::string, std::map<Rate, std::size_t>> SuiteFolder::cases_by_group() const {
-  std::map<std::string, std::map<Rate, std::size_t>> groups;
+VectorsByGroup SuiteFolder::vectors_by_group() const {
+  VectorsByGroup groups;
   const auto all = select_cases(case_folders(), {});
   if (!all) return {};
   for (const auto& [the_case, configurations] : *all) {
@@ -133,8 +133,6 @@ Result<std::string> SuiteFolder::sha256() const {
   }
   return attest::sha256(lines);
 }
-
-std::string released_suite_sha256() { return ATTEST_SUITE_SHA256; }
 
 std::optional<fs::path> data_folder() {
   std::error_code error;

@@ -13,6 +13,9 @@
 
 namespace attest::cli {
 
+// "profile/group" -> the number of vectors at each rate.
+using VectorsByGroup = std::map<std::string, std::map<Rate, std::size_t>>;
+
 struct SuiteFolder {
   std::filesystem::path root;
   // The suite whose cases this one takes over, as the file BASE in `root` names it: `released` for
@@ -40,8 +43,8 @@ struct SuiteFolder {
   // them is malformed, which select_cases() reports.
   std::vector<std::string> groups() const;
 
-  // "profile/group" -> the number of vectors at each rate. Reads the case files, same as groups().
-  std::map<std::string, std::map<Rate, std::size_t>> cases_by_group() const;
+  // Reads the case files, same as groups().
+  VectorsByGroup vectors_by_group() const;
 
   // SHA-256 of the lines that `sha256sum` prints for the case files and the provenance files of the
   // goldens, in the order of their paths: "<hash>  cases/px4-v1.5.5/tpa/each_axis.toml". The
@@ -50,10 +53,6 @@ struct SuiteFolder {
   // same hash. Errors: a file that cannot be read.
   Result<std::string> sha256() const;
 };
-
-// The hash of the suite that this attest was released with, compiled in from golden/SUITE.sha256: a
-// suite cannot prove that it is the released one.
-std::string released_suite_sha256();
 
 // The data of this attest: share/attest of the installation that this program is in; else the
 // nearest folder above the program that has cases/ and golden/, which is the source tree of a build

@@ -57,8 +57,10 @@ void add_budgets(CLI::App& command, StressOptions& options) {
       ->check(CLI::NonNegativeNumber)
       ->group(option_group::strictness);
   command
-      .add_option("--budget", options.execution_us,
-                  "Execution time [us]; a longer step is an overrun, with the same bound as misses")
+      .add_option(
+          "--budget", options.execution_us,
+          "Execution time [us]; a longer step is an overrun. As many overruns are allowed as "
+          "deadline misses")
       ->check(CLI::NonNegativeNumber)
       ->group(option_group::strictness);
 }

@@ -3,20 +3,15 @@
 #include <filesystem>
 #include <system_error>
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
+#include "harness/core/dynamic_library.hpp"
 #include "harness/port/abi_port.hpp"
 
 namespace attest {
 namespace {
 
 constexpr const char* symbol_name = "attest_unit_v1";
-
-std::string last_error() {
-  const char* text = dlerror();
-  return text ? text : "unknown error";
-}
 
 std::string missing_function(const attest_unit& unit) {
   if (!unit.name) return "name";
@@ -83,14 +78,13 @@ Result<std::unique_ptr<Port>> open_shared_library(const std::string& path) {
   if (!std::filesystem::is_regular_file(path, unreadable)) {
     return fail_at(path, "no such library; `--port lib:PATH` takes the path of a shared library");
   }
-  // An absolute path keeps dlopen from searching the system's library folders.
+  // Of an absolute path, the system does not search its folders of libraries.
   const std::string absolute = std::filesystem::absolute(path).string();
-  // RTLD_NOW: undefined symbols are errors here, not in the middle of a step.
-  void* handle = dlopen(absolute.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!handle) return fail_at(path, fmt::format("cannot be loaded: {}", last_error()));
-  std::shared_ptr<void> library(handle, [](void* opened) { dlclose(opened); });
-
-  void* symbol = dlsym(handle, symbol_name);
+  const auto library = DynamicLibrary::open(absolute);
+  if (!library) {
+    return fail_at(path, fmt::format("cannot be loaded: {}", library.error().message));
+  }
+  void* symbol = library->find(symbol_name);
   if (!symbol) {
     return fail_at(path, fmt::format("exports no {}(); is it declared with ATTEST_EXPORT and, in "
                                      "C++, extern \"C\"?",
@@ -98,7 +92,7 @@ Result<std::unique_ptr<Port>> open_shared_library(const std::string& path) {
   }
   const auto* unit = reinterpret_cast<const attest_unit* (*)()>(symbol)();
   if (auto checked = check_table(unit, path); !checked) return tl::unexpected(checked.error());
-  return std::make_unique<AbiPort>(*unit, std::move(library));
+  return std::make_unique<AbiPort>(*unit, library->handle());
 }
 
 }  // namespace attest

@@ -11,22 +11,62 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "harness/core/dynamic_library.hpp"
 #include "harness/core/file.hpp"
 
 namespace attest {
 namespace {
 
+// The ABI of libmatio 1.5; Debian 12 has 1.5.23.
+constexpr const char* matio_soname = "libmatio.so.11";
+
+// The functions of matio.h that are in use, with its names and meanings. libmatio is loaded when
+// the first MAT file is read or written. Linked in, it would bring 33 more libraries (HDF5, curl,
+// Kerberos) into each process, and every fork would copy their pages.
+struct Matio {
+  DynamicLibrary library;
+  decltype(&::Mat_LogInitFunc) log_init_func = nullptr;
+  decltype(&::Mat_CreateVer) create_ver = nullptr;
+  decltype(&::Mat_Open) open = nullptr;
+  decltype(&::Mat_Close) close = nullptr;
+  decltype(&::Mat_VarCreate) var_create = nullptr;
+  decltype(&::Mat_VarFree) var_free = nullptr;
+  decltype(&::Mat_VarReadNext) var_read_next = nullptr;
+  decltype(&::Mat_VarWrite) var_write = nullptr;
+};
+
+Result<Matio> load_matio() {
+  auto library = DynamicLibrary::open(matio_soname);
+  if (!library) {
+    return fail(fmt::format("MAT files need libmatio11: {}", library.error().message));
+  }
+  Matio matio{*library};
+  const bool has_all =
+      library->find("Mat_LogInitFunc", matio.log_init_func) &&
+      library->find("Mat_CreateVer", matio.create_ver) && library->find("Mat_Open", matio.open) &&
+      library->find("Mat_Close", matio.close) && library->find("Mat_VarCreate", matio.var_create) &&
+      library->find("Mat_VarFree", matio.var_free) &&
+      library->find("Mat_VarReadNext", matio.var_read_next) &&
+      library->find("Mat_VarWrite", matio.var_write);
+  if (!has_all) return fail(fmt::format("{} has not all functions of matio.h", matio_soname));
+  // libmatio prints what it finds; attest reports it as an error.
+  matio.log_init_func("attest", [](int, char*) {});
+  return matio;
+}
+
+// Loaded once, and until the process ends.
+const Result<Matio>& loaded_matio() {
+  static const Result<Matio> matio = load_matio();
+  return matio;
+}
+
 struct Close {
-  void operator()(mat_t* mat) const { Mat_Close(mat); }
-  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+  const Matio* matio;
+  void operator()(mat_t* mat) const { matio->close(mat); }
+  void operator()(matvar_t* variable) const { matio->var_free(variable); }
 };
 using MatFile = std::unique_ptr<mat_t, Close>;
 using Variable = std::unique_ptr<matvar_t, Close>;
-
-// libmatio prints what it finds; attest reports it as an error.
-void be_quiet() {
-  Mat_LogInitFunc("attest", [](int, char*) {});
-}
 
 template <typename Value>
 void append(const matvar_t& variable, std::vector<double>& values) {
@@ -76,37 +116,40 @@ std::optional<std::vector<double>> numbers_in(const matvar_t& variable) {
 }
 
 template <typename Value>
-Variable variable_of(const Column& column, matio_classes kind, matio_types type) {
+Variable variable_of(const Column& column, matio_classes kind, matio_types type,
+                     const Matio& matio) {
   std::vector<Value> values;
   values.reserve(column.values.size());
   for (const double value : column.values) values.push_back(static_cast<Value>(value));
   std::size_t shape[] = {values.size(), 1};
   return Variable(
-      Mat_VarCreate(identifier_of(column.name).c_str(), kind, type, 2, shape, values.data(), 0));
+      matio.var_create(identifier_of(column.name).c_str(), kind, type, 2, shape, values.data(), 0),
+      Close{&matio});
 }
 
 // Times as doubles, because MATLAB computes with them. They are exact up to 2^53 us.
-Variable variable_of(const Column& column) {
+Variable variable_of(const Column& column, const Matio& matio) {
   switch (column.type) {
     case ChannelType::u64:
-      return variable_of<double>(column, MAT_C_DOUBLE, MAT_T_DOUBLE);
+      return variable_of<double>(column, MAT_C_DOUBLE, MAT_T_DOUBLE, matio);
     case ChannelType::f32:
-      return variable_of<float>(column, MAT_C_SINGLE, MAT_T_SINGLE);
+      return variable_of<float>(column, MAT_C_SINGLE, MAT_T_SINGLE, matio);
     case ChannelType::u8:
     case ChannelType::bit:
-      return variable_of<std::uint8_t>(column, MAT_C_UINT8, MAT_T_UINT8);
+      return variable_of<std::uint8_t>(column, MAT_C_UINT8, MAT_T_UINT8, matio);
   }
-  return nullptr;
+  return Variable(nullptr, Close{&matio});
 }
 
-bool write_all(const std::string& path, const Table& table) {
+bool write_all(const std::string& path, const Table& table, const Matio& matio) {
   // The header is fixed: libmatio would write the time of day.
   const MatFile mat(
-      Mat_CreateVer(path.c_str(), "MATLAB 5.0 MAT-file, written by attest", MAT_FT_MAT5));
+      matio.create_ver(path.c_str(), "MATLAB 5.0 MAT-file, written by attest", MAT_FT_MAT5),
+      Close{&matio});
   if (!mat) return false;
   for (const Column& column : table) {
-    const Variable variable = variable_of(column);
-    if (!variable || Mat_VarWrite(mat.get(), variable.get(), MAT_COMPRESSION_NONE) != 0) {
+    const Variable variable = variable_of(column, matio);
+    if (!variable || matio.var_write(mat.get(), variable.get(), MAT_COMPRESSION_NONE) != 0) {
       return false;
     }
   }
@@ -119,11 +162,13 @@ Result<Table> read_mat(const std::filesystem::path& path) {
   const auto opened = open_regular_file(path);  // for its errors
   if (!opened) return tl::unexpected(opened.error());
   ::close(*opened);
-  be_quiet();
-  const MatFile mat(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+  const auto& matio = loaded_matio();
+  if (!matio) return tl::unexpected(matio.error());
+  const Close close{&*matio};
+  const MatFile mat(matio->open(path.c_str(), MAT_ACC_RDONLY), close);
   if (!mat) return fail_at(path.string(), "is no MAT file, or is cut off");
   Table table;
-  while (const Variable variable{Mat_VarReadNext(mat.get())}) {
+  while (const Variable variable{matio->var_read_next(mat.get()), close}) {
     auto values = numbers_in(*variable);
     if (values && variable->name != nullptr) table.push_back({variable->name, *std::move(values)});
   }
@@ -131,12 +176,13 @@ Result<Table> read_mat(const std::filesystem::path& path) {
 }
 
 Result<void> write_mat(const std::filesystem::path& path, const Table& table) {
-  be_quiet();
+  const auto& matio = loaded_matio();
+  if (!matio) return tl::unexpected(matio.error());
   // libmatio writes to a path only: to that of a file in memory, so that nothing is left behind.
   const int memory = ::memfd_create("attest.mat", MFD_CLOEXEC);
   if (memory < 0) return fail_at(path.string(), "no memory to write the file in");
   const std::string in_memory = fmt::format("/proc/self/fd/{}", memory);
-  const bool is_written = write_all(in_memory, table);
+  const bool is_written = write_all(in_memory, table, *matio);
   std::string bytes(static_cast<std::size_t>(std::max<off_t>(::lseek(memory, 0, SEEK_END), 0)), 0);
   const auto count = ::pread(memory, bytes.data(), bytes.size(), 0);
   ::close(memory);

@@ -12,7 +12,8 @@ namespace attest {
 
 // A structured array of one dimension, or an array of two dimensions whose columns have the names
 // `names`. Elements: integers, floats and booleans, of this machine's byte order. Errors: no NPY
-// file; an incomplete one; another array; as many columns as ticks should be, or no names.
+// file; an incomplete one; another kind of array; a number of columns that is not that of the names
+// (a transposed array, for example).
 Result<Table> read_npy(const std::filesystem::path& path, const std::vector<std::string>& names);
 
 // A structured array. Written aside and renamed. Errors: the file cannot be written.

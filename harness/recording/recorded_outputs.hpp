@@ -15,8 +15,8 @@ namespace attest {
 // and their names are compared as identifiers (identifier_of()), with or without `out/`. A
 // `published` that is not recorded is 1. Errors, each with what to do: no output at all, a missing
 // or repeated one; fewer or more rows than ticks; times that are not those of the ticks, because
-// rows are missing or in another order, or because of another unit; a value that is no value of its
-// channel. REQUIRES: the table has a column.
+// rows are missing or in another order, or because of another unit; a value that the type of its
+// channel cannot have. REQUIRES: the table has a column.
 Result<void> set_recorded_outputs(const Table& table, const Manifest& manifest,
                                   const std::string& file, Trace& trace);
 

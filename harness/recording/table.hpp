@@ -13,7 +13,7 @@ namespace attest {
 struct Column {
   std::string name;
   std::vector<double> values;           // all columns of a table have the same number
-  ChannelType type = ChannelType::f32;  // how it is written; a reader leaves it as it is
+  ChannelType type = ChannelType::f32;  // for writing; reading does not set it
 };
 
 using Table = std::vector<Column>;

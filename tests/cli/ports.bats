@@ -123,7 +123,7 @@ TASKS
   judged refuses_profile
   [ "$status" -eq 2 ]
   has "does not support profile px4-v1.5.5"
-  has "note: the port made no unit of px4-v1.5.5; it printed: no gains for px4-v1.5.5"
+  has "note: the port does not support px4-v1.5.5; it printed: no gains for px4-v1.5.5"
   has "no vector was compared"
 }
 

@@ -1,0 +1,26 @@
+// Runs when attest is built: prints the hash of the suite in the given folder, then a line for each
+// group and rate with its number of vectors, as the source of a string for released_suite.cpp.
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+#include "harness/cli/suite_folder.hpp"
+
+int main(int count, char** arguments) {
+  if (count != 2) return EXIT_FAILURE;
+  const attest::cli::SuiteFolder suite{arguments[1], {}};
+  const auto hash = suite.sha256();
+  if (!hash) {
+    fmt::print(stderr, "{}\n", hash.error().to_string());
+    return EXIT_FAILURE;
+  }
+  fmt::print("extern const char* const released_suite_vectors;\n");
+  fmt::print("const char* const released_suite_vectors =\n\"{}\\n\"\n", *hash);
+  for (const auto& [group, rates] : suite.vectors_by_group()) {
+    for (const auto& [rate, vectors] : rates) {
+      fmt::print("\"{} {} {}\\n\"\n", group, rate.to_string(), vectors);
+    }
+  }
+  fmt::print(";\n");
+  return EXIT_SUCCESS;
+}

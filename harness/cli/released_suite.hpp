@@ -1,0 +1,18 @@
+// The suite that this attest was released with.
+#pragma once
+
+#include <string>
+
+#include "harness/cli/suite_folder.hpp"
+
+namespace attest::cli {
+
+// Its hash (SuiteFolder::sha256), compiled in from golden/SUITE.sha256: a suite cannot prove that
+// it is the released one.
+std::string released_suite_sha256();
+
+// SuiteFolder::vectors_by_group() of the suite with that hash. For the released suite, it was
+// counted when attest was built, so that a run of one case need not read all of them.
+VectorsByGroup vectors_by_group(const SuiteFolder& suite, const std::string& sha256);
+
+}  // namespace attest::cli
