@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
- * attest_unit.h - the C ABI that a controller implements to be tested by attest.
+ * attest_unit.h - the C ABI of ports that are shared libraries.
  *
- * A port of the multicopter attitude controller is a shared library. It exports one symbol,
- * attest_unit_v1(), which returns a table of functions. A port author needs to read this header
- * only. It compiles as C11 and as C++17.
+ * Such a port of the multicopter attitude controller exports one symbol, attest_unit_v1(), which
+ * returns a table of functions. Its author needs to read this header only. It compiles as C11 and
+ * as C++17. Ports that are programs do not need it.
  *
  * Life cycle, in the order the host calls:
  *
@@ -24,12 +24,12 @@
  *
  * Time: `timestamp` is the only clock. A unit must not read another one.
  *
- * Threads: the host calls attest_unit_v1() and extension() from any thread, but from one at a time.
- * It also calls each instance from one thread at a time. That thread may change between calls:
- * `attest stress` calls create() and destroy() on one thread and the rest on a real-time thread.
- * Several instances may exist at once. Two instances may be called from two threads at the same
- * time. A port that allows only one instance returns NULL from create() while that instance exists.
- * The cases of the group `instances` that need two are then unsupported.
+ * Threads: attest_unit_v1() is called once. The host calls extension() from any thread, but from
+ * one at a time. It also calls each instance from one thread at a time. That thread may change
+ * between calls: `attest stress` calls create() and destroy() on one thread and the rest on a
+ * real-time thread. Several instances may exist at once. Two instances may be called from two
+ * threads at the same time. A port that allows only one instance returns NULL from create() while
+ * that instance exists. The cases of the group `instances` that need two are then unsupported.
  *
  * Memory: the host owns both structs and all strings that it passes. They are valid during the call
  * only. The unit owns the result of create() until destroy(). The table, `name`, `version` and all
@@ -157,10 +157,10 @@ typedef struct attest_inputs {
  * actuator_controls_virtual_mc; the outputs below are the same fields for both. mc_att_ctrl_status
  * needs no vehicle_status.
  *
- * Own publications: the unit has one copy of vehicle_rates_setpoint, which its own result
- * overwrites. Its publication also supersedes an external sample that is still pending, because
- * both are on one topic. A VTOL publishes on the virtual topic: there the external sample stays
- * pending until offboard rates mode takes it.
+ * Own publications: the unit has one copy of vehicle_rates_setpoint. Its own result overwrites an
+ * external sample in that copy. If it publishes on the same topic, an external sample that it has
+ * not taken yet is lost, too. A VTOL publishes on the virtual topic, so there the external sample
+ * waits until offboard rates mode takes it.
  */
 typedef struct attest_outputs {
   struct {        /* topic vehicle_rates_setpoint: result of the attitude loop */
@@ -259,8 +259,8 @@ typedef struct attest_timestamp_sample {
   int (*set_timestamp_sample)(void* self, uint64_t timestamp_sample);
 } attest_timestamp_sample;
 
-/* The one exported symbol. Called once, after the library was loaded. The table is static: it
- * outlives every instance. */
+/* The one exported symbol. Called once, after the library was loaded. The table stays valid until
+ * the library is unloaded. */
 ATTEST_EXPORT const attest_unit* attest_unit_v1(void);
 
 /* ---- layout, never changed -------------------------------------------------------------------*/

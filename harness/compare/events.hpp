@@ -1,9 +1,9 @@
 // Compares the events of traces instead of their values. For ports that are a tick late, or compute
 // with coarse numbers.
 //
-// Events are the changes of these states: a topic is published; an integral moves; a control
-// exceeds the thrust; a rates setpoint is finite. Where a value is too near to the threshold of a
-// state, every state is accepted.
+// Events are the changes of these states: a topic is published; an integral moves; the control of
+// roll, pitch or yaw is larger than that of thrust, in absolute value; a rates setpoint is finite.
+// Where a value is too near to the threshold of a state, both states are accepted.
 #pragma once
 
 #include <optional>

@@ -7,7 +7,8 @@
 //
 //     low - slack .. high + slack,   slack = floor + (high - low) + max(|low|, |high|) / 2
 //
-// - (high - low) once more: one input may reach the port a tick later than another.
+// - (high - low): it is added to both bounds, because one input may reach the port a tick later
+//   than another.
 // - Half the size: a gain, a filter or a table may be that coarse. An inverted sign and twice the
 //   value are outside, if the value is well above the floor.
 // - floor: 0.1 rad/s for rates setpoints, 0.05 for controls and thrust, 0.02 for integrals. With

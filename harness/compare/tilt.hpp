@@ -1,5 +1,5 @@
-// The tilt error: the angle between the thrust axis and its setpoint. It is the only quantity of a
-// sample on which a tolerance depends.
+// The tilt error: the angle between the thrust axis and its setpoint. The tolerance of rates
+// setpoints is wider where it is near 180 deg.
 #pragma once
 
 #include "harness/trace/trace.hpp"

@@ -47,9 +47,9 @@ class Tolerances {
   // "out/"): "vehicle_rates_setpoint" or "actuator_controls_0.control[2]". False: no such channel.
   bool set(std::string_view prefix, Tolerance tolerance);
 
-  // Widens the tolerances for a port in fixed point with so many fraction bits: each becomes at
-  // least the number of LSBs (last bits) below. At the numeric level only. Measured at 20
-  // to 24 bits, with a correct port that rounds:
+  // At the numeric level: widens the tolerances for a port in fixed point with so many fraction
+  // bits. Each becomes at least a number of LSBs (last bits). These are the largest errors of a
+  // correct port that rounds, measured at 20 to 24 bits:
   // - rates setpoints: up to 740 LSB, near a half turn
   // - controls: 750 LSB. A control that consists mostly of its D part has an error in proportion to
   //   its size, because 1 / dt is up to 500 and dt has an error of half an LSB.

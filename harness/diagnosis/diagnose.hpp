@@ -14,8 +14,9 @@ namespace attest {
 // A fault whose outputs match the port's.
 struct Suspect {
   const faults::Fault* fault = nullptr;
-  std::size_t matched = 0, ticks = 0;                 // over the vectors that fail
-  std::size_t explained = 0, failing = 0;             // vectors that it matches at every tick
+  // Of the vectors that fail: how many of their ticks, and how many whole vectors, it matches.
+  std::size_t matched = 0, ticks = 0;
+  std::size_t explained = 0, failing = 0;
   std::vector<const faults::Fault*> ambiguity_group;  // faults that match equally well
   const faults::Fault* with = nullptr;                // the match is of both together
 };

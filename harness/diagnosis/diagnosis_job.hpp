@@ -41,9 +41,9 @@ class DiagnosisJob final : public Job<VectorDiagnosis> {
   HostOptions options_;
 };
 
-// For up to 48 vectors that failed with a value, and up to 48 that passed. One vector per case, at
-// the rate nearest to 250 Hz, spread over the corpus. `cases` are those that were run, and must
-// outlive the jobs.
+// For up to 48 vectors with the verdict fail or non-finite, and up to 48 that passed. One vector
+// per case, at the rate nearest to 250 Hz, spread over the corpus. `cases` are those that were run,
+// and must outlive the jobs.
 Jobs<VectorDiagnosis> diagnosis_jobs(const std::vector<SelectedCase>& cases,
                                      const std::vector<CaseResult>& results,
                                      const HostOptions& options,

@@ -44,7 +44,7 @@ struct FaultAnswers {
   std::vector<std::size_t> of_fault;  // index into `distinct`, in the order of the catalogue
 };
 
-// To the inputs of `given`, each fault alone or together with `partner`.
+// The answers of each fault to the inputs of `given`, alone or together with `partner`.
 FaultAnswers answers_of_faults(const Trace& given, const Subject& subject,
                                const faults::Fault* partner = nullptr);
 

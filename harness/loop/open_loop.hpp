@@ -25,9 +25,9 @@ struct Subject {
 
 Subject subject_of(const Case& the_case);
 
-// The same with a fresh instance of the subject's module. `Instances` says which other instance
-// exists before or meanwhile. A port that cannot make a second instance while one exists does not
-// support such a subject.
+// Steps a fresh instance of the subject's module through the trace. `Instances` says which other
+// instance of the port exists before it or at the same time. A port that cannot make a second
+// instance while one exists does not support such a subject.
 std::optional<PortFault> drive(Port& port, const Subject& subject, Trace& trace);
 
 }  // namespace attest

@@ -17,7 +17,7 @@
 
 namespace attest {
 
-// The request that an error message names. The numbers are those of binary frames.
+// The kinds of requests, with their numbers in binary frames. Error messages have their names.
 enum class Request : std::uint32_t { create = 1, destroy, set_parameter, step, batch };
 std::string_view name_of(Request request);  // "set_parameter"
 

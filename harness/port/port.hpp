@@ -34,7 +34,7 @@ class PortBroke : public std::runtime_error {
   How how_;
 };
 
-// The end of a batch: `result` is ATTEST_OK, or that of the step after the `done` ones.
+// How a batch ended. If `result` is not ATTEST_OK, it is that of the step after the first `done`.
 struct Batched {
   std::size_t done = 0;
   int result = 0;
@@ -95,8 +95,8 @@ class Port {
   // The port must outlive the unit.
   virtual std::unique_ptr<Unit> create(const std::string& profile) = 0;
 
-  // Throws PortBroke if a program broke when one of its units was destroyed: a destructor cannot.
-  // Called when the units of a request are destroyed.
+  // Called after the units of a request were destroyed. Throws PortBroke if a program broke the
+  // protocol in destroy(), because the destructor of a unit cannot throw.
   virtual void finish() {}
 
   // True if the port has this module.

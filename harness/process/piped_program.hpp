@@ -15,8 +15,8 @@
 
 namespace attest {
 
-// One thread at a time. Neither reading nor writing has a time limit: a caller that needs one runs
-// in a process that can be killed, and the program ends with it.
+// One thread at a time. Neither reading nor writing has a time limit. For a limit, use it in a
+// process that can be killed; the program ends with that process.
 class PipedProgram {
  public:
   // Ignores SIGPIPE in this process, so that a program that does not read is an error of write().
@@ -45,11 +45,12 @@ class PipedProgram {
   // stdout before, or the line is longer than `most`.
   std::optional<std::string> read_line(std::size_t most);
 
-  // What was read of a line that is not complete, or of an answer.
+  // The bytes that the program has written and that no read() or read_line() has returned.
   std::string_view unread() const { return {inbox_.data() + begin_, end_ - begin_}; }
 
-  // After read() or read_line() has failed. "exited with status 1", "was killed by signal 11
-  // (Segmentation fault)", or "closed its stdout" if it goes on; then it is killed.
+  // How the program ended, after read() or read_line() has failed: "exited with status 1", "was
+  // killed by signal 11 (Segmentation fault)". A program that still runs is killed: "closed its
+  // stdout".
   std::string end();
 
  private:

@@ -1,5 +1,6 @@
 // Requests and answers in memory that attest shares with a program (PROTOCOL.md, "Shared memory").
-// Each side watches a counter of the other one, so that an exchange takes no system call.
+// Each side watches a counter of the other one. An answer that comes within 100 us takes no system
+// call.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +21,8 @@ struct SharedLayout {
   static constexpr std::size_t size = answer + most;
 };
 
-// attest's side. One thread at a time. The other side may write anything at any time: what was read
-// is never read again.
+// attest's side. One thread at a time. The program may write into the memory at any time, so each
+// byte is copied once and judged from the copy.
 class SharedFrames {
  public:
   // Errors: the system has no memory for it.
@@ -31,16 +32,18 @@ class SharedFrames {
   SharedFrames& operator=(SharedFrames&& other) noexcept;
   ~SharedFrames();
 
-  int file() const { return file_; }  // the memory, for another process; it cannot change its size
+  // A descriptor of the memory, for another process, which cannot change the size of the memory.
+  int file() const { return file_; }
 
   // Writes the next request. False: it is longer than the memory has room for.
   bool write(std::string_view request);
 
-  // Waits for the answer to the last request, and copies its next `size` bytes. False: `has_ended`,
-  // which is asked about every millisecond, or the answer would be longer than there is room.
+  // Waits for the answer to the last request, and copies its next `size` bytes. Calls `has_ended`
+  // about every millisecond. False: it returned true, or the memory has no room for an answer of
+  // that size.
   bool read(void* place, std::size_t size, const std::function<bool()>& has_ended);
 
-  // The memory, for the other side in this process.
+  // The memory itself, for tests, in which the other side is in this process.
   std::byte* bytes() const { return bytes_; }
 
  private:

@@ -1,5 +1,5 @@
-// The conformance claims that a run supports, one per profile: a port may implement one version of
-// the law only.
+// The conformance claims that a run supports. Each profile has its own, because a port may
+// implement one version of the law only.
 //
 // A port conforms to a profile when it passed the released suite: every group that is not an
 // optional module (mixer, battery estimate), every rate, every case. Cases of the exact level may
