@@ -64,6 +64,7 @@ struct RunOptions {
   std::string timing;       // file; empty: the cases' own
   std::string save_traces;  // folder; empty: not saved
   bool diagnose = true;     // when something fails
+  bool verbose = false;     // the summary has every failing case
 };
 int run_command(const RunOptions& options, const Globals& globals);
 

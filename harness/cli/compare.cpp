@@ -15,6 +15,7 @@ CaseResult as_result(const Comparison& comparison) {
   result.ticks = comparison.ticks;
   result.deviating_ticks = comparison.deviating_ticks;
   result.first = comparison.first;
+  result.worst = comparison.worst;
   return result;
 }
 

@@ -146,7 +146,9 @@ int run_command(const RunOptions& options, const Globals& globals) {
   }
   if (!globals.quiet || code != exit_ok) {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-    fmt::print("{}", render_summary(run, wall.count(), terminal_style(stdout), diagnosis));
+    fmt::print("{}",
+               render_summary(run, wall.count(), terminal_style(stdout), diagnosis,
+                              options.verbose ? Failures::all : Failures::first_of_each_group));
   }
   if (!written) return report_error(written.error());
   return code;

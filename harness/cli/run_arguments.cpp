@@ -36,6 +36,10 @@ void add_strictness(CLI::App& command, RunOptions& options) {
 
 void add_execution(CLI::App& command, RunOptions& options) {
   add_jobs(command, options.jobs, "Number of worker processes");
+  command
+      .add_flag("-v,--verbose", options.verbose,
+                "Show every failing case, not only the first of each group")
+      ->group(option_group::execution);
   command.add_flag("--fail-fast", options.fail_fast, "Stop after the first failure")
       ->group(option_group::execution);
   add_timeout(command, options.host.timeout_s);

@@ -45,6 +45,13 @@ bool outputs_differ(const Sample& a, const Sample& b) {
          std::memcmp(&a.battery_out, &b.battery_out, sizeof a.battery_out) != 0;
 }
 
+// How far a value is outside, to find the worst. 0: it has no distance (a flag, NaN, infinity).
+double excess(const Deviation& deviation) {
+  if (!std::isfinite(deviation.got) || !std::isfinite(deviation.want)) return 0;
+  if (deviation.tolerance <= 0) return static_cast<double>(deviation.ulp);
+  return std::abs(deviation.got - deviation.want) / deviation.tolerance;
+}
+
 }  // namespace
 
 TickComparer::TickComparer(const ChannelSet& got, const ChannelSet& want,
@@ -106,7 +113,7 @@ bool TickComparer::channel_agrees(std::size_t channel, const Sample& got, const 
     const auto g = static_cast<std::uint8_t>(value_of(what, got));
     const auto w = static_cast<std::uint8_t>(value_of(what, want));
     if (truth(g) == truth(w)) return true;
-    note(channel, got, want, 0, 0);
+    note({tick_, want.in.timestamp, channel, value_of(what, got), value_of(what, want), 0, 0});
     return false;
   }
   const float g = float_of(what, got);
@@ -121,7 +128,7 @@ bool TickComparer::channel_agrees(std::size_t channel, const Sample& got, const 
     return true;
   }
   if (!std::isfinite(g) && std::isfinite(w)) result_.got_non_finite = true;
-  note(channel, got, want, ulp_distance(g, w), tolerance);
+  note({tick_, want.in.timestamp, channel, g, w, ulp_distance(g, w), tolerance});
   return false;
 }
 
@@ -140,12 +147,10 @@ double TickComparer::tolerance_at(std::size_t channel, const attest_inputs& in, 
   return std::isfinite(wider) ? tolerance + wider : tolerance;
 }
 
-void TickComparer::note(std::size_t channel, const Sample& got, const Sample& want,
-                        std::int64_t ulp, double tolerance) {
-  if (result_.first) return;
-  const Channel& what = channels()[channel];
-  result_.first = Deviation{
-      tick_, want.in.timestamp, channel, value_of(what, got), value_of(what, want), ulp, tolerance};
+void TickComparer::note(const Deviation& deviation) {
+  if (!result_.first) result_.first = deviation;
+  const double now = excess(deviation);
+  if (now > (result_.worst ? excess(*result_.worst) : 0)) result_.worst = deviation;
 }
 
 void TickComparer::note_headroom(std::size_t channel, double difference, double tolerance) {

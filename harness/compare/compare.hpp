@@ -42,7 +42,10 @@ struct Headroom {
 struct Comparison {
   std::size_t ticks = 0;  // compared
   std::size_t deviating_ticks = 0;
-  std::optional<Deviation> first;    // lowest tick, then the order of channels()
+  std::optional<Deviation> first;  // lowest tick, then the order of channels()
+  // The largest difference in units of its tolerance, or in ulp at the exact level, among finite
+  // floats; the first of equal ones. Empty at the events level.
+  std::optional<Deviation> worst;
   std::optional<Headroom> tightest;  // numeric level, among the values within tolerance
   std::string mismatch;              // why the traces cannot be compared; empty if they can
   std::string event;                 // at the events level: the difference at the first deviation
@@ -73,8 +76,7 @@ class TickComparer {
  private:
   bool channel_agrees(std::size_t channel, const Sample& got, const Sample& want);
   double tolerance_at(std::size_t channel, const attest_inputs& in, float got, float want) const;
-  void note(std::size_t channel, const Sample& got, const Sample& want, std::int64_t ulp,
-            double tolerance);
+  void note(const Deviation& deviation);
   void note_headroom(std::size_t channel, double difference, double tolerance);
 
   const Tolerances& tolerances_;

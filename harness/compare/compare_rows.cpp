@@ -68,6 +68,7 @@ Comparison compare_rows(const Trace& got, const Trace& want, double horizon_s,
   if (!rows.mismatch.empty() || rows.ticks.empty()) return comparison;
   comparison = compare(rows.got, rows.want, tolerances);
   if (comparison.first) comparison.first->tick = rows.ticks[comparison.first->tick];
+  if (comparison.worst) comparison.worst->tick = rows.ticks[comparison.worst->tick];
   if (comparison.tightest) comparison.tightest->tick = rows.ticks[comparison.tightest->tick];
   return comparison;
 }

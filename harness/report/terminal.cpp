@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -90,21 +91,30 @@ std::string stages(const RunResult& run) {
   return fmt::format("first stage to differ: {}\n", fmt::join(parts, ", "));
 }
 
-std::string failures(const RunResult& run, TerminalStyle style) {
-  const auto groups = grouped(
+std::string group_and_verdict(const CaseResult& result) {
+  return fmt::format("{}/{} {}", result.profile, result.group, name_of(result.verdict));
+}
+
+std::string failures(const RunResult& run, TerminalStyle style, Failures shown) {
+  const auto cases = grouped(
       run, [](const CaseResult& result) { return fails_a_run(result.verdict); },
       [](const CaseResult& a, const CaseResult& b) {
         return a.verdict == b.verdict && a.case_id() == b.case_id();
       });
   std::string out;
   std::size_t hidden = 0;
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    if (i < failures_shown)
-      out += failure(groups[i], run, style);
+  std::set<std::string> known;
+  for (const Together& vectors : cases) {
+    const bool is_first = known.insert(group_and_verdict(*vectors.front())).second;
+    if (shown == Failures::all || (is_first && known.size() <= failures_shown))
+      out += failure(vectors, run, style);
     else
-      hidden += groups[i].size();
+      hidden += vectors.size();
   }
-  if (hidden > 0) out += fmt::format("and {} more; see --json or --junit\n\n", hidden);
+  if (hidden > 0) {
+    out += fmt::format("and {}; --verbose shows all, --json and --junit write all to a file\n\n",
+                       counted(hidden, "more failing vector"));
+  }
   return out;
 }
 
@@ -282,7 +292,9 @@ TerminalStyle terminal_style(std::FILE* stream) {
   TerminalStyle style;
   style.colour = wants_colour(is_terminal, std::getenv("NO_COLOR"), std::getenv("TERM"));
   winsize size{};
-  if (is_terminal && ioctl(fileno(stream), TIOCGWINSZ, &size) == 0) style.width = size.ws_col;
+  if (is_terminal && ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0) {
+    style.width = std::min<int>(size.ws_col, most_columns);
+  }
   return style;
 }
 
@@ -293,7 +305,7 @@ std::string painted(std::string_view text, Colour colour, TerminalStyle style) {
 }
 
 std::string render_summary(const RunResult& run, double wall_s, TerminalStyle style,
-                           const std::optional<Diagnosis>& diagnosis) {
+                           const std::optional<Diagnosis>& diagnosis, Failures shown) {
   const std::string verdict = verdict_line(run, wall_s, style);
   std::string out = header(run) + verdict;
   if (diagnosis) out += diagnosis_text(*diagnosis);
@@ -301,10 +313,10 @@ std::string render_summary(const RunResult& run, double wall_s, TerminalStyle st
   out += fmt::format("conformance: {}\n\n", conformance_statement(run));
   out += errors(run, style);
   if (const std::string table = render_table(run, style); !table.empty()) out += table + "\n";
-  out += failures(run, style);
+  out += failures(run, style, shown);
   out += counted_apart(run);
   out += headroom(run);
-  return out + verdict;
+  return broken_at(style.width, out + verdict);
 }
 
 }  // namespace attest

@@ -14,8 +14,11 @@ namespace attest {
 // The capabilities of the stream. The default is for a file or a CI log.
 struct TerminalStyle {
   bool colour = false;
-  int width = 0;  // in columns; 0: unlimited, no line is broken
+  int width = 0;  // in columns, at most most_columns; 0: unlimited, no line is broken
 };
+
+// Longer lines are hard to read. Only commands to copy are longer.
+inline constexpr int most_columns = 100;
 
 // Colours need a terminal, TERM set and not "dumb", and NO_COLOR unset or empty.
 TerminalStyle terminal_style(std::FILE* stream);
@@ -30,6 +33,12 @@ std::string painted(std::string_view text, Colour colour, TerminalStyle style);
 inline constexpr std::size_t failures_shown = 20;
 inline constexpr std::size_t errors_shown = 20;
 
+// The failures that the summary shows.
+enum class Failures {
+  first_of_each_group,  // of each verdict in a group the first case, at most failures_shown
+  all,
+};
+
 // Pure. First the conclusion: the port, the verdict line, the diagnosis, the stages that differ
 // first, the conformance statement, errors. Then the details: the table of groups and rates; the
 // failures, one block for the vectors of a case with the same verdict; the results that are counted
@@ -39,8 +48,10 @@ inline constexpr std::size_t errors_shown = 20;
 //     PASS 715 of 715 vectors conform (px4-v1.5.5, exact, 11 rates) in 1.2 s
 //
 // PASS: no vector failed, no error occurred, and at least one vector was compared. NONE: the same,
-// but no vector was compared. `wall_s` is the time of the whole run. Ends with a newline.
+// but no vector was compared. `wall_s` is the time of the whole run. Lines are broken at the width
+// of the terminal, except commands to copy. Ends with a newline.
 std::string render_summary(const RunResult& run, double wall_s, TerminalStyle style,
-                           const std::optional<Diagnosis>& diagnosis = {});
+                           const std::optional<Diagnosis>& diagnosis = {},
+                           Failures shown = Failures::first_of_each_group);
 
 }  // namespace attest

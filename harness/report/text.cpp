@@ -12,7 +12,68 @@ bool special_in_shell(char c) {
   return !word && std::string_view("_-./:=@%+,").find(c) == std::string_view::npos;
 }
 
+// Columns of UTF-8 text without the escape codes of colours.
+std::size_t columns_of(std::string_view text) {
+  std::size_t columns = 0;
+  bool in_code = false;
+  for (const char c : text) {
+    if (c == '\x1b') in_code = true;
+    const bool continues = (static_cast<unsigned char>(c) & 0xc0u) == 0x80u;
+    columns += in_code || continues ? 0 : 1;
+    if (c == 'm') in_code = false;
+  }
+  return columns;
+}
+
+// "  reproduce: attest run ...", "  also at 250 Hz: --filter ..."
+bool has_command(std::string_view line) {
+  for (const std::string_view begin : {"attest ", "--filter "}) {
+    const std::size_t at = line.find(begin);
+    if (at == std::string_view::npos) continue;
+    const std::size_t before = line.substr(0, at).find_last_not_of(' ');
+    if (before != std::string_view::npos && line[before] == ':') return true;
+  }
+  return false;
+}
+
+std::string broken_line(std::size_t width, std::string_view line) {
+  const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
+  if (columns_of(line) <= width || has_command(line)) return std::string(line);
+  std::string out(line.substr(0, indent));
+  std::size_t used = indent;
+  for (std::size_t begin = indent; begin < line.size();) {
+    const std::size_t end = std::min(line.find(' ', begin), line.size());
+    const std::string_view word = line.substr(begin, end - begin);
+    const bool is_first = begin == indent;
+    // A word that fits on no line stays where it is.
+    const bool fits_below = indent + 4 + columns_of(word) <= width;
+    if (!is_first && fits_below && used + 1 + columns_of(word) > width) {
+      out += "\n" + std::string(indent + 4, ' ');
+      used = indent + 4;
+    } else if (!is_first) {
+      out += ' ';
+      ++used;
+    }
+    out += word;
+    used += columns_of(word);
+    begin = end + 1;
+  }
+  return out;
+}
+
 }  // namespace
+
+std::string broken_at(int width, std::string_view text) {
+  if (width <= 0) return std::string(text);
+  std::string out;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    out += broken_line(static_cast<std::size_t>(width), text.substr(0, end));
+    if (end < text.size()) out += '\n';
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return out;
+}
 
 std::string one_line(std::string_view text) {
   std::string out;

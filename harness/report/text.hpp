@@ -10,6 +10,12 @@
 
 namespace attest {
 
+// Breaks lines that are longer than `width` columns at spaces. What follows is indented by 4
+// columns more than the line. Not counted: escape codes of colours. Not broken: lines of a command
+// to copy
+// ("reproduce: attest ..."), and words that are longer. 0: breaks no line.
+std::string broken_at(int width, std::string_view text);
+
 // As printable(), and on one line: each run of newlines and tabs becomes one space.
 std::string one_line(std::string_view text);
 

@@ -100,6 +100,7 @@ void judge(const Comparison& comparison, CaseResult& result) {
   result.ticks = comparison.ticks;
   result.deviating_ticks = comparison.deviating_ticks;
   result.first = comparison.first;
+  result.worst = comparison.worst;
   result.tightest = comparison.tightest;
   result.reason = comparison.mismatch.empty() ? comparison.event : comparison.mismatch;
   if (comparison.agrees()) return;

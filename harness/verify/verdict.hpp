@@ -60,7 +60,7 @@ struct CaseResult {
   std::string reason;     // one line; empty for a plain pass
   std::size_t ticks = 0;  // compared
   std::size_t deviating_ticks = 0;
-  std::optional<Deviation> first;
+  std::optional<Deviation> first, worst;
   std::optional<Headroom> tightest;
   std::vector<MetricResult> metrics;  // of a flight without fault and divergence
   double elapsed_s = 0;  // of wall time, for JUnit only: everything else is deterministic

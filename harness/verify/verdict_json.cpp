@@ -186,6 +186,7 @@ nlohmann::json to_json(const CaseResult& result) {
       {"elapsed_s", number(result.elapsed_s)},
   };
   if (result.first) out["first"] = deviation_to_json(*result.first);
+  if (result.worst) out["worst"] = deviation_to_json(*result.worst);
   if (result.tightest) out["tightest"] = headroom_to_json(*result.tightest);
   if (result.plant_configuration) {
     out["vehicle"] = result.plant_configuration->vehicle;
@@ -218,6 +219,7 @@ Result<CaseResult> case_result_from_json(const nlohmann::json& json) {
   else
     reader.wrong(rate.error().message);
   if (reader.has("first")) out.first = deviation_from({reader.member("first"), error});
+  if (reader.has("worst")) out.worst = deviation_from({reader.member("worst"), error});
   if (reader.has("tightest")) out.tightest = headroom_from({reader.member("tightest"), error});
   if (reader.has("vehicle")) out.plant_configuration = plant_configuration_from({json, error});
   if (reader.has("metrics")) {

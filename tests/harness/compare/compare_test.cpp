@@ -43,6 +43,25 @@ TEST(Compare, ReportsTheFirstOfSeveralDeviations) {
   EXPECT_FALSE(comparison.agrees());
 }
 
+TEST(Compare, TheWorstDeviationIsTheLargestForItsTolerance) {
+  const Trace want = sample_trace(5);
+  Trace got = want;
+  constexpr const char* integral = "out/mc_att_ctrl_status.roll_rate_integ";
+  set(got, 1, roll, 8);
+  set(got, 2, roll, 9);
+  set(got, 3, integral, 7);  // its tolerance is a tenth
+  set(got, 4, roll, inf);
+  const Comparison numeric = compare(got, want, Tolerances());
+  ASSERT_TRUE(numeric.worst);
+  EXPECT_EQ(numeric.worst->tick, 3u);
+  EXPECT_EQ(numeric.worst->channel, channel(integral));
+  EXPECT_EQ(numeric.first->tick, 1u);
+  const Comparison exact = compare(got, want, Tolerances(Level::exact));
+  ASSERT_TRUE(exact.worst);
+  EXPECT_EQ(exact.worst->tick, 2u);  // the most ulp
+  EXPECT_FALSE(compare(want, want, Tolerances()).worst);
+}
+
 TEST(Compare, TheExactLevelSeesOneBit) {
   const double next = std::nextafter(0.5f, 1.0f);
   EXPECT_TRUE(compare_roll(next, 0.5, Level::numeric).agrees());

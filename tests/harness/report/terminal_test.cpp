@@ -22,7 +22,7 @@ std::string summary(const RunResult& run) { return render_summary(run, wall_s, {
 
 TEST(Summary, IsTheReviewedOne) {
   const RunResult run = sample_run();
-  EXPECT_TRUE(is_baseline("summary.txt", summary(run)));
+  EXPECT_TRUE(is_baseline("summary.txt", render_summary(run, wall_s, {}, {}, Failures::all)));
   EXPECT_TRUE(is_baseline("summary_colour.txt",
                           render_summary(run, wall_s, {.colour = true, .width = 40})));
   EXPECT_TRUE(is_baseline("summary_pass.txt", summary(passing_run())));
@@ -82,7 +82,7 @@ TEST(Summary, ACaseThatFailsEquallyAtSeveralRatesIsShownOnce) {
   RunResult run = passing_run();
   for (CaseResult& result : run.results) result.verdict = Verdict::fail;
   run.results[1].verdict = Verdict::crash;
-  const std::string text = summary(run);
+  const std::string text = render_summary(run, wall_s, {}, {}, Failures::all);
   EXPECT_THAT(text, HasSubstr("roll_30@50hz\n"));
   EXPECT_THAT(text, Not(HasSubstr("roll_30@250hz\n")));
   EXPECT_THAT(text, HasSubstr("  also at 250 Hz: --filter 'px4-v1.5.5/attitude/roll_30@*'\n"));
@@ -90,20 +90,30 @@ TEST(Summary, ACaseThatFailsEquallyAtSeveralRatesIsShownOnce) {
   EXPECT_THAT(text, HasSubstr("pitch_5@250hz\n  crash: "));
 }
 
-TEST(Summary, TellsTwentyFailuresAndCountsTheOthers) {
+// Of each group the first case, in at most twenty groups.
+TEST(Summary, ShowsTheFirstFailingCaseOfEachGroup) {
   RunResult run = passing_run();
   run.results.clear();
   for (int i = 0; i < 22; ++i) {
-    for (const Rate& rate : run.rates) {
-      CaseResult result = passed("attitude", fmt::format("case_{:02}", i), rate);
-      result.verdict = Verdict::timeout;
-      run.results.push_back(result);
+    for (const char* name : {"one", "two"}) {
+      for (const Rate& rate : run.rates) {
+        CaseResult result = passed(fmt::format("group_{:02}", i), name, rate);
+        result.verdict = Verdict::timeout;
+        run.results.push_back(result);
+      }
     }
   }
   const std::string text = summary(run);
-  EXPECT_THAT(text, HasSubstr("case_19@50hz\n"));
-  EXPECT_THAT(text, Not(HasSubstr("case_20@50hz")));
-  EXPECT_THAT(text, HasSubstr("\nand 4 more; see --json or --junit\n"));
+  EXPECT_THAT(text, HasSubstr("group_19/one@50hz\n"));
+  EXPECT_THAT(text, Not(HasSubstr("group_20/one@50hz")));
+  EXPECT_THAT(text, Not(HasSubstr("group_00/two@50hz")));
+  const std::size_t hidden = run.rates.size() * (20 + 2 * 2);
+  EXPECT_THAT(text, HasSubstr(fmt::format("\nand {} more failing vectors; --verbose shows all, "
+                                          "--json and --junit write all to a file\n",
+                                          hidden)));
+  const std::string all = render_summary(run, wall_s, {}, {}, Failures::all);
+  EXPECT_THAT(all, HasSubstr("group_21/two@50hz\n"));
+  EXPECT_THAT(all, Not(HasSubstr("more failing")));
 }
 
 TEST(Summary, CountsTheStagesThatDifferFirst) {
