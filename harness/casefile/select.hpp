@@ -15,10 +15,13 @@
 
 namespace attest {
 
-// Part I of N, I from 1: cases I, I+N, I+2N, ... of those that the other options select.
+// Part I of N, I from 1, of the cases that the other options select. Parts take about equally long.
 struct Shard {
   std::size_t index = 1;
   std::size_t count = 1;
+
+  std::string to_string() const;  // "2/4"
+  friend bool operator==(const Shard&, const Shard&) = default;
 
   static Result<Shard> parse(const std::string& text);  // "2/4"
 };

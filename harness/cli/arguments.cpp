@@ -221,6 +221,7 @@ int run_command_line(int argc, char** argv) {
 
   Action action;
   add_run_command(app, globals, action);
+  add_merge_command(app, globals, action);
   add_replay(app, globals, action);
   add_sim(app, globals, action);
   add_timing_commands(app, globals, action);

@@ -21,7 +21,6 @@ std::string SelectionOptions::narrowing() const {
                              {"--rate", rates},
                              {"--vehicle", vehicles},
                              {"--plant", plants}});
-  if (shard != "1/1") options.push_back("--shard " + shard);
   return fmt::format("{}", fmt::join(options, " "));
 }
 

@@ -42,7 +42,8 @@ struct SelectionOptions {
            rates.empty() && vehicles.empty() && plants.empty() && shard == "1/1";
   }
 
-  // The options that select fewer than all vectors of a profile: "--group tpa --rate 250".
+  // The options that select fewer than all vectors of a profile, except --shard: "--group tpa
+  // --rate 250".
   std::string narrowing() const;
 
   // The selected cases below `folders`. Errors: those of select_cases, and text that is not a rate
@@ -52,6 +53,14 @@ struct SelectionOptions {
 
 // Each prints its results on stdout and its errors on stderr.
 
+// The results of `run` and `merge` for people and for other programs.
+struct ReportOptions {
+  std::map<std::string, std::string> files;  // by ReportFormat::option; empty: not wanted
+  bool diagnose = true;                      // when something fails
+  bool verbose = false;                      // the summary has every failing case
+  bool github = false;                       // annotations and a job summary for GitHub Actions
+};
+
 struct RunOptions {
   SelectionOptions select;
   HostOptions host;
@@ -59,14 +68,22 @@ struct RunOptions {
   bool fail_fast = false;
   std::vector<std::string> parameters;  // NAME=VALUE
   std::string level = "numeric";
-  std::map<std::string, std::string> reports;  // files, by ReportFormat::option; empty: not wanted
+  ReportOptions report;
   std::string expected_failures;
-  std::string timing;       // file; empty: the cases' own
-  std::string save_traces;  // folder; empty: not saved
-  bool diagnose = true;     // when something fails
-  bool verbose = false;     // the summary has every failing case
+  std::string timing;        // file; empty: the cases' own
+  std::string save_traces;   // folder; empty: not saved
+  std::string rerun_failed;  // report whose failing vectors are selected; empty: not restricted
 };
 int run_command(const RunOptions& options, const Globals& globals);
+
+struct MergeOptions {
+  std::vector<std::string> files;  // JSON reports
+  std::string port;                // asked for the diagnosis; empty: the one of the reports
+  int jobs = 1;
+  double timeout_s = default_timeout_s;
+  ReportOptions report;
+};
+int merge_command(const MergeOptions& options, const Globals& globals);
 
 struct ReplayOptions {
   std::vector<std::string> files;

@@ -36,10 +36,6 @@ void add_strictness(CLI::App& command, RunOptions& options) {
 
 void add_execution(CLI::App& command, RunOptions& options) {
   add_jobs(command, options.jobs, "Number of worker processes");
-  command
-      .add_flag("-v,--verbose", options.verbose,
-                "Show every failing case, not only the first of each group")
-      ->group(option_group::execution);
   command.add_flag("--fail-fast", options.fail_fast, "Stop after the first failure")
       ->group(option_group::execution);
   add_timeout(command, options.host.timeout_s);
@@ -50,16 +46,27 @@ void add_execution(CLI::App& command, RunOptions& options) {
       ->group(option_group::execution);
 }
 
-void add_reports(CLI::App& command, RunOptions& options) {
+void add_reports(CLI::App& command, ReportOptions& options) {
   command
       .add_flag("--diagnose,!--no-diagnose", options.diagnose,
                 "After a failure, name the faults of the catalogue that match it (on by default)")
       ->group(option_group::reports);
+  command
+      .add_flag("-v,--verbose", options.verbose,
+                "Show every failing case, not only the first of each group")
+      ->group(option_group::reports);
   for (const ReportFormat& format : report_formats()) {
-    command.add_option(format.option, options.reports[format.option], format.help)
+    command.add_option(format.option, options.files[format.option], format.help)
         ->type_name("FILE")
         ->group(option_group::reports);
   }
+  command
+      .add_flag("--github", options.github,
+                "In GitHub Actions: print annotations, and add to the job summary")
+      ->group(option_group::reports);
+}
+
+void add_traces(CLI::App& command, RunOptions& options) {
   command
       .add_option("--save-traces", options.save_traces,
                   "Write the traces of each failing vector to a new folder: "
@@ -83,6 +90,11 @@ void add_run_command(CLI::App& app, const Globals& globals, Action& action) {
       ->capture_default_str()
       ->group(option_group::selection);
   command
+      ->add_option("--rerun-failed", options->rerun_failed,
+                   "Only the vectors that failed in this report of --json")
+      ->type_name("REPORT")
+      ->group(option_group::selection);
+  command
       ->add_option("--timing", options->timing,
                    "Only the flight of `stress --record-timing`, replayed at the recorded times "
                    "and compared with the reference at these times")
@@ -90,7 +102,8 @@ void add_run_command(CLI::App& app, const Globals& globals, Action& action) {
       ->group(option_group::selection);
   add_strictness(*command, *options);
   add_execution(*command, *options);
-  add_reports(*command, *options);
+  add_reports(*command, options->report);
+  add_traces(*command, *options);
   add_examples(
       *command,
       {{"attest run", "the built-in reference, all vectors"},
@@ -100,9 +113,35 @@ void add_run_command(CLI::App& app, const Globals& globals, Action& action) {
        {"attest run --port lib:./libmine.so --level exact --filter 'attitude/*@250hz'",
         "some vectors, to the bit"},
        {"attest run --port lib:./libmine.so --exclude 'flight*/*' --junit attest.junit.xml",
-        "without the flights, with a report for CI"}});
+        "without the flights, with a report for CI"},
+       {"attest run --port lib:./libmine.so --rerun-failed attest.json",
+        "after a correction, what failed in a run with --json attest.json"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return run_command(*options, globals); };
+  });
+}
+
+void add_merge_command(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<MergeOptions>();
+  CLI::App* command = app.add_subcommand(
+      "merge", "Put the JSON reports of the shards of a run together, as one report");
+  command->add_option("reports", options->files, "The reports of all shards, in any order")
+      ->type_name("REPORT")
+      ->required();
+  command
+      ->add_option("--port", options->port,
+                   "The port where it is now; the diagnosis asks it again. By default it is where "
+                   "the reports say")
+      ->type_name("PORT");
+  add_jobs(*command, options->jobs, "Number of worker processes for the diagnosis");
+  add_timeout(*command, options->timeout_s);
+  add_reports(*command, options->report);
+  add_examples(*command, {{"attest run --port lib:./libmine.so --shard 1/4 --json part1.json",
+                           "the first of four jobs"},
+                          {"attest merge part*.json --json attest.json --junit attest.junit.xml",
+                           "the same reports as those of a run without shards"}});
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return merge_command(*options, globals); };
   });
 }
 

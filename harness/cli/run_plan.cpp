@@ -19,6 +19,7 @@
 #include "harness/golden/recorded.hpp"
 #include "harness/port/port.hpp"
 #include "harness/process/child.hpp"
+#include "harness/report/read_report.hpp"
 #include "harness/report/text.hpp"
 #include "harness/verify/recorded_vectors.hpp"
 
@@ -77,10 +78,31 @@ Result<void> set_parameters(const RunOptions& options, const std::vector<Selecte
   return {};
 }
 
+// Keeps the vectors that failed in a report; an empty name: keeps all. Errors: no report; none of
+// the selected vectors failed in it.
+Result<void> keep_failed(const std::string& report, std::vector<SelectedCase>& cases) {
+  if (report.empty()) return {};
+  const auto earlier = read_report(report);
+  if (!earlier) return tl::unexpected(earlier.error());
+  std::set<std::string> failed;
+  for (const CaseResult& result : earlier->results) {
+    if (fails_a_run(result.verdict)) failed.insert(result.id());
+  }
+  for (auto& [the_case, configurations] : cases) {
+    std::erase_if(configurations, [&, id = the_case.id()](const RunConfiguration& configuration) {
+      return !failed.contains(id + "@" + configuration.label());
+    });
+  }
+  std::erase_if(cases, [](const SelectedCase& one) { return one.configurations.empty(); });
+  if (!cases.empty()) return {};
+  return fail_at(report, "no selected vector failed in it; run without --rerun-failed");
+}
+
 // Plans the selected cases. Their ticks are those of the case files, not of a recorded timing.
 Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, RunPlan& plan) {
   auto cases = options.select.cases_in(suite.case_folders());
   if (!cases) return tl::unexpected(cases.error());
+  if (auto kept = keep_failed(options.rerun_failed, *cases); !kept) return kept;
   if (auto set = set_parameters(options, *cases, plan); !set) return set;
   if (!suite.reference().empty() || !plan.run.parameters.empty()) {
     std::erase_if(*cases, [](const SelectedCase& one) { return one.the_case.flight.has_value(); });
@@ -90,7 +112,7 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
                                                                    : own_law_only));
   }
   std::set<Rate> rates;
-  bool all_configurations = options.select.shard == "1/1";
+  bool all_configurations = true;
   for (const SelectedCase& selected : *cases) {
     all_configurations &=
         selected.configurations.size() == selected.the_case.configurations().size();
@@ -108,7 +130,12 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
   if (!jobs) return tl::unexpected(jobs.error());
   plan.jobs = *std::move(jobs);
   plan.run.selection = options.select.narrowing();
+  if (!options.rerun_failed.empty()) {
+    plan.run.selection +=
+        (plan.run.selection.empty() ? "" : " ") + ("--rerun-failed " + options.rerun_failed);
+  }
   plan.run.all_configurations = all_configurations;
+  if (const auto shard = Shard::parse(options.select.shard)) plan.run.shard = *shard;
   plan.run.rates.assign(rates.begin(), rates.end());
   plan.cases = std::move(*cases);
   return {};
@@ -143,18 +170,6 @@ Result<std::string> date_of_run() {
   return fmt::format("{:%Y-%m-%d}", fmt::gmtime(now));
 }
 
-// Of the port's file, or of the hashes of its files if it has several. Empty: it has none.
-Result<std::string> sha256_of_port(const std::string& port) {
-  std::vector<std::string> hashes;
-  for (const std::string& file : files_of(port)) {
-    auto hash = sha256_of_file(file);
-    if (!hash) return tl::unexpected(hash.error());
-    hashes.push_back(*std::move(hash));
-  }
-  if (hashes.size() <= 1) return hashes.empty() ? "" : hashes.front();
-  return sha256(fmt::format("{}\n", fmt::join(hashes, "\n")));
-}
-
 // Adds the subject of the conformance statement: suite, port and date.
 Result<void> identify(const RunOptions& options, const SuiteFolder& suite, RunResult& run) {
   run.cases_version = suite.version_of(suite.cases());
@@ -179,6 +194,17 @@ Result<void> identify(const RunOptions& options, const SuiteFolder& suite, RunRe
 }
 
 }  // namespace
+
+Result<std::string> sha256_of_port(const std::string& port) {
+  std::vector<std::string> hashes;
+  for (const std::string& file : files_of(port)) {
+    auto hash = sha256_of_file(file);
+    if (!hash) return tl::unexpected(hash.error());
+    hashes.push_back(*std::move(hash));
+  }
+  if (hashes.size() <= 1) return hashes.empty() ? "" : hashes.front();
+  return sha256(fmt::format("{}\n", fmt::join(hashes, "\n")));
+}
 
 Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
   auto level = parse_level(options.level);

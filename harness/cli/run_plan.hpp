@@ -28,6 +28,10 @@ struct RunPlan {
 // cannot be opened; recorded outputs are for other inputs; a file that cannot be read.
 Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite);
 
+// SHA-256 of the port's file, or of the hashes of its files if it has several. Empty: the port is
+// part of attest. Errors: a file that cannot be read.
+Result<std::string> sha256_of_port(const std::string& port);
+
 // Why a suite whose reference is a port has neither flights nor diagnosis.
 inline constexpr const char* own_law_only =
     "flights and the diagnosis need attest's own law, and the reference of this suite is a port";

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/core/json_reader.hpp"
 #include "harness/core/json_text.hpp"
 #include "harness/report/statement.hpp"
 #include "harness/verify/claim.hpp"
@@ -51,6 +52,20 @@ ordered_json results(const RunResult& run) {
     }
     out.push_back(std::move(entry));
   }
+  return out;
+}
+
+// What the results are of.
+ordered_json selection(const RunResult& run) {
+  ordered_json parameters = ordered_json::array();
+  for (const ParameterChange& change : run.parameters) {
+    parameters.push_back({{"name", change.name}, {"value", json_of(change.value)}});
+  }
+  ordered_json out = {{"options", run.selection},
+                      {"whole_cases", run.all_configurations},
+                      {"parameters", parameters}};
+  if (run.shard.count > 1) out["shard"] = run.shard.to_string();
+  if (!run.timing.empty()) out["timing"] = run.timing;
   return out;
 }
 
@@ -131,6 +146,7 @@ std::string json_report(const RunResult& run, const std::optional<Diagnosis>& fo
       {"attest_version", run.attest_version},
       {"port", port(run)},
       {"level", name_of(run.level)},
+      {"selection", selection(run)},
       {"rates", rates(run)},
       {"totals", totals(run)},
       {"conformant", standing_of(run) == Standing::conformant},

@@ -1,5 +1,6 @@
 #include "harness/report/report_format.hpp"
 
+#include "harness/report/code_quality.hpp"
 #include "harness/report/json.hpp"
 #include "harness/report/junit.hpp"
 #include "harness/report/statement.hpp"
@@ -19,6 +20,7 @@ std::span<const ReportFormat> report_formats() {
   static const ReportFormat formats[] = {
       {"--junit", "Write a JUnit XML report", junit_report},
       {"--json", "Write a JSON report", json_report},
+      {"--code-quality", "Write a code quality report for GitLab (JSON)", code_quality_report},
       {"--badge",
        "Write a badge (SVG): green when the port conforms to a profile, amber when the result is "
        "partial, red when something fails",

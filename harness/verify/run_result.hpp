@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/casefile/select.hpp"
 #include "harness/compare/tolerance.hpp"
 #include "harness/verify/verdict.hpp"
 
@@ -36,6 +37,7 @@ struct RunResult {
   std::vector<Rate> rates;          // selected, ascending
   std::string selection;            // the options that selected a part: "--group tpa"; or empty
   bool all_configurations = false;  // of each selected case, all were selected
+  Shard shard;                      // of the selected vectors, these were run
   // "profile/group" -> how many cases the suite has at each rate, selected or not.
   std::map<std::string, std::map<Rate, std::size_t>> suite;
   std::string suite_folder;  // as --suite gives it; empty: the suite was found

@@ -3,22 +3,17 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "harness/core/json_reader.hpp"
+
 namespace attest {
 namespace {
 
 using nlohmann::json;
-
-json number(double value) {
-  if (std::isnan(value)) return "nan";
-  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-  return value;
-}
 
 std::string float_bits(double value) {
   return fmt::format("0x{:08x}", std::bit_cast<std::uint32_t>(static_cast<float>(value)));
@@ -27,10 +22,10 @@ std::string float_bits(double value) {
 json deviation_to_json(const Deviation& deviation) {
   const Channel& channel = channels()[deviation.channel];
   json out = {
-      {"tick", deviation.tick},       {"timestamp_us", deviation.timestamp_us},
-      {"channel", channel.name},      {"stage", name_of(channel.stage)},
-      {"got", number(deviation.got)}, {"want", number(deviation.want)},
-      {"ulp", deviation.ulp},         {"tolerance", number(deviation.tolerance)},
+      {"tick", deviation.tick},        {"timestamp_us", deviation.timestamp_us},
+      {"channel", channel.name},       {"stage", name_of(channel.stage)},
+      {"got", json_of(deviation.got)}, {"want", json_of(deviation.want)},
+      {"ulp", deviation.ulp},          {"tolerance", json_of(deviation.tolerance)},
   };
   if (channel.type == ChannelType::f32) {
     out["got_bits"] = float_bits(deviation.got);
@@ -40,76 +35,20 @@ json deviation_to_json(const Deviation& deviation) {
 }
 
 json headroom_to_json(const Headroom& headroom) {
-  return {{"ratio", number(headroom.ratio)},
+  return {{"ratio", json_of(headroom.ratio)},
           {"tick", headroom.tick},
           {"channel", channels()[headroom.channel].name}};
 }
 
-// Reads on after an error and keeps the first message.
-class Reader {
- public:
-  Reader(const json& object, std::string& error) : object_(object), error_(error) {
-    if (!object.is_object()) wrong("not an object");
-  }
-
-  bool has(const char* key) const { return object_.is_object() && object_.contains(key); }
-
-  const json& member(const char* key) {
-    static const json nothing;
-    if (has(key)) return object_.at(key);
-    wrong(fmt::format("`{}` is missing", key));
-    return nothing;
-  }
-
-  std::string text(const char* key) {
-    const json& value = member(key);
-    if (value.is_string()) return value.get<std::string>();
-    wrong(fmt::format("`{}` is not a string", key));
-    return {};
-  }
-
-  std::uint64_t count(const char* key) {
-    const json& value = member(key);
-    if (value.is_number_unsigned()) return value.get<std::uint64_t>();
-    wrong(fmt::format("`{}` is not a count", key));
-    return 0;
-  }
-
-  std::int64_t integer(const char* key) {
-    const json& value = member(key);
-    if (value.is_number_integer()) return value.get<std::int64_t>();
-    wrong(fmt::format("`{}` is not an integer", key));
-    return 0;
-  }
-
-  double real(const char* key) {
-    const json& value = member(key);
-    if (value.is_number()) return value.get<double>();
-    if (value == "nan") return std::numeric_limits<double>::quiet_NaN();
-    if (value == "inf") return std::numeric_limits<double>::infinity();
-    if (value == "-inf") return -std::numeric_limits<double>::infinity();
-    wrong(fmt::format("`{}` is not a number", key));
-    return 0;
-  }
-
-  std::size_t channel(const char* key) {
-    const std::string name = text(key);
-    if (const auto index = find_channel(name)) return *index;
-    wrong(fmt::format("there is no channel `{}`", name));
-    return 0;
-  }
-
-  void wrong(std::string message) {
-    if (error_.empty()) error_ = std::move(message);
-  }
-
- private:
-  const json& object_;
-  std::string& error_;
-};
+std::size_t channel_from(JsonReader& reader, const char* key) {
+  const std::string name = reader.text(key);
+  if (const auto index = find_channel(name)) return *index;
+  reader.wrong(fmt::format("there is no channel `{}`", name));
+  return 0;
+}
 
 // The sign and the payload of a NaN are in its bits only.
-double with_bits(Reader& reader, double value, const char* key) {
+double with_bits(JsonReader& reader, double value, const char* key) {
   if (!reader.has(key)) return value;
   const std::string text = reader.text(key);
   std::uint32_t bits = 0;
@@ -121,11 +60,11 @@ double with_bits(Reader& reader, double value, const char* key) {
   return hex && std::isnan(value) && std::isnan(exact) ? static_cast<double>(exact) : value;
 }
 
-Deviation deviation_from(Reader reader) {
+Deviation deviation_from(JsonReader reader) {
   Deviation out;
   out.tick = reader.count("tick");
   out.timestamp_us = reader.count("timestamp_us");
-  out.channel = reader.channel("channel");
+  out.channel = channel_from(reader, "channel");
   out.got = with_bits(reader, reader.real("got"), "got_bits");
   out.want = with_bits(reader, reader.real("want"), "want_bits");
   out.ulp = reader.integer("ulp");
@@ -136,15 +75,15 @@ Deviation deviation_from(Reader reader) {
 json metric_to_json(const MetricResult& metric) {
   return {{"name", metric.name},
           {"measure", name_of(metric.measure)},
-          {"value", number(metric.value)},
-          {"reference", number(metric.reference)},
-          {"tolerance", number(metric.tolerance)},
-          {"min", number(metric.min)},
-          {"max", number(metric.max)},
+          {"value", json_of(metric.value)},
+          {"reference", json_of(metric.reference)},
+          {"tolerance", json_of(metric.tolerance)},
+          {"min", json_of(metric.min)},
+          {"max", json_of(metric.max)},
           {"within", metric.within()}};
 }
 
-MetricResult metric_from(Reader reader) {
+MetricResult metric_from(JsonReader reader) {
   MetricResult out;
   out.name = reader.text("name");
   const auto measure = parse_measure(reader.text("measure"));
@@ -158,7 +97,7 @@ MetricResult metric_from(Reader reader) {
   return out;
 }
 
-PlantConfiguration plant_configuration_from(Reader reader) {
+PlantConfiguration plant_configuration_from(JsonReader reader) {
   PlantConfiguration plant_configuration{reader.text("vehicle"), PlantKind::mujoco};
   const auto plant = parse_plant_kind(reader.text("plant"));
   if (!plant) reader.wrong(plant.error().message);
@@ -166,8 +105,8 @@ PlantConfiguration plant_configuration_from(Reader reader) {
   return plant_configuration;
 }
 
-Headroom headroom_from(Reader reader) {
-  return {reader.real("ratio"), reader.count("tick"), reader.channel("channel")};
+Headroom headroom_from(JsonReader reader) {
+  return {reader.real("ratio"), reader.count("tick"), channel_from(reader, "channel")};
 }
 
 }  // namespace
@@ -183,7 +122,7 @@ nlohmann::json to_json(const CaseResult& result) {
       {"reason", result.reason},
       {"ticks", result.ticks},
       {"deviating_ticks", result.deviating_ticks},
-      {"elapsed_s", number(result.elapsed_s)},
+      {"elapsed_s", json_of(result.elapsed_s)},
   };
   if (result.first) out["first"] = deviation_to_json(*result.first);
   if (result.worst) out["worst"] = deviation_to_json(*result.worst);
@@ -200,7 +139,7 @@ nlohmann::json to_json(const CaseResult& result) {
 
 Result<CaseResult> case_result_from_json(const nlohmann::json& json) {
   std::string error;
-  Reader reader(json, error);
+  JsonReader reader(json, error);
   CaseResult out;
   out.profile = reader.text("profile");
   out.group = reader.text("group");
@@ -208,7 +147,7 @@ Result<CaseResult> case_result_from_json(const nlohmann::json& json) {
   out.reason = reader.text("reason");
   out.ticks = reader.count("ticks");
   out.deviating_ticks = reader.count("deviating_ticks");
-  out.elapsed_s = reader.real("elapsed_s");
+  if (reader.has("elapsed_s")) out.elapsed_s = reader.real("elapsed_s");
   const std::string verdict = reader.text("verdict");
   if (const auto known = parse_verdict(verdict))
     out.verdict = *known;

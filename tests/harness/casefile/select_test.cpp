@@ -10,6 +10,7 @@ namespace attest {
 namespace {
 
 using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -199,6 +200,25 @@ TEST_F(SelectTest, ShardsAreAPartition) {
   Selection selection;
   selection.shard = {5, 5};
   EXPECT_THAT(select(selection)[0], HasSubstr("this shard is empty"));
+}
+
+// Flights take most of the time. Every second case would put both long ones into one shard.
+TEST_F(SelectTest, ShardsTakeAboutEquallyLong) {
+  for (const char* vehicle : {"iris", "hexa"}) files_.name_vehicle(vehicle);
+  const std::string metric = "[flight.metrics.settles]\nmeasure = \"settling_time_s\"\nmax = 1\n";
+  const std::string two = "[flight]\nvehicles = [\"iris\", \"hexa\"]\nvehicles_why = \"two\"\n";
+  add("flight", "a", two + metric);
+  add("flight", "b", "[flight]\nvehicles = [\"iris\"]\nvehicles_why = \"one\"\n" + metric);
+  add("flight", "c", two + metric);
+  Selection selection;
+  selection.shard = {1, 2};
+  const auto first = select(selection);
+  selection.shard = {2, 2};
+  const auto second = select(selection);
+  EXPECT_NE(testing::Value(first, Contains("flight/a:28")),
+            testing::Value(first, Contains("flight/c:28")));
+  EXPECT_NE(testing::Value(second, Contains("flight/a:28")),
+            testing::Value(second, Contains("flight/c:28")));
 }
 
 TEST(Shard, IsParsed) {

@@ -1,0 +1,116 @@
+#include "harness/cli/conclude.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "harness/cli/interrupt.hpp"
+#include "harness/cli/run_plan.hpp"
+#include "harness/diagnosis/diagnosis_job.hpp"
+#include "harness/report/github.hpp"
+#include "harness/report/terminal.hpp"
+
+namespace attest::cli {
+namespace {
+
+Result<void> write_reports(std::vector<ReportFile>& reports, const RunResult& run,
+                           const std::optional<Diagnosis>& diagnosis) {
+  for (auto& [file, format] : reports) {
+    if (auto written = file.write(format.render(run, diagnosis)); !written) return written;
+    if (auto committed = file.commit(); !committed) return committed;
+  }
+  return {};
+}
+
+// The diagnosis of the failures. Its errors are printed and do not change verdicts.
+std::optional<Diagnosis> diagnosed(const RunResult& run, const Examined& examined) {
+  JobOptions<VectorDiagnosis> options;
+  options.processes = examined.jobs;
+  options.in_process = examined.host.in_process;
+  options.stop = interrupted;
+  const auto vectors = [&](const faults::Fault* partner) {
+    std::vector<VectorSimilarity> similarities;
+    const auto jobs = diagnosis_jobs(examined.cases, run.results, examined.host, partner);
+    auto outcome = run_jobs(jobs, options);
+    if (!outcome.errors.empty() && !interrupted()) {
+      fmt::print(stderr, "attest: diagnosis: {}\n", outcome.errors.front().to_string());
+    }
+    for (VectorDiagnosis& vector : outcome.results) {
+      if (vector) similarities.push_back(*std::move(vector));
+    }
+    return similarities;
+  };
+  auto diagnosis = diagnose(vectors(nullptr));
+  if (diagnosis && wants_partner(*diagnosis)) {
+    add_partner(vectors(diagnosis->suspects.front().fault), *diagnosis);
+  }
+  if (!interrupted()) return diagnosis;
+  // It would rest on some of the vectors only. The verdicts are complete.
+  fmt::print(stderr, "attest: interrupted; the reports do not have the probable mistake\n");
+  return std::nullopt;
+}
+
+int exit_code(const RunResult& run) {
+  if (!run.errors.empty()) return exit_usage;
+  if (run.failed()) return exit_failed;
+  const bool compared = run.count(Verdict::pass) + run.count(Verdict::xfail) > 0;
+  if (!compared) {
+    return report_error(
+        {"no vector was compared: every selected vector was skipped or unsupported"});
+  }
+  return exit_ok;
+}
+
+// GitHub gives the file a job may append its summary to.
+void write_for_github(const RunResult& run, double wall_s,
+                      const std::optional<Diagnosis>& diagnosis) {
+  fmt::print("{}", github_annotations(run));
+  const char* const summary = std::getenv("GITHUB_STEP_SUMMARY");
+  if (summary == nullptr || *summary == '\0') return;
+  std::ofstream file(summary, std::ios::app);
+  file << github_summary(run, wall_s, diagnosis);
+  if (!file.flush()) fmt::print(stderr, "attest: note: {} cannot be written\n", summary);
+}
+
+}  // namespace
+
+Result<std::vector<ReportFile>> open_reports(const ReportOptions& options) {
+  std::vector<ReportFile> reports;
+  for (const ReportFormat& format : report_formats()) {
+    const std::string& path = options.files.at(format.option);
+    if (path.empty()) continue;
+    auto file = AtomicFile::open(path);
+    if (!file) return tl::unexpected(file.error());
+    reports.push_back({*std::move(file), format});
+  }
+  return reports;
+}
+
+int conclude(const RunResult& run, const Examined& examined, const ReportOptions& options,
+             std::vector<ReportFile> reports, std::chrono::steady_clock::time_point begin,
+             const Globals& globals) {
+  std::optional<Diagnosis> diagnosis;
+  if (!run.suite_reference.empty()) {
+    fmt::print(stderr, "attest: note: {}\n", own_law_only);
+  } else if (options.diagnose && run.failed() && run.parameters.empty()) {
+    diagnosis = diagnosed(run, examined);
+  }
+  // Before the summary: if its reader closes the pipe early, SIGPIPE ends this process.
+  const auto written = write_reports(reports, run, diagnosis);
+  const int code = exit_code(run);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  if (!globals.quiet || code != exit_ok) {
+    fmt::print("{}",
+               render_summary(run, wall.count(), terminal_style(stdout), diagnosis,
+                              options.verbose ? Failures::all : Failures::first_of_each_group));
+  }
+  if (options.github) write_for_github(run, wall.count(), diagnosis);
+  if (!written) return report_error(written.error());
+  return code;
+}
+
+}  // namespace attest::cli

@@ -1,0 +1,37 @@
+// The end of `run` and `merge`: the diagnosis, the reports, the summary and the exit code.
+#pragma once
+
+#include <chrono>
+#include <vector>
+
+#include "harness/casefile/select.hpp"
+#include "harness/cli/command.hpp"
+#include "harness/core/file.hpp"
+#include "harness/host/port_process.hpp"
+#include "harness/report/report_format.hpp"
+#include "harness/verify/run_result.hpp"
+
+namespace attest::cli {
+
+// A report file, opened before the run so that a path that cannot be written is reported at once.
+struct ReportFile {
+  AtomicFile file;
+  const ReportFormat& format;
+};
+Result<std::vector<ReportFile>> open_reports(const ReportOptions& options);
+
+// For the diagnosis: the port is asked again, for some of the vectors.
+struct Examined {
+  const std::vector<SelectedCase>& cases;  // those of the results
+  const HostOptions& host;
+  int jobs = 1;
+};
+
+// `run` has all results. Prints errors on stderr, the summary on stdout, and writes the reports.
+// Returns the exit code: 0 requires that at least one vector was compared, because a port without
+// support for any does not conform.
+int conclude(const RunResult& run, const Examined& examined, const ReportOptions& options,
+             std::vector<ReportFile> reports, std::chrono::steady_clock::time_point begin,
+             const Globals& globals);
+
+}  // namespace attest::cli

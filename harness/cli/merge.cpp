@@ -1,0 +1,203 @@
+// Puts the JSON reports of shards together.
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "harness/cli/command.hpp"
+#include "harness/cli/conclude.hpp"
+#include "harness/cli/interrupt.hpp"
+#include "harness/cli/outputs.hpp"
+#include "harness/cli/released_suite.hpp"
+#include "harness/cli/run_plan.hpp"
+#include "harness/cli/suite_folder.hpp"
+#include "harness/core/version.hpp"
+#include "harness/report/read_report.hpp"
+
+namespace attest::cli {
+namespace {
+
+struct Part {
+  std::string file;
+  RunResult run;
+};
+
+// What must be the same in all parts, as text for an error message.
+using Property = std::pair<const char*, std::function<std::string(const RunResult&)>>;
+
+std::string parameters_of(const RunResult& run) {
+  std::vector<std::string> texts;
+  for (const ParameterChange& change : run.parameters) {
+    texts.push_back(fmt::format("{}={}", change.name, change.value));
+  }
+  return fmt::format("{}", fmt::join(texts, " "));
+}
+
+const std::vector<Property>& properties() {
+  static const std::vector<Property> all = {
+      {"version of attest", [](const RunResult& run) { return run.attest_version; }},
+      {"suite", [](const RunResult& run) { return run.suite_sha256; }},
+      {"port", [](const RunResult& run) { return run.port; }},
+      {"hash of the port", [](const RunResult& run) { return run.port_sha256; }},
+      {"name of the port",
+       [](const RunResult& run) { return run.port_name + " " + run.port_version; }},
+      {"level", [](const RunResult& run) { return std::string(name_of(run.level)); }},
+      {"selection", [](const RunResult& run) { return run.selection; }},
+      {"parameters", parameters_of},
+      {"number of shards", [](const RunResult& run) { return fmt::to_string(run.shard.count); }},
+      {"--in-process",
+       [](const RunResult& run) { return std::string(run.limits.own_process ? "no" : "yes"); }},
+      {"time limit", [](const RunResult& run) { return fmt::to_string(run.limits.timeout_s); }},
+  };
+  return all;
+}
+
+Result<std::vector<Part>> read_parts(const std::vector<std::string>& files) {
+  std::vector<Part> parts;
+  for (const std::string& file : files) {
+    auto run = read_report(file);
+    if (!run) return tl::unexpected(run.error());
+    parts.push_back({file, *std::move(run)});
+  }
+  return parts;
+}
+
+// Errors: parts that differ in a property, two reports of one shard, a missing shard.
+Result<void> check_parts(const std::vector<Part>& parts) {
+  const Part& first = parts.front();
+  std::map<std::size_t, std::string> by_shard;
+  for (const Part& part : parts) {
+    for (const auto& [name, of] : properties()) {
+      if (of(part.run) == of(first.run)) continue;
+      return fail_at(part.file, fmt::format("the {} is `{}`, but in {} it is `{}`", name,
+                                            of(part.run), first.file, of(first.run)));
+    }
+    const auto [other, is_new] = by_shard.emplace(part.run.shard.index, part.file);
+    if (!is_new) {
+      return fail_at(part.file, fmt::format("is shard {}, and so is {}", part.run.shard.to_string(),
+                                            other->second));
+    }
+  }
+  std::vector<std::string> missing;
+  for (std::size_t i = 1; i <= first.run.shard.count; ++i) {
+    if (!by_shard.contains(i)) missing.push_back(Shard{i, first.run.shard.count}.to_string());
+  }
+  if (missing.empty()) return {};
+  return fail(fmt::format("missing: the report of shard {}", fmt::join(missing, ", ")));
+}
+
+Result<void> check_suite(const SuiteFolder& suite, const RunResult& run) {
+  const auto sha256 = suite.sha256();
+  if (!sha256) return tl::unexpected(sha256.error());
+  if (*sha256 == run.suite_sha256) return {};
+  return fail_at(suite.root.string(),
+                 fmt::format("is suite {:.12}, but the reports are of {:.12}; name theirs with "
+                             "--suite DIR",
+                             *sha256, run.suite_sha256));
+}
+
+// The results in the order of the suite, which is that of a run without shards. Errors: a result
+// that the suite does not have, or one that is there twice.
+Result<void> put_in_order(const std::vector<SelectedCase>& cases, RunResult& run) {
+  std::map<std::string, std::size_t> place;
+  for (const SelectedCase& selected : cases) {
+    for (const RunConfiguration& configuration : selected.the_case.configurations()) {
+      place.emplace(selected.the_case.id() + "@" + configuration.label(), place.size());
+    }
+  }
+  std::set<std::string> known;
+  for (const CaseResult& result : run.results) {
+    if (!place.contains(result.id())) {
+      return fail(fmt::format("{} is no vector of the suite", result.id()));
+    }
+    if (!known.insert(result.id()).second) {
+      return fail(fmt::format("{} is in two reports", result.id()));
+    }
+  }
+  std::sort(run.results.begin(), run.results.end(), [&](const CaseResult& a, const CaseResult& b) {
+    return place.at(a.id()) < place.at(b.id());
+  });
+  return {};
+}
+
+// Everything but results, errors, rates and the date is the same in all parts.
+RunResult merged(std::vector<Part> parts) {
+  RunResult run = std::move(parts.front().run);
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    RunResult& part = parts[i].run;
+    std::move(part.results.begin(), part.results.end(), std::back_inserter(run.results));
+    std::move(part.errors.begin(), part.errors.end(), std::back_inserter(run.errors));
+    run.rates.insert(run.rates.end(), part.rates.begin(), part.rates.end());
+    run.date = std::max(run.date, part.date);
+    run.all_configurations = run.all_configurations && part.all_configurations;
+    run.stopped_early = run.stopped_early || part.stopped_early;
+  }
+  std::sort(run.rates.begin(), run.rates.end());
+  run.rates.erase(std::unique(run.rates.begin(), run.rates.end()), run.rates.end());
+  run.shard = {};
+  return run;
+}
+
+// The port for the diagnosis, which asks it again. Empty: it is not here, or is another one.
+std::optional<HostOptions> host_for(const MergeOptions& options, const RunResult& run) {
+  HostOptions host;
+  host.port = options.port.empty() ? run.port : options.port;
+  host.timeout_s = options.timeout_s;
+  host.stop = interrupted;
+  const auto sha256 = sha256_of_port(host.port);
+  const auto port = describe_port(host);
+  if (sha256 && port && *sha256 == run.port_sha256) {
+    host.said = *port;
+    return host;
+  }
+  fmt::print(stderr,
+             "attest: note: no probable mistake is named, because {} is not the port of the "
+             "reports; name it with --port\n",
+             host.port);
+  return std::nullopt;
+}
+
+}  // namespace
+
+int merge_command(const MergeOptions& options, const Globals& globals) {
+  const auto begin = std::chrono::steady_clock::now();
+  note_interrupts();
+  const auto suite = find_suite(globals.suite);
+  if (!suite) return report_error(suite.error());
+  std::vector<std::string> outputs;
+  for (const auto& [option, path] : options.report.files) outputs.push_back(path);
+  if (auto checked = check_outputs(outputs, {options.port, options.files}, *suite); !checked) {
+    return report_error(checked.error());
+  }
+  auto parts = read_parts(options.files);
+  if (!parts) return report_error(parts.error());
+  if (auto checked = check_parts(*parts); !checked) return report_error(checked.error());
+  RunResult run = merged(*std::move(parts));
+  if (run.attest_version != version) {
+    return report_error(
+        {fmt::format("the reports are of attest {}, this is {}", run.attest_version, version)});
+  }
+  if (auto checked = check_suite(*suite, run); !checked) return report_error(checked.error());
+  const auto cases = select_cases(suite->case_folders(), {});
+  if (!cases) return report_error(cases.error());
+  if (auto ordered = put_in_order(*cases, run); !ordered) return report_error(ordered.error());
+  run.suite = vectors_by_group(*suite, run.suite_sha256);
+  run.suite_folder = globals.suite;
+  auto reports = open_reports(options.report);
+  if (!reports) return report_error(reports.error());
+  ReportOptions report = options.report;
+  std::optional<HostOptions> host;
+  if (report.diagnose && run.failed()) host = host_for(options, run);
+  report.diagnose = host.has_value();
+  return conclude(run, {*cases, host.value_or(HostOptions{}), options.jobs}, report,
+                  *std::move(reports), begin, globals);
+}
+
+}  // namespace attest::cli

@@ -1,0 +1,42 @@
+// Reads the members of a JSON object. Reads on after an error and keeps the first message, so that
+// a function can read all members of an object and look for an error once at its end.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace attest {
+
+class JsonReader {
+ public:
+  // `error` receives the first message. Both references must outlive this.
+  JsonReader(const nlohmann::json& object, std::string& error);
+
+  bool has(const char* key) const;
+
+  // Of a missing member: null.
+  const nlohmann::json& member(const char* key);
+  JsonReader object(const char* key) { return {member(key), error_}; }
+
+  // Of a member that is missing or of another type: empty, 0 or false.
+  std::string text(const char* key);
+  std::vector<std::string> texts(const char* key);
+  std::uint64_t count(const char* key);
+  std::int64_t integer(const char* key);
+  bool flag(const char* key);
+  double real(const char* key);  // also the texts "nan", "inf" and "-inf"
+
+  void wrong(std::string message);
+
+ private:
+  const nlohmann::json& object_;
+  std::string& error_;
+};
+
+// The inverse of JsonReader::real().
+nlohmann::json json_of(double value);
+
+}  // namespace attest

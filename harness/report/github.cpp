@@ -1,0 +1,91 @@
+#include "harness/report/github.hpp"
+
+#include <algorithm>
+#include <set>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "harness/report/failure_text.hpp"
+#include "harness/report/terminal.hpp"
+#include "harness/report/text.hpp"
+
+namespace attest {
+namespace {
+
+// The data of a workflow command: GitHub decodes these. `also` has further characters to encode.
+std::string encoded(std::string_view text, std::string_view also = "") {
+  std::string out;
+  for (const char c : text) {
+    const bool is_special =
+        c == '%' || c == '\r' || c == '\n' || also.find(c) != std::string_view::npos;
+    out += is_special ? fmt::format("%{:02X}", static_cast<unsigned char>(c)) : std::string(1, c);
+  }
+  return out;
+}
+
+// The value of a property, such as the title.
+std::string property(std::string_view text) { return encoded(text, ":,"); }
+
+// The first failing vector of each group, then the other ones.
+std::vector<const CaseResult*> failures_by_group(const RunResult& run) {
+  std::vector<const CaseResult*> first, others;
+  std::set<std::string> groups;
+  for (const CaseResult& result : run.results) {
+    if (!fails_a_run(result.verdict)) continue;
+    const bool is_first = groups.insert(result.profile + "/" + result.group).second;
+    (is_first ? first : others).push_back(&result);
+  }
+  first.insert(first.end(), others.begin(), others.end());
+  return first;
+}
+
+// Longer than any run of backticks in the text, so that the text cannot end the block.
+std::string fence_of(const std::string& text) {
+  std::size_t longest = 2, run = 0;
+  for (const char c : text) {
+    run = c == '`' ? run + 1 : 0;
+    longest = std::max(longest, run);
+  }
+  return std::string(longest + 1, '`');
+}
+
+}  // namespace
+
+std::string github_annotations(const RunResult& run) {
+  const auto failing = failures_by_group(run);
+  std::string out;
+  for (std::size_t i = 0; i < std::min(failing.size(), annotations_shown); ++i) {
+    const CaseResult& result = *failing[i];
+    out += fmt::format(
+        "::error title={}::{}\n",
+        property(fmt::format("{} {}", name_of(result.verdict), one_line(result.id()))),
+        encoded(failure_headline(result) + "\nreproduce: " + reproduce_command(result, run)));
+  }
+  if (!run.errors.empty()) {
+    out += fmt::format("::error title=attest::{}\n",
+                       encoded(printable(run.errors.front().to_string())));
+  }
+  // A warning: GitHub has a limit of its own for these.
+  if (failing.size() > annotations_shown) {
+    out += fmt::format("::warning title=attest::{} not shown here; the job summary has more\n",
+                       counted(failing.size() - annotations_shown, "more failing vector") +
+                           (failing.size() - annotations_shown == 1 ? " is" : " are"));
+  }
+  return out;
+}
+
+std::string github_summary(const RunResult& run, double wall_s,
+                           const std::optional<Diagnosis>& diagnosis) {
+  const std::string text = render_summary(run, wall_s, {}, diagnosis);
+  const std::string fence = fence_of(text);
+  const bool fails = run.failed() || !run.errors.empty();
+  const bool compared = run.count(Verdict::pass) + run.count(Verdict::xfail) > 0;
+  return fmt::format("### attest: {}\n\n{}text\n{}{}\n\n",
+                     fails      ? "does not conform"
+                     : compared ? "conforms to what was run"
+                                : "nothing was compared",
+                     fence, text, fence);
+}
+
+}  // namespace attest

@@ -1,0 +1,23 @@
+// The result of a run for GitHub Actions.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "harness/diagnosis/diagnose.hpp"
+#include "harness/verify/run_result.hpp"
+
+namespace attest {
+
+// GitHub shows ten errors and ten warnings of a step, and drops the others.
+inline constexpr std::size_t annotations_shown = 10;
+
+// Workflow commands, one a line: errors, for at most annotations_shown failing vectors, and a
+// warning that counts the rest. The first of each group comes first. Empty if nothing failed.
+std::string github_annotations(const RunResult& run);
+
+// The job summary, in Markdown: a heading and render_summary() as preformatted text.
+std::string github_summary(const RunResult& run, double wall_s,
+                           const std::optional<Diagnosis>& diagnosis);
+
+}  // namespace attest

@@ -1,0 +1,109 @@
+# Shards, the reports put together again, and what failed run again.
+load common
+
+selected=(--group attitude --group tpa --rate 250,1000)
+
+# shards PORT N: the report of all in all.json, of the shards in part1.json, ...
+shards() {
+  run "$ATTEST" run "${selected[@]}" --port "$1" --json all.json
+  for i in $(seq "$2"); do
+    run "$ATTEST" run "${selected[@]}" --port "$1" --shard "$i/$2" --json "part$i.json"
+  done
+}
+
+@test "merged reports are those of a run without shards, byte for byte" {
+  shards builtin 3
+  has "only --group attitude,tpa --rate 250,1000 --shard 3/3"
+  run "$ATTEST" merge part2.json part3.json part1.json --json merged.json
+  [ "$status" -eq 0 ]
+  cmp all.json merged.json
+}
+
+@test "merged failures have the diagnosis of the whole run" {
+  shards fault:tpa-missing 2
+  run "$ATTEST" merge part1.json part2.json --json merged.json --junit merged.xml
+  [ "$status" -eq 1 ]
+  has '`tpa-missing`'
+  cmp all.json merged.json
+  grep -q tpa-missing merged.xml
+}
+
+@test "a missing shard, one that is there twice, and reports of other runs are refused" {
+  shards builtin 3
+  run "$ATTEST" merge part1.json part3.json --json merged.json
+  [ "$status" -eq 2 ]
+  has "missing: the report of shard 2/3"
+  cp part1.json copy.json
+  run "$ATTEST" merge part1.json part2.json part3.json copy.json
+  [ "$status" -eq 2 ]
+  has "copy.json: is shard 1/3, and so is part1.json"
+  "$ATTEST" run --group rates --rate 250 --shard 2/3 --json other.json >/dev/null
+  run "$ATTEST" merge part1.json other.json part3.json
+  [ "$status" -eq 2 ]
+  has 'other.json: the selection is `--group rates --rate 250`, but in part1.json it is'
+  sed 's/"attest_version": "[^"]*"/"attest_version": "9.9"/' part2.json >newer.json
+  run "$ATTEST" merge part1.json newer.json part3.json
+  [ "$status" -eq 2 ]
+  has 'newer.json: the version of attest is `9.9`'
+  [ ! -e merged.json ]
+}
+
+@test "reports of another suite, or of a vector that is none, are refused" {
+  shards builtin 2
+  sed 's/"sha256": "[0-9a-f]*"/"sha256": "'"$(printf '0%.0s' {1..64})"'"/' part1.json >p1.json
+  sed 's/"sha256": "[0-9a-f]*"/"sha256": "'"$(printf '0%.0s' {1..64})"'"/' part2.json >p2.json
+  run "$ATTEST" merge p1.json p2.json
+  [ "$status" -eq 2 ]
+  has "but the reports are of 000000000000; name theirs with --suite DIR"
+  sed 's/"name": "both_tilted"/"name": "both_bent"/' part1.json >p1.json
+  sed 's/"name": "both_tilted"/"name": "both_bent"/' part2.json >p2.json
+  run "$ATTEST" merge p1.json p2.json
+  [ "$status" -eq 2 ]
+  has "px4-v1.3.4/attitude/both_bent@250hz is no vector of the suite"
+}
+
+@test "a port that is not here any more leaves out the diagnosis only" {
+  cp "$PORTS/port_sign_flip.so" mine.so
+  shards lib:./mine.so 2
+  mv mine.so moved.so
+  run "$ATTEST" merge part1.json part2.json
+  [ "$status" -eq 1 ]
+  has "no probable mistake is named, because lib:./mine.so is not the port of the reports"
+  run "$ATTEST" merge part1.json part2.json --port lib:./moved.so --json merged.json
+  [ "$status" -eq 1 ]
+  cmp all.json merged.json
+}
+
+@test "what failed in a report is run again" {
+  run "$ATTEST" run "${selected[@]}" --port fault:tpa-missing --json all.json
+  failed=$(grep -c '"verdict": "fail"' all.json)
+  run "$ATTEST" run --port fault:tpa-missing --rerun-failed all.json
+  [ "$status" -eq 1 ]
+  has "$failed failed; 0 of $failed vectors conform"
+  run "$ATTEST" run --rerun-failed all.json
+  [ "$status" -eq 0 ]
+  has "$failed of $failed vectors conform"
+  run "$ATTEST" run --rerun-failed all.json --group attitude
+  [ "$status" -eq 2 ]
+  has "all.json: no selected vector failed in it; run without --rerun-failed"
+  run "$ATTEST" run --rerun-failed "$SOURCE/README.md"
+  [ "$status" -eq 2 ]
+  has "is no report of \`attest run --json\`"
+}
+
+@test "GitHub gets annotations and a job summary, GitLab a code quality report" {
+  run env GITHUB_STEP_SUMMARY="$PWD/step.md" "$ATTEST" run "${selected[@]}" \
+    --port fault:tpa-missing --github --code-quality quality.json
+  [ "$status" -eq 1 ]
+  [ "$(grep -c '^::error ' <<<"$output")" -eq 10 ]
+  [ "$(grep -c '^::warning ' <<<"$output")" -eq 1 ]
+  has "::error title=fail px4-v1.5.5/tpa/"
+  grep -q '^### attest: does not conform' step.md
+  grep -q 'tpa-missing' step.md
+  "$PYTHON" - <<'P'
+import json
+entries = json.load(open("quality.json"))
+assert len({e["fingerprint"] for e in entries}) == len(entries) > 5
+assert all(e["severity"] == "major" for e in entries)
+P
+}

@@ -1,0 +1,77 @@
+#include "harness/report/read_report.hpp"
+
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/report/json.hpp"
+#include "tests/harness/core/temporary_directory.hpp"
+#include "tests/harness/report/sample_run.hpp"
+
+namespace attest {
+namespace {
+
+using testing::HasSubstr;
+
+class ReadReport : public testing::Test {
+ protected:
+  Result<RunResult> read(const std::string& text) {
+    std::ofstream(path_) << text;
+    return read_report(path_.string());
+  }
+  std::string error_of(const std::string& text) {
+    const auto run = read(text);
+    return run ? "" : run.error().to_string();
+  }
+
+  // The report of `run`, read and written again.
+  std::string again(const RunResult& run) {
+    auto read_back = read(json_report(run));
+    if (!read_back) return read_back.error().to_string();
+    read_back->suite = run.suite;
+    return json_report(*read_back);
+  }
+
+ private:
+  TemporaryDirectory directory_;
+  std::filesystem::path path_ = directory_.path() / "report.json";
+};
+
+TEST_F(ReadReport, IsTheInverseOfJsonReport) {
+  EXPECT_EQ(again(sample_run()), json_report(sample_run()));
+  RunResult run = passing_run();
+  EXPECT_EQ(again(run), json_report(run));
+  run.selection = "--group tpa";
+  run.shard = {2, 3};
+  run.all_configurations = true;
+  run.parameters = {{0, "MC_ROLL_P", 6.1f}};
+  run.timing = "late.json";
+  run.fraction_bits = 22;
+  run.fixed_step = Rate::hz(1000, 3);
+  run.not_recorded.set(*find_channel("out/mc_att_ctrl_status.roll_rate_integ"));
+  run.suite_reference = "acme 1.2";
+  run.limits.own_process = false;
+  EXPECT_EQ(again(run), json_report(run));
+}
+
+TEST_F(ReadReport, OtherFilesAreErrors) {
+  EXPECT_THAT(read_report("/nowhere/report.json").error().to_string(), HasSubstr("/nowhere"));
+  for (const char* text : {"", "[]", "{}", "{\"schema\": \"attest-stress-1\"}", "no JSON"}) {
+    EXPECT_THAT(error_of(text), HasSubstr("is no report of `attest run --json`")) << text;
+  }
+}
+
+TEST_F(ReadReport, AMalformedMemberIsNamed) {
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = json_report(sample_run());
+    return error_of(text.replace(text.find(from), from.size(), to));
+  };
+  EXPECT_THAT(with("\"date\"", "\"day\""), HasSubstr("`date` is missing"));
+  EXPECT_THAT(with("\"level\": \"numeric\"", "\"level\": \"lax\""), HasSubstr("lax"));
+  EXPECT_THAT(with("\"verdict\": \"", "\"verdict\": \"un"), HasSubstr("there is no verdict `un"));
+  EXPECT_THAT(with("\"tick\": ", "\"tick\": -"), HasSubstr("`tick` is not a count"));
+}
+
+}  // namespace
+}  // namespace attest
