@@ -15,7 +15,7 @@ made() {
   run mine/check --group rates --rate 250
   [ "$status" -eq 0 ]
   has "PASS"
-  grep -q "./check --junit" mine/.github/workflows/attest.yml
+  grep -q "./check --github --junit" mine/.github/workflows/attest.yml
   grep -q "./check --junit" mine/.gitlab-ci.yml
 }
 
