@@ -53,6 +53,9 @@ struct Field {
 
   // Padding aligns the next field. Data may lack the padding at their end.
   bool is_padding() const { return name.starts_with("_padding"); }
+  Field at(std::string path, std::uint32_t at) const {
+    return {type, type_name, std::move(path), count, is_array, at};
+  }
 };
 
 // Parses "float[4] q". Errors: it does not have this form.
@@ -67,8 +70,8 @@ struct Format {
   std::uint32_t bytes = 0;        // 0: not measured
   std::uint32_t least_bytes = 0;  // without padding at the end
 
-  // Finds a number by its path: "roll", "q[0]", "a.b[2]". Returns it as a field that is no array.
-  // Errors: no such field, an array without an index, an index past its end. REQUIRES: measured.
+  // Finds a number by its path: "roll", "q[0]", "a.b[2]". Errors: no such field; an array without
+  // an index, or with one past its end. REQUIRES: measured.
   Result<Field> locate(std::string_view path) const;
 };
 
@@ -81,11 +84,9 @@ class Formats {
   // Adds "name:type field;...", which may be repeated. Errors: it does not have this form; the name
   // has another definition, which stays.
   Result<const Format*> add(std::string_view definition);
-
   // Computes leaves and sizes, once. The pointer stays valid. Errors: this or a nested format is
   // missing; nested too deeply, or in itself; more than most_bytes or most_leaves.
   Result<const Format*> measure(std::string_view name, int depth_left = most_depth);
-
   const std::map<std::string, Format, std::less<>>& all() const { return formats_; }
 
  private:

@@ -10,24 +10,21 @@
 //       if (data && roll->is_in(*data)) use(roll->of(*data));
 //     }
 //
-// Damage does not end the reading: it is counted, and what is intact is read. A message with a
-// wrong body is skipped by its length if a message seems to follow there. Otherwise reading goes on
-// after the next sync message. Without one, the rest of the file is not read.
+// Damage is counted, and what is intact is read. A message with a wrong body is skipped by its
+// length if a message seems to follow there. Otherwise reading goes on after the next sync message;
+// without one, the rest of the file is not read.
 #pragma once
 
 #include <array>
-#include <cstdint>
+#include <cstdio>
 #include <deque>
 #include <filesystem>
+#include <memory>
 #include <numeric>
 #include <optional>
-#include <string>
-#include <string_view>
 #include <variant>
-#include <vector>
 
 #include "harness/ulog/format.hpp"
-#include "harness/ulog/window.hpp"
 
 namespace attest::ulog {
 
@@ -40,7 +37,7 @@ struct Subscription {
   const Format* format;   // measured; null: cannot be used, so its data are skipped
 };
 
-// The messages. Views in them are valid until the reader's next call, pointers as long as the
+// Messages. Their views are valid until the reader's next call, their pointers as long as the
 // reader.
 
 // D: values of a topic, from Format::least_bytes to Format::bytes of them.
@@ -94,7 +91,6 @@ struct Column {
   const Subscription* subscription;
   Type type;
   std::uint32_t offset;  // bytes
-
   bool is_in(const Data& data) const { return data.subscription == subscription; }
   // As load_as(). REQUIRES: is_in(data).
   template <typename T = double>
@@ -116,7 +112,6 @@ struct Damage {
   std::array<std::uint64_t, 6> counts{};  // by kind
   std::vector<Finding> first;             // the first most_findings
   std::uint64_t skipped_bytes = 0;        // not read as messages
-
   std::uint64_t count(DamageKind kind) const { return counts[static_cast<std::size_t>(kind)]; }
   std::uint64_t total() const { return std::accumulate(counts.begin(), counts.end(), 0ULL); }
 };
@@ -125,8 +120,7 @@ struct Header {
   std::uint8_t version = 0;
   std::uint64_t start_us = 0;  // since the start of the system
   // Of the flag bits message, which files of version 0 do not have.
-  std::uint64_t compatible_flags = 0;
-  std::uint64_t incompatible_flags = 0;
+  std::uint64_t compatible_flags = 0, incompatible_flags = 0;
   std::array<std::uint64_t, 3> appended_offsets{};  // in the file; 0: unused
 };
 
@@ -137,14 +131,11 @@ class Reader {
   static Result<Reader> open(const std::filesystem::path& path);
 
   const Header& header() const { return header_; }
-  const Formats& formats() const { return formats_; }
-  // So far, with the ended ones.
-  const std::deque<Subscription>& subscriptions() const { return subscriptions_; }
-
+  const Formats& formats() const { return formats_; }                               // so far
+  const std::deque<Subscription>& subscriptions() const { return subscriptions_; }  // so far
   // Finds a number in the data of an instance of a topic, by its path as in Format::locate().
   // Errors: no such topic, instance or field so far; its format cannot be used.
   Result<Column> find(std::string_view topic, std::uint8_t multi_id, std::string_view path) const;
-
   // Reads the next valid message. False: after the last one. Errors: the file cannot be read.
   Result<bool> next(Message& message);
 
@@ -158,21 +149,28 @@ class Reader {
   std::uint64_t unknown_messages() const { return unknown_messages_; }
 
  private:
-  explicit Reader(Window window) : window_(std::move(window)) {}
+  Reader() = default;
   Result<void> read_header();
   void start();
+  // What the file has there: at least `count` bytes, at most 1 MiB, but none after end_.
   std::string_view bytes_at(std::uint64_t offset, std::size_t count);
+  void fill_buffer(std::uint64_t offset);
+  // Of the message there, with its head; 0: not a message. It may lead past end_.
+  std::size_t size_at(std::uint64_t offset);
   // Give the message and return true, or count what is wrong with it.
   bool accept(char type, std::string_view body, Message& message);
   bool accept_data(std::string_view body, Message& message);
-  bool accept_key_value(char type, std::string_view body, Message& message);
-  bool accept_format(std::string_view body, Message& message);
+  bool accept_value(char type, std::string_view body, Message& message);
   bool accept_subscription(std::string_view body, Message& message);
   bool refuse(DamageKind kind, const std::string& why);  // returns false
-  bool seems_message(std::uint64_t offset);
   void resynchronise(bool is_cut_off);
 
-  Window window_;
+  std::string file_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream_{nullptr, std::fclose};
+  std::unique_ptr<char[]> buffer_;                   // a part of the file
+  std::uint64_t buffer_begin_ = 0, buffer_end_ = 0;  // in the file
+  std::optional<Error> read_failure_;
+  std::uint64_t file_size_ = 0;  // when it was opened
   Header header_;
   Formats formats_;
   std::deque<Subscription> subscriptions_;   // at addresses that stay

@@ -7,23 +7,21 @@
 namespace attest::ulog {
 namespace {
 
-using namespace std::string_view_literals;
-
 constexpr std::size_t most_in_block = std::size_t{64} << 10;
-constexpr std::string_view sync_message = "\x08\x00S\x2F\x73\x13\x20\x25\x0C\xBB\x12"sv;
+constexpr std::string_view sync_message("\x08\x00S\x2F\x73\x13\x20\x25\x0C\xBB\x12", 11);
+
+constexpr std::string_view topic_characters =
+    "-/_0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
+constexpr std::string_view field_characters = topic_characters.substr(2);
 
 template <typename T>
 std::string stored(T value) {
   return std::string(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-Result<void> check_name(std::string_view name, std::string_view marks) {
-  const auto is_allowed = [&](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           marks.find(c) != marks.npos;
-  };
-  if (!name.empty() && std::all_of(name.begin(), name.end(), is_allowed)) return {};
-  return fail(fmt::format("`{}` is not a name; use letters, digits and {}", name, marks));
+Result<void> check_name(std::string_view name, std::string_view allowed = field_characters) {
+  if (!name.empty() && name.find_first_not_of(allowed) == name.npos) return {};
+  return fail(fmt::format("`{}` is not a name; use only {}", name, allowed));
 }
 
 Result<void> check_fields(const Format& format) {
@@ -37,7 +35,7 @@ Result<void> check_fields(const Format& format) {
     const auto wrong = [&](std::string_view why) {
       return fail(fmt::format("{}.{} {}", format.name, field.name, why));
     };
-    if (auto checked = check_name(field.name, "_"); !checked) return checked;
+    if (auto checked = check_name(field.name); !checked) return checked;
     if (field.name.front() == '_') return wrong("starts with _, so readers skip it");
     if (!names.insert(field.name).second) return wrong("occurs twice");
     if (field.type == Type::nested) return wrong("has no basic type");
@@ -56,9 +54,7 @@ Result<Writer> Writer::open(const std::filesystem::path& path, std::uint64_t sta
   Writer writer(*std::move(file));
   writer.block_ = "ULog\x01\x12\x35\x01" + stored(start_us);
   const std::string no_flags(40, '\0');
-  if (auto written = writer.write('B', {no_flags}); !written) {
-    return tl::unexpected(written.error());
-  }
+  writer.block_ += stored(static_cast<std::uint16_t>(no_flags.size())) + 'B' + no_flags;
   return writer;
 }
 
@@ -71,30 +67,26 @@ Result<void> Writer::write(char type, std::initializer_list<std::string_view> pa
   if (block_.size() < most_in_block) return {};
   // Among the definitions, readers take it for the start of the data.
   if (!subscribed_.empty()) block_ += sync_message;
-  auto written = file_.write(block_);
+  if (status_) status_ = file_.write(block_);
   block_.clear();
-  return written;
+  return status_;
 }
 
-Result<void> Writer::write_value(char type, std::string_view key_type, std::string_view name,
-                                 std::string_view value) {
-  if (auto checked = check_name(name, "_"); !checked) return checked;
-  const std::string key = fmt::format("{} {}", key_type, name);
-  if (key.size() > 0xff) return fail(fmt::format("the name {} is too long", name));
+// `key`: "type name".
+Result<void> Writer::write_value(char type, std::string_view key, std::string_view value) {
+  if (auto checked = check_name(key.substr(key.find(' ') + 1)); !checked) return checked;
+  if (key.size() > 0xff) return fail(fmt::format("`{}` is too long for a key", key));
   return write(type, {stored(static_cast<std::uint8_t>(key.size())), key, value});
 }
 
 Result<void> Writer::info(std::string_view name, std::string_view text) {
   if (text.empty()) return fail(fmt::format("{} has no text", name));
-  return write_value('I', fmt::format("char[{}]", text.size()), name, text);
+  return write_value('I', fmt::format("char[{}] {}", text.size(), name), text);
 }
 
-Result<void> Writer::parameter(std::string_view name, std::int32_t value) {
-  return write_value('P', "int32_t", name, stored(value));
-}
-
-Result<void> Writer::parameter(std::string_view name, float value) {
-  return write_value('P', "float", name, stored(value));
+Result<void> Writer::parameter(std::string_view name, std::variant<std::int32_t, float> value) {
+  const std::string key = fmt::format("{} {}", value.index() == 0 ? "int32_t" : "float", name);
+  return write_value('P', key, std::visit([](auto each) { return stored(each); }, value));
 }
 
 Result<void> Writer::define(std::string_view definition) {
@@ -103,7 +95,7 @@ Result<void> Writer::define(std::string_view definition) {
   auto format = parsed.add(definition);
   if (!format) return tl::unexpected(format.error());
   const std::string& topic = (*format)->name;
-  if (auto checked = check_name(topic, "_-/"); !checked) return checked;
+  if (auto checked = check_name(topic, topic_characters); !checked) return checked;
   if (auto checked = check_fields(**format); !checked) return checked;
   format = parsed.measure(topic);
   if (!format) return tl::unexpected(format.error());
@@ -128,8 +120,7 @@ Result<void> Writer::data(std::uint16_t msg_id, std::string_view bytes) {
   if (msg_id >= subscribed_.size()) return fail(fmt::format("no msg_id {}; subscribe", msg_id));
   const Format& format = *subscribed_[msg_id];
   if (bytes.size() != format.bytes) {
-    return fail(
-        fmt::format("{} bytes for {}, which has {}", bytes.size(), format.name, format.bytes));
+    return fail(fmt::format("{} has {} bytes, not {}", format.name, format.bytes, bytes.size()));
   }
   return write('D', {stored(msg_id), bytes});
 }
@@ -144,8 +135,8 @@ Result<void> Writer::dropout(std::uint16_t duration_ms) {
 }
 
 Result<void> Writer::commit() {
-  if (auto written = file_.write(block_); !written) return written;
-  return file_.commit();
+  if (status_) status_ = file_.write(block_);
+  return status_ ? file_.commit() : status_;
 }
 
 }  // namespace attest::ulog

@@ -39,7 +39,7 @@ TEST_F(ULogDamage, DataOfAnUnknownId) {
   Crafted log = started();
   const std::uint64_t offset = log.size();
   log.data(7, sample(1)).data(0, sample(2));
-  EXPECT_THAT(data_lines(log, DamageKind::unknown_id, offset, "unknown msg_id 7"),
+  EXPECT_THAT(data_lines(log, DamageKind::unknown_id, offset, "data of msg_id 7"),
               ElementsAre(line(2)));
 }
 
@@ -48,7 +48,7 @@ TEST_F(ULogDamage, DataAfterTheEndOfTheirSubscription) {
   log.message('R', raw(std::uint16_t{0}));
   const std::uint64_t offset = log.size();
   log.data(0, sample(1));
-  EXPECT_THAT(data_lines(log, DamageKind::unknown_id, offset, "unknown msg_id 0"),
+  EXPECT_THAT(data_lines(log, DamageKind::unknown_id, offset, "data of msg_id 0"),
               ElementsAre("R a/0"));
 }
 
@@ -92,7 +92,7 @@ TEST_F(ULogDamage, SubscriptionsWhoseFormatCannotBeUsed) {
       {started().format("r:uint64_t timestamp;r x;"), "r", "nested too deeply, or in itself"},
       {started().format("s:t x;").format("t:s[3] x;"), "s", "nested too deeply, or in itself"},
       {deep, "n1", "nested too deeply, or in itself"},
-      {wide, "w", "format w has too many fields"},
+      {wide, "w", "w has too many fields"},
       {large, "l", "format l is too large"},
   };
   for (const auto& [before, topic, why] : rows) {
@@ -155,7 +155,8 @@ TEST_F(ULogDamage, GarbageWithoutASyncMessageEndsTheReading) {
   Crafted log = started();
   const std::uint64_t offset = log.size();
   log.append(std::string(100, '\0')).data(0, sample(2));
-  EXPECT_TRUE(data_lines(log, DamageKind::garbage, offset, "no sync message follows").empty());
+  EXPECT_TRUE(
+      data_lines(log, DamageKind::garbage, offset, "to the end, without a sync message").empty());
   EXPECT_EQ(read(log).damage.skipped_bytes, log.size() - offset);
 }
 

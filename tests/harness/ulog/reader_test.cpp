@@ -102,10 +102,11 @@ TEST_F(ULogReader, NamesFieldsThatDoNotExist) {
   EXPECT_EQ(error("pose", 0, "q[3]"), "");
   EXPECT_EQ(error("pse", 0, "roll"), "no instance 0 of the topic pse; did you mean `pose`?");
   EXPECT_EQ(error("pose", 1, "roll"), "no instance 1 of the topic pose");
-  EXPECT_EQ(error("pose", 0, "rol"), "pose has no field rol; did you mean `roll`?");
-  EXPECT_EQ(error("pose", 0, "roll[0]"), "pose has no field roll[0]");
-  for (const std::string path : {"q", "q[4]", "q[-1]", "q[]", "q[1x]", "q[99999999999]"}) {
-    EXPECT_EQ(error("pose", 0, path), "pose.q has the elements [0] to [3]; name one of them");
+  EXPECT_EQ(error("pose", 0, "rol"), "pose has no number rol; did you mean `roll`?");
+  EXPECT_EQ(error("pose", 0, "roll[0]"), "pose has no number roll[0]");
+  EXPECT_EQ(error("pose", 0, "q[4]"), "pose has no number q[4]; did you mean `q[3]`?");
+  for (const std::string path : {"q", "q[-1]", "q[]", "q[1x]", "q[99999999999]", "", "[0]"}) {
+    EXPECT_THAT(error("pose", 0, path), HasSubstr("pose has no number " + path));
   }
 }
 
@@ -165,8 +166,7 @@ TEST_F(ULogReader, RefusesOtherFiles) {
   EXPECT_EQ(error(""), not_a_log);
   EXPECT_EQ(error("timestamp,in/x\n1,2\n"), not_a_log);
   EXPECT_EQ(error("ULog\x01\x12\x36" + raw(std::uint64_t{0}, '\0')), not_a_log);
-  EXPECT_EQ(error(Crafted().bytes().substr(0, 15)),
-            "ends within the header of 16 bytes; copy the log again");
+  EXPECT_EQ(error(Crafted().bytes().substr(0, 15)), "is cut off; copy the log again");
   EXPECT_EQ(
       error_of(Crafted(2)),
       "a.ulg: a ULog of version 2, but attest reads versions 0 and 1; convert the log, or use "

@@ -82,7 +82,7 @@ TEST_F(ULogWriter, RefusesOtherMistakes) {
   EXPECT_THAT(writer_.data(0, "12345678").error().message, HasSubstr("no msg_id 0"));
   ASSERT_TRUE(writer_.subscribe("a"));
   EXPECT_THAT(writer_.subscribe("a").error().message, HasSubstr("subscribed already"));
-  EXPECT_THAT(writer_.data(0, "1234567").error().message, HasSubstr("7 bytes for a, which has 8"));
+  EXPECT_THAT(writer_.data(0, "1234567").error().message, HasSubstr("a has 8 bytes, not 7"));
   EXPECT_THAT(writer_.info("a b", "x").error().message, HasSubstr("is not a name"));
   EXPECT_THAT(writer_.info("a", "").error().message, HasSubstr("no text"));
   EXPECT_THAT(writer_.info("a", std::string(65536, 'x')).error().message, HasSubstr("65535"));
