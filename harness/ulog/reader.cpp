@@ -24,13 +24,19 @@ constexpr std::size_t head_bytes = 3;  // of a message: u16 size of its body, ty
 constexpr std::size_t flag_bits_bytes = 40;
 constexpr std::uint64_t has_appended_data = 1;  // bit of incompatible_flags
 
-// True if a message may start so. All types are letters, and the known ones have a smallest body.
-bool may_be_head(char type, std::size_t body_bytes) {
+// The size with head of the message that starts with these bytes, which may be cut off; 0: they are
+// no message. All types are letters, no body is empty, and those of known types have a least size.
+std::size_t size_of_message(std::string_view bytes) {
   constexpr std::string_view known = "BFIMPQARDLCOS";
   constexpr std::size_t least[] = {flag_bits_bytes, 1, 1, 2, 1, 2, 4, 2, 2, 9, 11, 2, 8};
-  const auto found = known.find(type);
-  if (found != known.npos) return body_bytes >= least[found];
-  return body_bytes > 0 && ((type >= 'A' && type <= 'Z') || (type >= 'a' && type <= 'z'));
+  if (bytes.size() < head_bytes) return head_bytes;
+  const std::size_t body_bytes = load<std::uint16_t>(bytes.data());
+  const char type = bytes[2];
+  const bool is_letter = (type >= 'A' && type <= 'Z') || (type >= 'a' && type <= 'z');
+  const auto found = type == 'D' ? 8 : known.find(type);  // nearly all are data
+  return is_letter && body_bytes >= (found == known.npos ? 1 : least[found])
+             ? head_bytes + body_bytes
+             : 0;
 }
 
 }  // namespace
@@ -128,13 +134,6 @@ void Reader::fill_buffer(std::uint64_t offset) {
   buffer_end_ = offset + kept + read;
 }
 
-std::size_t Reader::size_at(std::uint64_t offset) {
-  const std::string_view head = bytes_at(offset, head_bytes);
-  if (head.size() < head_bytes) return head_bytes;
-  const std::size_t body_bytes = load<std::uint16_t>(head.data());
-  return may_be_head(head[2], body_bytes) ? head_bytes + body_bytes : 0;
-}
-
 Result<bool> Reader::next(Message& message) {
   while (true) {
     if (position_ >= end_) {
@@ -145,15 +144,16 @@ Result<bool> Reader::next(Message& message) {
       continue;
     }
     offset_ = position_;
-    const std::size_t size = size_at(offset_);
-    const std::string_view bytes = bytes_at(offset_, size);
+    std::string_view bytes = bytes_at(offset_, head_bytes);
+    const std::size_t size = size_of_message(bytes);
+    if (bytes.size() < size) bytes = bytes_at(offset_, size);
     if (size == 0 || bytes.size() < size) {
       resynchronise(size > 0);
       continue;
     }
     position_ += size;
     if (accept(bytes[2], bytes.substr(head_bytes, size - head_bytes), message)) return true;
-    if (position_ < end_ && size_at(position_) == 0) resynchronise(false);
+    if (size_of_message(bytes_at(position_, head_bytes)) == 0) resynchronise(false);
   }
 }
 

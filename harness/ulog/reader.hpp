@@ -155,8 +155,6 @@ class Reader {
   // What the file has there: at least `count` bytes, at most 1 MiB, but none after end_.
   std::string_view bytes_at(std::uint64_t offset, std::size_t count);
   void fill_buffer(std::uint64_t offset);
-  // Of the message there, with its head; 0: not a message. It may lead past end_.
-  std::size_t size_at(std::uint64_t offset);
   // Give the message and return true, or count what is wrong with it.
   bool accept(char type, std::string_view body, Message& message);
   bool accept_data(std::string_view body, Message& message);

@@ -167,10 +167,8 @@ TEST_F(ULogReader, RefusesOtherFiles) {
   EXPECT_EQ(error("timestamp,in/x\n1,2\n"), not_a_log);
   EXPECT_EQ(error("ULog\x01\x12\x36" + raw(std::uint64_t{0}, '\0')), not_a_log);
   EXPECT_EQ(error(Crafted().bytes().substr(0, 15)), "is cut off; copy the log again");
-  EXPECT_EQ(
-      error_of(Crafted(2)),
-      "a.ulg: a ULog of version 2, but attest reads versions 0 and 1; convert the log, or use "
-      "a newer attest");
+  EXPECT_EQ(error_of(Crafted(2)),
+            "a.ulg: a ULog of version 2; convert it to 1, or use a newer attest");
   EXPECT_EQ(error_of(Crafted().flag_bits(0x101)),
             "a.ulg: needs a feature that attest does not know (incompatible flags 0x101); use a "
             "newer attest");
