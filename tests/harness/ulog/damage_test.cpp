@@ -213,7 +213,7 @@ Crafted rich_log() {
     log.format("a:uint64_t timestamp;in[2] b;uint8_t[3] c;uint8_t[5] _padding0;");
     log.subscribe(0, "a").subscribe(2, "a", 1);
     const std::string inner = raw(1.0f, 2.0f, 3.0f, 0.0f);
-    for (const std::uint64_t time : {1, 2, 3}) {
+    for (std::uint64_t time = 1; time <= 3; ++time) {
       log.data(0, raw(time) + inner + inner + "abc").sync();
       log.data(2, raw(time) + inner + inner + "abc" + "12345").log('6', time, "text");
       log.message('C', "3" + raw(std::uint16_t{5}, time) + "late");

@@ -118,6 +118,11 @@ TEST_F(ULogWriter, ReportsAFullDisk) {
   auto full = Writer::open("/dev/full", 0);
   ASSERT_TRUE(full);
   EXPECT_THAT(full->commit().error().to_string(), HasSubstr("/dev/full: cannot write the file"));
+  // The first block fails. The file is not completed with what would fit later.
+  auto blocks = Writer::open("/dev/full", 0);
+  EXPECT_TRUE(blocks->info("a", std::string(60'000, 'x')));
+  EXPECT_FALSE(blocks->info("b", std::string(60'000, 'x')));
+  EXPECT_FALSE(blocks->commit());
 }
 
 }  // namespace
