@@ -278,13 +278,13 @@ Result<Column> Reader::find(std::string_view topic, std::uint8_t multi_id,
   for (const Subscription& each : subscriptions_) {
     if (each.topic != topic) topics.push_back(each.topic);
     if (each.topic != topic || each.multi_id != multi_id) continue;
-    if (!each.format) return fail_at(file_, fmt::format("the format of {} is damaged", topic));
-    const auto leaf = each.format->locate(path);
-    if (!leaf) return fail_at(file_, leaf.error().message);
+    const auto leaf =
+        each.format ? each.format->locate(path) : Result<Field>(fail("the format is damaged"));
+    if (!leaf) return fail_at(file_, printable_part(leaf.error().message));
     return Column{&each, leaf->type, leaf->offset};
   }
-  return fail_at(file_, fmt::format("no instance {} of the topic {}{}", multi_id, topic,
-                                    suggestion(topic, topics)));
+  return fail_at(file_, printable_part(fmt::format("no instance {} of the topic {}{}", multi_id,
+                                                   topic, suggestion(topic, topics))));
 }
 
 }  // namespace attest::ulog

@@ -201,6 +201,9 @@ TEST_F(ULogDamage, FindingsArePrintable) {
   Crafted log = started();
   log.subscribe(1, "\x1b[31mred\n");
   EXPECT_EQ(read(log).damage.first.at(0).message, "format \\x1b[31mred\\x0a is not defined");
+  EXPECT_EQ(open(log).find("\x1b[31mred\n", 0, "x").error().message, "the format is damaged");
+  EXPECT_EQ(open(log).find("\x1b[31mred", 1, "x").error().message,
+            "no instance 1 of the topic \\x1b[31mred; did you mean `\\x1b[31mred\\x0a`?");
 }
 
 // Every message type, twice, and an appended part.
