@@ -100,6 +100,8 @@ const std::vector<Pair>& pairs() {
        "at least 0.8x the speed of a bare from_chars loop"},
       {"trace CSV, write", "csv/write_csv", "csv/to_chars", 1 / 0.8,
        "at least 0.8x the speed of a bare to_chars loop"},
+      {"ULog of 34 MB, read", "ulog/read", "ulog/blocks", 5,
+       "at most 5x the time of copying the file in blocks"},
       {"traces compared, all bits equal", "compare/compare", "compare/memcmp", 3,
        "at most 3x memcmp"},
       {"flight, 250 Hz, MuJoCo at 1 kHz", "flight/250hz", "mj_step/250hz", 1.06,

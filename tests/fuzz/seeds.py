@@ -120,6 +120,38 @@ def protocol_seeds():
     yield text_session()
 
 
+def ulog_message(kind, body):
+    return struct.pack("<Hc", len(body), kind.encode()) + body
+
+
+def ulog_seeds():
+    key_value = b"\x0ffloat MC_ROLL_P" + struct.pack("<f", 6.5)
+    inner = struct.pack("<ffI", 1, 2, 0)
+    log = [
+        ulog_message("I", b"\x10char[3] sys_namePX4"),
+        ulog_message("M", b"\x01\x0cchar[3] perfone"),
+        ulog_message("P", key_value),
+        ulog_message("Q", b"\x01" + key_value),
+        ulog_message("F", b"top:uint64_t timestamp;in[2] a;bool b;char[3] c;int8_t[4] _padding0;"),
+        ulog_message("F", b"in:float[2] x;uint8_t[4] _padding0;"),
+        ulog_message("A", b"\x00\x01\x00top"),
+        ulog_message("D", struct.pack("<HQ", 1, 7) + 2 * inner + b"\x01abc"),
+        ulog_message("S", b"\x2f\x73\x13\x20\x25\x0c\xbb\x12"),
+        ulog_message("L", b"6" + struct.pack("<Q", 8) + b"text"),
+        ulog_message("C", b"6" + struct.pack("<HQ", 3, 8) + b"text"),
+        ulog_message("O", b"\x28\x00"),
+        ulog_message("Z", b"new"),
+        ulog_message("R", b"\x01\x00"),
+    ]
+    head = b"ULog\x01\x12\x35" + struct.pack("<BQ", 1, 5)
+    flags = ulog_message("B", bytes(40))
+    end = len(head + flags + b"".join(log))
+    appended = ulog_message("B", bytes(8) + struct.pack("<QQQQ", 1, end, 0, 0))
+    yield head.replace(b"\x35\x01", b"\x35\x00") + b"".join(log)
+    yield head + flags + b"".join(log) + bytes(9) + b"".join(log[6:])
+    yield head + appended + b"".join(log) + b"".join(log[6:])
+
+
 def words_of(seeds):
     word = re.compile(rb"[A-Za-z_][A-Za-z0-9_./\[\]]{2,40}")
     numbers = {b"nan", b"-inf", b"1e308", b"1e-9", b"-1", b"9223372036854775807", b"true"}

@@ -1,0 +1,186 @@
+// Reads a ULog, the log format of PX4, version 0 or 1, message by message, in memory that does not
+// grow with its data. A reader belongs to one thread.
+//
+//     auto reader = ulog::Reader::open(path);
+//     const auto roll = reader->find("vehicle_rates_setpoint", 0, "roll");
+//     ulog::Message message;
+//     while (auto more = reader->next(message)) {  // an Error when false
+//       if (!*more) break;                         // end of file
+//       const auto* data = std::get_if<ulog::Data>(&message);
+//       if (data && roll->is_in(*data)) use(roll->of(*data));
+//     }
+//
+// Damage is counted, and what is intact is read. A message with a wrong body is skipped by its
+// length if a message seems to follow there. Otherwise reading goes on after the next sync message;
+// without one, the rest of the file is not read.
+#pragma once
+
+#include <array>
+#include <cstdio>
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <variant>
+
+#include "harness/ulog/format.hpp"
+
+namespace attest::ulog {
+
+// An instance of a topic, which data name by a number.
+struct Subscription {
+  std::uint16_t id;       // msg_id
+  std::uint8_t multi_id;  // instance, from 0
+  std::string topic;      // also the name of its format
+  std::size_t index;      // in Reader::subscriptions()
+  const Format* format;   // measured; null: cannot be used, so its data are skipped
+};
+
+// Messages. Their views are valid until the reader's next call, their pointers as long as the
+// reader.
+
+// D: values of a topic, from Format::least_bytes to Format::bytes of them.
+struct Data {
+  const Subscription* subscription;
+  std::string_view bytes;
+};
+
+// F: defines a format, which may not be measured yet.
+struct Defined {
+  const Format* format;
+};
+
+// A and R: from here on there may be data of the subscription, or no more.
+struct Subscribed {
+  const Subscription* subscription;
+  bool has_ended;
+};
+
+// I, M, P and Q: a value with a name.
+struct KeyValue {
+  char kind;  // I: information, M: one of several with this name, P: parameter, Q: its default
+  // M: 1 continues the value before it. Q: bit 0, of the system; bit 1, of this vehicle.
+  std::uint8_t flags;
+  std::string_view name;
+  Type type;  // P and Q: i32 or f32
+  bool is_array;
+  std::string_view bytes;  // of all elements
+};
+
+// L and C: a line for people. `level` is '0' (emergency) to '7' (debug). C has a tag, its source.
+struct LogLine {
+  char level;
+  std::optional<std::uint16_t> tag;
+  std::uint64_t timestamp;  // us
+  std::string_view text;
+};
+
+// O: the logger lost messages during this time.
+struct Dropout {
+  std::uint16_t duration_ms;
+};
+
+// S: a pattern at which reading can start again.
+struct Sync {};
+
+using Message = std::variant<Data, Defined, Subscribed, KeyValue, LogLine, Dropout, Sync>;
+
+// A number in the data of one subscription. Reading it looks up no name.
+struct Column {
+  const Subscription* subscription;
+  Type type;
+  std::uint32_t offset;  // bytes
+  bool is_in(const Data& data) const { return data.subscription == subscription; }
+  // As load_as(). REQUIRES: is_in(data).
+  template <typename T = double>
+  T of(const Data& data) const {
+    return load_as<T>(type, data.bytes.data() + offset);
+  }
+};
+
+// What is wrong with a file. `bad_format` is counted for definitions, subscriptions and data.
+enum class DamageKind { cut_off, garbage, bad_message, bad_format, unknown_id, wrong_size };
+struct Damage {
+  static constexpr std::size_t most_findings = 10;
+  struct Finding {
+    std::uint64_t offset;  // of the message in the file
+    DamageKind kind;
+    std::string message;
+  };
+
+  std::array<std::uint64_t, 6> counts{};  // by kind
+  std::vector<Finding> first;             // the first most_findings
+  std::uint64_t skipped_bytes = 0;        // not read as messages
+  std::uint64_t count(DamageKind kind) const { return counts[static_cast<std::size_t>(kind)]; }
+  std::uint64_t total() const { return std::accumulate(counts.begin(), counts.end(), 0ULL); }
+};
+
+struct Header {
+  std::uint8_t version = 0;
+  std::uint64_t start_us = 0;  // since the start of the system
+  // Of the flag bits message, which files of version 0 do not have.
+  std::uint64_t compatible_flags = 0, incompatible_flags = 0;
+  std::array<std::uint64_t, 3> appended_offsets{};  // in the file; 0: unused
+};
+
+class Reader {
+ public:
+  // Also reads all before the first data, so that find() works at once; next() gives it again.
+  // Errors: unreadable, not a ULog, another version, incompatible flags that attest does not know.
+  static Result<Reader> open(const std::filesystem::path& path);
+
+  const Header& header() const { return header_; }
+  const Formats& formats() const { return formats_; }                               // so far
+  const std::deque<Subscription>& subscriptions() const { return subscriptions_; }  // so far
+  // Finds a number in the data of an instance of a topic, by its path as in Format::locate().
+  // Errors: no such topic, instance or field so far; its format cannot be used.
+  Result<Column> find(std::string_view topic, std::uint8_t multi_id, std::string_view path) const;
+  // Reads the next valid message. False: after the last one. Errors: the file cannot be read.
+  Result<bool> next(Message& message);
+
+  // Of the message last read: its place in the file, and whether it is in a part that was appended
+  // when the log had ended, such as the report of a crash.
+  std::uint64_t offset() const { return offset_; }
+  bool is_appended() const { return section_ > 0; }
+
+  // So far. Messages of an unknown type are skipped, and are no damage.
+  const Damage& damage() const { return damage_; }
+  std::uint64_t unknown_messages() const { return unknown_messages_; }
+
+ private:
+  Reader() = default;
+  Result<void> read_header();
+  void start();
+  // What the file has there: at least `count` bytes, at most 1 MiB, but none after end_.
+  std::string_view bytes_at(std::uint64_t offset, std::size_t count);
+  void fill_buffer(std::uint64_t offset);
+  // Give the message and return true, or count what is wrong with it.
+  bool accept(char type, std::string_view body, Message& message);
+  bool accept_data(std::string_view body, Message& message);
+  bool accept_value(char type, std::string_view body, Message& message);
+  bool accept_subscription(std::string_view body, Message& message);
+  bool refuse(DamageKind kind, const std::string& why);  // returns false
+  void resynchronise(bool is_cut_off);
+
+  std::string file_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream_{nullptr, std::fclose};
+  std::unique_ptr<char[]> buffer_;                   // a part of the file
+  std::uint64_t buffer_begin_ = 0, buffer_end_ = 0;  // in the file
+  std::optional<Error> read_failure_;
+  std::uint64_t file_size_ = 0;  // when it was opened
+  Header header_;
+  Formats formats_;
+  std::deque<Subscription> subscriptions_;   // at addresses that stay
+  std::vector<const Subscription*> active_;  // by msg_id; null: no data are expected
+  std::uint64_t first_message_ = 0;          // in the file
+  std::vector<std::uint64_t> section_ends_;  // of the log itself, then of each appended part
+  std::size_t section_ = 0;
+  std::uint64_t end_ = 0;       // of the section
+  std::uint64_t position_ = 0;  // of the next message
+  std::uint64_t offset_ = 0;
+  Damage damage_;
+  std::uint64_t unknown_messages_ = 0;
+};
+
+}  // namespace attest::ulog

@@ -1,0 +1,64 @@
+// ULog files. Each message that the reader gives lies within the file and after the one before it,
+// and each field of its data can be read. A second reading gives the same.
+#include <string>
+
+#include "harness/ulog/reader.hpp"
+#include "tests/fuzz/fuzz.hpp"
+
+namespace attest::fuzz {
+namespace {
+
+std::uint64_t sum_of(const ulog::Message& message) {
+  std::uint64_t sum = message.index();
+  if (const auto* const data = std::get_if<ulog::Data>(&message)) {
+    for (const ulog::Field& leaf : data->subscription->format->leaves) {
+      require(leaf.offset + leaf.count * ulog::bytes_of(leaf.type) <= data->bytes.size(),
+              "a field lies in its data");
+      sum += ulog::load_as<double>(leaf.type, data->bytes.data() + leaf.offset) != 0;
+    }
+  }
+  if (const auto* const each = std::get_if<ulog::KeyValue>(&message)) {
+    for (const char byte : each->bytes) sum += static_cast<unsigned char>(byte);
+  }
+  if (const auto* const line = std::get_if<ulog::LogLine>(&message)) {
+    for (const char byte : line->text) sum += static_cast<unsigned char>(byte);
+  }
+  return sum;
+}
+
+std::uint64_t sum_of_log(const std::filesystem::path& file, std::size_t size) {
+  auto reader = ulog::Reader::open(file);
+  if (!reader) {
+    require_readable(reader.error(), file);
+    return 0;
+  }
+  std::uint64_t sum = 0, last = 0;
+  ulog::Message message;
+  while (true) {
+    const auto more = reader->next(message);
+    require(more.has_value(), "the file can be read to its end");
+    if (!*more) break;
+    require(reader->offset() > last && reader->offset() < size, "the messages follow one another");
+    last = reader->offset();
+    sum += sum_of(message);
+  }
+  for (const ulog::Damage::Finding& finding : reader->damage().first) {
+    require_readable(finding.message);
+    require(finding.offset < size || size == 16, "damage has a place in the file");
+  }
+  if (!reader->subscriptions().empty()) {
+    const auto found = reader->find(reader->subscriptions().front().topic, 0, "timestamp");
+    if (!found) require_readable(found.error(), file);
+  }
+  return sum;
+}
+
+}  // namespace
+}  // namespace attest::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace attest;
+  const auto file = fuzz::write("log.ulg", fuzz::text_of(data, size));
+  fuzz::require(fuzz::sum_of_log(file, size) == fuzz::sum_of_log(file, size), "the same values");
+  return 0;
+}
