@@ -86,8 +86,11 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("F");
   add_plant(*command, options->vehicle, options->plant);
   add_port(*command, options->host.port);
-  command->add_option("--out", options->out, "The flown trace (CSV); `-` is stdout")
-      ->type_name("F.csv")
+  command
+      ->add_option("--out", options->out,
+                   "The flown trace: CSV, or a ULog of PX4 if the name ends with .ulg; `-` is "
+                   "stdout, as CSV")
+      ->type_name("F")
       ->required();
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command, {{"attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv",
@@ -154,8 +157,11 @@ void add_record(CLI::App& app, const Globals& globals, Action& action) {
       ->required();
   command->add_option("--rate", options->rate, "The loop rate [Hz]")->type_name("HZ")->required();
   add_port(*command, options->host.port);
-  command->add_option("--out", options->out, "The trace (CSV); `-` is stdout")
-      ->type_name("F.csv")
+  command
+      ->add_option("--out", options->out,
+                   "The trace: CSV, or a ULog of PX4 if the name ends with .ulg; `-` is stdout, "
+                   "as CSV")
+      ->type_name("F")
       ->capture_default_str();
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command, {{"attest record rates/p_alone --rate 250 --port lib:./libmine.so --out "

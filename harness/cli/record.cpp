@@ -8,7 +8,7 @@
 #include "harness/cli/find_case.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
-#include "harness/trace/csv.hpp"
+#include "harness/ulog/trace_log.hpp"
 #include "harness/verify/fixed_step.hpp"
 
 namespace attest::cli {
@@ -35,7 +35,7 @@ Result<void> record(const RecordOptions& options, const Globals& globals) {
   if (!checked) return tl::unexpected(checked.error());
   const auto trace = recorded(options, *suite);
   if (!trace) return tl::unexpected(trace.error());
-  return write_csv(options.out, *trace, all_columns(*trace));
+  return write_trace(options.out, *trace);
 }
 
 }  // namespace

@@ -3,22 +3,12 @@
 #include <utility>
 
 #include "harness/core/file.hpp"
-#include "harness/trace/csv.hpp"
+#include "harness/ulog/trace_log.hpp"
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/fixed_step.hpp"
 #include "harness/verify/judge.hpp"
 
 namespace attest {
-namespace {
-
-Result<void> write_flown(const Trace& trace, const std::filesystem::path& path) {
-  CsvColumns columns = all_columns(trace);
-  columns.plant = true;
-  return write_csv(path, trace, columns);
-}
-
-}  // namespace
-
 Result<CaseResult> simulate_flight(const Case& the_case, FlightPlan plan, PortHost& host,
                                    const std::filesystem::path& out) {
   CaseResult result = result_for(the_case, plan.configuration);
@@ -33,7 +23,7 @@ Result<CaseResult> simulate_flight(const Case& the_case, FlightPlan plan, PortHo
     return result;
   }
   result.ticks = flown->trace.samples.size();
-  if (auto written = write_flown(flown->trace, out); !written) {
+  if (auto written = write_trace(out, flown->trace); !written) {
     return tl::unexpected(written.error());
   }
   if (flown->divergence) {

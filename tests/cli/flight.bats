@@ -248,3 +248,16 @@ CHECK
   has "models/iris.toml:"
   has 'did you mean `MC_ROLL_P`'
 }
+
+@test "a flight is written as a log of PX4" {
+  "$ATTEST" sim hover --rate 250 --out hover.ulg
+  [ "$(head -c 4 hover.ulg)" = ULog ]
+  grep -aq "vehicle_attitude:uint64_t timestamp;float\[4\] q;" hover.ulg
+  grep -aq MC_ROLL_P hover.ulg
+  "$ATTEST" record rates/p_alone --rate 250 --out p_alone.ulg
+  grep -aq "actuator_controls_0:uint64_t timestamp;float\[8\] control;" p_alone.ulg
+  run "$ATTEST" record px4-v1.5.5/mixer/controls_beyond_1 --rate 250 --out 4x.ulg
+  [ "$status" -eq 2 ]
+  has "a ULog is for traces of the controller"
+  [ ! -e 4x.ulg ]
+}

@@ -48,7 +48,7 @@ shards() {
   [ ! -e merged.json ]
 }
 
-@test "reports of another suite, or of a vector that is none, are refused" {
+@test "reports of another suite, or of an unknown vector, are refused" {
   shards builtin 2
   sed 's/"sha256": "[0-9a-f]*"/"sha256": "'"$(printf '0%.0s' {1..64})"'"/' part1.json >p1.json
   sed 's/"sha256": "[0-9a-f]*"/"sha256": "'"$(printf '0%.0s' {1..64})"'"/' part2.json >p2.json

@@ -15,8 +15,9 @@ using testing::ElementsAre;
 constexpr double inf = std::numeric_limits<double>::infinity();
 
 TEST(JsonReader, ReadsEachType) {
-  const json object = {{"text", "a"},  {"texts", {"b", "c"}}, {"count", 3},         {"integer", -3},
-                       {"flag", true}, {"real", 0.5},         {"inner", {{"x", 1}}}};
+  const json object = json::parse(
+      R"({"text": "a", "texts": ["b", "c"], "count": 3, "integer": -3, "flag": true, "real": 0.5,
+          "inner": {"x": 1}})");
   std::string error;
   JsonReader reader(object, error);
   EXPECT_EQ(reader.text("text"), "a");
