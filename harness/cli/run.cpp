@@ -7,6 +7,7 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/outputs.hpp"
+#include "harness/cli/plotted_traces.hpp"
 #include "harness/cli/run_plan.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
@@ -36,10 +37,9 @@ Result<std::vector<ReportFile>> open_reports(const RunOptions& options) {
   return reports;
 }
 
-Result<void> write_reports(std::vector<ReportFile>& reports, const RunResult& run,
-                           const std::optional<Diagnosis>& diagnosis) {
+Result<void> write_reports(std::vector<ReportFile>& reports, const Report& report) {
   for (auto& [file, format] : reports) {
-    if (auto written = file.write(format.render(run, diagnosis)); !written) return written;
+    if (auto written = file.write(format.render(report)); !written) return written;
     if (auto committed = file.commit(); !committed) return committed;
   }
   return {};
@@ -86,6 +86,36 @@ int exit_code(const RunResult& run) {
   return exit_ok;
 }
 
+Result<void> check_paths(const RunOptions& options, const SuiteFolder& suite) {
+  std::vector<std::string> outputs;
+  for (const auto& [option, path] : options.reports) outputs.push_back(path);
+  auto checked = check_outputs(
+      outputs, {options.host.port, {options.expected_failures, options.timing}}, suite);
+  if (!checked) return checked;
+  return prepare_trace_folder(options.save_traces, suite);
+}
+
+// Runs all vectors. False: interrupted, and the results are not complete.
+bool run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
+  Progress progress(plan.results, Progress::on_stderr(globals.quiet));
+  JobOptions<CaseResult> jobs;
+  jobs.processes = options.jobs;
+  jobs.in_process = options.host.in_process;
+  jobs.fail_fast = options.fail_fast;
+  jobs.on_result = [&](const CaseResult& result) { progress.add(result); };
+  jobs.fails = [&](const CaseResult& result) {
+    return fails_a_run(result.verdict) && !(plan.expected && plan.expected->expects(result));
+  };
+  jobs.stop = interrupted;
+  JobResults<CaseResult> outcome = run_jobs(plan.jobs, jobs);
+  progress.finish();
+  RunResult& run = plan.run;
+  run.results = std::move(outcome.results);
+  run.errors = std::move(outcome.errors);
+  run.stopped_early = outcome.stopped_early;
+  return !interrupted();
+}
+
 }  // namespace
 
 int run_command(const RunOptions& options, const Globals& globals) {
@@ -93,41 +123,22 @@ int run_command(const RunOptions& options, const Globals& globals) {
   note_interrupts();  // before the first request to the port, which may hang
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
-  std::vector<std::string> outputs;
-  for (const auto& [option, path] : options.reports) outputs.push_back(path);
-  const auto checked = check_outputs(
-      outputs, {options.host.port, {options.expected_failures, options.timing}}, *suite);
-  if (!checked) return report_error(checked.error());
-  if (const auto ready = prepare_trace_folder(options.save_traces, *suite); !ready) {
-    return report_error(ready.error());
+  if (const auto checked = check_paths(options, *suite); !checked) {
+    return report_error(checked.error());
   }
-  auto plan = make_plan(options, *suite);
+  const auto traces = PlottedTraces::prepare(options);
+  if (!traces) return report_error(traces.error());
+  auto plan = make_plan(traces->planned(options), *suite);
   if (!plan) return report_error(plan.error());
   plan->run.suite_folder = globals.suite;
   auto reports = open_reports(options);
   if (!reports) return report_error(reports.error());
-
-  Progress progress(plan->results, Progress::on_stderr(globals.quiet));
-  JobOptions<CaseResult> jobs;
-  jobs.processes = options.jobs;
-  jobs.in_process = options.host.in_process;
-  jobs.fail_fast = options.fail_fast;
-  jobs.on_result = [&](const CaseResult& result) { progress.add(result); };
-  jobs.fails = [&](const CaseResult& result) {
-    return fails_a_run(result.verdict) && !(plan->expected && plan->expected->expects(result));
-  };
-  jobs.stop = interrupted;
-  JobResults<CaseResult> outcome = run_jobs(plan->jobs, jobs);
-  progress.finish();
-  if (interrupted()) {
+  if (!run_all(options, globals, *plan)) {
     fmt::print(stderr, "attest: interrupted; no report was written\n");
     return exit_interrupted;
   }
 
   RunResult& run = plan->run;
-  run.results = std::move(outcome.results);
-  run.errors = std::move(outcome.errors);
-  run.stopped_early = outcome.stopped_early;
   const bool is_complete = options.timing.empty() && options.select.selects_all() &&
                            !run.stopped_early && run.errors.empty();
   if (plan->expected) plan->expected->apply(is_complete, run);
@@ -137,8 +148,9 @@ int run_command(const RunOptions& options, const Globals& globals) {
   } else if (options.diagnose && run.failed() && run.parameters.empty()) {
     diagnosis = diagnosed(*plan, options.jobs);
   }
+  traces->save(*plan, *suite, options);
   // Before the summary: if its reader closes the pipe early, SIGPIPE ends this process.
-  const auto written = write_reports(*reports, run, diagnosis);
+  const auto written = write_reports(*reports, {run, diagnosis, traces->folder()});
   const int code = exit_code(run);
   if (!options.save_traces.empty() && run.failed()) {
     fmt::print(stderr, "attest: note: the traces of the failing vectors are in {}\n",
