@@ -96,7 +96,9 @@
   );
 
   const noteOf = (row) =>
-    row.stage ?? (row.headroom ? `headroom ${Number(row.headroom).toPrecision(3)}` : row.reason);
+    row.stage ||
+    row.reason ||
+    (row.headroom ? `headroom ${Number(row.headroom).toPrecision(3)}` : '');
   const rowElement = (row, i) => {
     const made = element(
       'div',

@@ -116,6 +116,46 @@ void add_conclusion(const RunResult& run, data& page) {
            }));
 }
 
+// The failures without a divergence (a crash, a metric of a flight), counted by reason.
+struct Reason {
+  Verdict verdict;
+  std::string text;
+  std::size_t count;
+};
+
+std::vector<Reason> reasons_of(const RunResult& run) {
+  constexpr std::size_t most = 8;
+  std::vector<Reason> reasons;
+  for (const CaseResult& result : run.results) {
+    if (!fails_a_run(result.verdict) || result.first) continue;
+    const std::string reason = reason_text(result);
+    const auto same = std::find_if(reasons.begin(), reasons.end(), [&](const Reason& known) {
+      return known.verdict == result.verdict && known.text == reason;
+    });
+    if (same != reasons.end())
+      ++same->count;
+    else
+      reasons.push_back({result.verdict, reason, 1});
+  }
+  std::stable_sort(reasons.begin(), reasons.end(),
+                   [](const Reason& a, const Reason& b) { return a.count > b.count; });
+  if (reasons.size() > most) reasons.resize(most);
+  return reasons;
+}
+
+void add_reasons(const RunResult& run, data& page) {
+  const std::vector<Reason> reasons = reasons_of(run);
+  page.set("has_reasons", !reasons.empty());
+  page.set("reasons", list_of(reasons, [](const Reason& reason) {
+             data out;
+             set_text(out, "verdict", name_of(reason.verdict));
+             set_text(out, "symbol", symbol_of(reason.verdict));
+             set_text(out, "count", fmt::to_string(reason.count));
+             set_text(out, "text", reason.text);
+             return out;
+           }));
+}
+
 data suspect_to_data(const Suspect& suspect) {
   std::vector<std::string> others;
   for (const faults::Fault* other : suspect.ambiguity_group) {
@@ -295,6 +335,7 @@ std::string filled_page(const Report& report) {
   add_files(page);
   add_conclusion(run, page);
   add_diagnosis(report.diagnosis, page);
+  add_reasons(run, page);
   add_facts(run, page);
   add_verdicts(page);
   add_matrices(run, page);

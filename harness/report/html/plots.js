@@ -94,7 +94,7 @@ const attest = {};
     underlayCallback: marks(curves, marked),
     axes: {
       x: {axisLabelFormatter: (t) => shown(t), pixelsPerLabel: 70},
-      y: {axisLabelFormatter: (v) => shown(v), pixelsPerLabel: 28},
+      y: {axisLabelFormatter: (v) => shown(v), pixelsPerLabel: 22},
     },
   });
 
@@ -123,7 +123,7 @@ const attest = {};
       labels: ['time', 'allowed', 'difference'],
       colors: [colour('allowed'), colour('got')],
       series: {allowed: {strokeWidth: 1}, difference: {strokeWidth: 1.5}},
-      xlabel: 'time from the first tick [s]',
+      xlabel: 'difference between port and expected value, over time from the first tick [s]',
       xLabelHeight: 16,
     });
   };
