@@ -8,14 +8,15 @@
 namespace attest {
 namespace {
 
-// The verdict that a reader must see first has the largest number.
+// The verdict that a reader must see first has the largest number. A vector that was not judged
+// says less about a group than one that passed.
 int severity(Verdict verdict) {
   switch (verdict) {
-    case Verdict::pass:
-      return 0;
     case Verdict::skip:
-      return 1;
+      return 0;
     case Verdict::unsupported:
+      return 1;
+    case Verdict::pass:
       return 2;
     case Verdict::xfail:
       return 3;

@@ -15,7 +15,7 @@ struct MatrixCell {
   std::size_t passed = 0;
   std::size_t failed = 0;
   std::size_t apart = 0;           // unsupported, skip, xfail
-  std::optional<Verdict> worst;    // empty: no result
+  std::optional<Verdict> worst;    // of those that were judged, if any; empty: no result
   std::optional<double> headroom;  // the smallest of those that passed; empty: equal bits
 
   std::size_t all() const { return passed + failed + apart; }

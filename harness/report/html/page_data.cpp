@@ -263,13 +263,22 @@ data row_to_data(const MatrixRow& row, const std::string& group, const std::vect
   return out;
 }
 
-void add_matrices(const RunResult& run, data& page) {
-  const Matrix matrix = matrix_of(run);
+// Those that fail first.
+std::vector<std::string> profiles_of(const Matrix& matrix) {
   std::vector<std::string> profiles;
   for (const MatrixRow& row : matrix.rows) {
     const bool known = std::find(profiles.begin(), profiles.end(), row.profile) != profiles.end();
     if (!known) profiles.push_back(row.profile);
   }
+  std::stable_partition(profiles.begin(), profiles.end(), [&](const std::string& profile) {
+    return total_of(matrix, profile).total.failed > 0;
+  });
+  return profiles;
+}
+
+void add_matrices(const RunResult& run, data& page) {
+  const Matrix matrix = matrix_of(run);
+  const std::vector<std::string> profiles = profiles_of(matrix);
   page.set(
       "matrices", list_of(profiles, [&](const std::string& profile) {
         data rows(data::type::list);

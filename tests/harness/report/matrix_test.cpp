@@ -27,6 +27,14 @@ TEST(Matrix, TheWorstVerdictIsTheOneToSeeFirst) {
   EXPECT_EQ(total_of(matrix).total.worst, Verdict::crash);
 }
 
+TEST(Matrix, AVectorThatWasNotJudgedDoesNotHideOneThatPassed) {
+  RunResult run = passing_run();
+  run.results.front().verdict = Verdict::skip;
+  EXPECT_EQ(matrix_of(run).rows[0].cells[0].worst, Verdict::pass);
+  for (CaseResult& result : run.results) result.verdict = Verdict::skip;
+  EXPECT_EQ(matrix_of(run).rows[0].cells[0].worst, Verdict::skip);
+}
+
 TEST(Matrix, TheHeadroomIsTheSmallestOfThoseThatPassed) {
   const Matrix matrix = matrix_of(sample_run());
   EXPECT_EQ(matrix.rows[0].total.headroom, 12.34);

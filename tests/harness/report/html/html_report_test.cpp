@@ -1,6 +1,6 @@
 #include "harness/report/html/html_report.hpp"
 
-#include <regex>
+#include <algorithm>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -74,6 +74,23 @@ TEST(HtmlReport, TheMatrixHasWorstVerdictCountsAndHeadroom) {
   EXPECT_THAT(page, HasSubstr("data-verdict=\"fail\" data-group=\"px4-v1.5.5/attitude\" "
                               "data-rate=\"100hz\"><span class=\"symbol\">\u2717</span> "
                               "1/2<small>12&times;</small>"));
+}
+
+TEST(HtmlReport, AProfileThatFailsComesBeforeOneThatPasses) {
+  RunResult run = sample_run();
+  run.results.insert(run.results.begin(), passed("attitude", "a", Rate::hz(250)));
+  run.results.front().profile = "px4-v1.3.4";
+  const std::string page = page_of(run);
+  EXPECT_LT(page.find("<caption>px4-v1.5.5"), page.find("<caption>px4-v1.3.4"));
+}
+
+TEST(HtmlReport, CountsFailuresWithoutADivergenceByReason) {
+  RunResult run = sample_run();
+  run.results.push_back(
+      *std::find_if(run.results.begin(), run.results.end(),
+                    [](const CaseResult& result) { return result.verdict == Verdict::timeout; }));
+  EXPECT_THAT(page_of(run), HasSubstr("2 timeout</b>: no answer within 10 s"));
+  EXPECT_THAT(page_of(passing_run()), Not(HasSubstr("Failures without a divergence")));
 }
 
 TEST(HtmlReport, IsTheSameForTheSameRun) {
