@@ -17,10 +17,9 @@
 namespace attest::cli {
 namespace {
 
-Result<void> write_reports(std::vector<ReportFile>& reports, const RunResult& run,
-                           const std::optional<Diagnosis>& diagnosis) {
+Result<void> write_reports(std::vector<ReportFile>& reports, const Report& report) {
   for (auto& [file, format] : reports) {
-    if (auto written = file.write(format.render(run, diagnosis)); !written) return written;
+    if (auto written = file.write(format.render(report)); !written) return written;
     if (auto committed = file.commit(); !committed) return committed;
   }
   return {};
@@ -100,7 +99,7 @@ int conclude(const RunResult& run, const Examined& examined, const ReportOptions
     diagnosis = diagnosed(run, examined);
   }
   // Before the summary: if its reader closes the pipe early, SIGPIPE ends this process.
-  const auto written = write_reports(reports, run, diagnosis);
+  const auto written = write_reports(reports, {run, diagnosis, examined.traces});
   const int code = exit_code(run);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   if (!globals.quiet || code != exit_ok) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <vector>
 
 #include "harness/casefile/select.hpp"
@@ -25,6 +26,7 @@ struct Examined {
   const std::vector<SelectedCase>& cases;  // those of the results
   const HostOptions& host;
   int jobs = 1;
+  std::filesystem::path traces;  // as Report::traces
 };
 
 // `run` has all results. Prints errors on stderr, the summary on stdout, and writes the reports.

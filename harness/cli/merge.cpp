@@ -196,7 +196,7 @@ int merge_command(const MergeOptions& options, const Globals& globals) {
   std::optional<HostOptions> host;
   if (report.diagnose && run.failed()) host = host_for(options, run);
   report.diagnose = host.has_value();
-  return conclude(run, {*cases, host.value_or(HostOptions{}), options.jobs}, report,
+  return conclude(run, {*cases, host.value_or(HostOptions{}), options.jobs, {}}, report,
                   *std::move(reports), begin, globals);
 }
 

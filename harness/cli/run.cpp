@@ -7,61 +7,77 @@
 #include "harness/cli/conclude.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/outputs.hpp"
+#include "harness/cli/plotted_traces.hpp"
 #include "harness/cli/run_plan.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/report/progress.hpp"
 
 namespace attest::cli {
+namespace {
 
-int run_command(const RunOptions& options, const Globals& globals) {
-  const auto begin = std::chrono::steady_clock::now();
-  note_interrupts();  // before the first request to the port, which may hang
-  const auto suite = find_suite(globals.suite);
-  if (!suite) return report_error(suite.error());
+Result<void> check_paths(const RunOptions& options, const SuiteFolder& suite) {
   std::vector<std::string> outputs;
   for (const auto& [option, path] : options.report.files) outputs.push_back(path);
-  const auto checked = check_outputs(
-      outputs, {options.host.port, {options.expected_failures, options.timing}}, *suite);
-  if (!checked) return report_error(checked.error());
-  if (const auto ready = prepare_trace_folder(options.save_traces, *suite); !ready) {
-    return report_error(ready.error());
-  }
-  auto plan = make_plan(options, *suite);
-  if (!plan) return report_error(plan.error());
-  plan->run.suite_folder = globals.suite;
-  auto reports = open_reports(options.report);
-  if (!reports) return report_error(reports.error());
+  auto checked = check_outputs(
+      outputs, {options.host.port, {options.expected_failures, options.timing}}, suite);
+  if (!checked) return checked;
+  return prepare_trace_folder(options.save_traces, suite);
+}
 
-  Progress progress(plan->results, Progress::on_stderr(globals.quiet));
+// Runs all vectors. False: interrupted, and the results are not complete.
+bool run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
+  Progress progress(plan.results, Progress::on_stderr(globals.quiet));
   JobOptions<CaseResult> jobs;
   jobs.processes = options.jobs;
   jobs.in_process = options.host.in_process;
   jobs.fail_fast = options.fail_fast;
   jobs.on_result = [&](const CaseResult& result) { progress.add(result); };
   jobs.fails = [&](const CaseResult& result) {
-    return fails_a_run(result.verdict) && !(plan->expected && plan->expected->expects(result));
+    return fails_a_run(result.verdict) && !(plan.expected && plan.expected->expects(result));
   };
   jobs.stop = interrupted;
-  JobResults<CaseResult> outcome = run_jobs(plan->jobs, jobs);
+  JobResults<CaseResult> outcome = run_jobs(plan.jobs, jobs);
   progress.finish();
-  if (interrupted()) {
+  RunResult& run = plan.run;
+  run.results = std::move(outcome.results);
+  run.errors = std::move(outcome.errors);
+  run.stopped_early = outcome.stopped_early;
+  return !interrupted();
+}
+
+}  // namespace
+
+int run_command(const RunOptions& options, const Globals& globals) {
+  const auto begin = std::chrono::steady_clock::now();
+  note_interrupts();  // before the first request to the port, which may hang
+  const auto suite = find_suite(globals.suite);
+  if (!suite) return report_error(suite.error());
+  if (const auto checked = check_paths(options, *suite); !checked) {
+    return report_error(checked.error());
+  }
+  const auto traces = PlottedTraces::prepare(options);
+  if (!traces) return report_error(traces.error());
+  auto plan = make_plan(traces->planned(options), *suite);
+  if (!plan) return report_error(plan.error());
+  plan->run.suite_folder = globals.suite;
+  auto reports = open_reports(options.report);
+  if (!reports) return report_error(reports.error());
+  if (!run_all(options, globals, *plan)) {
     fmt::print(stderr, "attest: interrupted; no report was written\n");
     return exit_interrupted;
   }
 
   RunResult& run = plan->run;
-  run.results = std::move(outcome.results);
-  run.errors = std::move(outcome.errors);
-  run.stopped_early = outcome.stopped_early;
   const bool is_complete = options.timing.empty() && options.select.selects_all() &&
                            !run.stopped_early && run.errors.empty();
   if (plan->expected) plan->expected->apply(is_complete, run);
+  traces->save(*plan, *suite, options);
   if (!options.save_traces.empty() && run.failed()) {
     fmt::print(stderr, "attest: note: the traces of the failing vectors are in {}\n",
                options.save_traces);
   }
-  return conclude(run, {plan->cases, plan->host, options.jobs}, options.report, *std::move(reports),
-                  begin, globals);
+  return conclude(run, {plan->cases, plan->host, options.jobs, traces->folder()}, options.report,
+                  *std::move(reports), begin, globals);
 }
 
 }  // namespace attest::cli

@@ -71,7 +71,8 @@ void add_traces(CLI::App& command, RunOptions& options) {
       .add_option("--save-traces", options.save_traces,
                   "Write the traces of each failing vector to a new folder: "
                   "DIR/PROFILE/GROUP/NAME/CONFIGURATION.got.csv with the port's outputs, "
-                  ".want.csv with the expected ones")
+                  ".want.csv with the expected ones, .tolerance.csv with the allowed difference "
+                  "of each value")
       ->type_name("DIR")
       ->group(option_group::reports);
   command.get_option("--write-expected")->excludes(command.get_option("--expected-failures"));
@@ -114,6 +115,7 @@ void add_run_command(CLI::App& app, const Globals& globals, Action& action) {
         "some vectors, to the bit"},
        {"attest run --port lib:./libmine.so --exclude 'flight*/*' --junit attest.junit.xml",
         "without the flights, with a report for CI"},
+       {"attest run --port lib:./libmine.so --html attest.html", "a page with plots of what fails"},
        {"attest run --port lib:./libmine.so --rerun-failed attest.json",
         "after a correction, what failed in a run with --json attest.json"}});
   command->callback([options, &globals, &action] {

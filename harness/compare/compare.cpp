@@ -12,7 +12,6 @@
 
 #include "harness/compare/events.hpp"
 #include "harness/compare/gross.hpp"
-#include "harness/compare/tilt.hpp"
 
 namespace attest {
 namespace {
@@ -56,7 +55,7 @@ double excess(const Deviation& deviation) {
 
 TickComparer::TickComparer(const ChannelSet& got, const ChannelSet& want,
                            const Tolerances& tolerances)
-    : tolerances_(tolerances) {
+    : level_(tolerances.level()), allowed_(tolerances) {
   const auto table = channels();
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (!table[i].is_output() || !want[i]) continue;
@@ -81,11 +80,9 @@ void TickComparer::add(const Sample& got, const Sample& want,
         tick_, got.in.timestamp, want.in.timestamp);
     return;
   }
-  for (const ParameterChange& change : changes) gain_.set(change);
-  const bool has_setpoint = (want.in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;
-  if (tick_ == 0 || has_setpoint) setpoint_ = want.in;
+  allowed_.next(want.in, changes);
   const bool differs = outputs_differ(got, want);
-  if (differs && tolerances_.level() != Level::events) {
+  if (differs && level_ != Level::events) {
     bool deviates = false;
     for (const std::size_t channel : chosen_) deviates |= !channel_agrees(channel, got, want);
     result_.deviating_ticks += deviates ? 1 : 0;
@@ -120,31 +117,16 @@ bool TickComparer::channel_agrees(std::size_t channel, const Sample& got, const 
   const float w = float_of(what, want);
   if (same_bits(g, w)) return true;
   const bool both_finite = std::isfinite(g) && std::isfinite(w);
-  const double tolerance = both_finite ? tolerance_at(channel, want.in, g, w) : 0;
+  const double tolerance = both_finite ? allowed_.of(channel, want.in, g, w) : 0;
   const double difference = std::abs(static_cast<double>(g) - static_cast<double>(w));
   // Written so that a NaN difference is outside.
-  if (tolerances_.level() == Level::numeric && both_finite && difference <= tolerance) {
+  if (level_ == Level::numeric && both_finite && difference <= tolerance) {
     note_headroom(channel, difference, tolerance);
     return true;
   }
   if (!std::isfinite(g) && std::isfinite(w)) result_.got_non_finite = true;
   note({tick_, want.in.timestamp, channel, g, w, ulp_distance(g, w), tolerance});
   return false;
-}
-
-double TickComparer::tolerance_at(std::size_t channel, const attest_inputs& in, float got,
-                                  float want) const {
-  const Tolerance base = tolerances_.of(channel);
-  const double w = want;
-  const double tolerance = std::max(base.absolute, base.relative * std::abs(w));
-  const double difference = std::abs(static_cast<double>(got) - w);
-  const bool widens = channels()[channel].quantity == Quantity::rate &&
-                      tolerances_.level() == Level::numeric &&
-                      in.vehicle_control_mode.flag_control_attitude_enabled != 0;
-  if (!widens || difference <= tolerance) return tolerance;
-  const double wider = tolerances_.widening(tilt_error(in, setpoint_), gain_.value());
-  // Not finite without an attitude, or with a time constant of zero: then nothing is added.
-  return std::isfinite(wider) ? tolerance + wider : tolerance;
 }
 
 void TickComparer::note(const Deviation& deviation) {

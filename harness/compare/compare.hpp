@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/compare/tilt.hpp"
+#include "harness/compare/allowed_deviation.hpp"
 #include "harness/compare/tolerance.hpp"
 #include "harness/trace/trace.hpp"
 
@@ -75,17 +75,15 @@ class TickComparer {
 
  private:
   bool channel_agrees(std::size_t channel, const Sample& got, const Sample& want);
-  double tolerance_at(std::size_t channel, const attest_inputs& in, float got, float want) const;
   void note(const Deviation& deviation);
   void note_headroom(std::size_t channel, double difference, double tolerance);
 
-  const Tolerances& tolerances_;
+  Level level_;
   std::vector<std::size_t> chosen_;  // channels that both have and that are compared
   // The message if an output of `want` is missing in `got`, or `want` has no output; else empty.
   std::string not_recorded_;
-  std::size_t tick_ = 0;      // the next
-  attest_inputs setpoint_{};  // the inputs with the last new attitude setpoint
-  AttitudeGain gain_;
+  std::size_t tick_ = 0;  // the next
+  AllowedDeviation allowed_;
   Comparison result_;
 };
 

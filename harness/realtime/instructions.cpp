@@ -6,33 +6,13 @@
 
 #include <fmt/format.h>
 
+#include "harness/core/temporary_folder.hpp"
+
 namespace attest {
 namespace {
 
-namespace fs = std::filesystem;
-
-// A folder that is removed with its content.
-class Scratch {
- public:
-  Scratch() {
-    std::string name = (fs::temp_directory_path() / "attest-callgrind-XXXXXX").string();
-    if (::mkdtemp(name.data()) != nullptr) path_ = name;
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 // The last line of callgrind's output, except empty ones, is "totals: 812".
-std::optional<std::uint64_t> total_of(const fs::path& dump) {
+std::optional<std::uint64_t> total_of(const std::filesystem::path& dump) {
   std::ifstream file(dump);
   for (std::string line; std::getline(file, line);) {
     if (line.starts_with("totals: ")) return std::strtoull(line.c_str() + 8, nullptr, 10);
@@ -45,9 +25,9 @@ std::optional<std::uint64_t> total_of(const fs::path& dump) {
 std::vector<std::uint64_t> instructions_of_calls(const std::vector<std::string>& command,
                                                  const std::string& symbol,
                                                  const ProgramLimits& limits) {
-  const Scratch scratch;
-  if (!is_installed("valgrind") || scratch.path().empty()) return {};
-  const std::string dumps = (scratch.path() / "dump").string();
+  const auto folder = TemporaryFolder::make("callgrind");
+  if (!is_installed("valgrind") || !folder) return {};
+  const std::string dumps = (folder->path() / "dump").string();
   // A dump after each call: dump.1, dump.2, ... and the rest, which is empty, as dump.
   std::vector<std::string> counted = {"valgrind",
                                       "--tool=callgrind",

@@ -47,11 +47,6 @@ std::string bits(double value) {
   return fmt::format("0x{:08x}", std::bit_cast<std::uint32_t>(static_cast<float>(value)));
 }
 
-std::string channel_with_unit(const Channel& channel) {
-  const std::string_view unit = unit_of(channel.quantity);
-  return unit.empty() ? std::string(channel.name) : fmt::format("{} [{}]", channel.name, unit);
-}
-
 std::string values(const Channel& channel, const Deviation& deviation) {
   const std::string got = decimal(channel, deviation.got);
   const std::string want = decimal(channel, deviation.want);
@@ -68,20 +63,9 @@ std::string times(double ratio) {
   return ratio < 1e6 ? fmt::format("{:.0f}", ratio) : fmt::format("{:.0e}", ratio);
 }
 
-// The difference and the allowed difference. Empty for flags, which have no distance.
-std::string distance(const Channel& channel, const Deviation& deviation, Level level) {
-  if (channel.type != ChannelType::f32 || level == Level::events) return {};
-  if (!std::isfinite(deviation.want)) return "    the golden is not finite here, on purpose\n";
-  if (!std::isfinite(deviation.got)) return "    not a finite number where the golden has one\n";
-  const double difference = std::abs(deviation.got - deviation.want);
-  std::string out = fmt::format("    off by {:.3g}", difference);
-  if (deviation.ulp != 0) out += fmt::format(" ({} ulp)", deviation.ulp);
-  if (level == Level::exact) return out + "; the exact level allows no other bits\n";
-  out += fmt::format(", allowed {:.3g}", deviation.tolerance);
-  if (deviation.tolerance > 0) {
-    out += fmt::format(": {} times the tolerance", times(difference / deviation.tolerance));
-  }
-  return out + "\n";
+std::string indented_distance(const Deviation& deviation, Level level) {
+  const std::string text = distance_text(deviation, level);
+  return text.empty() ? text : fmt::format("    {}\n", text);
 }
 
 std::string first_deviation(const Deviation& deviation, Level level) {
@@ -90,7 +74,7 @@ std::string first_deviation(const Deviation& deviation, Level level) {
       "  first at tick {}, timestamp {} us, in {}\n{}{}"
       "  look first at the {}: all before it agrees up to this tick\n",
       deviation.tick, deviation.timestamp_us, channel_with_unit(channel),
-      values(channel, deviation), distance(channel, deviation, level), name_of(channel.stage));
+      values(channel, deviation), indented_distance(deviation, level), name_of(channel.stage));
 }
 
 // In one line, below the first. Empty if they are the same.
@@ -113,7 +97,36 @@ std::string attest_with_suite(const RunResult& run) {
   return "attest --suite " + shell_word(run.suite_folder);
 }
 
-// The command that writes the trace of the failing flight.
+}  // namespace
+
+std::string channel_with_unit(const Channel& channel) {
+  const std::string_view unit = unit_of(channel.quantity);
+  return unit.empty() ? std::string(channel.name) : fmt::format("{} [{}]", channel.name, unit);
+}
+
+std::string value_text(const Channel& channel, double value) {
+  const std::string out = decimal(channel, value);
+  return channel.type == ChannelType::f32 ? out + " " + bits(value) : out;
+}
+
+std::string distance_text(const Deviation& deviation, Level level) {
+  if (channels()[deviation.channel].type != ChannelType::f32 || level == Level::events) return {};
+  if (!std::isfinite(deviation.want)) return "the golden is not finite here, on purpose";
+  if (!std::isfinite(deviation.got)) return "not a finite number where the golden has one";
+  const double difference = std::abs(deviation.got - deviation.want);
+  std::string out = fmt::format("off by {:.3g}", difference);
+  if (deviation.ulp != 0) out += fmt::format(" ({} ulp)", deviation.ulp);
+  if (level == Level::exact) return out + "; the exact level allows no other bits";
+  out += fmt::format(", allowed {:.3g}", deviation.tolerance);
+  if (deviation.tolerance == 0) return out;
+  return out + fmt::format(": {} times the tolerance", times(difference / deviation.tolerance));
+}
+
+std::string reason_text(const CaseResult& result) {
+  const std::string reason = one_line(result.reason);
+  return reason.empty() ? std::string(meaning_of(result.verdict)) : reason;
+}
+
 std::string sim_command(const CaseResult& result, const RunResult& run) {
   return one_line(
       fmt::format("{} sim {} --rate {} --vehicle {} --plant {} --port {} "
@@ -123,11 +136,8 @@ std::string sim_command(const CaseResult& result, const RunResult& run) {
                   name_of(result.plant_configuration->plant), shell_word(run.port)));
 }
 
-}  // namespace
-
 std::string failure_headline(const CaseResult& result) {
-  std::string out = one_line(result.reason);
-  if (out.empty()) out = meaning_of(result.verdict);
+  const std::string out = reason_text(result);
   if (!result.first) return out;
   const Deviation& deviation = *result.first;
   const Channel& channel = channels()[deviation.channel];
@@ -170,9 +180,8 @@ std::string finding_text(const CaseResult& result, Level level) {
 }
 
 std::string failure_text(const CaseResult& result, const RunResult& run) {
-  const std::string reason = one_line(result.reason);
   std::string out = fmt::format("{}\n  {}: {}\n", one_line(result.id()), name_of(result.verdict),
-                                reason.empty() ? meaning_of(result.verdict) : reason);
+                                reason_text(result));
   out += finding_text(result, run.level);
   const std::string id = one_line(result.case_id());
   out += fmt::format("  case:      cases/{}.toml\n", id);

@@ -26,4 +26,21 @@ std::string metric_bounds(const MetricResult& metric);
 // "attest run --port lib:./mine.so --filter 'px4-v1.5.5/attitude/roll_30@250hz'"
 std::string reproduce_command(const CaseResult& result, const RunResult& run);
 
+// The command that writes the trace of a flight. REQUIRES: a plant configuration.
+std::string sim_command(const CaseResult& result, const RunResult& run);
+
+// The reason on one line, or what the verdict means.
+std::string reason_text(const CaseResult& result);
+
+// "out/vehicle_rates_setpoint.roll [rad/s]"
+std::string channel_with_unit(const Channel& channel);
+
+// "-6.7663884 0xc0d88641": the shortest decimal that reads back as the same value, and the bits. A
+// flag has no bits.
+std::string value_text(const Channel& channel, double value);
+
+// "off by 8.71 (2161195450 ulp), allowed 0.000201: 43273 times the tolerance". Empty for flags,
+// which have no distance.
+std::string distance_text(const Deviation& deviation, Level level);
+
 }  // namespace attest

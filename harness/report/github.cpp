@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/report/conclusion.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/terminal.hpp"
 #include "harness/report/text.hpp"
@@ -79,13 +80,8 @@ std::string github_summary(const RunResult& run, double wall_s,
                            const std::optional<Diagnosis>& diagnosis) {
   const std::string text = render_summary(run, wall_s, {}, diagnosis);
   const std::string fence = fence_of(text);
-  const bool fails = run.failed() || !run.errors.empty();
-  const bool compared = run.count(Verdict::pass) + run.count(Verdict::xfail) > 0;
-  return fmt::format("### attest: {}\n\n{}text\n{}{}\n\n",
-                     fails      ? "does not conform"
-                     : compared ? "conforms to what was run"
-                                : "nothing was compared",
-                     fence, text, fence);
+  return fmt::format("### attest: {}\n\n{}text\n{}{}\n\n", name_of(conclusion_of(run)), fence, text,
+                     fence);
 }
 
 }  // namespace attest

@@ -195,8 +195,8 @@ void add_environment(pugi::xml_node root, const RunResult& run) {
 
 struct StringWriter : pugi::xml_writer {
   std::string text;
-  void write(const void* data, std::size_t size) override {
-    text.append(static_cast<const char*>(data), size);
+  void write(const void* bytes, std::size_t size) override {
+    text.append(static_cast<const char*>(bytes), size);
   }
 };
 

@@ -3,19 +3,18 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
 
-#include "harness/diagnosis/diagnose.hpp"
-#include "harness/verify/run_result.hpp"
+#include "harness/report/report.hpp"
 
 namespace attest {
 
 struct ReportFormat {
   std::string option;  // of `attest run`: "--junit"
   std::string help;
-  std::function<std::string(const RunResult&, const std::optional<Diagnosis>&)> render;
+  std::function<std::string(const Report&)> render;
+  bool plots_traces = false;  // it reads Report::traces
 };
 
 std::span<const ReportFormat> report_formats();

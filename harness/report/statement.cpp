@@ -126,15 +126,23 @@ void add_box(pugi::xml_node svg, int x, int width, const char* colour, const std
 
 }  // namespace
 
-std::string conformance_statement(const RunResult& run) {
+Statement statement_of(const RunResult& run) {
   const auto claims = claims_of(run);
   const bool fails = std::any_of(claims.begin(), claims.end(),
                                  [](const Claim& claim) { return !claim.failing.empty(); });
-  if (!fails && (!run.errors.empty() || run.stopped_early)) return "none: the run is not complete";
-  if (claims.empty()) return "none: no vector passed";
-  std::vector<std::string> texts;
-  for (const Claim& claim : claims) texts.push_back(text_of(claim, run));
-  return fmt::format("{}; {}", fmt::join(texts, "; "), subject_of(run));
+  if (!fails && (!run.errors.empty() || run.stopped_early)) {
+    return {{"none: the run is not complete"}, ""};
+  }
+  if (claims.empty()) return {{"none: no vector passed"}, ""};
+  Statement statement{{}, subject_of(run)};
+  for (const Claim& claim : claims) statement.claims.push_back(text_of(claim, run));
+  return statement;
+}
+
+std::string conformance_statement(const RunResult& run) {
+  const Statement statement = statement_of(run);
+  const std::string claims = fmt::format("{}", fmt::join(statement.claims, "; "));
+  return statement.subject.empty() ? claims : claims + "; " + statement.subject;
 }
 
 std::string badge(const RunResult& run) {

@@ -2,12 +2,20 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "harness/verify/run_result.hpp"
 
 namespace attest {
 
-// The claim for each profile, then suite, port and date:
+// The claim for each profile. `subject` is suite, port and date, or empty if no claim is made.
+struct Statement {
+  std::vector<std::string> claims;
+  std::string subject;
+};
+Statement statement_of(const RunResult& run);
+
+// The same as one line: the claim for each profile, then suite, port and date:
 //
 //     conformant: px4-v1.5.5, numeric, 11 rates, all groups; cases 1.4, golden 1.4 (released suite
 //     a8370e8fe0dc), port 5f1d2c3b4a59, 2026-03-31

@@ -1,47 +1,26 @@
 #include "harness/report/summary_table.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "harness/report/matrix.hpp"
 #include "harness/report/text.hpp"
 
 namespace attest {
 namespace {
 
-struct Cell {
-  std::size_t passed = 0;
-  std::size_t failed = 0;
-  std::size_t apart = 0;  // unsupported, skip, xfail
-
-  void add(Verdict verdict) {
-    if (verdict == Verdict::pass)
-      ++passed;
-    else if (fails_a_run(verdict))
-      ++failed;
-    else
-      ++apart;
-  }
-
-  std::string text() const {
-    if (passed + failed + apart == 0) return "-";
-    std::string out = fmt::to_string(passed);
-    if (failed > 0) out += fmt::format("/{}", passed + failed);
-    if (apart > 0) out += fmt::format("+{}", apart);
-    return out;
-  }
-
-  Colour colour() const {
-    if (failed > 0) return Colour::red;
-    if (apart > 0) return Colour::yellow;
-    return passed > 0 ? Colour::green : Colour::none;
-  }
-};
+Colour colour_of(const MatrixCell& cell) {
+  if (cell.failed > 0) return Colour::red;
+  if (cell.apart > 0) return Colour::yellow;
+  return cell.passed > 0 ? Colour::green : Colour::none;
+}
 
 struct Row {
   std::string label;
-  std::vector<Cell> cells;  // one per rate, then the total
+  std::vector<MatrixCell> cells;  // one per rate, then the total
 };
 
 struct Table {
@@ -49,53 +28,30 @@ struct Table {
   std::vector<Row> rows;
 };
 
-std::vector<Rate> selected_rates(const RunResult& run) {
-  std::vector<Rate> rates = run.rates;
-  for (const CaseResult& result : run.results) rates.push_back(result.rate);
-  std::sort(rates.begin(), rates.end());
-  rates.erase(std::unique(rates.begin(), rates.end()), rates.end());
-  return rates;
-}
-
-bool several_profiles(const RunResult& run) {
-  return std::any_of(run.results.begin(), run.results.end(), [&run](const CaseResult& result) {
-    return result.profile != run.results.front().profile;
-  });
-}
-
-Row& row_labelled(std::vector<Row>& rows, const std::string& label, std::size_t columns) {
-  const auto found = std::find_if(rows.begin(), rows.end(),
-                                  [&label](const Row& row) { return row.label == label; });
-  if (found != rows.end()) return *found;
-  return rows.emplace_back(Row{label, std::vector<Cell>(columns)});
+Row labelled(std::string label, MatrixRow row) {
+  row.cells.push_back(row.total);
+  return {std::move(label), std::move(row.cells)};
 }
 
 Table table_of(const RunResult& run) {
+  const Matrix matrix = matrix_of(run);
   Table table;
-  const std::vector<Rate> rates = selected_rates(run);
-  for (const Rate& rate : rates) table.header.push_back(rate.to_string());
+  for (const Rate& rate : matrix.rates) table.header.push_back(rate.to_string());
   table.header.push_back("total");
-
-  const bool prefixed = several_profiles(run);
-  Row sum{"total", std::vector<Cell>(table.header.size())};
-  for (const CaseResult& result : run.results) {
-    const std::string label =
-        one_line(prefixed ? result.profile + "/" + result.group : result.group);
-    const auto rate = std::lower_bound(rates.begin(), rates.end(), result.rate);
-    const auto column = static_cast<std::size_t>(rate - rates.begin());
-    Row& row = row_labelled(table.rows, label, table.header.size());
-    for (Row* each : {&row, &sum}) {
-      each->cells[column].add(result.verdict);
-      each->cells.back().add(result.verdict);
-    }
+  const bool prefixed =
+      std::any_of(matrix.rows.begin(), matrix.rows.end(),
+                  [&](const MatrixRow& row) { return row.profile != matrix.rows.front().profile; });
+  for (const MatrixRow& row : matrix.rows) {
+    const std::string label = prefixed ? row.profile + "/" + row.group : row.group;
+    table.rows.push_back(labelled(one_line(label), row));
   }
-  if (table.rows.size() > 1) table.rows.push_back(std::move(sum));
+  if (table.rows.size() > 1) table.rows.push_back(labelled("total", total_of(matrix)));
   return table;
 }
 
 std::size_t column_width(const Table& table, std::size_t column) {
   std::size_t width = table.header[column].size();
-  for (const Row& row : table.rows) width = std::max(width, row.cells[column].text().size());
+  for (const Row& row : table.rows) width = std::max(width, text_of(row.cells[column]).size());
   return width + 2;
 }
 
@@ -121,10 +77,10 @@ std::string block(const Table& table, std::size_t begin, std::size_t end, std::s
   for (const Row& row : table.rows) {
     out += fmt::format("{:<{}}", row.label, labels);
     for (std::size_t column = begin; column < end; ++column) {
-      const std::string text = row.cells[column].text();
+      const std::string text = text_of(row.cells[column]);
       // Padded outside the colour: a padded field would count the escape codes.
       out += std::string(column_width(table, column) - text.size(), ' ');
-      out += painted(text, row.cells[column].colour(), style);
+      out += painted(text, colour_of(row.cells[column]), style);
     }
     out += "\n";
   }

@@ -12,6 +12,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "harness/report/conclusion.hpp"
 #include "harness/report/diagnosis_text.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/statement.hpp"
@@ -73,22 +74,6 @@ std::string failure(const Together& group, const RunResult& run, TerminalStyle s
                        shell_quoted(one_line(shown.case_id()) + "@*"));
   }
   return out + "\n";
-}
-
-// The number of first divergences in each stage: one line for a log with hundreds of failures.
-std::string stages(const RunResult& run) {
-  std::array<std::size_t, stage_count> counts{};
-  for (const CaseResult& result : run.results) {
-    if (!fails_a_run(result.verdict) || !result.first) continue;
-    ++counts[static_cast<std::size_t>(channels()[result.first->channel].stage)];
-  }
-  std::vector<std::string> parts;
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    if (counts[i] == 0) continue;
-    parts.push_back(fmt::format("{} in {}", name_of(static_cast<Stage>(i)), counts[i]));
-  }
-  if (parts.empty()) return {};
-  return fmt::format("first stage to differ: {}\n", fmt::join(parts, ", "));
 }
 
 std::string group_and_verdict(const CaseResult& result) {
@@ -227,57 +212,22 @@ std::string errors(const RunResult& run, TerminalStyle style) {
   return out.empty() ? out : out + "\n";
 }
 
-// "9 fail, 2 crash", of the verdicts for which `wanted` is true.
-template <typename Wanted>
-std::string verdict_counts(const RunResult& run, Wanted wanted) {
-  std::vector<std::string> parts;
-  for (int i = 0; i < verdict_count; ++i) {
-    const auto verdict = static_cast<Verdict>(i);
-    if (run.count(verdict) == 0 || !wanted(verdict)) continue;
-    parts.push_back(fmt::format("{} {}", run.count(verdict), name_of(verdict)));
+Colour colour_of(Conclusion conclusion) {
+  switch (conclusion) {
+    case Conclusion::pass:
+      return Colour::green;
+    case Conclusion::fail:
+      return Colour::red;
+    case Conclusion::none:
+      break;
   }
-  return fmt::format("{}", fmt::join(parts, ", "));
-}
-
-std::string setting(const RunResult& run) {
-  std::vector<std::string> profiles;
-  for (const CaseResult& result : run.results) {
-    if (result.verdict == Verdict::skip) continue;
-    const std::string profile = one_line(result.profile);
-    if (std::find(profiles.begin(), profiles.end(), profile) == profiles.end()) {
-      profiles.push_back(profile);
-    }
-  }
-  std::string out = fmt::format("{}", fmt::join(profiles, ", "));
-  if (!out.empty()) out += ", ";
-  return fmt::format("{}{}, {}", out, name_of(run.level), counted(run.rates.size(), "rate"));
+  return Colour::yellow;
 }
 
 std::string verdict_line(const RunResult& run, double wall_s, TerminalStyle style) {
-  const std::size_t all = run.results.size();
-  const std::size_t passed = run.count(Verdict::pass);
-  const bool bad = run.failed() || !run.errors.empty();
-  const bool compared = passed + run.count(Verdict::xfail) > 0;
-  const std::string_view word = bad ? "FAIL" : compared ? "PASS" : "NONE";
-  const Colour colour = bad ? Colour::red : compared ? Colour::green : Colour::yellow;
-
-  std::string out = painted(word, colour, style) + " ";
-  const auto failed = static_cast<std::size_t>(
-      std::count_if(run.results.begin(), run.results.end(),
-                    [](const CaseResult& result) { return fails_a_run(result.verdict); }));
-  if (failed > 0) {
-    const std::string kinds = verdict_counts(run, fails_a_run);
-    const bool only_fail = kinds == fmt::format("{} {}", failed, name_of(Verdict::fail));
-    out += fmt::format("{} failed{}; ", failed, only_fail ? "" : fmt::format(" ({})", kinds));
-  }
-  if (!run.errors.empty()) out += counted(run.errors.size(), "error") + "; ";
-  out += fmt::format("{} of {} conform", passed, counted(all, "vector"));
-  const std::string apart = verdict_counts(
-      run, [](Verdict verdict) { return verdict != Verdict::pass && !fails_a_run(verdict); });
-  if (!apart.empty()) out += ", " + apart;
-  out += fmt::format(" ({}) in {:.1f} s", setting(run), wall_s);
-  if (run.stopped_early) out += "; stopped early, the rest was not run";
-  return out + "\n";
+  const Conclusion conclusion = conclusion_of(run);
+  return fmt::format("{} {}\n", painted(name_of(conclusion), colour_of(conclusion), style),
+                     conclusion_text(run, fmt::format(" in {:.1f} s", wall_s)));
 }
 
 }  // namespace
@@ -309,7 +259,7 @@ std::string render_summary(const RunResult& run, double wall_s, TerminalStyle st
   const std::string verdict = verdict_line(run, wall_s, style);
   std::string out = header(run) + verdict;
   if (diagnosis) out += diagnosis_text(*diagnosis);
-  out += stages(run);
+  if (const std::string stages = first_stages(run); !stages.empty()) out += stages + "\n";
   out += fmt::format("conformance: {}\n\n", conformance_statement(run));
   out += errors(run, style);
   if (const std::string table = render_table(run, style); !table.empty()) out += table + "\n";

@@ -54,7 +54,7 @@ void run_and_judge(Trace& answered, const Expected& expected, const Subject& sub
   }
   if (!saves_traces(saved_traces, result)) return;
   if (fault) answered.keep_first(fault->tick);
-  save_traces(saved_traces, subject, answered, *want, result);
+  save_traces(saved_traces, subject, {answered, *want, tolerances}, result);
 }
 
 // A case's inputs for the unit, and the reference's outputs for exactly these inputs.

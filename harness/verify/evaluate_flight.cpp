@@ -149,14 +149,15 @@ std::string how_it_ended(const Flown& flown) {
 namespace {
 
 // The expected outputs are those of the reference for the inputs of that flight.
-void save_flight(const std::filesystem::path& folder, const Trace& flown, CaseResult& result) {
+void save_flight(const std::filesystem::path& folder, const Trace& flown,
+                 const Tolerances& tolerances, CaseResult& result) {
   if (!saves_traces(folder, result) || flown.samples.empty()) return;
   const Subject subject{result.profile};
   Trace want = flown;
   if (const auto fault = drive(*open_builtin(), subject, want)) {
     want.keep_first(fault->tick);
   }
-  save_traces(folder, subject, flown, want, result);
+  save_traces(folder, subject, {flown, want, tolerances}, result);
 }
 
 // A fresh unit flies at those times, and is compared with the reference.
@@ -179,7 +180,8 @@ Result<CaseResult> evaluate_with(const Case& the_case, const FlightPlan& plan,
     judge(*flown->fault, result);
   }
   if (!judged) return tl::unexpected(judged.error());
-  save_flight(saved_traces, flown->trace, result);
+  save_flight(saved_traces, flown->trace,
+              tolerances_of(the_case, Level::numeric, bits, flown->trace.samples.size()), result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }

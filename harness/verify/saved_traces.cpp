@@ -6,27 +6,32 @@
 
 #include <fmt/format.h>
 
+#include "harness/compare/allowed_deviation.hpp"
 #include "harness/trace/csv.hpp"
 #include "harness/trace/provenance.hpp"
 
 namespace attest {
 namespace {
 
-Result<void> write_traces(const std::filesystem::path& folder, const std::string& label,
-                          const Subject& subject, const Trace& got, const Trace& want) {
+Result<void> write_traces(const TraceFiles& files, const std::string& label, const Subject& subject,
+                          const JudgedTraces& traces) {
+  const std::filesystem::path folder = files.want.parent_path();
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) return fail_at(folder.string(), "cannot be made: " + failed.message());
   std::map<std::string, std::string> mixers;
   if (subject.module == Module::mixer) {
-    mixers = {{label + ".got", subject.mixer}, {label + ".want", subject.mixer}};
+    for (const char* which : {".got", ".want", ".tolerance"}) mixers[label + which] = subject.mixer;
   }
   if (auto added = add_origin(folder, subject.profile, mixers); !added) return added;
-  CsvColumns columns = all_columns(want);
-  auto written = write_csv(folder / (label + ".want.csv"), want, columns);
-  if (!written || got.samples.empty()) return written;
-  columns.plant = !got.plant.empty();
-  return write_csv(folder / (label + ".got.csv"), got, columns);
+  CsvColumns columns = all_columns(traces.want);
+  auto written = write_csv(files.want, traces.want, columns);
+  if (!written || traces.got.samples.empty()) return written;
+  columns.plant = !traces.got.plant.empty();
+  written = write_csv(files.got, traces.got, columns);
+  if (!written || traces.tolerances.level() == Level::events) return written;
+  const Trace allowed = allowed_deviations(traces.want, traces.tolerances);
+  return write_csv(files.tolerance, allowed, all_columns(allowed));
 }
 
 }  // namespace
@@ -35,10 +40,16 @@ bool saves_traces(const std::filesystem::path& folder, const CaseResult& result)
   return !folder.empty() && fails_a_run(result.verdict);
 }
 
-void save_traces(const std::filesystem::path& folder, const Subject& subject, const Trace& got,
-                 const Trace& want, CaseResult& result) {
+TraceFiles trace_files(const std::filesystem::path& folder, const CaseResult& result) {
+  const std::filesystem::path stem = folder / result.case_id() / result.configuration().label();
+  const auto file = [&](const char* suffix) { return std::filesystem::path(stem) += suffix; };
+  return {file(".got.csv"), file(".want.csv"), file(".tolerance.csv")};
+}
+
+void save_traces(const std::filesystem::path& folder, const Subject& subject,
+                 const JudgedTraces& traces, CaseResult& result) {
   const auto saved =
-      write_traces(folder / result.case_id(), result.configuration().label(), subject, got, want);
+      write_traces(trace_files(folder, result), result.configuration().label(), subject, traces);
   if (saved) return;
   result.reason += fmt::format("{}its traces are not saved: {}", result.reason.empty() ? "" : "; ",
                                saved.error().to_string());

@@ -98,7 +98,7 @@ shards() {
   [ "$(grep -c '^::error ' <<<"$output")" -eq 10 ]
   [ "$(grep -c '^::warning ' <<<"$output")" -eq 1 ]
   has "::error title=fail px4-v1.5.5/tpa/"
-  grep -q '^### attest: does not conform' step.md
+  grep -q '^### attest: FAIL' step.md
   grep -q 'tpa-missing' step.md
   "$PYTHON" - <<'P'
 import json

@@ -51,12 +51,12 @@ class Tree:
         ]
 
     def code(self) -> list[str]:
-        """Sources that people write: C, C++, CMake, Python, Rust, shell."""
+        """Sources that people write: C, C++, CMake, Python, Rust, shell, JavaScript, CSS."""
         cmake = set(self.cmake())
         return [
             path
             for path, text in self._texts.items()
-            if path.endswith((*CXX, ".py", ".rs", ".sh", ".bats"))
+            if path.endswith((*CXX, ".py", ".rs", ".sh", ".bats", ".js", ".css"))
             or path in cmake
             or text.startswith("#!")
         ]

@@ -56,10 +56,10 @@ TEST(GithubSummary, IsTheSummaryAsPreformattedText) {
   RunResult run = sample_run();
   run.results.front().reason = "```\n# a heading";
   const std::string text = github_summary(run, 1.2, {});
-  EXPECT_THAT(text, StartsWith("### attest: does not conform\n\n"));
+  EXPECT_THAT(text, StartsWith("### attest: FAIL\n\n"));
   EXPECT_THAT(text, HasSubstr("\nFAIL "));
   EXPECT_THAT(text, Not(HasSubstr("\n# a heading")));
-  EXPECT_THAT(github_summary(passing_run(), 1.2, {}), HasSubstr("### attest: conforms"));
+  EXPECT_THAT(github_summary(passing_run(), 1.2, {}), HasSubstr("### attest: PASS"));
 }
 
 TEST(CodeQuality, HasEachFailingCaseOnce) {

@@ -1,0 +1,78 @@
+#include "harness/cli/plotted_traces.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "harness/cli/interrupt.hpp"
+#include "harness/plant/vehicle_models.hpp"
+#include "harness/report/html/plots.hpp"
+#include "harness/report/report_format.hpp"
+
+namespace attest::cli {
+namespace {
+
+// The cases of these results, at the results' run configurations.
+std::vector<SelectedCase> cases_of(const std::vector<const CaseResult*>& results,
+                                   const std::vector<SelectedCase>& all) {
+  std::vector<SelectedCase> cases;
+  for (const SelectedCase& selected : all) {
+    SelectedCase wanted{selected.the_case, {}};
+    for (const RunConfiguration& configuration : selected.configurations) {
+      const bool is_wanted =
+          std::any_of(results.begin(), results.end(), [&](const CaseResult* result) {
+            return result->case_id() == selected.the_case.id() &&
+                   result->configuration() == configuration;
+          });
+      if (is_wanted) wanted.configurations.push_back(configuration);
+    }
+    if (!wanted.configurations.empty()) cases.push_back(std::move(wanted));
+  }
+  return cases;
+}
+
+}  // namespace
+
+Result<PlottedTraces> PlottedTraces::prepare(const RunOptions& options) {
+  PlottedTraces traces;
+  const auto formats = report_formats();
+  const bool needed = std::any_of(formats.begin(), formats.end(), [&](const ReportFormat& format) {
+    return format.plots_traces && !options.report.files.at(format.option).empty();
+  });
+  if (!needed) return traces;
+  traces.folder_ = options.save_traces;
+  if (!traces.folder_.empty()) return traces;
+  auto made = TemporaryFolder::make("plots");
+  if (!made) return tl::unexpected(made.error());
+  traces.folder_ = made->path();
+  traces.temporary_.emplace(*std::move(made));
+  return traces;
+}
+
+RunOptions PlottedTraces::planned(RunOptions options) const {
+  if (temporary_ && !options.timing.empty()) options.save_traces = folder_.string();
+  return options;
+}
+
+void PlottedTraces::save(const RunPlan& plan, const SuiteFolder& suite,
+                         const RunOptions& options) const {
+  const auto vectors = vectors_to_plot(plan.run);
+  if (!temporary_ || !options.timing.empty() || vectors.empty()) return;
+  VehicleModels vehicle_models(suite.models());
+  const auto jobs = case_jobs(cases_of(vectors, plan.cases), suite.golden(), vehicle_models,
+                              {plan.run.level, folder_, plan.run.parameters}, plan.host);
+  JobOptions<CaseResult> again;
+  again.processes = options.jobs;
+  again.in_process = plan.host.in_process;
+  again.stop = interrupted;
+  std::vector<Error> errors;
+  if (jobs)
+    errors = run_jobs(*jobs, again).errors;
+  else
+    errors = {jobs.error()};
+  if (errors.empty() || interrupted()) return;
+  fmt::print(stderr, "attest: plots: {}\n", errors.front().to_string());
+}
+
+}  // namespace attest::cli

@@ -1,0 +1,15 @@
+// Base64 (RFC 4648, with padding), for binary data in a text.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace attest {
+
+std::string base64(std::string_view bytes);
+
+// Of the bytes of the numbers, least significant byte first.
+std::string base64(std::span<const float> numbers);
+
+}  // namespace attest

@@ -1,0 +1,22 @@
+// The files of the page, which are part of the attest binary.
+#pragma once
+
+#include <string_view>
+
+namespace attest {
+
+// The page without data (mustache), its style and its scripts: files of this folder.
+std::string_view page_template();
+std::string_view page_style();
+std::string_view results_style();
+std::string_view page_script();  // the list of results and the matrix
+std::string_view details_script();
+std::string_view plots_script();
+
+// Of the package libjs-dygraphs.
+std::string_view dygraphs_script();
+std::string_view dygraphs_style();
+std::string_view dygraphs_synchronizer();
+std::string_view dygraphs_licence();
+
+}  // namespace attest

@@ -1,0 +1,160 @@
+#include "harness/report/html/plots.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "harness/core/json_text.hpp"
+#include "harness/report/failure_text.hpp"
+#include "harness/report/html/base64.hpp"
+#include "harness/report/html/curves.hpp"
+#include "harness/trace/csv.hpp"
+#include "harness/verify/saved_traces.hpp"
+
+namespace attest {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t most_signals = 8;    // of a vector
+constexpr std::size_t most_points = 1200;  // of a curve; a plot is about 600 pixels wide
+
+struct Traces {
+  Trace got, want;
+  std::optional<Trace> allowed;
+};
+
+std::optional<Traces> read_traces(const TraceFiles& files) {
+  auto got = read_csv(files.got, TraceNeed::outputs);
+  auto want = read_csv(files.want, TraceNeed::outputs);
+  if (!got || !want) return std::nullopt;
+  Traces traces{*std::move(got), *std::move(want), std::nullopt};
+  if (auto allowed = read_csv(files.tolerance, TraceNeed::outputs)) {
+    traces.allowed = *std::move(allowed);
+  }
+  return traces;
+}
+
+bool same_bits(float a, float b) {
+  return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) || (a != a && b != b);
+}
+
+bool has(const Deviation& first, const Trace& got) {
+  if (first.tick >= got.samples.size()) return false;
+  const double value = value_of(channels()[first.channel], got.samples[first.tick]);
+  return same_bits(static_cast<float>(value), static_cast<float>(first.got));
+}
+
+json allowed_to_json(const std::vector<float>& allowed) {
+  const bool is_constant = std::all_of(allowed.begin(), allowed.end(),
+                                       [&](float value) { return value == allowed.front(); });
+  if (is_constant) return allowed.front();
+  return base64(allowed);
+}
+
+json signal_to_json(const Curves& curves, const Trace& got, std::size_t marked) {
+  const std::vector<std::size_t> ticks = drawn_ticks(curves, marked, most_points);
+  const auto at_ticks = [&](const std::vector<float>& values) {
+    std::vector<float> out;
+    for (const std::size_t tick : ticks) out.push_back(values[tick]);
+    return out;
+  };
+  std::vector<float> numbers, times;
+  const std::uint64_t begin_us = got.samples.front().in.timestamp;
+  for (const std::size_t tick : ticks) {
+    numbers.push_back(static_cast<float>(tick));
+    const std::uint64_t elapsed_us = got.samples[tick].in.timestamp - begin_us;
+    times.push_back(static_cast<float>(1e-6 * static_cast<double>(elapsed_us)));
+  }
+  const Channel& channel = channels()[curves.channel];
+  json out = {{"name", channel_with_unit(channel)},
+              {"stage", name_of(channel.stage)},
+              {"deviating", curves.deviating},
+              {"tick", base64(numbers)},
+              {"time", base64(times)},
+              {"got", base64(at_ticks(curves.got))},
+              {"want", base64(at_ticks(curves.want))}};
+  if (curves.deviating > 0) out["first_tick"] = curves.first_tick;
+  if (!curves.allowed.empty()) out["allowed"] = allowed_to_json(at_ticks(curves.allowed));
+  return out;
+}
+
+json vector_to_json(const Traces& traces, const Deviation& first) {
+  const std::vector<Curves> all =
+      curves_of(traces.got, traces.want, traces.allowed ? &*traces.allowed : nullptr);
+  const auto deviating = static_cast<std::size_t>(std::count_if(
+      all.begin(), all.end(), [](const Curves& curves) { return curves.deviating > 0; }));
+  json signals = json::array();
+  for (const Curves& curves : curves_to_plot(all, first.channel, most_signals)) {
+    signals.push_back(signal_to_json(curves, traces.got, first.tick));
+  }
+  return {{"ticks", traces.got.samples.size()},
+          {"repeated", has(first, traces.got)},
+          {"hidden", deviating - std::min(deviating, signals.size())},
+          {"signals", std::move(signals)}};
+}
+
+// In a <script>, "</script" and "<!--" would end or change the data.
+std::string for_script(const json& value) {
+  std::string out;
+  for (const char c : text_of(value)) {
+    if (c == '<')
+      out += "\\u003c";
+    else
+      out += c;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<const CaseResult*> vectors_to_plot(const RunResult& run, std::size_t most) {
+  struct Candidate {
+    std::size_t round;     // how many rates of its group come before it
+    std::size_t position;  // in the results
+  };
+  std::map<std::pair<std::string, std::string>, std::vector<Rate>> seen;
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < run.results.size(); ++i) {
+    const CaseResult& result = run.results[i];
+    if (!fails_a_run(result.verdict) || !result.first) continue;
+    std::vector<Rate>& rates = seen[{result.profile, result.group}];
+    if (std::find(rates.begin(), rates.end(), result.rate) != rates.end()) continue;
+    candidates.push_back({rates.size(), i});
+    rates.push_back(result.rate);
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.round < b.round; });
+  if (candidates.size() > most) candidates.resize(most);
+  std::sort(candidates.begin(), candidates.end(),
+            [](const Candidate& a, const Candidate& b) { return a.position < b.position; });
+  std::vector<const CaseResult*> chosen;
+  for (const Candidate& candidate : candidates) {
+    chosen.push_back(&run.results[candidate.position]);
+  }
+  return chosen;
+}
+
+std::string plots_json(const RunResult& run, const std::filesystem::path& folder,
+                       std::size_t most_bytes) {
+  if (folder.empty()) return "{}";
+  std::string out = "{";
+  for (const CaseResult* result : vectors_to_plot(run)) {
+    const auto traces = read_traces(trace_files(folder, *result));
+    if (!traces || traces->got.samples.empty()) continue;
+    const std::string entry =
+        for_script(json(result->id())) + ":" + for_script(vector_to_json(*traces, *result->first));
+    constexpr std::size_t punctuation = 3;  // a comma, a newline, the brace at the end
+    if (out.size() + entry.size() + punctuation > most_bytes) continue;
+    if (out.size() > 1) out += ",\n";
+    out += entry;
+  }
+  return out + "}";
+}
+
+}  // namespace attest

@@ -1,0 +1,38 @@
+// The plots of failing vectors as JSON, for the script of the page.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "harness/verify/run_result.hpp"
+
+namespace attest {
+
+inline constexpr std::size_t most_plotted_vectors = 100;
+
+// The failing vectors that the page plots: of each group, the first failing vector at each rate.
+// If these are more than `most`, every group has its first rates. A vector without a first
+// divergence (a crash, a metric of a flight) is left out. In the order of the results.
+std::vector<const CaseResult*> vectors_to_plot(const RunResult& run,
+                                               std::size_t most = most_plotted_vectors);
+
+// Reads the traces of vectors_to_plot() in `folder` (saved_traces.hpp). A vector without traces
+// there is left out, and so is one that would make the text longer than `most_bytes`. The result is
+// an object by the ids of the vectors; `<` is escaped, so that it can stand in a <script>:
+//
+//     {"px4-v1.5.5/tpa/each_axis@250hz":
+//      {"ticks": 5000, "repeated": true, "hidden": 0, "signals": [{
+//       "name": "out/vehicle_rates_setpoint.roll [rad/s]", "stage": "attitude law",
+//       "deviating": 48, "first_tick": 17,
+//       "tick": "...", "time": "...", "got": "...", "want": "...", "allowed": "..."}]}}
+//
+// The last five are base64 of float32; time is in seconds from the first tick. `allowed` is a
+// number if it is constant, and absent if the level has no tolerances. `repeated` is false if the
+// traces do not have the first divergence of the result: then the port gave other outputs when it
+// ran again for its traces. `hidden` counts further deviating signals.
+std::string plots_json(const RunResult& run, const std::filesystem::path& folder,
+                       std::size_t most_bytes);
+
+}  // namespace attest

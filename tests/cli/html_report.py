@@ -1,0 +1,244 @@
+#!/usr/bin/env python3
+"""Opens the page of `attest run --html` in a headless Chromium.
+
+    html_report.py --attest BINARY --ports FOLDER     the tests
+    html_report.py --open PAGE [--shot PNG] [--width N] [--dark]
+                                                      how long the page takes to open; a picture
+"""
+
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from browser import Browser, chromium
+
+SKIPPED = 77
+ARGUMENTS = argparse.Namespace()
+
+# The rows of the table, by the names of their columns.
+ROWS = """(() => {
+  const table = document.getElementById('results');
+  const names = [...table.tHead.rows[0].cells].map((cell) => cell.dataset.name);
+  return [...table.tBodies[0].rows].map((row) => Object.fromEntries(
+    [...row.cells].map((cell, i) => [names[i], cell.textContent.trim()])));
+})()"""
+
+
+class Page(unittest.TestCase):
+    """The page of one run. `options` select it."""
+
+    options = ["--port", "fault:tpa-missing", "--group", "tpa", "--rate", "100,250"]
+
+    @classmethod
+    def setUpClass(cls):
+        folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
+        cls.page = folder / "page.html"
+        report = folder / "report.json"
+        subprocess.run(
+            [ARGUMENTS.attest, "-q", "run", *cls.options, "--html", cls.page, "--json", report],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            check=False,
+        )
+        cls.report = json.loads(report.read_text())
+        cls.browser = cls.enterClassContext(Browser())
+
+    def setUp(self):
+        self.browser.open(self.page.as_uri())
+
+    def tearDown(self):
+        self.assertEqual(self.browser.problems, [])
+        others = [u for u in self.browser.requests if u != self.page.as_uri()]
+        self.assertEqual([u for u in others if not u.startswith("data:")], [])
+
+    def run_in_page(self, script: str):
+        return self.browser.run(script)
+
+
+class FailingPort(Page):
+    def test_the_numbers_are_those_of_the_json_report(self):
+        rows = self.run_in_page(ROWS)
+        self.assertEqual(len(rows), len(self.report["results"]))
+        for row, result in zip(rows, self.report["results"]):
+            self.assertEqual(f"{row['group']}/{row['name']}@{row['configuration']}", result["id"])
+            self.assertEqual(row["verdict"], result["verdict"])
+            self.assertEqual(int(row["ticks"]), result["ticks"])
+            self.check_headroom(row, result)
+            self.check_divergence(row, result)
+
+    def check_headroom(self, row: dict, result: dict):
+        tightest = result.get("tightest")
+        self.assertEqual(row["headroom"] != "", tightest is not None)
+        if tightest and isinstance(tightest["ratio"], float):
+            self.assertAlmostEqual(float(row["headroom"]) / tightest["ratio"], 1, places=5)
+            self.assertEqual(row["tightest"], tightest["channel"])
+
+    def check_divergence(self, row: dict, result: dict):
+        first = result.get("first")
+        self.assertEqual(bool(row.get("tick")), first is not None)
+        if first is None:
+            return
+        self.assertEqual(int(row["deviating"]), result["deviating_ticks"])
+        self.assertEqual(int(row["tick"]), first["tick"])
+        self.assertEqual(int(row["time"]), first["timestamp_us"])
+        self.assertEqual(row["signal"].split()[0], first["channel"])
+        self.assertEqual(row["stage"], first["stage"])
+        for name in ("got", "want"):
+            value, bits = row[name].split()
+            self.assertAlmostEqual(float(value), first[name], places=6)
+            self.assertEqual(bits, first[f"{name}_bits"])
+
+    def test_the_matrix_counts_the_results(self):
+        text = self.run_in_page(
+            "[...document.querySelectorAll('.matrix tbody tr:last-child td:last-child')]"
+            ".map((cell) => cell.querySelector('button').firstElementChild.nextSibling.data.trim())"
+        )
+        totals = {}
+        for result in self.report["results"]:
+            passed, compared = totals.setdefault(result["profile"], [0, 0])
+            is_compared = result["verdict"] in ("pass", "fail")
+            totals[result["profile"]] = [
+                passed + (result["verdict"] == "pass"),
+                compared + is_compared,
+            ]
+        expected = [str(p) if p == c else f"{p}/{c}" for p, c in totals.values()]
+        self.assertEqual(text, expected)
+
+    def test_a_click_on_a_failing_cell_shows_its_plot(self):
+        cell = "document.querySelector('.matrix td.v-fail[data-rate=\"250hz\"]')"
+        group = self.run_in_page(f"{cell}.dataset.group")
+        self.browser.click(cell)
+        shown = "document.querySelector('.details h2').textContent"
+        self.browser.wait_for(f"{shown}.startsWith('{group}/')")
+        self.assertTrue(self.run_in_page(shown).endswith("@250hz"))
+        self.browser.wait_for("document.querySelector('.details canvas')")
+        coloured = self.run_in_page(
+            "Math.max(...[...document.querySelectorAll('.values canvas')].map((c) => {"
+            " const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;"
+            " return d.filter((v, i) => i % 4 === 3 && v > 0).length; }))"
+        )
+        self.assertGreater(coloured, 500)
+        ids = self.run_in_page("[...document.querySelectorAll('.row')].map((r) => r.title)")
+        self.assertTrue(ids)
+        self.assertTrue(all(i.startswith(group) and i.endswith("@250hz") for i in ids), ids)
+
+    def test_the_plots_zoom_together(self):
+        self.browser.wait_for("document.querySelectorAll('.values canvas').length > 0")
+        labels = (
+            "[...document.querySelectorAll('.details .dygraph-axis-label-x')]"
+            ".map((l) => l.textContent).join()"
+        )
+        before = self.run_in_page(labels)
+        self.browser.click("document.querySelector('.details .tools button')")
+        self.assertNotEqual(self.run_in_page(labels), before)
+
+    def test_the_keyboard_searches_and_selects(self):
+        self.browser.press("/")
+        self.assertEqual(self.run_in_page("document.activeElement.type"), "search")
+        for key in "each_axis":
+            self.browser.press(key)
+        self.browser.press("ArrowDown")
+        self.browser.press("ArrowDown")
+        selected = "document.querySelector('.row[aria-selected=true]')?.title"
+        self.browser.wait_for(f"({selected} ?? '').includes('each_axis')")
+        first = self.run_in_page(selected)
+        self.browser.press("ArrowUp")
+        self.browser.wait_for(f"{selected} !== '{first}'")
+        self.browser.press("Enter")
+        self.browser.wait_for("document.activeElement.tagName === 'H2'")
+        self.assertEqual(
+            self.run_in_page("document.activeElement.textContent"), self.run_in_page(selected)
+        )
+
+    def test_every_control_has_a_name(self):
+        unnamed = self.run_in_page(
+            "[...document.querySelectorAll('button, input, select, [role]')]"
+            ".filter((e) => e.offsetParent"
+            " && !(e.getAttribute('aria-label') || e.textContent.trim())"
+            " && e.role !== 'status').map((e) => e.outerHTML)"
+        )
+        self.assertEqual(unnamed, [])
+
+    def test_the_tables_remain_without_scripts(self):
+        self.browser.send("Emulation.setScriptExecutionDisabled", value=True)
+        try:
+            self.browser.open(self.page.as_uri())
+            root = self.browser.send("DOM.getDocument")["root"]["nodeId"]
+            for selector in (".matrix td.v-fail", "#results td.v-fail", "#results td.v-pass"):
+                node = self.browser.send("DOM.querySelector", nodeId=root, selector=selector)
+                box = self.browser.send("DOM.getBoxModel", nodeId=node["nodeId"])["model"]
+                self.assertGreater(box["width"], 10, selector)
+        finally:
+            self.browser.send("Emulation.setScriptExecutionDisabled", value=False)
+
+
+class CrashingPort(Page):
+    @classmethod
+    def setUpClass(cls):
+        cls.options = ["--port", f"lib:{ARGUMENTS.ports}/port_crash.so", "--group", "tpa"]
+        super().setUpClass()
+
+    def test_the_call_is_shown_and_no_plot(self):
+        details = self.run_in_page("document.querySelector('.details').textContent")
+        self.assertIn("in step() at tick 20", details)
+        self.assertIn("attest run --port", details)
+        self.assertEqual(self.run_in_page("document.querySelectorAll('canvas').length"), 0)
+
+
+class PassingPort(Page):
+    options = ["--port", "builtin", "--group", "tpa"]
+
+    def test_it_is_quiet_about_failures(self):
+        self.assertIn("PASS", self.run_in_page("document.querySelector('header').textContent"))
+        self.assertEqual(self.run_in_page("document.querySelectorAll('.v-fail').length"), 0)
+        self.assertEqual(self.run_in_page("document.querySelector('.details').textContent"), "")
+        self.assertGreater(self.run_in_page("document.querySelectorAll('.row').length"), 3)
+
+
+def measure(page: str, shot: str | None, width: int, dark: bool) -> None:
+    with Browser(width=width) as browser:
+        browser.send(
+            "Emulation.setEmulatedMedia",
+            features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}],
+        )
+        browser.send("Emulation.setDeviceMetricsOverride", width=width, height=1000,
+                     deviceScaleFactor=1, mobile=False)
+        browser.open(pathlib.Path(page).absolute().as_uri())
+        timing = browser.run(
+            "(() => { const t = performance.getEntriesByType('navigation')[0];"
+            " return [t.domContentLoadedEventEnd, t.loadEventEnd]; })()"
+        )
+        browser.run("new Promise((r) => setTimeout(r, 300))")
+        rows = browser.run("document.querySelectorAll('.row').length")
+        print(f"loaded in {timing[1] / 1000:.2f} s, {rows} rows of the list exist")
+        scrolled = browser.run("document.documentElement.scrollWidth")
+        print(f"problems: {browser.problems}, width of the page: {scrolled}")
+        if shot:
+            browser.screenshot(shot)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--attest")
+    parser.add_argument("--ports")
+    parser.add_argument("--open")
+    parser.add_argument("--shot")
+    parser.add_argument("--width", type=int, default=1440)
+    parser.add_argument("--dark", action="store_true")
+    parser.parse_args(namespace=ARGUMENTS)
+    if chromium() is None:
+        print("skipped: chromium is not installed")
+        return SKIPPED
+    if ARGUMENTS.open:
+        measure(ARGUMENTS.open, ARGUMENTS.shot, ARGUMENTS.width, ARGUMENTS.dark)
+        return 0
+    program = unittest.main(argv=[sys.argv[0]], exit=False)
+    return 0 if program.result.wasSuccessful() else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
