@@ -15,8 +15,8 @@ made() {
   run mine/check --group rates --rate 250
   [ "$status" -eq 0 ]
   has "PASS"
-  grep -q "./check --github --junit" mine/.github/workflows/attest.yml
-  grep -q "./check --junit" mine/.gitlab-ci.yml
+  grep -q "./check --github" mine/.github/workflows/attest.yml
+  grep -q "./check --html" mine/.gitlab-ci.yml
 }
 
 @test "a new port in C" { made c cc; }
