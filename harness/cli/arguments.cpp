@@ -177,7 +177,9 @@ void add_new_port(CLI::App& app, const Globals& globals, Action& action) {
   CLI::App* command = app.add_subcommand(
       "new-port", "Make a folder with a complete port, to be changed into yours, and its CI jobs");
   command->add_option("folder", options->folder, "The new folder")->type_name("DIR")->required();
-  command->add_option("--lang", options->language, "`c`, `cpp`, `python`, `rust` or `simulink`")
+  command
+      ->add_option("--lang", options->language,
+                   "`c`, `cpp`, `numpy`, `python`, `rust` or `simulink`")
       ->type_name("LANG")
       ->required();
   add_examples(

@@ -30,6 +30,7 @@ struct Language {
 constexpr std::array languages{
     Language{"c", "C", "cc", true},
     Language{"cpp", "C++", "c++", true},
+    Language{"numpy", "Python with numpy", "python3", false},
     Language{"python", "Python", "python3", false},
     Language{"rust", "Rust", "cargo", false},
     Language{"simulink", "C generated from a Simulink model", "cc", true},

@@ -21,6 +21,10 @@ made() {
 
 @test "a new port in C" { made c cc; }
 @test "a new port in C++" { made cpp c++; }
+@test "a new port in Python with numpy" {
+  python3 -c "import numpy" 2>/dev/null || skip "no numpy for $(command -v python3)"
+  made numpy python3
+}
 @test "a new port in Python" { made python python3; }
 @test "a new port in Rust" { made rust cargo; }
 @test "a new port of a Simulink model" { made simulink cc; }
@@ -28,7 +32,8 @@ made() {
 @test "nothing is overwritten, and a typo gets a suggestion" {
   run "$ATTEST" new-port mine --lang pyton
   [ "$status" -eq 2 ]
-  has "no starter in \`pyton\`; did you mean \`python\`?; there are c, cpp, python, rust, simulink"
+  has "no starter in \`pyton\`; did you mean \`python\`?"
+  has "; there are c, cpp, numpy, python, rust, simulink"
   [ ! -e mine ]
   mkdir mine
   echo mine >mine/file
