@@ -1,4 +1,4 @@
-// One simulated flight, written to a file.
+// One simulated flight.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +9,16 @@
 
 namespace attest {
 
-// Flies a fresh unit and writes the flown trace to `out`, also of a flight that ends early. After a
-// fault of the port `out` is not written. The metrics are judged by the case's own bounds only.
-// REQUIRES: the host's course is this case. Errors: the flight cannot be set up, or written.
-Result<CaseResult> simulate_flight(const Case& the_case, FlightPlan plan, PortHost& host,
-                                   const std::filesystem::path& out);
+struct SimulatedFlight {
+  CaseResult result;
+  Trace flown;  // also of a flight that ends early; empty after a fault of the port
+};
+
+// Flies a fresh unit. The metrics are judged by the case's own bounds only. REQUIRES: the host's
+// course is this case. Errors: the flight cannot be set up.
+Result<SimulatedFlight> simulate_flight(const Case& the_case, FlightPlan plan, PortHost& host);
+
+// Writes a flown trace with the plant's columns. Without a tick it writes no file.
+Result<void> write_flown(const Trace& flown, const std::filesystem::path& path);
 
 }  // namespace attest
