@@ -74,7 +74,8 @@ TASKS
   "$ATTEST" schedule tasks.toml --record-timing t.json
   for selection in "--timing t.json" "--filter px4-v1.5.5/flight/hover@250hz-iris-mujoco"; do
     # shellcheck disable=SC2086 # two words
-    run "$ATTEST" run $selection --no-diagnose --port "lib:$PORTS/port_sign_flip.so" --html page.html
+    run "$ATTEST" run $selection --no-diagnose --html page.html \
+      --port "lib:$PORTS/port_sign_flip.so"
     [ "$status" -eq 1 ]
     [[ $(plots page.html) == px4-v1.5.5/flight/*@250hz-iris-mujoco ]]
   done

@@ -231,7 +231,8 @@ class Flight(Page):
         after = [self.run_in_page(picture), self.run_in_page(reading)]
         self.assertNotEqual(before[0], after[0])
         self.assertNotEqual(before[1], after[1])
-        self.assertEqual(self.run_in_page("document.querySelector('output').textContent"), "0.400 s")
+        clock = self.run_in_page("document.querySelector('output').textContent")
+        self.assertEqual(clock, "0.400 s")
 
     def test_the_pointer_in_a_plot_moves_the_slider(self):
         self.browser.move("document.querySelector('#flight-plots .values')")
