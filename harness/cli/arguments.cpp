@@ -90,13 +90,19 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
       ->add_option("--out", options->out,
                    "The flown trace: CSV, or a ULog of PX4 if the name ends with .ulg; `-` is "
                    "stdout, as CSV")
-      ->type_name("F")
-      ->required();
+      ->type_name("F");
+  command
+      ->add_option("--html", options->html,
+                   "A page with plots of the flight and a replay of the attitude; it needs no "
+                   "network")
+      ->type_name("F.html");
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command, {{"attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv",
                            "hover with the lead vehicle of the case, on its first plant"},
                           {"attest sim gust --rate 500 --vehicle hexa --plant ode --out flown.csv",
-                           "another vehicle on the other plant"}});
+                           "another vehicle on the other plant"},
+                          {"attest sim flip_150_level --rate 250 --html flight.html",
+                           "the flight as a page with plots"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return sim_command(*options, globals); };
   });

@@ -107,7 +107,7 @@ struct SimOptions {
   std::string vehicle, plant;  // empty: the lead vehicle and the first plant of the case
   std::string timing;
   HostOptions host;
-  std::string out;
+  std::string out, html;  // files; at least one
 };
 int sim_command(const SimOptions& options, const Globals& globals);
 

@@ -8,9 +8,12 @@
 #include "harness/cli/find_case.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/core/file.hpp"
 #include "harness/loop/case_timing.hpp"
 #include "harness/measure/simulate.hpp"
 #include "harness/report/failure_text.hpp"
+#include "harness/report/html/flight_page.hpp"
+#include "harness/ulog/trace_log.hpp"
 
 namespace attest::cli {
 namespace {
@@ -36,8 +39,10 @@ Result<Sim> prepare_timed(const SimOptions& options, const SuiteFolder& suite) {
 Result<Sim> prepare(const SimOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return tl::unexpected(suite.error());
-  const auto checked = check_outputs(
-      {options.out}, {options.host.port, {options.timing, options.case_name}}, *suite);
+  if (options.out.empty() && options.html.empty()) return fail("needs --out or --html");
+  const auto checked =
+      check_outputs({options.out, options.html},
+                    {options.host.port, {options.timing, options.case_name}}, *suite);
   if (!checked) return tl::unexpected(checked.error());
   if (!options.timing.empty()) return prepare_timed(options, *suite);
   if (options.case_name.empty() || options.rate.empty()) {
@@ -54,9 +59,18 @@ Result<Sim> prepare(const SimOptions& options, const Globals& globals) {
              std::move(chosen->vehicle_model)};
 }
 
+Result<void> write(const SimulatedFlight& flight, const PortSays& port, const SimOptions& options) {
+  if (!options.out.empty() && !flight.flown.samples.empty()) {
+    if (auto written = write_trace(options.out, flight.flown); !written) return written;
+  }
+  if (options.html.empty()) return {};
+  return write_file(options.html, flight_page(flight, port));
+}
+
 void print(const CaseResult& result, const std::string& out) {
-  const std::string written =
-      result.ticks > 0 ? fmt::format("{} ticks -> {}", result.ticks, out) : "no trace was written";
+  std::string written = "no trace was written";
+  if (result.ticks > 0) written = fmt::format("{} ticks", result.ticks);
+  if (result.ticks > 0 && !out.empty()) written += " -> " + out;
   fmt::print("{}  {}\n", result.id(), written);
   if (!result.reason.empty()) fmt::print("  {}: {}\n", name_of(result.verdict), result.reason);
   for (const MetricResult& metric : result.metrics) {
@@ -72,10 +86,12 @@ int sim_command(const SimOptions& options, const Globals& globals) {
   if (!sim) return report_error(sim.error());
   const auto host = start_host(options.host, {&sim->the_case, sim->vehicle_model.get()});
   if (!host) return report_error(host.error());
-  const auto flown =
-      simulate_flight(sim->the_case, {sim->configuration, sim->timing}, **host, options.out);
-  if (!flown) return report_error(flown.error());
-  const CaseResult& result = *flown;
+  const auto flight = simulate_flight(sim->the_case, {sim->configuration, sim->timing}, **host);
+  if (!flight) return report_error(flight.error());
+  if (const auto written = write(*flight, (*host)->says(), options); !written) {
+    return report_error(written.error());
+  }
+  const CaseResult& result = flight->result;
   if (!globals.quiet || result.verdict != Verdict::pass) print(result, options.out);
   return result.verdict == Verdict::pass ? exit_ok : exit_failed;
 }

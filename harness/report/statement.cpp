@@ -46,7 +46,7 @@ std::string arithmetic_of(const RunResult& run) {
 }
 
 // "11 rates", or the fixed step of the port.
-std::string rates_of(const RunResult& run) {
+std::string rate_text(const RunResult& run) {
   if (run.fixed_step) return fmt::format("fixed step of {} Hz", run.fixed_step->to_string());
   return counted(run.rates.size(), "rate");
 }
@@ -61,7 +61,7 @@ std::string text_of(const Claim& claim, const RunResult& run) {
                        names_of(claim.failing));
   }
   const std::string what = fmt::format("{}, {}{}, {}, {}", profile, name_of(run.level),
-                                       arithmetic_of(run), rates_of(run), which_groups(claim));
+                                       arithmetic_of(run), rate_text(run), which_groups(claim));
   if (claim.conforms()) return "conformant: " + what;
   return fmt::format("partial: {} (missing: {})", what,
                      one_line(fmt::format("{}", fmt::join(claim.missing, "; "))));

@@ -93,21 +93,21 @@ class Browser:
                 raise TimeoutError(f"not true in time: {script}")
             time.sleep(0.05)
 
-    def click(self, element: str) -> None:
-        """Moves the mouse to the middle of what the expression `element` gives, and clicks."""
+    def move(self, element: str) -> list[float]:
+        """Moves the mouse to the middle of what the expression `element` gives."""
         place = self.run(
             f"(() => {{ const e = {element}; e.scrollIntoView({{block: 'center'}});"
             " const r = e.getBoundingClientRect();"
             " return [r.x + r.width / 2, r.y + r.height / 2]; })()"
         )
+        self.send("Input.dispatchMouseEvent", type="mouseMoved", x=place[0], y=place[1])
+        return place
+
+    def click(self, element: str) -> None:
+        x, y = self.move(element)
         for kind in ("mousePressed", "mouseReleased"):
             self.send(
-                "Input.dispatchMouseEvent",
-                type=kind,
-                x=place[0],
-                y=place[1],
-                button="left",
-                clickCount=1,
+                "Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1
             )
 
     def press(self, key: str) -> None:

@@ -74,7 +74,8 @@ TASKS
   "$ATTEST" schedule tasks.toml --record-timing t.json
   for selection in "--timing t.json" "--filter px4-v1.5.5/flight/hover@250hz-iris-mujoco"; do
     # shellcheck disable=SC2086 # two words
-    run "$ATTEST" run $selection --no-diagnose --port "lib:$PORTS/port_sign_flip.so" --html page.html
+    run "$ATTEST" run $selection --no-diagnose --html page.html \
+      --port "lib:$PORTS/port_sign_flip.so"
     [ "$status" -eq 1 ]
     [[ $(plots page.html) == px4-v1.5.5/flight/*@250hz-iris-mujoco ]]
   done
@@ -107,4 +108,25 @@ PORT
   grep -q '"repeated":false' page.html
   "$ATTEST" "${failing[@]}" --html page.html || true
   grep -q '"repeated":true' page.html
+}
+
+@test "one flight is a page, with or without its trace" {
+  "$ATTEST" sim flip_150_level --rate 250 --html one.html --out flown.csv >printed
+  grep -q "1000 ticks -> flown.csv" printed
+  "$ATTEST" sim flip_150_level --rate 250 --html two.html >printed
+  grep -q "1000 ticks$" printed
+  cmp one.html two.html
+  run "$ATTEST" sim flip_150_level --rate 250
+  [ "$status" -eq 2 ]
+  has "needs --out or --html"
+  run "$ATTEST" sim flip_150_level --rate 250 --html same --out same
+  [ "$status" -eq 2 ]
+  has "is asked for twice"
+}
+
+@test "a flight in which the port crashes is a page without plots" {
+  run "$ATTEST" sim hover --rate 250 --port "lib:$PORTS/port_crash.so" --html page.html
+  [ "$status" -eq 1 ]
+  has "no trace was written"
+  grep -q "in step() at tick 20" page.html
 }

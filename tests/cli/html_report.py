@@ -37,15 +37,23 @@ class Page(unittest.TestCase):
     def setUpClass(cls):
         folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         cls.page = folder / "page.html"
+        cls.make_page(folder)
+        cls.browser = cls.enterClassContext(Browser())
+
+    @classmethod
+    def make_page(cls, folder: pathlib.Path):
         report = folder / "report.json"
+        cls.run_attest("run", *cls.options, "--html", cls.page, "--json", report)
+        cls.report = json.loads(report.read_text())
+
+    @staticmethod
+    def run_attest(*arguments):
         subprocess.run(
-            [ARGUMENTS.attest, "-q", "run", *cls.options, "--html", cls.page, "--json", report],
+            [ARGUMENTS.attest, "-q", *arguments],
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
             check=False,
         )
-        cls.report = json.loads(report.read_text())
-        cls.browser = cls.enterClassContext(Browser())
 
     def setUp(self):
         self.browser.open(self.page.as_uri())
@@ -94,8 +102,10 @@ class FailingPort(Page):
 
     def test_the_matrix_counts_the_results(self):
         text = self.run_in_page(
+            "Object.fromEntries("
             "[...document.querySelectorAll('.matrix tbody tr:last-child td:last-child')]"
-            ".map((cell) => cell.querySelector('button').firstElementChild.nextSibling.data.trim())"
+            ".map((cell) => [cell.dataset.group,"
+            " cell.querySelector('button').firstElementChild.nextSibling.data.trim()]))"
         )
         totals = {}
         for result in self.report["results"]:
@@ -105,7 +115,10 @@ class FailingPort(Page):
                 passed + (result["verdict"] == "pass"),
                 compared + is_compared,
             ]
-        expected = [str(p) if p == c else f"{p}/{c}" for p, c in totals.values()]
+        expected = {
+            profile: str(passed) if passed == compared else f"{passed}/{compared}"
+            for profile, (passed, compared) in totals.items()
+        }
         self.assertEqual(text, expected)
 
     def test_a_click_on_a_failing_cell_shows_its_plot(self):
@@ -197,6 +210,38 @@ class PassingPort(Page):
         self.assertEqual(self.run_in_page("document.querySelectorAll('.v-fail').length"), 0)
         self.assertEqual(self.run_in_page("document.querySelector('.details').textContent"), "")
         self.assertGreater(self.run_in_page("document.querySelectorAll('.row').length"), 3)
+
+
+class Flight(Page):
+    """The page of `attest sim --html`."""
+
+    @classmethod
+    def make_page(cls, folder: pathlib.Path):
+        options = ["flip_150_level", "--rate", "250", "--port", "builtin"]
+        cls.run_attest("sim", *options, "--html", cls.page)
+
+    def test_the_slider_moves_the_replay_and_the_plots(self):
+        picture = "document.querySelector('.replay canvas').toDataURL()"
+        reading = "document.querySelector('#flight-plots .reading').textContent"
+        before = [self.run_in_page(picture), self.run_in_page(reading)]
+        self.run_in_page(
+            "(() => { const s = document.querySelector('input[type=range]'); s.value = 100;"
+            " s.dispatchEvent(new Event('input')); })()"
+        )
+        after = [self.run_in_page(picture), self.run_in_page(reading)]
+        self.assertNotEqual(before[0], after[0])
+        self.assertNotEqual(before[1], after[1])
+        clock = self.run_in_page("document.querySelector('output').textContent")
+        self.assertEqual(clock, "0.400 s")
+
+    def test_the_pointer_in_a_plot_moves_the_slider(self):
+        self.browser.move("document.querySelector('#flight-plots .values')")
+        self.browser.wait_for("document.querySelector('input[type=range]').value > 100")
+
+    def test_there_is_a_plot_of_each_part(self):
+        titles = self.run_in_page("[...document.querySelectorAll('h3')].map((h) => h.textContent)")
+        for part in ("Attitude", "Body rates", "Integrals", "Motor", "Saturation"):
+            self.assertTrue(any(part in title for title in titles), titles)
 
 
 def measure(page: str, shot: str | None, width: int, dark: bool) -> None:

@@ -98,7 +98,6 @@ _OWNED_BY_ONE = {
     "SUNDIALS": re.compile(r'\s*#\s*include\s*[<"](?:arkode|nvector|sun\w+)/'),
     "dlopen": re.compile(r".*\bdlopen\s*\("),
     "libmatio": re.compile(r'\s*#\s*include\s*[<"]matio\.h'),
-    "mustache": re.compile(r'\s*#\s*include\s*[<"]kainjow/'),
     "toml++": re.compile(r'\s*#\s*include\s*[<"]toml(?:\+\+|plusplus)?[./]'),
 }
 

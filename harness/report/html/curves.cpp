@@ -1,9 +1,12 @@
 #include "harness/report/html/curves.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <iterator>
 #include <numeric>
 
 namespace attest {
@@ -35,19 +38,18 @@ Curves curves_of(std::size_t index, const Trace& got, const Trace& want, const T
   return curves;
 }
 
-// The ticks of [begin, end) where `value` is smallest, largest and first NaN.
-template <typename Value>
-void keep_extremes(std::size_t begin, std::size_t end, Value value,
+// The ticks of [begin, end) where the value is smallest, largest and first NaN.
+void keep_extremes(std::size_t begin, std::size_t end, const std::vector<float>& values,
                    std::vector<std::size_t>& kept) {
   std::size_t low = end, high = end, nan = end;
   for (std::size_t tick = begin; tick < end; ++tick) {
-    const float v = value(tick);
-    if (std::isnan(v)) {
+    const float value = values[tick];
+    if (std::isnan(value)) {
       if (nan == end) nan = tick;
       continue;
     }
-    if (low == end || v < value(low)) low = tick;
-    if (high == end || v > value(high)) high = tick;
+    if (low == end || value < values[low]) low = tick;
+    if (high == end || value > values[high]) high = tick;
   }
   for (const std::size_t tick : {low, high, nan}) {
     if (tick != end) kept.push_back(tick);
@@ -79,31 +81,38 @@ std::vector<Curves> curves_to_plot(std::vector<Curves> curves, std::size_t first
   return curves;
 }
 
-std::vector<std::size_t> drawn_ticks(const Curves& curves, std::size_t marked, std::size_t most) {
-  const std::size_t size = curves.size();
+std::vector<std::size_t> extreme_ticks(std::span<const std::vector<float>> series,
+                                       std::size_t most) {
+  const std::size_t size = series.front().size();
   std::vector<std::size_t> kept;
   if (size <= most) {
     kept.resize(size);
     std::iota(kept.begin(), kept.end(), std::size_t{0});
     return kept;
   }
-  constexpr std::size_t kept_in_a_part = 9;  // three of each of three curves
-  const std::size_t parts = std::max<std::size_t>(1, most / kept_in_a_part);
+  constexpr std::size_t kept_of_each = 3;  // smallest, largest, NaN
+  const std::size_t parts = std::max<std::size_t>(1, most / (kept_of_each * series.size()));
   for (std::size_t part = 0; part < parts; ++part) {
-    const std::size_t begin = part * size / parts, end = (part + 1) * size / parts;
-    keep_extremes(
-        begin, end, [&](std::size_t i) { return curves.got[i]; }, kept);
-    keep_extremes(
-        begin, end, [&](std::size_t i) { return curves.want[i]; }, kept);
-    keep_extremes(
-        begin, end, [&](std::size_t i) { return curves.got[i] - curves.want[i]; }, kept);
+    for (const std::vector<float>& values : series) {
+      keep_extremes(part * size / parts, (part + 1) * size / parts, values, kept);
+    }
   }
   kept.insert(kept.end(), {0, size - 1});
-  for (std::size_t tick = marked > 0 ? marked - 1 : 0; tick <= marked + 1 && tick < size; ++tick) {
-    kept.push_back(tick);
-  }
   std::sort(kept.begin(), kept.end());
   kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+  return kept;
+}
+
+std::vector<std::size_t> drawn_ticks(const Curves& curves, std::size_t marked, std::size_t most) {
+  std::array<std::vector<float>, 3> series{curves.got, curves.want, {}};
+  std::transform(curves.got.begin(), curves.got.end(), curves.want.begin(),
+                 std::back_inserter(series[2]), std::minus<>());
+  std::vector<std::size_t> kept = extreme_ticks(series, most);
+  for (std::size_t tick = marked > 0 ? marked - 1 : 0; tick <= marked + 1 && tick < curves.size();
+       ++tick) {
+    const auto place = std::lower_bound(kept.begin(), kept.end(), tick);
+    if (place == kept.end() || *place != tick) kept.insert(place, tick);
+  }
   return kept;
 }
 

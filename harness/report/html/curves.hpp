@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "harness/compare/tolerance.hpp"
@@ -28,10 +29,14 @@ std::vector<Curves> curves_of(const Trace& got, const Trace& want, const Trace* 
 // by the tick at which they begin to deviate. At most `most`.
 std::vector<Curves> curves_to_plot(std::vector<Curves> curves, std::size_t first, std::size_t most);
 
-// The ticks at which to draw the curves: all of them, or, of a trace longer than `most`, about
-// `most` at most. The trace is divided into parts of equal length. The smallest and the largest
-// value of each part are kept for got, want and their difference, and the first NaN, so that no
-// spike is lost. The first tick, the last one and those around `marked` are kept, too.
+// The ticks at which to draw series of equal length: all of them, or, of a series longer than
+// `most`, about `most` at most. The series are divided into parts of equal length. The smallest and
+// the largest value of each part are kept, and the first NaN, so that no spike is lost. The first
+// tick and the last one are kept, too. REQUIRES: at least one series.
+std::vector<std::size_t> extreme_ticks(std::span<const std::vector<float>> series,
+                                       std::size_t most);
+
+// The same for got, want and their difference. The ticks around `marked` are kept, too.
 std::vector<std::size_t> drawn_ticks(const Curves& curves, std::size_t marked, std::size_t most);
 
 }  // namespace attest

@@ -23,6 +23,8 @@ ATTEST_EMBED(results_style, ATTEST_RESULTS_STYLE);
 ATTEST_EMBED(page_script, ATTEST_PAGE_SCRIPT);
 ATTEST_EMBED(details_script, ATTEST_DETAILS_SCRIPT);
 ATTEST_EMBED(plots_script, ATTEST_PLOTS_SCRIPT);
+ATTEST_EMBED(flight_template, ATTEST_FLIGHT_TEMPLATE);
+ATTEST_EMBED(flight_script, ATTEST_FLIGHT_SCRIPT);
 ATTEST_EMBED(dygraphs_script, ATTEST_DYGRAPHS_SCRIPT);
 ATTEST_EMBED(dygraphs_style, ATTEST_DYGRAPHS_STYLE);
 ATTEST_EMBED(dygraphs_synchronizer, ATTEST_DYGRAPHS_SYNCHRONIZER);
@@ -50,6 +52,8 @@ std::string_view results_style() { return ATTEST_EMBEDDED(results_style); }
 std::string_view page_script() { return ATTEST_EMBEDDED(page_script); }
 std::string_view details_script() { return ATTEST_EMBEDDED(details_script); }
 std::string_view plots_script() { return ATTEST_EMBEDDED(plots_script); }
+std::string_view flight_template() { return ATTEST_EMBEDDED(flight_template); }
+std::string_view flight_script() { return ATTEST_EMBEDDED(flight_script); }
 std::string_view dygraphs_script() { return without_source_map(ATTEST_EMBEDDED(dygraphs_script)); }
 std::string_view dygraphs_style() { return without_source_map(ATTEST_EMBEDDED(dygraphs_style)); }
 std::string_view dygraphs_synchronizer() { return ATTEST_EMBEDDED(dygraphs_synchronizer); }

@@ -13,6 +13,10 @@ std::string_view page_script();  // the list of results and the matrix
 std::string_view details_script();
 std::string_view plots_script();
 
+// The page of one flight, and its script.
+std::string_view flight_template();
+std::string_view flight_script();
+
 // Of the package libjs-dygraphs.
 std::string_view dygraphs_script();
 std::string_view dygraphs_style();

@@ -9,10 +9,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "harness/core/json_text.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/html/base64.hpp"
 #include "harness/report/html/curves.hpp"
+#include "harness/report/html/script_json.hpp"
 #include "harness/trace/csv.hpp"
 #include "harness/verify/saved_traces.hpp"
 
@@ -99,18 +99,6 @@ json vector_to_json(const Traces& traces, const Deviation& first) {
           {"signals", std::move(signals)}};
 }
 
-// In a <script>, "</script" and "<!--" would end or change the data.
-std::string for_script(const json& value) {
-  std::string out;
-  for (const char c : text_of(value)) {
-    if (c == '<')
-      out += "\\u003c";
-    else
-      out += c;
-  }
-  return out;
-}
-
 }  // namespace
 
 std::vector<const CaseResult*> vectors_to_plot(const RunResult& run, std::size_t most) {
@@ -147,8 +135,8 @@ std::string plots_json(const RunResult& run, const std::filesystem::path& folder
   for (const CaseResult* result : vectors_to_plot(run)) {
     const auto traces = read_traces(trace_files(folder, *result));
     if (!traces || traces->got.samples.empty()) continue;
-    const std::string entry =
-        for_script(json(result->id())) + ":" + for_script(vector_to_json(*traces, *result->first));
+    const std::string entry = script_json(json(result->id())) + ":" +
+                              script_json(vector_to_json(*traces, *result->first));
     constexpr std::size_t punctuation = 3;  // a comma, a newline, the brace at the end
     if (out.size() + entry.size() + punctuation > most_bytes) continue;
     if (out.size() > 1) out += ",\n";

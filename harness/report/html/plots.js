@@ -77,13 +77,8 @@ const attest = {};
     });
   };
 
-  const commonOptions = (curves, marked) => ({
-    customBars: true,
+  const styledAxes = () => ({
     legend: 'never',
-    stepPlot: isFlag(curves),
-    drawPoints: curves.tick.length <= 150,
-    pointSize: 2,
-    fillAlpha: 0.25,
     gridLineColor: colour('line'),
     axisLineColor: colour('line'),
     axisLabelWidth: 62,
@@ -91,11 +86,20 @@ const attest = {};
     yRangePad: 6,
     labelsKMB: false,
     digitsAfterDecimal: 6,
-    underlayCallback: marks(curves, marked),
     axes: {
       x: {axisLabelFormatter: (t) => shown(t), pixelsPerLabel: 70},
       y: {axisLabelFormatter: (v) => shown(v), pixelsPerLabel: 22},
     },
+  });
+
+  const commonOptions = (curves, marked) => ({
+    ...styledAxes(),
+    customBars: true,
+    stepPlot: isFlag(curves),
+    drawPoints: curves.tick.length <= 150,
+    pointSize: 2,
+    fillAlpha: 0.25,
+    underlayCallback: marks(curves, marked),
   });
 
   const valuePlot = (place, curves, marked) => {
@@ -300,8 +304,12 @@ const attest = {};
     redraw = () => addPlots(place, row, plotted);
   };
 
-  attest.addPlots = addPlots;
-  attest.removePlots = removePlots;
+  // `draw` draws all plots anew in other colours.
+  const onColoursChanged = (draw) => {
+    redraw = draw;
+  };
+  const shared = {floats, colour, nearest, shown, styledAxes, onColoursChanged};
+  Object.assign(attest, shared, {addPlots, removePlots});
 
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => redraw());
   addEventListener('beforeprint', () => {

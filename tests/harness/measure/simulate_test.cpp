@@ -58,7 +58,10 @@ class Simulate : public testing::Test {
 
   Result<CaseResult> simulated() {
     GivenHost host(answers_);
-    return simulate_flight(case_, plan_, host, out_);
+    auto flight = simulate_flight(case_, plan_, host);
+    if (!flight) return tl::unexpected(flight.error());
+    if (auto done = write_flown(flight->flown, out_); !done) return tl::unexpected(done.error());
+    return flight->result;
   }
 
   Verdict verdict_on(std::vector<Metric> metrics) {
