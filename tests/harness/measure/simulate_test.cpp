@@ -10,6 +10,7 @@
 #include "harness/core/file.hpp"
 #include "harness/loop/case_timing.hpp"
 #include "harness/trace/csv.hpp"
+#include "harness/ulog/trace_log.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
 #include "tests/harness/measure/given_host.hpp"
 #include "tests/harness/realtime/flights.hpp"
@@ -60,7 +61,8 @@ class Simulate : public testing::Test {
     GivenHost host(answers_);
     auto flight = simulate_flight(case_, plan_, host);
     if (!flight) return tl::unexpected(flight.error());
-    if (auto done = write_flown(flight->flown, out_); !done) return tl::unexpected(done.error());
+    if (flight->flown.samples.empty()) return flight->result;
+    if (auto done = write_trace(out_, flight->flown); !done) return tl::unexpected(done.error());
     return flight->result;
   }
 
