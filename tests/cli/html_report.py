@@ -129,15 +129,28 @@ class FailingPort(Page):
         self.browser.wait_for(f"{shown}.startsWith('{group}/')")
         self.assertTrue(self.run_in_page(shown).endswith("@250hz"))
         self.browser.wait_for("document.querySelector('.details canvas')")
-        coloured = self.run_in_page(
-            "Math.max(...[...document.querySelectorAll('.values canvas')].map((c) => {"
-            " const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;"
-            " return d.filter((v, i) => i % 4 === 3 && v > 0).length; }))"
-        )
-        self.assertGreater(coloured, 500)
+        for curve in ("got", "expected"):
+            self.assertGreater(self.pixels_of(curve), 50, curve)
         ids = self.run_in_page("[...document.querySelectorAll('.row')].map((r) => r.title)")
         self.assertTrue(ids)
         self.assertTrue(all(i.startswith(group) and i.endswith("@250hz") for i in ids), ids)
+
+    def pixels_of(self, colour: str) -> int:
+        """How many pixels of the first plot have the colour of that name in page.css."""
+        return self.run_in_page(
+            "(() => { const name = getComputedStyle(document.documentElement)"
+            f".getPropertyValue('--{colour}').trim();"
+            " const want = [1, 3, 5].map((i) => parseInt(name.slice(i, i + 2), 16));"
+            " return Math.max(...[...document.querySelectorAll('.values canvas')].map((c) => {"
+            " const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;"
+            " let n = 0; for (let i = 0; i < d.length; i += 4)"
+            " n += d[i + 3] === 255 && want.every((w, k) => Math.abs(d[i + k] - w) < 3);"
+            " return n; })); })()"
+        )
+
+    def test_the_list_replaces_the_table(self):
+        shown = "getComputedStyle(document.querySelector('#results')).display"
+        self.assertEqual(self.run_in_page(shown), "none")
 
     def test_the_plots_zoom_together(self):
         self.browser.wait_for("document.querySelectorAll('.values canvas').length > 0")
