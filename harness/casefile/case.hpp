@@ -150,6 +150,10 @@ struct Case {
   std::vector<RunConfiguration> configurations() const;
 
   std::string id() const { return profile + "/" + group + "/" + name; }
+  // Of a vector, as reports and filters call it: "px4-v1.5.5/flight/hover@250hz-iris-ode".
+  std::string id_at(const RunConfiguration& configuration) const {
+    return id() + "@" + configuration.label();
+  }
 
   // The golden of the first profile holds all columns; those of the others hold what differs. The
   // inputs and most outputs are the same in all profiles of a file.

@@ -294,6 +294,17 @@ Result<Shard> Shard::parse(const std::string& text) {
 
 std::string Shard::to_string() const { return fmt::format("{}/{}", index, count); }
 
+std::vector<SelectedCase> keep_vectors(std::vector<SelectedCase> cases,
+                                       const std::set<std::string>& ids) {
+  for (auto& [the_case, configurations] : cases) {
+    std::erase_if(configurations, [&, &one = the_case](const RunConfiguration& configuration) {
+      return !ids.contains(one.id_at(configuration));
+    });
+  }
+  std::erase_if(cases, [](const SelectedCase& one) { return one.configurations.empty(); });
+  return cases;
+}
+
 std::vector<std::string> as_options(
     std::initializer_list<std::pair<const char*, const std::vector<std::string>&>> lists) {
   std::vector<std::string> options;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <initializer_list>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -48,6 +49,11 @@ struct SelectedCase {
   std::vector<RunConfiguration>
       configurations;  // in the order of Case::configurations(), not empty
 };
+
+// The vectors with these ids (Case::id_at), in the same order. A case of which none is left is left
+// out.
+std::vector<SelectedCase> keep_vectors(std::vector<SelectedCase> cases,
+                                       const std::set<std::string>& ids);
 
 // `--group attitude,rates` for each list that is not empty.
 std::vector<std::string> as_options(

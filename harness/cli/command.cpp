@@ -1,12 +1,32 @@
 #include "harness/cli/command.hpp"
 
 #include <cstdio>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/report/read_report.hpp"
+
 namespace attest::cli {
+namespace {
+
+// The vectors of `cases` that failed in a report.
+Result<std::vector<SelectedCase>> failed_in(const std::string& report,
+                                            std::vector<SelectedCase> cases) {
+  const auto earlier = read_report(report);
+  if (!earlier) return tl::unexpected(earlier.error());
+  std::set<std::string> ids;
+  for (const CaseResult& result : earlier->results) {
+    if (fails_a_run(result.verdict)) ids.insert(result.id());
+  }
+  cases = keep_vectors(std::move(cases), ids);
+  if (!cases.empty()) return cases;
+  return fail_at(report, "no selected vector failed in it; run without --rerun-failed");
+}
+
+}  // namespace
 
 int report_error(const Error& error) {
   // Not through fmt::print: it throws when stderr cannot be written.
@@ -21,6 +41,7 @@ std::string SelectionOptions::narrowing() const {
                              {"--rate", rates},
                              {"--vehicle", vehicles},
                              {"--plant", plants}});
+  if (!rerun_failed.empty()) options.push_back("--rerun-failed " + rerun_failed);
   return fmt::format("{}", fmt::join(options, " "));
 }
 
@@ -40,7 +61,9 @@ Result<std::vector<SelectedCase>> SelectionOptions::cases_in(const CaseFolders& 
   const auto part = Shard::parse(shard);
   if (!part) return tl::unexpected(part.error());
   selection.shard = *part;
-  return select_cases(folders, selection);
+  auto cases = select_cases(folders, selection);
+  if (!cases || rerun_failed.empty()) return cases;
+  return failed_in(rerun_failed, *std::move(cases));
 }
 
 }  // namespace attest::cli

@@ -31,23 +31,25 @@ struct Globals {
 // Prints "attest: error: <file:line: message>" on stderr, and returns the exit code for it.
 int report_error(const Error& error);
 
-// --filter, --exclude, --group, --profile, --rate, --vehicle, --plant and --shard, as text until
-// they are used.
+// --filter, --exclude, --group, --profile, --rate, --vehicle, --plant, --shard and --rerun-failed,
+// as text until they are used.
 struct SelectionOptions {
   std::vector<std::string> filters, excludes, groups, profiles, rates, vehicles, plants;
   std::string shard = "1/1";
+  std::string rerun_failed;  // a JSON report: only what failed in it; empty: not restricted
 
   bool selects_all() const {
     return filters.empty() && excludes.empty() && groups.empty() && profiles.empty() &&
-           rates.empty() && vehicles.empty() && plants.empty() && shard == "1/1";
+           rates.empty() && vehicles.empty() && plants.empty() && shard == "1/1" &&
+           rerun_failed.empty();
   }
 
   // The options that select fewer than all vectors of a profile, except --shard: "--group tpa
   // --rate 250".
   std::string narrowing() const;
 
-  // The selected cases below `folders`. Errors: those of select_cases, and text that is not a rate
-  // or a shard.
+  // The selected cases below `folders`. Errors: those of select_cases; text that is not a rate or a
+  // shard; a file that is no report, or in which none of these vectors failed.
   Result<std::vector<SelectedCase>> cases_in(const CaseFolders& folders) const;
 };
 
@@ -70,9 +72,8 @@ struct RunOptions {
   std::string level = "numeric";
   ReportOptions report;
   std::string expected_failures;
-  std::string timing;        // file; empty: the cases' own
-  std::string save_traces;   // folder; empty: not saved
-  std::string rerun_failed;  // report whose failing vectors are selected; empty: not restricted
+  std::string timing;       // file; empty: the cases' own
+  std::string save_traces;  // folder; empty: not saved
 };
 int run_command(const RunOptions& options, const Globals& globals);
 

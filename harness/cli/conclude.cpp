@@ -11,6 +11,7 @@
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/run_plan.hpp"
 #include "harness/diagnosis/diagnosis_job.hpp"
+#include "harness/report/conclusion.hpp"
 #include "harness/report/github.hpp"
 #include "harness/report/terminal.hpp"
 
@@ -55,13 +56,15 @@ std::optional<Diagnosis> diagnosed(const RunResult& run, const Examined& examine
 
 int exit_code(const RunResult& run) {
   if (!run.errors.empty()) return exit_usage;
-  if (run.failed()) return exit_failed;
-  const bool compared = run.count(Verdict::pass) + run.count(Verdict::xfail) > 0;
-  if (!compared) {
-    return report_error(
-        {"no vector was compared: every selected vector was skipped or unsupported"});
+  switch (conclusion_of(run)) {
+    case Conclusion::pass:
+      return exit_ok;
+    case Conclusion::fail:
+      return exit_failed;
+    case Conclusion::none:
+      break;
   }
-  return exit_ok;
+  return report_error({"no vector was compared: every selected vector was skipped or unsupported"});
 }
 
 // GitHub gives the file a job may append its summary to.
@@ -103,9 +106,10 @@ int conclude(const RunResult& run, const Examined& examined, const ReportOptions
   const int code = exit_code(run);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   if (!globals.quiet || code != exit_ok) {
-    fmt::print("{}",
-               render_summary(run, wall.count(), terminal_style(stdout), diagnosis,
-                              options.verbose ? Failures::all : Failures::first_of_each_group));
+    const std::string summary =
+        render_summary(run, wall.count(), terminal_style(stdout), diagnosis,
+                       options.verbose ? Failures::all : Failures::first_of_each_group);
+    fmt::print("{}", options.github ? without_commands(summary) : summary);
   }
   if (options.github) write_for_github(run, wall.count(), diagnosis);
   if (!written) return report_error(written.error());

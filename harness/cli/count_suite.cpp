@@ -14,9 +14,12 @@ int main(int count, char** arguments) {
     fmt::print(stderr, "{}\n", hash.error().to_string());
     return EXIT_FAILURE;
   }
+  const auto groups = suite.vectors_by_group();
   fmt::print("extern const char* const released_suite_vectors;\n");
-  fmt::print("const char* const released_suite_vectors =\n\"{}\\n\"\n", *hash);
-  for (const auto& [group, rates] : suite.vectors_by_group()) {
+  // A suite with a malformed case has no groups. Then a run counts, and reports the case.
+  fmt::print("const char* const released_suite_vectors =\n\"{}\\n\"\n",
+             groups.empty() ? "none" : *hash);
+  for (const auto& [group, rates] : groups) {
     for (const auto& [rate, vectors] : rates) {
       fmt::print("\"{} {} {}\\n\"\n", group, rate.to_string(), vectors);
     }

@@ -40,21 +40,39 @@ std::string parameters_of(const RunResult& run) {
   return fmt::format("{}", fmt::join(texts, " "));
 }
 
+// What the port declared, except its name.
+std::string declarations_of(const RunResult& run) {
+  return fmt::format("{} fraction bits, fixed step {}, {} outputs not recorded: {}",
+                     run.fraction_bits.value_or(0),
+                     run.fixed_step ? run.fixed_step->to_string() : "none",
+                     run.not_recorded.count(), run.not_recorded.to_string());
+}
+
+std::string limits_of(const RunResult& run) {
+  const Limits& limits = run.limits;
+  if (!limits.own_process) return "--in-process";
+  return fmt::format("{} s, {} GiB, {} MiB a file", limits.timeout_s, limits.memory_gib.value_or(0),
+                     limits.file_mib);
+}
+
 const std::vector<Property>& properties() {
   static const std::vector<Property> all = {
       {"version of attest", [](const RunResult& run) { return run.attest_version; }},
       {"suite", [](const RunResult& run) { return run.suite_sha256; }},
+      {"version of the suite",
+       [](const RunResult& run) { return run.cases_version + ", " + run.golden_version; }},
+      {"reference of the suite", [](const RunResult& run) { return run.suite_reference; }},
       {"port", [](const RunResult& run) { return run.port; }},
       {"hash of the port", [](const RunResult& run) { return run.port_sha256; }},
       {"name of the port",
        [](const RunResult& run) { return run.port_name + " " + run.port_version; }},
+      {"declaration of the port", declarations_of},
       {"level", [](const RunResult& run) { return std::string(name_of(run.level)); }},
       {"selection", [](const RunResult& run) { return run.selection; }},
+      {"recorded timing", [](const RunResult& run) { return run.timing; }},
       {"parameters", parameters_of},
       {"number of shards", [](const RunResult& run) { return fmt::to_string(run.shard.count); }},
-      {"--in-process",
-       [](const RunResult& run) { return std::string(run.limits.own_process ? "no" : "yes"); }},
-      {"time limit", [](const RunResult& run) { return fmt::to_string(run.limits.timeout_s); }},
+      {"limit of the port", limits_of},
   };
   return all;
 }
@@ -85,12 +103,12 @@ Result<void> check_parts(const std::vector<Part>& parts) {
                                             other->second));
     }
   }
-  std::vector<std::string> missing;
-  for (std::size_t i = 1; i <= first.run.shard.count; ++i) {
-    if (!by_shard.contains(i)) missing.push_back(Shard{i, first.run.shard.count}.to_string());
-  }
-  if (missing.empty()) return {};
-  return fail(fmt::format("missing: the report of shard {}", fmt::join(missing, ", ")));
+  const std::size_t count = first.run.shard.count, missing = count - by_shard.size();
+  if (missing == 0) return {};
+  std::size_t index = 1;
+  while (by_shard.contains(index)) ++index;
+  return fail(fmt::format("missing: the report of shard {}{}", Shard{index, count}.to_string(),
+                          missing == 1 ? "" : fmt::format(" and {} more", missing - 1)));
 }
 
 Result<void> check_suite(const SuiteFolder& suite, const RunResult& run) {
@@ -109,7 +127,7 @@ Result<void> put_in_order(const std::vector<SelectedCase>& cases, RunResult& run
   std::map<std::string, std::size_t> place;
   for (const SelectedCase& selected : cases) {
     for (const RunConfiguration& configuration : selected.the_case.configurations()) {
-      place.emplace(selected.the_case.id() + "@" + configuration.label(), place.size());
+      place.emplace(selected.the_case.id_at(configuration), place.size());
     }
   }
   std::set<std::string> known;
@@ -127,7 +145,7 @@ Result<void> put_in_order(const std::vector<SelectedCase>& cases, RunResult& run
   return {};
 }
 
-// Everything but results, errors, rates and the date is the same in all parts.
+// REQUIRES: check_parts(). All other members are the same in all parts.
 RunResult merged(std::vector<Part> parts) {
   RunResult run = std::move(parts.front().run);
   for (std::size_t i = 1; i < parts.size(); ++i) {
@@ -151,11 +169,12 @@ std::optional<HostOptions> host_for(const MergeOptions& options, const RunResult
   host.port = options.port.empty() ? run.port : options.port;
   host.timeout_s = options.timeout_s;
   host.stop = interrupted;
-  const auto sha256 = sha256_of_port(host.port);
-  const auto port = describe_port(host);
-  if (sha256 && port && *sha256 == run.port_sha256) {
-    host.said = *port;
-    return host;
+  // The code of another port is not called.
+  if (const auto sha256 = sha256_of_port(host.port); sha256 && *sha256 == run.port_sha256) {
+    if (const auto port = describe_port(host)) {
+      host.said = *port;
+      return host;
+    }
   }
   fmt::print(stderr,
              "attest: note: no probable mistake is named, because {} is not the port of the "
@@ -189,6 +208,7 @@ int merge_command(const MergeOptions& options, const Globals& globals) {
   if (!cases) return report_error(cases.error());
   if (auto ordered = put_in_order(*cases, run); !ordered) return report_error(ordered.error());
   run.suite = vectors_by_group(*suite, run.suite_sha256);
+  run.suite_is_released = run.suite_sha256 == released_suite_sha256();
   run.suite_folder = globals.suite;
   auto reports = open_reports(options.report);
   if (!reports) return report_error(reports.error());

@@ -1,6 +1,8 @@
 #include "harness/cli/plotted_traces.hpp"
 
 #include <algorithm>
+#include <set>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -11,28 +13,6 @@
 #include "harness/report/report_format.hpp"
 
 namespace attest::cli {
-namespace {
-
-// The cases of these results, at the results' run configurations.
-std::vector<SelectedCase> cases_of(const std::vector<const CaseResult*>& results,
-                                   const std::vector<SelectedCase>& all) {
-  std::vector<SelectedCase> cases;
-  for (const SelectedCase& selected : all) {
-    SelectedCase wanted{selected.the_case, {}};
-    for (const RunConfiguration& configuration : selected.configurations) {
-      const bool is_wanted =
-          std::any_of(results.begin(), results.end(), [&](const CaseResult* result) {
-            return result->case_id() == selected.the_case.id() &&
-                   result->configuration() == configuration;
-          });
-      if (is_wanted) wanted.configurations.push_back(configuration);
-    }
-    if (!wanted.configurations.empty()) cases.push_back(std::move(wanted));
-  }
-  return cases;
-}
-
-}  // namespace
 
 Result<PlottedTraces> PlottedTraces::prepare(const RunOptions& options) {
   PlottedTraces traces;
@@ -57,10 +37,11 @@ RunOptions PlottedTraces::planned(RunOptions options) const {
 
 void PlottedTraces::save(const RunPlan& plan, const SuiteFolder& suite,
                          const RunOptions& options) const {
-  const auto vectors = vectors_to_plot(plan.run);
-  if (!temporary_ || !options.timing.empty() || vectors.empty()) return;
+  std::set<std::string> ids;
+  for (const CaseResult* result : vectors_to_plot(plan.run)) ids.insert(result->id());
+  if (!temporary_ || !options.timing.empty() || ids.empty()) return;
   VehicleModels vehicle_models(suite.models());
-  const auto jobs = case_jobs(cases_of(vectors, plan.cases), suite.golden(), vehicle_models,
+  const auto jobs = case_jobs(keep_vectors(plan.cases, ids), suite.golden(), vehicle_models,
                               {plan.run.level, folder_, plan.run.parameters}, plan.host);
   JobOptions<CaseResult> again;
   again.processes = options.jobs;

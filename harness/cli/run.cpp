@@ -19,7 +19,9 @@ Result<void> check_paths(const RunOptions& options, const SuiteFolder& suite) {
   std::vector<std::string> outputs;
   for (const auto& [option, path] : options.report.files) outputs.push_back(path);
   auto checked = check_outputs(
-      outputs, {options.host.port, {options.expected_failures, options.timing}}, suite);
+      outputs,
+      {options.host.port, {options.expected_failures, options.timing, options.select.rerun_failed}},
+      suite);
   if (!checked) return checked;
   return prepare_trace_folder(options.save_traces, suite);
 }

@@ -91,7 +91,7 @@ void add_run_command(CLI::App& app, const Globals& globals, Action& action) {
       ->capture_default_str()
       ->group(option_group::selection);
   command
-      ->add_option("--rerun-failed", options->rerun_failed,
+      ->add_option("--rerun-failed", options->select.rerun_failed,
                    "Only the vectors that failed in this report of --json")
       ->type_name("REPORT")
       ->group(option_group::selection);

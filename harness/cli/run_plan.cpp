@@ -19,7 +19,6 @@
 #include "harness/golden/recorded.hpp"
 #include "harness/port/port.hpp"
 #include "harness/process/child.hpp"
-#include "harness/report/read_report.hpp"
 #include "harness/report/text.hpp"
 #include "harness/verify/recorded_vectors.hpp"
 
@@ -78,31 +77,10 @@ Result<void> set_parameters(const RunOptions& options, const std::vector<Selecte
   return {};
 }
 
-// Keeps the vectors that failed in a report; an empty name: keeps all. Errors: no report; none of
-// the selected vectors failed in it.
-Result<void> keep_failed(const std::string& report, std::vector<SelectedCase>& cases) {
-  if (report.empty()) return {};
-  const auto earlier = read_report(report);
-  if (!earlier) return tl::unexpected(earlier.error());
-  std::set<std::string> failed;
-  for (const CaseResult& result : earlier->results) {
-    if (fails_a_run(result.verdict)) failed.insert(result.id());
-  }
-  for (auto& [the_case, configurations] : cases) {
-    std::erase_if(configurations, [&, id = the_case.id()](const RunConfiguration& configuration) {
-      return !failed.contains(id + "@" + configuration.label());
-    });
-  }
-  std::erase_if(cases, [](const SelectedCase& one) { return one.configurations.empty(); });
-  if (!cases.empty()) return {};
-  return fail_at(report, "no selected vector failed in it; run without --rerun-failed");
-}
-
 // Plans the selected cases. Their ticks are those of the case files, not of a recorded timing.
 Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, RunPlan& plan) {
   auto cases = options.select.cases_in(suite.case_folders());
   if (!cases) return tl::unexpected(cases.error());
-  if (auto kept = keep_failed(options.rerun_failed, *cases); !kept) return kept;
   if (auto set = set_parameters(options, *cases, plan); !set) return set;
   if (!suite.reference().empty() || !plan.run.parameters.empty()) {
     std::erase_if(*cases, [](const SelectedCase& one) { return one.the_case.flight.has_value(); });
@@ -130,10 +108,6 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
   if (!jobs) return tl::unexpected(jobs.error());
   plan.jobs = *std::move(jobs);
   plan.run.selection = options.select.narrowing();
-  if (!options.rerun_failed.empty()) {
-    plan.run.selection +=
-        (plan.run.selection.empty() ? "" : " ") + ("--rerun-failed " + options.rerun_failed);
-  }
   plan.run.all_configurations = all_configurations;
   if (const auto shard = Shard::parse(options.select.shard)) plan.run.shard = *shard;
   plan.run.rates.assign(rates.begin(), rates.end());

@@ -23,44 +23,45 @@ const json& JsonReader::member(const char* key) {
   return nothing;
 }
 
-std::string JsonReader::text(const char* key) {
+template <typename T>
+T JsonReader::typed(const char* key, bool (json::*is_of_type)() const noexcept, const char* what) {
   const json& value = member(key);
-  if (value.is_string()) return value.get<std::string>();
-  wrong(fmt::format("`{}` is not a string", key));
-  return {};
+  if ((value.*is_of_type)()) return value.get<T>();
+  wrong(fmt::format("`{}` is not {}", key, what));
+  return T{};
 }
 
-std::vector<std::string> JsonReader::texts(const char* key) {
-  const json& values = member(key);
-  std::vector<std::string> out;
-  for (const json& value : values) {
-    if (value.is_string()) out.push_back(value.get<std::string>());
-  }
-  if (!values.is_array() || out.size() != values.size()) {
-    wrong(fmt::format("`{}` is not a list of strings", key));
-  }
-  return out;
+std::string JsonReader::text(const char* key) {
+  return typed<std::string>(key, &json::is_string, "a string");
 }
 
 std::uint64_t JsonReader::count(const char* key) {
-  const json& value = member(key);
-  if (value.is_number_unsigned()) return value.get<std::uint64_t>();
-  wrong(fmt::format("`{}` is not a count", key));
-  return 0;
+  return typed<std::uint64_t>(key, &json::is_number_unsigned, "a count");
 }
 
 std::int64_t JsonReader::integer(const char* key) {
-  const json& value = member(key);
-  if (value.is_number_integer()) return value.get<std::int64_t>();
-  wrong(fmt::format("`{}` is not an integer", key));
-  return 0;
+  return typed<std::int64_t>(key, &json::is_number_integer, "an integer");
 }
 
 bool JsonReader::flag(const char* key) {
-  const json& value = member(key);
-  if (value.is_boolean()) return value.get<bool>();
-  wrong(fmt::format("`{}` is not true or false", key));
-  return false;
+  return typed<bool>(key, &json::is_boolean, "true or false");
+}
+
+const json& JsonReader::list(const char* key) {
+  static const json empty = json::array();
+  const json& values = member(key);
+  if (values.is_array()) return values;
+  wrong(fmt::format("`{}` is not a list", key));
+  return empty;
+}
+
+std::vector<std::string> JsonReader::texts(const char* key) {
+  std::vector<std::string> out;
+  for (const json& value : list(key)) {
+    if (!value.is_string()) wrong(fmt::format("`{}` is not a list of strings", key));
+    out.push_back(value.is_string() ? value.get<std::string>() : "");
+  }
+  return out;
 }
 
 double JsonReader::real(const char* key) {

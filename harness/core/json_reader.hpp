@@ -22,6 +22,7 @@ class JsonReader {
   JsonReader object(const char* key) { return {member(key), error_}; }
 
   // Of a member that is missing or of another type: empty, 0 or false.
+  const nlohmann::json& list(const char* key);
   std::string text(const char* key);
   std::vector<std::string> texts(const char* key);
   std::uint64_t count(const char* key);
@@ -32,6 +33,9 @@ class JsonReader {
   void wrong(std::string message);
 
  private:
+  template <typename T>
+  T typed(const char* key, bool (nlohmann::json::*is_of_type)() const noexcept, const char* what);
+
   const nlohmann::json& object_;
   std::string& error_;
 };

@@ -86,7 +86,7 @@ Result<Flown> fly(const Case& the_case, const RunConfiguration& configuration,
                   unit);
 
   Flown flown;
-  flown.trace.source = fmt::format("{}@{}", the_case.id(), configuration.label());
+  flown.trace.source = the_case.id_at(configuration);
   flown.trace.present = channels_of(Module::mc_att_control);
   reserve_large(flown.trace.samples, ticks);
   reserve_large(flown.trace.plant, ticks);

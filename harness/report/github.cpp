@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/core/file.hpp"
 #include "harness/report/conclusion.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/terminal.hpp"
@@ -74,6 +75,10 @@ std::string github_annotations(const RunResult& run) {
                            (failing.size() - annotations_shown == 1 ? " is" : " are"));
   }
   return out;
+}
+
+std::string without_commands(const std::string& text) {
+  return fmt::format("::stop-commands::{0}\n{1}::{0}::\n", sha256(text), text);
 }
 
 std::string github_summary(const RunResult& run, double wall_s,

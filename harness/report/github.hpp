@@ -16,6 +16,11 @@ inline constexpr std::size_t annotations_shown = 10;
 // warning that counts the rest. The first of each group comes first. Empty if nothing failed.
 std::string github_annotations(const RunResult& run);
 
+// `text` between two lines that keep GitHub from running workflow commands in it: a port may have a
+// name such as "::stop-commands::x". The word of these lines is the hash of the text, so that no
+// line of it can be the second one.
+std::string without_commands(const std::string& text);
+
 // The job summary, in Markdown: a heading and render_summary() as preformatted text.
 std::string github_summary(const RunResult& run, double wall_s,
                            const std::optional<Diagnosis>& diagnosis);

@@ -67,7 +67,7 @@ void read_selection(JsonReader reader, RunResult& run) {
     if (shard) run.shard = *shard;
     if (!shard) reader.wrong(shard.error().message);
   }
-  for (const json& change : reader.member("parameters")) {
+  for (const json& change : reader.list("parameters")) {
     std::string error;
     JsonReader parameter(change, error);
     run.parameters.push_back(
@@ -77,12 +77,12 @@ void read_selection(JsonReader reader, RunResult& run) {
 }
 
 void read_results(JsonReader& reader, RunResult& run) {
-  for (const json& one : reader.member("results")) {
+  for (const json& one : reader.list("results")) {
     auto result = case_result_from_json(one);
     if (!result) return reader.wrong(result.error().message);
     run.results.push_back(*std::move(result));
   }
-  for (const json& one : reader.member("errors")) {
+  for (const json& one : reader.list("errors")) {
     auto error = error_from_json(one);
     if (!error) return reader.wrong(error.error().message);
     run.errors.push_back(*std::move(error));

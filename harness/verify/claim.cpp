@@ -116,10 +116,9 @@ void say_what_was_not_run(const Groups& groups, const RunResult& run,
     if (cases == 0) rates.push_back(rate.to_string());
   }
   if (left_out == 0) return;
-  std::string only = run.selection;
-  if (run.shard.count > 1)
-    only += (only.empty() ? "--shard " : " --shard ") + run.shard.to_string();
-  if (!only.empty()) missing.push_back("only " + only);
+  if (const std::string part = run.selection_text(); !part.empty()) {
+    missing.push_back("only " + part);
+  }
   if (!names.empty()) missing.push_back(fmt::format("no vector of {}", fmt::join(names, ", ")));
   if (!rates.empty()) missing.push_back(fmt::format("no vector at {} Hz", fmt::join(rates, ", ")));
   missing.push_back(

@@ -35,7 +35,7 @@ struct RunResult {
   ChannelSet not_recorded;                  // outputs that a recorded port does not have
   Level level = Level::numeric;
   std::vector<Rate> rates;          // selected, ascending
-  std::string selection;            // the options that selected a part: "--group tpa"; or empty
+  std::string selection;            // the options that selected a part, except --shard
   bool all_configurations = false;  // of each selected case, all were selected
   Shard shard;                      // of the selected vectors, these were run
   // "profile/group" -> how many cases the suite has at each rate, selected or not.
@@ -51,6 +51,9 @@ struct RunResult {
   std::vector<CaseResult> results;
   std::vector<Error> errors;   // of the environment: a golden that cannot be read, ...
   bool stopped_early = false;  // --fail-fast
+
+  // The options that selected a part: "--group tpa --shard 2/4"; empty: everything.
+  std::string selection_text() const;
 
   std::size_t count(Verdict verdict) const;
   bool failed() const;  // any verdict that fails a run

@@ -2,6 +2,8 @@
 #include <array>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "harness/verify/run_result.hpp"
 
 namespace attest {
@@ -38,6 +40,11 @@ bool fails_a_run(Verdict verdict) {
       return true;
   }
   return true;
+}
+
+std::string RunResult::selection_text() const {
+  if (shard.count == 1) return selection;
+  return fmt::format("{}{}--shard {}", selection, selection.empty() ? "" : " ", shard.to_string());
 }
 
 std::size_t RunResult::count(Verdict verdict) const {

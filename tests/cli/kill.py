@@ -50,7 +50,7 @@ q_d = {{ tilt_deg = {{ signal = "ramp", from = 0, to = 20, end_ticks = 25 }} }}
 NAMES = ("roll", "pitch", "yaw")
 BLESS = ("bless", "--group", "attitude", "--yes", "--reason", "test")
 
-REPORTS = ("r.json", "r.xml", "r.svg")
+REPORTS = ("r.html", "r.json", "r.xml", "r.svg")
 OLD = b"a report of an earlier run"
 OLD_SHA256 = hashlib.sha256(OLD).hexdigest()
 
@@ -138,8 +138,12 @@ def reports(place):
     out = place.out
     return [
         "--json", f"{out}/r.json", "--junit", f"{out}/r.xml", "--badge", f"{out}/r.svg",
-        "--save-traces", f"{out}/traces", "--group", "attitude",
+        "--html", f"{out}/r.html", "--group", "attitude",
     ]  # fmt: skip
+
+
+def traces(place):
+    return ["--save-traces", f"{place.out}/traces"]
 
 
 def proc_port(place):
@@ -152,8 +156,9 @@ def proc_port(place):
 def commands(starter):
     library = f"lib:{starter}"
     return [
-        Command("run lib", lambda p: ["run", "--port", library, *reports(p)]),
-        Command("run proc", lambda p: ["run", "--port", proc_port(p), *reports(p)]),
+        Command("run lib", lambda p: ["run", "--port", library, *reports(p), *traces(p)]),
+        Command("run proc", lambda p: ["run", "--port", proc_port(p), *reports(p), *traces(p)]),
+        # Without --save-traces, the page has a temporary folder.
         Command("run fault", lambda p: ["run", "--port", "fault:quat-order-xyzw", *reports(p)]),
         Command(
             "bless",
@@ -254,6 +259,8 @@ def check_partial(path):
         json.loads(path.read_text(encoding="utf-8"))
     elif path.suffix in (".xml", ".svg"):
         ElementTree.parse(path)
+    elif path.suffix == ".html":
+        require(path.read_text(encoding="utf-8").endswith("</html>\n"), f"{path.name} is cut off")
     elif path.suffix == ".csv":
         with path.open(encoding="utf-8", newline="") as lines:
             widths = {len(row) for row in csv.reader(lines)}
@@ -263,24 +270,28 @@ def check_partial(path):
 def check_out(place, whole, output, is_killed):
     """Reports are the old ones, or absent if there were no old ones, or complete."""
     for name, content in files_of(place.out).items():
-        if is_killed and place.had_reports and re.fullmatch(r"\.r\.\w+\.\w{6}", name):
+        # A file that replaces another one has a name of its own until it is renamed.
+        if is_killed and re.fullmatch(r"(.*/)?\.(r|provenance)\.\w+\.\w{6}", name):
             continue
         require(name in whole.out, f"{name} is left")
         is_old = place.had_reports and name in REPORTS and content == OLD_SHA256
         if content == "folder" or is_old:
             continue
         check_partial(place.out / name)
-        # Durations are in the JUnit report, so its bytes differ.
+        # Durations are in the JUnit report, and the path of the suite in the page.
         # After an interrupt all verdicts may be known, but not the probable mistake.
         is_noted = name in REPORTS and "the reports do not have the probable mistake" in output
-        same = content == whole.out[name] or is_noted or name.endswith(".xml")
+        same = content == whole.out[name] or is_noted or name.endswith((".xml", ".html"))
         require(same, f"{name} differs from that of a run that is not killed")
 
 
 def check_left(tester, place, command, before, whole, output, is_killed):
     """After the end of attest. `is_killed`: by SIGKILL."""
     require_no_process(place.folder.name + tester.folder.name)
-    require(files_of(place.temporary) == {}, f"temporary files: {files_of(place.temporary)}")
+    temporary = files_of(place.temporary)
+    # Nothing can remove the folder of the plots after SIGKILL.
+    is_known = is_killed and all(name.startswith("attest-plots-") for name in temporary)
+    require(is_known or temporary == {}, f"temporary files: {temporary}")
     after = files_of(place.suite)
     if not command.is_bless:
         require(after == before, "the suite has changed")

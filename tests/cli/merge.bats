@@ -69,9 +69,33 @@ shards() {
   run "$ATTEST" merge part1.json part2.json
   [ "$status" -eq 1 ]
   has "no probable mistake is named, because lib:./mine.so is not the port of the reports"
+  run "$ATTEST" merge part1.json part2.json --port fault:tpa-missing
+  [ "$status" -eq 1 ]
+  has "because fault:tpa-missing is not the port of the reports"
   run "$ATTEST" merge part1.json part2.json --port lib:./moved.so --json merged.json
   [ "$status" -eq 1 ]
   cmp all.json merged.json
+}
+
+@test "reports that claim more than they can are refused" {
+  shards builtin 2
+  sed 's/"released": true/"released": false/' part1.json >p1.json
+  sed 's/"released": true/"released": false/' part2.json >p2.json
+  run "$ATTEST" merge p1.json p2.json --json merged.json  # it is known from the suite
+  cmp all.json merged.json
+  sed 's#"shard": "1/2"#"shard": "1/18446744073709551615"#' part1.json >many.json
+  run timeout 20 "$ATTEST" merge many.json
+  [ "$status" -eq 2 ]
+  has "missing: the report of shard 2/18446744073709551615 and 18446744073709551613 more"
+  "$PYTHON" - <<'P'
+import json
+report = json.load(open("part2.json"))
+report["port"]["not_recorded"] = ["out/vehicle_rates_setpoint.roll"]
+json.dump(report, open("fewer.json", "w"))
+P
+  run "$ATTEST" merge part1.json fewer.json
+  [ "$status" -eq 2 ]
+  has "fewer.json: the declaration of the port is"
 }
 
 @test "what failed in a report is run again" {
@@ -86,6 +110,20 @@ shards() {
   run "$ATTEST" run --rerun-failed all.json --group attitude
   [ "$status" -eq 2 ]
   has "all.json: no selected vector failed in it; run without --rerun-failed"
+  run "$ATTEST" run --rerun-failed all.json --json all.json
+  [ "$status" -eq 2 ]
+  has "all.json"
+  run "$ATTEST" run --rerun-failed all.json --timing t.json
+  [ "$status" -eq 2 ]
+  has "leave out all other selections"
+  cat >known.toml <<'T'
+[expected]
+"px4-v1.5.5/tpa/each_axis" = "not ported"
+"px4-v1.5.5/rates/p_alone" = "not ported"
+T
+  # The second entry names nothing that was run, which is an error of a complete run only.
+  run "$ATTEST" run --port fault:tpa-missing --rerun-failed all.json --expected-failures known.toml
+  [ "$status" -eq 1 ]
   run "$ATTEST" run --rerun-failed "$SOURCE/README.md"
   [ "$status" -eq 2 ]
   has "is no report of \`attest run --json\`"
@@ -96,6 +134,9 @@ shards() {
     --port fault:tpa-missing --github --code-quality quality.json
   [ "$status" -eq 1 ]
   [ "$(grep -c '^::error ' <<<"$output")" -eq 10 ]
+  # The summary, which has words of the port, is between two lines with its hash.
+  word=$(sed -n 's/^::stop-commands:://p' <<<"$output")
+  [ "$(grep -c "^::$word::\$" <<<"$output")" -eq 1 ]
   [ "$(grep -c '^::warning ' <<<"$output")" -eq 1 ]
   has "::error title=fail px4-v1.5.5/tpa/"
   grep -q '^### attest: FAIL' step.md

@@ -9,7 +9,8 @@
 namespace attest {
 
 std::string html_report(const Report& report) {
-  // The template ends with this element, and no text of a port contains `<`.
+  // The last place with these characters is in the template: mustache writes the quotes and `>` in
+  // the texts of a port as entities.
   constexpr std::string_view begin_of_plots = R"(id="plots">)";
   std::string page = filled_page(report);
   const std::size_t left = most_page_bytes - std::min(most_page_bytes, page.size());

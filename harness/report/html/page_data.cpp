@@ -122,7 +122,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const RunResult& run) 
           {"port, SHA-256", run.port_sha256},
           {"level", std::string(name_of(run.level))},
           {"rates [Hz]", fmt::format("{}", fmt::join(rates, ", "))},
-          {"selection", run.selection},
+          {"selection", run.selection_text()},
           {"fixed step [Hz]", run.fixed_step ? run.fixed_step->to_string() : ""},
           {"fraction bits", run.fraction_bits ? fmt::to_string(*run.fraction_bits) : ""},
           {"cases, golden", run.cases_version + ", " + run.golden_version},

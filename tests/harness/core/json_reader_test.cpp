@@ -48,7 +48,8 @@ TEST(JsonReader, KeepsTheFirstError) {
   std::string error;
   JsonReader reader(object, error);
   EXPECT_EQ(reader.count("x"), 0u);
-  EXPECT_TRUE(reader.texts("list").empty());
+  EXPECT_EQ(reader.texts("list").size(), 1u);
+  EXPECT_TRUE(reader.list("x").empty());
   EXPECT_EQ(reader.text("missing"), "");
   EXPECT_EQ(error, "`x` is not a count");
   const auto error_of = [&](auto read) {

@@ -52,6 +52,15 @@ TEST(GithubAnnotations, WordsOfAPortAreNoCommands) {
   EXPECT_EQ(github_annotations(passing_run()), "");
 }
 
+TEST(WithoutCommands, TheTextCannotEndThePart) {
+  const std::string text = without_commands("::error::x\n");
+  const std::size_t end = text.rfind("\n::", text.size() - 2) + 1;
+  EXPECT_THAT(text, StartsWith("::stop-commands::"));
+  EXPECT_EQ(text.substr(17, 64), text.substr(end + 2, 64));
+  EXPECT_EQ(text.find(text.substr(end)), end);
+  EXPECT_NE(without_commands("a").substr(17, 64), without_commands("b").substr(17, 64));
+}
+
 TEST(GithubSummary, IsTheSummaryAsPreformattedText) {
   RunResult run = sample_run();
   run.results.front().reason = "```\n# a heading";

@@ -70,6 +70,8 @@ TEST_F(ReadReport, AMalformedMemberIsNamed) {
   EXPECT_THAT(with("\"date\"", "\"day\""), HasSubstr("`date` is missing"));
   EXPECT_THAT(with("\"level\": \"numeric\"", "\"level\": \"lax\""), HasSubstr("lax"));
   EXPECT_THAT(with("\"verdict\": \"", "\"verdict\": \"un"), HasSubstr("there is no verdict `un"));
+  EXPECT_THAT(with("\"errors\": [", "\"errors\": null, \"x\": ["),
+              HasSubstr("`errors` is not a list"));
   EXPECT_THAT(with("\"tick\": ", "\"tick\": -"), HasSubstr("`tick` is not a count"));
 }
 
