@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 #include <system_error>
+#include <unordered_set>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -26,11 +27,15 @@ std::vector<std::string_view> split(std::string_view line) {
   }
 }
 
-// The column of a cell in its line, in characters (a UTF-8 sequence is one), from 1.
-int place_of(std::string_view line, std::string_view cell) {
-  const auto before = line.substr(0, static_cast<std::size_t>(cell.data() - line.data()));
+// A UTF-8 sequence is one character.
+int characters(std::string_view text) {
   const auto is_first_byte = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; };
-  return 1 + static_cast<int>(std::count_if(before.begin(), before.end(), is_first_byte));
+  return static_cast<int>(std::count_if(text.begin(), text.end(), is_first_byte));
+}
+
+// The column of a cell in its line, in characters, from 1.
+int place_of(std::string_view line, std::string_view cell) {
+  return 1 + characters(line.substr(0, static_cast<std::size_t>(cell.data() - line.data())));
 }
 
 }  // namespace
@@ -60,17 +65,16 @@ Result<void> CsvRows::read_header(Unnamed unnamed) {
   if (!*more || line_.empty() || is_digit(line_.front())) {
     return fail_at(file_, "no header; the first line must name the columns", 1, 1);
   }
+  std::unordered_set<std::string_view> names;
   for (const std::string_view name : split(line_)) {
-    const int place = place_of(line_, name);
     if (name.empty() && unnamed == Unnamed::refused) {
-      return fail_at(file_, "a column without a name; name it or remove the comma", 1, place);
+      return fail_at_place(name, "a column without a name; name it or remove the comma");
     }
-    if (std::find(header_.begin(), header_.end(), name) != header_.end()) {
-      return fail_at(file_, fmt::format("repeated column {}; remove one", in_backquotes(name)), 1,
-                     place);
+    if (!names.insert(name).second) {
+      return fail_at_place(name,
+                           fmt::format("repeated column {}; remove one", in_backquotes(name)));
     }
     header_.emplace_back(name);
-    header_places_.push_back(place);
   }
   return {};
 }
@@ -173,7 +177,9 @@ tl::unexpected<Error> CsvRows::diagnose(char* row) const {
 }
 
 tl::unexpected<Error> CsvRows::fail_at_name(std::size_t column, std::string message) const {
-  return fail_at(file_, std::move(message), 1, header_places_[column]);
+  int place = 1;
+  for (std::size_t i = 0; i < column; ++i) place += characters(header_[i]) + 1;  // and a comma
+  return fail_at(file_, std::move(message), 1, place);
 }
 
 tl::unexpected<Error> CsvRows::fail_at_cell(std::size_t column, std::string message) const {

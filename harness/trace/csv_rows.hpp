@@ -71,7 +71,6 @@ class CsvRows {
   std::string_view line_;  // the line last read, without its end
   int line_number_ = 0;
   std::vector<std::string> header_;
-  std::vector<int> header_places_;  // character in line 1, from 1
   std::vector<CsvColumn> columns_;
 };
 
