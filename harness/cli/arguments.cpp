@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/cli/command.hpp"
 #include "harness/cli/run_arguments.hpp"
@@ -13,6 +14,7 @@
 #include "harness/cli/timing_arguments.hpp"
 #include "harness/cli/wrong_arguments.hpp"
 #include "harness/core/version.hpp"
+#include "harness/ulog/flight_log.hpp"
 
 namespace attest::cli {
 namespace {
@@ -33,15 +35,53 @@ constexpr const char* footer =
     "\n"
     "Exit codes: 0 no failure, 1 a failure, 2 wrong usage or environment.\n";
 
+std::string assumed_by_default() {
+  std::vector<std::string_view> words;
+  for (const FlightAssumption& one : flight_assumptions()) {
+    if (one.by_default) words.push_back(one.word);
+  }
+  return fmt::format("{}", fmt::join(words, ","));
+}
+
+void add_log_options(CLI::App& command, ReplayOptions& options) {
+  std::vector<std::string> words;
+  for (const FlightAssumption& one : flight_assumptions()) words.emplace_back(one.word);
+  command
+      .add_option("--assume", options.assumed,
+                  fmt::format("What holds in a flight whose log does not have the topic, some of "
+                              "{}; default: {}",
+                              fmt::join(words, ", "), assumed_by_default()))
+      ->type_name("WORD,...")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->group(option_group::logs);
+  command
+      .add_option("--within", options.log_limits.within,
+                  "The deviation that agrees with a log, in the unit of the signal")
+      ->type_name("X")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber)
+      ->group(option_group::logs);
+  command
+      .add_option("--at-least", options.log_limits.least_part_within,
+                  "The part of a log's samples that must agree")
+      ->type_name("PART")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0))
+      ->group(option_group::logs);
+}
+
 void add_replay(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<ReplayOptions>();
   CLI::App* command = app.add_subcommand("replay",
-                                         "Feed the inputs of recorded traces to a port and compare "
-                                         "its outputs with the recorded ones");
+                                         "Feed the inputs of recorded traces or flight logs to a "
+                                         "port and compare its outputs with the recorded ones");
   command
       ->add_option("files", options->files,
-                   "Traces (CSV) of a controller, a mixer or a battery estimate")
-      ->type_name("TRACE")
+                   "Traces (CSV) of a controller, a mixer or a battery estimate; logs of flights "
+                   "(.ulg), whose outputs are compared where the log has the sample that they "
+                   "answer")
+      ->type_name("FILE")
       ->required();
   add_port(*command, options->host.port);
   command
@@ -60,11 +100,14 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
                    "Definition of the mixer of a mixer trace; default: that of the provenance.toml "
                    "next to the trace, else the geometry in the file name (`4x.csv`)")
       ->type_name("TEXT");
+  add_log_options(*command, *options);
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command, {{"attest replay TRACE.csv --port lib:./libmine.so",
                            "a trace recorded from the firmware, or written by `attest sim`"},
                           {"attest replay TRACE.csv --param MC_ROLL_P=7",
-                           "with another value of a parameter"}});
+                           "with another value of a parameter"},
+                          {"attest replay FLIGHT.ulg --port lib:./libmine.so",
+                           "how well the port agrees with what flew"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return replay_command(*options, globals); };
   });

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/casefile/select.hpp"
+#include "harness/compare/log_agreement.hpp"
 #include "harness/core/result.hpp"
 #include "harness/host/port_process.hpp"
 #include "harness/measure/vector_times.hpp"
@@ -93,6 +94,8 @@ struct ReplayOptions {
   std::string level = "numeric";
   std::string mixer;
   std::vector<std::string> parameters;
+  std::vector<std::string> assumed;  // of a flight log
+  LogLimits log_limits;
 };
 int replay_command(const ReplayOptions& options, const Globals& globals);
 

@@ -9,33 +9,62 @@
 #include "harness/core/version.hpp"
 #include "harness/golden/recorded.hpp"
 #include "harness/report/failure_text.hpp"
+#include "harness/report/log_text.hpp"
 #include "harness/report/text.hpp"
+#include "harness/ulog/flight_log.hpp"
 #include "harness/verify/evaluate.hpp"
+#include "harness/verify/evaluate_log.hpp"
 
 namespace attest::cli {
 namespace {
 
-Result<Recorded> recorded_in(const std::string& file, const ReplayOptions& options) {
-  auto recorded = read_recorded(file, options.profile, options.mixer);
-  if (!recorded) return recorded;
+Result<void> set_parameters(const ReplayOptions& options, const Subject& subject, Trace& trace) {
   for (const std::string& parameter : options.parameters) {
     const auto change = parse_parameter(parameter);
     if (!change) return tl::unexpected(change.error());
-    if (auto checked = check_parameter(recorded->subject, *change); !checked) {
+    if (auto checked = check_parameter(subject, *change); !checked) {
       return fail(fmt::format("--param {}: {}", parameter, checked.error().message));
     }
-    override_parameter(*change, recorded->trace);
+    override_parameter(*change, trace);
   }
-  for (const std::string& note : recorded->notes) {
-    fmt::print(stderr, "attest: note: {}: {}\n", file, note);
+  return {};
+}
+
+void print_notes(const std::string& file, const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) fmt::print(stderr, "attest: note: {}: {}\n", file, note);
+}
+
+Result<Recorded> recorded_in(const std::string& file, const ReplayOptions& options) {
+  auto recorded = read_recorded(file, options.profile, options.mixer);
+  if (!recorded) return recorded;
+  if (auto set = set_parameters(options, recorded->subject, recorded->trace); !set) {
+    return tl::unexpected(set.error());
   }
+  print_notes(file, recorded->notes);
   return recorded;
 }
 
-// One line per trace, more if it differs.
-void print_result(const CaseResult& result, Level level) {
+// With the profile to replay it with.
+Result<FlightLog> log_in(const std::string& file, const ReplayOptions& options) {
+  if (!options.mixer.empty()) return fail_at(file, "is no mixer trace; leave --mixer out");
+  auto log = read_flight_log(file, options.assumed);
+  if (!log) return log;
+  if (!options.profile.empty()) log->profile = options.profile;
+  if (log->profile.empty()) {
+    log->profile = default_profile;
+    log->notes.push_back(fmt::format("the profile is taken to be {} (--profile)", default_profile));
+  }
+  if (auto set = set_parameters(options, {log->profile}, log->trace); !set) {
+    return tl::unexpected(set.error());
+  }
+  print_notes(file, log->notes);
+  return log;
+}
+
+// One line per trace, more if it differs. `judged_by`: the level, or "log".
+void print_result(const CaseResult& result, std::string_view judged_by) {
   fmt::print("{:<12}{}  {}", name_of(result.verdict), result.name, result.profile);
-  if (result.ticks > 0) fmt::print("  {} ticks, {}", result.ticks, name_of(level));
+  if (result.ticks > 0) fmt::print("  {} ticks, {}", result.ticks, judged_by);
   if (result.verdict == Verdict::pass && result.tightest) {
     fmt::print(", tightest headroom {:.3g}x on {}", result.tightest->ratio,
                channels()[result.tightest->channel].name);
@@ -43,7 +72,6 @@ void print_result(const CaseResult& result, Level level) {
   fmt::print("\n");
   if (result.verdict == Verdict::pass) return;
   if (!result.reason.empty()) fmt::print("  {}\n", one_line(result.reason));
-  fmt::print("{}", finding_text(result, level));
 }
 
 class Replay {
@@ -58,8 +86,8 @@ class Replay {
     }
     const std::size_t apart = options_.files.size() - passed_ - failed_;
     if (!globals_.quiet || failed_ > 0) {
-      fmt::print("{} {} of {} traces conform{} ({}, {}{})\n", failed_ == 0 ? "PASS" : "FAIL",
-                 passed_, options_.files.size(),
+      fmt::print("{} {} of {} {}{} ({}, {}{})\n", failed_ == 0 ? "PASS" : "FAIL", passed_,
+                 options_.files.size(), logs_ > 0 ? "traces and logs agree" : "traces conform",
                  apart > 0 ? fmt::format(", {} not compared", apart) : "", options_.host.port,
                  name_of(level_), arithmetic_);
     }
@@ -72,16 +100,42 @@ class Replay {
   Result<void> replay(const std::string& file) {
     // Before the recorded outputs are read: the port's process is a copy of this one.
     if (auto started = ensure_host(host_, options_.host); !started) return started;
+    return is_log(file) ? replay_log(file) : replay_trace(file);
+  }
+
+  Result<void> replay_trace(const std::string& file) {
     const auto recorded = recorded_in(file, options_);
     if (!recorded) return tl::unexpected(recorded.error());
-    const CaseResult result =
-        evaluate_trace(recorded->trace, recorded->subject, *host_, Tolerances(level_));
-    if (result.verdict == Verdict::timeout) host_.reset();  // the next trace gets a new process
-    const bool passed = result.verdict == Verdict::pass;
-    passed_ += passed ? 1 : 0;
-    failed_ += fails_a_run(result.verdict) ? 1 : 0;
-    if (!passed || !globals_.quiet) print_result(result, level_);
+    return judge_trace(recorded->trace, recorded->subject);
+  }
+
+  Result<void> judge_trace(const Trace& trace, const Subject& subject) {
+    const CaseResult result = evaluate_trace(trace, subject, *host_, Tolerances(level_));
+    count(result);
+    if (result.verdict == Verdict::pass && globals_.quiet) return {};
+    print_result(result, name_of(level_));
+    if (result.verdict != Verdict::pass) fmt::print("{}", finding_text(result, level_));
     return {};
+  }
+
+  Result<void> replay_log(const std::string& file) {
+    const auto log = log_in(file, options_);
+    if (!log) return tl::unexpected(log.error());
+    // A log of attest has the outputs of all steps, so it is a trace.
+    if (log->is_of_attest && log->has_every_step) return judge_trace(log->trace, {log->profile});
+    ++logs_;
+    const LogResult found = evaluate_log(*log, log->profile, *host_, options_.log_limits);
+    count(found.result);
+    if (found.result.verdict == Verdict::pass && globals_.quiet) return {};
+    print_result(found.result, "log");
+    fmt::print("{}", log_text(*log, found, options_.log_limits));
+    return {};
+  }
+
+  void count(const CaseResult& result) {
+    if (result.verdict == Verdict::timeout) host_.reset();  // the next trace gets a new process
+    passed_ += result.verdict == Verdict::pass ? 1 : 0;
+    failed_ += fails_a_run(result.verdict) ? 1 : 0;
   }
 
   const ReplayOptions& options_;
@@ -91,6 +145,7 @@ class Replay {
   std::unique_ptr<PortHost> host_;
   std::size_t passed_ = 0;
   std::size_t failed_ = 0;
+  std::size_t logs_ = 0;  // judged by their statistics; they say nothing about conformance
 };
 
 }  // namespace

@@ -17,8 +17,6 @@
 namespace attest {
 namespace {
 
-constexpr const char* default_profile = "px4-v1.5.5";
-
 // A pipe has none: the folder's is of the files there.
 Result<Provenance> provenance_of(const std::filesystem::path& file) {
   std::error_code unknown;

@@ -11,6 +11,9 @@
 
 namespace attest {
 
+// Of a recording that does not say which.
+inline constexpr const char* default_profile = "px4-v1.5.5";
+
 struct Recorded {
   Trace trace;
   Subject subject;

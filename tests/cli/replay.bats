@@ -147,3 +147,70 @@ PYTHON
   has "/dev/stdin:"
   lacks "/proc/"
 }
+
+# flight_log OUT: a simulated flight as another logger would have it, with every second
+# control_state and control missing.
+flight_log() {
+  "$ATTEST" sim gust --rate 250 --out "$BATS_TEST_TMPDIR/whole.ulg" >"$BATS_TEST_TMPDIR/sim"
+  "$PYTHON" "$SOURCE/tests/cli/thin_log.py" "$BATS_TEST_TMPDIR/whole.ulg" "$1"
+}
+
+@test "a log of attest is judged tick by tick, as a trace" {
+  log="$BATS_TEST_TMPDIR/whole.ulg"
+  "$ATTEST" record px4-v1.3.4/arming/never_armed --rate 250 --out "$log"
+  run "$ATTEST" replay "$log" --level exact
+  [ "$status" -eq 0 ]
+  has "px4-v1.3.4"
+  has "PASS 1 of 1 traces conform"
+  "$ATTEST" sim gust --rate 250 --out "$log"
+  run "$ATTEST" replay "$log" --port fault:quat-order-xyzw
+  [ "$status" -eq 1 ]
+  has "first at tick"
+}
+
+@test "a log that lacks every second sample is judged by its rates setpoints" {
+  log="$BATS_TEST_TMPDIR/flight.ulg"
+  flight_log "$log"
+  run "$ATTEST" replay "$log"
+  [ "$status" -eq 0 ]
+  has "vehicle_rates_setpoint: 500 of 1000 logged samples paired"
+  has "500 100.0%  within 0.0001"
+  has "not judged: it depends on earlier steps"
+  has "PASS 1 of 1 traces and logs agree"
+  has "the profile is taken to be px4-v1.5.5"
+  run "$ATTEST" replay "$log" --port fault:quat-order-xyzw
+  [ "$status" -eq 1 ]
+  has "of vehicle_rates_setpoint are within 0.0001; at least 85% must be"
+  has "FAIL 0 of 1"
+}
+
+@test "the limits and assumptions for a log are options" {
+  log="$BATS_TEST_TMPDIR/flight.ulg"
+  flight_log "$log"
+  run "$ATTEST" replay "$log" --port fault:quat-order-xyzw --within 10
+  [ "$status" -eq 0 ]
+  run "$ATTEST" replay "$log" --assume armed
+  [ "$status" -eq 2 ]
+  has "has the topic actuator_armed"
+  run "$ATTEST" replay "$log" --assume amred
+  [ "$status" -eq 2 ]
+  has 'did you mean `armed`'
+  run "$ATTEST" replay "$log" --param MC_ROL_P=7
+  [ "$status" -eq 2 ]
+  has 'did you mean `MC_ROLL_P`'
+}
+
+@test "a port that crashes on a log fails" {
+  log="$BATS_TEST_TMPDIR/flight.ulg"
+  flight_log "$log"
+  run "$ATTEST" replay "$log" --port "lib:$PORTS/port_crash.so"
+  [ "$status" -eq 1 ]
+  has "crash"
+}
+
+@test "a file that is no log is refused" {
+  echo "timestamp" >"$BATS_TEST_TMPDIR/a.ulg"
+  run "$ATTEST" replay "$BATS_TEST_TMPDIR/a.ulg"
+  [ "$status" -eq 2 ]
+  has "a.ulg"
+}

@@ -1,0 +1,160 @@
+#include "harness/compare/log_agreement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace attest {
+namespace {
+
+// A topic of outputs: its flag `published` and its values.
+struct Topic {
+  std::string_view name;
+  const Channel* published = nullptr;
+  std::vector<std::size_t> fields;  // indices into channels()
+
+  bool is_in(const Sample& sample) const { return value_of(*published, sample) != 0; }
+};
+
+std::vector<Topic> topics_in(const ChannelSet& present) {
+  std::vector<Topic> topics;
+  const auto table = channels();
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (!present[i] || !table[i].is_output()) continue;
+    std::string_view name = table[i].name.substr(table[i].name.find('/') + 1);
+    const std::string_view field = name.substr(name.find('.') + 1);
+    name = name.substr(0, name.find('.'));
+    if (topics.empty() || topics.back().name != name) topics.push_back({name, nullptr, {}});
+    if (field == "published")
+      topics.back().published = &table[i];
+    else
+      topics.back().fields.push_back(i);
+  }
+  std::erase_if(topics, [](const Topic& topic) { return topic.published == nullptr; });
+  return topics;
+}
+
+double deviation(double got, double logged) {
+  if (std::isnan(got) && std::isnan(logged)) return 0;
+  if (got == logged) return 0;
+  const double off = std::abs(got - logged);
+  return std::isnan(off) ? std::numeric_limits<double>::infinity() : off;
+}
+
+// The port's values of a field at a tick and its neighbours.
+struct Range {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+};
+
+Range range_around(std::size_t tick, const Channel& channel, const Topic& topic, const Trace& got) {
+  Range range;
+  const std::size_t last = std::min(tick + 2, got.samples.size());
+  for (std::size_t i = tick > 0 ? tick - 1 : 0; i < last; ++i) {
+    if (!topic.is_in(got.samples[i])) continue;
+    const double value = value_of(channel, got.samples[i]);
+    range.low = std::min(range.low, value);
+    range.high = std::max(range.high, value);
+  }
+  return range;
+}
+
+class Agreement {
+ public:
+  Agreement(Topic topic, const Trace& got, const Trace& logged, const LogLimits& limits)
+      : topic_(std::move(topic)), got_(got), logged_(logged), limits_(limits) {
+    found_.topic = topic_.name;
+  }
+
+  TopicAgreement found() && {
+    for (std::size_t tick = 0; tick < logged_.samples.size(); ++tick) add(tick);
+    std::sort(deviations_.begin(), deviations_.end());
+    found_.median = quantile(0.5);
+    found_.p90 = quantile(0.9);
+    found_.p99 = quantile(0.99);
+    found_.largest = quantile(1);
+    return found_;
+  }
+
+ private:
+  void add(std::size_t tick) {
+    if (!topic_.is_in(logged_.samples[tick])) return;
+    ++found_.paired;
+    if (!topic_.is_in(got_.samples[tick])) {
+      ++found_.missing;
+      return note(tick, topic_.fields.front());
+    }
+    std::size_t worst = topic_.fields.front();
+    for (const std::size_t field : topic_.fields) {
+      if (deviation_at(tick, field) > deviation_at(tick, worst)) worst = field;
+    }
+    const double largest = deviation_at(tick, worst);
+    deviations_.push_back(largest);
+    if (largest <= limits_.within)
+      ++found_.within;
+    else if (is_between(tick))
+      ++found_.between_samples;
+    else
+      note(tick, worst);
+  }
+
+  double deviation_at(std::size_t tick, std::size_t field) const {
+    const Channel& channel = channels()[field];
+    return deviation(value_of(channel, got_.samples[tick]),
+                     value_of(channel, logged_.samples[tick]));
+  }
+
+  bool is_between(std::size_t tick) const {
+    return std::all_of(topic_.fields.begin(), topic_.fields.end(), [&](std::size_t field) {
+      const Channel& channel = channels()[field];
+      const Range range = range_around(tick, channel, topic_, got_);
+      const double value = value_of(channel, logged_.samples[tick]);
+      return value >= range.low - limits_.within && value <= range.high + limits_.within;
+    });
+  }
+
+  void note(std::size_t tick, std::size_t field) {
+    if (found_.first_unexplained) return;
+    const Channel& channel = channels()[field];
+    found_.first_unexplained = {tick, field, value_of(channel, got_.samples[tick]),
+                                value_of(channel, logged_.samples[tick])};
+  }
+
+  double quantile(double part) const {
+    if (deviations_.empty()) return 0;
+    const auto rank = std::ceil(part * static_cast<double>(deviations_.size()));
+    return deviations_[static_cast<std::size_t>(rank) - 1];
+  }
+
+  Topic topic_;
+  const Trace& got_;
+  const Trace& logged_;
+  LogLimits limits_;
+  std::vector<double> deviations_;
+  TopicAgreement found_;
+};
+
+double part_of(std::size_t count, std::size_t all) {
+  return all == 0 ? 0 : static_cast<double>(count) / static_cast<double>(all);
+}
+
+}  // namespace
+
+double TopicAgreement::part_within() const { return part_of(within, paired); }
+double TopicAgreement::part_unexplained() const { return part_of(unexplained(), paired); }
+
+bool TopicAgreement::agrees(const LogLimits& limits) const {
+  return paired > 0 && part_within() >= limits.least_part_within &&
+         part_unexplained() <= limits.most_unexplained;
+}
+
+std::vector<TopicAgreement> agreement_with_log(const Trace& got, const Trace& logged,
+                                               const LogLimits& limits) {
+  std::vector<TopicAgreement> found;
+  for (Topic& topic : topics_in(logged.present)) {
+    found.push_back(Agreement(std::move(topic), got, logged, limits).found());
+  }
+  return found;
+}
+
+}  // namespace attest

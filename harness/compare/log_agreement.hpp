@@ -1,0 +1,57 @@
+// How well a port's outputs agree with those of a flight log. A log is no golden: it has only some
+// of the controller's steps, so some of its outputs answer a sample that it does not have.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "harness/trace/trace.hpp"
+
+namespace attest {
+
+// A port agrees with a log if enough of its outputs are within the tolerance, and few are without
+// an explanation.
+struct LogLimits {
+  double within = 1e-4;  // in the unit of the signal
+  double least_part_within = 0.85;
+  // In a real log of 69 s it was 0.9%: a third of these in fast manoeuvres, where the value between
+  // two logged samples is larger than at both, the others barely beyond the tolerance.
+  double most_unexplained = 0.02;
+};
+
+// A value of the port and of the log.
+struct LoggedPair {
+  std::size_t tick;
+  std::size_t channel;  // index into channels()
+  double got, logged;
+};
+
+// One topic. The deviation of a pair is the largest of its fields. NaN agrees with NaN only.
+struct TopicAgreement {
+  std::string_view topic;
+  bool is_judged = true;  // false: only reported
+  std::size_t paired = 0;  // ticks with an output in the log
+  std::size_t missing = 0;  // of these: the port published nothing
+  // Of the pairs that both have. Nearest rank; 0 without pairs.
+  double median = 0, p90 = 0, p99 = 0, largest = 0;
+  std::size_t within = 0;
+  // Not within, but every field is between the port's smallest and largest value at the tick and
+  // its two neighbours: the log has the answer to a sample between these. A law without memory that
+  // is wrong does not have its error bracketed.
+  std::size_t between_samples = 0;
+  std::optional<LoggedPair> first_unexplained;
+
+  std::size_t unexplained() const { return paired - within - between_samples; }
+  double part_within() const;       // of the pairs, 0..1
+  double part_unexplained() const;
+  bool agrees(const LogLimits& limits) const;
+};
+
+// The topics that the log has, in the order of the channels. `got` and `logged` have the same
+// ticks.
+std::vector<TopicAgreement> agreement_with_log(const Trace& got, const Trace& logged,
+                                               const LogLimits& limits);
+
+}  // namespace attest

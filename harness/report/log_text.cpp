@@ -1,0 +1,67 @@
+#include "harness/report/log_text.hpp"
+
+#include <fmt/format.h>
+
+#include "harness/report/failure_text.hpp"
+
+namespace attest {
+namespace {
+
+double seconds_of(const FlightLog& log, std::size_t tick) {
+  const auto& samples = log.trace.samples;
+  return static_cast<double>(samples[tick].in.timestamp - samples[0].in.timestamp) * 1e-6;
+}
+
+std::string part_text(std::size_t count, const TopicAgreement& topic, const std::string& what) {
+  const double part = static_cast<double>(count) / static_cast<double>(topic.paired);
+  return fmt::format("    {:6} {:5.1f}%  {}\n", count, 100 * part, what);
+}
+
+std::string deviations_text(const TopicAgreement& topic, const LogLimits& limits) {
+  std::string text =
+      fmt::format("    off by: median {:.3g}, 90% up to {:.3g}, 99% up to {:.3g}, largest {:.3g}\n",
+                  topic.median, topic.p90, topic.p99, topic.largest);
+  text += part_text(topic.within, topic, fmt::format("within {:g}", limits.within));
+  if (topic.within == topic.paired) return text;
+  text += part_text(topic.between_samples, topic,
+                    "between the port's values for neighbouring samples, of which the log has not "
+                    "all");
+  text += part_text(topic.unexplained(), topic, "not explained");
+  if (topic.missing > 0) text += part_text(topic.missing, topic, "not published by the port");
+  return text;
+}
+
+std::string first_text(const FlightLog& log, const LoggedPair& pair) {
+  const Channel& channel = channels()[pair.channel];
+  return fmt::format(
+      "    first of these at tick {}, {:.3f} s after the first, in {}\n"
+      "      got    {}\n      logged {}\n",
+      pair.tick, seconds_of(log, pair.tick), channel_with_unit(channel),
+      value_text(channel, pair.got), value_text(channel, pair.logged));
+}
+
+std::string topic_text(const FlightLog& log, const TopicAgreement& topic,
+                       const LoggedOutput& logged, const LogLimits& limits) {
+  std::string text = fmt::format("  {}: {} of {} logged samples paired with a control_state\n",
+                                 topic.topic, logged.paired, logged.samples);
+  if (topic.paired == 0) return text;
+  text += deviations_text(topic, limits);
+  if (!topic.is_judged) {
+    text += "    not judged: it depends on earlier steps, and the log does not have every step\n";
+  } else if (topic.first_unexplained) {
+    text += first_text(log, *topic.first_unexplained);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string log_text(const FlightLog& log, const LogResult& result, const LogLimits& limits) {
+  std::string text;
+  for (std::size_t i = 0; i < result.topics.size(); ++i) {
+    text += topic_text(log, result.topics[i], log.outputs[i], limits);
+  }
+  return text;
+}
+
+}  // namespace attest

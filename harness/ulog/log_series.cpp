@@ -1,0 +1,89 @@
+#include "harness/ulog/log_series.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace attest::ulog {
+namespace {
+
+std::optional<Column> find(const Reader& reader, const Subscription& subscription,
+                           std::string_view field) {
+  const auto column = reader.find(subscription.topic, subscription.multi_id, field);
+  return column ? std::optional(*column) : std::nullopt;
+}
+
+// A flag of any type as a byte that is true if the flag is.
+double flag_of(float value) {
+  const bool is_byte = value >= 0 && value <= 255 && value == std::floor(value);
+  return is_byte ? value : 1;
+}
+
+}  // namespace
+
+LogSeries::LogSeries(std::string_view topic, bool is_output)
+    : topic_(topic),
+      is_output_(is_output),
+      multi_id_(!is_output && topic == "vehicle_rates_setpoint" ? 1 : 0) {}
+
+void LogSeries::add_field(std::string field, std::size_t channel) {
+  fields_.push_back(std::move(field));
+  channels_.push_back(channel);
+}
+
+void LogSeries::locate(const Reader& reader, const Subscription& subscription) {
+  located_ = subscription.index;
+  time_ = find(reader, subscription, "timestamp");
+  sample_time_ = find(reader, subscription, "timestamp_sample");
+  columns_.clear();
+  for (const std::string& field : fields_) columns_.push_back(find(reader, subscription, field));
+}
+
+void LogSeries::add(const Reader& reader, const Data& data) {
+  if (located_ != data.subscription->index) locate(reader, *data.subscription);
+  const auto time = time_ ? load_as<std::uint64_t>(time_->type, data.bytes.data() + time_->offset) : 0;
+  if (!time_ || (!times_.empty() && time <= times_.back())) {
+    ++left_out_;
+    return;
+  }
+  times_.push_back(time);
+  if (sample_time_) sample_times_.push_back(load_as<std::uint64_t>(sample_time_->type, data.bytes.data() + sample_time_->offset));
+  for (const auto& column : columns_) {
+    values_.push_back(
+        column ? load_as<float>(column->type, data.bytes.data() + column->offset) : 0.0f);
+  }
+}
+
+std::optional<std::uint64_t> LogSeries::sample_time(std::size_t row) const {
+  if (sample_times_.size() != times_.size()) return std::nullopt;
+  return sample_times_[row];
+}
+
+std::size_t LogSeries::first_after(std::uint64_t time) const {
+  return static_cast<std::size_t>(std::upper_bound(times_.begin(), times_.end(), time) -
+                                  times_.begin());
+}
+
+std::string LogSeries::missing_field() const {
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    if (!columns_[i]) return fields_[i];
+  }
+  return "";
+}
+
+void LogSeries::copy(std::size_t row, Sample& to) const {
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    const Channel& channel = attest::channels()[channels_[i]];
+    const float value = values_[row * channels_.size() + i];
+    set_value(channel, to, channel.type == ChannelType::u8 ? flag_of(value) : value);
+  }
+}
+
+bool LogSeries::advance_to(std::uint64_t time, Sample& to) {
+  const std::size_t before = next_;
+  while (next_ < size() && times_[next_] <= time) ++next_;
+  if (next_ == before) return false;
+  copy(next_ - 1, to);
+  return true;
+}
+
+}  // namespace attest::ulog

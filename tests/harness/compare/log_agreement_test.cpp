@@ -1,0 +1,119 @@
+// Which deviations from a flight log count as agreement, and which are explained.
+#include "harness/compare/log_agreement.hpp"
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace attest {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+// Rates setpoints at successive ticks; a missing one is not published.
+using Rolls = std::vector<std::optional<float>>;
+
+Trace trace_of(const Rolls& rolls) {
+  Trace trace;
+  trace.present = channels_of(Module::mc_att_control, "out/vehicle_rates_setpoint.");
+  for (const auto& value : rolls) {
+    Sample sample{};
+    sample.out.vehicle_rates_setpoint.roll = value.value_or(0.0f);
+    sample.out.vehicle_rates_setpoint.published = value ? 1 : 0;
+    trace.samples.push_back(sample);
+  }
+  return trace;
+}
+
+TopicAgreement agreement(const Rolls& got, const Rolls& logged, const LogLimits& limits = {}) {
+  return agreement_with_log(trace_of(got), trace_of(logged), limits).at(0);
+}
+
+TEST(LogAgreement, CountsWhatIsWithin) {
+  const TopicAgreement found = agreement({1.0f, 2.0f, 3.0f}, {1.0f, 2.00005f, 3.0f});
+  EXPECT_EQ(found.topic, "vehicle_rates_setpoint");
+  EXPECT_EQ(found.paired, 3u);
+  EXPECT_EQ(found.within, 3u);
+  EXPECT_EQ(found.median, 0);
+  EXPECT_NEAR(found.largest, 5e-5, 1e-6);
+  EXPECT_TRUE(found.agrees({}));
+}
+
+TEST(LogAgreement, ComparesOnlyWhatTheLogHas) {
+  const TopicAgreement found = agreement({1.0f, 9.0f, 3.0f}, {1.0f, std::nullopt, 3.0f});
+  EXPECT_EQ(found.paired, 2u);
+  EXPECT_EQ(found.within, 2u);
+}
+
+TEST(LogAgreement, AValueBetweenNeighboursAnswersASampleBetweenThem) {
+  const TopicAgreement found = agreement({1.0f, 2.0f, 3.0f}, {1.0f, 2.5f, 3.0f});
+  EXPECT_EQ(found.between_samples, 1u);
+  EXPECT_EQ(found.unexplained(), 0u);
+}
+
+TEST(LogAgreement, AValueBeyondTheNeighboursIsNotExplained) {
+  const TopicAgreement found = agreement({1.0f, 2.0f, 3.0f, 4.0f}, {1.0f, 3.5f, 3.0f, 4.0f});
+  EXPECT_EQ(found.unexplained(), 1u);
+  ASSERT_TRUE(found.first_unexplained);
+  EXPECT_EQ(found.first_unexplained->tick, 1u);
+  EXPECT_EQ(found.first_unexplained->logged, 3.5);
+  EXPECT_FALSE(found.agrees({}));
+}
+
+TEST(LogAgreement, AWrongSignIsNotExplained) {
+  Rolls got, logged;
+  for (int i = 0; i < 100; ++i) {
+    logged.push_back(std::sin(0.1f * static_cast<float>(i)));
+    got.push_back(-*logged.back());
+  }
+  const TopicAgreement found = agreement(got, logged);
+  EXPECT_GT(found.part_unexplained(), 0.9);
+  EXPECT_FALSE(found.agrees({}));
+}
+
+TEST(LogAgreement, WhatThePortDoesNotPublishIsMissing) {
+  const TopicAgreement found = agreement({1.0f, std::nullopt}, {1.0f, 2.0f});
+  EXPECT_EQ(found.missing, 1u);
+  EXPECT_EQ(found.unexplained(), 1u);
+}
+
+TEST(LogAgreement, NanAgreesWithNanOnly) {
+  EXPECT_EQ(agreement({nan}, {nan}).within, 1u);
+  EXPECT_EQ(agreement({nan}, {1.0f}).unexplained(), 1u);
+  EXPECT_EQ(agreement({1.0f}, {nan}).unexplained(), 1u);
+}
+
+TEST(LogAgreement, BothLimitsDecide) {
+  // Of 100 pairs 14 are between samples, so 86 are within.
+  Rolls got, logged;
+  for (int i = 0; i < 100; ++i) {
+    got.push_back(static_cast<float>(i));
+    logged.push_back(*got.back() + (i > 0 && i <= 14 ? 0.5f : 0.0f));
+  }
+  EXPECT_TRUE(agreement(got, logged).agrees({}));
+  EXPECT_FALSE(agreement(got, logged).agrees({1e-4, 0.87}));
+  for (const int i : {50, 60}) logged[static_cast<std::size_t>(i)] = -5.0f;
+  EXPECT_FALSE(agreement(got, logged).agrees({}));  // 84 are within
+  EXPECT_TRUE(agreement(got, logged).agrees({1e-4, 0.8}));
+  logged[70] = -5.0f;
+  EXPECT_FALSE(agreement(got, logged).agrees({1e-4, 0.8}));  // 3 without explanation
+}
+
+TEST(LogAgreement, QuantilesAreOfTheNearestRank) {
+  Rolls got, logged;
+  for (int i = 1; i <= 100; ++i) {
+    got.push_back(0.0f);
+    logged.push_back(static_cast<float>(i));
+  }
+  const TopicAgreement found = agreement(got, logged);
+  EXPECT_EQ(found.median, 50);
+  EXPECT_EQ(found.p90, 90);
+  EXPECT_EQ(found.p99, 99);
+  EXPECT_EQ(found.largest, 100);
+}
+
+}  // namespace
+}  // namespace attest

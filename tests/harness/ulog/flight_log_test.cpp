@@ -1,0 +1,271 @@
+// Which control_state an output answers, and what the controller was given at each step.
+#include "harness/ulog/flight_log.hpp"
+
+#include <map>
+#include <utility>
+
+#include <gmock/gmock.h>
+
+#include "harness/ulog/writer.hpp"
+#include "tests/harness/ulog/log_file.hpp"
+
+namespace attest {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+using ulog::raw;
+
+constexpr const char* state = "control_state:uint64_t timestamp;float[4] q;float roll_rate;"
+                              "float pitch_rate;float yaw_rate;";
+constexpr const char* setpoint =
+    "vehicle_attitude_setpoint:uint64_t timestamp;float[4] q_d;float thrust;"
+    "float yaw_sp_move_rate;";
+constexpr const char* rates =
+    "vehicle_rates_setpoint:uint64_t timestamp;float roll;float pitch;float yaw;float thrust;";
+constexpr const char* controls =
+    "actuator_controls_0:uint64_t timestamp;uint64_t timestamp_sample;float[8] control;";
+
+// A log with any of these topics.
+class FlightLogFile : public ulog::LogFile {
+ protected:
+  std::filesystem::path path() const { return directory_.path() / "flight.ulg"; }
+
+  void define(const std::vector<std::string>& topics) {
+    for (const std::string& topic : topics) ASSERT_TRUE(writer_.define(topic));
+    for (const std::string& topic : topics) {
+      const std::string name = topic.substr(0, topic.find(':'));
+      ids_[name] = *writer_.subscribe(name);
+    }
+  }
+  template <typename... Values>
+  void add(const char* topic, std::uint64_t time, Values... values) {
+    ASSERT_TRUE(writer_.data(ids_.at(topic), raw(time, values...)));
+  }
+  void add_state(std::uint64_t time, float roll_rate = 0) {
+    add("control_state", time, 1.0f, 0.0f, 0.0f, 0.0f, roll_rate, 0.0f, 0.0f);
+  }
+  void add_setpoint(std::uint64_t time, float thrust = 0.5f) {
+    add("vehicle_attitude_setpoint", time, 1.0f, 0.0f, 0.0f, 0.0f, thrust, 0.0f);
+  }
+  void add_rates(std::uint64_t time, float roll) {
+    add("vehicle_rates_setpoint", time, roll, 0.0f, 0.0f, 0.5f);
+  }
+  void add_controls(std::uint64_t time, std::uint64_t sampled, float roll) {
+    add("actuator_controls_0", time, sampled, roll, 0.0f, 0.0f, 0.5f, 0.0f, 0.0f, 0.0f, 0.0f);
+  }
+  // A log with one step, which a test extends.
+  void start(const char* other_topic = "other:uint64_t timestamp;") {
+    define({state, setpoint, rates, controls, other_topic});
+    add_setpoint(1000);
+    add_state(1000);
+    add_rates(1050, 0.25f);
+    add_controls(1080, 1000, 0.5f);
+  }
+
+  FlightLog read(const std::vector<std::string>& assumed = {}) {
+    auto log = written(assumed);
+    EXPECT_TRUE(log) << log.error().message;
+    return *std::move(log);
+  }
+  std::string error(const std::vector<std::string>& assumed = {}) {
+    const auto log = written(assumed);
+    return log ? "" : log.error().message;
+  }
+
+  ulog::Writer writer_ = ulog::Writer::open(path(), 0).value();
+
+ private:
+  Result<FlightLog> written(const std::vector<std::string>& assumed) {
+    if (!std::exchange(is_written_, true)) {
+      EXPECT_TRUE(writer_.commit());
+    }
+    return read_flight_log(path(), assumed);
+  }
+
+  bool is_written_ = false;
+  std::map<std::string, std::uint16_t> ids_;
+};
+
+std::vector<float> rolls(const FlightLog& log) {
+  std::vector<float> found;
+  for (const Sample& sample : log.trace.samples) {
+    if (sample.out.vehicle_rates_setpoint.published == 0) continue;
+    found.push_back(sample.out.vehicle_rates_setpoint.roll);
+  }
+  return found;
+}
+
+TEST_F(FlightLogFile, AStepIsAControlStateWithItsOutputs) {
+  start();
+  add_state(5000, 0.125f);
+  add_rates(5060, 0.75f);
+  add_controls(5090, 5000, 0.875f);
+  const FlightLog log = read();
+  ASSERT_EQ(log.trace.samples.size(), 2u);
+  EXPECT_EQ(log.trace.samples[1].in.timestamp, 5000u);
+  EXPECT_EQ(log.trace.samples[1].in.control_state.roll_rate, 0.125f);
+  EXPECT_EQ(log.trace.samples[1].out.actuator_controls_0.control[0], 0.875f);
+  EXPECT_THAT(rolls(log), ElementsAre(0.25f, 0.75f));
+  EXPECT_TRUE(log.has_every_step);
+}
+
+TEST_F(FlightLogFile, ASecondOutputBeforeTheNextStateAnswersASampleThatIsNotLogged) {
+  start();
+  add_rates(3050, 0.375f);
+  add_state(5000);
+  add_rates(5060, 0.75f);
+  add_controls(5090, 5000, 0);
+  const FlightLog log = read();
+  EXPECT_THAT(rolls(log), ElementsAre(0.25f, 0.75f));
+  EXPECT_EQ(log.outputs[0].samples, 3u);
+  EXPECT_EQ(log.outputs[0].paired, 2u);
+  EXPECT_FALSE(log.has_every_step);
+}
+
+TEST_F(FlightLogFile, ControlsAnswerTheStateOfTheirSampleTime) {
+  start();
+  add_state(5000);
+  add_controls(5010, 3000, 0.125f);  // the answer to a state that is not in the log
+  const FlightLog log = read();
+  EXPECT_EQ(log.trace.samples[1].out.actuator_controls_0.published, 0);
+  EXPECT_EQ(log.trace.samples[1].out.actuator_controls_0.control[0], 0.5f);  // held
+  EXPECT_FALSE(log.has_every_step);
+}
+
+TEST_F(FlightLogFile, AnOutputBeforeTheFirstStateHasNoStep) {
+  define({state, setpoint, rates, controls});
+  add_rates(500, 9);
+  add_setpoint(900);
+  add_state(1000);
+  add_rates(1050, 0.25f);
+  EXPECT_THAT(rolls(read()), ElementsAre(0.25f));
+}
+
+TEST_F(FlightLogFile, AnInputHoldsFromItsTimeOn) {
+  start();
+  add_state(5000);
+  add_setpoint(6000, 0.75f);
+  add_state(9000);
+  const FlightLog log = read();
+  const auto thrust = [&](std::size_t tick) {
+    return log.trace.samples[tick].in.vehicle_attitude_setpoint.thrust;
+  };
+  const auto is_new = [&](std::size_t tick) {
+    return (log.trace.samples[tick].in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;
+  };
+  EXPECT_EQ(thrust(1), 0.5f);
+  EXPECT_EQ(thrust(2), 0.75f);
+  EXPECT_TRUE(is_new(0));
+  EXPECT_FALSE(is_new(1));
+  EXPECT_TRUE(is_new(2));
+}
+
+TEST_F(FlightLogFile, ParametersChangeAtTheNextStep) {
+  ASSERT_TRUE(writer_.parameter("MC_ROLL_P", 6.5f));
+  start();
+  ASSERT_TRUE(writer_.parameter("MC_ROLL_P", 7.5f));
+  ASSERT_TRUE(writer_.parameter("CBRK_RATE_CTRL", 140253));
+  add_state(5000);
+  const FlightLog log = read();
+  EXPECT_THAT(log.trace.parameters,
+              ElementsAre(ParameterChange{0, "MC_ROLL_P", 6.5f},
+                          ParameterChange{1, "MC_ROLL_P", 7.5f},
+                          ParameterChange{1, "CBRK_RATE_CTRL", 140253.0f}));
+  EXPECT_EQ(log.trace.samples[0].in.updated & ATTEST_UPDATED_PARAMETER_UPDATE, 0u);
+  EXPECT_NE(log.trace.samples[1].in.updated & ATTEST_UPDATED_PARAMETER_UPDATE, 0u);
+}
+
+TEST_F(FlightLogFile, TopicsThatTheLogDoesNotHaveAreAssumed) {
+  start();
+  const FlightLog stabilized = read();
+  EXPECT_EQ(stabilized.trace.samples[0].in.actuator_armed.armed, 1);
+  EXPECT_EQ(stabilized.trace.samples[0].in.vehicle_control_mode.flag_control_attitude_enabled, 1);
+  EXPECT_THAT(stabilized.notes,
+              Contains(HasSubstr("armed, rotary_wing, rates, attitude, manual (--assume)")));
+  const FlightLog acro = read({"armed", "rates", "manual"});
+  EXPECT_EQ(acro.trace.samples[0].in.vehicle_control_mode.flag_control_attitude_enabled, 0);
+  EXPECT_EQ(acro.trace.samples[0].in.vehicle_control_mode.flag_control_manual_enabled, 1);
+  EXPECT_THAT(error({"atitude"}), HasSubstr("did you mean `attitude`"));
+}
+
+TEST_F(FlightLogFile, WhatTheLogHasIsNotAssumed) {
+  start("actuator_armed:uint64_t timestamp;bool armed;");
+  add("actuator_armed", 900, false);
+  EXPECT_EQ(read().trace.samples[0].in.actuator_armed.armed, 0);
+  EXPECT_THAT(error({"armed"}), HasSubstr("has the topic actuator_armed"));
+}
+
+TEST_F(FlightLogFile, NothingIsAssumedInALogOfAttest) {
+  ASSERT_TRUE(writer_.info("sys_name", "attest"));
+  ASSERT_TRUE(writer_.info("attest_source", "px4-v1.3.4/flight/hover@250hz"));
+  start();
+  const FlightLog log = read();
+  EXPECT_TRUE(log.is_of_attest);
+  EXPECT_EQ(log.profile, "px4-v1.3.4");
+  EXPECT_EQ(log.trace.samples[0].in.actuator_armed.armed, 0);
+}
+
+TEST_F(FlightLogFile, LogsThatCannotBeReplayedAreExplained) {
+  define({rates});
+  add_rates(1000, 1);
+  EXPECT_THAT(error(), HasSubstr("no sample of the topic control_state"));
+}
+
+TEST_F(FlightLogFile, ALogOfALaterReleaseIsRecognised) {
+  define({"vehicle_angular_velocity:uint64_t timestamp;float[3] xyz;"});
+  add("vehicle_angular_velocity", 1000, 0.0f, 0.0f, 0.0f);
+  EXPECT_THAT(error(), HasSubstr("another version of PX4"));
+}
+
+TEST_F(FlightLogFile, ALogWithoutOutputsHasNothingToCompare) {
+  define({state, setpoint, rates, controls});
+  add_setpoint(1000);
+  add_state(1000);
+  EXPECT_THAT(error(), HasSubstr("nothing to compare"));
+}
+
+TEST_F(FlightLogFile, ATopicOfAnotherReleaseIsNamedWithItsField) {
+  define({"control_state:uint64_t timestamp;float roll_rate;", setpoint, rates});
+  add("control_state", 1000, 1.0f);
+  add_setpoint(1000);
+  add_rates(1010, 1);
+  EXPECT_THAT(error(), HasSubstr("the topic control_state has no field q[0]"));
+}
+
+TEST_F(FlightLogFile, TimestampsThatDoNotIncreaseAreLeftOutAndCounted) {
+  start();
+  add_state(1000);
+  add_state(900);
+  add_state(5000);
+  const FlightLog log = read();
+  EXPECT_EQ(log.trace.samples.size(), 2u);
+  EXPECT_THAT(log.notes, Contains(HasSubstr("2 samples of control_state left out")));
+  EXPECT_FALSE(log.has_every_step);
+}
+
+TEST_F(FlightLogFile, LostMessagesMeanMissingSteps) {
+  start();
+  ASSERT_TRUE(writer_.dropout(20));
+  add_state(5000);
+  const FlightLog log = read();
+  EXPECT_FALSE(log.has_every_step);
+  EXPECT_THAT(log.notes, Contains(HasSubstr("lost messages")));
+}
+
+TEST_F(FlightLogFile, ADamagedLogIsReplayedUpToThere) {
+  start();
+  add_state(5000);
+  const FlightLog whole = read();
+  EXPECT_THAT(whole.notes, Not(Contains(HasSubstr("damaged"))));
+  std::filesystem::resize_file(path(), std::filesystem::file_size(path()) - 3);
+  const FlightLog log = read();
+  EXPECT_EQ(log.trace.samples.size(), 1u);
+  EXPECT_THAT(log.notes, Contains(HasSubstr("damaged: byte ")));
+  EXPECT_FALSE(log.has_every_step);
+}
+
+}  // namespace
+}  // namespace attest
