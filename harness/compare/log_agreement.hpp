@@ -31,8 +31,8 @@ struct LoggedPair {
 // One topic. The deviation of a pair is the largest of its fields. NaN agrees with NaN only.
 struct TopicAgreement {
   std::string_view topic;
-  bool is_judged = true;  // false: only reported
-  std::size_t paired = 0;  // ticks with an output in the log
+  bool is_judged = true;    // false: only reported
+  std::size_t paired = 0;   // ticks with an output in the log
   std::size_t missing = 0;  // of these: the port published nothing
   // Of the pairs that both have. Nearest rank; 0 without pairs.
   double median = 0, p90 = 0, p99 = 0, largest = 0;
@@ -44,7 +44,7 @@ struct TopicAgreement {
   std::optional<LoggedPair> first_unexplained;
 
   std::size_t unexplained() const { return paired - within - between_samples; }
-  double part_within() const;       // of the pairs, 0..1
+  double part_within() const;  // of the pairs, 0..1
   double part_unexplained() const;
   bool agrees(const LogLimits& limits) const;
 };

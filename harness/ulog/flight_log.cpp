@@ -127,24 +127,26 @@ Result<void> check_topics(const std::filesystem::path& path, Contents& log) {
                           log.other_topics.contains("vehicle_attitude");
     return fail_at(
         path.string(),
-        fmt::format("no sample of the topic control_state, which the controller of PX4 v1.5.5 and "
-                    "v1.3.4 reads{}",
-                    is_newer ? "; is the log of another version of PX4, or without this topic?"
-                             : ""));
+        fmt::format(
+            "no sample of the topic control_state, which the controller of PX4 v1.5.5 and "
+            "v1.3.4 reads{}",
+            is_newer ? "; is the log of another version of PX4, or without this topic?" : ""));
   }
   if (log.inputs("vehicle_attitude_setpoint").size() == 0) {
     return fail_at(path.string(), "no sample of the topic vehicle_attitude_setpoint");
   }
-  const bool has_outputs = std::any_of(
-      log.series.begin(), log.series.end(),
-      [](const LogSeries& series) { return series.is_output() && series.size() > 0; });
+  const bool has_outputs =
+      std::any_of(log.series.begin(), log.series.end(),
+                  [](const LogSeries& series) { return series.is_output() && series.size() > 0; });
   if (!has_outputs) {
-    return fail_at(path.string(), "no sample of vehicle_rates_setpoint or actuator_controls_0, so "
-                                  "there is nothing to compare a port with");
+    return fail_at(path.string(),
+                   "no sample of vehicle_rates_setpoint or actuator_controls_0, so "
+                   "there is nothing to compare a port with");
   }
   for (const char* topic : {"control_state", "vehicle_attitude_setpoint"}) {
     const std::string missing = log.inputs(topic).missing_field();
-    if (missing.empty() || missing == "landing_gear" || missing == "disable_mc_yaw_control") continue;
+    if (missing.empty() || missing == "landing_gear" || missing == "disable_mc_yaw_control")
+      continue;
     return fail_at(path.string(), fmt::format("the topic {} has no field {}; is the log of another "
                                               "version of PX4?",
                                               topic, missing));
@@ -278,8 +280,8 @@ LoggedOutput fill_outputs(const LogSeries& output, const LogSeries& ticks, Trace
 
 void add_notes(const Contents& log, std::vector<std::string>& notes) {
   if (!log.system.empty()) {
-    notes.push_back(fmt::format("logged by {}{}{}", log.system, log.firmware.empty() ? "" : " ",
-                                log.firmware));
+    notes.push_back(
+        fmt::format("logged by {}{}{}", log.system, log.firmware.empty() ? "" : " ", log.firmware));
   }
   for (const LogSeries& series : log.series) {
     const std::string missing = series.missing_field();
@@ -287,9 +289,10 @@ void add_notes(const Contents& log, std::vector<std::string>& notes) {
       notes.push_back(fmt::format("{}.{} is not in the log: 0", series.topic(), missing));
     }
     if (series.left_out() > 0) {
-      notes.push_back(fmt::format("{} samples of {} left out, because their timestamps do not "
-                                  "increase",
-                                  series.left_out(), series.topic()));
+      notes.push_back(
+          fmt::format("{} samples of {} left out, because their timestamps do not "
+                      "increase",
+                      series.left_out(), series.topic()));
     }
   }
   if (log.dropouts > 0) {

@@ -37,8 +37,9 @@ struct FlightLog {
   // The log has every step of the controller. Otherwise outputs that depend on earlier steps (the
   // integral, the derivative) cannot be computed from it.
   bool has_every_step = false;
-  std::string profile;        // of the case, in a log of attest; else empty
-  bool is_of_attest = false;  // attest wrote the log: at each step, all that the controller received
+  std::string profile;  // of the case, in a log of attest; else empty
+  bool is_of_attest =
+      false;  // attest wrote the log: at each step, all that the controller received
   // Of the log, assumptions and omissions: one line each.
   std::vector<std::string> notes;
 };
@@ -49,11 +50,11 @@ struct FlightLog {
 // topic has this field. Otherwise it is the answer to the last control_state before it, and a
 // further output before the next control_state is not paired.
 //
-// `assumed` are words of flight_assumptions(); empty: those by default, none in a log of attest. They
-// apply to topics without a sample in the log. Memory: the samples of the topics that the controller reads or publishes.
-// Errors: the file cannot be read or is no ULog; it has no sample of control_state, of
-// vehicle_attitude_setpoint or of any output, or lacks a field that the law reads; an unknown word,
-// or one for a topic that the log has.
+// `assumed` are words of flight_assumptions(); empty: those by default, none in a log of attest.
+// They apply to topics without a sample in the log. Memory: the samples of the topics that the
+// controller reads or publishes. Errors: the file cannot be read or is no ULog; it has no sample of
+// control_state, of vehicle_attitude_setpoint or of any output, or lacks a field that the law
+// reads; an unknown word, or one for a topic that the log has.
 Result<FlightLog> read_flight_log(const std::filesystem::path& path,
                                   const std::vector<std::string>& assumed = {});
 

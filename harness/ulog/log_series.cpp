@@ -12,6 +12,18 @@ std::optional<Column> find(const Reader& reader, const Subscription& subscriptio
   return column ? std::optional(*column) : std::nullopt;
 }
 
+// The same for a time, which must be an integer.
+std::optional<Column> find_time(const Reader& reader, const Subscription& subscription,
+                                std::string_view field) {
+  const auto column = find(reader, subscription, field);
+  return column && column->type == Type::u64 ? column : std::nullopt;
+}
+
+template <typename T>
+T value_in(const Data& data, const Column& column) {
+  return load_as<T>(column.type, data.bytes.data() + column.offset);
+}
+
 // A flag of any type as a byte that is true if the flag is.
 double flag_of(float value) {
   const bool is_byte = value >= 0 && value <= 255 && value == std::floor(value);
@@ -32,24 +44,23 @@ void LogSeries::add_field(std::string field, std::size_t channel) {
 
 void LogSeries::locate(const Reader& reader, const Subscription& subscription) {
   located_ = subscription.index;
-  time_ = find(reader, subscription, "timestamp");
-  sample_time_ = find(reader, subscription, "timestamp_sample");
+  time_ = find_time(reader, subscription, "timestamp");
+  sample_time_ = find_time(reader, subscription, "timestamp_sample");
   columns_.clear();
   for (const std::string& field : fields_) columns_.push_back(find(reader, subscription, field));
 }
 
 void LogSeries::add(const Reader& reader, const Data& data) {
   if (located_ != data.subscription->index) locate(reader, *data.subscription);
-  const auto time = time_ ? load_as<std::uint64_t>(time_->type, data.bytes.data() + time_->offset) : 0;
+  const auto time = time_ ? value_in<std::uint64_t>(data, *time_) : 0;
   if (!time_ || (!times_.empty() && time <= times_.back())) {
     ++left_out_;
     return;
   }
   times_.push_back(time);
-  if (sample_time_) sample_times_.push_back(load_as<std::uint64_t>(sample_time_->type, data.bytes.data() + sample_time_->offset));
+  if (sample_time_) sample_times_.push_back(value_in<std::uint64_t>(data, *sample_time_));
   for (const auto& column : columns_) {
-    values_.push_back(
-        column ? load_as<float>(column->type, data.bytes.data() + column->offset) : 0.0f);
+    values_.push_back(column ? value_in<float>(data, *column) : 0.0f);
   }
 }
 

@@ -54,7 +54,7 @@ class LogSeries {
   bool is_output_;
   std::uint8_t multi_id_;
   std::vector<std::string> fields_;
-  std::vector<std::size_t> channels_;  // of fields_
+  std::vector<std::size_t> channels_;   // of fields_
   std::optional<std::size_t> located_;  // subscription of the places below
   std::optional<Column> time_, sample_time_;
   std::vector<std::optional<Column>> columns_;  // of fields_

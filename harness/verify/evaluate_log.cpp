@@ -57,8 +57,9 @@ LogResult evaluate_log(const FlightLog& log, const std::string& profile, PortHos
   const auto is_judged = [](const TopicAgreement& topic) { return topic.is_judged; };
   if (std::none_of(found.topics.begin(), found.topics.end(), is_judged)) {
     result.verdict = Verdict::skip;
-    result.reason = "the log has no vehicle_rates_setpoint and not every step, so no output of it "
-                    "can be computed";
+    result.reason =
+        "the log has no vehicle_rates_setpoint and not every step, so no output of it "
+        "can be computed";
   }
   return found;
 }

@@ -124,6 +124,24 @@ def ulog_message(kind, body):
     return struct.pack("<Hc", len(body), kind.encode()) + body
 
 
+def flight_log():
+    state = "uint64_t timestamp;float[4] q;float roll_rate;float pitch_rate;float yaw_rate;"
+    setpoint = "uint64_t timestamp;float[4] q_d;float thrust;float yaw_sp_move_rate;"
+    rates = "uint64_t timestamp;float roll;float pitch;float yaw;float thrust;"
+    controls = "uint64_t timestamp;uint64_t timestamp_sample;float[8] control;"
+    names = "control_state", "vehicle_attitude_setpoint", "vehicle_rates_setpoint"
+    topics = dict(zip(names, (state, setpoint, rates)), actuator_controls_0=controls)
+    for name, fields in topics.items():
+        yield ulog_message("F", f"{name}:{fields}".encode())
+    for number, name in enumerate(topics):
+        yield ulog_message("A", struct.pack("<BH", 0, number) + name.encode())
+    for time in (4000, 8000):
+        yield ulog_message("D", struct.pack("<HQ6f", 1, time, 1, 0, 0, 0, 0.5, 0))
+        yield ulog_message("D", struct.pack("<HQ7f", 0, time, 1, 0, 0, 0, 0.1, 0, 0))
+        yield ulog_message("D", struct.pack("<HQ4f", 2, time + 50, 0.1, 0, 0, 0.5))
+        yield ulog_message("D", struct.pack("<HQQ8f", 3, time + 80, time, *8 * [0.1]))
+
+
 def ulog_seeds():
     key_value = b"\x0ffloat MC_ROLL_P" + struct.pack("<f", 6.5)
     inner = struct.pack("<ffI", 1, 2, 0)
@@ -150,6 +168,7 @@ def ulog_seeds():
     yield head.replace(b"\x35\x01", b"\x35\x00") + b"".join(log)
     yield head + flags + b"".join(log) + bytes(9) + b"".join(log[6:])
     yield head + appended + b"".join(log) + b"".join(log[6:])
+    yield head + flags + b"".join(flight_log())
 
 
 def words_of(seeds):

@@ -1,7 +1,9 @@
 // ULog files. Each message that the reader gives lies within the file and after the one before it,
-// and each field of its data can be read. A second reading gives the same.
+// and each field of its data can be read. A second reading gives the same. A flight that was read
+// has steps at increasing times, and an output where one is paired with the step.
 #include <string>
 
+#include "harness/ulog/flight_log.hpp"
 #include "harness/ulog/reader.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
@@ -53,6 +55,24 @@ std::uint64_t sum_of_log(const std::filesystem::path& file, std::size_t size) {
   return sum;
 }
 
+void check_flight(const std::filesystem::path& file) {
+  const auto log = read_flight_log(file);
+  if (!log) return require_readable(log.error(), file);
+  for (const std::string& note : log->notes) require_readable(note);
+  std::size_t published = 0, paired = 0;
+  std::uint64_t last = 0;
+  for (const Sample& sample : log->trace.samples) {
+    require(sample.in.timestamp > last || &sample == log->trace.samples.data(),
+            "the times of steps increase");
+    last = sample.in.timestamp;
+    published += sample.out.vehicle_rates_setpoint.published;
+  }
+  for (const LoggedOutput& output : log->outputs) {
+    if (output.topic == "vehicle_rates_setpoint") paired = output.paired;
+  }
+  require(published == paired, "a step has an output if one is paired with it");
+}
+
 }  // namespace
 }  // namespace attest::fuzz
 
@@ -60,5 +80,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace attest;
   const auto file = fuzz::write("log.ulg", fuzz::text_of(data, size));
   fuzz::require(fuzz::sum_of_log(file, size) == fuzz::sum_of_log(file, size), "the same values");
+  fuzz::check_flight(file);
   return 0;
 }

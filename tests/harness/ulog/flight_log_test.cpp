@@ -18,8 +18,9 @@ using testing::HasSubstr;
 using testing::Not;
 using ulog::raw;
 
-constexpr const char* state = "control_state:uint64_t timestamp;float[4] q;float roll_rate;"
-                              "float pitch_rate;float yaw_rate;";
+constexpr const char* state =
+    "control_state:uint64_t timestamp;float[4] q;float roll_rate;"
+    "float pitch_rate;float yaw_rate;";
 constexpr const char* setpoint =
     "vehicle_attitude_setpoint:uint64_t timestamp;float[4] q_d;float thrust;"
     "float yaw_sp_move_rate;";
@@ -170,10 +171,9 @@ TEST_F(FlightLogFile, ParametersChangeAtTheNextStep) {
   ASSERT_TRUE(writer_.parameter("CBRK_RATE_CTRL", 140253));
   add_state(5000);
   const FlightLog log = read();
-  EXPECT_THAT(log.trace.parameters,
-              ElementsAre(ParameterChange{0, "MC_ROLL_P", 6.5f},
-                          ParameterChange{1, "MC_ROLL_P", 7.5f},
-                          ParameterChange{1, "CBRK_RATE_CTRL", 140253.0f}));
+  EXPECT_THAT(log.trace.parameters, ElementsAre(ParameterChange{0, "MC_ROLL_P", 6.5f},
+                                                ParameterChange{1, "MC_ROLL_P", 7.5f},
+                                                ParameterChange{1, "CBRK_RATE_CTRL", 140253.0f}));
   EXPECT_EQ(log.trace.samples[0].in.updated & ATTEST_UPDATED_PARAMETER_UPDATE, 0u);
   EXPECT_NE(log.trace.samples[1].in.updated & ATTEST_UPDATED_PARAMETER_UPDATE, 0u);
 }
