@@ -1,5 +1,6 @@
-# `cmake --install` installs for port authors: the attest binary, the ABI headers, the cases with
-# their goldens, the starters, the schemas of the reports, and the CMake package `attest` with
+# `cmake --install` installs for port authors: the attest binary with its manual pages and the
+# completion for shells, the ABI headers, the cases with their goldens, the starters, the schemas of
+# the reports, and the CMake package `attest` with
 #
 #     attest::unit     the ABI headers, for the port to link (C or C++)
 #     attest::attest   the binary, for add_test(COMMAND attest::attest run --port lib:...)
@@ -22,12 +23,21 @@ install(
 # For `attest new-port`.
 install(FILES controller/attest_unit.h controller/attest_actuation.h
         DESTINATION ${ATTEST_INSTALL_DATADIR}/include)
-install(FILES ci/examples/github-actions.yml ci/examples/gitlab-ci.yml
+install(FILES ci/examples/github-action.yml ci/examples/github-actions.yml
+              ci/examples/gitlab-ci.yml
         DESTINATION ${ATTEST_INSTALL_DATADIR}/ci)
 # Programs that read the JSON reports validate them with these schemas.
 install(FILES harness/report/report.schema.json harness/report/stress.schema.json
         DESTINATION ${ATTEST_INSTALL_DATADIR}/schemas)
 install(FILES LICENSE harness/port/PROTOCOL.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# harness/cli makes the manual pages and the completions.
+set(help ${PROJECT_BINARY_DIR}/help)
+install(DIRECTORY ${help}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${help}/attest.bash
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+        RENAME attest)
+install(FILES ${help}/_attest DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 
 install(EXPORT attestTargets NAMESPACE attest:: DESTINATION ${ATTEST_INSTALL_CMAKEDIR})
 configure_package_config_file(cmake/attestConfig.cmake.in attestConfig.cmake

@@ -8,6 +8,8 @@
 #include <fmt/ranges.h>
 
 #include "harness/cli/command.hpp"
+#include "harness/cli/completion.hpp"
+#include "harness/cli/man_page.hpp"
 #include "harness/cli/run_arguments.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_arguments.hpp"
@@ -94,6 +96,7 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command->add_option("--level", options->level, "`exact`, `numeric` or `events`")
+      ->type_name("LEVEL")
       ->capture_default_str();
   command
       ->add_option("--mixer", options->mixer,
@@ -160,6 +163,7 @@ void add_compare(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("B")
       ->required();
   command->add_option("--level", options->level, "`exact`, `numeric` or `events`")
+      ->type_name("LEVEL")
       ->capture_default_str();
   add_examples(*command, {{"attest compare flown.csv reference.csv",
                            "is the first the same as the second, within the tolerances?"}});
@@ -240,26 +244,49 @@ void add_new_port(CLI::App& app, const Globals& globals, Action& action) {
   });
 }
 
-int show_help(const CLI::App& app, const std::string& name) {
-  if (name.empty()) {  // app.help() would be that of this command
+struct HelpOptions {
+  std::string command, completion, man;
+};
+
+int show_help(const CLI::App& app, const HelpOptions& options) {
+  if (!options.man.empty()) {
+    const auto written = write_man_pages(app, options.man);
+    return written ? exit_ok : report_error(written.error());
+  }
+  if (!options.completion.empty()) {
+    const bool is_bash = options.completion == "bash";
+    fmt::print("{}", is_bash ? bash_completion(app) : zsh_completion(app));
+    return exit_ok;
+  }
+  if (options.command.empty()) {  // app.help() would be that of this command
     fmt::print("{}",
                app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal));
     return exit_ok;
   }
-  const std::string wrong = unknown_command(app, name);
+  const std::string wrong = unknown_command(app, options.command);
   if (!wrong.empty()) return report_error({wrong});
-  fmt::print("{}", app.get_subcommand(name)->help("attest"));
+  fmt::print("{}", app.get_subcommand(options.command)->help("attest"));
   return exit_ok;
 }
 
 void add_help(CLI::App& app, Action& action) {
-  auto name = std::make_shared<std::string>();
+  auto options = std::make_shared<HelpOptions>();
   CLI::App* command = app.add_subcommand("help", "Show the options and examples of a command");
-  command->add_option("command", *name, "The command; default: an overview of all commands")
+  command
+      ->add_option("command", options->command, "The command; default: an overview of all commands")
       ->type_name("COMMAND");
-  add_examples(*command, {{"attest help run", "the same as `attest run --help`"}});
+  command
+      ->add_option("--completion", options->completion,
+                   "Print a script that completes command lines: for `bash` or `zsh`")
+      ->type_name("KIND")
+      ->check(CLI::IsMember({"bash", "zsh"}));
+  command->add_option("--man", options->man, "Write the manual pages to a folder")
+      ->type_name("DIR");
+  add_examples(*command, {{"attest help run", "the same as `attest run --help`"},
+                          {"source <(attest help --completion bash)",
+                           "completion in this shell, unless the package installed it"}});
   command->callback(
-      [name, &app, &action] { action = [=, &app] { return show_help(app, *name); }; });
+      [options, &app, &action] { action = [=, &app] { return show_help(app, *options); }; });
 }
 
 }  // namespace

@@ -92,8 +92,11 @@ void lay_out(const Parts& parts, const Language& language, const fs::path& folde
       fs::copy_file(parts.headers / header, folder / "include" / header);
     }
   }
-  fs::create_directories(folder / ".github" / "workflows");
-  fs::copy_file(parts.ci / "github-actions.yml", folder / ".github" / "workflows" / "attest.yml");
+  const fs::path github = folder / ".github";
+  fs::create_directories(github / "workflows");
+  fs::create_directories(github / "actions" / "attest");
+  fs::copy_file(parts.ci / "github-actions.yml", github / "workflows" / "attest.yml");
+  fs::copy_file(parts.ci / "github-action.yml", github / "actions" / "attest" / "action.yml");
   fs::copy_file(parts.ci / "gitlab-ci.yml", folder / ".gitlab-ci.yml");
 }
 
@@ -132,7 +135,7 @@ int new_port_command(const NewPortOptions& options, const Globals& globals) {
       "{0} has a complete port in {1}. Replace its law by yours; README.md says where.\n"
       "  {0}/check                   builds it and runs the whole suite\n"
       "  {0}/check --group attitude  builds it and runs one group: all options of `attest run`\n"
-      "  .github/workflows/attest.yml and .gitlab-ci.yml there run check in CI\n",
+      "  .github/ and .gitlab-ci.yml there run check in CI; set ATTEST_PACKAGE_URL\n",
       options.folder, language->title);
   return exit_ok;
 }

@@ -17,6 +17,7 @@ void add_strictness(CLI::App& command, RunOptions& options) {
                   "or `events` (the same events, at most one tick apart, and values that "
                   "differ by at most about half their size plus a small floor); "
                   "flights are judged the same way at each level")
+      ->type_name("LEVEL")
       ->capture_default_str()
       ->group(option_group::strictness);
   command

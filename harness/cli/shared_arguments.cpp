@@ -26,6 +26,11 @@ class PlainFlagNames final : public CLI::Formatter {
 
 }  // namespace
 
+std::string value_name(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  return type.substr(0, std::min(type.find(':'), type.size()));
+}
+
 void use_plain_flag_names(CLI::App& app) { app.formatter(std::make_shared<PlainFlagNames>()); }
 
 void add_examples(CLI::App& command, std::initializer_list<Example> examples) {
@@ -65,9 +70,9 @@ void add_timeout(CLI::App& command, double& timeout_s) {
 
 void add_jobs(CLI::App& command, int& jobs, const char* what) {
   jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  command.add_option("--jobs,-j", jobs, what)
+  command.add_option("--jobs,-j", jobs, fmt::format("{}; default: one for each CPU", what))
+      ->type_name("N")
       ->check(CLI::Range(1, 1024))
-      ->capture_default_str()
       ->group(option_group::execution);
 }
 

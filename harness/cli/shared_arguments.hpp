@@ -34,6 +34,9 @@ struct Example {
 };
 void add_examples(CLI::App& command, std::initializer_list<Example> examples);
 
+// "FLOAT": the type of an option's value, without the checks that CLI11 appends.
+std::string value_name(const CLI::Option& option);
+
 // Makes --help show the negation of a flag as `--no-stack`; CLI11 shows `--no-stack{false}`. Must
 // be called before the commands are added: they copy the formatter that exists then.
 void use_plain_flag_names(CLI::App& app);

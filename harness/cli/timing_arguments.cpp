@@ -24,6 +24,7 @@ void add_machine(CLI::App& command, StressOptions& options) {
   command
       .add_option("--policy", options.policy,
                   "Scheduling policy of unit and plant: `fifo` (where it is permitted) or `other`")
+      ->type_name("POLICY")
       ->capture_default_str()
       ->group(option_group::execution);
   command

@@ -70,3 +70,54 @@ commands=(run replay sim stress sweep-rate schedule time compare record faults l
   [ "$status" -eq 1 ]
   has "reproduce: attest --suite suite run --port"
 }
+
+@test "each command has a manual page, in the form that man reads" {
+  "$ATTEST" help --man pages
+  all=$("$ATTEST" help | sed -n '/^Subcommands:/,/^$/p' | grep -c '^  [a-z]')
+  [ "$(ls pages | wc -l)" -eq "$((all + 1))" ]
+  for command in "${commands[@]}"; do
+    page=pages/attest-$command.1
+    head -n 1 "$page" | grep -q '^\.TH ATTEST'
+    options=$("$ATTEST" help "$command" | grep -oE '^  (-[a-z],)?--[a-z0-9-]+')
+    for option in $(grep -oE -- '--.*' <<<"$options"); do
+      grep -qF -- "$(sed 's/-/\\-/g' <<<"$option")" "$page"
+    done
+  done
+  command -v groff >/dev/null || skip "groff is not installed"
+  [ -z "$(groff -man -ww -Tutf8 pages/*.1 2>&1 >/dev/null)" ]
+}
+
+# completed WORDS...: what the last of these words of a command line can become.
+completed() {
+  COMP_WORDS=("$@") COMP_CWORD=$(($# - 1))
+  PATH=$(dirname "$ATTEST"):$PATH _attest || true # its status is that of compgen
+  output=$(printf '%s\n' "${COMPREPLY[@]}" | sort -u | xargs)
+}
+
+@test "bash completes commands, options, fixed values and names of the suite" {
+  source <("$ATTEST" help --completion bash)
+  completed attest ru
+  [ "$output" = run ]
+  completed attest run --rerun
+  [ "$output" = --rerun-failed ]
+  completed attest run --level ""
+  [ "$output" = "events exact numeric" ]
+  completed attest new-port mine --lang p
+  [ "$output" = python ]
+  completed attest run --group att
+  [ "$output" = attitude ]
+  completed attest sim flip_150_lev
+  [ "$output" = "flip_150_level" ]
+  completed attest run --vehicle h
+  [ "$output" = "heavy_quad hexa hummingbird" ]
+  completed attest run --json ""
+  [ -z "$output" ]
+  run "$ATTEST" help --completion fish
+  [ "$status" -eq 2 ]
+}
+
+@test "zsh completes the same" {
+  command -v zsh >/dev/null || skip "zsh is not installed"
+  "$ATTEST" help --completion zsh >_attest
+  zsh -n _attest
+}

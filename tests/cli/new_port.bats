@@ -15,7 +15,8 @@ made() {
   run mine/check --group rates --rate 250
   [ "$status" -eq 0 ]
   has "PASS"
-  grep -q "./check --github" mine/.github/workflows/attest.yml
+  grep -q "uses: ./.github/actions/attest" mine/.github/workflows/attest.yml
+  grep -q "./check --github" mine/.github/actions/attest/action.yml
   grep -q "./check --html" mine/.gitlab-ci.yml
 }
 
