@@ -156,17 +156,39 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
 
 void add_compare(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<CompareOptions>();
-  CLI::App* command =
-      app.add_subcommand("compare", "Compare the outputs of two traces, tick by tick");
-  command->add_option("got", options->got, "The trace to judge (CSV)")->type_name("A")->required();
-  command->add_option("want", options->want, "The trace to judge it by (CSV)")
+  CLI::App* command = app.add_subcommand("compare", "Compare two traces or logs of flights");
+  command
+      ->add_option("got", options->got,
+                   "The trace to judge: CSV, or a log (.ulg). Two traces of attest are compared "
+                   "tick by tick, in their outputs; with a log, all signals at equal times")
+      ->type_name("A")
+      ->required();
+  command->add_option("want", options->want, "The trace or log to judge it by")
       ->type_name("B")
       ->required();
   command->add_option("--level", options->level, "`exact`, `numeric` or `events`")
       ->type_name("LEVEL")
       ->capture_default_str();
+  command->add_flag("--by-time", options->by_time,
+                    "Compare all signals at equal times, as with a log; for CSV files of any "
+                    "origin with a column timestamp [us]");
+  command
+      ->add_option("--tolerance", options->others,
+                   "By time: allowed difference of signals other than the controller's outputs, "
+                   "which have that of the level")
+      ->type_name("X")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--shift", options->shift,
+                   "By time: compare A moved earlier by this time [us], or by the estimated one: "
+                   "`auto`")
+      ->type_name("US")
+      ->capture_default_str();
   add_examples(*command, {{"attest compare flown.csv reference.csv",
-                           "is the first the same as the second, within the tolerances?"}});
+                           "is the first the same as the second, within the tolerances?"},
+                          {"attest compare flown.ulg reference.csv --tolerance 1e-3",
+                           "all signals at equal times; which of the two lags?"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return compare_command(*options, globals); };
   });

@@ -102,6 +102,9 @@ int replay_command(const ReplayOptions& options, const Globals& globals);
 struct CompareOptions {
   std::string got, want;
   std::string level = "numeric";
+  bool by_time = false;     // of any signals, at equal times
+  double others = 0;        // the tolerance of signals that the level does not know
+  std::string shift = "0";  // us, or "auto"
 };
 int compare_command(const CompareOptions& options, const Globals& globals);
 

@@ -1,10 +1,14 @@
+#include <charconv>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "harness/cli/command.hpp"
 #include "harness/compare/compare_files.hpp"
+#include "harness/compare/compare_signals.hpp"
 #include "harness/report/failure_text.hpp"
+#include "harness/report/signals_text.hpp"
+#include "harness/ulog/flight_log.hpp"
 
 namespace attest::cli {
 namespace {
@@ -19,11 +23,65 @@ CaseResult as_result(const Comparison& comparison) {
   return result;
 }
 
+Result<TimedSignals> signals_in(const std::string& file) {
+  auto signals = read_timed_signals(file);
+  if (!signals) return signals;
+  for (const std::string& note : signals->notes) {
+    fmt::print(stderr, "attest: note: {}: {}\n", file, note);
+  }
+  return signals;
+}
+
+// The time of --shift. For "auto": the estimated one, 0 if there is none.
+Result<std::int64_t> shift_of(const std::string& text, const TimedSignals& got,
+                              const TimedSignals& want) {
+  if (text == "auto") {
+    const auto estimated = estimate_shift(got, want);
+    return estimated ? estimated->us : 0;
+  }
+  std::int64_t us = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, us);
+  if (error == std::errc{} && rest == end) return us;
+  return fail(fmt::format("--shift {}: write a whole number of microseconds, or auto", text));
+}
+
+int print_by_time(const CompareOptions& options, const SignalsComparison& found,
+                  std::int64_t shift_us, bool quiet) {
+  const std::string shifted = shift_us == 0 ? "" : fmt::format(", shifted by {} us", shift_us);
+  if (found.compared() == 0) {
+    return report_error({fmt::format("{} and {} have no signal in common at equal times{}",
+                                     options.got, options.want, shifted)});
+  }
+  if (found.agrees() && quiet) return exit_ok;
+  fmt::print("{}: {} (got), {} (want), by time{}: {} of {} common signals agree, {} samples\n",
+             found.agrees() ? "agree" : "differ", options.got, options.want, shifted,
+             found.signals.size() - found.deviating_signals(), found.signals.size(),
+             found.compared());
+  fmt::print("{}", signals_text(found));
+  return found.agrees() ? exit_ok : exit_failed;
+}
+
+int compare_by_time(const CompareOptions& options, Level level, bool quiet) {
+  if (level == Level::events) return report_error({"--level events compares ticks, not times"});
+  const auto got = signals_in(options.got);
+  if (!got) return report_error(got.error());
+  const auto want = signals_in(options.want);
+  if (!want) return report_error(want.error());
+  const auto shift = shift_of(options.shift, *got, *want);
+  if (!shift) return report_error(shift.error());
+  const auto found = compare_signals(*got, *want, Tolerances(level), options.others, *shift);
+  return print_by_time(options, found, *shift, quiet);
+}
+
 }  // namespace
 
 int compare_command(const CompareOptions& options, const Globals& globals) {
   const auto level = parse_level(options.level);
   if (!level) return report_error(level.error());
+  if (options.by_time || is_log(options.got) || is_log(options.want)) {
+    return compare_by_time(options, *level, globals.quiet);
+  }
   const auto compared = compare_files(options.got, options.want, Tolerances(*level));
   if (!compared) return report_error(compared.error());
   const Comparison& comparison = *compared;

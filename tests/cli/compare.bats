@@ -54,3 +54,47 @@ load common
     has "/dev/stdin: is a pipe"
   done
 }
+
+@test "a log and a CSV trace of the same flight agree, signal by signal" {
+  for file in a.csv a.ulg; do "$ATTEST" sim gust --rate 250 --out $file; done
+  run "$ATTEST" compare a.csv a.ulg --level exact
+  [ "$status" -eq 0 ]
+  has "82 of 82 common signals agree"
+  has "only in the first: 24 signals"
+  "$ATTEST" sim gust --rate 250 --port fault:yaw-dropped --out b.ulg
+  run "$ATTEST" compare b.ulg a.csv
+  [ "$status" -eq 1 ]
+  has "differ: b.ulg (got), a.csv (want)"
+  has "vehicle_rates_setpoint.yaw: "
+}
+
+@test "a trace that lags is found out, and compared as it should be on request only" {
+  printf 'timestamp,x\n' | tee a.csv >b.csv
+  for i in $(seq 100); do
+    echo "$((4000 * i)),$((i * i % 97))" >>a.csv
+    echo "$((4000 * i + 8000)),$((i * i % 97))" >>b.csv
+  done
+  run "$ATTEST" compare b.csv a.csv --by-time
+  [ "$status" -eq 1 ]
+  has "the first lags behind the second by 8000 us"
+  for shift in auto 8000; do
+    run "$ATTEST" compare b.csv a.csv --by-time --shift $shift
+    [ "$status" -eq 0 ]
+    has "by time, shifted by 8000 us"
+  done
+  run "$ATTEST" compare b.csv a.csv --by-time --shift soon
+  [ "$status" -eq 2 ]
+  has "--shift soon: write a whole number of microseconds, or auto"
+}
+
+@test "files without a common signal, or that are no trace, are errors" {
+  printf 'timestamp,x\n1,2\n' >a.csv
+  printf 'timestamp,y\n1,2\n' >b.csv
+  run "$ATTEST" compare a.csv b.csv --by-time
+  [ "$status" -eq 2 ]
+  has "have no signal in common"
+  printf 'ULog' >c.ulg
+  run "$ATTEST" compare c.ulg a.csv
+  [ "$status" -eq 2 ]
+  has "c.ulg"
+}
