@@ -142,7 +142,10 @@ class FailingPort(Page):
             f".getPropertyValue('--{colour}').trim();"
             " const want = [1, 3, 5].map((i) => parseInt(name.slice(i, i + 2), 16));"
             " return Math.max(...[...document.querySelectorAll('.values canvas')].map((c) => {"
-            " const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;"
+            " const copy = new OffscreenCanvas(c.width, c.height)"
+            ".getContext('2d', {willReadFrequently: true});"
+            " copy.drawImage(c, 0, 0);"
+            " const d = copy.getImageData(0, 0, c.width, c.height).data;"
             " let n = 0; for (let i = 0; i < d.length; i += 4)"
             " n += d[i + 3] === 255 && want.every((w, k) => Math.abs(d[i + k] - w) < 3);"
             " return n; })); })()"
@@ -235,7 +238,7 @@ class Flight(Page):
 
     def test_the_slider_moves_the_replay_and_the_plots(self):
         picture = "document.querySelector('.replay canvas').toDataURL()"
-        reading = "document.querySelector('#flight-plots .reading').textContent"
+        reading = "document.querySelector('#plots-of-page .reading').textContent"
         before = [self.run_in_page(picture), self.run_in_page(reading)]
         self.run_in_page(
             "(() => { const s = document.querySelector('input[type=range]'); s.value = 100;"
@@ -248,7 +251,7 @@ class Flight(Page):
         self.assertEqual(clock, "0.400 s")
 
     def test_the_pointer_in_a_plot_moves_the_slider(self):
-        self.browser.move("document.querySelector('#flight-plots .values')")
+        self.browser.move("document.querySelector('#plots-of-page .values')")
         self.browser.wait_for("document.querySelector('input[type=range]').value > 100")
 
     def test_there_is_a_plot_of_each_part(self):
