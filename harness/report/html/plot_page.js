@@ -51,20 +51,26 @@
     return logarithmic_x ? rows.filter(([x]) => x > 0) : rows;
   };
 
+  // toDomXCoord() ignores a logarithmic x.
+  const placeOf = (plot, x) => {
+    const {x: left, w: width} = plot.getArea();
+    return left + plot.toPercentXCoord(x) * width;
+  };
+
   const drawBand = (context, plot, {x, low, high}) => {
     context.fillStyle = colour('expected');
     context.globalAlpha = 0.18;
     context.beginPath();
-    x.forEach((at, i) => context.lineTo(plot.toDomXCoord(at), plot.toDomYCoord(high[i])));
+    x.forEach((at, i) => context.lineTo(placeOf(plot, at), plot.toDomYCoord(high[i])));
     for (let i = x.length - 1; i >= 0; --i) {
-      context.lineTo(plot.toDomXCoord(x[i]), plot.toDomYCoord(low[i]));
+      context.lineTo(placeOf(plot, x[i]), plot.toDomYCoord(low[i]));
     }
     context.fill();
     context.globalAlpha = 1;
   };
 
   const drawMark = (context, area, plot, {x, text}) => {
-    const at = Math.round(plot.toDomXCoord(x)) + 0.5;
+    const at = Math.round(placeOf(plot, x)) + 0.5;
     if (at < area.x || at > area.x + area.w) return;
     context.strokeStyle = context.fillStyle = colour('fail');
     context.lineWidth = 1;
@@ -97,9 +103,9 @@
     context.setLineDash(style.pattern || []);
     for (let i = 0; i + 1 < x.length; ++i) {
       if (!(y[i] > 0)) continue;
-      const left = plot.toDomXCoord(x[i]);
+      const left = placeOf(plot, x[i]);
       const top = plot.toDomYCoord(y[i]);
-      const width = plot.toDomXCoord(x[i + 1]) - left;
+      const width = placeOf(plot, x[i + 1]) - left;
       context.globalAlpha = 0.25;
       context.fillRect(left, top, width, bottom - top);
       context.globalAlpha = 1;
@@ -169,7 +175,8 @@
       stepPlot: plot.shape === 'steps',
       drawPoints: plot.shape === 'line' && !isLong,
       pointSize: 2.5,
-      includeZero: plot.shape === 'bars' && !plot.logarithmic_y,
+      includeZero: (plot.shape === 'bars' || plot.shape === 'points') && !plot.logarithmic_y,
+      xRangePad: plot.logarithmic_x ? 0 : options.xRangePad, // it may reach below 0
       valueRange: valueRange(plot),
       logscale: plot.logarithmic_y,
       underlayCallback: underlay(plot),
@@ -212,7 +219,9 @@
     const read = (x) => {
       plot.series.forEach((series, i) => {
         const at = nearest(series.x, x);
-        values[i].textContent = at < 0 ? '' : shown(series.y[at]);
+        const value = series.y[at];
+        const isGap = plot.shape === 'points' && Number.isNaN(value);
+        values[i].textContent = isGap ? '-' : shown(value);
       });
       place.textContent = `at ${shown(x)}`;
     };
