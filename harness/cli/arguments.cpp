@@ -85,24 +85,24 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
                    "recorded times")
       ->type_name("F");
   add_plant(*command, options->vehicle, options->plant);
+  command->get_option("--plant")->description(
+      "`mujoco` or `ode`; default: the case's first; `all`: the same flight on each, for --html");
   add_port(*command, options->host.port);
   command
       ->add_option("--out", options->out,
                    "The flown trace: CSV, or a ULog of PX4 if the name ends with .ulg; `-` is "
                    "stdout, as CSV")
       ->type_name("F");
-  command
-      ->add_option("--html", options->html,
-                   "A page with plots of the flight and a replay of the attitude; it needs no "
-                   "network")
-      ->type_name("F.html");
+  add_page(*command, options->html, "A page with plots of the flight and a replay of the attitude");
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command, {{"attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv",
                            "hover with the lead vehicle of the case, on its first plant"},
                           {"attest sim gust --rate 500 --vehicle hexa --plant ode --out flown.csv",
                            "another vehicle on the other plant"},
                           {"attest sim flip_150_level --rate 250 --html flight.html",
-                           "the flight as a page with plots"}});
+                           "the flight as a page with plots"},
+                          {"attest sim gust --rate 250 --plant all --html flight.html",
+                           "the flights on both plants in the same plots"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return sim_command(*options, globals); };
   });

@@ -1,6 +1,10 @@
 #include "harness/report/html/flight_page.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/report/failure_text.hpp"
 #include "harness/report/html/flight_plots.hpp"
@@ -9,30 +13,71 @@
 namespace attest {
 namespace {
 
-PageTable metrics_table(const CaseResult& result) {
-  PageTable table{"Metrics of the flight", {"metric", "value", "bounds"}, {}};
-  for (const MetricResult& metric : result.metrics) {
-    const Verdict verdict = metric.within() ? Verdict::pass : Verdict::fail;
-    table.rows.push_back({{metric.name, std::nullopt, std::string(name_of(metric.measure))},
-                          fmt::format("{:.4g}", metric.value),
-                          {metric.within() ? "within" : "missed", verdict, metric_bounds(metric)}});
+std::string plant_of(const SimulatedFlight& flight) {
+  const auto& configuration = flight.result.plant_configuration;
+  return configuration ? std::string(name_of(configuration->plant)) : "";
+}
+
+// The port of one flight may fail before there are metrics, so the rows are those of the flight
+// that has most.
+PageTable metrics_table(const std::vector<SimulatedFlight>& flights) {
+  const auto most = std::max_element(flights.begin(), flights.end(),
+                                     [](const SimulatedFlight& a, const SimulatedFlight& b) {
+                                       return a.result.metrics.size() < b.result.metrics.size();
+                                     });
+  PageTable table{"Metrics of the flight", {"metric"}};
+  for (const SimulatedFlight& flight : flights) {
+    table.header.push_back(flights.size() > 1 ? plant_of(flight) : "value");
+  }
+  table.header.push_back("bounds");
+  for (std::size_t i = 0; i < most->result.metrics.size(); ++i) {
+    const MetricResult& metric = most->result.metrics[i];
+    std::vector<PageCell> row = {{metric.name, std::nullopt, std::string(name_of(metric.measure))}};
+    bool all_within = true;
+    for (const SimulatedFlight& flight : flights) {
+      const auto& metrics = flight.result.metrics;
+      const bool is_known = i < metrics.size();
+      row.push_back(is_known ? fmt::format("{:.4g}", metrics[i].value) : "-");
+      all_within = all_within && is_known && metrics[i].within();
+    }
+    row.push_back({all_within ? "within" : "missed", all_within ? Verdict::pass : Verdict::fail,
+                   metric_bounds(metric)});
+    table.rows.push_back(std::move(row));
   }
   return table;
 }
 
+PageConclusion conclusion_of(const std::vector<SimulatedFlight>& flights, const PortSays& port) {
+  const auto failed = std::find_if(
+      flights.begin(), flights.end(),
+      [](const SimulatedFlight& flight) { return flight.result.verdict != Verdict::pass; });
+  const CaseResult& result = (failed == flights.end() ? flights.front() : *failed).result;
+  std::vector<std::string> title;
+  for (const SimulatedFlight& flight : flights) title.push_back(flight.result.id());
+  return {result.verdict, std::string(name_of(result.verdict)),
+          fmt::format("{}", fmt::join(title, " and ")),
+          fmt::format("{} {}, {} ticks", port.name, port.version, flights.front().result.ticks)};
+}
+
 }  // namespace
 
-std::string flight_page(const SimulatedFlight& flight, const PortSays& port) {
-  const CaseResult& result = flight.result;
+std::string flight_page(const std::vector<SimulatedFlight>& flights, const PortSays& port) {
   PlotPage page;
-  page.conclusion = {result.verdict, std::string(name_of(result.verdict)), result.id(),
-                     fmt::format("{} {}, {} ticks", port.name, port.version, result.ticks)};
-  if (!result.reason.empty()) page.notes = {{result.reason, true}};
-  if (!result.metrics.empty()) page.tables = {metrics_table(result)};
-  if (!flight.flown.samples.empty()) {
-    const std::vector<NamedFlight> flights = {{"", &flight.flown}};
-    page.groups = {flight_plots(flights)};
-    page.replay = replay_of(flights);
+  page.conclusion = conclusion_of(flights, port);
+  page.tables = {metrics_table(flights)};
+  if (page.tables.front().rows.empty()) page.tables.clear();
+  std::vector<NamedFlight> flown;
+  for (const SimulatedFlight& flight : flights) {
+    const std::string plant = flights.size() > 1 ? plant_of(flight) : "";
+    const std::string& reason = flight.result.reason;
+    if (!reason.empty()) {
+      page.notes.push_back({plant.empty() ? reason : fmt::format("{}: {}", plant, reason), true});
+    }
+    if (!flight.flown.samples.empty()) flown.push_back({plant, &flight.flown});
+  }
+  if (!flown.empty()) {
+    page.groups = {flight_plots(flown)};
+    page.replay = replay_of(flown);
   }
   return plot_page(page);
 }

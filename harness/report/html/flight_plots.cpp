@@ -82,11 +82,13 @@ using ColumnsOf = std::function<Columns(const Trace&)>;
 
 Plot plot_of(const std::vector<NamedFlight>& flights, Plot plot, const ColumnsOf& signals,
              const ColumnsOf& setpoints = {}) {
+  // Flights that agree lie on each other. A dark dotted line on a coloured one is still seen.
+  constexpr int dark = 5;
   const auto add = [&](const NamedFlight& flight, const Columns& columns, LinePattern pattern) {
     const std::string suffix = flight.name.empty() ? "" : " (" + flight.name + ")";
     for (std::size_t i = 0; i < columns.size(); ++i) {
       plot.series.push_back({columns[i].first + suffix, seconds(*flight.flown), columns[i].second,
-                             pattern, static_cast<int>(i)});
+                             pattern, pattern == LinePattern::dotted ? dark : static_cast<int>(i)});
     }
   };
   for (const NamedFlight& flight : flights) {

@@ -70,7 +70,7 @@ struct PlotSeries {
   std::vector<double> x;
   std::vector<float> y;
   LinePattern pattern = LinePattern::solid;
-  std::optional<int> colour = {};  // number in the palette; absent: the place in the plot
+  std::optional<int> colour = {};  // 0..5 in the palette, 5: dark; absent: the place in the plot
 };
 
 // An area between two lines, behind the series: a tolerance. REQUIRES: three equal sizes.

@@ -3,7 +3,7 @@
 (() => {
   const {element, floats, colour, nearest, shown, styledAxes} = attest;
   const content = JSON.parse(document.getElementById('plots').textContent);
-  const palette = ['expected', 'got', 'broken', 'pass', 'quiet'];
+  const palette = ['expected', 'got', 'broken', 'pass', 'quiet', 'text'];
   const patterns = {solid: null, dashed: [7, 3], dotted: [2, 3]};
 
   // A sixth series has the first colour again, so its line is dashed.
@@ -96,7 +96,8 @@
     context.restore();
   };
 
-  const drawBars = ({x, y, style}) => ({drawingContext: context, dygraph: plot, plotArea: area}) => {
+  const drawBars = ({x, y, style}) => (event) => {
+    const {drawingContext: context, dygraph: plot, plotArea: area} = event;
     const bottom = area.y + area.h;
     context.fillStyle = context.strokeStyle = style.colour;
     context.lineWidth = style.width;
@@ -187,7 +188,8 @@
   const keyOf = ({style}, shape) => {
     const key = element('span', {className: 'key'});
     key.style.borderColor = style.colour;
-    key.style.borderTopStyle = style.pattern ? 'dashed' : 'solid';
+    const isDotted = style.pattern === patterns.dotted;
+    key.style.borderTopStyle = isDotted ? 'dotted' : style.pattern ? 'dashed' : 'solid';
     if (shape === 'bars') key.style.borderTopWidth = '0.6em';
     return key;
   };

@@ -68,7 +68,7 @@ TEST(FlightPlots, TwoPlantsAreInOnePlotWithOneSetpoint) {
   EXPECT_EQ(attitude.series[0].name, "roll (mujoco)");
   EXPECT_EQ(attitude.series[3].name, "setpoint roll (mujoco)");
   EXPECT_EQ(attitude.series[6].name, "roll (ode)");
-  EXPECT_EQ(attitude.series[6].colour, attitude.series[0].colour);
+  EXPECT_NE(attitude.series[6].colour, attitude.series[0].colour);
   EXPECT_NE(attitude.series[6].pattern, attitude.series[0].pattern);
 }
 
@@ -86,7 +86,7 @@ TEST(FlightPage, HasTheVerdictAndTheMetrics) {
   flight.result.metrics = {{"levels", Measure::settling_time_s, 3.5, 3.5, 0, 0, 2}};
   PortSays port;
   port.name = "<b>acme</b>";
-  const std::string page = flight_page(flight, port);
+  const std::string page = flight_page({flight}, port);
   EXPECT_THAT(page, HasSubstr("</span> fail</p>"));
   EXPECT_THAT(page, HasSubstr("&lt;b&gt;acme&lt;/b&gt;"));
   EXPECT_THAT(page, Not(HasSubstr("<b>acme")));
@@ -96,9 +96,25 @@ TEST(FlightPage, HasTheVerdictAndTheMetrics) {
                               "<small>0 to 2</small></td>"));
 }
 
+TEST(FlightPage, TwoPlantsHaveAColumnEachAndTheWorseVerdict) {
+  SimulatedFlight mujoco{passed("flight", "hover", Rate::hz(250)), two_ticks()}, ode = mujoco;
+  mujoco.result.plant_configuration = PlantConfiguration{"iris", PlantKind::mujoco};
+  ode.result.plant_configuration = PlantConfiguration{"iris", PlantKind::ode};
+  mujoco.result.metrics = {{"levels", Measure::settling_time_s, 1.5, 1.5, 0, 0, 2}};
+  ode.result.metrics = {{"levels", Measure::settling_time_s, 3.5, 3.5, 0, 0, 2}};
+  ode.result.verdict = Verdict::fail;
+  ode.result.reason = "levels";
+  const std::string page = flight_page({mujoco, ode}, {});
+  EXPECT_THAT(page, HasSubstr("</span> fail</p>"));
+  EXPECT_THAT(page, HasSubstr("<p class=\"error\">ode: levels</p>"));
+  EXPECT_THAT(page, HasSubstr("<td class=\"number\">1.5</td><td class=\"number\">3.5</td>"
+                              "<td class=\" v-fail\">"));
+  EXPECT_THAT(page, HasSubstr("\"name\":\"roll (ode)\""));
+}
+
 TEST(FlightPage, WithoutATickHasNoPlots) {
   const SimulatedFlight crashed{passed("flight", "hover", Rate::hz(250)), {}};
-  EXPECT_THAT(flight_page(crashed, {}), Not(HasSubstr("id=\"plots-of-page\"")));
+  EXPECT_THAT(flight_page({crashed}, {}), Not(HasSubstr("id=\"plots-of-page\"")));
 }
 
 }  // namespace
