@@ -95,6 +95,9 @@ class FailingPort(Page):
         self.assertEqual(int(row["time"]), first["timestamp_us"])
         self.assertEqual(row["signal"].split()[0], first["channel"])
         self.assertEqual(row["stage"], first["stage"])
+        worst = result["worst"]
+        if (worst["tick"], worst["channel"]) != (first["tick"], first["channel"]):
+            self.assertTrue(row["worst"].startswith(f"tick {worst['tick']}, in {worst['channel']}"))
         for name in ("got", "want"):
             value, bits = row[name].split()
             self.assertAlmostEqual(float(value), first[name], places=6)
@@ -226,6 +229,43 @@ class PassingPort(Page):
         self.assertEqual(self.run_in_page("document.querySelectorAll('.v-fail').length"), 0)
         self.assertEqual(self.run_in_page("document.querySelector('.details').textContent"), "")
         self.assertGreater(self.run_in_page("document.querySelectorAll('.row').length"), 3)
+
+
+class StepTimes(Page):
+    """The page of `attest time --html`: axes with logarithms, bars, steps."""
+
+    @classmethod
+    def make_page(cls, folder: pathlib.Path):
+        options = ["--filter", "px4-v1.5.5/tpa/*@100hz", "--repeat", "1", "--budget", "1000"]
+        cls.run_attest("time", *options, "--html", cls.page)
+
+    def test_an_arrow_key_moves_the_cursor(self):
+        self.run_in_page("document.querySelector('.values').focus()")
+        self.browser.press("ArrowRight")
+        reading = "document.querySelector('.legend-of-plot').textContent"
+        self.browser.wait_for(f"{reading}.includes('at ')")
+        first = self.run_in_page(reading)
+        self.browser.press("ArrowRight")
+        self.browser.wait_for(f"{reading} !== '{first}'")
+
+    def test_a_click_on_a_name_hides_the_series(self):
+        button = "document.querySelector('.legend-of-plot button')"
+        picture = "document.querySelectorAll('.values canvas')[0].toDataURL()"
+        before = self.run_in_page(picture)
+        self.browser.click(button)
+        self.browser.wait_for(f"{button}.getAttribute('aria-pressed') === 'false'")
+        self.assertNotEqual(self.run_in_page(picture), before)
+
+    def test_the_tables_remain_without_scripts(self):
+        self.browser.send("Emulation.setScriptExecutionDisabled", value=True)
+        try:
+            self.browser.open(self.page.as_uri())
+            root = self.browser.send("DOM.getDocument")["root"]["nodeId"]
+            node = self.browser.send("DOM.querySelector", nodeId=root, selector=".figures td")
+            box = self.browser.send("DOM.getBoxModel", nodeId=node["nodeId"])["model"]
+            self.assertGreater(box["width"], 10)
+        finally:
+            self.browser.send("Emulation.setScriptExecutionDisabled", value=False)
 
 
 class Flight(Page):

@@ -52,6 +52,16 @@ Plot histogram_plot(std::string title, const std::vector<NamedHistogram>& histog
       last = std::max(last, bar_of(bucket));
     }
   }
+  if (first > last) return plot;
+  // A mark near the samples is in the plot.
+  constexpr int near = static_cast<int>(2 * bars_per_decade);
+  const int from = first - near, to = last + near;
+  for (const PlotMark& mark : plot.marks) {
+    const int bar = static_cast<int>(std::floor(bars_per_decade * std::log10(mark.x)));
+    if (bar < from || bar > to) continue;
+    first = std::min(first, bar);
+    last = std::max(last, bar);
+  }
   for (std::size_t i = 0; i < histograms.size(); ++i) {
     if (histograms[i].buckets.empty()) continue;
     plot.series.push_back(series_of(histograms[i], first, last));

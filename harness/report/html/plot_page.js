@@ -272,7 +272,7 @@
       for (const {drawn} of this.plots.splice(0)) drawn.destroy();
       this.place.replaceChildren();
       this.data.plots.forEach((plot, i, all) => {
-        const xLabel = i === all.length - 1 ? this.data.x_label : '';
+        const xLabel = all.length <= 4 || i === all.length - 1 ? this.data.x_label : '';
         this.plots.push(addPlot(this.place, plot, xLabel, this));
       });
       const drawn = this.plots.map((plot) => plot.drawn);
