@@ -1,10 +1,11 @@
 #include "harness/report/html/flight_page.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "harness/report/failure_text.hpp"
 #include "harness/report/html/flight_plots.hpp"
@@ -52,10 +53,9 @@ PageConclusion conclusion_of(const std::vector<SimulatedFlight>& flights, const 
       flights.begin(), flights.end(),
       [](const SimulatedFlight& flight) { return flight.result.verdict != Verdict::pass; });
   const CaseResult& result = (failed == flights.end() ? flights.front() : *failed).result;
-  std::vector<std::string> title;
-  for (const SimulatedFlight& flight : flights) title.push_back(flight.result.id());
-  return {result.verdict, std::string(name_of(result.verdict)),
-          fmt::format("{}", fmt::join(title, " and ")),
+  std::string title = flights.front().result.id();
+  for (std::size_t i = 1; i < flights.size(); ++i) title += " and on " + plant_of(flights[i]);
+  return {result.verdict, std::string(name_of(result.verdict)), std::move(title),
           fmt::format("{} {}, {} ticks", port.name, port.version, flights.front().result.ticks)};
 }
 
