@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "harness/cli/command.hpp"
 #include "harness/cli/completion.hpp"
@@ -14,9 +13,9 @@
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_arguments.hpp"
 #include "harness/cli/timing_arguments.hpp"
+#include "harness/cli/trace_arguments.hpp"
 #include "harness/cli/wrong_arguments.hpp"
 #include "harness/core/version.hpp"
-#include "harness/ulog/flight_log.hpp"
 
 namespace attest::cli {
 namespace {
@@ -37,85 +36,6 @@ constexpr const char* footer =
     "\n"
     "Exit codes: 0 no failure, 1 a failure, 2 wrong usage or environment.\n";
 
-std::string assumed_by_default() {
-  std::vector<std::string_view> words;
-  for (const FlightAssumption& one : flight_assumptions()) {
-    if (one.by_default) words.push_back(one.word);
-  }
-  return fmt::format("{}", fmt::join(words, ","));
-}
-
-void add_log_options(CLI::App& command, ReplayOptions& options) {
-  std::vector<std::string> words;
-  for (const FlightAssumption& one : flight_assumptions()) words.emplace_back(one.word);
-  command
-      .add_option("--assume", options.assumed,
-                  fmt::format("What holds in a flight whose log does not have the topic, some of "
-                              "{}; default: {}",
-                              fmt::join(words, ", "), assumed_by_default()))
-      ->type_name("WORD,...")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->group(option_group::logs);
-  command
-      .add_option("--within", options.log_limits.within,
-                  "The deviation that agrees with a log, in the unit of the signal")
-      ->type_name("X")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber)
-      ->group(option_group::logs);
-  command
-      .add_option("--at-least", options.log_limits.least_part_within,
-                  "The part of a log's samples that must agree")
-      ->type_name("PART")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 1.0))
-      ->group(option_group::logs);
-}
-
-void add_replay(CLI::App& app, const Globals& globals, Action& action) {
-  auto options = std::make_shared<ReplayOptions>();
-  CLI::App* command = app.add_subcommand("replay",
-                                         "Feed the inputs of recorded traces or flight logs to a "
-                                         "port and compare its outputs with the recorded ones");
-  command
-      ->add_option("files", options->files,
-                   "Traces (CSV) of a controller, a mixer or a battery estimate; logs of flights "
-                   "(.ulg), whose outputs are compared where the log has the sample that they "
-                   "answer")
-      ->type_name("FILE")
-      ->required();
-  add_port(*command, options->host.port);
-  command
-      ->add_option(
-          "--profile", options->profile,
-          "Version of the law; default: that of the provenance.toml next to the trace, else "
-          "px4-v1.5.5")
-      ->type_name("PROFILE");
-  command->add_option("--param", options->parameters, "Set a parameter from the first step on")
-      ->type_name("NAME=VALUE")
-      ->allow_extra_args(false);
-  command->add_option("--level", options->level, "`exact`, `numeric` or `events`")
-      ->type_name("LEVEL")
-      ->capture_default_str();
-  command
-      ->add_option("--mixer", options->mixer,
-                   "Definition of the mixer of a mixer trace; default: that of the provenance.toml "
-                   "next to the trace, else the geometry in the file name (`4x.csv`)")
-      ->type_name("TEXT");
-  add_log_options(*command, *options);
-  add_timeout(*command, options->host.timeout_s);
-  add_examples(*command, {{"attest replay TRACE.csv --port lib:./libmine.so",
-                           "a trace recorded from the firmware, or written by `attest sim`"},
-                          {"attest replay TRACE.csv --param MC_ROLL_P=7",
-                           "with another value of a parameter"},
-                          {"attest replay FLIGHT.ulg --port lib:./libmine.so",
-                           "how well the port agrees with what flew"}});
-  command->callback([options, &globals, &action] {
-    action = [=, &globals] { return replay_command(*options, globals); };
-  });
-}
-
 void add_sim(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<SimOptions>();
   CLI::App* command = app.add_subcommand(
@@ -131,66 +51,26 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
                    "recorded times")
       ->type_name("F");
   add_plant(*command, options->vehicle, options->plant);
+  command->get_option("--plant")->description(
+      "`mujoco` or `ode`; default: the case's first; `all`: the same flight on each, for --html");
   add_port(*command, options->host.port);
   command
       ->add_option("--out", options->out,
                    "The flown trace: CSV, or a ULog of PX4 if the name ends with .ulg; `-` is "
                    "stdout, as CSV")
       ->type_name("F");
-  command
-      ->add_option("--html", options->html,
-                   "A page with plots of the flight and a replay of the attitude; it needs no "
-                   "network")
-      ->type_name("F.html");
+  add_page(*command, options->html, "A page with plots of the flight and a replay of the attitude");
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command, {{"attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv",
                            "hover with the lead vehicle of the case, on its first plant"},
                           {"attest sim gust --rate 500 --vehicle hexa --plant ode --out flown.csv",
                            "another vehicle on the other plant"},
                           {"attest sim flip_150_level --rate 250 --html flight.html",
-                           "the flight as a page with plots"}});
+                           "the flight as a page with plots"},
+                          {"attest sim gust --rate 250 --plant all --html flight.html",
+                           "the flights on both plants in the same plots"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return sim_command(*options, globals); };
-  });
-}
-
-void add_compare(CLI::App& app, const Globals& globals, Action& action) {
-  auto options = std::make_shared<CompareOptions>();
-  CLI::App* command = app.add_subcommand("compare", "Compare two traces or logs of flights");
-  command
-      ->add_option("got", options->got,
-                   "The trace to judge: CSV, or a log (.ulg). Two traces of attest are compared "
-                   "tick by tick, in their outputs; with a log, all signals at equal times")
-      ->type_name("A")
-      ->required();
-  command->add_option("want", options->want, "The trace or log to judge it by")
-      ->type_name("B")
-      ->required();
-  command->add_option("--level", options->level, "`exact`, `numeric` or `events`")
-      ->type_name("LEVEL")
-      ->capture_default_str();
-  command->add_flag("--by-time", options->by_time,
-                    "Compare all signals at equal times, as with a log; for CSV files of any "
-                    "origin with a column timestamp [us]");
-  command
-      ->add_option("--tolerance", options->others,
-                   "By time: allowed difference of signals other than the controller's outputs, "
-                   "which have that of the level")
-      ->type_name("X")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command
-      ->add_option("--shift", options->shift,
-                   "By time: compare A moved earlier by this time [us], or by the estimated one: "
-                   "`auto`")
-      ->type_name("US")
-      ->capture_default_str();
-  add_examples(*command, {{"attest compare flown.csv reference.csv",
-                           "is the first the same as the second, within the tolerances?"},
-                          {"attest compare flown.ulg reference.csv --tolerance 1e-3",
-                           "all signals at equal times; which of the two lags?"}});
-  command->callback([options, &globals, &action] {
-    action = [=, &globals] { return compare_command(*options, globals); };
   });
 }
 
@@ -220,30 +100,6 @@ void add_smoke(CLI::App& app, const Globals& globals, Action& action) {
                 {"attest smoke --port lib:./libmine.so", "the functions of a shared library"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return smoke_command(*options, globals); };
-  });
-}
-
-void add_record(CLI::App& app, const Globals& globals, Action& action) {
-  auto options = std::make_shared<RecordOptions>();
-  CLI::App* command = app.add_subcommand(
-      "record", "Write the trace of a port in one open-loop case: its inputs and outputs");
-  command->add_option("case", options->case_name, "The case: its name, its id or its file")
-      ->type_name("CASE")
-      ->required();
-  command->add_option("--rate", options->rate, "The loop rate [Hz]")->type_name("HZ")->required();
-  add_port(*command, options->host.port);
-  command
-      ->add_option("--out", options->out,
-                   "The trace: CSV, or a ULog of PX4 if the name ends with .ulg; `-` is stdout, "
-                   "as CSV")
-      ->type_name("F")
-      ->capture_default_str();
-  add_timeout(*command, options->host.timeout_s);
-  add_examples(*command, {{"attest record rates/p_alone --rate 250 --port lib:./libmine.so --out "
-                           "mine.csv",
-                           "for a plot, or for `attest replay` and `attest compare`"}});
-  command->callback([options, &globals, &action] {
-    action = [=, &globals] { return record_command(*options, globals); };
   });
 }
 
@@ -328,11 +184,9 @@ int run_command_line(int argc, char** argv) {
   Action action;
   add_run_command(app, globals, action);
   add_merge_command(app, globals, action);
-  add_replay(app, globals, action);
   add_sim(app, globals, action);
   add_timing_commands(app, globals, action);
-  add_record(app, globals, action);
-  add_compare(app, globals, action);
+  add_trace_commands(app, globals, action);
   add_suite_commands(app, globals, action);
   add_new_port(app, globals, action);
   add_doctor(app, globals, action);

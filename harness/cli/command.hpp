@@ -131,7 +131,7 @@ struct StressOptions {
   double spin_us = 0;
   // Empty: the case's.
   std::optional<double> misses_per_million, p99_latency_us, execution_us;
-  std::string json, junit, record_timing;
+  std::string html, json, junit, record_timing;
   bool cyclictest = true;
 };
 int stress_command(const StressOptions& options, const Globals& globals);
@@ -142,7 +142,7 @@ struct SweepOptions {
   std::vector<std::string> vehicles, plants;  // empty: all of the case
   HostOptions host;
   int jobs = 1;
-  std::string csv;
+  std::string csv, html;
 };
 int sweep_rate_command(const SweepOptions& options, const Globals& globals);
 
@@ -161,7 +161,7 @@ struct TimeCommandOptions {
   TimeOptions measure;
   int allowed = 0;  // steps over the budget
   bool instructions = false;
-  std::string json;
+  std::string html, json;
 };
 int time_command(const TimeCommandOptions& options, const Globals& globals);
 

@@ -68,6 +68,12 @@ void add_timeout(CLI::App& command, double& timeout_s) {
       ->group(option_group::execution);
 }
 
+void add_page(CLI::App& command, std::string& file, const char* what) {
+  command.add_option("--html", file, fmt::format("{}; it needs no network", what))
+      ->type_name("F.html")
+      ->group(option_group::reports);
+}
+
 void add_jobs(CLI::App& command, int& jobs, const char* what) {
   jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   command.add_option("--jobs,-j", jobs, fmt::format("{}; default: one for each CPU", what))

@@ -48,6 +48,8 @@ void add_plant(CLI::App& command, std::string& vehicle, std::string& plant);
 enum class Ports { callable, any };
 void add_port(CLI::App& command, std::string& port, Ports accepted = Ports::callable);
 void add_timeout(CLI::App& command, double& timeout_s);
+// --html: the file of a page; `what` describes the page.
+void add_page(CLI::App& command, std::string& file, const char* what);
 void add_jobs(CLI::App& command, int& jobs, const char* what);  // default: one per CPU
 
 }  // namespace attest::cli

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -18,9 +20,12 @@
 namespace attest::cli {
 namespace {
 
+constexpr std::string_view all_plants = "all";
+
+// The same flight on one plant or on several.
 struct Sim {
   Case the_case;
-  RunConfiguration configuration;
+  std::vector<RunConfiguration> configurations;
   LoopTiming timing;
   std::shared_ptr<const VehicleModel> vehicle_model;
 };
@@ -32,8 +37,35 @@ Result<Sim> prepare_timed(const SimOptions& options, const SuiteFolder& suite) {
   }
   auto flight = find_timed_flight(options.timing, suite);
   if (!flight) return tl::unexpected(flight.error());
-  return Sim{std::move(flight->the_case), flight->timing.configuration,
-             std::move(flight->timing.ticks), std::move(flight->vehicle_model)};
+  return Sim{std::move(flight->the_case),
+             {flight->timing.configuration},
+             std::move(flight->timing.ticks),
+             std::move(flight->vehicle_model)};
+}
+
+Result<Sim> prepare_case(const SimOptions& options, const SuiteFolder& suite) {
+  if (options.case_name.empty() || options.rate.empty()) {
+    return fail("needs a case and --rate, or --timing");
+  }
+  const bool on_all = options.plant == all_plants;
+  if (on_all && !options.out.empty()) {
+    return fail("--out writes one flight; name its plant instead of `all`");
+  }
+  const auto rate = Rate::parse(options.rate);
+  if (!rate) return tl::unexpected(rate.error());
+  auto chosen =
+      choose_flight(options.case_name, options.vehicle, on_all ? "" : options.plant, suite);
+  if (!chosen) return tl::unexpected(chosen.error());
+  std::vector<RunConfiguration> configurations;
+  for (const PlantKind plant : plant_kinds) {
+    const PlantConfiguration& one = chosen->plant_configuration;
+    if (on_all || plant == one.plant) {
+      configurations.push_back({*rate, PlantConfiguration{one.vehicle, plant}});
+    }
+  }
+  LoopTiming timing = case_timing(chosen->the_case, *rate);
+  return Sim{std::move(chosen->the_case), std::move(configurations), std::move(timing),
+             std::move(chosen->vehicle_model)};
 }
 
 Result<Sim> prepare(const SimOptions& options, const Globals& globals) {
@@ -45,26 +77,32 @@ Result<Sim> prepare(const SimOptions& options, const Globals& globals) {
                     {options.host.port, {options.timing, options.case_name}}, *suite);
   if (!checked) return tl::unexpected(checked.error());
   if (!options.timing.empty()) return prepare_timed(options, *suite);
-  if (options.case_name.empty() || options.rate.empty()) {
-    return fail("needs a case and --rate, or --timing");
-  }
-  const auto rate = Rate::parse(options.rate);
-  if (!rate) return tl::unexpected(rate.error());
-  auto chosen = choose_flight(options.case_name, options.vehicle, options.plant, *suite);
-  if (!chosen) return tl::unexpected(chosen.error());
-  LoopTiming timing = case_timing(chosen->the_case, *rate);
-  return Sim{std::move(chosen->the_case),
-             {*rate, std::move(chosen->plant_configuration)},
-             std::move(timing),
-             std::move(chosen->vehicle_model)};
+  return prepare_case(options, *suite);
 }
 
-Result<void> write(const SimulatedFlight& flight, const PortSays& port, const SimOptions& options) {
-  if (!options.out.empty() && !flight.flown.samples.empty()) {
-    if (auto written = write_trace(options.out, flight.flown); !written) return written;
+// Each flight has a fresh process of the port.
+Result<std::vector<SimulatedFlight>> fly_all(const Sim& sim, const HostOptions& options,
+                                             PortSays& says) {
+  std::vector<SimulatedFlight> flights;
+  for (const RunConfiguration& configuration : sim.configurations) {
+    const auto host = start_host(options, {&sim.the_case, sim.vehicle_model.get()});
+    if (!host) return tl::unexpected(host.error());
+    auto flight = simulate_flight(sim.the_case, {configuration, sim.timing}, **host);
+    if (!flight) return tl::unexpected(flight.error());
+    says = (*host)->says();
+    flights.push_back(*std::move(flight));
+  }
+  return flights;
+}
+
+Result<void> write(const std::vector<SimulatedFlight>& flights, const PortSays& port,
+                   const SimOptions& options) {
+  const Trace& flown = flights.front().flown;
+  if (!options.out.empty() && !flown.samples.empty()) {
+    if (auto written = write_trace(options.out, flown); !written) return written;
   }
   if (options.html.empty()) return {};
-  return write_file(options.html, flight_page(flight, port));
+  return write_file(options.html, flight_page(flights, port));
 }
 
 void print(const CaseResult& result, const std::string& out) {
@@ -84,16 +122,19 @@ void print(const CaseResult& result, const std::string& out) {
 int sim_command(const SimOptions& options, const Globals& globals) {
   auto sim = prepare(options, globals);
   if (!sim) return report_error(sim.error());
-  const auto host = start_host(options.host, {&sim->the_case, sim->vehicle_model.get()});
-  if (!host) return report_error(host.error());
-  const auto flight = simulate_flight(sim->the_case, {sim->configuration, sim->timing}, **host);
-  if (!flight) return report_error(flight.error());
-  if (const auto written = write(*flight, (*host)->says(), options); !written) {
+  PortSays says;
+  const auto flights = fly_all(*sim, options.host, says);
+  if (!flights) return report_error(flights.error());
+  if (const auto written = write(*flights, says, options); !written) {
     return report_error(written.error());
   }
-  const CaseResult& result = flight->result;
-  if (!globals.quiet || result.verdict != Verdict::pass) print(result, options.out);
-  return result.verdict == Verdict::pass ? exit_ok : exit_failed;
+  bool passed = true;
+  for (const SimulatedFlight& flight : *flights) {
+    const bool passes = flight.result.verdict == Verdict::pass;
+    if (!globals.quiet || !passes) print(flight.result, options.out);
+    passed = passed && passes;
+  }
+  return passed ? exit_ok : exit_failed;
 }
 
 }  // namespace attest::cli

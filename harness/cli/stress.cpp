@@ -15,6 +15,7 @@
 #include "harness/core/file.hpp"
 #include "harness/process/program.hpp"
 #include "harness/realtime/load.hpp"
+#include "harness/report/html/stress_page.hpp"
 #include "harness/report/junit.hpp"
 #include "harness/report/stress_text.hpp"
 
@@ -55,8 +56,9 @@ void set_budget(const StressOptions& options, RealtimeBudget& budget) {
 }
 
 Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& suite) {
-  const auto checked = check_outputs({options.json, options.junit, options.record_timing},
-                                     {options.host.port, {options.case_name}}, suite);
+  const auto checked =
+      check_outputs({options.html, options.json, options.junit, options.record_timing},
+                    {options.host.port, {options.case_name}}, suite);
   if (!checked) return tl::unexpected(checked.error());
   auto chosen = choose_flight(options.case_name, options.vehicle, options.plant, suite);
   if (!chosen) return tl::unexpected(chosen.error());
@@ -176,6 +178,8 @@ int stress_command(const StressOptions& options, const Globals& globals) {
   if (!json) return report_error(json.error());
   auto junit = open_report(options.junit);
   if (!junit) return report_error(junit.error());
+  auto html = open_report(options.html);
+  if (!html) return report_error(html.error());
 
   note_interrupts();
   StressRun run;
@@ -183,10 +187,12 @@ int stress_command(const StressOptions& options, const Globals& globals) {
   run.port = options.host.port;
   run.description = plan->port;
   run.live = plan->tasks.front().live;
+  run.budget = plan->tasks.front().the_case.flight->realtime;
   if (auto done = run_all(*plan, options, globals, run); !done) return report_error(done.error());
   const RunResult all = run_of(run);
   for (const auto& written :
-       {write_report(*json, stress_json(run)), write_report(*junit, junit_report(all))}) {
+       {write_report(*json, stress_json(run)), write_report(*junit, junit_report(all)),
+        write_report(*html, stress_page(run))}) {
     if (!written) return report_error(written.error());
   }
   if (!globals.quiet) fmt::print("{}", render_stress_end(run, terminal_style(stdout)));

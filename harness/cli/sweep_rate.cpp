@@ -11,6 +11,7 @@
 #include "harness/core/file.hpp"
 #include "harness/measure/sweep.hpp"
 #include "harness/plant/vehicle_models.hpp"
+#include "harness/report/html/sweep_page.hpp"
 #include "harness/report/progress.hpp"
 #include "harness/report/sweep_text.hpp"
 
@@ -20,6 +21,7 @@ namespace {
 struct SweepPlan {
   Case the_case;
   std::vector<Rate> rates;
+  PortSays port;
   Jobs<SweepResult> jobs;
 };
 
@@ -67,6 +69,7 @@ Result<SweepPlan> make_plan(const SweepOptions& options, const SuiteFolder& suit
                                                    *std::move(vehicle_model), host));
   }
   plan.the_case = std::move(*the_case);
+  plan.port = *port;
   return plan;
 }
 
@@ -76,7 +79,7 @@ int sweep_rate_command(const SweepOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
   const auto checked =
-      check_outputs({options.csv}, {options.host.port, {options.case_name}}, *suite);
+      check_outputs({options.csv, options.html}, {options.host.port, {options.case_name}}, *suite);
   if (!checked) return report_error(checked.error());
   const auto plan = make_plan(options, *suite);
   if (!plan) return report_error(plan.error());
@@ -96,6 +99,12 @@ int sweep_rate_command(const SweepOptions& options, const Globals& globals) {
   const std::vector<SweepRow> rows = sweep_rows(outcome.results);
   if (auto written = write_file(options.csv, sweep_csv(rows, plan->rates)); !written) {
     return report_error(written.error());
+  }
+  if (!options.html.empty()) {
+    const SweepRun run{options.host.port, plan->port, plan->the_case, plan->rates, outcome.results};
+    if (auto written = write_file(options.html, sweep_page(run)); !written) {
+      return report_error(written.error());
+    }
   }
   if (!globals.quiet) {
     fmt::print(

@@ -13,6 +13,7 @@
 #include "harness/host/step_timer.hpp"
 #include "harness/measure/vector_times.hpp"
 #include "harness/realtime/instructions.hpp"
+#include "harness/report/html/time_page.hpp"
 #include "harness/report/progress.hpp"
 #include "harness/report/time_text.hpp"
 
@@ -52,8 +53,8 @@ std::vector<std::uint64_t> counted(const TimeCommandOptions& options, const Suit
 int time_command(const TimeCommandOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
-  const auto checked =
-      check_outputs({options.json, options.measure.worst}, {options.host.port, {}}, *suite);
+  const auto checked = check_outputs({options.html, options.json, options.measure.worst},
+                                     {options.host.port, {}}, *suite);
   if (!checked) return report_error(checked.error());
   if (options.instructions && is_program(options.host.port)) {
     return report_error(
@@ -79,8 +80,12 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
   progress.finish();
   if (interrupted()) return exit_interrupted;
   if (!times) return report_error(times.error());
-  TimeRun run{
-      options.host.port, options.measure.repeats, options.measure.budget_us, *std::move(times), {}};
+  TimeRun run{options.host.port,
+              options.measure.repeats,
+              options.measure.budget_us,
+              *std::move(times),
+              {},
+              static_cast<std::uint64_t>(options.allowed)};
   const auto& timed = run.times.vectors;
   const bool wrong = std::any_of(timed.begin(), timed.end(),
                                  [](const auto& one) { return fails_a_run(one.result.verdict); });
@@ -104,7 +109,11 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
   }
   if (auto written = write_file(options.json, time_json(run)); !written)
     return report_error(written.error());
-  const bool over = run.times.steps.over_limit() > static_cast<std::uint64_t>(options.allowed);
+  if (!options.html.empty()) {
+    if (auto written = write_file(options.html, time_page(run)); !written)
+      return report_error(written.error());
+  }
+  const bool over = run.times.steps.over_limit() > run.allowed;
   const bool failed = over || wrong;
   if (!globals.quiet || failed) fmt::print("{}{}", render_times(run), exchange_note(run.port));
   return failed ? exit_failed : exit_ok;

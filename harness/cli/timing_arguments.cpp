@@ -72,6 +72,8 @@ void add_stress_reports(CLI::App& command, StressOptions& options) {
                   "Write the times of all ticks, for `run --timing`; one rate only")
       ->type_name("F")
       ->group(option_group::reports);
+  add_page(command, options.html,
+           "A page with the distributions of the times, those of the idle machine, and a timeline");
   command.add_option("--json", options.json, "Write all measurements")
       ->type_name("F")
       ->group(option_group::reports);
@@ -128,6 +130,7 @@ void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("PLANT")
       ->allow_extra_args(false);
   add_port(*command, options->host.port);
+  add_page(*command, options->html, "A page with maps of the limits, and of the metrics by rate");
   command->add_option("--csv", options->csv, "Write the table")
       ->type_name("F.csv")
       ->group(option_group::reports);
@@ -201,6 +204,8 @@ void add_time(CLI::App& app, const Globals& globals, Action& action) {
       "--stack,!--no-stack", options->measure.stack,
       "Measure the most stack that a step uses, in one more run of each vector (on by "
       "default)");
+  add_page(*command, options->html,
+           "A page with the distribution of the times, by group and rate, and the slowest vectors");
   command->add_option("--json", options->json, "Write all times and stack use, by vector")
       ->type_name("F")
       ->group(option_group::reports);

@@ -79,6 +79,12 @@ Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
   return measured;
 }
 
+TimelineLimits limits_of(const RealtimeBudget& budget) {
+  TimelineLimits limits{std::nullopt, nanoseconds(budget.p99_latency_us)};
+  if (budget.execution_us) limits.execution = nanoseconds(*budget.execution_us);
+  return limits;
+}
+
 Result<StressResult> judge_live(const StressTask& task, StressMeasurement measurement) {
   StressResult& stress = measurement.stress;
   stress.result = result_for(task.the_case, task.configuration);
@@ -97,6 +103,7 @@ Result<StressResult> judge_live(const StressTask& task, StressMeasurement measur
   CaseResult& result = stress.result;
   result.ticks = stress.ticks;
   result.elapsed_s = in_seconds(stress.wall);
+  stress.timeline = timeline_of(flight.unit.ticks, limits_of(task.the_case.flight->realtime));
   if (flight.unit.fault) {
     judge(*flight.unit.fault, result);
     return std::move(stress);

@@ -15,6 +15,7 @@
 #include "harness/realtime/deadline_misses.hpp"
 #include "harness/realtime/live_flight.hpp"
 #include "harness/realtime/slow_ticks.hpp"
+#include "harness/realtime/timeline.hpp"
 #include "harness/verify/verdict.hpp"
 
 namespace attest {
@@ -45,6 +46,7 @@ struct StressResult {
   Usage unit_usage, plant_usage;
   std::vector<RealtimePrivilege> privileges;
   SlowTicks slow;
+  FlightTimeline timeline;  // of the ticks that the judge's process received; not in the JSON
   std::optional<Cyclictest> cyclictest;
 
   double per_million(std::uint64_t count) const;  // of the deadlines
@@ -94,6 +96,9 @@ Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
 // machine's latency, and cyclictest.
 void summarise(const LiveFlight& flight, const Rate& rate, const RealtimeBudget& budget,
                StressResult& stress);
+
+// The limits of `budget` for the timeline.
+TimelineLimits limits_of(const RealtimeBudget& budget);
 
 // Also writes the timing of the flight if the task has a file for it. Errors: it cannot be written.
 Result<StressResult> judge_live(const StressTask& task, StressMeasurement measurement);

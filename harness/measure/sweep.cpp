@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "harness/core/error_json.hpp"
@@ -43,25 +44,33 @@ class Trial {
     } else if (flown->fault) {
       judge(*flown->fault, result_);
     } else {
-      return !flown->divergence && within_bounds(flown->trace);
+      return note(configuration.rate, delay, *flown);
     }
     return false;
   }
 
+  std::vector<SweepTrial> take_trials() { return std::move(trials_); }
+
   const std::optional<Error>& error() const { return error_; }
 
  private:
-  bool within_bounds(const Trace& trace) const {
-    const auto& metrics = case_.flight->metrics;
-    return std::all_of(metrics.begin(), metrics.end(), [&](const Metric& metric) {
-      const double value = measured(metric, trace);
-      return value >= metric.min && value <= metric.max;
-    });
+  bool note(const Rate& rate, Nanoseconds delay, const Flown& flown) {
+    SweepTrial trial{rate.hertz(), 1e3 * in_seconds(delay), {}, !flown.divergence};
+    if (!flown.divergence) {
+      for (const Metric& metric : case_.flight->metrics) {
+        const double value = measured(metric, flown.trace);
+        trial.holds = trial.holds && value >= metric.min && value <= metric.max;
+        trial.values.push_back(value);
+      }
+    }
+    trials_.push_back(std::move(trial));
+    return trials_.back().holds;
   }
 
   const Case& case_;
   PortHost& host_;
   CaseResult& result_;
+  std::vector<SweepTrial> trials_;
   std::optional<Error> error_;
 };
 
@@ -106,6 +115,12 @@ std::string Codec<SweepResult>::encode(const Result<SweepResult>& result) {
     nlohmann::json out = {{"result", to_json(one.result)}};
     if (one.lowest_rate_hz) out["lowest_rate_hz"] = *one.lowest_rate_hz;
     if (one.largest_delay_ms) out["largest_delay_ms"] = *one.largest_delay_ms;
+    out["trials"] = nlohmann::json::array();
+    for (const auto& [rate_hz, delay_ms, values, holds] : one.trials) {
+      nlohmann::json numbers = nlohmann::json::array();
+      for (const double value : values) numbers.push_back(fmt::format("{}", value));
+      out["trials"].push_back({rate_hz, delay_ms, std::move(numbers), holds});
+    }
     return out;
   }));
 }
@@ -116,8 +131,16 @@ Result<SweepResult> Codec<SweepResult>::decode(const std::string& text) {
   const auto figure = [&](const char* name) {
     return in->contains(name) ? std::optional(in->at(name).get<double>()) : std::nullopt;
   };
+  std::vector<SweepTrial> trials;
+  for (const nlohmann::json& trial : in->at("trials")) {
+    trials.push_back({trial[0].get<double>(), trial[1].get<double>(), {}, trial[3].get<bool>()});
+    for (const nlohmann::json& value : trial[2]) {
+      trials.back().values.push_back(std::stod(value.get<std::string>()));
+    }
+  }
   return case_result_from_json(in->at("result")).map([&](CaseResult result) {
-    return SweepResult{std::move(result), figure("lowest_rate_hz"), figure("largest_delay_ms")};
+    return SweepResult{std::move(result), figure("lowest_rate_hz"), figure("largest_delay_ms"),
+                       std::move(trials)};
   });
 }
 
@@ -143,6 +166,7 @@ Result<SweepResult> SweepJob::run(std::size_t task) {
         });
   }
   if (trial.error()) return tl::unexpected(*trial.error());
+  found.trials = trial.take_trials();
   // A figure from before the port's failure is not valid.
   if (found.result.verdict != Verdict::pass) {
     (task == 0 ? found.lowest_rate_hz : found.largest_delay_ms) = -1;

@@ -15,11 +15,20 @@
 
 namespace attest {
 
+// A flight of the search that the port flew to its end, or until it lost the vehicle.
+struct SweepTrial {
+  double rate_hz = 0, delay_ms = 0;
+  std::vector<double>
+      values;          // of the metrics, in the order of the case; empty: the vehicle is lost
+  bool holds = false;  // all metrics are within their bounds
+};
+
 // One of the two figures is set. It is below 0 if no value holds, or if `result` is not a pass.
 struct SweepResult {
   CaseResult result;  // a verdict other than pass: the port failed
   std::optional<double> lowest_rate_hz;
   std::optional<double> largest_delay_ms;  // of the motor commands, beyond the case's own
+  std::vector<SweepTrial> trials = {};     // in the order of the search
 };
 
 template <>

@@ -77,8 +77,16 @@ std::string first_deviation(const Deviation& deviation, Level level) {
       values(channel, deviation), indented_distance(deviation, level), name_of(channel.stage));
 }
 
-// In one line, below the first. Empty if they are the same.
-std::string worst_deviation(const CaseResult& result) {
+// "attest", with --suite if it was given.
+std::string attest_with_suite(const RunResult& run) {
+  if (run.suite_folder.empty()) return "attest";
+  return "attest --suite " + shell_word(run.suite_folder);
+}
+
+}  // namespace
+
+std::string worst_text(const CaseResult& result) {
+  if (!result.worst) return {};
   const Deviation& worst = *result.worst;
   if (result.first && result.first->tick == worst.tick && result.first->channel == worst.channel) {
     return {};
@@ -87,17 +95,9 @@ std::string worst_deviation(const CaseResult& result) {
   const std::string how_far = worst.tolerance > 0 ? fmt::format("{} times the tolerance",
                                                                 times(difference / worst.tolerance))
                                                   : fmt::format("{} ulp", worst.ulp);
-  return fmt::format("  worst at tick {}, in {}: off by {:.3g}, {}\n", worst.tick,
+  return fmt::format("tick {}, in {}: off by {:.3g}, {}", worst.tick,
                      channel_with_unit(channels()[worst.channel]), difference, how_far);
 }
-
-// "attest", with --suite if it was given.
-std::string attest_with_suite(const RunResult& run) {
-  if (run.suite_folder.empty()) return "attest";
-  return "attest --suite " + shell_word(run.suite_folder);
-}
-
-}  // namespace
 
 std::string channel_with_unit(const Channel& channel) {
   const std::string_view unit = unit_of(channel.quantity);
@@ -171,7 +171,9 @@ std::string reproduce_command(const CaseResult& result, const RunResult& run) {
 std::string finding_text(const CaseResult& result, Level level) {
   std::string out;
   if (result.first) out += first_deviation(*result.first, level);
-  if (result.worst) out += worst_deviation(result);
+  if (const std::string worst = worst_text(result); !worst.empty()) {
+    out += fmt::format("  worst at {}\n", worst);
+  }
   if (result.deviating_ticks > 0) {
     out += fmt::format("  {} of {} deviate\n", result.deviating_ticks,
                        counted(result.ticks, result.plant_configuration ? "row" : "tick"));

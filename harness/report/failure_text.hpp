@@ -20,6 +20,10 @@ std::string failure_text(const CaseResult& result, const RunResult& run);
 // outside the suite. Empty when only the verdict is known.
 std::string finding_text(const CaseResult& result, Level level);
 
+// "tick 412, in out/...: off by 0.3, 1500 times the tolerance". Empty if it is the first
+// divergence, or unknown.
+std::string worst_text(const CaseResult& result);
+
 // "at most 1.2", "at least 0", "0 to 3".
 std::string metric_bounds(const MetricResult& metric);
 

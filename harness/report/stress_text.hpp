@@ -17,6 +17,7 @@ struct StressRun {
   PortDescription description;  // as it declares
   std::string load;             // "none"
   LiveOptions live;
+  RealtimeBudget budget;
   std::vector<StressResult> results;
   bool interrupted = false;
 };

@@ -17,7 +17,7 @@ std::string csv_cell(double value) { return value < 0 ? "" : fmt::format("{:g}",
 
 std::vector<SweepRow> sweep_rows(const std::vector<SweepResult>& results) {
   std::vector<SweepRow> rows;
-  for (const auto& [result, lowest_rate_hz, largest_delay_ms] : results) {
+  for (const auto& [result, lowest_rate_hz, largest_delay_ms, trials] : results) {
     if (rows.empty() || rows.back().plant_configuration != *result.plant_configuration) {
       rows.push_back({*result.plant_configuration, -1, {}, {}});
     }

@@ -16,6 +16,7 @@ struct TimeRun {
   std::optional<double> budget_us;
   CorpusTimes times;
   std::vector<std::uint64_t> instructions;  // of the slowest vector's steps; empty: not counted
+  std::uint64_t allowed = 0;                // steps over the budget
 };
 
 // REQUIRES: at least one vector was timed.

@@ -130,3 +130,14 @@ PORT
   has "no trace was written"
   grep -q "in step() at tick 20" page.html
 }
+
+@test "one flight on both plants is one page" {
+  run "$ATTEST" sim flip_150_level --rate 250 --plant all --html page.html
+  [ "$status" -eq 0 ]
+  has "@250hz-iris-mujoco"
+  has "@250hz-iris-ode"
+  grep -q '"name":"roll (ode)"' page.html
+  run "$ATTEST" sim flip_150_level --rate 250 --plant all --out flown.csv
+  [ "$status" -eq 2 ]
+  has "--out writes one flight"
+}

@@ -95,6 +95,9 @@ class FailingPort(Page):
         self.assertEqual(int(row["time"]), first["timestamp_us"])
         self.assertEqual(row["signal"].split()[0], first["channel"])
         self.assertEqual(row["stage"], first["stage"])
+        worst = result["worst"]
+        if (worst["tick"], worst["channel"]) != (first["tick"], first["channel"]):
+            self.assertTrue(row["worst"].startswith(f"tick {worst['tick']}, in {worst['channel']}"))
         for name in ("got", "want"):
             value, bits = row[name].split()
             self.assertAlmostEqual(float(value), first[name], places=6)
@@ -142,7 +145,10 @@ class FailingPort(Page):
             f".getPropertyValue('--{colour}').trim();"
             " const want = [1, 3, 5].map((i) => parseInt(name.slice(i, i + 2), 16));"
             " return Math.max(...[...document.querySelectorAll('.values canvas')].map((c) => {"
-            " const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;"
+            " const copy = new OffscreenCanvas(c.width, c.height)"
+            ".getContext('2d', {willReadFrequently: true});"
+            " copy.drawImage(c, 0, 0);"
+            " const d = copy.getImageData(0, 0, c.width, c.height).data;"
             " let n = 0; for (let i = 0; i < d.length; i += 4)"
             " n += d[i + 3] === 255 && want.every((w, k) => Math.abs(d[i + k] - w) < 3);"
             " return n; })); })()"
@@ -225,6 +231,43 @@ class PassingPort(Page):
         self.assertGreater(self.run_in_page("document.querySelectorAll('.row').length"), 3)
 
 
+class StepTimes(Page):
+    """The page of `attest time --html`: axes with logarithms, bars, steps."""
+
+    @classmethod
+    def make_page(cls, folder: pathlib.Path):
+        options = ["--filter", "px4-v1.5.5/tpa/*@100hz", "--repeat", "1", "--budget", "1000"]
+        cls.run_attest("time", *options, "--html", cls.page)
+
+    def test_an_arrow_key_moves_the_cursor(self):
+        self.run_in_page("document.querySelector('.values').focus()")
+        self.browser.press("ArrowRight")
+        reading = "document.querySelector('.legend-of-plot').textContent"
+        self.browser.wait_for(f"{reading}.includes('at ')")
+        first = self.run_in_page(reading)
+        self.browser.press("ArrowRight")
+        self.browser.wait_for(f"{reading} !== '{first}'")
+
+    def test_a_click_on_a_name_hides_the_series(self):
+        button = "document.querySelector('.legend-of-plot button')"
+        picture = "document.querySelectorAll('.values canvas')[0].toDataURL()"
+        before = self.run_in_page(picture)
+        self.browser.click(button)
+        self.browser.wait_for(f"{button}.getAttribute('aria-pressed') === 'false'")
+        self.assertNotEqual(self.run_in_page(picture), before)
+
+    def test_the_tables_remain_without_scripts(self):
+        self.browser.send("Emulation.setScriptExecutionDisabled", value=True)
+        try:
+            self.browser.open(self.page.as_uri())
+            root = self.browser.send("DOM.getDocument")["root"]["nodeId"]
+            node = self.browser.send("DOM.querySelector", nodeId=root, selector=".figures td")
+            box = self.browser.send("DOM.getBoxModel", nodeId=node["nodeId"])["model"]
+            self.assertGreater(box["width"], 10)
+        finally:
+            self.browser.send("Emulation.setScriptExecutionDisabled", value=False)
+
+
 class Flight(Page):
     """The page of `attest sim --html`."""
 
@@ -235,7 +278,7 @@ class Flight(Page):
 
     def test_the_slider_moves_the_replay_and_the_plots(self):
         picture = "document.querySelector('.replay canvas').toDataURL()"
-        reading = "document.querySelector('#flight-plots .reading').textContent"
+        reading = "document.querySelector('#plots-of-page .reading').textContent"
         before = [self.run_in_page(picture), self.run_in_page(reading)]
         self.run_in_page(
             "(() => { const s = document.querySelector('input[type=range]'); s.value = 100;"
@@ -248,7 +291,7 @@ class Flight(Page):
         self.assertEqual(clock, "0.400 s")
 
     def test_the_pointer_in_a_plot_moves_the_slider(self):
-        self.browser.move("document.querySelector('#flight-plots .values')")
+        self.browser.move("document.querySelector('#plots-of-page .values')")
         self.browser.wait_for("document.querySelector('input[type=range]').value > 100")
 
     def test_there_is_a_plot_of_each_part(self):

@@ -261,3 +261,21 @@ CHECK
   run "$ATTEST" stress --rates 0
   [ "$status" -eq 2 ]
 }
+
+@test "a stress run is a page with the idle machine and a timeline" {
+  run "$ATTEST" stress --rates 250 --duration 0.5 "${open[@]}" --html s.html --json s.json
+  python3 - <<'CHECK'
+import json, re
+page = open("s.html", encoding="utf-8").read()
+groups = json.loads(re.search(r'id="plots">(.*?)</script>', page, re.DOTALL)[1])["groups"]
+titles = [plot["title"] for group in groups for plot in group["plots"]]
+assert titles[:2] == ["Wake-up latency", "Execution time"] and "Longest times" in titles, titles
+assert [s["name"] for s in groups[0]["plots"][0]["series"]] == ["idle machine", "in flight"]
+result = json.load(open("s.json"))["results"][0]
+assert f'<td class="number">{result["deadlines"]}</td>' in page
+assert f'<td class="number">{result["response_time"]["max_ns"] / 1000:.4g}</td>' in page
+CHECK
+  run "$ATTEST" stress --html same --json same
+  [ "$status" -eq 2 ]
+  has "is asked for twice"
+}

@@ -194,3 +194,24 @@ CHECK
   [ "$status" -eq 2 ]
   has "late.json: is no timing file"
 }
+
+@test "step times and the limits of the rate are pages" {
+  "$ATTEST" -q time --filter 'px4-v1.5.5/tpa/*@250hz' --repeat 1 --no-stack --html t.html \
+    --json t.json
+  "$ATTEST" -q sweep-rate --vehicle iris --plant ode --rates 100 --csv s.csv --html s.html
+  python3 - <<'CHECK'
+import csv, json
+page = open("t.html", encoding="utf-8").read()
+times = json.load(open("t.json"))
+assert f"{times['all']['steps']} steps" in page
+assert times["slowest"] in page
+page = open("s.html", encoding="utf-8").read()
+for row in csv.DictReader(open("s.csv")):
+    for figure in ("largest_delay_ms", "lowest_rate_hz"):
+        assert f'<td class="number">{row[figure]}</td>' in page, figure
+CHECK
+  run "$ATTEST" time --html same --json same
+  [ "$status" -eq 2 ]
+  run "$ATTEST" sweep-rate --html same --csv same
+  [ "$status" -eq 2 ]
+}

@@ -103,16 +103,19 @@ std::vector<std::size_t> extreme_ticks(std::span<const std::vector<float>> serie
   return kept;
 }
 
+void keep_neighbours(std::size_t marked, std::size_t size, std::vector<std::size_t>& kept) {
+  for (std::size_t tick = marked > 0 ? marked - 1 : 0; tick <= marked + 1 && tick < size; ++tick) {
+    const auto place = std::lower_bound(kept.begin(), kept.end(), tick);
+    if (place == kept.end() || *place != tick) kept.insert(place, tick);
+  }
+}
+
 std::vector<std::size_t> drawn_ticks(const Curves& curves, std::size_t marked, std::size_t most) {
   std::array<std::vector<float>, 3> series{curves.got, curves.want, {}};
   std::transform(curves.got.begin(), curves.got.end(), curves.want.begin(),
                  std::back_inserter(series[2]), std::minus<>());
   std::vector<std::size_t> kept = extreme_ticks(series, most);
-  for (std::size_t tick = marked > 0 ? marked - 1 : 0; tick <= marked + 1 && tick < curves.size();
-       ++tick) {
-    const auto place = std::lower_bound(kept.begin(), kept.end(), tick);
-    if (place == kept.end() || *place != tick) kept.insert(place, tick);
-  }
+  keep_neighbours(marked, curves.size(), kept);
   return kept;
 }
 

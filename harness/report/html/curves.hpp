@@ -36,7 +36,12 @@ std::vector<Curves> curves_to_plot(std::vector<Curves> curves, std::size_t first
 std::vector<std::size_t> extreme_ticks(std::span<const std::vector<float>> series,
                                        std::size_t most);
 
-// The same for got, want and their difference. The ticks around `marked` are kept, too.
+// Adds `marked` and the ticks before and after it to the ascending `kept`, as far as they are below
+// `size`.
+void keep_neighbours(std::size_t marked, std::size_t size, std::vector<std::size_t>& kept);
+
+// The same as extreme_ticks() for got, want and their difference. The ticks around `marked` are
+// kept, too.
 std::vector<std::size_t> drawn_ticks(const Curves& curves, std::size_t marked, std::size_t most);
 
 }  // namespace attest

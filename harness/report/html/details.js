@@ -49,6 +49,7 @@
         ': look here first. All before it agrees up to this tick.'
       );
     }
+    if (row.worst) add('worst', row.worst);
     if (row.deviating)
       add('deviating', `${row.deviating} of ${row.ticks} ${row.isFlight ? 'rows' : 'ticks'}`);
     if (row.headroom) add('smallest headroom', `${row.headroom} in ${row.tightest}`);

@@ -23,8 +23,10 @@ ATTEST_EMBED(results_style, ATTEST_RESULTS_STYLE);
 ATTEST_EMBED(page_script, ATTEST_PAGE_SCRIPT);
 ATTEST_EMBED(details_script, ATTEST_DETAILS_SCRIPT);
 ATTEST_EMBED(plots_script, ATTEST_PLOTS_SCRIPT);
-ATTEST_EMBED(flight_template, ATTEST_FLIGHT_TEMPLATE);
-ATTEST_EMBED(flight_script, ATTEST_FLIGHT_SCRIPT);
+ATTEST_EMBED(shared_script, ATTEST_SHARED_SCRIPT);
+ATTEST_EMBED(plot_page_template, ATTEST_PLOT_PAGE_TEMPLATE);
+ATTEST_EMBED(plot_page_script, ATTEST_PLOT_PAGE_SCRIPT);
+ATTEST_EMBED(replay_script, ATTEST_REPLAY_SCRIPT);
 ATTEST_EMBED(dygraphs_script, ATTEST_DYGRAPHS_SCRIPT);
 ATTEST_EMBED(dygraphs_style, ATTEST_DYGRAPHS_STYLE);
 ATTEST_EMBED(dygraphs_synchronizer, ATTEST_DYGRAPHS_SYNCHRONIZER);
@@ -52,8 +54,10 @@ std::string_view results_style() { return ATTEST_EMBEDDED(results_style); }
 std::string_view page_script() { return ATTEST_EMBEDDED(page_script); }
 std::string_view details_script() { return ATTEST_EMBEDDED(details_script); }
 std::string_view plots_script() { return ATTEST_EMBEDDED(plots_script); }
-std::string_view flight_template() { return ATTEST_EMBEDDED(flight_template); }
-std::string_view flight_script() { return ATTEST_EMBEDDED(flight_script); }
+std::string_view shared_script() { return ATTEST_EMBEDDED(shared_script); }
+std::string_view plot_page_template() { return ATTEST_EMBEDDED(plot_page_template); }
+std::string_view plot_page_script() { return ATTEST_EMBEDDED(plot_page_script); }
+std::string_view replay_script() { return ATTEST_EMBEDDED(replay_script); }
 std::string_view dygraphs_script() { return without_source_map(ATTEST_EMBEDDED(dygraphs_script)); }
 std::string_view dygraphs_style() { return without_source_map(ATTEST_EMBEDDED(dygraphs_style)); }
 std::string_view dygraphs_synchronizer() { return ATTEST_EMBEDDED(dygraphs_synchronizer); }

@@ -1,48 +1,85 @@
 #include "harness/report/html/flight_page.hpp"
 
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "harness/report/failure_text.hpp"
-#include "harness/report/html/embedded.hpp"
 #include "harness/report/html/flight_plots.hpp"
-#include "harness/report/html/page_parts.hpp"
-#include "harness/report/text.hpp"
+#include "harness/report/html/plot_page.hpp"
 
 namespace attest {
 namespace {
 
-data metric_to_data(const MetricResult& metric) {
-  data out;
-  set_text(out, "name", one_line(metric.name));
-  set_text(out, "measure", name_of(metric.measure));
-  set_text(out, "value", fmt::format("{:.4g}", metric.value));
-  set_text(out, "bounds", metric_bounds(metric));
-  const Verdict verdict = metric.within() ? Verdict::pass : Verdict::fail;
-  set_text(out, "class", fmt::format("is-{}", name_of(verdict)));
-  set_text(out, "word",
-           fmt::format("{} {}", symbol_of(verdict), metric.within() ? "within" : "missed"));
-  return out;
+std::string plant_of(const SimulatedFlight& flight) {
+  const auto& configuration = flight.result.plant_configuration;
+  return configuration ? std::string(name_of(configuration->plant)) : "";
+}
+
+// The port of one flight may fail before there are metrics, so the rows are those of the flight
+// that has most.
+PageTable metrics_table(const std::vector<SimulatedFlight>& flights) {
+  const auto most = std::max_element(flights.begin(), flights.end(),
+                                     [](const SimulatedFlight& a, const SimulatedFlight& b) {
+                                       return a.result.metrics.size() < b.result.metrics.size();
+                                     });
+  PageTable table{"Metrics of the flight", {"metric"}};
+  for (const SimulatedFlight& flight : flights) {
+    table.header.push_back(flights.size() > 1 ? plant_of(flight) : "value");
+  }
+  table.header.push_back("bounds");
+  for (std::size_t i = 0; i < most->result.metrics.size(); ++i) {
+    const MetricResult& metric = most->result.metrics[i];
+    std::vector<PageCell> row = {{metric.name, std::nullopt, std::string(name_of(metric.measure))}};
+    bool all_within = true;
+    for (const SimulatedFlight& flight : flights) {
+      const auto& metrics = flight.result.metrics;
+      const bool is_known = i < metrics.size();
+      row.push_back(is_known ? fmt::format("{:.4g}", metrics[i].value) : "-");
+      all_within = all_within && is_known && metrics[i].within();
+    }
+    row.push_back({all_within ? "within" : "missed", all_within ? Verdict::pass : Verdict::fail,
+                   metric_bounds(metric)});
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+PageConclusion conclusion_of(const std::vector<SimulatedFlight>& flights, const PortSays& port) {
+  const auto failed = std::find_if(
+      flights.begin(), flights.end(),
+      [](const SimulatedFlight& flight) { return flight.result.verdict != Verdict::pass; });
+  const CaseResult& result = (failed == flights.end() ? flights.front() : *failed).result;
+  std::string title = flights.front().result.id();
+  for (std::size_t i = 1; i < flights.size(); ++i) title += " and on " + plant_of(flights[i]);
+  return {result.verdict, std::string(name_of(result.verdict)), std::move(title),
+          fmt::format("{} {}, {} ticks", port.name, port.version, flights.front().result.ticks)};
 }
 
 }  // namespace
 
-std::string flight_page(const SimulatedFlight& flight, const PortSays& port) {
-  const CaseResult& result = flight.result;
-  const bool passed = result.verdict == Verdict::pass;
-  data page;
-  add_files(page, {{"plots_script", plots_script()}, {"flight_script", flight_script()}});
-  set_text(page, "conclusion", passed ? "PASS" : "FAIL");
-  set_text(page, "conclusion_symbol", symbol_of(result.verdict));
-  set_text(page, "verdict", name_of(result.verdict));
-  set_text(page, "id", one_line(result.id()));
-  set_text(page, "port_name", one_line(port.name));
-  set_text(page, "port_version", one_line(port.version));
-  set_text(page, "ticks", fmt::to_string(result.ticks));
-  set_text(page, "reason", one_line(result.reason));
-  page.set("metrics", list_of(result.metrics, metric_to_data));
-  if (!flight.flown.samples.empty()) set_text(page, "flight", flight_plots_json(flight.flown));
-  kainjow::mustache::mustache page_of{std::string(flight_template())};
-  return page_of.render(page);
+std::string flight_page(const std::vector<SimulatedFlight>& flights, const PortSays& port) {
+  PlotPage page;
+  page.conclusion = conclusion_of(flights, port);
+  page.tables = {metrics_table(flights)};
+  if (page.tables.front().rows.empty()) page.tables.clear();
+  std::vector<NamedFlight> flown;
+  for (const SimulatedFlight& flight : flights) {
+    const std::string plant = flights.size() > 1 ? plant_of(flight) : "";
+    const std::string& reason = flight.result.reason;
+    if (!reason.empty()) {
+      page.notes.push_back({plant.empty() ? reason : fmt::format("{}: {}", plant, reason), true});
+    }
+    if (!flight.flown.samples.empty()) flown.push_back({plant, &flight.flown});
+  }
+  if (!flown.empty()) {
+    page.groups = {flight_plots(flown)};
+    page.replay = replay_of(flown);
+  }
+  return plot_page(page);
 }
 
 }  // namespace attest

@@ -1,15 +1,16 @@
-// The page of `attest sim --html`: one flight with its metrics, plots and a replay of the attitude.
+// The page of `attest sim --html`: a flight with its metrics, plots and a replay of the attitude.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "harness/host/port_says.hpp"
 #include "harness/measure/simulate.hpp"
 
 namespace attest {
 
-// As html_report(): one file without network, text of the port is escaped. Without a tick the page
-// has no plots.
-std::string flight_page(const SimulatedFlight& flight, const PortSays& port);
+// Several flights are those of one case on several plants: they are in the same plots, with the
+// names of the plants. A flight without a tick has no plots. REQUIRES: at least one flight.
+std::string flight_page(const std::vector<SimulatedFlight>& flights, const PortSays& port);
 
 }  // namespace attest

@@ -4,30 +4,17 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <numbers>
-#include <span>
 #include <string_view>
-#include <vector>
+#include <utility>
 
-#include <nlohmann/json.hpp>
-
-#include "harness/report/html/base64.hpp"
-#include "harness/report/html/curves.hpp"
-#include "harness/report/html/script_json.hpp"
 #include "harness/trace/plant_columns.hpp"
 
 namespace attest {
 namespace {
 
-using nlohmann::json;
-
-constexpr std::size_t most_flight_points = 2000;  // of a plot
-constexpr std::size_t most_frames = 2000;         // of the replay
-
-struct Series {
-  std::string name;
-  std::vector<float> values;
-};
+constexpr std::size_t most_frames = 2000;  // of the replay
 
 // The column of that name: a channel, or one of the plant.
 std::vector<float> column(const Trace& flown, std::string_view name) {
@@ -44,8 +31,6 @@ std::vector<float> column(const Trace& flown, std::string_view name) {
   for (const PlantSample& sample : flown.plant) values.push_back(found->value(sample));
   return values;
 }
-
-using Quaternions = std::array<std::vector<float>, 4>;
 
 Quaternions quaternions(const Trace& flown, const std::string& name) {
   Quaternions out;
@@ -65,56 +50,61 @@ std::array<float, 3> euler_deg(float w, float x, float y, float z) {
           degrees * std::atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))};
 }
 
-std::vector<Series> angles(const Quaternions& q, const std::string& of) {
-  std::vector<Series> series = {{of + "roll", {}}, {of + "pitch", {}}, {of + "yaw", {}}};
+using Columns = std::vector<std::pair<std::string, std::vector<float>>>;
+
+Columns angles(const Trace& flown, const std::string& column_name, const std::string& of) {
+  const Quaternions q = quaternions(flown, column_name);
+  Columns columns = {{of + "roll", {}}, {of + "pitch", {}}, {of + "yaw", {}}};
   for (std::size_t tick = 0; tick < q[0].size(); ++tick) {
     const auto angles_deg = euler_deg(q[0][tick], q[1][tick], q[2][tick], q[3][tick]);
-    for (std::size_t i = 0; i < 3; ++i) series[i].values.push_back(angles_deg[i]);
+    for (std::size_t i = 0; i < 3; ++i) columns[i].second.push_back(angles_deg[i]);
   }
-  return series;
+  return columns;
 }
 
-std::vector<float> seconds(const Trace& flown, const std::vector<std::size_t>& ticks) {
-  std::vector<float> out;
-  for (const std::size_t tick : ticks) {
-    const std::uint64_t elapsed_us =
-        flown.samples[tick].in.timestamp - flown.samples.front().in.timestamp;
-    out.push_back(static_cast<float>(1e-6 * static_cast<double>(elapsed_us)));
-  }
-  return out;
+Columns columns_of(const Trace& flown, const std::vector<std::string>& names) {
+  Columns columns;
+  for (const std::string& name : names) columns.emplace_back(name, column(flown, name));
+  return columns;
 }
 
-std::string at(const std::vector<float>& values, const std::vector<std::size_t>& ticks) {
-  std::vector<float> out;
-  for (const std::size_t tick : ticks) out.push_back(values[tick]);
-  return base64(out);
-}
-
-json plot(const Trace& flown, const char* title, const char* unit,
-          const std::vector<Series>& series) {
-  std::vector<std::vector<float>> values;
-  for (const Series& one : series) values.push_back(one.values);
-  const std::vector<std::size_t> ticks = extreme_ticks(values, most_flight_points);
-  json out = {{"title", title},
-              {"unit", unit},
-              {"tick", base64(std::vector<float>(ticks.begin(), ticks.end()))},
-              {"time", base64(seconds(flown, ticks))},
-              {"series", json::array()}};
-  for (const Series& one : series) {
-    out["series"].push_back({{"name", one.name}, {"values", at(one.values, ticks)}});
+std::vector<double> seconds(const Trace& flown) {
+  std::vector<double> out;
+  for (const Sample& sample : flown.samples) {
+    const std::uint64_t elapsed_us = sample.in.timestamp - flown.samples.front().in.timestamp;
+    out.push_back(1e-6 * static_cast<double>(elapsed_us));
   }
   return out;
 }
 
-json plot_of_columns(const Trace& flown, const char* title, const char* unit,
-                     const std::vector<std::string>& names) {
-  std::vector<Series> series;
-  for (const std::string& name : names) series.push_back({name, column(flown, name)});
-  return plot(flown, title, unit, series);
+// The signals of each flight; the setpoints that they should follow, of the first flight only.
+using ColumnsOf = std::function<Columns(const Trace&)>;
+
+Plot plot_of(const std::vector<NamedFlight>& flights, Plot plot, const ColumnsOf& signals,
+             const ColumnsOf& setpoints = {}) {
+  // Flights that agree lie on each other. A dark dotted line on a coloured one is still seen.
+  constexpr int dark = 5;
+  const auto add = [&](const NamedFlight& flight, const Columns& columns, LinePattern pattern) {
+    const std::string suffix = flight.name.empty() ? "" : " (" + flight.name + ")";
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      plot.series.push_back({columns[i].first + suffix, seconds(*flight.flown), columns[i].second,
+                             pattern, pattern == LinePattern::dotted ? dark : static_cast<int>(i)});
+    }
+  };
+  for (const NamedFlight& flight : flights) {
+    const bool is_first = &flight == &flights.front();
+    add(flight, signals(*flight.flown), is_first ? LinePattern::solid : LinePattern::dotted);
+    if (is_first && setpoints) add(flight, setpoints(*flight.flown), LinePattern::dashed);
+  }
+  return plot;
+}
+
+ColumnsOf named(std::vector<std::string> names) {
+  return [names = std::move(names)](const Trace& flown) { return columns_of(flown, names); };
 }
 
 // The columns of the motors that this vehicle has.
-std::vector<std::string> motors(const Trace& flown) {
+Columns motors(const Trace& flown) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < std::tuple_size_v<decltype(PlantSample::motor)>; ++i) {
     const bool turns = std::any_of(flown.plant.begin(), flown.plant.end(),
@@ -122,48 +112,70 @@ std::vector<std::string> motors(const Trace& flown) {
     if (turns || i == 0)
       names.push_back("plant/actuator_outputs.output[" + std::to_string(i) + "]");
   }
-  return names;
+  return columns_of(flown, names);
 }
 
-json replay(const Trace& flown, const Quaternions& attitude, const Quaternions& setpoint) {
-  std::vector<std::size_t> ticks;
-  const std::size_t size = flown.samples.size();
-  const std::size_t frames = std::min(size, most_frames);
-  for (std::size_t i = 0; i < frames; ++i) ticks.push_back(i * size / frames);
-  json out = {{"time", base64(seconds(flown, ticks))}};
-  for (std::size_t i = 0; i < attitude.size(); ++i) {
-    out["attitude"].push_back(at(attitude[i], ticks));
-    out["setpoint"].push_back(at(setpoint[i], ticks));
-  }
+std::vector<float> at(const std::vector<float>& values, const std::vector<std::size_t>& ticks) {
+  std::vector<float> out;
+  for (const std::size_t tick : ticks) out.push_back(values[tick]);
   return out;
+}
+
+ReplayVehicle replay_of(const NamedFlight& flight) {
+  const Trace& flown = *flight.flown;
+  const std::size_t size = flown.samples.size(), frames = std::min(size, most_frames);
+  std::vector<std::size_t> ticks;
+  for (std::size_t i = 0; i < frames; ++i) ticks.push_back(i * size / frames);
+  const Quaternions attitude = quaternions(flown, "plant/vehicle_attitude.q");
+  const Quaternions setpoint = quaternions(flown, "in/vehicle_attitude_setpoint.q_d");
+  const std::vector<double> times = seconds(flown);
+  ReplayVehicle vehicle;
+  vehicle.name = flight.name;
+  vehicle.times = at({times.begin(), times.end()}, ticks);
+  for (std::size_t i = 0; i < attitude.size(); ++i) {
+    vehicle.attitude[i] = at(attitude[i], ticks);
+    vehicle.setpoint[i] = at(setpoint[i], ticks);
+  }
+  return vehicle;
 }
 
 }  // namespace
 
-std::string flight_plots_json(const Trace& flown) {
-  const Quaternions attitude = quaternions(flown, "plant/vehicle_attitude.q");
-  const Quaternions setpoint = quaternions(flown, "in/vehicle_attitude_setpoint.q_d");
-  std::vector<Series> all_angles = angles(attitude, "");
-  for (Series& one : angles(setpoint, "setpoint ")) all_angles.push_back(std::move(one));
-  const json plots = {
-      plot(flown, "Attitude", "deg", all_angles),
-      plot_of_columns(flown, "Body rates", "rad/s",
-                      {"plant/vehicle_attitude.rollspeed", "plant/vehicle_attitude.pitchspeed",
-                       "plant/vehicle_attitude.yawspeed", "out/vehicle_rates_setpoint.roll",
-                       "out/vehicle_rates_setpoint.pitch", "out/vehicle_rates_setpoint.yaw"}),
-      plot_of_columns(flown, "Controls", "",
-                      {"out/actuator_controls_0.control[0]", "out/actuator_controls_0.control[1]",
-                       "out/actuator_controls_0.control[2]", "out/actuator_controls_0.control[3]"}),
-      plot_of_columns(
-          flown, "Integrals", "",
-          {"out/mc_att_ctrl_status.roll_rate_integ", "out/mc_att_ctrl_status.pitch_rate_integ",
-           "out/mc_att_ctrl_status.yaw_rate_integ"}),
-      plot_of_columns(flown, "Motor commands", "", motors(flown)),
-      plot_of_columns(flown, "Saturation of the mixer", "", {"plant/mixer.saturated"}),
-      plot_of_columns(flown, "Position", "m",
-                      {"plant/vehicle_local_position.x", "plant/vehicle_local_position.y",
-                       "plant/vehicle_local_position.z"})};
-  return script_json({{"plots", plots}, {"replay", replay(flown, attitude, setpoint)}});
+PlotGroup flight_plots(const std::vector<NamedFlight>& flights) {
+  const auto attitude = [](const Trace& flown) {
+    return angles(flown, "plant/vehicle_attitude.q", "");
+  };
+  const auto attitude_setpoint = [](const Trace& flown) {
+    return angles(flown, "in/vehicle_attitude_setpoint.q_d", "setpoint ");
+  };
+  PlotGroup group{"", "time from the first tick [s]", {}};
+  group.plots = {
+      plot_of(flights, {"Attitude", "deg"}, attitude, attitude_setpoint),
+      plot_of(flights, {"Body rates", "rad/s"},
+              named({"plant/vehicle_attitude.rollspeed", "plant/vehicle_attitude.pitchspeed",
+                     "plant/vehicle_attitude.yawspeed"}),
+              named({"out/vehicle_rates_setpoint.roll", "out/vehicle_rates_setpoint.pitch",
+                     "out/vehicle_rates_setpoint.yaw"})),
+      plot_of(flights, {"Controls"},
+              named({"out/actuator_controls_0.control[0]", "out/actuator_controls_0.control[1]",
+                     "out/actuator_controls_0.control[2]", "out/actuator_controls_0.control[3]"})),
+      plot_of(flights, {"Integrals"},
+              named({"out/mc_att_ctrl_status.roll_rate_integ",
+                     "out/mc_att_ctrl_status.pitch_rate_integ",
+                     "out/mc_att_ctrl_status.yaw_rate_integ"})),
+      plot_of(flights, {"Motor commands"}, motors),
+      plot_of(flights, {"Saturation of the mixer"}, named({"plant/mixer.saturated"})),
+      plot_of(flights, {"Position", "m"},
+              named({"plant/vehicle_local_position.x", "plant/vehicle_local_position.y",
+                     "plant/vehicle_local_position.z"}))};
+  group.plots[5].shape = PlotShape::steps;
+  return group;
+}
+
+std::vector<ReplayVehicle> replay_of(const std::vector<NamedFlight>& flights) {
+  std::vector<ReplayVehicle> vehicles;
+  for (const NamedFlight& flight : flights) vehicles.push_back(replay_of(flight));
+  return vehicles;
 }
 
 }  // namespace attest

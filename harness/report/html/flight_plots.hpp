@@ -1,21 +1,26 @@
-// The plots of one flight as JSON, for the script of its page.
+// The plots and the replay of flights, for their page.
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "harness/report/html/plot_page.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace attest {
 
-// Signals have the names of their columns in the flown trace:
-//
-//     {"plots": [{"title": "Body rates", "unit": "rad/s", "tick": "...", "time": "...",
-//                 "series": [{"name": "plant/vehicle_attitude.rollspeed", "values": "..."}]}],
-//      "replay": {"time": "...", "attitude": ["...", "...", "...", "..."], "setpoint": [...]}}
-//
-// The texts "..." are base64 of float32; time is in seconds from the first tick. A plot has the
-// ticks of extreme_ticks(). The replay has the quaternions of evenly spaced ticks. `<` is escaped.
 // REQUIRES: a flown trace with at least one tick.
-std::string flight_plots_json(const Trace& flown);
+struct NamedFlight {
+  std::string name;  // of the plant; may be empty if it is the only flight
+  const Trace* flown;
+};
+
+// Attitude, body rates, controls, integrals, motors, saturation and position over the time since
+// the first tick. The signals of all flights are in the same plots, with the names of their columns
+// in the trace; setpoints are those of the first flight. REQUIRES: at least one flight.
+PlotGroup flight_plots(const std::vector<NamedFlight>& flights);
+
+// At most 2000 evenly spaced ticks of each flight.
+std::vector<ReplayVehicle> replay_of(const std::vector<NamedFlight>& flights);
 
 }  // namespace attest

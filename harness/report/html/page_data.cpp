@@ -232,6 +232,7 @@ void add_failure(const CaseResult& result, const RunResult& run, data& row) {
     set_text(failure, "got", value_text(channel, first.got));
     set_text(failure, "want", value_text(channel, first.want));
     set_text(failure, "distance", distance_text(first, run.level));
+    set_text(failure, "worst", worst_text(result));
     set_text(failure, "deviating", fmt::to_string(result.deviating_ticks));
   }
   set_text(failure, "reproduce", reproduce_command(result, run));

@@ -62,7 +62,8 @@ void add_files(data& page, const std::vector<std::pair<const char*, std::string_
   std::vector<std::pair<const char*, std::string_view>> all = {
       {"boot", boot_script},
       {"dygraphs", dygraphs_script()},
-      {"synchronizer", dygraphs_synchronizer()}};
+      {"synchronizer", dygraphs_synchronizer()},
+      {"shared_script", shared_script()}};
   all.insert(all.end(), scripts.begin(), scripts.end());
   std::vector<std::string> hashes;
   for (const auto& [name, script] : all) {

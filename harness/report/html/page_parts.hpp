@@ -28,8 +28,8 @@ data list_of(const Items& items, ToData to_data) {
 
 std::string_view symbol_of(Verdict verdict);  // one character
 
-// Adds the styles, dygraphs and these scripts, by the names in the template, and the hashes of all
-// scripts for the content security policy.
+// Adds the styles, dygraphs, the shared script and these scripts, by the names in the template, and
+// the hashes of all scripts for the content security policy.
 void add_files(data& page, const std::vector<std::pair<const char*, std::string_view>>& scripts);
 
 }  // namespace attest

@@ -1,10 +1,7 @@
-// The plots of a vector's signals. Other scripts of the page use the object `attest`.
+// The plots of a vector's signals.
 'use strict';
-const attest = {};
-
 (() => {
-  const styles = () => getComputedStyle(document.documentElement);
-  const colour = (name) => styles().getPropertyValue(`--${name}`).trim();
+  const {element, floats, colour, nearest, shown, styledAxes, onColoursChanged} = attest;
 
   let allPlots = null; // by the ids of vectors
   attest.plotsOf = (id) => {
@@ -13,24 +10,6 @@ const attest = {};
   };
   attest.plottedVectors = () => (attest.plotsOf(''), Object.keys(allPlots));
 
-  // Texts become text nodes, so a text of a port is never read as HTML.
-  attest.element = (tag, properties = {}, ...children) => {
-    const made = document.createElement(tag);
-    for (const [name, value] of Object.entries(properties)) {
-      if (name.startsWith('aria-') || name === 'role') made.setAttribute(name, value);
-      else made[name] = value;
-    }
-    made.append(...children.filter((child) => child !== null));
-    return made;
-  };
-  const element = attest.element;
-
-  const floats = (text) => {
-    const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
-    const view = new DataView(bytes.buffer);
-    return Array.from({length: bytes.length / 4}, (_, i) => view.getFloat32(4 * i, true));
-  };
-
   const decoded = (signal) => {
     const curves = {};
     for (const name of ['tick', 'time', 'got', 'want']) curves[name] = floats(signal[name]);
@@ -38,12 +17,6 @@ const attest = {};
     else if (typeof signal.allowed === 'number')
       curves.allowed = curves.tick.map(() => signal.allowed);
     return curves;
-  };
-
-  const shown = (value) => {
-    if (value === null || value === undefined) return '';
-    if (!Number.isFinite(value)) return String(value).replace('Infinity', 'inf').toLowerCase();
-    return Number(value.toPrecision(8)).toString();
   };
 
   // dygraphs leaves gaps where a value is NaN. Infinity would spoil the axis.
@@ -76,21 +49,6 @@ const attest = {};
       if (isHole) context.fillText('\u00d7', plot.toDomXCoord(curves.time[i]) - 4, area.y + 11);
     });
   };
-
-  const styledAxes = () => ({
-    legend: 'never',
-    gridLineColor: colour('line'),
-    axisLineColor: colour('line'),
-    axisLabelWidth: 62,
-    xRangePad: 4,
-    yRangePad: 6,
-    labelsKMB: false,
-    digitsAfterDecimal: 6,
-    axes: {
-      x: {axisLabelFormatter: (t) => shown(t), pixelsPerLabel: 70},
-      y: {axisLabelFormatter: (v) => shown(v), pixelsPerLabel: 22},
-    },
-  });
 
   const commonOptions = (curves, marked) => ({
     ...styledAxes(),
@@ -154,18 +112,6 @@ const attest = {};
     return parts;
   };
 
-  // Plots of the same vector may be drawn at different ticks.
-  const nearest = (times, time) => {
-    let low = 0,
-      high = times.length - 1;
-    while (high - low > 1) {
-      const middle = (low + high) >> 1;
-      if (times[middle] <= time) low = middle;
-      else high = middle;
-    }
-    return times[high] - time < time - times[low] ? high : low;
-  };
-
   const addSignal = (place, signal, ticks, marked) => {
     const curves = decoded(signal);
     const line = element('p', {className: 'reading'});
@@ -213,11 +159,10 @@ const attest = {};
   };
 
   let drawnPlots = [];
-  let redraw = () => {};
   const removePlots = () => {
     for (const plot of drawnPlots) plot.destroy();
     drawnPlots = [];
-    redraw = () => {};
+    onColoursChanged(() => {});
   };
 
   const synchronise = (signals) => {
@@ -301,23 +246,8 @@ const attest = {};
         )
       );
     }
-    redraw = () => addPlots(place, row, plotted);
+    onColoursChanged(() => addPlots(place, row, plotted));
   };
 
-  // `draw` draws all plots anew in other colours.
-  const onColoursChanged = (draw) => {
-    redraw = draw;
-  };
-  const shared = {floats, colour, nearest, shown, styledAxes, onColoursChanged};
-  Object.assign(attest, shared, {addPlots, removePlots});
-
-  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => redraw());
-  addEventListener('beforeprint', () => {
-    document.documentElement.classList.add('printing');
-    redraw();
-  });
-  addEventListener('afterprint', () => {
-    document.documentElement.classList.remove('printing');
-    redraw();
-  });
+  Object.assign(attest, {addPlots, removePlots});
 })();

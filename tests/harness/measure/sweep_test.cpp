@@ -114,6 +114,19 @@ TEST_F(Sweep, TheLowestRateIsTheLastThatHolds) {
   }
 }
 
+TEST_F(Sweep, EachFlightOfTheSearchIsKeptWithItsMetrics) {
+  holds_if([](const FlightPlan& plan) { return hertz_of(plan) >= 137; });
+  const auto found = run(0);
+  ASSERT_TRUE(found) << found.error().to_string();
+  ASSERT_EQ(found->trials.size(), plans_.size());
+  for (std::size_t i = 0; i < plans_.size(); ++i) {
+    const SweepTrial& trial = found->trials[i];
+    EXPECT_EQ(trial.rate_hz, hertz_of(plans_[i]));
+    EXPECT_EQ(trial.holds, trial.rate_hz >= 137);
+    EXPECT_EQ(trial.values, std::vector<double>{trial.holds ? 0.0 : 2.0});
+  }
+}
+
 TEST_F(Sweep, TheLargestDelayIsTheLastThatHolds) {
   for (const std::int64_t largest_us : {0, 100, 1900, 2000, 2100, 7300}) {
     holds_if([&](const FlightPlan& plan) { return delay_of(plan) <= us(largest_us); });
@@ -290,6 +303,7 @@ TEST(SweepCodec, AResultIsReadAsItWasWritten) {
   rate.result.verdict = Verdict::crash;
   rate.result.reason = "it went wrong";
   rate.lowest_rate_hz = -1;
+  rate.trials = {{333, 0.1, {0.25, unbounded}, false}, {20, 0, {}, false}};
   delay.largest_delay_ms = 7.3;
   using SweepCodec = Codec<SweepResult>;
   const auto rate_read = SweepCodec::decode(SweepCodec::encode(rate));
@@ -298,6 +312,12 @@ TEST(SweepCodec, AResultIsReadAsItWasWritten) {
   EXPECT_EQ(rate_read->result.reason, "it went wrong");
   EXPECT_EQ(rate_read->lowest_rate_hz, -1);
   EXPECT_FALSE(rate_read->largest_delay_ms);
+  ASSERT_EQ(rate_read->trials.size(), 2u);
+  EXPECT_EQ(rate_read->trials[0].rate_hz, 333);
+  EXPECT_EQ(rate_read->trials[0].delay_ms, 0.1);
+  EXPECT_EQ(rate_read->trials[0].values, rate.trials[0].values);
+  EXPECT_FALSE(rate_read->trials[0].holds);
+  EXPECT_TRUE(rate_read->trials[1].values.empty());
   const auto delay_read = SweepCodec::decode(SweepCodec::encode(delay));
   ASSERT_TRUE(delay_read) << delay_read.error().to_string();
   EXPECT_EQ(delay_read->result.id(), delay.result.id());

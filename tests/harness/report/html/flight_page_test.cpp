@@ -1,19 +1,18 @@
 #include "harness/report/html/flight_page.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
-#include "harness/report/html/base64.hpp"
 #include "harness/report/html/flight_plots.hpp"
 #include "tests/harness/report/sample_run.hpp"
 
 namespace attest {
 namespace {
 
+using testing::ElementsAre;
+using testing::FloatNear;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -32,41 +31,53 @@ Trace two_ticks() {
   return trace;
 }
 
-nlohmann::json plot(const std::string& title) {
-  const auto flight = nlohmann::json::parse(flight_plots_json(two_ticks()));
-  for (const auto& one : flight.at("plots")) {
-    if (one.at("title") == title) return one;
+// The plot of that title, of one flight, or of the same flight on two plants.
+Plot plot(const std::string& title, bool two_plants = false) {
+  const Trace flown = two_ticks();
+  const auto flights = two_plants ? std::vector<NamedFlight>{{"mujoco", &flown}, {"ode", &flown}}
+                                  : std::vector<NamedFlight>{{"", &flown}};
+  for (const Plot& one : flight_plots(flights).plots) {
+    if (one.title == title) return one;
   }
   return {};
 }
 
 TEST(FlightPlots, TheAttitudeIsInDegrees) {
-  const auto attitude = plot("Attitude");
-  ASSERT_EQ(attitude.at("series").size(), 6u);
-  EXPECT_EQ(attitude.at("unit"), "deg");
-  EXPECT_EQ(attitude.at("series")[0].at("name"), "roll");
-  const float right_angle =
-      180 / std::numbers::pi_v<float> * std::atan2(1.0f, 1 - 2 * std::sqrt(0.5f) * std::sqrt(0.5f));
-  EXPECT_NEAR(right_angle, 90, 1e-4);
-  EXPECT_EQ(attitude.at("series")[0].at("values"), base64(std::vector<float>{0, right_angle}));
-  EXPECT_EQ(attitude.at("series")[2].at("values"), base64(std::vector<float>{0, 0}));
+  const Plot attitude = plot("Attitude");
+  ASSERT_EQ(attitude.series.size(), 6u);
+  EXPECT_EQ(attitude.unit, "deg");
+  EXPECT_EQ(attitude.series[0].name, "roll");
+  EXPECT_THAT(attitude.series[0].y, ElementsAre(0, FloatNear(90, 1e-4f)));
+  EXPECT_THAT(attitude.series[2].y, ElementsAre(0, 0));
 }
 
 TEST(FlightPlots, SignalsHaveTheNamesOfTheTrace) {
-  const auto integrals = plot("Integrals");
-  EXPECT_EQ(integrals.at("series")[0].at("name"), "out/mc_att_ctrl_status.roll_rate_integ");
-  EXPECT_EQ(integrals.at("series")[0].at("values"), base64(std::vector<float>{0, 0.25f}));
-  EXPECT_EQ(integrals.at("time"), base64(std::vector<float>{0, 0.004f}));
+  const Plot integrals = plot("Integrals");
+  EXPECT_EQ(integrals.series[0].name, "out/mc_att_ctrl_status.roll_rate_integ");
+  EXPECT_THAT(integrals.series[0].y, ElementsAre(0, 0.25f));
+  EXPECT_THAT(integrals.series[0].x, ElementsAre(0, 0.004));
 }
 
 TEST(FlightPlots, OnlyMotorsOfTheVehicleArePlotted) {
-  EXPECT_EQ(plot("Motor commands").at("series").size(), 3u);
+  EXPECT_EQ(plot("Motor commands").series.size(), 3u);
+}
+
+TEST(FlightPlots, TwoPlantsAreInOnePlotWithOneSetpoint) {
+  const Plot attitude = plot("Attitude", true);
+  ASSERT_EQ(attitude.series.size(), 9u);
+  EXPECT_EQ(attitude.series[0].name, "roll (mujoco)");
+  EXPECT_EQ(attitude.series[3].name, "setpoint roll (mujoco)");
+  EXPECT_EQ(attitude.series[6].name, "roll (ode)");
+  EXPECT_NE(attitude.series[6].colour, attitude.series[0].colour);
+  EXPECT_NE(attitude.series[6].pattern, attitude.series[0].pattern);
 }
 
 TEST(FlightPlots, TheReplayHasTheQuaternions) {
-  const auto replay = nlohmann::json::parse(flight_plots_json(two_ticks())).at("replay");
-  EXPECT_EQ(replay.at("attitude").size(), 4u);
-  EXPECT_EQ(replay.at("attitude")[1], base64(std::vector<float>{0, std::sqrt(0.5f)}));
+  const Trace flown = two_ticks();
+  const auto replay = replay_of({{"", &flown}});
+  ASSERT_EQ(replay.size(), 1u);
+  EXPECT_THAT(replay[0].times, ElementsAre(0, 0.004f));
+  EXPECT_THAT(replay[0].attitude[1], ElementsAre(0, std::sqrt(0.5f)));
 }
 
 TEST(FlightPage, HasTheVerdictAndTheMetrics) {
@@ -75,17 +86,35 @@ TEST(FlightPage, HasTheVerdictAndTheMetrics) {
   flight.result.metrics = {{"levels", Measure::settling_time_s, 3.5, 3.5, 0, 0, 2}};
   PortSays port;
   port.name = "<b>acme</b>";
-  const std::string page = flight_page(flight, port);
+  const std::string page = flight_page({flight}, port);
   EXPECT_THAT(page, HasSubstr("</span> fail</p>"));
   EXPECT_THAT(page, HasSubstr("&lt;b&gt;acme&lt;/b&gt;"));
   EXPECT_THAT(page, Not(HasSubstr("<b>acme")));
-  EXPECT_THAT(page, HasSubstr("levels<br><small>settling_time_s</small></th><td>3.5</td>"
-                              "<td>0 to 2<br><b class=\"is-fail\">\u2717 missed</b>"));
+  EXPECT_THAT(page, HasSubstr("levels<br><small>settling_time_s</small></th>"
+                              "<td class=\"number\">3.5</td>"
+                              "<td class=\" v-fail\"><b>\u2717</b> missed<br>"
+                              "<small>0 to 2</small></td>"));
+}
+
+TEST(FlightPage, TwoPlantsHaveAColumnEachAndTheWorseVerdict) {
+  SimulatedFlight mujoco{passed("flight", "hover", Rate::hz(250)), two_ticks()}, ode = mujoco;
+  mujoco.result.plant_configuration = PlantConfiguration{"iris", PlantKind::mujoco};
+  ode.result.plant_configuration = PlantConfiguration{"iris", PlantKind::ode};
+  mujoco.result.metrics = {{"levels", Measure::settling_time_s, 1.5, 1.5, 0, 0, 2}};
+  ode.result.metrics = {{"levels", Measure::settling_time_s, 3.5, 3.5, 0, 0, 2}};
+  ode.result.verdict = Verdict::fail;
+  ode.result.reason = "levels";
+  const std::string page = flight_page({mujoco, ode}, {});
+  EXPECT_THAT(page, HasSubstr("</span> fail</p>"));
+  EXPECT_THAT(page, HasSubstr("<p class=\"error\">ode: levels</p>"));
+  EXPECT_THAT(page, HasSubstr("<td class=\"number\">1.5</td><td class=\"number\">3.5</td>"
+                              "<td class=\" v-fail\">"));
+  EXPECT_THAT(page, HasSubstr("\"name\":\"roll (ode)\""));
 }
 
 TEST(FlightPage, WithoutATickHasNoPlots) {
   const SimulatedFlight crashed{passed("flight", "hover", Rate::hz(250)), {}};
-  EXPECT_THAT(flight_page(crashed, {}), HasSubstr("id=\"flight\"></script>"));
+  EXPECT_THAT(flight_page({crashed}, {}), Not(HasSubstr("id=\"plots-of-page\"")));
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ TEST(HtmlReport, NeverInterpretsTextOfThePort) {
   EXPECT_THAT(page, HasSubstr("acme &lt;fc&gt; &amp; "));
   EXPECT_THAT(page, HasSubstr("&lt;/failure&gt;]]&gt;&lt;script&gt;alert(1)&lt;/script&gt;"));
   EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
-  EXPECT_EQ(count(page, "</script>"), 7u);
+  EXPECT_EQ(count(page, "</script>"), 8u);
 }
 
 TEST(HtmlReport, NeedsNoOtherFile) {

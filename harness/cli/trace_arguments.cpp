@@ -1,0 +1,168 @@
+#include "harness/cli/trace_arguments.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "harness/cli/command.hpp"
+#include "harness/ulog/flight_log.hpp"
+
+namespace attest::cli {
+namespace {
+
+std::string assumed_by_default() {
+  std::vector<std::string_view> words;
+  for (const FlightAssumption& one : flight_assumptions()) {
+    if (one.by_default) words.push_back(one.word);
+  }
+  return fmt::format("{}", fmt::join(words, ","));
+}
+
+void add_log_options(CLI::App& command, ReplayOptions& options) {
+  std::vector<std::string> words;
+  for (const FlightAssumption& one : flight_assumptions()) words.emplace_back(one.word);
+  command
+      .add_option("--assume", options.assumed,
+                  fmt::format("What holds in a flight whose log does not have the topic, some of "
+                              "{}; default: {}",
+                              fmt::join(words, ", "), assumed_by_default()))
+      ->type_name("WORD,...")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->group(option_group::logs);
+  command
+      .add_option("--within", options.log_limits.within,
+                  "The deviation that agrees with a log, in the unit of the signal")
+      ->type_name("X")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber)
+      ->group(option_group::logs);
+  command
+      .add_option("--at-least", options.log_limits.least_part_within,
+                  "The part of a log's samples that must agree")
+      ->type_name("PART")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0))
+      ->group(option_group::logs);
+}
+
+void add_replay(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<ReplayOptions>();
+  CLI::App* command = app.add_subcommand("replay",
+                                         "Feed the inputs of recorded traces or flight logs to a "
+                                         "port and compare its outputs with the recorded ones");
+  command
+      ->add_option("files", options->files,
+                   "Traces (CSV) of a controller, a mixer or a battery estimate; logs of flights "
+                   "(.ulg), whose outputs are compared where the log has the sample that they "
+                   "answer")
+      ->type_name("FILE")
+      ->required();
+  add_port(*command, options->host.port);
+  command
+      ->add_option(
+          "--profile", options->profile,
+          "Version of the law; default: that of the provenance.toml next to the trace, else "
+          "px4-v1.5.5")
+      ->type_name("PROFILE");
+  command->add_option("--param", options->parameters, "Set a parameter from the first step on")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--level", options->level, "`exact`, `numeric` or `events`")
+      ->type_name("LEVEL")
+      ->capture_default_str();
+  command
+      ->add_option("--mixer", options->mixer,
+                   "Definition of the mixer of a mixer trace; default: that of the provenance.toml "
+                   "next to the trace, else the geometry in the file name (`4x.csv`)")
+      ->type_name("TEXT");
+  add_log_options(*command, *options);
+  add_timeout(*command, options->host.timeout_s);
+  add_examples(*command, {{"attest replay TRACE.csv --port lib:./libmine.so",
+                           "a trace recorded from the firmware, or written by `attest sim`"},
+                          {"attest replay TRACE.csv --param MC_ROLL_P=7",
+                           "with another value of a parameter"},
+                          {"attest replay FLIGHT.ulg --port lib:./libmine.so",
+                           "how well the port agrees with what flew"}});
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return replay_command(*options, globals); };
+  });
+}
+
+void add_record(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<RecordOptions>();
+  CLI::App* command = app.add_subcommand(
+      "record", "Write the trace of a port in one open-loop case: its inputs and outputs");
+  command->add_option("case", options->case_name, "The case: its name, its id or its file")
+      ->type_name("CASE")
+      ->required();
+  command->add_option("--rate", options->rate, "The loop rate [Hz]")->type_name("HZ")->required();
+  add_port(*command, options->host.port);
+  command
+      ->add_option("--out", options->out,
+                   "The trace: CSV, or a ULog of PX4 if the name ends with .ulg; `-` is stdout, "
+                   "as CSV")
+      ->type_name("F")
+      ->capture_default_str();
+  add_timeout(*command, options->host.timeout_s);
+  add_examples(*command, {{"attest record rates/p_alone --rate 250 --port lib:./libmine.so --out "
+                           "mine.csv",
+                           "for a plot, or for `attest replay` and `attest compare`"}});
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return record_command(*options, globals); };
+  });
+}
+
+void add_compare(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<CompareOptions>();
+  CLI::App* command = app.add_subcommand("compare", "Compare two traces or logs of flights");
+  command
+      ->add_option("got", options->got,
+                   "The trace to judge: CSV, or a log (.ulg). Two traces of attest are compared "
+                   "tick by tick, in their outputs; with a log, all signals at equal times")
+      ->type_name("A")
+      ->required();
+  command->add_option("want", options->want, "The trace or log to judge it by")
+      ->type_name("B")
+      ->required();
+  command->add_option("--level", options->level, "`exact`, `numeric` or `events`")
+      ->type_name("LEVEL")
+      ->capture_default_str();
+  command->add_flag("--by-time", options->by_time,
+                    "Compare all signals at equal times, as with a log; for CSV files of any "
+                    "origin with a column timestamp [us]");
+  command
+      ->add_option("--tolerance", options->others,
+                   "By time: allowed difference of signals other than the controller's outputs, "
+                   "which have that of the level")
+      ->type_name("X")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--shift", options->shift,
+                   "By time: compare A moved earlier by this time [us], or by the estimated one: "
+                   "`auto`")
+      ->type_name("US")
+      ->capture_default_str();
+  add_examples(*command, {{"attest compare flown.csv reference.csv",
+                           "is the first the same as the second, within the tolerances?"},
+                          {"attest compare flown.ulg reference.csv --tolerance 1e-3",
+                           "all signals at equal times; which of the two lags?"}});
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return compare_command(*options, globals); };
+  });
+}
+
+}  // namespace
+
+void add_trace_commands(CLI::App& app, const Globals& globals, Action& action) {
+  add_replay(app, globals, action);
+  add_record(app, globals, action);
+  add_compare(app, globals, action);
+}
+
+}  // namespace attest::cli

@@ -1,0 +1,42 @@
+// When in a flight its steps were late or long: the figures of many ticks in some hundred parts.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "harness/core/time.hpp"
+#include "harness/realtime/live_tick.hpp"
+
+namespace attest {
+
+// The ticks that were released within a part of the flight.
+struct TimelinePart {
+  Nanoseconds begin{0};
+  std::uint64_t ticks = 0;
+  Nanoseconds latency{0}, execution{0}, response{0};  // the longest
+  std::uint64_t late = 0, skipped = 0;                // as in DeadlineMisses
+  std::uint64_t overruns = 0;                         // steps above the limit
+  std::uint64_t late_starts = 0;                      // latencies above the limit
+};
+
+struct TimelineTick {
+  std::size_t number = 0;
+  LiveTick tick;
+};
+
+struct FlightTimeline {
+  std::vector<TimelinePart> parts;  // of equal duration; those without a tick are left out
+  std::vector<TimelineTick> worst;  // the eight longest responses, longest first
+};
+
+struct TimelineLimits {
+  std::optional<Nanoseconds> execution;
+  Nanoseconds latency = Nanoseconds::max();
+};
+
+// At most 400 parts from the first release to the last.
+FlightTimeline timeline_of(const std::vector<LiveTick>& ticks, const TimelineLimits& limits);
+
+}  // namespace attest

@@ -1,0 +1,151 @@
+#include "harness/report/html/plot_data.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "harness/report/html/base64.hpp"
+#include "harness/report/html/curves.hpp"
+#include "harness/report/html/script_json.hpp"
+#include "harness/report/text.hpp"
+
+namespace attest {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t most_plot_points = 2000;  // of a plot; it is about 1000 pixels wide
+
+// Everything in a plot that has the same x values, and the ticks at which it is drawn. So equal
+// signals of two traces are drawn at the same ticks, and the page has these x values once.
+struct Grid {
+  const std::vector<double>* x;
+  std::vector<std::vector<float>> values;
+  std::vector<std::size_t> ticks;
+};
+
+class Grids {
+ public:
+  // Returns the number of the grid.
+  std::size_t add(const std::vector<double>& x, const std::vector<float>& values) {
+    const auto same =
+        std::find_if(grids_.begin(), grids_.end(), [&](const Grid& grid) { return *grid.x == x; });
+    const auto number = static_cast<std::size_t>(same - grids_.begin());
+    if (same == grids_.end()) grids_.push_back({&x, {}, {}});
+    grids_[number].values.push_back(values);
+    return number;
+  }
+
+  void choose_ticks(const std::vector<PlotMark>& marks) {
+    for (Grid& grid : grids_) {
+      grid.ticks = extreme_ticks(grid.values, most_plot_points / grids_.size());
+      for (const PlotMark& mark : marks) {
+        const auto at = std::lower_bound(grid.x->begin(), grid.x->end(), mark.x);
+        keep_neighbours(static_cast<std::size_t>(at - grid.x->begin()), grid.x->size(), grid.ticks);
+      }
+    }
+  }
+
+  std::string drawn(std::size_t grid, const std::vector<float>& values) const {
+    std::vector<float> out;
+    for (const std::size_t tick : grids_[grid].ticks) out.push_back(values[tick]);
+    return base64(out);
+  }
+
+  json x_to_json() const {
+    json out = json::array();
+    for (std::size_t i = 0; i < grids_.size(); ++i) {
+      out.push_back(drawn(i, {grids_[i].x->begin(), grids_[i].x->end()}));
+    }
+    return out;
+  }
+
+ private:
+  std::vector<Grid> grids_;
+};
+
+std::string_view name_of(LinePattern pattern) {
+  constexpr std::array<std::string_view, 3> names = {"solid", "dashed", "dotted"};
+  return names[static_cast<std::size_t>(pattern)];
+}
+
+std::string_view name_of(PlotShape shape) {
+  constexpr std::array<std::string_view, 4> names = {"line", "steps", "bars", "points"};
+  return names[static_cast<std::size_t>(shape)];
+}
+
+json series_to_json(const Plot& plot, const std::vector<std::size_t>& numbers, const Grids& grids) {
+  json out = json::array();
+  for (std::size_t i = 0; i < plot.series.size(); ++i) {
+    const PlotSeries& series = plot.series[i];
+    out.push_back({{"name", one_line(series.name)},
+                   {"grid", numbers[i]},
+                   {"y", grids.drawn(numbers[i], series.y)},
+                   {"pattern", name_of(series.pattern)},
+                   {"colour", series.colour.value_or(static_cast<int>(i))}});
+  }
+  return out;
+}
+
+json plot_to_json(const Plot& plot) {
+  Grids grids;
+  std::vector<std::size_t> numbers;
+  for (const PlotSeries& series : plot.series) numbers.push_back(grids.add(series.x, series.y));
+  std::size_t of_band = 0;
+  if (plot.band) {
+    of_band = grids.add(plot.band->x, plot.band->low);
+    grids.add(plot.band->x, plot.band->high);
+  }
+  grids.choose_ticks(plot.marks);
+  json marks = json::array();
+  for (const PlotMark& mark : plot.marks) {
+    marks.push_back({{"x", mark.x}, {"text", one_line(mark.text)}});
+  }
+  json out = {{"title", one_line(plot.title)},
+              {"unit", one_line(plot.unit)},
+              {"note", one_line(plot.note)},
+              {"shape", name_of(plot.shape)},
+              {"logarithmic_x", plot.logarithmic_x},
+              {"logarithmic_y", plot.logarithmic_y},
+              {"marks", std::move(marks)},
+              {"grids", grids.x_to_json()},
+              {"series", series_to_json(plot, numbers, grids)}};
+  if (plot.band) {
+    out["band"] = {{"name", one_line(plot.band->name)},
+                   {"grid", of_band},
+                   {"low", grids.drawn(of_band, plot.band->low)},
+                   {"high", grids.drawn(of_band, plot.band->high)}};
+  }
+  return out;
+}
+
+json vehicle_to_json(const ReplayVehicle& vehicle) {
+  json out = {{"name", one_line(vehicle.name)}, {"time", base64(vehicle.times)}};
+  for (std::size_t i = 0; i < vehicle.attitude.size(); ++i) {
+    out["attitude"].push_back(base64(vehicle.attitude[i]));
+    out["setpoint"].push_back(base64(vehicle.setpoint[i]));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string plot_data_json(const PlotPage& page) {
+  json groups = json::array(), replay = json::array();
+  for (const PlotGroup& group : page.groups) {
+    json plots = json::array();
+    std::transform(group.plots.begin(), group.plots.end(), std::back_inserter(plots), plot_to_json);
+    groups.push_back({{"title", one_line(group.title)},
+                      {"x_label", one_line(group.x_label)},
+                      {"plots", std::move(plots)}});
+  }
+  std::transform(page.replay.begin(), page.replay.end(), std::back_inserter(replay),
+                 vehicle_to_json);
+  return script_json({{"groups", std::move(groups)}, {"replay", std::move(replay)}});
+}
+
+}  // namespace attest

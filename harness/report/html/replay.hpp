@@ -1,0 +1,22 @@
+// The attitudes of a flight, for the replay on its page.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace attest {
+
+// w, x, y, z over time. They rotate from the body (forward, right, down) to the world (north, east,
+// down).
+using Quaternions = std::array<std::vector<float>, 4>;
+
+// One of the vehicles of a replay. REQUIRES: all sizes are equal, and at least 1.
+struct ReplayVehicle {
+  std::string name;          // may be empty if it is the only one
+  std::vector<float> times;  // [s] from the first tick
+  Quaternions attitude;
+  Quaternions setpoint;  // zeros: no setpoint at that time
+};
+
+}  // namespace attest

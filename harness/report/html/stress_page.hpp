@@ -1,0 +1,14 @@
+// The page of `attest stress --html`.
+#pragma once
+
+#include <string>
+
+#include "harness/report/stress_text.hpp"
+
+namespace attest {
+
+// Per rate: verdict and reason, the distributions of the times with those of the idle machine, and
+// a timeline of the flight.
+std::string stress_page(const StressRun& run);
+
+}  // namespace attest
