@@ -59,6 +59,17 @@ Vector3 read_drag(const TomlTable& root) {
   return drag;
 }
 
+// Far more than any vehicle, and little enough that no moment overflows.
+constexpr double farthest_rotor_m = 100;
+
+Vector3 read_place(const TomlTable& rotor) {
+  const Vector3 place = vector_of(rotor, "position_m");
+  const bool is_near = std::all_of(place.begin(), place.end(),
+                                   [](double x) { return std::abs(x) <= farthest_rotor_m; });
+  if (!is_near) rotor.error("position_m", "must be at most 100 m from the centre of mass");
+  return place;
+}
+
 // One table per rotor: [rotors] r0 = { position_m = [x, y, z], turns = "ccw" }, ...
 std::vector<VehicleRotor> read_rotors(const TomlTable& root) {
   std::vector<VehicleRotor> rotors;
@@ -70,7 +81,7 @@ std::vector<VehicleRotor> read_rotors(const TomlTable& root) {
     if (rotor.has("turns") && turns != "ccw" && turns != "cw") {
       rotor.error("turns", "must be \"ccw\" or \"cw\", as seen from above");
     }
-    rotors.push_back({vector_of(rotor, "position_m"), turns == "cw" ? -1 : 1});
+    rotors.push_back({read_place(rotor), turns == "cw" ? -1 : 1});
   }
   if (root.has("rotors") && (rotors.size() < 3 || rotors.size() > rotors_max)) {
     root.error("rotors", fmt::format("needs r0, r1, ...: from 3 to {} rotors", rotors_max));

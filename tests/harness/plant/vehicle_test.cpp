@@ -108,6 +108,11 @@ TEST_F(VehicleFile, ARotorThatTurnsTheOtherWayIsRefused) {
   EXPECT_THAT(error("turns = \"ccw\"", "turns = \"cw\""), HasSubstr("output 0 turning the other"));
 }
 
+TEST_F(VehicleFile, ARotorIsNearTheBody) {
+  EXPECT_THAT(error("position_m = [0.", "position_m = [1e300, 0.1, 0.0], x = [0."),
+              HasSubstr("must be at most 100 m from the centre of mass"));
+}
+
 TEST_F(VehicleFile, AMixerOfAnotherVehicleIsRefused) {
   EXPECT_THAT(error("R: 4x", "R: 6x"), HasSubstr("has 6 rotors, the vehicle 4"));
 }
