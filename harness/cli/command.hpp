@@ -96,6 +96,7 @@ struct ReplayOptions {
   std::vector<std::string> parameters;
   std::vector<std::string> assumed;  // of a flight log
   LogLimits log_limits;
+  std::string html;  // a file; empty: not wanted
 };
 int replay_command(const ReplayOptions& options, const Globals& globals);
 
@@ -105,8 +106,17 @@ struct CompareOptions {
   bool by_time = false;     // of any signals, at equal times
   double others = 0;        // the tolerance of signals that the level does not know
   std::string shift = "0";  // us, or "auto"
+  std::string html;
 };
 int compare_command(const CompareOptions& options, const Globals& globals);
+
+struct PlotOptions {
+  std::vector<std::string> files;
+  std::vector<std::string> signals;  // shell patterns; empty: the controller's outputs
+  std::string html;                  // empty: the name of the first file, with .html
+  bool list = false;
+};
+int plot_command(const PlotOptions& options, const Globals& globals);
 
 struct SimOptions {
   std::string case_name;  // this and `rate`, or `timing`

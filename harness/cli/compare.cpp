@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include "harness/cli/command.hpp"
+#include "harness/cli/outputs.hpp"
 #include "harness/compare/compare_files.hpp"
 #include "harness/compare/compare_signals.hpp"
+#include "harness/core/file.hpp"
 #include "harness/report/failure_text.hpp"
+#include "harness/report/html/signals_page.hpp"
 #include "harness/report/signals_text.hpp"
 #include "harness/ulog/flight_log.hpp"
 
@@ -71,6 +74,10 @@ int compare_by_time(const CompareOptions& options, Level level, bool quiet) {
   const auto shift = shift_of(options.shift, *got, *want);
   if (!shift) return report_error(shift.error());
   const auto found = compare_signals(*got, *want, Tolerances(level), options.others, *shift);
+  if (!options.html.empty()) {
+    const auto written = write_file(options.html, comparison_page(found, *got, *want, *shift));
+    if (!written) return report_error(written.error());
+  }
   return print_by_time(options, found, *shift, quiet);
 }
 
@@ -79,9 +86,15 @@ int compare_by_time(const CompareOptions& options, Level level, bool quiet) {
 int compare_command(const CompareOptions& options, const Globals& globals) {
   const auto level = parse_level(options.level);
   if (!level) return report_error(level.error());
+  if (const auto suite = find_suite(globals.suite); suite && !options.html.empty()) {
+    const auto checked = check_outputs({options.html}, {"", {options.got, options.want}}, *suite);
+    if (!checked) return report_error(checked.error());
+  }
   if (options.by_time || is_log(options.got) || is_log(options.want)) {
     return compare_by_time(options, *level, globals.quiet);
   }
+  if (!options.html.empty())
+    return report_error({"--html is for a comparison by time; add --by-time"});
   const auto compared = compare_files(options.got, options.want, Tolerances(*level));
   if (!compared) return report_error(compared.error());
   const Comparison& comparison = *compared;

@@ -6,9 +6,13 @@
 #include <fmt/format.h>
 
 #include "harness/cli/command.hpp"
+#include "harness/cli/outputs.hpp"
+#include "harness/cli/suite_folder.hpp"
+#include "harness/core/file.hpp"
 #include "harness/core/version.hpp"
 #include "harness/golden/recorded.hpp"
 #include "harness/report/failure_text.hpp"
+#include "harness/report/html/signals_page.hpp"
 #include "harness/report/log_text.hpp"
 #include "harness/report/text.hpp"
 #include "harness/ulog/flight_log.hpp"
@@ -61,6 +65,14 @@ Result<FlightLog> log_in(const std::string& file, const ReplayOptions& options) 
   return log;
 }
 
+Result<void> check_page(const ReplayOptions& options, const Globals& globals) {
+  if (options.html.empty()) return {};
+  if (options.files.size() > 1) return fail("--html shows one trace or log; name one");
+  const auto suite = find_suite(globals.suite);
+  if (!suite) return {};
+  return check_outputs({options.html}, {options.host.port, options.files}, *suite);
+}
+
 // One line per trace, more if it differs. `judged_by`: the level, or "log".
 void print_result(const CaseResult& result, std::string_view judged_by) {
   fmt::print("{:<12}{}  {}", name_of(result.verdict), result.name, result.profile);
@@ -110,8 +122,14 @@ class Replay {
   }
 
   Result<void> judge_trace(const Trace& trace, const Subject& subject) {
-    const CaseResult result = evaluate_trace(trace, subject, *host_, Tolerances(level_));
+    Trace got;
+    const CaseResult result = evaluate_trace(trace, subject, *host_, Tolerances(level_), &got);
     count(result);
+    if (auto written =
+            write_page([&] { return trace_page(trace, got, result, options_.host.port); });
+        !written) {
+      return written;
+    }
     if (result.verdict == Verdict::pass && globals_.quiet) return {};
     print_result(result, name_of(level_));
     if (result.verdict != Verdict::pass) fmt::print("{}", finding_text(result, level_));
@@ -126,10 +144,20 @@ class Replay {
     ++logs_;
     const LogResult found = evaluate_log(*log, log->profile, *host_, options_.log_limits);
     count(found.result);
+    const auto written =
+        write_page([&] { return log_page(*log, found, options_.log_limits, options_.host.port); });
+    if (!written) return written;
     if (found.result.verdict == Verdict::pass && globals_.quiet) return {};
     print_result(found.result, "log");
     fmt::print("{}", log_text(*log, found, options_.log_limits));
     return {};
+  }
+
+  // Makes the page only if it is wanted.
+  template <typename MakePage>
+  Result<void> write_page(MakePage make_page) const {
+    if (options_.html.empty()) return {};
+    return write_file(options_.html, make_page());
   }
 
   void count(const CaseResult& result) {
@@ -153,6 +181,7 @@ class Replay {
 int replay_command(const ReplayOptions& options, const Globals& globals) {
   const auto level = parse_level(options.level);
   if (!level) return report_error(level.error());
+  if (auto checked = check_page(options, globals); !checked) return report_error(checked.error());
   const auto port = describe_port(options.host);
   if (!port) return report_error(port.error());
   std::string arithmetic;

@@ -81,6 +81,7 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
                    "next to the trace, else the geometry in the file name (`4x.csv`)")
       ->type_name("TEXT");
   add_log_options(*command, *options);
+  add_page(*command, options->html, "A page with plots of the outputs, of one trace or log");
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command, {{"attest replay TRACE.csv --port lib:./libmine.so",
                            "a trace recorded from the firmware, or written by `attest sim`"},
@@ -148,6 +149,7 @@ void add_compare(CLI::App& app, const Globals& globals, Action& action) {
                    "`auto`")
       ->type_name("US")
       ->capture_default_str();
+  add_page(*command, options->html, "By time: a page with plots of the signals that differ");
   add_examples(*command, {{"attest compare flown.csv reference.csv",
                            "is the first the same as the second, within the tolerances?"},
                           {"attest compare flown.ulg reference.csv --tolerance 1e-3",
@@ -157,12 +159,46 @@ void add_compare(CLI::App& app, const Globals& globals, Action& action) {
   });
 }
 
+void add_plot(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<PlotOptions>();
+  CLI::App* command =
+      app.add_subcommand("plot", "Plot signals of traces and logs of flights, on one page");
+  command
+      ->add_option("files", options->files,
+                   "CSV files with a column `timestamp` [us], or logs (.ulg); signals of the same "
+                   "name share a plot")
+      ->type_name("TRACE")
+      ->required();
+  command
+      ->add_option("--channels", options->signals,
+                   "Only signals whose name matches one of these shell patterns, such as "
+                   "'vehicle_rates_setpoint.*'; default: the controller's outputs, else all, up to "
+                   "100")
+      ->type_name("GLOB,...")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command->add_flag("--list", options->list, "List the signals; write nothing");
+  command
+      ->add_option("--html", options->html,
+                   "The page; it needs no network. Default: the name of the first file, with "
+                   ".html, in this folder")
+      ->type_name("F.html")
+      ->group(option_group::reports);
+  add_examples(*command, {{"attest plot flown.csv flight.ulg --channels 'control_state.*_rate'",
+                           "the rates of two flights"},
+                          {"attest plot flight.ulg --list", "the signals of a log"}});
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return plot_command(*options, globals); };
+  });
+}
+
 }  // namespace
 
 void add_trace_commands(CLI::App& app, const Globals& globals, Action& action) {
   add_replay(app, globals, action);
   add_record(app, globals, action);
   add_compare(app, globals, action);
+  add_plot(app, globals, action);
 }
 
 }  // namespace attest::cli

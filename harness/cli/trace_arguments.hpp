@@ -1,4 +1,4 @@
-// The options of the commands that read and write traces and logs: replay, record, compare.
+// The options of the commands that read and write traces and logs: replay, record, compare, plot.
 #pragma once
 
 #include "harness/cli/shared_arguments.hpp"

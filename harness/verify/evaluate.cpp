@@ -181,7 +181,7 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
 }
 
 CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHost& host,
-                          const Tolerances& tolerances) {
+                          const Tolerances& tolerances, Trace* got) {
   const Stopwatch stopwatch;
   CaseResult result = result_for(recorded, subject.profile);
   if (subject.module == Module::mc_att_control && has_other_steps(host.says(), recorded, result)) {
@@ -196,6 +196,7 @@ CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHos
     allowed.allow_lsb(*bits, recorded.samples.size());
   run_and_judge(answered, {recorded, {}}, subject, host, allowed, allowed, {}, result);
   result.elapsed_s = stopwatch.elapsed_s();
+  if (got != nullptr) *got = std::move(answered);
   return result;
 }
 

@@ -61,7 +61,7 @@ load common
   [ "$status" -eq 0 ]
   has "82 of 82 common signals agree"
   has "only in the first: 24 signals"
-  "$ATTEST" sim gust --rate 250 --port fault:yaw-dropped --out b.ulg
+  "$ATTEST" sim gust --rate 250 --port fault:quat-order-xyzw --out b.ulg || true
   run "$ATTEST" compare b.ulg a.csv
   [ "$status" -eq 1 ]
   has "differ: b.ulg (got), a.csv (want)"
@@ -97,4 +97,30 @@ load common
   run "$ATTEST" compare c.ulg a.csv
   [ "$status" -eq 2 ]
   has "c.ulg"
+}
+
+@test "compare and plot write pages, and overwrite nothing that they read" {
+  for file in a.csv a.ulg; do "$ATTEST" sim gust --rate 250 --out $file; done
+  "$ATTEST" sim gust --rate 250 --port fault:yaw-dropped --out b.ulg
+  run "$ATTEST" compare b.ulg a.csv --html c.html
+  [ "$status" -eq 1 ]
+  grep -q "common signals agree" c.html
+  run "$ATTEST" compare a.csv a.csv --html c.html
+  [ "$status" -eq 2 ]
+  has "add --by-time"
+  run "$ATTEST" plot a.csv b.ulg --channels 'control_state.*_rate,vehicle_rates_setpoint.yaw'
+  [ "$status" -eq 0 ]
+  has "a.html: 4 of "
+  grep -q "control_state.pitch_rate" a.html
+  run "$ATTEST" plot b.ulg
+  [ "$status" -eq 0 ]
+  has "b.html: 15 of 82 signals"
+  run "$ATTEST" plot b.ulg --list
+  has "control_state.q[0]"
+  run "$ATTEST" plot b.ulg --channels control_stat.roll_rate
+  [ "$status" -eq 2 ]
+  has 'did you mean `control_state.roll_rate`'
+  run "$ATTEST" plot b.ulg --html b.ulg
+  [ "$status" -eq 2 ]
+  has "would be overwritten"
 }

@@ -1,6 +1,6 @@
 load common
 
-commands=(run replay sim stress sweep-rate schedule time compare record faults list vectors bless
+commands=(run merge replay sim stress sweep-rate schedule time compare plot record faults list vectors bless
   new-port doctor smoke)
 
 @test "each command shows examples of itself, with options that it has" {

@@ -214,3 +214,21 @@ flight_log() {
   [ "$status" -eq 2 ]
   has "a.ulg"
 }
+
+@test "replay writes a page of one trace or log" {
+  log="$BATS_TEST_TMPDIR/flight.ulg"
+  flight_log "$log"
+  trace="$SOURCE"/golden/recorded/px4-v1.5.5/tracking_100hz.csv
+  run "$ATTEST" replay "$log" --html log.html
+  [ "$status" -eq 0 ]
+  grep -q "How far the port is from the log" log.html
+  run "$ATTEST" replay "$trace" --port fault:quat-order-xyzw --html trace.html
+  [ "$status" -eq 1 ]
+  grep -q "first deviation" trace.html
+  run "$ATTEST" replay "$trace" "$log" --html both.html
+  [ "$status" -eq 2 ]
+  has "--html shows one trace or log"
+  run "$ATTEST" replay "$log" --html "$log"
+  [ "$status" -eq 2 ]
+  has "would be overwritten"
+}

@@ -1,0 +1,111 @@
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include "harness/cli/command.hpp"
+#include "harness/cli/outputs.hpp"
+#include "harness/cli/suite_folder.hpp"
+#include "harness/compare/timed_signals.hpp"
+#include "harness/core/file.hpp"
+#include "harness/core/suggestion.hpp"
+#include "harness/report/html/signals_page.hpp"
+#include "harness/trace/channels.hpp"
+
+namespace attest::cli {
+namespace {
+
+constexpr std::size_t most_signals = 100;
+
+Result<std::vector<TimedSignals>> sources_of(const std::vector<std::string>& files) {
+  std::vector<TimedSignals> sources;
+  for (const std::string& file : files) {
+    auto signals = read_timed_signals(file);
+    if (!signals) return tl::unexpected(signals.error());
+    for (const std::string& note : signals->notes) {
+      fmt::print(stderr, "attest: note: {}: {}\n", file, note);
+    }
+    sources.push_back(*std::move(signals));
+  }
+  return sources;
+}
+
+std::vector<std::string> names_in(const std::vector<TimedSignals>& sources) {
+  std::set<std::string> names;
+  for (const TimedSignals& source : sources) {
+    for (const TimedSignal& signal : source.all) names.insert(signal.name);
+  }
+  return {names.begin(), names.end()};
+}
+
+// The values that the controller publishes; all signals if there are none.
+std::vector<std::string> names_by_default(const std::vector<std::string>& all) {
+  std::vector<std::string> outputs;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(outputs), [](const std::string& name) {
+    const auto channel = find_channel("out/" + name);
+    return channel && channels()[*channel].type == ChannelType::f32;
+  });
+  return outputs.empty() ? all : outputs;
+}
+
+// Errors: a pattern without a match.
+Result<std::vector<std::string>> chosen(const std::vector<std::string>& all,
+                                        const std::vector<std::string>& patterns) {
+  if (patterns.empty()) return names_by_default(all);
+  std::set<std::string> names;
+  for (const std::string& pattern : patterns) {
+    const std::size_t before = names.size();
+    for (const std::string& name : all) {
+      // A name with brackets is a pattern of another name, too.
+      if (name == pattern || ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0) names.insert(name);
+    }
+    if (names.size() == before) {
+      return fail(fmt::format("--channels: no signal matches `{}`{}; --list shows all", pattern,
+                              suggestion(pattern, all)));
+    }
+  }
+  return std::vector<std::string>(names.begin(), names.end());
+}
+
+}  // namespace
+
+int plot_command(const PlotOptions& options, const Globals& globals) {
+  const auto sources = sources_of(options.files);
+  if (!sources) return report_error(sources.error());
+  const std::vector<std::string> all = names_in(*sources);
+  if (options.list) {
+    for (const std::string& name : all) fmt::print("{}\n", name);
+    return exit_ok;
+  }
+  auto names = chosen(all, options.signals);
+  if (!names) return report_error(names.error());
+  if (names->size() > most_signals) {
+    if (!options.signals.empty()) {
+      return report_error(
+          {fmt::format("--channels: {} signals match, and a page has at most {}; "
+                       "choose fewer",
+                       names->size(), most_signals)});
+    }
+    names->resize(most_signals);
+  }
+  const std::string first = std::filesystem::path(options.files.front()).stem().string();
+  const std::string page = options.html.empty() ? first + ".html" : options.html;
+  const auto suite = find_suite(globals.suite);
+  if (suite) {
+    const auto checked = check_outputs({page}, {"", options.files}, *suite);
+    if (!checked) return report_error(checked.error());
+  }
+  if (auto written = write_file(page, signals_page(*sources, *names)); !written) {
+    return report_error(written.error());
+  }
+  if (!globals.quiet && page != "-") {
+    fmt::print("{}: {} of {} signals\n", page, names->size(), all.size());
+  }
+  return exit_ok;
+}
+
+}  // namespace attest::cli

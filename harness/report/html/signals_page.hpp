@@ -1,0 +1,33 @@
+// Pages of signals over time: `attest plot`, `compare --html` and `replay --html`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/compare/compare_signals.hpp"
+#include "harness/ulog/flight_log.hpp"
+#include "harness/verify/evaluate_log.hpp"
+
+namespace attest {
+
+// These signals of all sources, a plot for each name. Times count from the first sample of all.
+// REQUIRES: each name is in at least one source.
+std::string signals_page(const std::vector<TimedSignals>& sources,
+                         const std::vector<std::string>& names);
+
+// The comparison of two sources by time; `got` was moved earlier by `shift_us`. It plots the
+// signals that deviate, at most most_plotted_signals, with their difference.
+inline constexpr std::size_t most_plotted_signals = 24;
+std::string comparison_page(const SignalsComparison& comparison, const TimedSignals& got,
+                            const TimedSignals& want, std::int64_t shift_us);
+
+// A port against a log: the agreement of each topic, and got against logged for each output.
+std::string log_page(const FlightLog& log, const LogResult& result, const LogLimits& limits,
+                     const std::string& port);
+
+// A port against a trace of the controller: the first and the worst deviation, and got against want
+// for each output.
+std::string trace_page(const Trace& want, const Trace& got, const CaseResult& result,
+                       const std::string& port);
+
+}  // namespace attest
