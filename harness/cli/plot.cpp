@@ -47,7 +47,8 @@ std::vector<std::string> names_by_default(const std::vector<std::string>& all) {
   std::vector<std::string> outputs;
   std::copy_if(all.begin(), all.end(), std::back_inserter(outputs), [](const std::string& name) {
     const auto channel = find_channel("out/" + name);
-    return channel && channels()[*channel].type == ChannelType::f32;
+    return channel && channels()[*channel].module == Module::mc_att_control &&
+           channels()[*channel].type == ChannelType::f32;
   });
   return outputs.empty() ? all : outputs;
 }
