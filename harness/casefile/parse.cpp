@@ -26,9 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The version of the format of case files. A file with another version is for another attest.
-constexpr std::int64_t schema_version = 1;
-
 // A mixer has no clock. The firmware measures the battery 100 times a second.
 std::vector<Rate> default_rates(Module module) {
   switch (module) {

@@ -1,6 +1,7 @@
 // Reads case files. SCHEMA.md lists every key.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -9,6 +10,9 @@
 #include "harness/core/result.hpp"
 
 namespace attest {
+
+// The version of the format of case files. A file with another version is for another attest.
+inline constexpr std::int64_t schema_version = 1;
 
 // Reads cases/<profile>/<group>/<name>.toml as a case of the first of its profiles. Errors, all
 // reported together with file:line: syntax, unknown keys (with the nearest known one), values out

@@ -39,6 +39,7 @@ struct SampleAt {
   Nanoseconds time;
   const Timeline& timeline;
   const std::vector<double>& walked;
+  const std::vector<Nanoseconds>& times;
 
   double operator()(const Constant& signal) const { return signal.value; }
 
@@ -74,12 +75,11 @@ struct SampleAt {
   }
 
   double operator()(const Samples& signal) const {
-    std::size_t i = 0;
-    while (i + 1 < signal.times.size() && signal.times[i + 1].on(timeline.rate) <= time) ++i;
-    const Nanoseconds begin = signal.times[i].on(timeline.rate);
-    if (!signal.linear || i + 1 == signal.times.size() || time <= begin) return signal.values[i];
-    const double part =
-        seconds(time - begin) / seconds(signal.times[i + 1].on(timeline.rate) - begin);
+    const auto after = std::upper_bound(times.begin(), times.end(), time);
+    const auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - times.begin() - 1, 0));
+    const Nanoseconds begin = times[i];
+    if (!signal.linear || i + 1 == times.size() || time <= begin) return signal.values[i];
+    const double part = seconds(time - begin) / seconds(times[i + 1] - begin);
     return signal.values[i] + (signal.values[i + 1] - signal.values[i]) * part;
   }
 };
@@ -128,10 +128,14 @@ double Frequency::hertz_on(const Timeline& timeline) const {
 Sampler::Sampler(const Signal& signal, const Timeline& timeline)
     : signal_(signal), timeline_(timeline) {
   if (const auto* random = std::get_if<RandomWalk>(&signal_)) walk_ = walk(*random, timeline_);
+  if (const auto* samples = std::get_if<Samples>(&signal_)) {
+    times_.reserve(samples->times.size());
+    for (const Span& span : samples->times) times_.push_back(span.on(timeline_.rate));
+  }
 }
 
 double Sampler::at(Nanoseconds time) const {
-  return std::visit(SampleAt{time, timeline_, walk_}, signal_);
+  return std::visit(SampleAt{time, timeline_, walk_, times_}, signal_);
 }
 
 bool varies(const Signal& signal) { return !std::holds_alternative<Constant>(signal); }

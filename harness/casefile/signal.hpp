@@ -104,7 +104,8 @@ class Sampler {
  private:
   Signal signal_;
   Timeline timeline_;
-  std::vector<double> walk_;  // of a RandomWalk, one value per step
+  std::vector<double> walk_;        // of a RandomWalk, one value per step
+  std::vector<Nanoseconds> times_;  // of Samples
 };
 
 // The attitude with these angles [deg], in the order of the name.

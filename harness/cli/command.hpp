@@ -197,8 +197,14 @@ struct VectorOptions {
   std::string format = "csv";
   std::string fixed_step;  // as text; empty: none
   bool lint = false;
+  // A case of this log, instead of the vectors of cases. Times since its first control_state.
+  std::string from_log;
+  double from_s = 0;
+  std::optional<double> to_s;        // empty: to the end
+  std::vector<std::string> assumed;  // words of flight_assumptions()
 };
 int vectors_command(const VectorOptions& options, const Globals& globals);
+int vectors_from_log_command(const VectorOptions& options, const Globals& globals);
 int lint_command(const VectorOptions& options, const Globals& globals);
 
 struct BlessOptions {

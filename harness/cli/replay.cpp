@@ -7,6 +7,7 @@
 
 #include "harness/cli/command.hpp"
 #include "harness/cli/outputs.hpp"
+#include "harness/cli/read_log.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/version.hpp"
@@ -15,7 +16,6 @@
 #include "harness/report/html/signals_page.hpp"
 #include "harness/report/log_text.hpp"
 #include "harness/report/text.hpp"
-#include "harness/ulog/flight_log.hpp"
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/evaluate_log.hpp"
 
@@ -34,10 +34,6 @@ Result<void> set_parameters(const ReplayOptions& options, const Subject& subject
   return {};
 }
 
-void print_notes(const std::string& file, const std::vector<std::string>& notes) {
-  for (const std::string& note : notes) fmt::print(stderr, "attest: note: {}: {}\n", file, note);
-}
-
 Result<Recorded> recorded_in(const std::string& file, const ReplayOptions& options) {
   auto recorded = read_recorded(file, options.profile, options.mixer);
   if (!recorded) return recorded;
@@ -51,13 +47,8 @@ Result<Recorded> recorded_in(const std::string& file, const ReplayOptions& optio
 // With the profile to replay it with.
 Result<FlightLog> log_in(const std::string& file, const ReplayOptions& options) {
   if (!options.mixer.empty()) return fail_at(file, "is no mixer trace; leave --mixer out");
-  auto log = read_flight_log(file, options.assumed);
+  auto log = read_log(file, options.assumed, options.profile);
   if (!log) return log;
-  if (!options.profile.empty()) log->profile = options.profile;
-  if (log->profile.empty()) {
-    log->profile = default_profile;
-    log->notes.push_back(fmt::format("the profile is taken to be {} (--profile)", default_profile));
-  }
   if (auto set = set_parameters(options, {log->profile}, log->trace); !set) {
     return tl::unexpected(set.error());
   }

@@ -8,8 +8,10 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/port/port.hpp"
+#include "harness/ulog/flight_log.hpp"
 
 namespace attest::cli {
 namespace {
@@ -23,6 +25,14 @@ class PlainFlagNames final : public CLI::Formatter {
     return at == std::string::npos ? name : name.erase(at, value.size());
   }
 };
+
+std::string assumed_by_default() {
+  std::vector<std::string_view> words;
+  for (const FlightAssumption& one : flight_assumptions()) {
+    if (one.by_default) words.push_back(one.word);
+  }
+  return fmt::format("{}", fmt::join(words, ","));
+}
 
 }  // namespace
 
@@ -117,6 +127,20 @@ void add_selection(CLI::App& command, SelectionOptions& options) {
       ->group(option_group::selection);
   add("--vehicle", options.vehicles, "Only flights of this vehicle", "VEHICLE");
   add("--plant", options.plants, "Only flights on this plant: `mujoco` or `ode`", "PLANT");
+}
+
+void add_assumed(CLI::App& command, std::vector<std::string>& assumed) {
+  std::vector<std::string> words;
+  for (const FlightAssumption& one : flight_assumptions()) words.emplace_back(one.word);
+  command
+      .add_option("--assume", assumed,
+                  fmt::format("What holds in a flight whose log does not have the topic, some of "
+                              "{}; default: {}",
+                              fmt::join(words, ", "), assumed_by_default()))
+      ->type_name("WORD,...")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->group(option_group::logs);
 }
 
 }  // namespace attest::cli

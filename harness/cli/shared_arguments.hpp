@@ -47,6 +47,8 @@ void add_plant(CLI::App& command, std::string& vehicle, std::string& plant);
 // A recorded port has outputs, but no functions: only `run` can judge it.
 enum class Ports { callable, any };
 void add_port(CLI::App& command, std::string& port, Ports accepted = Ports::callable);
+// --assume: what holds where a log of a flight lacks a topic.
+void add_assumed(CLI::App& command, std::vector<std::string>& assumed);
 void add_timeout(CLI::App& command, double& timeout_s);
 // --html: the file of a page; `what` describes the page.
 void add_page(CLI::App& command, std::string& file, const char* what);

@@ -60,6 +60,32 @@ void add_list(CLI::App& app, const Globals& globals, Action& action) {
   });
 }
 
+// Options of the case that is made of a log.
+void add_from_log(CLI::App& command, VectorOptions& options) {
+  CLI::Option* const log =
+      command
+          .add_option("--from-log", options.from_log,
+                      "Write instead a case with the inputs of this flight (.ulg) to a suite of "
+                      "your own, DIR/cases/PROFILE/from_log. `attest bless` makes its golden")
+          ->type_name("FLIGHT.ulg")
+          ->group(option_group::logs);
+  const auto add_time = [&](const char* name, auto& value, const char* what) {
+    command.add_option(name, value, what)
+        ->type_name("S")
+        ->check(CLI::NonNegativeNumber)
+        ->needs(log)
+        ->group(option_group::logs);
+  };
+  add_time("--from", options.from_s, "Begin at this time after the log's first control_state [s]");
+  add_time("--to", options.to_s, "End before this time after the log's first control_state [s]");
+  add_assumed(command, options.assumed);
+  command.get_option("--assume")->needs(log);
+  for (const char* other : {"--lint", "--format", "--fixed-step", "--filter", "--exclude",
+                            "--group", "--rate", "--vehicle", "--plant"}) {
+    log->excludes(command.get_option(other));
+  }
+}
+
 void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<VectorOptions>();
   CLI::App* command = app.add_subcommand(
@@ -87,17 +113,22 @@ void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("HZ")
       ->excludes(lint);
   add_selection(*command, options->select);
+  add_from_log(*command, *options);
   add_examples(
       *command,
       {{"attest vectors DIR --group attitude --rate 250", "the inputs of some cases, a file each"},
        {"attest vectors DIR --format mat --fixed-step 250",
         "all that a Simulink model with a sample time of 4 ms can run"},
+       {"attest vectors ours --from-log flight.ulg --from 10 --to 20",
+        "a case with the inputs of ten seconds of a flight, in a suite of your own"},
        {"attest vectors --lint",
         "is a vector so near to a threshold of the law that rounding decides?"}});
   command->callback([options, &globals, &action] {
     if (!options->lint && options->folder.empty()) throw CLI::RequiredError("folder");
     action = [=, &globals] {
-      return options->lint ? lint_command(*options, globals) : vectors_command(*options, globals);
+      if (options->lint) return lint_command(*options, globals);
+      return options->from_log.empty() ? vectors_command(*options, globals)
+                                       : vectors_from_log_command(*options, globals);
     };
   });
 }

@@ -15,8 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* base_file = "BASE";
-
 bool has_cases(const fs::path& folder) {
   std::error_code ignored;
   return fs::is_directory(folder / "cases", ignored);
@@ -83,6 +81,12 @@ fs::path SuiteFolder::models() const {
   std::error_code ignored;
   const fs::path own = root / "models";
   return base && !fs::is_directory(own, ignored) ? *base / "models" : own;
+}
+
+fs::path SuiteFolder::recorded() const {
+  std::error_code ignored;
+  const fs::path own = golden() / "recorded";
+  return base && !fs::is_directory(own, ignored) ? *base / "golden" / "recorded" : own;
 }
 
 std::string SuiteFolder::version_of(const fs::path& folder) const {

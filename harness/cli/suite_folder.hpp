@@ -16,6 +16,9 @@ namespace attest::cli {
 // "profile/group" -> the number of vectors at each rate.
 using VectorsByGroup = std::map<std::string, std::map<Rate, std::size_t>>;
 
+// In the folder of a suite, names the suite whose cases it takes over.
+inline constexpr const char* base_file = "BASE";
+
 struct SuiteFolder {
   std::filesystem::path root;
   // The suite whose cases this one takes over, as the file BASE in `root` names it: `released` for
@@ -28,7 +31,8 @@ struct SuiteFolder {
   // Without a folder models of its own, a suite uses that of its base.
   std::filesystem::path models() const;
   std::filesystem::path golden() const { return root / "golden"; }
-  std::filesystem::path recorded() const { return golden() / "recorded"; }
+  // What the firmware recorded. Without a folder of its own, a suite uses that of its base.
+  std::filesystem::path recorded() const;
 
   // The first word of the file VERSION in `folder`, which is cases() or golden(); else
   // "unversioned".

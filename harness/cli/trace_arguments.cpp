@@ -5,35 +5,14 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "harness/cli/command.hpp"
-#include "harness/ulog/flight_log.hpp"
 
 namespace attest::cli {
 namespace {
 
-std::string assumed_by_default() {
-  std::vector<std::string_view> words;
-  for (const FlightAssumption& one : flight_assumptions()) {
-    if (one.by_default) words.push_back(one.word);
-  }
-  return fmt::format("{}", fmt::join(words, ","));
-}
-
 void add_log_options(CLI::App& command, ReplayOptions& options) {
-  std::vector<std::string> words;
-  for (const FlightAssumption& one : flight_assumptions()) words.emplace_back(one.word);
-  command
-      .add_option("--assume", options.assumed,
-                  fmt::format("What holds in a flight whose log does not have the topic, some of "
-                              "{}; default: {}",
-                              fmt::join(words, ", "), assumed_by_default()))
-      ->type_name("WORD,...")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->group(option_group::logs);
+  add_assumed(command, options.assumed);
   command
       .add_option("--within", options.log_limits.within,
                   "The deviation that agrees with a log, in the unit of the signal")

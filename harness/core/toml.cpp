@@ -1,12 +1,10 @@
 #include "harness/core/toml.hpp"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <optional>
 #include <set>
 #include <sstream>
-#include <type_traits>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -15,6 +13,7 @@
 #include "harness/core/printable.hpp"
 #include "harness/core/suggestion.hpp"
 #include "harness/core/toml_depth.hpp"
+#include "harness/core/toml_names.hpp"
 
 namespace attest {
 namespace {
@@ -56,25 +55,8 @@ TomlKind kind_of(const toml::node& node) {
 }
 
 std::string_view found_name(const toml::node& node) {
-  if (node.is_date() || node.is_time() || node.is_date_time()) {
-    return "a date or time without quotes";
-  }
-  constexpr std::array<std::string_view, 7> names = {
-      "nothing", "a boolean", "an integer", "a floating point number",
-      "text",    "an array",  "a table"};  // in the order of TomlKind
-  return names.at(static_cast<std::size_t>(kind_of(node)));
-}
-
-template <typename T>
-constexpr std::string_view needed() {
-  if constexpr (std::is_same_v<T, std::string>) return "text";
-  if constexpr (std::is_same_v<T, double>) return "a number";
-  if constexpr (std::is_same_v<T, std::int64_t>) return "an integer";
-  if constexpr (std::is_same_v<T, bool>) return "true or false";
-  if constexpr (std::is_same_v<T, std::vector<std::string>>) return "an array of text";
-  if constexpr (std::is_same_v<T, std::vector<double>>) return "an array of numbers";
-  if constexpr (std::is_same_v<T, std::vector<std::int64_t>>) return "an array of integers";
-  if constexpr (std::is_same_v<T, toml::table>) return "a table";
+  const bool is_time = node.is_date() || node.is_time() || node.is_date_time();
+  return is_time ? "a date or time without quotes" : name_of(kind_of(node));
 }
 
 template <typename T>
@@ -86,6 +68,13 @@ template <>
 std::optional<double> convert<double>(const toml::node& node) {
   if (const auto integer = node.value_exact<std::int64_t>()) return static_cast<double>(*integer);
   return node.value_exact<double>();
+}
+
+template <typename T>
+toml::array array_of(const std::vector<T>& values) {
+  toml::array array;
+  for (const T& value : values) array.push_back(value);
+  return array;
 }
 
 }  // namespace
@@ -251,9 +240,9 @@ std::vector<std::int64_t> TomlTable::integers(std::string_view key) const {
 }
 
 TomlTable TomlTable::table(std::string_view key) const {
-  const toml::node* found = impl_->require(key, needed<toml::table>());
+  const toml::node* found = impl_->require(key, needed<TomlTable>());
   const toml::table* table = found ? found->as_table() : nullptr;
-  if (found && !table) impl_->mismatch(key, needed<toml::table>(), *found);
+  if (found && !table) impl_->mismatch(key, needed<TomlTable>(), *found);
   if (table) impl_->document->visited.try_emplace(table);
   return TomlTable(std::make_shared<Impl>(Impl{impl_->document, table, impl_->place_of_key(key)}));
 }
@@ -317,8 +306,9 @@ Result<void> TomlFile::finish() const {
 
 struct TomlWriter::Impl {
   toml::table root;
-  toml::table& at(std::string_view table) {
-    return table.empty() ? root : *root.emplace<toml::table>(table).first->second.as_table();
+  toml::table& at(std::string_view table) { return table.empty() ? root : in(root, table); }
+  static toml::table& in(toml::table& outer, std::string_view table) {
+    return *outer.emplace<toml::table>(table).first->second.as_table();
   }
 };
 
@@ -336,9 +326,19 @@ void TomlWriter::set(std::string_view table, std::string_view key, std::int64_t 
 }
 void TomlWriter::set(std::string_view table, std::string_view key,
                      const std::vector<std::string>& values) {
-  toml::array array;
-  for (const std::string& value : values) array.push_back(value);
-  impl_->at(table).insert_or_assign(key, array);
+  impl_->at(table).insert_or_assign(key, array_of(values));
+}
+void TomlWriter::set(std::string_view table, std::string_view key,
+                     const std::vector<double>& values) {
+  impl_->at(table).insert_or_assign(key, array_of(values));
+}
+void TomlWriter::set(std::string_view table, std::string_view inner, std::string_view key,
+                     std::string_view value) {
+  Impl::in(impl_->at(table), inner).insert_or_assign(key, std::string(value));
+}
+void TomlWriter::set(std::string_view table, std::string_view inner, std::string_view key,
+                     const std::vector<double>& values) {
+  Impl::in(impl_->at(table), inner).insert_or_assign(key, array_of(values));
 }
 
 std::string TomlWriter::to_string() const {

@@ -101,6 +101,13 @@ class TomlWriter {
   void set(std::string_view table, std::string_view key, std::int64_t value);
   void set(std::string_view table, std::string_view key, const std::vector<std::string>& values);
 
+  void set(std::string_view table, std::string_view key, const std::vector<double>& values);
+  // In the table `inner` of `table`.
+  void set(std::string_view table, std::string_view inner, std::string_view key,
+           std::string_view value);
+  void set(std::string_view table, std::string_view inner, std::string_view key,
+           const std::vector<double>& values);
+
   std::string to_string() const;
 
  private:

@@ -30,8 +30,11 @@ std::string how_to_bless(const Case& the_case) {
   return fmt::format("`attest bless --filter '{}' --reason \"...\"` makes it", the_case.id());
 }
 
-Result<std::string> write_trace(const fs::path& path, const Trace& trace,
-                                const CsvColumns& columns) {
+// Keyframes have no parameters and no freshness, also where the same case keeps every tick at
+// slower rates.
+Result<std::string> write_trace(const fs::path& path, const Trace& trace, CsvColumns columns) {
+  if (trace.parameters.empty()) columns.parameters.clear();
+  columns.channels &= trace.present;
   if (auto written = write_csv(path, trace, columns); !written) {
     return tl::unexpected(written.error());
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -43,6 +44,15 @@ Trace at_ticks_of(const Trace& kept, const Trace& all) {
   return chosen;
 }
 
+// Without parameters and freshness, which say what happened since the tick before. A golden has
+// them as constants where the same case keeps every tick at slower rates.
+Trace without_history(Trace rows) {
+  rows.parameters.clear();
+  rows.present &= ~channels_of(Module::mc_att_control, "in/updated.");
+  for (Sample& sample : rows.samples) sample.in.updated = 0;
+  return rows;
+}
+
 }  // namespace
 
 Trace keyframes_of(const Trace& flown) {
@@ -58,15 +68,13 @@ Trace keyframes_of(const Trace& flown) {
   }
   Trace rows;
   rows.source = flown.source;
-  rows.present = flown.present & ~channels_of(Module::mc_att_control, "in/updated.");
-  for (const std::size_t tick : kept) {
-    rows.samples.push_back(flown.samples[tick]);
-    rows.samples.back().in.updated = 0;
-  }
-  return rows;
+  rows.present = flown.present;
+  for (const std::size_t tick : kept) rows.samples.push_back(flown.samples[tick]);
+  return without_history(std::move(rows));
 }
 
-Result<Trace> filled_in(Trace made, const Trace& kept, const Subject& subject, bool is_exact) {
+Result<Trace> filled_in(Trace made, Trace kept, const Subject& subject, bool is_exact) {
+  kept = without_history(std::move(kept));
   if (const auto fault = drive(*open_builtin(), subject, made)) {
     return fail_at(kept.source, fmt::format("the reference: {}", fault->what));
   }

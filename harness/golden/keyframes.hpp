@@ -19,6 +19,6 @@ Trace keyframes_of(const Trace& flown);
 // the bit, or at the numeric level if the bits depend on the platform (`is_exact` false). Errors:
 // `kept` has inputs that `made` does not have at that time; the reference of this build has other
 // outputs.
-Result<Trace> filled_in(Trace made, const Trace& kept, const Subject& subject, bool is_exact);
+Result<Trace> filled_in(Trace made, Trace kept, const Subject& subject, bool is_exact);
 
 }  // namespace attest

@@ -112,11 +112,13 @@ bool is_same(const Channel& channel, const std::vector<Trace>& traces,
   return true;
 }
 
-// The value of a parameter if every trace sets it at tick 0 and always to the same value.
+// The value of a parameter if every trace with parameters sets it at tick 0 and always to the same
+// value.
 std::optional<double> constant_value(const std::string& parameter,
                                      const std::vector<Trace>& traces) {
   std::optional<double> value;
   for (const Trace& trace : traces) {
+    if (trace.parameters.empty()) continue;
     bool is_set = false;
     for (const ParameterChange& change : trace.parameters) {
       if (change.name != parameter) continue;

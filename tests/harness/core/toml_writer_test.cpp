@@ -39,6 +39,20 @@ TEST(TomlWriter, WritesInAlphabeticalOrder) {
             "'250hz.csv' = 'abc'\n");
 }
 
+TEST(TomlWriter, WritesTablesInTables) {
+  TomlWriter writer;
+  writer.set("control_state", "roll_rate", "signal", "samples");
+  writer.set("control_state", "roll_rate", "values", std::vector<double>{0.25, 1.5});
+  writer.set("control_state", "publish_at_s", std::vector<double>{0.5});
+  EXPECT_EQ(writer.to_string(),
+            "[control_state]\n"
+            "publish_at_s = [ 0.5 ]\n"
+            "\n"
+            "    [control_state.roll_rate]\n"
+            "    signal = 'samples'\n"
+            "    values = [ 0.25, 1.5 ]\n");
+}
+
 TEST(TomlWriter, ReplacesAKeyThatIsSetAgain) {
   TomlWriter writer;
   writer.set("t", "a", 1.5);

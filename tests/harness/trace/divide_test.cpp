@@ -76,6 +76,14 @@ TEST(Divide, SplitsParameters) {
   EXPECT_EQ(division.constants.count("in/parameter.CHANGES"), 0u);
 }
 
+TEST(Divide, KeyframesHaveNoParameters) {
+  Trace whole = trace_of(1, 1);
+  whole.parameters = {{0, "SAME", 1}, {0, "CHANGES", 1}, {1, "CHANGES", 2}};
+  const Division division = divide({whole, trace_of(1, 1)});
+  EXPECT_THAT(division.columns.parameters, ElementsAre("CHANGES"));
+  EXPECT_EQ(division.constants.at("in/parameter.SAME"), 1);
+}
+
 TEST(Divide, AParameterSetLaterIsNoConstant) {
   Trace trace = trace_of(1, 1);
   trace.parameters = {{1, "LATE", 1}};

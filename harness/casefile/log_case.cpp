@@ -1,0 +1,241 @@
+#include "harness/casefile/log_case.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "controller/reference/parameters.hpp"
+#include "harness/casefile/parse.hpp"
+#include "harness/casefile/parse_limits.hpp"
+#include "harness/core/toml.hpp"
+#include "harness/schedule/rate.hpp"
+
+namespace attest {
+namespace {
+
+constexpr double us_per_s = 1e6;
+
+double seconds(std::uint64_t time_us) { return static_cast<double>(time_us) / us_per_s; }
+
+// Ticks [begin, end) of a log.
+struct Ticks {
+  const Trace& log;
+  std::size_t begin = 0, end = 0;
+
+  std::size_t size() const { return end - begin; }
+  const Sample& operator[](std::size_t tick) const { return log.samples[tick]; }
+  // Since the first tick.
+  std::uint64_t time_us(std::size_t tick) const {
+    return log.samples[tick].in.timestamp - log.samples[begin].in.timestamp;
+  }
+  double time_s(std::size_t tick) const { return seconds(time_us(tick)); }
+  // One mean period longer than from the first tick to the last. REQUIRES: two ticks.
+  std::uint64_t duration_us() const {
+    const std::uint64_t whole = time_us(end - 1);
+    return whole + (whole + size() - 2) / (size() - 1);
+  }
+};
+
+// A value that changes at some times.
+class History {
+ public:
+  void add(double time_s, float value) {
+    if (!values_.empty() && same(values_.back(), value)) return;
+    times_s_.push_back(time_s);
+    values_.push_back(value);
+  }
+
+  bool is_constant() const { return values_.size() == 1; }
+
+  void write(std::string_view table, std::string_view key, TomlWriter& toml) const {
+    if (is_constant()) return toml.set(table, key, static_cast<double>(values_.front()));
+    const std::vector<double> values(values_.begin(), values_.end());
+    toml.set(table, key, "signal", "samples");
+    toml.set(table, key, "times_s", times_s_);
+    toml.set(table, key, "values", values);
+  }
+
+ private:
+  static bool same(float a, float b) {
+    return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
+  }
+
+  std::vector<double> times_s_;
+  std::vector<float> values_;
+};
+
+// The ticks at which the topic was new.
+std::vector<std::size_t> releases(const Ticks& ticks, std::uint32_t bit) {
+  const auto is_new = [&](const Sample& sample) { return (sample.in.updated & bit) != 0; };
+  const auto first = ticks.log.samples.begin();
+  std::vector<std::size_t> found;
+  if (std::any_of(first, first + static_cast<std::ptrdiff_t>(ticks.begin), is_new)) {
+    found.push_back(ticks.begin);
+  }
+  for (std::size_t tick = ticks.begin; tick < ticks.end; ++tick) {
+    if (is_new(ticks[tick]) && (found.empty() || found.back() < tick)) found.push_back(tick);
+  }
+  return found;
+}
+
+std::vector<std::size_t> all_of(const Ticks& ticks) {
+  std::vector<std::size_t> all(ticks.size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = ticks.begin + i;
+  return all;
+}
+
+// True if each field is constant.
+bool write_fields(const Ticks& ticks, std::string_view topic,
+                  const std::vector<std::size_t>& released, TomlWriter& toml) {
+  bool is_constant = true;
+  const ChannelSet fields = channels_of(Module::mc_att_control, fmt::format("in/{}.", topic));
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    const Channel& channel = channels()[i];
+    if (!fields[i] || channel.type == ChannelType::u64 || channel.is_output()) continue;
+    History history;
+    for (const std::size_t tick : released) {
+      history.add(ticks.time_s(tick), static_cast<float>(value_of(channel, ticks[tick])));
+    }
+    history.write(topic, channel.name.substr(channel.name.find('.') + 1), toml);
+    is_constant = is_constant && history.is_constant();
+  }
+  return is_constant;
+}
+
+void write_topic(const Ticks& ticks, std::string_view topic, std::uint32_t bit, TomlWriter& toml) {
+  const std::vector<std::size_t> released = releases(ticks, bit);
+  if (released.empty()) return toml.set(topic, "publish", "never");
+  const bool is_constant = write_fields(ticks, topic, released, toml);
+  if (is_constant && released == std::vector{ticks.begin}) return;
+  std::vector<double> times_s;
+  for (const std::size_t tick : released) times_s.push_back(ticks.time_s(tick));
+  toml.set(topic, "publish_at_s", times_s);
+}
+
+void write_topics(const Ticks& ticks, TomlWriter& toml) {
+  write_fields(ticks, "control_state", all_of(ticks), toml);
+  for (const std::string_view topic : updated_topics()) {
+    const auto bit = find_channel(fmt::format("in/updated.{}", topic));
+    if (topic == "parameter_update" || !bit) continue;
+    write_topic(ticks, topic, channels()[*bit].bit, toml);
+  }
+}
+
+// Before its first change in the log, a parameter has its default.
+void write_parameters(const Ticks& ticks, const std::string& profile, TomlWriter& toml) {
+  const auto own = parameter_names(Module::mc_att_control, profile);
+  std::map<std::string, float> at_begin;
+  std::map<std::string, History> histories;
+  for (const ParameterChange& change : ticks.log.parameters) {
+    if (std::find(own.begin(), own.end(), change.name) == own.end()) continue;
+    if (change.tick <= ticks.begin) at_begin[change.name] = change.value;
+  }
+  for (const auto& [name, value] : at_begin) histories[name].add(0, value);
+  for (const ParameterChange& change : ticks.log.parameters) {
+    if (change.tick <= ticks.begin || change.tick >= ticks.end) continue;
+    const auto* const info = reference::find_parameter(change.name);
+    if (!info || std::find(own.begin(), own.end(), change.name) == own.end()) continue;
+    const auto [history, is_first] = histories.try_emplace(change.name);
+    if (is_first) history->second.add(0, info->default_value);
+    history->second.add(ticks.time_s(change.tick), change.value);
+  }
+  for (const auto& [name, history] : histories) history.write("parameters", name, toml);
+}
+
+std::string identifier(std::string text) {
+  for (char& c : text) {
+    const bool is_kept = std::isalnum(static_cast<unsigned char>(c)) != 0;
+    c = is_kept ? c : '_';
+  }
+  return text.empty() ? "log" : text;
+}
+
+std::string name_of(const Trace& log, const LogStretch& stretch) {
+  std::string name = std::filesystem::path(log.source).stem().string();
+  if (stretch.from_s > 0) name += fmt::format("_from_{}s", stretch.from_s);
+  if (std::isfinite(stretch.to_s)) name += fmt::format("_to_{}s", stretch.to_s);
+  return identifier(name);
+}
+
+Result<Ticks> ticks_of(const Trace& log, const LogStretch& stretch) {
+  const Ticks whole{log, 0, log.samples.size()};
+  if (whole.size() < 2) return fail_at(log.source, "has fewer than 2 samples of control_state");
+  const double length_s = seconds(whole.duration_us());
+  if (!(stretch.from_s < stretch.to_s)) {
+    return fail(fmt::format("the stretch from {} s to {} s is empty: it must begin before it ends",
+                            stretch.from_s, stretch.to_s));
+  }
+  const bool is_beyond = std::isfinite(stretch.to_s) && stretch.to_s > length_s;
+  if (stretch.from_s < 0 || stretch.from_s >= length_s || is_beyond) {
+    return fail_at(log.source,
+                   fmt::format("the stretch is beyond the log, whose samples of control_state "
+                               "are from 0 to {:.6g} s",
+                               length_s));
+  }
+  const auto before = [&](double time_s) {
+    const auto first =
+        std::partition_point(log.samples.begin(), log.samples.end(), [&](const Sample& sample) {
+          return seconds(sample.in.timestamp - log.samples.front().in.timestamp) < time_s;
+        });
+    return static_cast<std::size_t>(first - log.samples.begin());
+  };
+  const Ticks ticks{log, before(stretch.from_s), before(stretch.to_s)};
+  if (ticks.size() >= 2) return ticks;
+  return fail_at(log.source, fmt::format("has {} samples of control_state in this stretch; a case "
+                                         "needs at least 2",
+                                         ticks.size()));
+}
+
+Result<void> check_length(const Ticks& ticks) {
+  const Rate fastest = standard_rates().back();
+  const double longest_s = static_cast<double>(max_ticks) * fastest.period_s();
+  const double duration_s = seconds(ticks.duration_us());
+  if (duration_s <= longest_s) return {};
+  return fail_at(ticks.log.source,
+                 fmt::format("the stretch of {:.6g} s is more than {} ticks at {} Hz; choose at "
+                             "most {:g} s (--from, --to)",
+                             duration_s, max_ticks, fastest.to_string(), longest_s));
+}
+
+std::string reason(const Ticks& ticks, const std::vector<std::string>& notes) {
+  const std::uint64_t first = ticks.log.samples.front().in.timestamp;
+  std::string text = fmt::format(
+      "What the controller received in the flight {}, from {} s to {} s after the first "
+      "control_state of its log.",
+      std::filesystem::path(ticks.log.source).filename().string(),
+      seconds(ticks[ticks.begin].in.timestamp - first),
+      seconds(ticks[ticks.begin].in.timestamp - first + ticks.duration_us()));
+  for (const std::string& note : notes) text += fmt::format("\n- {}", note);
+  return text;
+}
+
+}  // namespace
+
+Result<LogCase> case_of_log(const Trace& log, const std::string& profile, const LogStretch& stretch,
+                            const std::vector<std::string>& notes) {
+  const auto ticks = ticks_of(log, stretch);
+  if (!ticks) return tl::unexpected(ticks.error());
+  if (auto checked = check_length(*ticks); !checked) return tl::unexpected(checked.error());
+  LogCase made{name_of(log, stretch), "", ticks->size(), seconds(ticks->duration_us())};
+  TomlWriter toml;
+  toml.set("", "schema", schema_version);
+  toml.set("", "profiles", std::vector<std::string>{profile});
+  toml.set("", "group", log_case_group);
+  toml.set("", "why", reason(*ticks, notes));
+  toml.set("", "duration_s", made.duration_s);
+  toml.set("unit", "start_s", seconds((*ticks)[ticks->begin].in.timestamp));
+  write_parameters(*ticks, profile, toml);
+  write_topics(*ticks, toml);
+  made.toml = toml.to_string();
+  return made;
+}
+
+}  // namespace attest

@@ -1,0 +1,41 @@
+// Makes a case of a stretch of a flight's log: its inputs become signals of the kind `samples`.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "harness/core/result.hpp"
+#include "harness/trace/trace.hpp"
+
+namespace attest {
+
+// Times since the first control_state of the log.
+struct LogStretch {
+  double from_s = 0;                                      // included
+  double to_s = std::numeric_limits<double>::infinity();  // not included; infinite: to the end
+};
+
+inline constexpr const char* log_case_group = "from_log";
+
+struct LogCase {
+  std::string name;         // of the log and the stretch: "gust", "gust_1_5s_to_3s"
+  std::string toml;         // the case file, as in SCHEMA.md
+  std::size_t samples = 0;  // of control_state
+  double duration_s = 0;
+};
+
+// `log` has a tick for each control_state (ulog/flight_log.hpp). The case begins at the first tick
+// of the stretch, with the timestamp of that tick, and lasts one mean period longer than the last
+// one. A sample of another topic is published at the tick that first received it in the log; what
+// the controller knew before the stretch is published at the first tick. At the times of the log's
+// ticks, a unit receives the values of the log, to the bit. Parameters that `profile` does not have
+// are left out. `notes` are added to the reason of the case.
+//
+// Errors: a stretch with less than two ticks, one that is not in the log, one with too many ticks
+// for a case (max_ticks) at the fastest rate.
+Result<LogCase> case_of_log(const Trace& log, const std::string& profile, const LogStretch& stretch,
+                            const std::vector<std::string>& notes);
+
+}  // namespace attest
