@@ -45,12 +45,12 @@ typedef struct attest_mixer_outputs {
 } attest_mixer_outputs;
 
 typedef struct attest_mixer {
-  /* A new mixer. With a deadband of 0 there is no previous output at the first call, so
-   * delta_out_max does not limit that call. With another deadband the previous output is 0, and
-   * delta_out_max limits the first call too. `definition` is a line of a PX4 mixer file,
+  /* A new mixer. `definition` is a line of a PX4 mixer file,
    * "R: <geometry> <roll> <pitch> <yaw> <deadband>"
    * with numbers in 1/10000, such as "R: 4x 10000 10000 10000 0". It is valid during the call only.
-   * NULL: not supported; its cases are then counted as unsupported. */
+   * With a deadband of 0, delta_out_max does not limit the first step, because there is no previous
+   * output. With another deadband the previous output is 0, and delta_out_max limits the first step
+   * too. NULL: not supported; its cases are then counted as unsupported. */
   void* (*create)(const char* profile, const char* definition);
   void (*destroy)(void* self);
   int (*step)(void* self, const attest_mixer_inputs* in, attest_mixer_outputs* out);

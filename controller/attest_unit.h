@@ -6,7 +6,7 @@
  * returns a table of functions. Its author needs to read this header only. It compiles as C11 and
  * as C++17. Ports that are programs do not need it.
  *
- * Life cycle, in the order the host calls:
+ * Life cycle, in the order in which the host (attest) calls:
  *
  *     unit = attest_unit_v1();
  *     unit->extension(id);                              any id, any number of times

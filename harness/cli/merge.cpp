@@ -163,7 +163,7 @@ RunResult merged(std::vector<Part> parts) {
   return run;
 }
 
-// The port for the diagnosis, which asks it again. Empty: it is not here, or is another one.
+// The port for the diagnosis, which runs it again. Empty: the port is missing, or is another one.
 std::optional<HostOptions> host_for(const MergeOptions& options, const RunResult& run) {
   HostOptions host;
   host.port = options.port.empty() ? run.port : options.port;

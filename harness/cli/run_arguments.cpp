@@ -133,8 +133,8 @@ void add_merge_command(CLI::App& app, const Globals& globals, Action& action) {
       ->required();
   command
       ->add_option("--port", options->port,
-                   "The port where it is now; the diagnosis asks it again. By default it is where "
-                   "the reports say")
+                   "Where the port is now, because the diagnosis runs it again; default: the port "
+                   "that the reports name")
       ->type_name("PORT");
   add_jobs(*command, options->jobs, "Number of worker processes for the diagnosis");
   add_timeout(*command, options->timeout_s);

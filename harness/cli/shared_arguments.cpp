@@ -71,8 +71,8 @@ void add_timeout(CLI::App& command, double& timeout_s) {
   command
       .add_option(
           "--timeout", timeout_s,
-          "Limit for each answer of the port [s]; a port that gives no answer in time has the "
-          "verdict `timeout`")
+          "Limit for each answer of the port [s]: of a library for a whole trace, of a program for "
+          "each step or batch; a port that gives no answer in time has the verdict `timeout`")
       ->check(CLI::Range(0.1, 86400.0))
       ->capture_default_str()
       ->group(option_group::execution);

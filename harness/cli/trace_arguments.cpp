@@ -14,8 +14,9 @@ namespace {
 void add_log_options(CLI::App& command, ReplayOptions& options) {
   add_assumed(command, options.assumed);
   command
-      .add_option("--within", options.log_limits.within,
-                  "The deviation that agrees with a log, in the unit of the signal")
+      .add_option(
+          "--within", options.log_limits.within,
+          "Largest deviation from a log that counts as agreement, in the unit of the signal")
       ->type_name("X")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber)
@@ -37,8 +38,8 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
   command
       ->add_option("files", options->files,
                    "Traces (CSV) of a controller, a mixer or a battery estimate; logs of flights "
-                   "(.ulg), whose outputs are compared where the log has the sample that they "
-                   "answer")
+                   "(.ulg): a logged output is compared if the log also has the control_state "
+                   "from which it was computed")
       ->type_name("FILE")
       ->required();
   add_port(*command, options->host.port);

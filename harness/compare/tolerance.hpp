@@ -48,8 +48,8 @@ class Tolerances {
   bool set(std::string_view prefix, Tolerance tolerance);
 
   // At the numeric level: widens the tolerances for a port in fixed point with so many fraction
-  // bits. Each becomes at least a number of LSBs (last bits). These are the largest errors of a
-  // correct port that rounds, measured at 20 to 24 bits:
+  // bits. Each becomes at least a number of LSBs (last bits), the constants below. The largest
+  // errors of a correct port that rounds are smaller. Measured at 20 to 24 bits:
   // - rates setpoints: up to 740 LSB, near a half turn
   // - controls: 750 LSB. A control that consists mostly of its D part has an error in proportion to
   //   its size, because 1 / dt is up to 500 and dt has an error of half an LSB.

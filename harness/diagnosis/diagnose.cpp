@@ -9,8 +9,8 @@ namespace {
 constexpr std::size_t most_suspects = 3;
 constexpr std::size_t most_in_group = 4;
 
-// The share of the passing vectors that a suspect must match. It is below 1 because one mistake may
-// hide another.
+// The share of the passing vectors that a suspect must match. It is below 1 for ports with several
+// mistakes: on some passing vectors another mistake of the port hides the one of the suspect.
 constexpr double passing_part = 0.95;
 
 // One fault over all vectors.

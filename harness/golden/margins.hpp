@@ -25,8 +25,8 @@ namespace attest {
 enum class Decision {
   quaternion_norm,  // | |q| - 1 |: here a small distance is safe, and a large one not
   thrust_gate,      // thrust > 0.2
-  // |u| < thrust, -0.3 < n < 0.3, -0.3 < u < 0.3 (u: control, n: next integral): the condition
-  // whose change would change the decision
+  // |u| < thrust, -0.3 < n < 0.3, -0.3 < u < 0.3 (u: control, n: next integral). If all hold, the
+  // distance is that of the nearest to failing, otherwise that of the farthest from holding.
   integrator_gate,
   rattitude,          // a stick against MC_RATT_TH
   shorter_rotation,   // q_e.w >= 0, beyond 90 deg

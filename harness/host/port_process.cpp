@@ -35,7 +35,7 @@ void serve(const HostOptions& options, const Course& course, const PortCalls& ca
     });
     try {
       goes_on = answer({question.head, blobs, request}, **host, judge);
-    } catch (const PortBroke& broke) {  // by a program, when it made a unit
+    } catch (const PortBroke& broke) {  // a program broke the protocol in its answer to `create`
       goes_on = give_fault(fault_of(broke), request, judge);
     }
   }
@@ -143,8 +143,8 @@ class PortProcess final : public PortHost {
     return answer_from("", limit, std::move(read));
   }
 
-  // A library answers with a whole trace in time. A program may take longer for a trace, so it has
-  // that time for each call. It cannot write where the calls are counted.
+  // The time limit of a library is for a whole trace. A program may take longer for a trace, so its
+  // limit is for each call. It cannot write where the calls are counted.
   Patience patience() const {
     Patience limit = Patience::seconds(options_.timeout_s);
     limit.given_up = options_.stop;

@@ -39,7 +39,7 @@ struct FlightEnd {
 
 class ClosedLoop {
  public:
-  // REQUIRES: a flight, bound_to_vehicle to the vehicle (flight.hpp); a fresh plant and unit. All
+  // REQUIRES: a flight, which bound_to_vehicle() made (flight.hpp); a fresh plant and unit. All
   // outlive this.
   ClosedLoop(const Case& the_case, const Rate& rate, LoopTiming timing, const Vehicle& vehicle,
              Plant& plant, Unit& unit);

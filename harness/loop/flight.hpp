@@ -17,7 +17,7 @@ namespace attest {
 struct Flown {
   Trace trace;                           // every tick up to the end, with Trace::plant
   std::optional<PortFault> fault;        // of the port: the ticks before it are valid
-  std::optional<Divergence> divergence;  // of the flight, in time since the first tick
+  std::optional<Divergence> divergence;  // early end; its time counts from the first tick
 };
 
 // The case bound to this vehicle: parameters that the case does not set get the vehicle's values.

@@ -28,13 +28,13 @@
 
 namespace attest::ulog {
 
-// An instance of a topic, which data name by a number.
+// An instance of a topic. Data messages refer to it by its number.
 struct Subscription {
   std::uint16_t id;       // msg_id
   std::uint8_t multi_id;  // instance, from 0
   std::string topic;      // also the name of its format
   std::size_t index;      // in Reader::subscriptions()
-  const Format* format;   // measured; null: cannot be used, so its data are skipped
+  const Format* format;   // with its sizes; null: cannot be used, so its data are skipped
 };
 
 // Messages. Their views are valid until the reader's next call, their pointers as long as the
@@ -46,7 +46,7 @@ struct Data {
   std::string_view bytes;
 };
 
-// F: defines a format, which may not be measured yet.
+// F: defines a format. Formats::measure() may not have computed its sizes yet.
 struct Defined {
   const Format* format;
 };
@@ -152,7 +152,7 @@ class Reader {
   Reader() = default;
   Result<void> read_header();
   void start();
-  // What the file has there: at least `count` bytes, at most 1 MiB, but none after end_.
+  // The bytes of the file from `offset` on: `count` or more, at most 1 MiB; fewer only before end_.
   std::string_view bytes_at(std::uint64_t offset, std::size_t count);
   void fill_buffer(std::uint64_t offset);
   // Give the message and return true, or count what is wrong with it.

@@ -31,7 +31,7 @@ bool declines(const PortSays& port, CaseResult& result) {
   }
   if (!declines(port, result.group)) return false;
   result.verdict = Verdict::unsupported;
-  result.reason = fmt::format("the port declares that it does not do {}", result.group);
+  result.reason = fmt::format("the port declares that it does not support {}", result.group);
   return true;
 }
 

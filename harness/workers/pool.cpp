@@ -44,8 +44,8 @@ class Pool {
 
   bool start(std::size_t work, std::size_t first) {
     auto child = Child::spawn(Child::Runs::our_code, [&](MessageSocket& parent) {
-      // An interrupt just before the fork. The work would see it too, as a port that does not
-      // answer.
+      // An interrupt may come just before the fork. The work must not begin then: it would report
+      // the interrupt as a port that does not answer.
       if (options_.stop()) return;
       work_[work].run(first, [&](const std::string& answer, std::size_t tasks) {
         parent.send(answer, {{&tasks, sizeof tasks}});
@@ -96,7 +96,7 @@ class Pool {
     const std::string how = worker.child.end(), words = worker.child.last_words();
     const bool is_done = worker.task >= work_[worker.work].tasks;
     if (!worker.child.has_exited_well() || (!is_done && worker.task == worker.first)) {
-      fail(worker.work, {fmt::format("a judging process of attest {}{}{}; please report this", how,
+      fail(worker.work, {fmt::format("a worker process of attest {}{}{}; please report this", how,
                                      words.empty() ? "" : ": ", words)});
     } else if (!is_done) {
       start(worker.work, worker.task);  // `worker` may have moved

@@ -30,9 +30,9 @@ std::vector<Curves> curves_of(const Trace& got, const Trace& want, const Trace* 
 std::vector<Curves> curves_to_plot(std::vector<Curves> curves, std::size_t first, std::size_t most);
 
 // The ticks at which to draw series of equal length: all of them, or, of a series longer than
-// `most`, about `most` at most. The series are divided into parts of equal length. The smallest and
-// the largest value of each part are kept, and the first NaN, so that no spike is lost. The first
-// tick and the last one are kept, too. REQUIRES: at least one series.
+// `most`, approximately `most` or fewer. The series are divided into parts of equal length. The
+// smallest and the largest value of each part are kept, and the first NaN, so that no spike is
+// lost. The first tick and the last one are kept, too. REQUIRES: at least one series.
 std::vector<std::size_t> extreme_ticks(std::span<const std::vector<float>> series,
                                        std::size_t most);
 

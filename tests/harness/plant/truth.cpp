@@ -316,8 +316,8 @@ void held_inputs(std::vector<Truth>& table) {
     table.push_back({"iris, 1 s of random commands within 10%, at 50 Hz", "the ode plant",
                      fmt::format("mujoco, {} Hz", hertz), "rad/s", difference, 0, 1e-4});
   }
-  table.push_back(
-      {"order at which that falls", "4", "mujoco", "1", std::log2(at_500 / at_1000), 3.7, 4.3});
+  table.push_back({"order at which that difference falls", "4", "mujoco", "1",
+                   std::log2(at_500 / at_1000), 3.7, 4.3});
 }
 
 }  // namespace
