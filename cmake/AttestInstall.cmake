@@ -11,7 +11,7 @@ set(ATTEST_INSTALL_DATADIR ${CMAKE_INSTALL_DATADIR}/attest)
 
 install(TARGETS attest_unit EXPORT attestTargets)
 install(TARGETS attest EXPORT attestTargets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(FILES controller/attest_unit.h controller/attest_actuation.h
+install(FILES controller/attest_unit.h controller/attest_actuation.h controller/attest_cascade.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY cases golden models DESTINATION ${ATTEST_INSTALL_DATADIR})
 # Excludes the results of builds in the source tree.
@@ -21,7 +21,7 @@ install(
   USE_SOURCE_PERMISSIONS
   REGEX "/(build|target|__pycache__)$" EXCLUDE)
 # For `attest new-port`.
-install(FILES controller/attest_unit.h controller/attest_actuation.h
+install(FILES controller/attest_unit.h controller/attest_actuation.h controller/attest_cascade.h
         DESTINATION ${ATTEST_INSTALL_DATADIR}/include)
 install(FILES ci/examples/github-action.yml ci/examples/github-actions.yml
               ci/examples/gitlab-ci.yml

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "controller/attest_actuation.h"
+#include "controller/attest_cascade.h"
 #include "controller/attest_unit.h"
 
 int attest_actuation_from_c(const attest_unit* unit);
