@@ -149,7 +149,7 @@ enum {
   ATTEST_RATE_UPDATED_VEHICLE_LAND_DETECTED = 1 << 4,
   ATTEST_RATE_UPDATED_CONTROL_ALLOCATOR_STATUS = 1 << 5,
   ATTEST_RATE_UPDATED_BATTERY_STATUS = 1 << 6,
-  ATTEST_RATE_UPDATED_PARAMETER_UPDATE = 1 << 7
+  ATTEST_RATE_UPDATED_PARAMETER_UPDATE = 1 << 8 /* the same bit in every unit; 1 << 7 is free */
 };
 
 typedef struct attest_rate_inputs {
