@@ -121,10 +121,10 @@ void trace_in_steps(benchmark::State& state) {
 void trace_in_one_batch(benchmark::State& state) {
   const OnCpu on_one_cpu;
   Flight flight;
-  std::vector<attest_outputs> out(flight.in.size());
+  std::vector<Sample>& samples = flight.trace.samples;
   for (auto _ : state) {
-    flight.unit->batch(flight.in, out, flight.times);
-    benchmark::DoNotOptimize(out.data());
+    flight.unit->batch(samples, flight.times);
+    benchmark::DoNotOptimize(samples.data());
   }
 }
 

@@ -38,10 +38,7 @@ bool truth(std::uint8_t flag) { return flag != 0; }
 
 // Compares all bytes, of all modules.
 bool outputs_differ(const Sample& a, const Sample& b) {
-  static_assert(sample_has_three_modules);
-  return std::memcmp(&a.out, &b.out, sizeof a.out) != 0 ||
-         std::memcmp(&a.mixer_out, &b.mixer_out, sizeof a.mixer_out) != 0 ||
-         std::memcmp(&a.battery_out, &b.battery_out, sizeof a.battery_out) != 0;
+  return !std::ranges::equal(a.outputs(), b.outputs());
 }
 
 // How far a value is outside, to find the worst. 0: it has no distance (a flag, NaN, infinity).

@@ -31,7 +31,8 @@ Answered answered(const SelectedCase& selected) {
   Answered vector{answers_of_faults(law, subject), {}};
   const Outputs right = outputs_of(law);
   for (const Outputs& outputs : vector.faults.distinct) {
-    vector.of_distinct.push_back(distinct_similarity(outputs, right, vector.faults.distinct));
+    vector.of_distinct.push_back(
+        distinct_similarity(outputs, right, vector.faults.distinct, subject.module));
   }
   vector.faults.distinct.clear();  // some hundred megabytes in all
   return vector;

@@ -112,7 +112,7 @@ Result<VectorDiagnosis> DiagnosisJob::run(std::size_t) {
     law = on_the_branch_of(got, law, *others, tolerances);
   }
   return similarity(outputs_of(got), outputs_of(law), answers_of_faults(law, subject, partner_),
-                    tolerances);
+                    subject.module, tolerances);
 }
 
 Jobs<VectorDiagnosis> diagnosis_jobs(const std::vector<SelectedCase>& cases,

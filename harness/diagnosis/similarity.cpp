@@ -12,7 +12,7 @@
 namespace attest {
 namespace {
 
-// A bit for each output value that differs; there are 30.
+// A bit for each output of the module that differs.
 using Mask = std::uint32_t;
 
 struct Output {
@@ -22,10 +22,11 @@ struct Output {
 
 using OutputTable = std::vector<Output>;
 
-OutputTable outputs_with(const Tolerances& tolerances) {
+OutputTable outputs_with(Module module, const Tolerances& tolerances) {
   OutputTable outputs;
+  const ChannelSet of_module = channels_of(module, "out/");
   for (std::size_t i = 0; i < channels().size(); ++i) {
-    if (channels()[i].is_output()) outputs.push_back({channels()[i], tolerances.of(i)});
+    if (of_module[i]) outputs.push_back({channels()[i], tolerances.of(i)});
   }
   return outputs;
 }
@@ -43,18 +44,9 @@ bool differs(const Output& output, const Sample& a, const Sample& b) {
   return std::abs(x - y) > std::max(absolute, relative * std::abs(y));
 }
 
-Sample sample_of(const Answer& answer) {
-  static_assert(sample_has_three_modules);
-  Sample sample{};
-  sample.out = answer.out;
-  sample.mixer_out = answer.mixer_out;
-  sample.battery_out = answer.battery_out;
-  return sample;
-}
-
 Mask difference(const OutputTable& outputs, const Answer& a, const Answer& b) {
-  if (std::memcmp(&a, &b, sizeof a) == 0) return 0;
-  const Sample x = sample_of(a), y = sample_of(b);
+  if (a.bytes == b.bytes) return 0;
+  const Sample x = a.sample(), y = b.sample();
   Mask mask = 0, bit = 1;
   for (const Output& output : outputs) {
     if (differs(output, x, y)) mask |= bit;
@@ -84,11 +76,17 @@ bool same_bytes(const Outputs& a, const Outputs& b) {
 
 }  // namespace
 
+Sample Answer::sample() const {
+  Sample sample{};
+  std::copy(bytes.begin(), bytes.end(), sample.outputs().begin());
+  return sample;
+}
+
 Outputs outputs_of(const Trace& trace) {
   Outputs outputs;
   outputs.reserve(trace.samples.size());
   for (const Sample& sample : trace.samples) {
-    outputs.push_back({sample.out, sample.mixer_out, sample.battery_out});
+    std::copy_n(sample.outputs().begin(), outputs_size, outputs.emplace_back().bytes.begin());
   }
   return outputs;
 }
@@ -112,9 +110,9 @@ FaultAnswers answers_of_faults(const Trace& given, const Subject& subject,
 }
 
 VectorSimilarity distinct_similarity(const Outputs& port, const Outputs& law,
-                                     std::span<const Outputs> distinct,
+                                     std::span<const Outputs> distinct, Module module,
                                      const Tolerances& tolerances) {
-  const OutputTable outputs = outputs_with(tolerances);
+  const OutputTable outputs = outputs_with(module, tolerances);
   VectorSimilarity result;
   result.ticks = port.size();
   std::vector<Mask> port_deviates;
@@ -140,8 +138,8 @@ VectorSimilarity of_each_fault(const VectorSimilarity& distinct, const FaultAnsw
 }
 
 VectorSimilarity similarity(const Outputs& port, const Outputs& law, const FaultAnswers& faults,
-                            const Tolerances& tolerances) {
-  return of_each_fault(distinct_similarity(port, law, faults.distinct, tolerances), faults);
+                            Module module, const Tolerances& tolerances) {
+  return of_each_fault(distinct_similarity(port, law, faults.distinct, module, tolerances), faults);
 }
 
 }  // namespace attest

@@ -1,6 +1,7 @@
 // The similarity of a port and each fault of the catalogue on one vector: the basis of a diagnosis.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -27,11 +28,11 @@ struct VectorSimilarity {
   std::vector<Similarity> similarities;  // of each fault of the catalogue, in its order
 };
 
-// The outputs of the subject's module; those of the others are zero.
+// The outputs of a sample; those of other modules than the subject's are zero.
 struct Answer {
-  attest_outputs out;
-  attest_mixer_outputs mixer_out;
-  attest_battery_outputs battery_out;
+  std::array<std::byte, outputs_size> bytes;
+
+  Sample sample() const;  // with inputs of zero
 };
 using Outputs = std::vector<Answer>;  // one per tick
 
@@ -48,16 +49,18 @@ struct FaultAnswers {
 FaultAnswers answers_of_faults(const Trace& given, const Subject& subject,
                                const faults::Fault* partner = nullptr);
 
-// For each of the distinct outputs. Values are the same when they differ by no more than the
-// tolerances, which are not widened near a tilt error of 180 deg here.
+// For each of the distinct outputs, of a subject's module. Values are the same when they differ by
+// no more than the tolerances, which are not widened near a tilt error of 180 deg here.
 VectorSimilarity distinct_similarity(const Outputs& port, const Outputs& law,
                                      std::span<const Outputs> distinct,
+                                     Module module = Module::mc_att_control,
                                      const Tolerances& tolerances = Tolerances());
 
 // For each fault, from the similarity of its distinct outputs.
 VectorSimilarity of_each_fault(const VectorSimilarity& distinct, const FaultAnswers& faults);
 
 VectorSimilarity similarity(const Outputs& port, const Outputs& law, const FaultAnswers& faults,
+                            Module module = Module::mc_att_control,
                             const Tolerances& tolerances = Tolerances());
 
 }  // namespace attest

@@ -23,8 +23,7 @@ json to_json(const PortSays& says) {
   json out = {{"name", says.name},
               {"version", says.version},
               {"unsupported_groups", says.unsupported_groups},
-              {"has_mixer", says.has_mixer},
-              {"has_battery_status", says.has_battery_status}};
+              {"modules", says.modules.to_ulong()}};
   if (says.fraction_bits) out["fraction_bits"] = *says.fraction_bits;
   if (says.fixed_step) out["fixed_step"] = says.fixed_step->to_string();
   return out;
@@ -36,8 +35,7 @@ PortSays says_from(const json& in) {
                 in.at("unsupported_groups").get<std::vector<std::string>>(),
                 {},
                 {},
-                in.at("has_mixer").get<bool>(),
-                in.at("has_battery_status").get<bool>(),
+                ModuleSet(in.at("modules").get<unsigned long>()),
                 {}};
   if (in.contains("fraction_bits")) says.fraction_bits = in.at("fraction_bits").get<int>();
   if (const auto step = Rate::parse(in.value("fixed_step", ""))) says.fixed_step = *step;

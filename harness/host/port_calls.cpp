@@ -54,11 +54,9 @@ class Noted {
   Now& now_;
 };
 
-// Base is Unit, MixerUnit or BatteryUnit.
-template <typename Base>
-class NotedUnit : public Base {
+class NotedUnit final : public Unit {
  public:
-  NotedUnit(std::unique_ptr<Base> unit, Now& now) : unit_(std::move(unit)), now_(now) {}
+  NotedUnit(std::unique_ptr<Unit> unit, Now& now) : unit_(std::move(unit)), now_(now) {}
   ~NotedUnit() override {
     const Noted noted(now_, Call::destroy);
     unit_.reset();
@@ -68,37 +66,28 @@ class NotedUnit : public Base {
     const Noted noted(now_, Call::set_parameter);
     return unit_->set_parameter(name, value);
   }
-  int step(const typename Base::Inputs& in, typename Base::Outputs& out) override {
+  int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
+    const Noted noted(now_, Call::set_timestamp_sample);
+    return unit_->set_timestamp_sample(timestamp_sample_us);
+  }
+  int step_structs(const void* in, void* out) override {
     now_.tick.store(tick_++, std::memory_order_relaxed);
     const Noted noted(now_, Call::step);
-    return unit_->step(in, out);
+    return unit_->step_structs(in, out);
   }
   std::size_t max_batch() const override { return unit_->max_batch(); }
-  Batched batch(std::span<const typename Base::Inputs> in, std::span<typename Base::Outputs> out,
+  Batched batch(std::span<Sample> samples,
                 std::span<const std::uint64_t> timestamp_samples_us) override {
     now_.tick.store(tick_, std::memory_order_relaxed);
-    tick_ += in.size();
+    tick_ += samples.size();
     const Noted noted(now_, Call::batch);
-    return unit_->batch(in, out, timestamp_samples_us);
+    return unit_->batch(samples, timestamp_samples_us);
   }
-
- protected:
-  Base& unit() { return *unit_; }
-  Noted note(Call call) { return Noted(now_, call); }
 
  private:
-  std::unique_ptr<Base> unit_;
+  std::unique_ptr<Unit> unit_;
   Now& now_;
   std::uint64_t tick_ = 0;
-};
-
-class NotedControllerUnit final : public NotedUnit<Unit> {
- public:
-  using NotedUnit::NotedUnit;
-  int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
-    const Noted noted = note(Call::set_timestamp_sample);
-    return unit().set_timestamp_sample(timestamp_sample_us);
-  }
 };
 
 class NotedPort final : public Port {
@@ -112,28 +101,15 @@ class NotedPort final : public Port {
   }
   std::optional<int> fraction_bits() const override { return port_.fraction_bits(); }
   std::optional<Rate> fixed_step() const override { return port_.fixed_step(); }
-  bool has_mixer() const override { return port_.has_mixer(); }
-  bool has_battery_status() const override { return port_.has_battery_status(); }
-
-  std::unique_ptr<Unit> create(const std::string& profile) override {
-    return made<NotedControllerUnit>([&] { return port_.create(profile); });
-  }
-  std::unique_ptr<MixerUnit> create_mixer(const std::string& profile,
-                                          const std::string& definition) override {
-    return made<NotedUnit<MixerUnit>>([&] { return port_.create_mixer(profile, definition); });
-  }
-  std::unique_ptr<BatteryUnit> create_battery_status(const std::string& profile) override {
-    return made<NotedUnit<BatteryUnit>>([&] { return port_.create_battery_status(profile); });
+  ModuleSet modules() const override { return port_.modules(); }
+  std::unique_ptr<Unit> create_unit(Module module, const std::string& profile,
+                                    const std::string& definition) override {
+    const Noted noted(now_, Call::create);
+    auto unit = port_.create_unit(module, profile, definition);
+    return unit ? std::make_unique<NotedUnit>(std::move(unit), now_) : nullptr;
   }
 
  private:
-  template <typename NotedKind, typename Create>
-  std::unique_ptr<NotedKind> made(Create create) {
-    const Noted noted(now_, Call::create);
-    auto unit = create();
-    return unit ? std::make_unique<NotedKind>(std::move(unit), now_) : nullptr;
-  }
-
   Port& port_;
   Now& now_;
 };
@@ -180,7 +156,7 @@ std::unique_ptr<Port> PortCalls::noted(Port& port) const {
 }
 
 std::unique_ptr<Unit> PortCalls::noted(std::unique_ptr<Unit> unit) const {
-  return std::make_unique<NotedControllerUnit>(std::move(unit), *now_);
+  return std::make_unique<NotedUnit>(std::move(unit), *now_);
 }
 
 }  // namespace attest

@@ -14,6 +14,14 @@ std::string text_of(const std::optional<int>& bits) {
 
 std::string text_of(const std::optional<Rate>& rate) { return rate ? rate->to_string() : "none"; }
 
+std::string text_of(const ModuleSet& set) {
+  std::vector<std::string_view> names;
+  for (const ModuleInfo& info : modules()) {
+    if (contains(set, info.module)) names.push_back(info.name);
+  }
+  return fmt::format("{}", fmt::join(names, ","));
+}
+
 }  // namespace
 
 std::string change(const PortSays& said, const PortSays& now) {
@@ -24,7 +32,6 @@ std::string change(const PortSays& said, const PortSays& now) {
         "the same each time",
         what, after, before);
   };
-  const auto yes = [](bool is) { return std::string(is ? "there" : "not there"); };
   const std::string groups = fmt::format("{}", fmt::join(said.unsupported_groups, ","));
   const std::string groups_now = fmt::format("{}", fmt::join(now.unsupported_groups, ","));
   for (const std::string& difference :
@@ -32,8 +39,7 @@ std::string change(const PortSays& said, const PortSays& now) {
         changed("attest.unsupported_groups", groups, groups_now),
         changed("attest.arithmetic", text_of(said.fraction_bits), text_of(now.fraction_bits)),
         changed("attest.fixed_step", text_of(said.fixed_step), text_of(now.fixed_step)),
-        changed("mixer", yes(said.has_mixer), yes(now.has_mixer)),
-        changed("battery estimate", yes(said.has_battery_status), yes(now.has_battery_status))}) {
+        changed("list of modules", text_of(said.modules), text_of(now.modules))}) {
     if (!difference.empty()) return difference;
   }
   return "";
@@ -56,8 +62,7 @@ PortSays PortSays::asked(const Port& port) {
           port.unsupported_groups(),
           port.fraction_bits(),
           port.fixed_step(),
-          port.has_mixer(),
-          port.has_battery_status(),
+          port.modules(),
           {},
           false,
           {}};

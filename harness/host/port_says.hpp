@@ -16,7 +16,7 @@ struct PortSays {
   std::vector<std::string> unsupported_groups;
   std::optional<int> fraction_bits;  // of a port in fixed point
   std::optional<Rate> fixed_step;    // of a port with a fixed sample time
-  bool has_mixer = false, has_battery_status = false;
+  ModuleSet modules;
   std::vector<std::string> profiles;  // of which it made a unit; empty unless requested
   bool is_recorded = false;           // its outputs are files; it cannot be called
   ChannelSet not_recorded = {};       // outputs that these files do not have: not judged

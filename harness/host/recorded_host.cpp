@@ -27,7 +27,7 @@ PortSays said_by(const Manifest& manifest) {
   says.unsupported_groups = manifest.unsupported_groups;
   says.fraction_bits = manifest.fraction_bits;
   says.fixed_step = manifest.fixed_step;
-  says.has_mixer = says.has_battery_status = true;
+  says.modules.set();
   says.is_recorded = true;
   says.not_recorded = manifest.not_recorded;
   for (const auto& [id, hash] : manifest.vectors) {

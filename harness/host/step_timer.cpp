@@ -5,9 +5,9 @@
 #include "harness/realtime/pacer.hpp"
 
 // Must be neither inlined nor renamed: counted_step_symbol is its name.
-extern "C" [[gnu::noinline]] int attest_counted_step(attest::Unit& unit, const attest_inputs& in,
-                                                     attest_outputs& out) {
-  return unit.step(in, out);
+extern "C" [[gnu::noinline]] int attest_counted_step(attest::Unit& unit, const void* in,
+                                                     void* out) {
+  return unit.step_structs(in, out);
 }
 
 namespace attest {
@@ -21,7 +21,7 @@ Nanoseconds time_of_clock() {
   return least;
 }
 
-int TimedUnit::step(const attest_inputs& in, attest_outputs& out) {
+int TimedUnit::step_structs(const void* in, void* out) {
   const Nanoseconds before = Pacer::now_monotonic();
   const int code = attest_counted_step(unit_, in, out);
   const Nanoseconds after = Pacer::now_monotonic();
@@ -29,9 +29,9 @@ int TimedUnit::step(const attest_inputs& in, attest_outputs& out) {
   return code;
 }
 
-int UnitOnStack::step(const attest_inputs& in, attest_outputs& out) {
+int UnitOnStack::step_structs(const void* in, void* out) {
   int code = ATTEST_FAILED;
-  stack_.run([&] { code = unit_.step(in, out); });
+  stack_.run([&] { code = unit_.step_structs(in, out); });
   return code;
 }
 

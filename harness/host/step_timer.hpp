@@ -29,7 +29,7 @@ class TimedUnit final : public Unit {
   int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
     return unit_.set_timestamp_sample(timestamp_sample_us);
   }
-  int step(const attest_inputs& in, attest_outputs& out) override;
+  int step_structs(const void* in, void* out) override;
 
  private:
   Unit& unit_;
@@ -48,7 +48,7 @@ class UnitOnStack final : public Unit {
   int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
     return unit_.set_timestamp_sample(timestamp_sample_us);
   }
-  int step(const attest_inputs& in, attest_outputs& out) override;
+  int step_structs(const void* in, void* out) override;
 
  private:
   Unit& unit_;

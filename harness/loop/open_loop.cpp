@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <span>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,11 +12,13 @@ namespace attest {
 namespace {
 
 // A unit on its way through a trace.
-template <typename ModuleUnit>
 class Drive {
  public:
-  Drive(ModuleUnit& unit, Trace& trace)
-      : driver_(unit), max_batch_(unit.max_batch()), trace_(trace), changes_(trace.parameters) {}
+  Drive(Unit& unit, Module module, Trace& trace)
+      : driver_(unit, module),
+        max_batch_(unit.max_batch()),
+        trace_(trace),
+        changes_(trace.parameters) {}
 
   bool is_over() const { return tick_ == trace_.samples.size(); }
 
@@ -37,21 +40,12 @@ class Drive {
   }
 
  private:
-  ModuleDriver<ModuleUnit> driver_;
+  UnitDriver driver_;
   std::size_t max_batch_;
   Trace& trace_;
   PendingChanges changes_;
   std::size_t tick_ = 0;
 };
-
-template <typename ModuleUnit>
-std::optional<PortFault> drive_module(ModuleUnit& unit, Trace& trace) {
-  Drive<ModuleUnit> drive(unit, trace);
-  while (!drive.is_over()) {
-    if (auto fault = drive.advance()) return fault;
-  }
-  return std::nullopt;
-}
 
 // Other gains from the first step on: those of the trace, and some that it leaves at their default.
 void change_gains(Trace& trace) {
@@ -68,8 +62,8 @@ void change_gains(Trace& trace) {
 
 // Other inputs at the same times, and other gains, so that the states of two instances differ in
 // everything.
-Trace mirrored(Trace trace) {
-  if (module_of(trace.present) == Module::mc_att_control) change_gains(trace);
+Trace mirrored(Trace trace, Module module) {
+  if (module == Module::mc_att_control) change_gains(trace);
   for (Sample& sample : trace.samples) {
     auto& state = sample.in.control_state;
     for (float* const value : {&state.q[1], &state.q[2], &state.q[3], &state.roll_rate,
@@ -84,10 +78,9 @@ Trace mirrored(Trace trace) {
   return trace;
 }
 
-template <typename ModuleUnit>
-std::optional<PortFault> drive_alternately(ModuleUnit& judged, Trace& trace, ModuleUnit& other,
-                                           Trace& of_other) {
-  Drive<ModuleUnit> drive(judged, trace), along(other, of_other);
+std::optional<PortFault> drive_alternately(Unit& judged, Trace& trace, Unit& other, Trace& of_other,
+                                           Module module) {
+  Drive drive(judged, module, trace), along(other, module, of_other);
   while (!drive.is_over()) {
     if (auto fault = along.step()) return fault;
     if (auto fault = drive.step()) return fault;
@@ -107,13 +100,14 @@ PortFault makes_no_other() {
 }
 
 // `create` makes a fresh instance.
-template <typename ModuleUnit, typename Create>
-std::optional<PortFault> drive_in_company(std::unique_ptr<ModuleUnit> first, Create create,
-                                          Instances instances, Trace& trace) {
-  Trace of_first = mirrored(trace);
+template <typename Create>
+std::optional<PortFault> drive_in_company(std::unique_ptr<Unit> first, Create create,
+                                          const Subject& subject, Trace& trace) {
+  const auto& [instances, module] = std::tie(subject.instances, subject.module);
+  Trace of_first = mirrored(trace, module);
   // After a fault of the first instance, the judged trace has no outputs.
   const auto drive_first = [&] {
-    auto fault = drive_module(*first, of_first);
+    auto fault = drive(*first, of_first, subject.module);
     if (fault) fault->tick = 0;
     return fault;
   };
@@ -121,61 +115,55 @@ std::optional<PortFault> drive_in_company(std::unique_ptr<ModuleUnit> first, Cre
     if (auto fault = drive_first()) return fault;
     first.reset();
   }
-  const std::unique_ptr<ModuleUnit> judged = create();
+  const std::unique_ptr<Unit> judged = create();
   if (!judged) return instances == Instances::again ? makes_no_other() : makes_only_one();
-  if (instances == Instances::together) return drive_alternately(*judged, trace, *first, of_first);
+  if (instances == Instances::together) {
+    return drive_alternately(*judged, trace, *first, of_first, module);
+  }
   if (instances == Instances::crossed) {
     if (auto fault = drive_first()) return fault;
     first.reset();
   }
-  return drive_module(*judged, trace);
+  return drive(*judged, trace, module);
 }
 
-template <typename Create>
-std::optional<PortFault> drive_created(Create create, const Subject& subject, Trace& trace) {
-  auto unit = create();
-  if (unit && subject.instances != Instances::one) {
-    return drive_in_company(std::move(unit), create, subject.instances, trace);
-  }
-  if (unit) return drive_module(*unit, trace);
+PortFault makes_none(const Subject& subject) {
   if (subject.module == Module::mixer) {
-    return PortFault{
+    return {
         PortFault::Kind::unsupported, 0,
         fmt::format("the port makes no mixer `{}` of profile {}", subject.mixer, subject.profile)};
   }
-  return PortFault{PortFault::Kind::profile, 0,
-                   fmt::format("the port does not support profile {}", subject.profile)};
-}
-
-PortFault without(std::string_view module, const char* extension) {
-  return {PortFault::Kind::unsupported, 0,
-          fmt::format("the port has no {} (extension {})", module, extension)};
+  return {PortFault::Kind::profile, 0,
+          fmt::format("the port does not support profile {}", subject.profile)};
 }
 
 }  // namespace
 
-std::optional<PortFault> drive(Unit& unit, Trace& trace) { return drive_module(unit, trace); }
+std::optional<PortFault> drive(Unit& unit, Trace& trace, Module module) {
+  Drive drive(unit, module, trace);
+  while (!drive.is_over()) {
+    if (auto fault = drive.advance()) return fault;
+  }
+  return std::nullopt;
+}
 
 Subject subject_of(const Case& the_case) {
   return {the_case.profile, the_case.module, the_case.mixer, the_case.instances};
 }
 
 std::optional<PortFault> drive(Port& port, const Subject& subject, Trace& trace) {
-  switch (subject.module) {
-    case Module::mixer:
-      if (!port.has_mixer()) return without("mixer", ATTEST_EXTENSION_MIXER);
-      return drive_created([&] { return port.create_mixer(subject.profile, subject.mixer); },
-                           subject, trace);
-    case Module::battery_status:
-      if (!port.has_battery_status()) {
-        return without("battery estimate", ATTEST_EXTENSION_BATTERY_STATUS);
-      }
-      return drive_created([&] { return port.create_battery_status(subject.profile); }, subject,
-                           trace);
-    case Module::mc_att_control:
-      return drive_created([&] { return port.create(subject.profile); }, subject, trace);
+  const ModuleInfo& info = info_of(subject.module);
+  if (!contains(port.modules(), subject.module)) {
+    return PortFault{PortFault::Kind::unsupported, 0,
+                     fmt::format("the port has no {} (extension {})", info.title, info.extension)};
   }
-  return std::nullopt;
+  const auto create = [&] {
+    return port.create_unit(subject.module, subject.profile, subject.mixer);
+  };
+  auto unit = create();
+  if (!unit) return makes_none(subject);
+  if (subject.instances == Instances::one) return drive(*unit, trace, subject.module);
+  return drive_in_company(std::move(unit), create, subject, trace);
 }
 
 }  // namespace attest

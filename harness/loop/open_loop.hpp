@@ -11,9 +11,9 @@
 
 namespace attest {
 
-// Replaces the outputs of `trace` by those of a fresh `unit`. On a fault the samples before it are
-// valid.
-std::optional<PortFault> drive(Unit& unit, Trace& trace);
+// Replaces the outputs of `trace` by those of a fresh `unit` of `module`. On a fault the samples
+// before it are valid.
+std::optional<PortFault> drive(Unit& unit, Trace& trace, Module module = Module::mc_att_control);
 
 // The part of a port that receives a trace.
 struct Subject {

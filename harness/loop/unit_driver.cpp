@@ -1,24 +1,16 @@
 #include "harness/loop/unit_driver.hpp"
 
+#include <algorithm>
 #include <cstring>
-#include <type_traits>
 #include <vector>
 
 #include <fmt/format.h>
-
-#include "harness/port/module_place.hpp"
 
 namespace attest {
 namespace {
 
 using Kind = PortFault::Kind;
-using Margin = std::array<unsigned char, 64>;
-
-constexpr Margin canary = [] {
-  Margin margin{};
-  margin.fill(0xa5);
-  return margin;
-}();
+constexpr unsigned char canary = 0xa5;
 
 std::optional<PortFault> fault_of(int code, std::size_t tick, const std::string& call) {
   switch (code) {
@@ -58,35 +50,31 @@ PortFault fault_of(const PortBroke& broke) {
   return {has_ended ? Kind::crash : Kind::protocol, 0, broke.what()};
 }
 
-template <typename ModuleUnit>
-ModuleDriver<ModuleUnit>::ModuleDriver(ModuleUnit& unit) : unit_(unit) {
-  exchange_.canary_in = canary;
-  exchange_.canary_out = canary;
+UnitDriver::UnitDriver(Unit& unit, Module module) : unit_(unit), info_(info_of(module)) {
+  std::memset(exchange_.in.data() + info_.in.size, canary, margin);
+  std::memset(exchange_.out.data() + info_.out.size, canary, margin);
 }
 
-template <typename ModuleUnit>
-std::optional<PortFault> ModuleDriver<ModuleUnit>::step(
-    std::size_t tick, std::span<const ParameterChange> changes, Sample& sample,
-    std::optional<std::uint64_t> timestamp_sample_us) {
+std::optional<PortFault> UnitDriver::step(std::size_t tick,
+                                          std::span<const ParameterChange> changes, Sample& sample,
+                                          std::optional<std::uint64_t> timestamp_sample_us) {
   return unless_broken(tick, "", [&]() -> std::optional<PortFault> {
     if (auto fault = set_parameters(tick, changes)) return fault;
     return step_once(tick, sample, timestamp_sample_us);
   });
 }
 
-template <typename ModuleUnit>
-std::optional<PortFault> ModuleDriver<ModuleUnit>::batch(std::size_t tick,
-                                                         std::span<const ParameterChange> changes,
-                                                         std::span<Sample> samples) {
+std::optional<PortFault> UnitDriver::batch(std::size_t tick,
+                                           std::span<const ParameterChange> changes,
+                                           std::span<Sample> samples) {
   return unless_broken(tick, " or later", [&]() -> std::optional<PortFault> {
     if (auto fault = set_parameters(tick, changes)) return fault;
     return step_all(tick, samples);
   });
 }
 
-template <typename ModuleUnit>
-std::optional<PortFault> ModuleDriver<ModuleUnit>::set_parameters(
-    std::size_t tick, std::span<const ParameterChange> changes) {
+std::optional<PortFault> UnitDriver::set_parameters(std::size_t tick,
+                                                    std::span<const ParameterChange> changes) {
   for (const ParameterChange& change : changes) {
     const int code = unit_.set_parameter(change.name, change.value);
     if (code == ATTEST_OK) continue;
@@ -95,67 +83,51 @@ std::optional<PortFault> ModuleDriver<ModuleUnit>::set_parameters(
   return std::nullopt;
 }
 
-template <typename ModuleUnit>
-std::optional<PortFault> ModuleDriver<ModuleUnit>::step_all(std::size_t tick,
-                                                            std::span<Sample> samples) {
-  std::vector<Inputs> in;
+std::optional<PortFault> UnitDriver::step_all(std::size_t tick, std::span<Sample> samples) {
+  std::vector<Sample> given(samples.begin(), samples.end());
   std::vector<std::uint64_t> timestamps_us;
-  for (const Sample& sample : samples) {
-    in.push_back(sample.*ModulePlace<ModuleUnit>::in);
-    timestamps_us.push_back(sample.in.timestamp);
+  for (const Sample& sample : given) timestamps_us.push_back(sample.in.timestamp);
+  std::memcpy(info_.out.in(given.front()), exchange_.out.data(), info_.out.size);
+  const Batched batched = unit_.batch(given, timestamps_us);
+  for (std::size_t i = 0; i < batched.done; ++i) samples[i].copy_outputs(given[i]);
+  if (batched.done > 0) {
+    std::memcpy(exchange_.out.data(), info_.out.in(samples[batched.done - 1]), info_.out.size);
   }
-  std::vector<Outputs> out(samples.size());
-  out.front() = exchange_.out;
-  const Batched batched = unit_.batch(in, out, timestamps_us);
-  for (std::size_t i = 0; i < batched.done; ++i) samples[i].*ModulePlace<ModuleUnit>::out = out[i];
-  if (batched.done > 0) exchange_.out = out[batched.done - 1];
   const std::size_t next = tick + batched.done;
   return fault_of(batched.result, next, fmt::format("step at tick {}", next));
 }
 
-template <typename ModuleUnit>
-std::optional<PortFault> ModuleDriver<ModuleUnit>::step_once(
-    std::size_t tick, Sample& sample, std::optional<std::uint64_t> timestamp_sample_us) {
-  const Inputs& given = sample.*ModulePlace<ModuleUnit>::in;
-  exchange_.in = given;
-  if (const int code = tell_time(given, timestamp_sample_us); code != ATTEST_OK) {
-    return fault_of(code, tick, fmt::format("set_timestamp_sample at tick {}", tick));
+std::optional<PortFault> UnitDriver::step_once(std::size_t tick, Sample& sample,
+                                               std::optional<std::uint64_t> timestamp_sample_us) {
+  std::memcpy(exchange_.in.data(), info_.in.in(sample), info_.in.size);
+  const int code_of_time =
+      unit_.set_timestamp_sample(timestamp_sample_us.value_or(sample.in.timestamp));
+  if (code_of_time != ATTEST_OK) {
+    return fault_of(code_of_time, tick, fmt::format("set_timestamp_sample at tick {}", tick));
   }
-  if (const int code = unit_.step(exchange_.in, exchange_.out); code != ATTEST_OK) {
-    return fault_of(code, tick, fmt::format("step at tick {}", tick));
-  }
-  if (auto fault = broken_rule(given, tick)) return fault;
-  sample.*ModulePlace<ModuleUnit>::out = exchange_.out;
+  const int code = unit_.step_structs(exchange_.in.data(), exchange_.out.data());
+  if (code != ATTEST_OK) return fault_of(code, tick, fmt::format("step at tick {}", tick));
+  if (auto fault = broken_rule(sample, tick)) return fault;
+  std::memcpy(info_.out.in(sample), exchange_.out.data(), info_.out.size);
   return std::nullopt;
 }
 
-template <typename ModuleUnit>
-int ModuleDriver<ModuleUnit>::tell_time(const Inputs& given,
-                                        std::optional<std::uint64_t> timestamp_sample_us) {
-  if constexpr (std::is_same_v<ModuleUnit, Unit>) {
-    return unit_.set_timestamp_sample(timestamp_sample_us.value_or(given.timestamp));
-  }
-  return ATTEST_OK;
-}
-
-template <typename ModuleUnit>
-std::optional<PortFault> ModuleDriver<ModuleUnit>::broken_rule(const Inputs& given,
-                                                               std::size_t tick) const {
-  if (exchange_.canary_in != canary || exchange_.canary_out != canary) {
+std::optional<PortFault> UnitDriver::broken_rule(const Sample& given, std::size_t tick) const {
+  const auto is_intact = [](const auto& bytes, std::size_t end) {
+    const auto begin = bytes.begin() + static_cast<std::ptrdiff_t>(end);
+    return std::all_of(begin, begin + margin, [](unsigned char byte) { return byte == canary; });
+  };
+  if (!is_intact(exchange_.in, info_.in.size) || !is_intact(exchange_.out, info_.out.size)) {
     return PortFault{Kind::protocol, tick,
                      fmt::format("step wrote outside its outputs at tick {}; was the port "
                                  "compiled with another attest_unit.h?",
                                  tick)};
   }
-  if (std::memcmp(&exchange_.in, &given, sizeof given) != 0) {
+  if (std::memcmp(exchange_.in.data(), info_.in.in(given), info_.in.size) != 0) {
     return PortFault{Kind::protocol, tick,
                      fmt::format("step changed its inputs at tick {}; they are const", tick)};
   }
   return std::nullopt;
 }
-
-template class ModuleDriver<Unit>;
-template class ModuleDriver<MixerUnit>;
-template class ModuleDriver<BatteryUnit>;
 
 }  // namespace attest

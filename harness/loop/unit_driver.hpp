@@ -34,17 +34,15 @@ struct PortFault {
 // A crash or a broken protocol, at tick 0.
 PortFault fault_of(const PortBroke& broke);
 
-// ModuleUnit is Unit, MixerUnit or BatteryUnit.
-template <typename ModuleUnit>
-class ModuleDriver {
+class UnitDriver {
  public:
-  // REQUIRES: the unit is in its power-on state, and outlives this.
-  explicit ModuleDriver(ModuleUnit& unit);
+  // REQUIRES: the unit is one of `module`, in its power-on state, and outlives this.
+  explicit UnitDriver(Unit& unit, Module module = Module::mc_att_control);
 
   // One tick:
   //
   //     parameters that change at this tick -> set_parameter
-  //     the time of the control_state       -> set_timestamp_sample, of a Unit
+  //     the time of the control_state       -> set_timestamp_sample
   //     inputs of the sample                -> step
   //     outputs                             -> the sample; kept as the next step's starting point
   //
@@ -55,39 +53,28 @@ class ModuleDriver {
                                 std::optional<std::uint64_t> timestamp_sample_us = std::nullopt);
 
   // The same for several ticks from `tick` on, of which only the first changes parameters. Samples
-  // before the fault have outputs. REQUIRES: 1 <= samples.size() <= ModuleUnit::max_batch().
+  // before the fault have outputs. REQUIRES: 1 <= samples.size() <= Unit::max_batch().
   std::optional<PortFault> batch(std::size_t tick, std::span<const ParameterChange> changes,
                                  std::span<Sample> samples);
 
  private:
-  using Inputs = typename ModuleUnit::Inputs;
-  using Outputs = typename ModuleUnit::Outputs;
-
-  // The unit's inputs and outputs, each followed by bytes that must not change. A port compiled
-  // with another layout writes there first.
-  struct Exchange {
-    Inputs in{};
-    std::array<unsigned char, 64> canary_in;
-    Outputs out{};
-    std::array<unsigned char, 64> canary_out;
-  };
+  static constexpr std::size_t margin = 64;
 
   std::optional<PortFault> set_parameters(std::size_t tick,
                                           std::span<const ParameterChange> changes);
   std::optional<PortFault> step_once(std::size_t tick, Sample& sample,
                                      std::optional<std::uint64_t> timestamp_sample_us);
   std::optional<PortFault> step_all(std::size_t tick, std::span<Sample> samples);
-  int tell_time(const Inputs& given, std::optional<std::uint64_t> timestamp_sample_us);
-  std::optional<PortFault> broken_rule(const Inputs& given, std::size_t tick) const;
+  std::optional<PortFault> broken_rule(const Sample& given, std::size_t tick) const;
 
-  ModuleUnit& unit_;
-  Exchange exchange_;
+  Unit& unit_;
+  const ModuleInfo& info_;
+  // The unit's inputs and outputs, each followed by bytes that must not change. A port compiled
+  // with another layout writes there first.
+  struct Exchange {
+    alignas(8) std::array<unsigned char, sizeof(Sample) + margin> in{};
+    alignas(8) std::array<unsigned char, sizeof(Sample) + margin> out{};
+  } exchange_;
 };
-
-extern template class ModuleDriver<Unit>;
-extern template class ModuleDriver<MixerUnit>;
-extern template class ModuleDriver<BatteryUnit>;
-
-using UnitDriver = ModuleDriver<Unit>;
 
 }  // namespace attest

@@ -11,14 +11,21 @@
 
 namespace attest {
 
-// Table is attest_unit, attest_mixer or attest_battery_status.
-template <typename Table, typename Interface>
-class AbiUnit : public Interface {
- public:
-  using typename Interface::Inputs;
-  using typename Interface::Outputs;
+// The types of the parameters of a table's step().
+template <typename In, typename Out>
+UnitOf<In, Out> unit_with(int (*)(void*, const In*, Out*));
 
-  AbiUnit(const Table& table, void* self) : table_(table), self_(self) {}
+// Table is attest_unit or the table of an extension.
+template <typename Table>
+class AbiUnit final : public decltype(unit_with(Table::step)) {
+ public:
+  using Base = decltype(unit_with(Table::step));
+  using typename Base::Inputs;
+  using typename Base::Outputs;
+
+  // `timestamp_sample` is null if the unit does not need the time of the sample.
+  AbiUnit(const Table& table, void* self, const attest_timestamp_sample* timestamp_sample)
+      : table_(table), self_(self), timestamp_sample_(timestamp_sample) {}
   ~AbiUnit() override { table_.destroy(self_); }
   AbiUnit(const AbiUnit&) = delete;
   AbiUnit& operator=(const AbiUnit&) = delete;
@@ -29,26 +36,15 @@ class AbiUnit : public Interface {
     }
     return ATTEST_INVALID;
   }
-  int step(const Inputs& in, Outputs& out) override { return table_.step(self_, &in, &out); }
-
- protected:
-  const Table& table_;
-  void* self_;
-};
-
-// The controller. `timestamp_sample` is null if it does not need the time of the sample.
-class AbiController final : public AbiUnit<attest_unit, Unit> {
- public:
-  AbiController(const attest_unit& table, const attest_timestamp_sample* timestamp_sample,
-                void* self)
-      : AbiUnit(table, self), timestamp_sample_(timestamp_sample) {}
-
   int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
     if (timestamp_sample_ == nullptr) return ATTEST_OK;
     return timestamp_sample_->set_timestamp_sample(self_, timestamp_sample_us);
   }
+  int step(const Inputs& in, Outputs& out) override { return table_.step(self_, &in, &out); }
 
  private:
+  const Table& table_;
+  void* self_;
   const attest_timestamp_sample* timestamp_sample_;
 };
 
@@ -82,22 +78,30 @@ class AbiPort final : public Port {
     const auto rate = Rate::parse(hertz);
     return rate ? std::optional(*rate) : std::nullopt;
   }
-  std::unique_ptr<Unit> create(const std::string& profile) override {
-    void* const self = table_.create(profile.c_str());
-    if (self == nullptr) return nullptr;
-    const auto* times = extension<attest_timestamp_sample>(ATTEST_EXTENSION_TIMESTAMP_SAMPLE);
-    return std::make_unique<AbiController>(table_, times, self);
+  ModuleSet modules() const override {
+    ModuleSet set;
+    for (const ModuleInfo& info : attest::modules()) {
+      if (!info.extension || extension<void>(info.extension)) set |= only(info.module);
+    }
+    return set;
   }
-  bool has_mixer() const override { return mixer() != nullptr; }
-  bool has_battery_status() const override { return battery_status() != nullptr; }
-  std::unique_ptr<MixerUnit> create_mixer(const std::string& profile,
-                                          const std::string& definition) override {
-    const attest_mixer& table = *mixer();
-    return wrapped<MixerUnit>(table, table.create(profile.c_str(), definition.c_str()));
-  }
-  std::unique_ptr<BatteryUnit> create_battery_status(const std::string& profile) override {
-    const attest_battery_status& table = *battery_status();
-    return wrapped<BatteryUnit>(table, table.create(profile.c_str()));
+  std::unique_ptr<Unit> create_unit(Module module, const std::string& profile,
+                                    const std::string& definition) override {
+    const char* const id = info_of(module).extension;
+    switch (module) {
+      case Module::mc_att_control:
+        return wrapped(table_, table_.create(profile.c_str()),
+                       extension<attest_timestamp_sample>(ATTEST_EXTENSION_TIMESTAMP_SAMPLE));
+      case Module::mixer: {
+        const auto& table = *extension<attest_mixer>(id);
+        return wrapped(table, table.create(profile.c_str(), definition.c_str()));
+      }
+      case Module::battery_status: {
+        const auto& table = *extension<attest_battery_status>(id);
+        return wrapped(table, table.create(profile.c_str()));
+      }
+    }
+    return nullptr;
   }
 
  private:
@@ -105,14 +109,11 @@ class AbiPort final : public Port {
   const Interface* extension(const char* id) const {
     return table_.extension ? static_cast<const Interface*>(table_.extension(id)) : nullptr;
   }
-  const attest_mixer* mixer() const { return extension<attest_mixer>(ATTEST_EXTENSION_MIXER); }
-  const attest_battery_status* battery_status() const {
-    return extension<attest_battery_status>(ATTEST_EXTENSION_BATTERY_STATUS);
-  }
 
-  template <typename Interface, typename Table>
-  static std::unique_ptr<Interface> wrapped(const Table& table, void* self) {
-    return self ? std::make_unique<AbiUnit<Table, Interface>>(table, self) : nullptr;
+  template <typename Table>
+  static std::unique_ptr<Unit> wrapped(const Table& table, void* self,
+                                       const attest_timestamp_sample* timestamp_sample = nullptr) {
+    return self ? std::make_unique<AbiUnit<Table>>(table, self, timestamp_sample) : nullptr;
   }
 
   std::shared_ptr<void> owner_;

@@ -24,31 +24,13 @@ static_assert(sizeof(Header) == 16);
 
 // The structs of a module within a sample.
 std::string_view inputs_of(Module module, const Sample& sample) {
-  const auto bytes = [](const auto& in) {
-    return std::string_view(reinterpret_cast<const char*>(&in), sizeof in);
-  };
-  switch (module) {
-    case Module::mc_att_control:
-      return bytes(sample.in);
-    case Module::mixer:
-      return bytes(sample.mixer_in);
-    case Module::battery_status:
-      return bytes(sample.battery_in);
-  }
-  return {};
+  const Block& in = info_of(module).in;
+  return {static_cast<const char*>(in.in(sample)), in.size};
 }
 
 std::span<char> outputs_of(Module module, Sample& sample) {
-  const auto bytes = [](auto& out) { return std::span(reinterpret_cast<char*>(&out), sizeof out); };
-  switch (module) {
-    case Module::mc_att_control:
-      return bytes(sample.out);
-    case Module::mixer:
-      return bytes(sample.mixer_out);
-    case Module::battery_status:
-      return bytes(sample.battery_out);
-  }
-  return {};
+  const Block& out = info_of(module).out;
+  return {static_cast<char*>(out.in(sample)), out.size};
 }
 
 std::uint32_t number(Request kind) { return static_cast<std::uint32_t>(kind); }

@@ -16,7 +16,7 @@ namespace {
 
 using faults::Fault;
 
-class FaultyUnit final : public Unit {
+class FaultyUnit final : public UnitOf<attest_inputs, attest_outputs> {
  public:
   FaultyUnit(reference::Profile profile, const std::vector<const Fault*>& faults)
       : controller_(profile, faults) {}
@@ -33,7 +33,7 @@ class FaultyUnit final : public Unit {
   faults::FaultyController controller_;
 };
 
-class FaultyMixer final : public MixerUnit {
+class FaultyMixer final : public UnitOf<attest_mixer_inputs, attest_mixer_outputs> {
  public:
   FaultyMixer(const actuation::MixerDefinition& definition, const faults::MixerStages& stages)
       : mixer_(definition, stages) {}
@@ -48,7 +48,7 @@ class FaultyMixer final : public MixerUnit {
   actuation::BasicMixer<faults::Scalar, faults::MixerStages> mixer_;
 };
 
-class FaultyBattery final : public BatteryUnit {
+class FaultyBattery final : public UnitOf<attest_battery_inputs, attest_battery_outputs> {
  public:
   explicit FaultyBattery(faults::BatteryStages stages) : stages_(std::move(stages)) {}
 
@@ -75,21 +75,20 @@ class FaultPort final : public Port {
   std::string name() const override { return "fault " + ids_; }
   std::string version() const override { return "of the catalogue"; }
   std::optional<int> fraction_bits() const override { return fraction_bits_; }
-  std::unique_ptr<Unit> create(const std::string& profile) override {
-    const auto known = reference::profile_from_name(profile);
-    return known ? std::make_unique<FaultyUnit>(*known, faults_) : nullptr;
-  }
-  bool has_mixer() const override { return true; }
-  bool has_battery_status() const override { return true; }
-  std::unique_ptr<MixerUnit> create_mixer(const std::string& profile,
-                                          const std::string& definition) override {
-    const auto parsed = actuation::parse_mixer(definition);
-    if (!parsed || !actuation::is_profile(profile.c_str())) return nullptr;
-    return std::make_unique<FaultyMixer>(*parsed, faults::law_with(faults_).mixer);
-  }
-  std::unique_ptr<BatteryUnit> create_battery_status(const std::string& profile) override {
+  ModuleSet modules() const override { return ModuleSet().set(); }
+  std::unique_ptr<Unit> create_unit(Module module, const std::string& profile,
+                                    const std::string& definition) override {
+    if (module == Module::mc_att_control) {
+      const auto known = reference::profile_from_name(profile);
+      return known ? std::make_unique<FaultyUnit>(*known, faults_) : nullptr;
+    }
     if (!actuation::is_profile(profile.c_str())) return nullptr;
-    return std::make_unique<FaultyBattery>(faults::law_with(faults_).battery);
+    if (module == Module::battery_status) {
+      return std::make_unique<FaultyBattery>(faults::law_with(faults_).battery);
+    }
+    const auto parsed = actuation::parse_mixer(definition);
+    if (!parsed) return nullptr;
+    return std::make_unique<FaultyMixer>(*parsed, faults::law_with(faults_).mixer);
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <array>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "harness/core/json_text.hpp"
@@ -74,15 +75,23 @@ void read_protocol(Members& members) {
   }
 }
 
+// The modules that a program may have in addition to the controller.
+std::vector<std::string> further_modules() {
+  std::vector<std::string> names;
+  for (const ModuleInfo& info : modules()) {
+    if (info.extension != nullptr) names.emplace_back(info.name);
+  }
+  return names;
+}
+
 void read_modules(Members& members, Hello& hello) {
-  const char* const what = "a list of `mixer` and `battery_status`";
-  for (const std::string& module : members.optional<std::vector<std::string>>("modules", what)) {
-    if (module == "mixer") {
-      hello.has_mixer = true;
-    } else if (module == "battery_status") {
-      hello.has_battery_status = true;
+  const std::string what = fmt::format("a list of `{}`", fmt::join(further_modules(), "`, `"));
+  for (const auto& name : members.optional<std::vector<std::string>>("modules", what.c_str())) {
+    const auto module = module_named(name);
+    if (module && info_of(*module).extension != nullptr) {
+      hello.modules |= only(*module);
     } else {
-      members.set_error(fmt::format("has the module `{}`; `modules` is {}", module, what));
+      members.set_error(fmt::format("has the module `{}`; `modules` is {}", name, what));
     }
   }
 }

@@ -8,6 +8,7 @@
 
 #include "harness/core/result.hpp"
 #include "harness/schedule/rate.hpp"
+#include "harness/trace/module.hpp"
 
 namespace attest {
 
@@ -20,7 +21,7 @@ struct Hello {
   std::string name, version;
   std::vector<std::string> profiles;
   FrameForm frames = FrameForm::binary;
-  bool has_mixer = false, has_battery_status = false;
+  ModuleSet modules = only(Module::mc_att_control);
   bool has_batch = false;
   std::vector<std::string> unsupported_groups;
   std::optional<int> fraction_bits;

@@ -1,5 +1,5 @@
-// The subject of the tests: a port is an implementation of the controller, a unit is one running
-// instance of it.
+// The subject of the tests: a port is an implementation of one or more modules, a unit is one
+// running instance of a module.
 //
 // The kinds of port are `builtin` (the reference), `lib:PATH` (a shared library with the ABI of
 // attest_unit.h), `proc:COMMAND` (a program, PROTOCOL.md), `recorded:DIR` (outputs in files, which
@@ -15,10 +15,10 @@
 #include <string_view>
 #include <vector>
 
-#include "controller/attest_actuation.h"
 #include "controller/attest_unit.h"
 #include "harness/core/result.hpp"
 #include "harness/schedule/rate.hpp"
+#include "harness/trace/module.hpp"
 
 namespace attest {
 
@@ -40,40 +40,48 @@ struct Batched {
   int result = 0;
 };
 
-// One instance, used by one thread at a time.
-template <typename In, typename Out>
-class Steppable {
+// One instance of a module, used by one thread at a time.
+class Unit {
  public:
-  using Inputs = In;
-  using Outputs = Out;
+  virtual ~Unit() = default;
 
-  virtual ~Steppable() = default;
-
-  // Both return ATTEST_OK, ATTEST_UNSUPPORTED, ATTEST_INVALID or ATTEST_FAILED. Any other value is
+  // These return ATTEST_OK, ATTEST_UNSUPPORTED, ATTEST_INVALID or ATTEST_FAILED. Any other value is
   // reported as an error of the port.
   virtual int set_parameter(const std::string& name, float value) = 0;
-  virtual int step(const Inputs& in, Outputs& out) = 0;
+  // Same as attest_timestamp_sample: called once before each step. A unit that does not need the
+  // time returns ATTEST_OK.
+  virtual int set_timestamp_sample(std::uint64_t /*timestamp_sample_us*/) { return ATTEST_OK; }
+  // REQUIRES: `in` and `out` are the ABI structs of the unit's module.
+  virtual int step_structs(const void* in, void* out) = 0;
+
+  template <typename In, typename Out>
+  int step(const In& in, Out& out) {
+    return step_structs(&in, &out);
+  }
 
   // How many steps batch() takes at most; 0: it takes none.
   virtual std::size_t max_batch() const { return 0; }
-  // The same as one step() after the other, with set_timestamp_sample() before each. out[i] are the
-  // outputs of step i; before the call, out[0] has those of the step before.
-  // REQUIRES: 1 <= in.size() <= max_batch(), and all three have the same size.
-  virtual Batched batch(std::span<const Inputs> /*in*/, std::span<Outputs> /*out*/,
+  // The same as one step after the other, with set_timestamp_sample() before each. Before the call,
+  // the outputs of the first sample are those of the step before.
+  // REQUIRES: 1 <= samples.size() <= max_batch(), and a time for each.
+  virtual Batched batch(std::span<Sample> /*samples*/,
                         std::span<const std::uint64_t> /*timestamp_samples_us*/) {
     return {0, ATTEST_UNSUPPORTED};
   }
 };
 
-class Unit : public Steppable<attest_inputs, attest_outputs> {
+// A unit of the module that has these structs.
+template <typename In, typename Out>
+class UnitOf : public Unit {
  public:
-  // Same as attest_timestamp_sample: called once before each step. A unit that does not need the
-  // time returns ATTEST_OK.
-  virtual int set_timestamp_sample(std::uint64_t /*timestamp_sample_us*/) { return ATTEST_OK; }
-};
+  using Inputs = In;
+  using Outputs = Out;
 
-using MixerUnit = Steppable<attest_mixer_inputs, attest_mixer_outputs>;
-using BatteryUnit = Steppable<attest_battery_inputs, attest_battery_outputs>;
+  int step_structs(const void* in, void* out) final {
+    return step(*static_cast<const In*>(in), *static_cast<Out*>(out));
+  }
+  virtual int step(const In& in, Out& out) = 0;
+};
 
 class Port {
  public:
@@ -91,26 +99,20 @@ class Port {
   // The rate of a port with a fixed step; empty for other ports.
   virtual std::optional<Rate> fixed_step() const { return std::nullopt; }
 
-  // A unit in its power-on state; null when the port does not support the profile.
-  // The port must outlive the unit.
-  virtual std::unique_ptr<Unit> create(const std::string& profile) = 0;
+  virtual ModuleSet modules() const { return only(Module::mc_att_control); }
+
+  // A unit in its power-on state; null when the port does not support the profile. `definition` is
+  // that of a mixer. The port must outlive the unit. REQUIRES: the port has the module.
+  virtual std::unique_ptr<Unit> create_unit(Module module, const std::string& profile,
+                                            const std::string& definition) = 0;
+  // A controller. REQUIRES: same as create_unit().
+  std::unique_ptr<Unit> create(const std::string& profile) {
+    return create_unit(Module::mc_att_control, profile, "");
+  }
 
   // Called after the units of a request were destroyed. Throws PortBroke if a program broke the
   // protocol in destroy(), because the destructor of a unit cannot throw.
   virtual void finish() {}
-
-  // True if the port has this module.
-  virtual bool has_mixer() const { return false; }
-  virtual bool has_battery_status() const { return false; }
-
-  // Same as create(). REQUIRES: the port has the module.
-  virtual std::unique_ptr<MixerUnit> create_mixer(const std::string& /*profile*/,
-                                                  const std::string& /*definition*/) {
-    return nullptr;
-  }
-  virtual std::unique_ptr<BatteryUnit> create_battery_status(const std::string& /*profile*/) {
-    return nullptr;
-  }
 };
 
 // Parses the text of ATTEST_EXTENSION_ARITHMETIC: "fixed:22" -> 22. Errors: other text, bits out of

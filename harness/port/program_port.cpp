@@ -1,44 +1,26 @@
 #include "harness/port/program_port.hpp"
 
 #include <algorithm>
-#include <type_traits>
+#include <cstring>
 #include <utility>
 
 #include <fmt/format.h>
 #include <wordexp.h>
 
 #include "harness/port/conversation.hpp"
-#include "harness/port/module_place.hpp"
-#include "harness/port/published.hpp"
 #include "harness/process/program.hpp"
+#include "harness/trace/output_topics.hpp"
 
 namespace attest {
 namespace {
 
-// Changes the outputs of the step before into those that were answered.
-void take(const attest_outputs& answered, attest_outputs& out) {
-  attest_outputs now = answered;
-  keep_unpublished(out, now);
-  out = now;
-}
-
-// Mixer and battery estimate have no topic that they may leave out.
-template <typename Outputs>
-void take(const Outputs& answered, Outputs& out) {
-  out = answered;
-}
-
 // Shared by the port and its units, because a unit may outlive the conversation of its port.
 using Talk = std::shared_ptr<Conversation>;
 
-template <typename Base>
-class ProgramUnit : public Base {
+class ProgramUnit final : public Unit {
  public:
-  using typename Base::Inputs;
-  using typename Base::Outputs;
-  using Its = ModulePlace<Base>;
-
-  ProgramUnit(Talk talk, std::uint32_t number) : talk_(std::move(talk)), number_(number) {}
+  ProgramUnit(Talk talk, std::uint32_t number, Module module)
+      : talk_(std::move(talk)), number_(number), info_(info_of(module)) {}
   ~ProgramUnit() override { talk_->destroy_quietly(number_); }
   ProgramUnit(const ProgramUnit&) = delete;
   ProgramUnit& operator=(const ProgramUnit&) = delete;
@@ -47,11 +29,20 @@ class ProgramUnit : public Base {
     return talk_->set_parameter(number_, name, value);
   }
 
-  int step(const Inputs& in, Outputs& out) override {
-    set(step_, in, timestamp_sample_us_);
-    step_.sample.*Its::out = out;
-    const int result = talk_->step(number_, Its::module, step_);
-    if (result == ATTEST_OK) take(step_.sample.*Its::out, out);
+  int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
+    step_.timestamp_sample_us = timestamp_sample_us;
+    return ATTEST_OK;
+  }
+
+  int step_structs(const void* in, void* out) override {
+    Sample& sample = step_.sample;
+    std::memcpy(info_.in.in(sample), in, info_.in.size);
+    std::memcpy(info_.out.in(sample), out, info_.out.size);
+    const Sample before = sample;
+    const int result = talk_->step(number_, info_.module, step_);
+    if (result != ATTEST_OK) return result;
+    keep_unpublished(info_.module, before, sample);
+    std::memcpy(out, info_.out.in(sample), info_.out.size);
     return result;
   }
 
@@ -59,42 +50,26 @@ class ProgramUnit : public Base {
     return talk_->hello().has_batch ? attest::max_batch : 0;
   }
 
-  Batched batch(std::span<const Inputs> in, std::span<Outputs> out,
-                std::span<const std::uint64_t> timestamps_us) override {
-    batch_.resize(in.size());
-    for (std::size_t i = 0; i < in.size(); ++i) set(batch_[i], in[i], timestamps_us[i]);
+  Batched batch(std::span<Sample> samples, std::span<const std::uint64_t> timestamps_us) override {
+    batch_.resize(samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) batch_[i] = {timestamps_us[i], samples[i]};
+    Sample before = samples.front();
     Batched batched;
-    batched.result = talk_->batch(number_, Its::module, batch_, batched.done);
+    batched.result = talk_->batch(number_, info_.module, batch_, batched.done);
     for (std::size_t i = 0; i < batched.done; ++i) {
-      if (i > 0) out[i] = out[i - 1];
-      take(batch_[i].sample.*Its::out, out[i]);
+      samples[i].copy_outputs(batch_[i].sample);
+      keep_unpublished(info_.module, before, samples[i]);
+      before.copy_outputs(samples[i]);
     }
     return batched;
   }
 
- protected:
-  void set_time(std::uint64_t timestamp_sample_us) { timestamp_sample_us_ = timestamp_sample_us; }
-
  private:
-  static void set(ProgramStep& step, const Inputs& in, std::uint64_t timestamp_sample_us) {
-    step.timestamp_sample_us = timestamp_sample_us;
-    step.sample.*Its::in = in;
-  }
-
   Talk talk_;
   std::uint32_t number_;
-  std::uint64_t timestamp_sample_us_ = 0;
+  const ModuleInfo& info_;
   ProgramStep step_;
   std::vector<ProgramStep> batch_;
-};
-
-class ProgramController final : public ProgramUnit<Unit> {
- public:
-  using ProgramUnit::ProgramUnit;
-  int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
-    set_time(timestamp_sample_us);
-    return ATTEST_OK;
-  }
 };
 
 class ProgramPort final : public Port {
@@ -107,32 +82,18 @@ class ProgramPort final : public Port {
   std::vector<std::string> unsupported_groups() const override { return hello_.unsupported_groups; }
   std::optional<int> fraction_bits() const override { return hello_.fraction_bits; }
   std::optional<Rate> fixed_step() const override { return hello_.fixed_step; }
-  bool has_mixer() const override { return hello_.has_mixer; }
-  bool has_battery_status() const override { return hello_.has_battery_status; }
+  ModuleSet modules() const override { return hello_.modules; }
 
   void finish() override { talk_->throw_late(); }
 
-  std::unique_ptr<Unit> create(const std::string& profile) override {
-    return made<ProgramController>(Module::mc_att_control, profile, "");
-  }
-  std::unique_ptr<MixerUnit> create_mixer(const std::string& profile,
-                                          const std::string& definition) override {
-    return made<ProgramUnit<MixerUnit>>(Module::mixer, profile, definition);
-  }
-  std::unique_ptr<BatteryUnit> create_battery_status(const std::string& profile) override {
-    return made<ProgramUnit<BatteryUnit>>(Module::battery_status, profile, "");
-  }
-
- private:
-  template <typename Made>
-  std::unique_ptr<Made> made(Module module, const std::string& profile,
-                             const std::string& definition) {
+  std::unique_ptr<Unit> create_unit(Module module, const std::string& profile,
+                                    const std::string& definition) override {
     const auto& profiles = hello_.profiles;
     if (std::find(profiles.begin(), profiles.end(), profile) == profiles.end()) return nullptr;
     if (talk_->is_over()) start_again();
     const std::uint32_t number = ++units_;
     const int result = talk_->create(number, module, profile, definition);
-    if (result == ATTEST_OK) return std::make_unique<Made>(talk_, number);
+    if (result == ATTEST_OK) return std::make_unique<ProgramUnit>(talk_, number, module);
     if (result == ATTEST_UNSUPPORTED) return nullptr;
     throw PortBroke(
         PortBroke::How::rules,
@@ -141,6 +102,7 @@ class ProgramPort final : public Port {
                     result, static_cast<int>(ATTEST_OK), static_cast<int>(ATTEST_UNSUPPORTED)));
   }
 
+ private:
   void start_again() {
     auto talk = Conversation::begin(command_);
     if (!talk) throw PortBroke(PortBroke::How::ended, "started again, " + talk.error().message);

@@ -10,6 +10,7 @@
 #include "harness/port/conversation.hpp"
 #include "harness/port/port.hpp"
 #include "harness/trace/csv_cells.hpp"
+#include "harness/trace/output_topics.hpp"
 
 namespace attest {
 namespace {
@@ -65,9 +66,7 @@ class TextConversation final : public Conversation {
     });
     const json answer = exchange(Request::step, unit, std::move(request));
     // Topics of which the answer says nothing are not published.
-    step.sample.out.vehicle_rates_setpoint.published = 0;
-    step.sample.out.actuator_controls_0.published = 0;
-    step.sample.out.mc_att_ctrl_status.published = 0;
+    clear_published(module, step.sample);
     std::size_t read = 0;
     for_each_channel(module, "out/", [&](const Channel& channel) {
       read += take_output(answer, channel, step.sample) ? 1 : 0;

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "harness/port/published.hpp"
+#include "harness/trace/output_topics.hpp"
 
 namespace attest {
 namespace {
@@ -199,10 +199,11 @@ bool is_published_flag(const Channel& channel) { return channel.name.ends_with("
 }  // namespace
 
 void keep_unpublished(Trace& trace) {
-  attest_outputs before{};
+  const Module module = module_of(trace.present);
+  Sample before{};
   for (Sample& sample : trace.samples) {
-    keep_unpublished(before, sample.out);
-    before = sample.out;
+    keep_unpublished(module, before, sample);
+    before.copy_outputs(sample);
   }
 }
 

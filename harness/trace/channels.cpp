@@ -179,15 +179,6 @@ void store(Sample& sample, std::size_t offset, T value) {
 
 }  // namespace
 
-void Sample::clear_outputs() { copy_outputs({}); }
-
-void Sample::copy_outputs(const Sample& from) {
-  static_assert(sample_has_three_modules);
-  out = from.out;
-  mixer_out = from.mixer_out;
-  battery_out = from.battery_out;
-}
-
 std::span<const Channel> channels() { return table; }
 
 std::optional<std::size_t> find_channel(std::string_view name) {
@@ -221,18 +212,6 @@ Module module_of(const ChannelSet& channels) {
 }
 
 std::span<const std::string_view> updated_topics() { return topics; }
-
-std::string_view name_of(Module module) {
-  switch (module) {
-    case Module::mc_att_control:
-      return "mc_att_control";
-    case Module::mixer:
-      return "mixer";
-    case Module::battery_status:
-      return "battery_status";
-  }
-  return "";
-}
 
 std::string_view unit_of(Quantity quantity) {
   switch (quantity) {

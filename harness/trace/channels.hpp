@@ -14,35 +14,9 @@
 #include <span>
 #include <string_view>
 
-#include "controller/attest_actuation.h"
-#include "controller/attest_unit.h"
+#include "harness/trace/module.hpp"
 
 namespace attest {
-
-// The module of a flight controller that a trace records: the controller of attest_unit.h, or one
-// of the extensions of attest_actuation.h.
-enum class Module : std::uint8_t { mc_att_control, mixer, battery_status };
-std::string_view name_of(Module module);  // "mc_att_control"
-
-// The inputs and outputs of one step of a module. Those of the other modules are zero.
-struct Sample {
-  attest_inputs in;  // its timestamp is that of every module's step
-  attest_outputs out;
-  attest_mixer_inputs mixer_in;
-  attest_mixer_outputs mixer_out;
-  attest_battery_inputs battery_in;
-  attest_battery_outputs battery_out;
-
-  // Both act on the outputs of all modules.
-  void clear_outputs();
-  void copy_outputs(const Sample& from);
-};
-
-// False when a module was added at the end of Sample. The code that asserts this must then handle
-// the outputs of that module, too.
-inline constexpr bool sample_has_three_modules =
-    sizeof(Sample) - offsetof(Sample, battery_out) - sizeof(attest_battery_outputs) <
-    alignof(Sample);
 
 enum class ChannelType : std::uint8_t { u64, f32, u8, bit };
 

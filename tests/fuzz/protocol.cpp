@@ -61,9 +61,10 @@ Learned talk_with(std::string_view bytes) {
   Conversation& talk = **begun;
   require(!(talk.hello().has_batch && talk.hello().frames == FrameForm::text), "a batch of text");
   try {
-    use_unit(talk, 1, Module::mc_att_control, learned);
-    if (talk.hello().has_mixer) use_unit(talk, 2, Module::mixer, learned);
-    if (talk.hello().has_battery_status) use_unit(talk, 3, Module::battery_status, learned);
+    std::uint32_t unit = 0;
+    for (const ModuleInfo& info : modules()) {
+      if (contains(talk.hello().modules, info.module)) use_unit(talk, ++unit, info.module, learned);
+    }
   } catch (const PortBroke& broke) {
     require(talk.is_over(), "no more requests are made after a wrong answer");
     require_readable(broke.what());

@@ -22,7 +22,7 @@ const char* const the_profile = "px4-v1.5.5";
 using Change = std::function<int(std::size_t step, attest_outputs& out)>;
 
 // The reference, with its outputs changed.
-class ChangedUnit final : public Unit {
+class ChangedUnit final : public UnitOf<attest_inputs, attest_outputs> {
  public:
   ChangedUnit(std::unique_ptr<Unit> law, Change change, std::vector<attest_inputs>& given)
       : law_(std::move(law)), change_(std::move(change)), given_(given) {}
@@ -48,7 +48,8 @@ class ChangedPort final : public Port {
 
   std::string name() const override { return "changed"; }
   std::string version() const override { return "1"; }
-  std::unique_ptr<Unit> create(const std::string& profile) override {
+  std::unique_ptr<Unit> create_unit(Module, const std::string& profile,
+                                    const std::string&) override {
     return std::make_unique<ChangedUnit>(reference_->create(profile), change_, given);
   }
 

@@ -19,24 +19,31 @@ using testing::SizeIs;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
+Answer answer_of(const Sample& sample) {
+  Trace trace;
+  trace.samples.push_back(sample);
+  return outputs_of(trace).at(0);
+}
+
 Answer rates(float roll, float pitch = 0, float yaw = 0) {
-  Answer answer{};
-  answer.out.vehicle_rates_setpoint.roll = roll;
-  answer.out.vehicle_rates_setpoint.pitch = pitch;
-  answer.out.vehicle_rates_setpoint.yaw = yaw;
-  return answer;
+  Sample sample{};
+  sample.out.vehicle_rates_setpoint.roll = roll;
+  sample.out.vehicle_rates_setpoint.pitch = pitch;
+  sample.out.vehicle_rates_setpoint.yaw = yaw;
+  return answer_of(sample);
 }
 
 const Answer zero = rates(0);
 
-bool are_same(const Answer& port, const Answer& law) {
-  return !distinct_similarity({port}, {law}, {}).deviates;
+bool are_same(const Answer& port, const Answer& law, Module module = Module::mc_att_control) {
+  return !distinct_similarity({port}, {law}, {}, module).deviates;
 }
 
 // The similarity of one fault.
-Similarity similarity_of_one(const Outputs& fault, const Outputs& port, const Outputs& law) {
+Similarity similarity_of_one(const Outputs& fault, const Outputs& port, const Outputs& law,
+                             Module module = Module::mc_att_control) {
   const std::vector<Outputs> distinct{fault};
-  return distinct_similarity(port, law, distinct).similarities.at(0);
+  return distinct_similarity(port, law, distinct, module).similarities.at(0);
 }
 
 std::vector<Channel> output_channels() {
@@ -57,9 +64,7 @@ Sample sample_with(const Channel& channel, double value) {
 }
 
 Answer answer_with(const Channel& channel, double value) {
-  Trace trace;
-  trace.samples.push_back(sample_with(channel, value));
-  return outputs_of(trace).at(0);
+  return answer_of(sample_with(channel, value));
 }
 
 // Whether the value passes at the numeric level.
@@ -104,10 +109,11 @@ TEST(Similarity, AnInfinityIsTheSameAsItself) {
 }
 
 TEST(Similarity, AnyFlagButZeroIsTrue) {
-  Answer one = zero, other = zero;
-  one.out.vehicle_rates_setpoint.published = 1;
-  other.out.vehicle_rates_setpoint.published = 4;
-  EXPECT_TRUE(are_same(one, other));
+  Sample sample{};
+  sample.out.vehicle_rates_setpoint.published = 1;
+  const Answer one = answer_of(sample);
+  sample.out.vehicle_rates_setpoint.published = 4;
+  EXPECT_TRUE(are_same(one, answer_of(sample)));
   EXPECT_FALSE(are_same(one, zero));
   EXPECT_FALSE(are_same(zero, one));
 }
@@ -128,7 +134,7 @@ TEST(Similarity, ValuesAreTheSameWhenTheNumericLevelWouldPassThem) {
     const Channel& channel = channels()[i];
     if (!channel.is_output()) continue;
     const auto expect = [&](double got, double want) {
-      EXPECT_EQ(are_same(answer_with(channel, got), answer_with(channel, want)),
+      EXPECT_EQ(are_same(answer_with(channel, got), answer_with(channel, want), channel.module),
                 passes(i, got, want))
           << channel.name << ": " << got << " for " << want;
     };
@@ -184,9 +190,11 @@ TEST(Similarity, EveryOutputIsAValueOfItsOwn) {
   const auto outputs = output_channels();
   for (const Channel& of_port : outputs) {
     for (const Channel& of_fault : outputs) {
+      if (of_port.module != of_fault.module) continue;
       const bool same = of_port.name == of_fault.name;
-      const Similarity one = similarity_of_one(
-          {answer_with(of_fault, 1)}, {answer_with(of_port, 1)}, {answer_with(of_port, 0)});
+      const Similarity one =
+          similarity_of_one({answer_with(of_fault, 1)}, {answer_with(of_port, 1)},
+                            {answer_with(of_port, 0)}, of_port.module);
       EXPECT_EQ(one.intersection, same ? 1u : 0u) << of_port.name << ", " << of_fault.name;
       EXPECT_EQ(one.union_size, same ? 1u : 2u) << of_port.name << ", " << of_fault.name;
     }
@@ -219,10 +227,10 @@ TEST(Similarity, OutputsAreThoseOfEachTick) {
   trace.samples[1].battery_out.battery_status.scale = 1.25f;
   const Outputs outputs = outputs_of(trace);
   ASSERT_THAT(outputs, SizeIs(2));
-  EXPECT_EQ(outputs[0].out.actuator_controls_0.control[3], 0.5f);
-  EXPECT_EQ(outputs[0].battery_out.battery_status.scale, 0);
-  EXPECT_EQ(outputs[1].mixer_out.actuator_outputs.output[2], 0.25f);
-  EXPECT_EQ(outputs[1].battery_out.battery_status.scale, 1.25f);
+  EXPECT_EQ(outputs[0].sample().out.actuator_controls_0.control[3], 0.5f);
+  EXPECT_EQ(outputs[0].sample().battery_out.battery_status.scale, 0);
+  EXPECT_EQ(outputs[1].sample().mixer_out.actuator_outputs.output[2], 0.25f);
+  EXPECT_EQ(outputs[1].sample().battery_out.battery_status.scale, 1.25f);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 const std::string mixer = "R: 4x 10000 10000 10000 0";
 
 // A controller that calls back in each of its functions.
-class CallingUnit final : public Unit {
+class CallingUnit final : public UnitOf<attest_inputs, attest_outputs> {
  public:
   explicit CallingUnit(const std::function<void()>& call) : call_(call) {}
   ~CallingUnit() override { call_(); }
@@ -34,7 +34,7 @@ class CallingPort final : public Port {
   explicit CallingPort(const std::function<void()>& call) : call_(call) {}
   std::string name() const override { return "calling"; }
   std::string version() const override { return "1"; }
-  std::unique_ptr<Unit> create(const std::string&) override {
+  std::unique_ptr<Unit> create_unit(Module, const std::string&, const std::string&) override {
     call_();
     return std::make_unique<CallingUnit>(call_);
   }
@@ -56,7 +56,7 @@ TEST(PortCalls, TheRunningCallIsNamed) {
   EXPECT_EQ(calls->current(), "");
   attest_outputs out{};
   for (const char* expected : {" in step() at tick 0", " in step() at tick 1"}) {
-    EXPECT_EQ(unit->step({}, out), ATTEST_OK);
+    EXPECT_EQ(unit->step(attest_inputs{}, out), ATTEST_OK);
     EXPECT_EQ(seen, expected);
   }
   EXPECT_EQ(unit->set_parameter("MC_ROLL_P", 6), ATTEST_OK);
@@ -77,10 +77,10 @@ TEST(PortCalls, EachInstanceCountsItsOwnTicks) {
   const auto port = calls->noted(original);
   const auto one = port->create(""), other = port->create("");
   attest_outputs out{};
-  one->step({}, out);
-  one->step({}, out);
+  one->step(attest_inputs{}, out);
+  one->step(attest_inputs{}, out);
   EXPECT_EQ(seen, " in step() at tick 1");
-  other->step({}, out);
+  other->step(attest_inputs{}, out);
   EXPECT_EQ(seen, " in step() at tick 0");
 }
 
@@ -92,7 +92,9 @@ class DeclaringPort final : public Port {
   std::vector<std::string> unsupported_groups() const override { return {"rates"}; }
   std::optional<int> fraction_bits() const override { return 24; }
   std::optional<Rate> fixed_step() const override { return Rate::hz(250); }
-  std::unique_ptr<Unit> create(const std::string&) override { return nullptr; }
+  std::unique_ptr<Unit> create_unit(Module, const std::string&, const std::string&) override {
+    return nullptr;
+  }
 };
 
 TEST(PortCalls, TheNotedPortIsThePort) {
@@ -105,14 +107,14 @@ TEST(PortCalls, TheNotedPortIsThePort) {
   EXPECT_EQ(port->unsupported_groups(), std::vector<std::string>{"rates"});
   EXPECT_EQ(port->fraction_bits(), 24);
   EXPECT_EQ(port->fixed_step(), Rate::hz(250));
-  EXPECT_FALSE(port->has_mixer());
-  EXPECT_FALSE(port->has_battery_status());
+  EXPECT_EQ(port->modules(), only(Module::mc_att_control));
   EXPECT_EQ(port->create("px4-v1.5.5"), nullptr);
   EXPECT_EQ(calls->current(), "");
   const auto builtin = open_builtin();
   const auto whole = calls->noted(*builtin);
-  EXPECT_NE(whole->create_mixer("px4-v1.5.5", mixer), nullptr);
-  EXPECT_NE(whole->create_battery_status("px4-v1.5.5"), nullptr);
+  for (const ModuleInfo& info : modules()) {
+    EXPECT_NE(whole->create_unit(info.module, "px4-v1.5.5", mixer), nullptr) << info.name;
+  }
 }
 
 }  // namespace

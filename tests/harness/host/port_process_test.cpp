@@ -156,7 +156,7 @@ TEST(PortProcess, WhatTheStepSaysComesBack) {
 
 TEST(PortProcess, APortIsHeldToWhatItSaid) {
   HostOptions options;
-  options.said = PortSays{"another", "1", {}, {}, {}, false, false, {}};
+  options.said = PortSays{"another", "1", {}, {}, {}, ModuleSet(), {}};
   const auto host = start_host(options);
   ASSERT_TRUE(host);
   Trace trace = pitching();
@@ -202,17 +202,16 @@ TEST(PortProcess, DeathInTheMiddleOfAnAnswerIsACrash) {
 }
 
 TEST(PortSaysTest, EachChangedAnswerOfAPortIsReported) {
-  const PortSays said{"a", "1", {"rates"}, 22, Rate::hz(250), true, true, {}};
+  const PortSays said{"a", "1", {"rates"}, 22, Rate::hz(250), ModuleSet().set(), {}};
   EXPECT_EQ(change(said, said), "");
-  std::vector<PortSays> others(8, said);
+  std::vector<PortSays> others(7, said);
   others[0].name = "b";
   others[1].version = "2";
   others[2].unsupported_groups = {"rates", "tpa"};
   others[3].fraction_bits = 20;
   others[4].fraction_bits.reset();
   others[5].fixed_step = Rate::hz(500);
-  others[6].has_mixer = false;
-  others[7].has_battery_status = false;
+  others[6].modules = only(Module::mc_att_control);
   for (const PortSays& now : others) EXPECT_NE(change(said, now), "");
 }
 

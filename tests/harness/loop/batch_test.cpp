@@ -20,7 +20,7 @@ using testing::ElementsAre;
 using Kind = PortFault::Kind;
 
 // Takes at most three steps in a batch. Its output is the sum of the one before and the time.
-class FakeProgram final : public Unit {
+class FakeProgram final : public UnitOf<attest_inputs, attest_outputs> {
  public:
   int set_parameter(const std::string& name, float value) override {
     calls.push_back(fmt::format("{}={}", name, value));
@@ -28,18 +28,20 @@ class FakeProgram final : public Unit {
   }
   int step(const attest_inputs&, attest_outputs&) override { return ATTEST_FAILED; }
   std::size_t max_batch() const override { return 3; }
-  Batched batch(std::span<const attest_inputs> in, std::span<attest_outputs> out,
+  Batched batch(std::span<Sample> samples,
                 std::span<const std::uint64_t> timestamp_samples_us) override {
-    calls.push_back(fmt::format("batch {}..{}", in.front().timestamp, timestamp_samples_us.back()));
-    if (ends_at && in.back().timestamp >= *ends_at) {
+    const std::uint64_t first = samples.front().in.timestamp, last = timestamp_samples_us.back();
+    calls.push_back(fmt::format("batch {}..{}", first, last));
+    if (ends_at && last >= *ends_at) {
       throw PortBroke(PortBroke::How::ended, "the program exited with status 3");
     }
-    for (std::size_t i = 0; i < in.size(); ++i) {
-      if (fails_at && in[i].timestamp == *fails_at) return {i, ATTEST_FAILED};
-      if (i > 0) out[i] = out[i - 1];
-      out[i].vehicle_rates_setpoint.roll += static_cast<float>(in[i].timestamp);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const std::uint64_t now = samples[i].in.timestamp;
+      if (fails_at && now == *fails_at) return {i, ATTEST_FAILED};
+      if (i > 0) samples[i].copy_outputs(samples[i - 1]);
+      samples[i].out.vehicle_rates_setpoint.roll += static_cast<float>(now);
     }
-    return {in.size(), ATTEST_OK};
+    return {samples.size(), ATTEST_OK};
   }
 
   std::vector<std::string> calls;

@@ -57,7 +57,7 @@ class NotingPlant final : public Plant {
   Nanoseconds now_{0};
 };
 
-class NotingUnit final : public Unit {
+class NotingUnit final : public UnitOf<attest_inputs, attest_outputs> {
  public:
   explicit NotingUnit(Notes& notes) : notes_(notes) {}
 

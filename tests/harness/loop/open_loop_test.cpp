@@ -22,7 +22,7 @@ using testing::IsEmpty;
 using Kind = PortFault::Kind;
 
 // Runs the step that the test gives, and records the calls.
-class FakeUnit final : public Unit {
+class FakeUnit final : public UnitOf<attest_inputs, attest_outputs> {
  public:
   using Step = std::function<int(const attest_inputs&, attest_outputs&)>;
   explicit FakeUnit(Step step = [](const auto&, auto&) { return ATTEST_OK; })
@@ -153,7 +153,7 @@ TEST(Drive, InputsAreConst) {
 }
 
 // Runs the step that the test gives.
-class FakeMixer final : public MixerUnit {
+class FakeMixer final : public UnitOf<attest_mixer_inputs, attest_mixer_outputs> {
  public:
   using Step = std::function<int(const attest_mixer_inputs&, attest_mixer_outputs&)>;
   explicit FakeMixer(Step step) : step_(std::move(step)) {}
@@ -171,11 +171,10 @@ class FakePort final : public Port {
   explicit FakePort(FakeMixer::Step step) : step_(std::move(step)) {}
   std::string name() const override { return "fake"; }
   std::string version() const override { return "1"; }
-  std::unique_ptr<Unit> create(const std::string&) override { return nullptr; }
-  bool has_mixer() const override { return true; }
-  std::unique_ptr<MixerUnit> create_mixer(const std::string& profile,
-                                          const std::string& definition) override {
-    if (profile != "known") return nullptr;
+  ModuleSet modules() const override { return only(Module::mc_att_control) | only(Module::mixer); }
+  std::unique_ptr<Unit> create_unit(Module module, const std::string& profile,
+                                    const std::string& definition) override {
+    if (profile != "known" || module != Module::mixer) return nullptr;
     asked_for = definition;
     return std::make_unique<FakeMixer>(step_);
   }
@@ -249,7 +248,7 @@ class CountingPort final : public Port {
  public:
   std::string name() const override { return "counting"; }
   std::string version() const override { return "1"; }
-  std::unique_ptr<Unit> create(const std::string&) override {
+  std::unique_ptr<Unit> create_unit(Module, const std::string&, const std::string&) override {
     if (alive_ == most_alive) return nullptr;
     ++alive_;
     calls.push_back(fmt::format("create {}", ++made_));
@@ -260,7 +259,7 @@ class CountingPort final : public Port {
   std::vector<std::string> calls;
 
  private:
-  class Counting final : public Unit {
+  class Counting final : public UnitOf<attest_inputs, attest_outputs> {
    public:
     Counting(CountingPort& port, int number) : port_(port), number_(number) {}
     ~Counting() override {

@@ -64,8 +64,7 @@ TEST(ParseHello, TakesAllThatAPortMaySay) {
   EXPECT_THAT(hello->profiles, ElementsAre("px4-v1.5.5"));
   EXPECT_EQ(hello->frames, FrameForm::binary);
   EXPECT_TRUE(hello->has_batch);
-  EXPECT_TRUE(hello->has_mixer);
-  EXPECT_FALSE(hello->has_battery_status);
+  EXPECT_EQ(hello->modules, only(Module::mc_att_control) | only(Module::mixer));
   EXPECT_THAT(hello->unsupported_groups, ElementsAre("tpa"));
   EXPECT_EQ(hello->fraction_bits, 22);
   EXPECT_EQ(hello->fixed_step->to_string(), "1000/3");
@@ -271,28 +270,28 @@ TEST(ProgramPort, ABatchIsTheSameAsItsSteps) {
   ASSERT_TRUE(batched && stepped);
   EXPECT_EQ(stepped->max_batch(), 0u);
   ASSERT_GE(batched->max_batch(), 50u);
-  std::vector<attest_inputs> in(50, level_and_rolling());
+  std::vector<Sample> samples(50);
   std::vector<std::uint64_t> times;
-  for (std::size_t i = 0; i < in.size(); ++i) {
-    in[i].timestamp += 4000 * i;
-    if (i > 0) in[i].updated = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    attest_inputs& in = samples[i].in = level_and_rolling();
+    in.timestamp += 4000 * i;
+    if (i > 0) in.updated = 0;
     if (i == 40) {  // from here on nothing is controlled, and nothing published
-      in[i].updated = ATTEST_UPDATED_VEHICLE_CONTROL_MODE;
-      in[i].vehicle_control_mode = {};
+      in.updated = ATTEST_UPDATED_VEHICLE_CONTROL_MODE;
+      in.vehicle_control_mode = {};
     }
-    times.push_back(in[i].timestamp);
+    times.push_back(in.timestamp);
   }
-  std::vector<attest_outputs> together(in.size());
-  const Batched done = batched->batch(in, together, times);
-  EXPECT_EQ(done.done, in.size());
+  const Batched done = batched->batch(samples, times);
+  EXPECT_EQ(done.done, samples.size());
   EXPECT_EQ(done.result, ATTEST_OK);
   attest_outputs one{};
-  for (std::size_t i = 0; i < in.size(); ++i) {
-    ASSERT_EQ(stepped->step(in[i], one), ATTEST_OK);
-    EXPECT_EQ(together[i].actuator_controls_0.control[0], one.actuator_controls_0.control[0]) << i;
-    EXPECT_EQ(together[i].mc_att_ctrl_status.roll_rate_integ,
-              one.mc_att_ctrl_status.roll_rate_integ);
-    EXPECT_EQ(together[i].vehicle_rates_setpoint.thrust, one.vehicle_rates_setpoint.thrust) << i;
+  for (const Sample& sample : samples) {
+    ASSERT_EQ(stepped->step(sample.in, one), ATTEST_OK);
+    const attest_outputs& out = sample.out;
+    EXPECT_EQ(out.actuator_controls_0.control[0], one.actuator_controls_0.control[0]);
+    EXPECT_EQ(out.mc_att_ctrl_status.roll_rate_integ, one.mc_att_ctrl_status.roll_rate_integ);
+    EXPECT_EQ(out.vehicle_rates_setpoint.thrust, one.vehicle_rates_setpoint.thrust);
   }
 }
 

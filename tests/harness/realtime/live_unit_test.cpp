@@ -21,7 +21,7 @@ namespace {
 using testing::ElementsAre;
 
 // Its steps take the times that the test gives, by step number.
-class SlowUnit final : public Unit {
+class SlowUnit final : public UnitOf<attest_inputs, attest_outputs> {
  public:
   explicit SlowUnit(ScriptedClock& clock) : clock_(clock) {}
   int set_parameter(const std::string&, float) override { return ATTEST_OK; }

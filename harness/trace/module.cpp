@@ -1,0 +1,55 @@
+#include "harness/trace/module.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+namespace attest {
+namespace {
+
+#define BLOCK(member) \
+  Block { offsetof(Sample, member), sizeof(Sample::member) }
+
+constexpr std::array<ModuleInfo, module_count> infos{{
+    {Module::mc_att_control, "mc_att_control", "controller", nullptr, BLOCK(in), BLOCK(out), true},
+    {Module::mixer, "mixer", "mixer", ATTEST_EXTENSION_MIXER, BLOCK(mixer_in), BLOCK(mixer_out),
+     false},
+    {Module::battery_status, "battery_status", "battery estimate", ATTEST_EXTENSION_BATTERY_STATUS,
+     BLOCK(battery_in), BLOCK(battery_out), false},
+}};
+
+#undef BLOCK
+
+// Outputs follow inputs, so the outputs of all modules are one range of bytes.
+constexpr std::size_t outputs_begin = sizeof(Sample) - outputs_size;
+static_assert(std::all_of(infos.begin(), infos.end(), [](const ModuleInfo& info) {
+  return info.in.offset < outputs_begin && info.out.offset >= outputs_begin;
+}));
+
+}  // namespace
+
+std::span<const std::byte> Sample::outputs() const {
+  return std::as_bytes(std::span(this, 1)).subspan(outputs_begin);
+}
+
+std::span<std::byte> Sample::outputs() {
+  return std::as_writable_bytes(std::span(this, 1)).subspan(outputs_begin);
+}
+
+void Sample::copy_outputs(const Sample& from) {
+  std::memcpy(outputs().data(), from.outputs().data(), outputs().size());
+}
+
+std::span<const ModuleInfo> modules() { return infos; }
+
+const ModuleInfo& info_of(Module module) { return infos[static_cast<std::size_t>(module)]; }
+
+std::string_view name_of(Module module) { return info_of(module).name; }
+
+std::optional<Module> module_named(std::string_view name) {
+  const auto found = std::find_if(infos.begin(), infos.end(),
+                                  [&](const ModuleInfo& info) { return info.name == name; });
+  return found == infos.end() ? std::nullopt : std::optional(found->module);
+}
+
+}  // namespace attest

@@ -1,0 +1,68 @@
+// The modules of a flight controller as data: where the inputs and outputs of each are in a Sample.
+#pragma once
+
+#include <bitset>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "controller/attest_actuation.h"
+#include "controller/attest_unit.h"
+
+namespace attest {
+
+// What is stepped: the controller of attest_unit.h, or an extension of it.
+enum class Module : std::uint8_t { mc_att_control, mixer, battery_status };
+inline constexpr auto module_count = static_cast<std::size_t>(Module::battery_status) + 1;
+using ModuleSet = std::bitset<module_count>;
+inline ModuleSet only(Module module) { return ModuleSet().set(static_cast<std::size_t>(module)); }
+inline bool contains(const ModuleSet& set, Module module) {
+  return set[static_cast<std::size_t>(module)];
+}
+
+// The inputs and outputs of one step of a module. Those of the other modules are zero.
+struct Sample {
+  attest_inputs in;  // its timestamp is that of every module's step
+  attest_mixer_inputs mixer_in;
+  attest_battery_inputs battery_in;
+  attest_outputs out;
+  attest_mixer_outputs mixer_out;
+  attest_battery_outputs battery_out;
+
+  // The bytes of the outputs of all modules.
+  std::span<const std::byte> outputs() const;
+  std::span<std::byte> outputs();
+  void copy_outputs(const Sample& from);
+  void clear_outputs() { copy_outputs({}); }
+};
+
+inline constexpr std::size_t outputs_size = sizeof(Sample) - offsetof(Sample, out);
+
+// Where in a Sample an ABI struct is.
+struct Block {
+  std::size_t offset, size;  // [bytes]
+
+  const void* in(const Sample& sample) const {
+    return reinterpret_cast<const std::byte*>(&sample) + offset;
+  }
+  void* in(Sample& sample) const { return reinterpret_cast<std::byte*>(&sample) + offset; }
+};
+
+struct ModuleInfo {
+  Module module;
+  std::string_view name;   // "battery_status"
+  std::string_view title;  // for messages: "battery estimate"
+  const char* extension;   // of attest_unit.h that has its functions; null for the controller
+  Block in, out;
+  bool has_updated;  // its inputs begin like attest_inputs, with a bit for each new topic
+};
+
+// In the order of Module.
+std::span<const ModuleInfo> modules();
+const ModuleInfo& info_of(Module module);
+std::string_view name_of(Module module);
+std::optional<Module> module_named(std::string_view name);
+
+}  // namespace attest

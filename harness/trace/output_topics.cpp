@@ -1,0 +1,72 @@
+#include "harness/trace/output_topics.hpp"
+
+#include <array>
+#include <cstring>
+#include <vector>
+
+namespace attest {
+namespace {
+
+constexpr std::string_view output_prefix = "out/";
+constexpr std::string_view flag_suffix = ".published";
+
+std::string_view topic_of(std::string_view name) {
+  return name.substr(output_prefix.size(), name.find('.') - output_prefix.size());
+}
+
+// In the ABI a topic is a struct that ends with its flag `published`.
+OutputTopic topic_with_flag(std::size_t flag) {
+  const Channel& published = channels()[flag];
+  OutputTopic topic{topic_of(published.name), flag, {published.offset, 1}};
+  std::size_t begin = published.offset;
+  for (const Channel& channel : channels()) {
+    const bool is_in_it = channel.is_output() && channel.module == published.module &&
+                          topic_of(channel.name) == topic.name;
+    if (is_in_it) begin = std::min(begin, channel.offset);
+  }
+  topic.block = {begin, published.offset + 1 - begin};
+  return topic;
+}
+
+std::vector<OutputTopic> topics_of(Module module) {
+  std::vector<OutputTopic> topics;
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    const Channel& channel = channels()[i];
+    const bool is_flag = channel.is_output() && channel.name.ends_with(flag_suffix);
+    if (is_flag && channel.module == module) topics.push_back(topic_with_flag(i));
+  }
+  return topics;
+}
+
+}  // namespace
+
+std::span<const OutputTopic> output_topics(Module module) {
+  static const auto of_modules = [] {
+    std::array<std::vector<OutputTopic>, module_count> all;
+    for (const ModuleInfo& info : modules()) {
+      all[static_cast<std::size_t>(info.module)] = topics_of(info.module);
+    }
+    return all;
+  }();
+  return of_modules[static_cast<std::size_t>(module)];
+}
+
+bool is_published(const OutputTopic& topic, const Sample& sample) {
+  return value_of(channels()[topic.published], sample) != 0;
+}
+
+void keep_unpublished(Module module, const Sample& before, Sample& now) {
+  for (const OutputTopic& topic : output_topics(module)) {
+    if (is_published(topic, now)) continue;
+    std::memcpy(topic.block.in(now), topic.block.in(before), topic.block.size);
+    set_value(channels()[topic.published], now, 0);
+  }
+}
+
+void clear_published(Module module, Sample& sample) {
+  for (const OutputTopic& topic : output_topics(module)) {
+    set_value(channels()[topic.published], sample, 0);
+  }
+}
+
+}  // namespace attest
