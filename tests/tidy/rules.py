@@ -82,8 +82,10 @@ def controller_stands_alone(tree: Tree):
             continue
         for include in cxx.includes(tree.text(path)):
             own = include.quoted and not include.path.startswith(("harness/", "tests/"))
-            # A starter is compiled against the installed header.
-            library = include.path.startswith(("Eigen/", "tl/", "attest_unit.h"))
+            # A starter is compiled against the installed headers.
+            library = include.path.startswith(
+                ("Eigen/", "tl/", "attest_unit.h", "attest_cascade.h")
+            )
             if not own and not library and not _STANDARD.fullmatch(include.path):
                 yield Finding(
                     path,
