@@ -122,8 +122,8 @@ void write_topic(const Ticks& ticks, std::string_view topic, std::uint32_t bit, 
 
 void write_topics(const Ticks& ticks, TomlWriter& toml) {
   write_fields(ticks, "control_state", all_of(ticks), toml);
-  for (const std::string_view topic : updated_topics()) {
-    const auto bit = find_channel(fmt::format("in/updated.{}", topic));
+  for (const std::string_view topic : updated_topics(Module::mc_att_control)) {
+    const auto bit = find_channel(Module::mc_att_control, fmt::format("in/updated.{}", topic));
     if (topic == "parameter_update" || !bit) continue;
     write_topic(ticks, topic, channels()[*bit].bit, toml);
   }

@@ -233,11 +233,12 @@ std::string_view field_of(std::string_view channel) {
 }
 
 // The topic with its baseline values.
-TopicStimulus baseline_topic(std::string_view name, std::uint32_t updated_bit, bool is_flight) {
+TopicStimulus baseline_topic(Module module, std::string_view name, std::uint32_t updated_bit,
+                             bool is_flight) {
   TopicStimulus topic{std::string(name), updated_bit, {}, {}, {}};
   const auto table = channels();
   for (std::size_t i = 0; i < table.size(); ++i) {
-    const bool is_field = table[i].name.starts_with(input_prefix) &&
+    const bool is_field = table[i].module == module && table[i].name.starts_with(input_prefix) &&
                           table[i].type != ChannelType::bit && topic_of(table[i].name) == name;
     if (!is_field) continue;
     const bool of_hover =

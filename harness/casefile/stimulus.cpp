@@ -261,8 +261,7 @@ void Stimulus::tick(std::size_t tick, Nanoseconds now, Sample& sample,
   sample.in.updated = 0;
   for (Publisher& publisher : impl_->publishers) publisher.tick(now, sample);
   impl_->parameters.tick(tick, now, sample, changes);
-  // Only the controller has updated bits.
-  if (impl_->module != Module::mc_att_control) sample.in.updated = 0;
+  if (!info_of(impl_->module).has_updated) sample.in.updated = 0;
 }
 
 namespace {
@@ -272,7 +271,7 @@ ChannelSet channels_of(const Case& the_case) {
   ChannelSet channels = attest::channels_of(the_case.module);
   if (the_case.module != Module::mixer) return channels;
   const std::size_t rotors = actuation::parse_mixer(the_case.mixer)->rotors.size();
-  const std::size_t first = *find_channel("out/actuator_outputs.output[0]");
+  const std::size_t first = *find_channel(Module::mixer, "out/actuator_outputs.output[0]");
   for (std::size_t i = rotors; i < actuation::rotors_max; ++i) channels.reset(first + i);
   return channels;
 }

@@ -45,7 +45,7 @@ std::string declarations_of(const RunResult& run) {
   return fmt::format("{} fraction bits, fixed step {}, {} outputs not recorded: {}",
                      run.fraction_bits.value_or(0),
                      run.fixed_step ? run.fixed_step->to_string() : "none",
-                     run.not_recorded.count(), run.not_recorded.to_string());
+                     names_of(run.not_recorded).size(), run.not_recorded.to_string());
 }
 
 std::string limits_of(const RunResult& run) {

@@ -46,9 +46,8 @@ std::vector<std::string> names_in(const std::vector<TimedSignals>& sources) {
 std::vector<std::string> names_by_default(const std::vector<std::string>& all) {
   std::vector<std::string> outputs;
   std::copy_if(all.begin(), all.end(), std::back_inserter(outputs), [](const std::string& name) {
-    const auto channel = find_channel("out/" + name);
-    return channel && channels()[*channel].module == Module::mc_att_control &&
-           channels()[*channel].type == ChannelType::f32;
+    const auto channel = find_channel(Module::mc_att_control, "out/" + name);
+    return channel && channels()[*channel].type == ChannelType::f32;
   });
   return outputs.empty() ? all : outputs;
 }

@@ -237,10 +237,11 @@ bool same_parameters(const std::map<std::string, float>& a, const std::map<std::
   });
 }
 
-bool same_inputs(const Sample& a, const Sample& b) {
+bool same_inputs(const Sample& a, const Sample& b, Module module) {
   const auto table = channels();
   return std::all_of(table.begin(), table.end(), [&](const Channel& channel) {
-    if (channel.is_output()) return true;
+    const bool is_timestamp = &channel == &table.front();
+    if (channel.is_output() || (channel.module != module && !is_timestamp)) return true;
     return channel.type == ChannelType::f32 ? same_bits(float_of(channel, a), float_of(channel, b))
                                             : value_of(channel, a) == value_of(channel, b);
   });
@@ -250,9 +251,10 @@ bool same_inputs(const Sample& a, const Sample& b) {
 
 std::optional<std::size_t> first_input_difference(const Trace& a, const Trace& b) {
   const std::size_t common = std::min(a.samples.size(), b.samples.size());
+  const Module module = module_of(a.present | b.present);
   ParametersInForce of_a(a), of_b(b);
   for (std::size_t tick = 0; tick < common; ++tick) {
-    if (!same_inputs(a.samples[tick], b.samples[tick])) return tick;
+    if (!same_inputs(a.samples[tick], b.samples[tick], module)) return tick;
     if (!same_parameters(of_a.at(tick), of_b.at(tick))) return tick;
   }
   if (a.samples.size() != b.samples.size()) return common;

@@ -11,8 +11,8 @@ constexpr double least_gain = 10;
 constexpr std::size_t least_overlap = 16;  // samples; fewer may agree by chance
 
 Tolerance tolerance_of(const std::string& name, const Tolerances& tolerances, double others) {
-  const auto output = find_channel("out/" + name);
-  return output ? tolerances.of(*output) : Tolerance{others, 0};
+  const ChannelSet outputs = channels_named("out/" + name);
+  return outputs.any() ? tolerances.of(outputs._Find_first()) : Tolerance{others, 0};
 }
 
 bool is_within(float got, float want, const Tolerance& tolerance) {

@@ -68,6 +68,10 @@ constexpr Kind kinds[] = {
     {"out/mc_att_ctrl_status.yaw_rate_integ", moving, "moving", "still"},
 };
 
+std::size_t channel_of(const Kind& kind) {
+  return *find_channel(Module::mc_att_control, kind.channel);
+}
+
 std::vector<State> states(const Kind& kind, const Trace& trace, const Channel& channel) {
   std::vector<State> all;
   for (std::size_t tick = 0; tick < trace.samples.size(); ++tick) {
@@ -100,13 +104,13 @@ std::optional<std::size_t> first_difference(const std::vector<State>& got,
 
 bool tells_events(const ChannelSet& present) {
   return std::any_of(std::begin(kinds), std::end(kinds),
-                     [&](const Kind& kind) { return present[*find_channel(kind.channel)]; });
+                     [&](const Kind& kind) { return present[channel_of(kind)]; });
 }
 
 std::optional<EventDifference> first_event_difference(const Trace& got, const Trace& want) {
   std::optional<EventDifference> first;
   for (const Kind& kind : kinds) {
-    const std::size_t index = *find_channel(kind.channel);
+    const std::size_t index = channel_of(kind);
     if (!want.present[index]) continue;
     const Channel& channel = channels()[index];
     const auto of_got = states(kind, got, channel), of_want = states(kind, want, channel);

@@ -39,6 +39,7 @@ Change change_between(const Trace& old_trace, const Trace& new_trace) {
   for (std::size_t tick = 0; tick < common; ++tick) {
     bool differs = false;
     for (std::size_t i = 0; i < channels().size(); ++i) {
+      if (!old_trace.present[i] && !new_trace.present[i]) continue;
       const double before = value_of(channels()[i], old_trace.samples[tick]);
       const double after = value_of(channels()[i], new_trace.samples[tick]);
       if (!differ(before, after)) continue;

@@ -48,7 +48,7 @@ Trace at_ticks_of(const Trace& kept, const Trace& all) {
 // them as constants where the same case keeps every tick at slower rates.
 Trace without_history(Trace rows) {
   rows.parameters.clear();
-  rows.present &= ~channels_of(Module::mc_att_control, "in/updated.");
+  rows.present &= ~channels_of(module_of(rows.present), "in/updated.");
   for (Sample& sample : rows.samples) sample.in.updated = 0;
   return rows;
 }

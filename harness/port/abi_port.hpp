@@ -81,7 +81,8 @@ class AbiPort final : public Port {
   ModuleSet modules() const override {
     ModuleSet set;
     for (const ModuleInfo& info : attest::modules()) {
-      if (!info.extension || extension<void>(info.extension)) set |= only(info.module);
+      const bool has = info.extension ? extension<void>(info.extension) != nullptr : table_.create;
+      if (has) set |= only(info.module);
     }
     return set;
   }
@@ -98,6 +99,14 @@ class AbiPort final : public Port {
       }
       case Module::battery_status: {
         const auto& table = *extension<attest_battery_status>(id);
+        return wrapped(table, table.create(profile.c_str()));
+      }
+      case Module::attitude_unit: {
+        const auto& table = *extension<attest_attitude_unit>(id);
+        return wrapped(table, table.create(profile.c_str()));
+      }
+      case Module::rate_unit: {
+        const auto& table = *extension<attest_rate_unit>(id);
         return wrapped(table, table.create(profile.c_str()));
       }
     }

@@ -98,9 +98,8 @@ class TextConversation final : public Conversation {
 
   [[noreturn]] void refuse_unknown(const json& answer, Module module) {
     for (const auto& [name, value] : answer.items()) {
-      const auto known = find_channel(name);
-      const bool is_output =
-          known && channels()[*known].is_output() && channels()[*known].module == module;
+      const auto known = find_channel(module, name);
+      const bool is_output = known && channels()[*known].is_output();
       if (name == "result" || name == "sequence" || is_output) continue;
       broken(Request::step, fmt::format("has `{}`, which is no output of that module", name));
     }

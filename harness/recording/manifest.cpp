@@ -39,18 +39,19 @@ std::vector<std::string> texts(const TomlTable& table, std::string_view key) {
   return table.has(key) ? table.texts(key) : std::vector<std::string>{};
 }
 
-// The output channel with that name. An error at `key` if there is none.
-std::optional<std::size_t> output_named(const std::string& name, const TomlTable& table,
+// The output channels with that name. An error at `key` if there is none.
+ChannelSet outputs_named(const std::string& name, const TomlTable& table,
                                         std::string_view key) {
-  const auto index = find_channel(name);
-  if (index && (channels()[*index].is_output() || name == "timestamp")) return index;
+  if (name == "timestamp" || name.starts_with("out/")) {
+    if (const ChannelSet named = channels_named(name); named.any()) return named;
+  }
   std::vector<std::string> names{"timestamp"};
-  for (const Channel& channel : channels()) {
-    if (channel.is_output()) names.emplace_back(channel.name);
+  for (const std::string_view known : names_of(ChannelSet().set())) {
+    if (known.starts_with("out/")) names.emplace_back(known);
   }
   table.error(key, fmt::format("no output channel `{}`{}; `attest list --channels` shows all", name,
                                suggestion(name, names)));
-  return std::nullopt;
+  return {};
 }
 
 void read_port(const TomlTable& table, Manifest& manifest) {
@@ -76,9 +77,7 @@ void read_outputs(const TomlTable& table, Manifest& manifest) {
   }
   manifest.column_order = texts(table, "column_order");
   for (const std::string& name : texts(table, "not_recorded")) {
-    if (const auto index = output_named(name, table, "not_recorded")) {
-      manifest.not_recorded.set(*index);
-    }
+    manifest.not_recorded |= outputs_named(name, table, "not_recorded");
   }
 }
 
@@ -95,7 +94,7 @@ Result<Manifest> read_manifest(const std::filesystem::path& folder) {
     const TomlTable table = root.table("columns");
     for (const std::string& name : table.keys()) {
       manifest.columns[name] = table.text(name);
-      output_named(manifest.columns[name], table, name);
+      outputs_named(manifest.columns[name], table, name);
     }
   }
   const TomlTable vectors = root.table("vectors");
@@ -116,8 +115,8 @@ Result<void> write_manifest(const std::filesystem::path& folder, const Manifest&
   toml.set("outputs", "time", manifest.time);
   toml.set("outputs", "column_order", manifest.column_order);
   std::vector<std::string> not_recorded;
-  for (std::size_t i = 0; i < channels().size(); ++i) {
-    if (manifest.not_recorded[i]) not_recorded.emplace_back(channels()[i].name);
+  for (const std::string_view name : names_of(manifest.not_recorded)) {
+    not_recorded.emplace_back(name);
   }
   toml.set("outputs", "not_recorded", not_recorded);
   for (const auto& [name, channel] : manifest.columns) toml.set("columns", name, channel);

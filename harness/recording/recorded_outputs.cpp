@@ -19,16 +19,20 @@ namespace {
 constexpr std::size_t timestamp_channel = 0;  // of channels()
 
 // Identifier -> channel.
-std::map<std::string, std::size_t> channels_by_identifier() {
+std::map<std::string, std::size_t> channels_by_identifier(Module module) {
   std::map<std::string, std::size_t> known;
-  for (std::size_t i = 0; i < channels().size(); ++i) known[identifier_of(channels()[i].name)] = i;
+  const ChannelSet of_module = channels_of(module);
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    if (of_module[i]) known[identifier_of(channels()[i].name)] = i;
+  }
   return known;
 }
 
 // The channel of each column of the table; empty for a column that is ignored.
 std::vector<std::optional<std::size_t>> channels_of_columns(const Table& table,
-                                                            const Manifest& manifest) {
-  const auto known = channels_by_identifier();
+                                                            const Manifest& manifest,
+                                                            Module module) {
+  const auto known = channels_by_identifier(module);
   std::vector<std::optional<std::size_t>> found;
   for (const Column& column : table) {
     const auto renamed = manifest.columns.find(column.name);
@@ -178,7 +182,8 @@ std::string missing_outputs(const Table& table, const ChannelSet& present, const
       "no column {}{}; add it, name it in [columns] of {}, or list it under not_recorded there",
       fmt::join(names, ", "), others == 0 ? "" : fmt::format(" (nor {} others)", others),
       manifest_name);
-  if (const auto ignored = ignored_columns(table, manifest); !ignored.empty()) {
+  if (const auto ignored = ignored_columns(table, manifest, module_of(trace.present));
+      !ignored.empty()) {
     message += fmt::format(
         ". The file also has {}",
         fmt::join(ignored.begin(),
@@ -207,8 +212,9 @@ void keep_unpublished(Trace& trace) {
   }
 }
 
-std::vector<std::string> ignored_columns(const Table& table, const Manifest& manifest) {
-  const auto channel_of = channels_of_columns(table, manifest);
+std::vector<std::string> ignored_columns(const Table& table, const Manifest& manifest,
+                                         Module module) {
+  const auto channel_of = channels_of_columns(table, manifest, module);
   const std::string parameter = identifier_of(parameter_prefix) + '_';
   std::vector<std::string> ignored;
   for (std::size_t i = 0; i < table.size(); ++i) {
@@ -221,7 +227,8 @@ std::vector<std::string> ignored_columns(const Table& table, const Manifest& man
 Result<void> set_recorded_outputs(const Table& table, const Manifest& manifest,
                                   const std::string& file, Trace& trace) {
   if (table.front().values.empty()) return fail_at(file, "has no rows");
-  const auto channel_of = channels_of_columns(table, manifest);
+  const Module module = module_of(trace.present);
+  const auto channel_of = channels_of_columns(table, manifest, module);
   ChannelSet present;
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (!channel_of[i]) continue;
@@ -235,14 +242,16 @@ Result<void> set_recorded_outputs(const Table& table, const Manifest& manifest,
                                 wrong_rows(table, channel_of, manifest, trace)}) {
     if (!complaint.empty()) return fail_at(file, std::move(complaint));
   }
-  if ((present & channels_of(module_of(trace.present), "out/")).none()) {
+  if ((present & channels_of(module, "out/")).none()) {
     return fail_at(file, "has no output; not everything can be listed under not_recorded");
   }
   for (Sample& sample : trace.samples) {
     sample.clear_outputs();
     for (std::size_t i = 0; i < channels().size(); ++i) {
-      if (manifest.not_recorded[i] && is_published_flag(channels()[i])) {
-        set_value(channels()[i], sample, 1);
+      const Channel& channel = channels()[i];
+      if (channel.module != module || !manifest.not_recorded[i]) continue;
+      if (is_published_flag(channel)) {
+        set_value(channel, sample, 1);
       }
     }
   }

@@ -120,11 +120,7 @@ ordered_json port(const RunResult& run) {
   if (run.fraction_bits) out["fraction_bits"] = *run.fraction_bits;
   if (run.fixed_step) out["fixed_step"] = run.fixed_step->to_string();
   if (run.not_recorded.any()) {
-    ordered_json names = ordered_json::array();
-    for (std::size_t i = 0; i < channels().size(); ++i) {
-      if (run.not_recorded[i]) names.push_back(channels()[i].name);
-    }
-    out["not_recorded"] = names;
+    out["not_recorded"] = names_of(run.not_recorded);
   }
   return out;
 }

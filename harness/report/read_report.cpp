@@ -34,9 +34,9 @@ void read_port(JsonReader reader, RunResult& run) {
   if (reader.has("fixed_step")) run.fixed_step = rate_from(reader, reader.text("fixed_step"));
   if (!reader.has("not_recorded")) return;
   for (const std::string& name : reader.texts("not_recorded")) {
-    const auto channel = find_channel(name);
-    if (channel) run.not_recorded.set(*channel);
-    if (!channel) reader.wrong(fmt::format("there is no channel `{}`", name));
+    const ChannelSet named = channels_named(name);
+    run.not_recorded |= named;
+    if (named.none()) reader.wrong(fmt::format("there is no channel `{}`", name));
   }
 }
 

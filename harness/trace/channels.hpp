@@ -2,6 +2,10 @@
 // A channel is a member of Sample, found by its offset, so the table always agrees with the ABI
 // structs.
 //
+// Channels of two modules may have the same name, because a topic may go to both: a name is that of
+// a channel of one module. The units share the memory of their structs in Sample (module.hpp), so
+// only the channels of a sample's own module have a meaning.
+//
 // Names are `in/<topic>.<field>` and `out/<topic>.<field>`; `in/updated.<topic>` are the bits of
 // attest_inputs.updated. `timestamp` has no prefix. Parameters are not channels: they are the
 // columns `in/parameter.<NAME>` (trace.hpp).
@@ -12,7 +16,9 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "harness/trace/module.hpp"
 
@@ -22,24 +28,28 @@ enum class ChannelType : std::uint8_t { u64, f32, u8, bit };
 
 // The kind of value in a channel. It determines the tolerance (compare/tolerance.hpp) and the unit.
 enum class Quantity : std::uint8_t {
-  time,        // us
-  flag,        // 0 false, anything else true
-  quaternion,  // 1
-  rate,        // rad/s
-  thrust,      // 0..1
-  stick,       // -1..1
-  control,     // dimensionless actuator control
-  integral,    // dimensionless, of the rate law
-  scale,       // 1
-  motor,       // -1 stopped .. 1 full
-  voltage,     // V
-  current,     // A
+  time,                  // us
+  flag,                  // 0 false, anything else true
+  count,                 // 0..255: a counter, a state
+  quaternion,            // 1
+  angle,                 // rad
+  rate,                  // rad/s
+  angular_acceleration,  // rad/s^2
+  thrust,                // 0..1; -1..1 where it is a vector
+  stick,                 // -1..1
+  control,               // dimensionless actuator control, torque
+  integral,              // dimensionless, of the rate law
+  scale,                 // 1
+  motor,                 // -1 stopped .. 1 full
+  voltage,               // V
+  current,               // A
 };
 
 // The stage of the law that writes an output, in the order of the data flow. The first stage that
 // deviates is the one to examine.
 enum class Stage : std::uint8_t {
   input,
+  sticks,
   attitude_law,
   rate_law,
   integrator,
@@ -62,11 +72,11 @@ struct Channel {
 
 // All channels in column order, module by module: timestamp, inputs, freshness, outputs.
 std::span<const Channel> channels();
-inline constexpr std::size_t max_channels = 85;
+inline constexpr std::size_t max_channels = 212;
 using ChannelSet = std::bitset<max_channels>;  // by index into channels()
 
-// Index into channels(); empty when there is no such name.
-std::optional<std::size_t> find_channel(std::string_view name);
+// Index into channels(); empty when the module has no such name.
+std::optional<std::size_t> find_channel(Module module, std::string_view name);
 
 // "in/parameter.MC_ROLL_P" <-> "MC_ROLL_P"; empty for other names.
 inline constexpr std::string_view parameter_prefix = "in/parameter.";
@@ -78,8 +88,16 @@ ChannelSet channels_of(Module module, std::string_view prefix = "");
 // The module of the first of these channels after timestamp, which belongs to all modules.
 Module module_of(const ChannelSet& channels);
 
+// The channels of that name, one for each module that has it.
+ChannelSet channels_named(std::string_view name);
+// Their names, each once.
+std::vector<std::string_view> names_of(const ChannelSet& set);
+
+// The module that has the most of these names, such as a file's columns; the first of several.
+Module module_with(std::span<const std::string> names);
+
 // The topics that have a freshness bit, in bit order: "vehicle_attitude_setpoint", ...
-std::span<const std::string_view> updated_topics();
+std::vector<std::string_view> updated_topics(Module module);
 
 std::string_view unit_of(Quantity quantity);  // "rad/s"; empty for dimensionless
 std::string_view name_of(Stage stage);        // "attitude law"
@@ -88,6 +106,7 @@ std::string_view name_of(Stage stage);        // "attitude law"
 double value_of(const Channel& channel, const Sample& sample);
 // REQUIRES: 0 <= value < 2^53 for u64, an integer 0..255 for u8; any value for f32 and bit.
 void set_value(const Channel& channel, Sample& sample, double value);
-float float_of(const Channel& channel, const Sample& sample);  // REQUIRES: type f32
+float float_of(const Channel& channel, const Sample& sample);           // REQUIRES: type f32
+std::uint64_t integer_of(const Channel& channel, const Sample& sample);  // REQUIRES: type u64
 
 }  // namespace attest

@@ -38,11 +38,11 @@ bool may_be_ignored(std::string_view name, const CsvRows& rows, const std::strin
          !name.starts_with("in/") && !name.starts_with("out/");
 }
 
-Result<Layout> layout_of(const CsvRows& rows, TraceNeed need) {
+Result<Layout> layout_of(const CsvRows& rows, Module module, TraceNeed need) {
   Layout layout;
   for (std::size_t i = 0; i < rows.header().size(); ++i) {
     const std::string_view name = rows.header()[i];
-    if (const auto index = find_channel(name)) {
+    if (const auto index = find_channel(module, name)) {
       const Channel& channel = channels()[*index];
       layout.columns.push_back({cell_type(channel.type), channel.offset, channel.bit});
       layout.present.set(*index);
@@ -64,6 +64,14 @@ Result<Layout> layout_of(const CsvRows& rows, TraceNeed need) {
     }
   }
   return layout;
+}
+
+// A file with a base may have few columns of its own. What its columns and the constants share with
+// no other module decides then, too.
+Module module_of_file(const CsvRows& rows, const Provenance& provenance) {
+  std::vector<std::string> names(rows.header().begin(), rows.header().end());
+  for (const auto& [name, value] : provenance.constants) names.push_back(name);
+  return module_with(names);
 }
 
 // The base of a trace (Provenance::base): it supplies the columns that the trace itself lacks.
@@ -113,7 +121,7 @@ class Base {
 
 // Applies the constants: channels to `sample`, parameters as changes at tick 0.
 Result<void> apply_constants(const std::map<std::string, double>& constants, const CsvRows& rows,
-                             Sample& sample, ChannelSet& present,
+                             Module module, Sample& sample, ChannelSet& present,
                              std::vector<ParameterChange>& changes) {
   for (std::size_t i = 0; i < rows.header().size(); ++i) {
     if (!constants.contains(rows.header()[i])) continue;
@@ -121,7 +129,7 @@ Result<void> apply_constants(const std::map<std::string, double>& constants, con
                                             in_backquotes(rows.header()[i]), provenance_name));
   }
   for (const auto& [name, value] : constants) {
-    if (const auto index = find_channel(name)) {
+    if (const auto index = find_channel(module, name)) {
       set_value(channels()[*index], sample, value);
       present.set(*index);
     } else if (const auto parameter = parameter_of(name)) {
@@ -249,10 +257,11 @@ Result<bool> TraceReader::next(Sample& sample, std::vector<ParameterChange>& cha
 Result<TraceReader> TraceReader::open(const std::filesystem::path& path, TraceNeed need) {
   auto rows = CsvRows::open(path);
   if (!rows) return tl::unexpected(rows.error());
-  auto layout = layout_of(*rows, need);
-  if (!layout) return tl::unexpected(layout.error());
   const auto provenance = provenance_in(path.parent_path());
   if (!provenance) return tl::unexpected(provenance.error());
+  const Module module = module_of_file(*rows, *provenance);
+  auto layout = layout_of(*rows, module, need);
+  if (!layout) return tl::unexpected(layout.error());
 
   auto impl = std::make_unique<Impl>(Impl{std::move(*rows),
                                           layout->present,
@@ -260,8 +269,8 @@ Result<TraceReader> TraceReader::open(const std::filesystem::path& path, TraceNe
                                           std::move(layout->ignored),
                                           {}});
   Sample common{};
-  if (const auto done = apply_constants(provenance->constants, impl->rows, common, impl->present,
-                                        impl->constants);
+  if (const auto done = apply_constants(provenance->constants, impl->rows, module, common,
+                                        impl->present, impl->constants);
       !done) {
     return tl::unexpected(done.error());
   }

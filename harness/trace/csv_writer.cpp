@@ -44,7 +44,7 @@ void write_cell(const Channel& channel, const Sample& sample, CsvText& text) {
     case ChannelType::f32:
       return text.number(float_of(channel, sample));
     case ChannelType::u64:
-      return text.integer(sample.in.timestamp);
+      return text.integer(integer_of(channel, sample));
     case ChannelType::u8:
     case ChannelType::bit:
       return text.integer(static_cast<std::uint64_t>(value_of(channel, sample)));

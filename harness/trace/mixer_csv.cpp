@@ -65,7 +65,7 @@ Result<std::vector<CsvColumn>> columns_of(const CsvRows& rows, ChannelSet& prese
       return rows.fail_at_name(i, fmt::format("unknown column {} in a mixer trace{}",
                                               in_backquotes(name), suggestion(name, names)));
     }
-    const std::size_t index = *find_channel(named->channel);
+    const std::size_t index = *find_channel(Module::mixer, named->channel);
     columns.push_back({cell_type(channels()[index].type), channels()[index].offset});
     present.set(index);
   }
@@ -94,7 +94,7 @@ Result<Trace> read_mixer_csv(const std::filesystem::path& path) {
   if (!rows) return tl::unexpected(rows.error());
   Trace trace;
   trace.source = rows->file();
-  trace.present.set(*find_channel("timestamp"));
+  trace.present.set(0);  // timestamp
   auto columns = columns_of(*rows, trace.present);
   if (!columns) return tl::unexpected(columns.error());
   if (auto checked = check_rotors(*rows); !checked) return tl::unexpected(checked.error());

@@ -16,12 +16,18 @@ constexpr std::array<ModuleInfo, module_count> infos{{
      false},
     {Module::battery_status, "battery_status", "battery estimate", ATTEST_EXTENSION_BATTERY_STATUS,
      BLOCK(battery_in), BLOCK(battery_out), false},
+    {Module::attitude_unit, "attitude_unit", "attitude unit", ATTEST_EXTENSION_ATTITUDE_UNIT,
+     BLOCK(attitude_in), BLOCK(attitude_out), true},
+    {Module::rate_unit, "rate_unit", "rate unit", ATTEST_EXTENSION_RATE_UNIT, BLOCK(rate_in),
+     BLOCK(rate_out), true},
 }};
 
 #undef BLOCK
 
 // Outputs follow inputs, so the outputs of all modules are one range of bytes.
 constexpr std::size_t outputs_begin = sizeof(Sample) - outputs_size;
+static_assert(offsetof(attest_attitude_inputs, updated) == offsetof(attest_inputs, updated) &&
+              offsetof(attest_rate_inputs, updated) == offsetof(attest_inputs, updated));
 static_assert(std::all_of(infos.begin(), infos.end(), [](const ModuleInfo& info) {
   return info.in.offset < outputs_begin && info.out.offset >= outputs_begin;
 }));

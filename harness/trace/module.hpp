@@ -4,18 +4,26 @@
 #include <bitset>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 #include <span>
 #include <string_view>
 
 #include "controller/attest_actuation.h"
+#include "controller/attest_cascade.h"
 #include "controller/attest_unit.h"
 
 namespace attest {
 
 // What is stepped: the controller of attest_unit.h, or an extension of it.
-enum class Module : std::uint8_t { mc_att_control, mixer, battery_status };
-inline constexpr auto module_count = static_cast<std::size_t>(Module::battery_status) + 1;
+enum class Module : std::uint8_t {
+  mc_att_control,
+  mixer,
+  battery_status,
+  attitude_unit,
+  rate_unit
+};
+inline constexpr auto module_count = static_cast<std::size_t>(Module::rate_unit) + 1;
 using ModuleSet = std::bitset<module_count>;
 inline ModuleSet only(Module module) { return ModuleSet().set(static_cast<std::size_t>(module)); }
 inline bool contains(const ModuleSet& set, Module module) {
@@ -23,13 +31,27 @@ inline bool contains(const ModuleSet& set, Module module) {
 }
 
 // The inputs and outputs of one step of a module. Those of the other modules are zero.
+//
+// The units share the memory of their structs, because a sample is of one unit. Their inputs begin
+// with the same members, so `in.timestamp` and `in.updated` are those of every unit.
 struct Sample {
-  attest_inputs in;  // its timestamp is that of every module's step
+  union {
+    attest_inputs in;  // its timestamp is that of mixer and battery estimate, too
+    attest_attitude_inputs attitude_in;
+    attest_rate_inputs rate_in;
+  };
   attest_mixer_inputs mixer_in;
   attest_battery_inputs battery_in;
-  attest_outputs out;
+  union {
+    attest_outputs out;
+    attest_attitude_outputs attitude_out;
+    attest_rate_outputs rate_out;
+  };
   attest_mixer_outputs mixer_out;
   attest_battery_outputs battery_out;
+
+  // All zero.
+  Sample() { std::memset(static_cast<void*>(this), 0, sizeof *this); }
 
   // The bytes of the outputs of all modules.
   std::span<const std::byte> outputs() const;

@@ -22,17 +22,27 @@ bool is_integer_up_to(double value, double highest) {
   return value >= 0 && value <= highest && value == std::floor(value);
 }
 
+// The type of a channel follows from its name, whatever the module.
+std::optional<std::size_t> any_channel(std::string_view name) {
+  const ChannelSet set = channels_named(name);
+  return set.any() ? std::optional(set._Find_first()) : std::nullopt;
+}
+
 // The error of a constant; empty if it is valid.
 std::string complaint_about(std::string_view name, double value) {
-  const auto index = find_channel(name);
+  const auto index = any_channel(name);
   if (!index && !parameter_of(name)) {
-    std::vector<std::string> names;
-    for (const Channel& channel : channels()) names.emplace_back(channel.name);
+    const auto all = names_of(ChannelSet().set());
+    const std::vector<std::string> names(all.begin(), all.end());
     return fmt::format("unknown channel `{}`{}", name, suggestion(name, names));
   }
   switch (index ? channels()[*index].type : ChannelType::f32) {
     case ChannelType::u64:
-      return fmt::format("`{}` cannot be a constant; record it as a column", name);
+      if (name == channels()[0].name) {
+        return fmt::format("`{}` cannot be a constant; record it as a column", name);
+      }
+      if (is_integer_up_to(value, 0x1p53)) return "";
+      return fmt::format("{} is not a time for `{}`; write an integer [us]", value, name);
     case ChannelType::f32:
       if (!std::isfinite(value) || std::isfinite(static_cast<float>(value))) return "";
       return fmt::format("{} is too large for `{}`, a 32-bit float", value, name);
@@ -136,7 +146,7 @@ std::optional<double> constant_value(const std::string& parameter,
 
 void write_constants(const std::map<std::string, double>& constants, TomlWriter& toml) {
   for (const auto& [name, value] : constants) {
-    const auto index = find_channel(name);
+    const auto index = any_channel(name);
     const bool is_flag = index && channels()[*index].type != ChannelType::f32;
     if (is_flag) {
       toml.set(constants_table, name, static_cast<std::int64_t>(value));
@@ -230,7 +240,7 @@ Division divide(const std::vector<Trace>& traces) {
   Division division{{all.channels, {}}, {}};
   for (std::size_t i = 0; i < channels().size(); ++i) {
     const Channel& channel = channels()[i];
-    if (!all.channels[i] || channel.type == ChannelType::u64) continue;
+    if (!all.channels[i] || i == 0) continue;
     if (const auto value = constant_value(channel, traces)) {
       division.columns.channels.reset(i);
       division.constants[std::string(channel.name)] = *value;
@@ -250,7 +260,7 @@ Division divide(const std::vector<Trace>& traces, const std::vector<Trace>& base
   Division division = divide(traces);
   for (std::size_t i = 0; i < channels().size(); ++i) {
     const Channel& channel = channels()[i];
-    if (channel.type == ChannelType::u64 || !is_same(channel, traces, base)) continue;
+    if (i == 0 || !traces.front().present[i] || !is_same(channel, traces, base)) continue;
     division.columns.channels.reset(i);
     division.constants.erase(std::string(channel.name));
   }

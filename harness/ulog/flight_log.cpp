@@ -181,7 +181,7 @@ std::string_view topic_of(std::string_view channel) {
 }
 
 std::uint32_t updated_bit(std::string_view topic) {
-  const auto index = find_channel(fmt::format("in/updated.{}", topic));
+  const auto index = find_channel(Module::mc_att_control, fmt::format("in/updated.{}", topic));
   return index ? channels()[*index].bit : 0;
 }
 
@@ -201,7 +201,7 @@ Result<Sample> assumed_sample(const std::filesystem::path& path,
                                                 "leave it out",
                                                 topic, one.word));
     }
-    set_value(channels()[*find_channel(one.channel)], sample, 1);
+    set_value(channels()[*find_channel(Module::mc_att_control, one.channel)], sample, 1);
     sample.in.updated |= updated_bit(topic);
     used.push_back(one.word);
   }
@@ -264,7 +264,8 @@ void hold_unpublished(const LogSeries& output, const Channel& published, Trace& 
 
 LoggedOutput fill_outputs(const LogSeries& output, const LogSeries& ticks, Trace& trace) {
   LoggedOutput logged{std::string(output.topic()), output.size(), 0};
-  const auto published = find_channel(fmt::format("out/{}.published", output.topic()));
+  const auto published = find_channel(
+      Module::mc_att_control, fmt::format("out/{}.published", output.topic()));
   trace.present.set(*published);
   for (const std::size_t channel : output.channels()) trace.present.set(channel);
   for (std::size_t row = 0; row < output.size(); ++row) {
@@ -322,7 +323,7 @@ Result<FlightLog> read_flight_log(const std::filesystem::path& path,
   if (!first) return tl::unexpected(first.error());
   flight.trace.source = path.string();
   flight.trace.present = channels_of(Module::mc_att_control, "in/");
-  flight.trace.present.set(*find_channel("timestamp"));
+  flight.trace.present.set(0);  // timestamp
   fill_inputs(*log, *first, flight.trace);
   fill_parameters(std::move(log->parameters), flight.trace);
   flight.has_every_step = log->dropouts == 0 && log->damage.empty();

@@ -127,10 +127,7 @@ void say_what_was_not_run(const Groups& groups, const RunResult& run,
 
 // "2 outputs not recorded (out/mc_att_ctrl_status.published, ...)"
 std::string outputs_without(const ChannelSet& not_recorded) {
-  std::vector<std::string_view> names;
-  for (std::size_t i = 0; i < channels().size(); ++i) {
-    if (not_recorded[i]) names.push_back(channels()[i].name);
-  }
+  const std::vector<std::string_view> names = names_of(not_recorded);
   return fmt::format("{} not recorded ({})",
                      names.size() == 1 ? "1 output" : fmt::format("{} outputs", names.size()),
                      fmt::join(names, ", "));

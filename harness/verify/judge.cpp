@@ -70,8 +70,9 @@ void leave_out_from(std::size_t tick, const Trace& want, Trace& answered) {
 }
 
 void fill_in(const ChannelSet& not_recorded, const Trace& want, Trace& answered) {
+  const ChannelSet filled = not_recorded & channels_of(module_of(want.present));
   for (std::size_t i = 0; i < channels().size(); ++i) {
-    if (!not_recorded[i]) continue;
+    if (!filled[i]) continue;
     for (std::size_t tick = 0; tick < answered.samples.size(); ++tick) {
       set_value(channels()[i], answered.samples[tick], value_of(channels()[i], want.samples[tick]));
     }

@@ -42,7 +42,14 @@ json headroom_to_json(const Headroom& headroom) {
 
 std::size_t channel_from(JsonReader& reader, const char* key) {
   const std::string name = reader.text(key);
-  if (const auto index = find_channel(name)) return *index;
+  const ChannelSet named = channels_named(name);
+  if (reader.has("module")) {
+    const auto module = module_named(reader.text("module"));
+    const auto index = module ? find_channel(*module, name) : std::nullopt;
+    if (index) return *index;
+  } else if (named.any()) {
+    return named._Find_first();
+  }
   reader.wrong(fmt::format("there is no channel `{}`", name));
   return 0;
 }

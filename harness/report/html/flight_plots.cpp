@@ -19,7 +19,7 @@ constexpr std::size_t most_frames = 2000;  // of the replay
 // The column of that name: a channel, or one of the plant.
 std::vector<float> column(const Trace& flown, std::string_view name) {
   std::vector<float> values;
-  if (const auto channel = find_channel(name)) {
+  if (const auto channel = find_channel(Module::mc_att_control, name)) {
     for (const Sample& sample : flown.samples) {
       values.push_back(static_cast<float>(value_of(channels()[*channel], sample)));
     }

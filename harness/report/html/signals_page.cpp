@@ -37,7 +37,7 @@ class SecondsOf {
 
 std::string unit_of_signal(const std::string& name) {
   for (const char* prefix : {"out/", "in/"}) {
-    if (const auto channel = find_channel(prefix + name)) {
+    if (const auto channel = find_channel(Module::mc_att_control, prefix + name)) {
       return std::string(unit_of(channels()[*channel].quantity));
     }
   }
@@ -138,7 +138,8 @@ PlotGroup plots_of_outputs(const Trace& want, const Trace& got, const char* name
     if (!outputs[i] || channels()[i].type != ChannelType::f32) continue;
     const std::string_view name = channels()[i].name;
     const auto published =
-        find_channel(fmt::format("{}.published", name.substr(0, name.find('.'))));
+        find_channel(Module::mc_att_control,
+                     fmt::format("{}.published", name.substr(0, name.find('.'))));
     group.plots.push_back(plot_of_output(i, channels()[*published], want, got, name_of_want));
   }
   return group;
