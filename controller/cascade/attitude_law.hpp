@@ -1,0 +1,136 @@
+// The attitude law (section 2): from an attitude and its setpoint to a setpoint of body rates.
+//
+// Tilt and yaw are separated. The tilt is corrected by the shortest rotation of the thrust axis,
+// and of the yaw error that remains only a share is corrected with it (MC_YAW_WEIGHT), because yaw
+// is slow. The rates are proportional to the quaternion error of that reduced target.
+//
+// Frames: W world NED, B body FRD, D desired body. q_WB maps body into world. Rates [rad/s]. The
+// state is the setpoint. No clock, no allocation; one thread at a time.
+#pragma once
+
+#include <cmath>
+#include <utility>
+
+#include "controller/cascade/gains.hpp"
+#include "controller/cascade/rotation.hpp"
+#include "controller/reference/inline.hpp"
+
+namespace attest::cascade {
+
+// The stages of the law. Each is a pure function of its arguments.
+template <typename Scalar>
+struct AttitudeStages {
+  using Vector = Vector3<Scalar>;
+  using Q = Quaternion<Scalar>;
+
+  // The setpoint is normalised here, and the attitude nowhere.
+  ATTEST_INLINE static Q setpoint(const Q& given) { return unit(given); }
+
+  // After a reset of the estimator, which turned the world by `delta`.
+  ATTEST_INLINE static Q adapted(const Q& delta, const Q& q_WD) {
+    return unit(product(delta, q_WD));
+  }
+
+  // The shortest rotation of the thrust axis to the desired one, in world axes.
+  ATTEST_INLINE static Q tilt_rotation(const Q& q_WB, const Q& q_WD) {
+    return shortest_rotation(z_axis(q_WB), z_axis(q_WD));
+  }
+
+  // The thrust directions are opposite: the shortest rotation is arbitrary there.
+  ATTEST_INLINE static bool is_opposite(const Q& tilt) {
+    constexpr float almost_one = 0.999989986f;  // 1 - 1e-5
+    using std::abs;
+    return abs(tilt[1]) > Scalar(almost_one) || abs(tilt[2]) > Scalar(almost_one);
+  }
+
+  // The attitude after the tilt alone is corrected.
+  ATTEST_INLINE static Q tilted(const Q& tilt, const Q& q_WB) { return product(tilt, q_WB); }
+
+  // The yaw that remains then. Without the canonical form, the two signs of a quaternion would give
+  // two different targets.
+  ATTEST_INLINE static Q remaining_yaw(const Q& tilted, const Q& q_WD) {
+    return canonical(product(inverse(tilted), q_WD));
+  }
+
+  // Rounding may leave the domain of acos and asin.
+  ATTEST_INLINE static Scalar in_domain(Scalar component) {
+    return clamp(component, Scalar(-1), Scalar(1));
+  }
+
+  // The share of the yaw that is corrected.
+  ATTEST_INLINE static Q weighted_yaw(Scalar w, Scalar z, Scalar weight) {
+    using std::acos;
+    using std::asin;
+    using std::cos;
+    using std::sin;
+    return {cos(weight * acos(w)), Scalar(0), Scalar(0), sin(weight * asin(z))};
+  }
+
+  ATTEST_INLINE static Q target(const Q& tilted, const Q& yaw) { return product(tilted, yaw); }
+
+  // In body axes, by the shorter way.
+  ATTEST_INLINE static Q error(const Q& q_WB, const Q& target) {
+    return canonical(product(inverse(q_WB), target));
+  }
+
+  ATTEST_INLINE static Vector proportional(const Q& error, const AttitudeGains<Scalar>& gains) {
+    const Vector twice = imaginary_part(error) * Scalar(2);
+    return twice.cwiseProduct(gains.proportional_1_s);
+  }
+
+  // The commanded yaw rate is about the world's z axis. One that is not finite is no command.
+  ATTEST_INLINE static Vector feed_forward(const Vector& rates, const Q& q_WB, Scalar yaw_rate) {
+    if (!is_finite(yaw_rate)) return rates;
+    const Vector z_W_B = z_axis(inverse(q_WB));
+    return rates + z_W_B * yaw_rate;
+  }
+
+  // Comes after the feed-forward.
+  ATTEST_INLINE static Vector limit(const Vector& rates, const AttitudeGains<Scalar>& gains) {
+    const Vector& max = gains.rate_max_rad_s;
+    return {clamp(rates[0], -max[0], max[0]), clamp(rates[1], -max[1], max[1]),
+            clamp(rates[2], -max[2], max[2])};
+  }
+};
+
+// Stages is a policy: the stages of the law, or a copy with one replaced.
+template <typename Scalar, typename Stages = AttitudeStages<Scalar>>
+class AttitudeLaw {
+ public:
+  explicit AttitudeLaw(Stages stages = {}) : stages_(std::move(stages)) {}
+
+  void set_gains(const AttitudeGains<Scalar>& gains) { gains_ = gains; }
+
+  // q_d is of any norm but 0; the yaw rate [rad/s] is about the world's z axis.
+  void set_setpoint(const Quaternion<Scalar>& q_d, Scalar yaw_rate) {
+    q_WD_ = stages_.setpoint(q_d);
+    yaw_rate_ = yaw_rate;
+  }
+
+  void adapt_setpoint(const Quaternion<Scalar>& delta) { q_WD_ = stages_.adapted(delta, q_WD_); }
+
+  // The setpoint of the body rates [rad/s]. REQUIRES: set_gains() was called.
+  Vector3<Scalar> update(const Quaternion<Scalar>& q_WB) const;
+
+ private:
+  AttitudeGains<Scalar> gains_{};
+  Quaternion<Scalar> q_WD_ = identity<Scalar>();
+  Scalar yaw_rate_ = Scalar(0);
+  [[no_unique_address]] Stages stages_;
+};
+
+template <typename Scalar, typename Stages>
+ATTEST_INLINE Vector3<Scalar> AttitudeLaw<Scalar, Stages>::update(
+    const Quaternion<Scalar>& q_WB) const {
+  using Q = Quaternion<Scalar>;
+  const Q tilt = stages_.tilt_rotation(q_WB, q_WD_);
+  const Q tilted = stages_.is_opposite(tilt) ? q_WD_ : stages_.tilted(tilt, q_WB);
+  const Q yaw = stages_.remaining_yaw(tilted, q_WD_);
+  const Scalar w = stages_.in_domain(yaw[0]);
+  const Scalar z = stages_.in_domain(yaw[3]);
+  const Q target = stages_.target(tilted, stages_.weighted_yaw(w, z, gains_.yaw_weight));
+  const Vector3<Scalar> rates = stages_.proportional(stages_.error(q_WB, target), gains_);
+  return stages_.limit(stages_.feed_forward(rates, q_WB, yaw_rate_), gains_);
+}
+
+}  // namespace attest::cascade

@@ -1,0 +1,90 @@
+// The supported versions of the cascade, by name.
+//
+// "Section n" in a comment of this folder is a section of the page LAW-CASCADE, which defines the
+// law of each profile.
+#pragma once
+
+#include <array>
+#include <cstdlib>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace attest::cascade {
+
+enum class Profile { px4_v1_16_0, px4_v1_15_4, px4_v1_14_4 };
+
+// Newest first, in the order of the enumerators.
+inline constexpr std::array<Profile, 3> every_profile{Profile::px4_v1_16_0, Profile::px4_v1_15_4,
+                                                      Profile::px4_v1_14_4};
+
+// All differences between the profiles, except their parameters (parameters.hpp).
+struct ProfileTraits {
+  std::string_view name;
+  bool filters_yaw_torque;           // a low-pass after the rate law
+  bool follows_hover_estimate;       // hover thrust of the sticks; else MPC_THR_HOVER
+  bool locks_yaw;                    // on the heading, corrected by the unaided heading; else the
+                                     // yaw stick is integrated
+  bool spools_up;                    // thrust of the sticks has limits that follow arming and
+                                     // landing; else it has none, and the stick counts from 0 to 1
+  bool latches_in_every_step;        // attitude setpoint and estimator reset, ahead of the modes
+  bool flies_own_setpoint_directly;  // the sticks' setpoint does not pass through its topic
+  bool squares_heading;              // R00 of the heading is a sum of four squares
+  bool weighs_low_pass;              // (1 - a) s + a x; else s + a (x - s)
+};
+
+// A new profile needs its traits here: the compiler warns if it has none.
+constexpr ProfileTraits traits_of(Profile profile) {
+  // Section 7.
+  constexpr ProfileTraits v1_15_4{.name = "px4-v1.15.4",
+                                  .filters_yaw_torque = false,
+                                  .follows_hover_estimate = false,
+                                  .locks_yaw = false,
+                                  .spools_up = true,
+                                  .latches_in_every_step = false,
+                                  .flies_own_setpoint_directly = false,
+                                  .squares_heading = false,
+                                  .weighs_low_pass = false};
+  ProfileTraits traits = v1_15_4;
+  switch (profile) {
+    case Profile::px4_v1_16_0:  // sections 1 to 6
+      traits.name = "px4-v1.16.0";
+      traits.filters_yaw_torque = true;
+      traits.follows_hover_estimate = true;
+      traits.locks_yaw = true;
+      return traits;
+    case Profile::px4_v1_15_4:
+      return traits;
+    case Profile::px4_v1_14_4:  // section 8
+      traits.name = "px4-v1.14.4";
+      traits.spools_up = false;
+      traits.latches_in_every_step = true;
+      traits.flies_own_setpoint_directly = true;
+      traits.squares_heading = true;
+      traits.weighs_low_pass = true;
+      return traits;
+  }
+  std::abort();  // the value is not an enumerator
+}
+
+// Successive profiles: those that have a certain parameter, or whose cases detect a certain fault.
+struct ProfileRange {
+  Profile newest;
+  Profile oldest;
+  constexpr bool contains(Profile profile) const { return newest <= profile && profile <= oldest; }
+};
+
+inline constexpr ProfileRange all_profiles{Profile::px4_v1_16_0, Profile::px4_v1_14_4};
+inline constexpr ProfileRange from_v1_16_0{Profile::px4_v1_16_0, Profile::px4_v1_16_0};
+inline constexpr ProfileRange from_v1_15_4{Profile::px4_v1_16_0, Profile::px4_v1_15_4};
+inline constexpr ProfileRange until_v1_15_4{Profile::px4_v1_15_4, Profile::px4_v1_14_4};
+inline constexpr ProfileRange only_v1_15_4{Profile::px4_v1_15_4, Profile::px4_v1_15_4};
+inline constexpr ProfileRange only_v1_14_4{Profile::px4_v1_14_4, Profile::px4_v1_14_4};
+
+// In the order of every_profile.
+std::span<const std::string_view> profile_names();
+constexpr std::string_view name_of(Profile profile) { return traits_of(profile).name; }
+
+std::optional<Profile> profile_from_name(std::string_view name);
+
+}  // namespace attest::cascade

@@ -1,0 +1,169 @@
+// Vectors and rotations, with the expressions of the law (section 1).
+//
+// Quaternions are Hamilton, {w, x, y, z}, and rotate body FRD into world NED. No function but
+// unit() normalises. The result of the law for a quaternion of another norm is defined by exactly
+// these expressions, and so is the sign of a zero.
+//
+// Pure functions; any thread.
+#pragma once
+
+#include <cmath>
+
+#include <Eigen/Core>
+
+#include "controller/cascade/profile.hpp"
+#include "controller/cascade/scalar_math.hpp"
+#include "controller/reference/inline.hpp"
+#include "controller/reference/ordered.hpp"
+
+namespace attest::cascade {
+
+using reference::Vector3;
+using reference::ordered::dot;
+using reference::ordered::length;
+
+// A vector of four, so that the law's sums can be written by index. Unaligned, so that structs that
+// contain one need no aligned allocation.
+template <typename Scalar>
+using Quaternion = Eigen::Matrix<Scalar, 4, 1, Eigen::DontAlign>;
+
+template <typename Scalar>
+ATTEST_INLINE Quaternion<Scalar> quaternion_from(const float (&wxyz)[4]) {
+  return {Scalar(wxyz[0]), Scalar(wxyz[1]), Scalar(wxyz[2]), Scalar(wxyz[3])};
+}
+
+template <typename Scalar>
+ATTEST_INLINE Vector3<Scalar> vector_from(const float (&xyz)[3]) {
+  return {Scalar(xyz[0]), Scalar(xyz[1]), Scalar(xyz[2])};
+}
+
+template <typename Scalar>
+ATTEST_INLINE Quaternion<Scalar> identity() {
+  return {Scalar(1), Scalar(0), Scalar(0), Scalar(0)};
+}
+
+template <typename Scalar>
+ATTEST_INLINE Vector3<Scalar> imaginary_part(const Quaternion<Scalar>& q) {
+  return {q[1], q[2], q[3]};
+}
+
+template <typename Scalar>
+ATTEST_INLINE Scalar squared_norm(const Quaternion<Scalar>& q) {
+  return Scalar(0) + q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+}
+
+// Of norm 1. A zero has no direction and gives NaN.
+template <typename Scalar>
+ATTEST_INLINE Quaternion<Scalar> unit(const Quaternion<Scalar>& q) {
+  using std::sqrt;
+  return q * (Scalar(1) / sqrt(squared_norm(q)));
+}
+
+// q p: first p, then q. All sixteen products count, also those with a factor that is 0.
+template <typename Scalar>
+ATTEST_INLINE Quaternion<Scalar> product(const Quaternion<Scalar>& q, const Quaternion<Scalar>& p) {
+  return {q[0] * p[0] - q[1] * p[1] - q[2] * p[2] - q[3] * p[3],
+          q[1] * p[0] + q[0] * p[1] - q[3] * p[2] + q[2] * p[3],
+          q[2] * p[0] + q[3] * p[1] + q[0] * p[2] - q[1] * p[3],
+          q[3] * p[0] - q[2] * p[1] + q[1] * p[2] + q[0] * p[3]};
+}
+
+template <typename Scalar>
+ATTEST_INLINE Quaternion<Scalar> inverse(const Quaternion<Scalar>& q) {
+  const Scalar n = squared_norm(q);
+  return {q[0] / n, -q[1] / n, -q[2] / n, -q[3] / n};
+}
+
+// Of q and -q, which are the same rotation, the one whose first component that is not 0 is
+// positive.
+template <typename Scalar>
+ATTEST_INLINE Quaternion<Scalar> canonical(const Quaternion<Scalar>& q) {
+  using std::abs;
+  for (int i = 0; i < 4; ++i) {
+    if (abs(q[i]) > Scalar(epsilon)) return q * Scalar(q[i] > Scalar(0) ? 1 : -1);
+  }
+  return q;
+}
+
+// The body's z axis in the world, times the squared norm.
+template <typename Scalar>
+ATTEST_INLINE Vector3<Scalar> z_axis(const Quaternion<Scalar>& q) {
+  const Scalar two = 2;
+  return {two * (q[0] * q[2] + q[1] * q[3]), two * (q[2] * q[3] - q[0] * q[1]),
+          q[0] * q[0] - q[1] * q[1] - q[2] * q[2] + q[3] * q[3]};
+}
+
+template <typename Scalar>
+ATTEST_INLINE Vector3<Scalar> cross(const Vector3<Scalar>& a, const Vector3<Scalar>& b) {
+  return {a[1] * b[2] - a[2] * b[1], (-a[0]) * b[2] + a[2] * b[0], a[0] * b[1] - a[1] * b[0]};
+}
+
+// The coordinate axis that is farthest from the direction of v. The last one wins a tie.
+template <typename Scalar>
+ATTEST_INLINE Vector3<Scalar> farthest_axis(const Vector3<Scalar>& v) {
+  using std::abs;
+  const Scalar x = abs(v[0]), y = abs(v[1]), z = abs(v[2]);
+  const int axis = x < y ? (x < z ? 0 : 2) : (y < z ? 1 : 2);
+  return {Scalar(axis == 0 ? 1 : 0), Scalar(axis == 1 ? 1 : 0), Scalar(axis == 2 ? 1 : 0)};
+}
+
+// The shortest rotation that turns the direction of a into that of b. Opposite directions have
+// many: this one turns about an axis that is square to a.
+template <typename Scalar>
+ATTEST_INLINE Quaternion<Scalar> shortest_rotation(const Vector3<Scalar>& a,
+                                                   const Vector3<Scalar>& b) {
+  Vector3<Scalar> axis = cross(a, b);
+  Scalar w = dot(a, b);
+  if (length(axis) < Scalar(1e-5f) && w < Scalar(0)) {
+    axis = cross(a, farthest_axis(a));
+    w = Scalar(0);
+  } else {
+    using std::sqrt;
+    w = w + sqrt(dot(a, a) * dot(b, b));
+  }
+  return unit<Scalar>({w, axis[0], axis[1], axis[2]});
+}
+
+// A rotation by |{x, y}| [rad] about that horizontal axis.
+template <typename Scalar>
+ATTEST_INLINE Quaternion<Scalar> rotation_about(Scalar x, Scalar y) {
+  using std::cos;
+  using std::sin;
+  const Vector3<Scalar> v(x, y, Scalar(0));
+  const Scalar angle = length(v);
+  if (angle < Scalar(1e-10f)) return identity<Scalar>();
+  const Vector3<Scalar> axis = v * (Scalar(1) / angle);
+  const Scalar sine = sin(angle / Scalar(2));
+  return {cos(angle / Scalar(2)), axis[0] * sine, axis[1] * sine, axis[2] * sine};
+}
+
+// A rotation by `yaw` [rad] about z.
+template <typename Scalar>
+ATTEST_INLINE Quaternion<Scalar> yaw_rotation(Scalar yaw) {
+  using std::cos;
+  using std::sin;
+  return {cos(yaw / Scalar(2)), Scalar(0), Scalar(0), sin(yaw / Scalar(2))};
+}
+
+// The yaw angle [rad] of the order yaw, pitch, roll. Near the poles, where yaw and roll are about
+// the same axis, all of it counts as yaw.
+template <typename Scalar>
+Scalar heading(const Quaternion<Scalar>& q, const ProfileTraits& law) {
+  constexpr float half_pi = 1.57079637f, near_pole = 0.001f;
+  using std::abs;
+  using std::asin;
+  using std::atan2;
+  const Scalar two = 2;
+  const Scalar R20 = two * (q[1] * q[3] - q[0] * q[2]);
+  const Scalar R12 = two * (q[2] * q[3] - q[0] * q[1]);
+  const Scalar R02 = two * (q[0] * q[2] + q[1] * q[3]);
+  const Scalar pitch = asin(-R20);
+  if (abs(pitch - Scalar(half_pi)) < Scalar(near_pole)) return atan2(R12, R02);
+  if (abs(pitch + Scalar(half_pi)) < Scalar(near_pole)) return atan2(-R12, -R02);
+  const Scalar R10 = two * (q[1] * q[2] + q[0] * q[3]);
+  const Scalar R00 = law.squares_heading ? q[0] * q[0] + q[1] * q[1] - q[2] * q[2] - q[3] * q[3]
+                                         : Scalar(1) - two * (q[2] * q[2] + q[3] * q[3]);
+  return atan2(R10, R00);
+}
+
+}  // namespace attest::cascade

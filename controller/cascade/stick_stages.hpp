@@ -1,0 +1,145 @@
+// The stages of the stabilized mode (section 4): what each stick means.
+//
+// Sticks [-1..1], angles [rad], yaw rates [rad/s] about the world's z axis, thrust [0..1]. Pure
+// functions of their arguments; any thread.
+#pragma once
+
+#include <limits>
+
+#include "controller/cascade/gains.hpp"
+#include "controller/cascade/rotation.hpp"
+#include "controller/reference/inline.hpp"
+
+namespace attest::cascade {
+
+// The thrust limits that follow landing and arming, and the hover thrust (section 3.8).
+template <typename Scalar>
+struct ThrustLimits {
+  Scalar min = Scalar(0);
+  Scalar max = Scalar(0);
+  Scalar hover = Scalar(0);
+};
+
+// The slow drift of the heading, measured against a heading of the gyros alone (section 4.2). While
+// the estimator converges to a new heading, the vehicle must not follow it.
+template <typename Scalar>
+struct YawCorrection {
+  LowPass<Scalar> error;  // of the heading [rad]
+  Scalar reference = Scalar(0);
+  Scalar value = Scalar(0);
+  bool converging = false;
+};
+
+template <typename Scalar>
+struct StickStages {
+  using Vector = Vector3<Scalar>;
+  using Q = Quaternion<Scalar>;
+  using Gains = StickGains<Scalar>;
+
+  ATTEST_INLINE static Scalar no_yaw() { return Scalar(std::numeric_limits<float>::quiet_NaN()); }
+
+  static Scalar heading(const Q& q_WB, const ProfileTraits& law) {
+    return cascade::heading(q_WB, law);
+  }
+
+  // At the lowest throttle the vehicle may stand on the ground, where it must not turn.
+  ATTEST_INLINE static bool is_lowest_throttle(Scalar throttle, const Gains& gains) {
+    return throttle < Scalar(-0.9f) && !gains.yaws_at_lowest_throttle;
+  }
+
+  // Returns whether the locked yaw must be released: the estimator has converged.
+  static bool correct_yaw(YawCorrection<Scalar>& state, Scalar heading, Scalar unaided, Scalar dt_s,
+                          const ProfileTraits& law) {
+    if (!is_finite(unaided)) {
+      state.value = Scalar(0);
+      return false;
+    }
+    constexpr float converged_rad = 0.0174532924f, tau_s = 1.0f;
+    const Scalar error = wrap(heading - unaided);
+    const Scalar change = wrap(error - state.error.state);
+    state.error.update(Scalar(tau_s), dt_s, error, law);
+    const bool was_converging = state.converging;
+    using std::abs;
+    state.converging = abs(change) > Scalar(converged_rad);
+    if (!state.converging) state.reference = error;
+    state.value = wrap(error - state.reference);
+    return was_converging && !state.converging;
+  }
+
+  // v1.16.0: with a deadzone and an expo, before the low-pass.
+  ATTEST_INLINE static Scalar shaped_yaw_rate(Scalar stick, const Gains& gains) {
+    return expo(deadzone(stick, gains.yaw_deadzone), gains.yaw_expo) * gains.yaw_rate_max_rad_s;
+  }
+
+  ATTEST_INLINE static Scalar straight_yaw_rate(Scalar stick, const Gains& gains) {
+    return stick * gains.yaw_rate_max_rad_s;
+  }
+
+  // v1.16.0: while the stick turns, no yaw is held. The next one is the heading at that time, and
+  // it follows the change of the correction.
+  ATTEST_INLINE static Scalar locked_yaw(Scalar yaw_sp, Scalar rate, Scalar heading,
+                                         Scalar old_correction, Scalar correction) {
+    using std::abs;
+    if (abs(rate) > Scalar(epsilon)) return no_yaw();
+    if (!is_finite(yaw_sp)) return heading;
+    return wrap((yaw_sp - old_correction) + correction);
+  }
+
+  // Until v1.15.4.
+  ATTEST_INLINE static Scalar integrated_yaw(Scalar yaw_sp, Scalar rate, Scalar dt_s) {
+    return wrap(yaw_sp + rate * dt_s);
+  }
+
+  // The reset of the estimator turned the heading by `turn`. NaN stays NaN.
+  ATTEST_INLINE static Scalar turned(Scalar angle, Scalar turn) { return wrap(angle + turn); }
+
+  // The sticks together give no more tilt than one of them. A rotation vector.
+  ATTEST_INLINE static Vector limited_tilt(Scalar x, Scalar y, const Gains& gains) {
+    const Vector v(x, y, Scalar(0));
+    const Scalar angle = length(v);
+    return angle > gains.tilt_max_rad ? Vector(v * (gains.tilt_max_rad / angle)) : v;
+  }
+
+  ATTEST_INLINE static Q tilt(const Vector& rotation) {
+    return rotation_about(rotation[0], rotation[1]);
+  }
+
+  // A VTOL corrects yaw slowly, so it tilts in the direction that it has now.
+  static Q tilt_for_yaw_error(const Q& tilt, const Q& desired_yaw, const Q& q_WB) {
+    const Vector up(Scalar(0), Scalar(0), Scalar(1));
+    const Q yaw = product(inverse(shortest_rotation(up, z_axis(q_WB))), q_WB);
+    return shortest_rotation(up, z_axis(product(product(inverse(desired_yaw), yaw), tilt)));
+  }
+
+  // A stick of -1..1: straight, or in two parts that meet at the hover thrust.
+  static Scalar throttle(Scalar stick, const Gains& gains, const ThrustLimits<Scalar>& limits) {
+    const Scalar idle = -1, centre = 0, full = 1;
+    if (gains.throttle_curve == ThrottleCurve::straight) {
+      return Line<Scalar>{idle, full, limits.min, gains.thrust_max}.at(stick);
+    }
+    const bool fixed = gains.throttle_curve == ThrottleCurve::through_hover_parameter;
+    const Scalar hover = fixed ? gains.thrust_hover : limits.hover;
+    return stick > centre ? Line<Scalar>{centre, full, hover, gains.thrust_max}.at(stick)
+                          : Line<Scalar>{idle, centre, limits.min, hover}.at(stick);
+  }
+
+  ATTEST_INLINE static Scalar limited_thrust(Scalar thrust, const ThrustLimits<Scalar>& limits) {
+    return min(thrust, limits.max);
+  }
+
+  // v1.14.4: a stick of 0..1. The firmware's int(2 * stick) is undefined from 2^31 on and for NaN.
+  // Here these take the first part, as on x86-64.
+  static Scalar uncentred_throttle(Scalar stick, const Gains& gains) {
+    const Scalar idle = 0, full = 1, centre = Scalar(0.5f);
+    const Scalar position = (stick + Scalar(1)) * Scalar(0.5f);
+    if (gains.throttle_curve == ThrottleCurve::straight) {
+      return Line<Scalar>{idle, full, gains.thrust_min, gains.thrust_max}.at(position);
+    }
+    const Scalar part = position * Scalar(2);
+    const bool upper = part >= Scalar(1) && part < Scalar(2147483648.0f);
+    return upper ? Line<Scalar>{centre, full, gains.thrust_hover, gains.thrust_max}.at(position)
+                 : Line<Scalar>{idle, centre, gains.thrust_min, gains.thrust_hover}.at(position);
+  }
+};
+
+}  // namespace attest::cascade

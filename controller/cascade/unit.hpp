@@ -1,0 +1,15 @@
+// The reference of the cascade behind the C ABI of attest_cascade.h.
+#pragma once
+
+#include "controller/attest_cascade.h"
+
+namespace attest::cascade {
+
+// A static table that has the attitude unit and the rate unit as extensions, and no controller of
+// the older law; never NULL. Computes in binary32.
+const attest_unit* cascade_unit();
+
+// The same law in binary64: a second correct cascade, to measure the effect of rounding.
+const attest_unit* cascade_unit_in_double();
+
+}  // namespace attest::cascade
