@@ -16,6 +16,7 @@
 #include "harness/casefile/parse.hpp"
 #include "harness/casefile/parse_limits.hpp"
 #include "harness/core/toml.hpp"
+#include "harness/port/profiles.hpp"
 #include "harness/schedule/rate.hpp"
 
 namespace attest {

@@ -7,11 +7,9 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "controller/actuation/battery_status.hpp"
 #include "controller/actuation/mixer.hpp"
-#include "controller/reference/parameters.hpp"
-#include "controller/reference/profile.hpp"
 #include "harness/casefile/parse_flight.hpp"
 #include "harness/casefile/parse_limits.hpp"
 #include "harness/casefile/parse_signal.hpp"
@@ -20,20 +18,25 @@
 #include "harness/core/file.hpp"
 #include "harness/core/suggestion.hpp"
 #include "harness/core/toml.hpp"
+#include "harness/port/profiles.hpp"
 
 namespace attest {
 namespace {
 
 namespace fs = std::filesystem;
 
-// A mixer has no clock. The firmware measures the battery 100 times a second.
+// A mixer has no clock. The firmware measures the battery 100 times a second. The estimator makes
+// 50 to 1000 attitudes a second.
 std::vector<Rate> default_rates(Module module) {
   switch (module) {
     case Module::mixer:
       return {Rate::hz(250)};
     case Module::battery_status:
       return {Rate::hz(100)};
+    case Module::attitude_unit:
+      return {Rate::hz(50), Rate::hz(100), Rate::hz(250), Rate::hz(500), Rate::hz(1000)};
     case Module::mc_att_control:
+    case Module::rate_unit:
       return standard_rates();
   }
   return {};
@@ -92,8 +95,24 @@ Instances parse_instances(const TomlTable& root) {
   return Instances::one;
 }
 
-// `[mixer]` or `[battery]` names the module under test; without them it is the controller.
+// The module must be one of each known profile of the case.
+void check_module(const TomlTable& root, const Case& parsed) {
+  for (const std::string& name : parsed.profiles) {
+    const ProfileInfo* const profile = find_profile(name);
+    if (!profile || contains(profile->modules, parsed.module)) continue;
+    std::vector<std::string_view> names;
+    for (const ModuleInfo& info : modules()) {
+      if (contains(profile->modules, info.module)) names.push_back(info.name);
+    }
+    root.error("module", fmt::format("{} has no {}; its modules are {}", name,
+                                     name_of(parsed.module), fmt::join(names, ", ")));
+  }
+}
+
+// `[mixer]`, `[battery]` or `module` names the module under test. Without them it is the
+// controller.
 void parse_module(const TomlTable& root, Case& parsed) {
+  constexpr const char* key = "module";
   for (const char* other : {"mixer", "battery"}) {
     if (!root.has(other)) continue;
     if (root.has("flight")) root.error(other, "is a case of its own; leave [flight] out");
@@ -101,6 +120,17 @@ void parse_module(const TomlTable& root, Case& parsed) {
       root.error(other, "`mixer` is given too; keep one");
     parsed.module = root.has("mixer") ? Module::mixer : Module::battery_status;
   }
+  if (root.has(key)) {
+    const auto module = module_named(root.text(key));
+    const bool is_unit = module && info_of(*module).has_updated;
+    if (!is_unit) root.error(key, "must be mc_att_control, attitude_unit or rate_unit");
+    if (parsed.module != Module::mc_att_control) {
+      root.error(key, "is not for cases of mixer and battery estimate");
+    } else if (is_unit) {
+      parsed.module = *module;
+    }
+  }
+  check_module(root, parsed);
   if (parsed.module != Module::mixer) return;
   const TomlTable table = root.table("mixer");
   parsed.mixer = table.text("definition");
@@ -111,7 +141,7 @@ void parse_module(const TomlTable& root, Case& parsed) {
 
 void check_parameter_name(const TomlTable& table, const std::string& name, const Case& parsed) {
   for (const std::string& profile : parsed.profiles) {
-    if (!reference::profile_from_name(profile)) continue;  // of a law that has its own parameters
+    if (!find_profile(profile)) continue;  // of a law that has its own parameters
     const std::vector<std::string> known = parameter_names(parsed.module, profile);
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     table.error(name, fmt::format("unknown parameter `{}`{}; `attest list --parameters --profile "
@@ -128,7 +158,7 @@ std::vector<ParameterStimulus> parse_parameters(const TomlTable& root, const Cas
   for (const std::string& name : table.keys()) {
     parameters.push_back({name, parse_signal(table, name)});
     check_parameter_name(table, name, parsed);
-    if (parsed.module != Module::mc_att_control && varies(parameters.back().signal)) {
+    if (!info_of(parsed.module).has_updated && varies(parameters.back().signal)) {
       table.error(name, "does not change while it runs: give one value");
     }
   }
@@ -172,10 +202,9 @@ void parse_profiles(const TomlTable& root, const std::string& folder, Case& pars
   if (distinct.size() != parsed.profiles.size()) root.error(key, "names a profile twice");
   // The first profile may be unknown here: a suite may have its own, which ports may support.
   for (auto profile = parsed.profiles.begin() + 1; profile != parsed.profiles.end(); ++profile) {
-    if (reference::profile_from_name(*profile)) continue;
-    const auto names = reference::profile_names();
+    if (find_profile(*profile)) continue;
     root.error(key, fmt::format("`{}` is no profile{}", *profile,
-                                suggestion(*profile, {names.begin(), names.end()})));
+                                suggestion(*profile, known_profile_names())));
   }
 }
 
@@ -254,19 +283,6 @@ void parse_body(const TomlTable& root, Case& parsed) {
 }
 
 }  // namespace
-
-std::vector<std::string> parameter_names(Module module, const std::string& profile) {
-  const auto known = reference::profile_from_name(profile);
-  std::vector<std::string> names;
-  if (module == Module::mc_att_control) {
-    for (const auto& info : reference::parameter_table()) {
-      if (!known || info.profiles.contains(*known)) names.emplace_back(info.name);
-    }
-  } else if (module == Module::battery_status) {
-    for (const auto& info : actuation::battery_parameters()) names.emplace_back(info.name);
-  }
-  return names;
-}
 
 Result<Case> parse_case(const fs::path& file) {
   auto text = read_file(file);

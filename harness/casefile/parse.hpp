@@ -26,8 +26,4 @@ using CaseFolders = std::vector<std::filesystem::path>;
 // a folder without cases.
 Result<std::vector<std::filesystem::path>> find_case_files(const CaseFolders& folders);
 
-// The names of the parameters that a case of that module and profile may set. For an unknown
-// profile: all that the module has.
-std::vector<std::string> parameter_names(Module module, const std::string& profile);
-
 }  // namespace attest

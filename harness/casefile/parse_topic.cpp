@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include <fmt/format.h>
 
+#include "harness/casefile/baseline.hpp"
 #include "harness/casefile/flight_mode.hpp"
 #include "harness/casefile/parse_signal.hpp"
 #include "harness/core/suggestion.hpp"
@@ -24,29 +24,6 @@ constexpr std::string_view motor_limits = "multirotor_motor_limits";
 constexpr std::array<std::string_view, 3> thrusts = {"in/vehicle_attitude_setpoint.thrust",
                                                      "in/vehicle_rates_setpoint.thrust",
                                                      "in/manual_control_setpoint.z"};
-
-// The values for a vehicle that hovers level and armed. Channels that are not listed are zero.
-double baseline(std::string_view name) {
-  static const std::map<std::string_view, double> values = {
-      {"in/control_state.q[0]", 1},
-      {"in/vehicle_attitude_setpoint.q_d[0]", 1},
-      {"in/vehicle_attitude_setpoint.thrust", 0.5},
-      {"in/manual_control_setpoint.z", 0.5},
-      {"in/battery_status.scale", 1},
-      {"in/actuator_armed.armed", 1},
-      {"in/vehicle_status.is_rotary_wing", 1},
-      {"in/vehicle_control_mode.flag_control_manual_enabled", 1},
-      {"in/vehicle_control_mode.flag_control_rates_enabled", 1},
-      {"in/vehicle_control_mode.flag_control_attitude_enabled", 1},
-      {"in/vehicle_control_mode.flag_control_rattitude_enabled", 1},
-      {"in/actuator_controls_0.control[3]", 0.5},
-      {"in/battery.voltage_v", 12.15},
-      {"in/battery.throttle", 0.5},
-      {"in/battery.armed", 1},
-  };
-  const auto found = values.find(name);
-  return found == values.end() ? 0 : found->second;
-}
 
 constexpr const char* not_a_flag =
     "is a flag: a constant, a step or samples of whole numbers from 0 to 255";
@@ -243,19 +220,29 @@ TopicStimulus baseline_topic(Module module, std::string_view name, std::uint32_t
     if (!is_field) continue;
     const bool of_hover =
         is_flight && std::find(thrusts.begin(), thrusts.end(), table[i].name) != thrusts.end();
-    topic.fields.push_back({i, Constant{of_hover ? 1 : baseline(table[i].name)}, of_hover});
+    topic.fields.push_back({i, Constant{of_hover ? 1 : baseline(table[i])}, of_hover});
   }
   return topic;
 }
 
-std::vector<TopicStimulus> controller_topics(bool is_flight) {
-  std::vector<TopicStimulus> topics{baseline_topic(control_state, 0, is_flight)};
-  std::uint32_t bit = 1;
-  for (const std::string_view name : updated_topics()) {
-    if (bit != ATTEST_UPDATED_PARAMETER_UPDATE) {
-      topics.push_back(baseline_topic(name, bit, is_flight));
-    }
-    bit <<= 1;
+// The topic that is new at every step of a unit, and has no updated bit.
+std::string_view sample_of(Module module) {
+  switch (module) {
+    case Module::attitude_unit:
+      return "vehicle_attitude";
+    case Module::rate_unit:
+      return "vehicle_angular_velocity";
+    default:
+      return control_state;
+  }
+}
+
+std::vector<TopicStimulus> unit_topics(Module module, bool is_flight) {
+  std::vector<TopicStimulus> topics{baseline_topic(module, sample_of(module), 0, is_flight)};
+  for (const Channel& channel : channels()) {
+    if (channel.module != module || channel.type != ChannelType::bit) continue;
+    if (channel.bit == ATTEST_UPDATED_PARAMETER_UPDATE) continue;
+    topics.push_back(baseline_topic(module, field_of(channel.name), channel.bit, is_flight));
   }
   return topics;
 }
@@ -263,27 +250,47 @@ std::vector<TopicStimulus> controller_topics(bool is_flight) {
 std::vector<TopicStimulus> baseline_topics(Module module, bool is_flight) {
   switch (module) {
     case Module::mixer:
-      return {baseline_topic("actuator_controls_0", 0, false), baseline_topic("mixer", 0, false)};
+      return {baseline_topic(module, "actuator_controls_0", 0, false),
+              baseline_topic(module, "mixer", 0, false)};
     case Module::battery_status:
-      return {baseline_topic("battery", 0, false)};
+      return {baseline_topic(module, "battery", 0, false)};
     case Module::mc_att_control:
-      return controller_topics(is_flight);
+    case Module::attitude_unit:
+    case Module::rate_unit:
+      return unit_topics(module, is_flight);
   }
   return {};
 }
 
+// The keys of the topic's quaternions: "q" of "q[0]".
+std::vector<std::string> quaternions_of(const TopicStimulus& topic) {
+  std::vector<std::string> keys;
+  for (const FieldStimulus& field : topic.fields) {
+    const Channel& channel = channels()[field.channel];
+    const std::string_view name = field_of(channel.name);
+    if (channel.quantity != Quantity::quaternion || !name.ends_with("[0]")) continue;
+    keys.emplace_back(name.substr(0, name.size() - 3));
+  }
+  return keys;
+}
+
+std::size_t index_of(const std::string& field, const TopicStimulus& topic) {
+  const auto found = std::find_if(
+      topic.fields.begin(), topic.fields.end(),
+      [&](const FieldStimulus& one) { return field_of(channels()[one.channel].name) == field; });
+  return static_cast<std::size_t>(found - topic.fields.begin());
+}
+
 void parse_topic(const TomlTable& table, TopicStimulus& topic) {
-  if (topic.topic == control_mode) parse_flight_mode(table, topic);
+  const Module module = channels()[topic.fields.front().channel].module;
+  const bool has_modes = topic.topic == control_mode && module == Module::mc_att_control;
+  if (has_modes) parse_flight_mode(table, topic);
   for (FieldStimulus& field : topic.fields) {
     const std::string name(field_of(channels()[field.channel].name));
     parse_field(table, name, field);
   }
-  for (std::size_t i = 0; i < topic.fields.size(); ++i) {
-    const std::string_view name = field_of(channels()[topic.fields[i].channel].name);
-    const bool is_quaternion = channels()[topic.fields[i].channel].quantity == Quantity::quaternion;
-    if (!is_quaternion || !name.ends_with("[0]")) continue;
-    parse_quaternion(table, std::string(name.substr(0, name.size() - 3)), topic, i);
-    break;
+  for (const std::string& key : quaternions_of(topic)) {
+    parse_quaternion(table, key, topic, index_of(key + "[0]", topic));
   }
   // A topic without an updated bit, such as control_state, is new at every step.
   if (topic.updated_bit != 0) topic.publication = parse_publication(table);

@@ -27,10 +27,11 @@ bool same(float a, float b) {
 // One topic on a timeline: publishes into a sample.
 class Publisher {
  public:
-  Publisher(const TopicStimulus& topic, const Timeline& timeline)
+  // `start`: the timestamp of the first tick.
+  Publisher(const TopicStimulus& topic, const Timeline& timeline, Nanoseconds start)
       : topic_(topic), timeline_(timeline), delay_(topic.publication.delay.on(timeline.rate)) {
     for (const FieldStimulus& field : topic.fields) {
-      fields_.emplace_back(field, timeline);
+      fields_.emplace_back(field, timeline, start);
       varies_ = varies_ || varies(field.signal);
       if (const auto& replaced = field.replacement) {
         varies_ = varies_ || varies(replaced->when) || varies(replaced->signal);
@@ -61,8 +62,11 @@ class Publisher {
 
  private:
   struct Field {
-    Field(const FieldStimulus& field, const Timeline& timeline)
-        : channel(field.channel), scale(field.scale), sampler(field.signal, timeline) {
+    Field(const FieldStimulus& field, const Timeline& timeline, Nanoseconds start_of_ticks)
+        : channel(field.channel),
+          scale(field.scale),
+          start(start_of_ticks),
+          sampler(field.signal, timeline) {
       if (!field.replacement) return;
       when.emplace(field.replacement->when, timeline);
       instead.emplace(field.replacement->signal, timeline);
@@ -70,11 +74,22 @@ class Publisher {
 
     void write(Nanoseconds time, Sample& sample) const {
       const bool replaced = when && when->at(time) != 0;
-      set_value(channels()[channel], sample, scale * (replaced ? *instead : sampler).at(time));
+      const double value = scale * (replaced ? *instead : sampler).at(time);
+      const Channel& what = channels()[channel];
+      set_value(what, sample, what.type == ChannelType::u64 ? time_us(value, time) : value);
+    }
+
+    // A time is given in seconds after the publication, armed_time in seconds after the first tick.
+    double time_us(double seconds, Nanoseconds published) const {
+      const bool of_start = channels()[channel].name.ends_with(".armed_time");
+      const Nanoseconds from = of_start ? start : start + published;
+      const double us = static_cast<double>(timestamp_us(from)) + std::round(seconds * 1e6);
+      return std::clamp(us, 0.0, 0x1p53);
     }
 
     std::size_t channel;
     double scale;
+    Nanoseconds start;
     Sampler sampler;
     std::optional<Sampler> when, instead;
   };
@@ -237,7 +252,8 @@ struct Stimulus::Impl {
         start(the_case.unit.start.on(rate)),
         parameters(the_case.parameters, timeline_of(the_case, rate)) {
     const Timeline timeline = timeline_of(the_case, rate);
-    for (const TopicStimulus& topic : the_case.topics) publishers.emplace_back(topic, timeline);
+    for (const TopicStimulus& topic : the_case.topics)
+      publishers.emplace_back(topic, timeline, start);
   }
 
   Module module;

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "controller/reference/profile.hpp"
 #include "harness/cli/command.hpp"
 #include "harness/host/smoke.hpp"
+#include "harness/port/profiles.hpp"
 #include "harness/report/text.hpp"
 
 namespace attest::cli {
@@ -26,9 +26,9 @@ void Examination::check(bool is_good, const std::string& what, const std::string
 }
 
 void examine_port(const HostOptions& options, Examination& examination) {
-  const auto known = reference::profile_names();
+  const auto known = known_profile_names();
   const std::string& specification = options.port;
-  const auto port = describe_port(options, {known.begin(), known.end()});
+  const auto port = describe_port(options, known);
   if (!port) return examination.bad("port", port.error().to_string());
   for (const std::string& trouble : {port->hangs, port->goes_wrong}) {
     if (!trouble.empty()) return examination.bad("port", specification + ": " + trouble);

@@ -1,67 +1,80 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <string>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "controller/actuation/battery_status.hpp"
-#include "controller/actuation/unit_table.hpp"
-#include "controller/reference/parameters.hpp"
 #include "harness/casefile/flight_mode.hpp"
 #include "harness/cli/command.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/suggestion.hpp"
 #include "harness/plant/vehicle.hpp"
+#include "harness/port/profiles.hpp"
 #include "harness/trace/channels.hpp"
 
 namespace attest::cli {
 namespace {
 
 // The requested profiles; by default all.
-Result<std::vector<reference::Profile>> chosen_profiles(const std::vector<std::string>& names) {
-  const auto all = reference::profile_names();
-  std::vector<reference::Profile> profiles;
+Result<std::vector<const ProfileInfo*>> chosen_profiles(const std::vector<std::string>& names) {
+  std::vector<const ProfileInfo*> profiles;
   for (const std::string& name : names) {
-    const auto profile = reference::profile_from_name(name);
-    if (!profile) {
-      return fail(fmt::format("no profile `{}`{}; there are {}", name,
-                              suggestion(name, {all.begin(), all.end()}), fmt::join(all, ", ")));
-    }
-    profiles.push_back(*profile);
+    profiles.push_back(find_profile(name));
+    if (profiles.back()) continue;
+    const auto all = known_profile_names();
+    return fail(fmt::format("no profile `{}`{}; there are {}", name, suggestion(name, all),
+                            fmt::join(all, ", ")));
   }
   if (!profiles.empty()) return profiles;
-  for (const std::string_view name : all) profiles.push_back(*reference::profile_from_name(name));
+  for (const ProfileInfo& profile : known_profiles()) profiles.push_back(&profile);
   return profiles;
 }
 
-// The names of the profiles for which `has` is true.
-template <typename Has>
-std::string names_of(const std::vector<reference::Profile>& profiles, Has has) {
-  std::vector<std::string> names;
-  for (const reference::Profile profile : profiles) {
-    if (has(profile)) names.emplace_back(name_of(profile));
+// A parameter and the profiles that have it with the same default and bounds.
+struct Listed {
+  Parameter parameter;
+  std::string profiles;
+};
+
+std::vector<Listed> listed_parameters(Module module,
+                                      const std::vector<const ProfileInfo*>& profiles) {
+  std::vector<Listed> rows;
+  for (const ProfileInfo* profile : profiles) {
+    for (const Parameter& parameter : parameters_of(module, *profile)) {
+      const auto same = std::find_if(rows.begin(), rows.end(), [&](const Listed& row) {
+        const Parameter& other = row.parameter;
+        return std::tie(other.name, other.default_value, other.min, other.max) ==
+               std::tie(parameter.name, parameter.default_value, parameter.min, parameter.max);
+      });
+      Listed& row = same == rows.end() ? rows.emplace_back(Listed{parameter, ""}) : *same;
+      row.profiles += fmt::format("{}{}", row.profiles.empty() ? "" : " ", profile->name);
+    }
   }
-  return fmt::format("{}", fmt::join(names, " "));
+  return rows;
 }
 
-void list_parameters(const std::vector<reference::Profile>& profiles) {
+void list_parameters(const std::vector<const ProfileInfo*>& profiles) {
   constexpr const char* row = "{:<17}{:>9}{:>8}{:>8}  {:<8} {:<22} {}\n";
-  fmt::print(row, "parameter", "default", "min", "max", "unit", "profiles", "what it does");
-  for (const auto& info : reference::parameter_table()) {
-    const std::string names =
-        names_of(profiles, [&](auto profile) { return info.profiles.contains(profile); });
-    if (names.empty()) continue;
-    fmt::print(row, info.name, info.default_value, info.min, info.max, info.unit, names,
-               info.description);
-  }
-  const std::string names = names_of(
-      profiles, [](auto profile) { return actuation::is_profile(name_of(profile).data()); });
-  if (names.empty()) return;
-  fmt::print("\nof battery_status:\n");
-  for (const auto& info : actuation::battery_parameters()) {
-    fmt::print(row, info.name, info.default_value, "", "", info.unit, names, info.description);
+  bool is_first = true;
+  for (const ModuleInfo& info : modules()) {
+    const std::vector<Listed> rows = listed_parameters(info.module, profiles);
+    if (rows.empty()) continue;
+    if (is_first) {
+      fmt::print(row, "parameter", "default", "min", "max", "unit", "profiles", "what it does");
+    }
+    if (!is_first) fmt::print("\nof {}:\n", info.name);
+    is_first = false;
+    for (const auto& [parameter, names] : rows) {
+      const auto bound = [](float value) {
+        return std::isinf(value) ? std::string() : fmt::format("{}", value);
+      };
+      fmt::print(row, parameter.name, parameter.default_value, bound(parameter.min),
+                 bound(parameter.max), parameter.unit, names, parameter.description);
+    }
   }
 }
 
@@ -79,10 +92,12 @@ std::string_view type_name(ChannelType type) {
 }
 
 void list_channels() {
-  fmt::print("{:<58}{:<9}{:<7}{}\n", "channel", "type", "unit", "written by");
+  fmt::print("{:<58}{:<9}{:<8}{:<16}{}\n", "channel", "type", "unit", "module", "written by");
   for (const Channel& channel : channels()) {
-    fmt::print("{:<58}{:<9}{:<7}{}\n", channel.name, type_name(channel.type),
-               unit_of(channel.quantity), channel.is_output() ? name_of(channel.stage) : "");
+    const bool is_of_all = &channel == &channels().front();
+    fmt::print("{:<58}{:<9}{:<8}{:<16}{}\n", channel.name, type_name(channel.type),
+               unit_of(channel.quantity), is_of_all ? "all" : name_of(channel.module),
+               channel.is_output() ? name_of(channel.stage) : "");
   }
 }
 

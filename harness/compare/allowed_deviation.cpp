@@ -19,7 +19,8 @@ double AllowedDeviation::of(std::size_t channel, const attest_inputs& in, float 
   const double w = want;
   const double tolerance = std::max(base.absolute, base.relative * std::abs(w));
   const double difference = std::abs(static_cast<double>(got) - w);
-  const bool widens = channels()[channel].quantity == Quantity::rate &&
+  const bool widens = channels()[channel].module == Module::mc_att_control &&
+                      channels()[channel].quantity == Quantity::rate &&
                       tolerances_.level() == Level::numeric &&
                       in.vehicle_control_mode.flag_control_attitude_enabled != 0;
   if (!widens || difference <= tolerance) return tolerance;

@@ -23,6 +23,8 @@ Tolerance default_of(Quantity quantity) {
       return Tolerances::motor;
     case Quantity::scale:
       return Tolerances::scale;
+    case Quantity::quaternion:
+      return Tolerances::quaternion;
     default:
       return {};  // time and flags have no tolerance
   }
@@ -41,6 +43,8 @@ double lsb_of(Quantity quantity) {
       return Tolerances::scale_lsb;
     case Quantity::motor:
       return Tolerances::motor_lsb;
+    case Quantity::quaternion:
+      return Tolerances::quaternion_lsb;
     case Quantity::thrust:
       return 16;  // copied, at most scaled
     default:

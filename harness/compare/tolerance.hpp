@@ -34,6 +34,8 @@ class Tolerances {
   static constexpr Tolerance control{1e-4, 1e-5};
   static constexpr Tolerance integral{2e-5, 1e-5};
   static constexpr Tolerance passed_through{1e-6, 1e-6};  // thrust: copied, at most scaled
+  // An attitude of 2e-5 rad off: at the default gain 1.3e-4 rad/s.
+  static constexpr Tolerance quaternion{1e-5, 0};
   // For mixer and battery estimate: correct builds stay within 1.2e-6 and 2.4e-7.
   static constexpr Tolerance motor{2e-5, 0};
   static constexpr Tolerance scale{2e-5, 0};
@@ -62,7 +64,7 @@ class Tolerances {
   // its step may be less than an LSB, so that all roundings go in the same direction. Measured at
   // 22 bits: 255 LSB after 4,000 ticks of a flight.
   static constexpr double rate_lsb = 2560, control_lsb = 2560, integral_lsb = 256;
-  static constexpr double motor_lsb = 64, scale_lsb = 512;
+  static constexpr double motor_lsb = 64, scale_lsb = 512, quaternion_lsb = 64;
   static constexpr double control_relative_lsb = 1024;
   void allow_lsb(int fraction_bits, std::size_t ticks = 0);
 

@@ -295,6 +295,8 @@ Margins margins(const Trace& given, const Subject& subject) {
     case Module::mixer:
       return mixer_margins(given, subject.mixer);
     case Module::battery_status:
+    case Module::attitude_unit:
+    case Module::rate_unit:
       return {};
     case Module::mc_att_control:
       return controller_margins(given, subject.profile);

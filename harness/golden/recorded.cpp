@@ -11,6 +11,7 @@
 #include "controller/actuation/mixer.hpp"
 #include "harness/casefile/parse.hpp"
 #include "harness/core/suggestion.hpp"
+#include "harness/port/profiles.hpp"
 #include "harness/trace/provenance.hpp"
 #include "harness/trace/trace_file.hpp"
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "harness/host/step_timer.hpp"
+#include "harness/port/profiles.hpp"
 
 namespace attest {
 
@@ -85,7 +86,7 @@ Result<void> HostHere::measure_stack(const std::string& profile, Trace trace, St
 
 bool HostHere::supports(const std::string& profile) {
   return ports_.run([&] {
-    const bool is_made = driven().create(profile) != nullptr;
+    const bool is_made = makes_unit_of(driven(), profile);
     port_->finish();
     return is_made;
   });

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "harness/port/profiles.hpp"
+
 namespace attest {
 namespace {
 
@@ -127,14 +129,28 @@ std::optional<PortFault> drive_in_company(std::unique_ptr<Unit> first, Create cr
   return drive(*judged, trace, module);
 }
 
+PortFault no_profile(const Subject& subject) {
+  return {PortFault::Kind::profile, 0,
+          fmt::format("the port does not support profile {}", subject.profile)};
+}
+
+// A port that has no module of a profile does not support the profile.
+PortFault lacks_module(const Port& port, const Subject& subject) {
+  const ModuleInfo& info = info_of(subject.module);
+  const ProfileInfo* const profile = find_profile(subject.profile);
+  const bool has_another = profile && (profile->modules & port.modules()).any();
+  if (!info.extension || (profile && !has_another)) return no_profile(subject);
+  return {PortFault::Kind::unsupported, 0,
+          fmt::format("the port has no {} (extension {})", info.title, info.extension)};
+}
+
 PortFault makes_none(const Subject& subject) {
   if (subject.module == Module::mixer) {
     return {
         PortFault::Kind::unsupported, 0,
         fmt::format("the port makes no mixer `{}` of profile {}", subject.mixer, subject.profile)};
   }
-  return {PortFault::Kind::profile, 0,
-          fmt::format("the port does not support profile {}", subject.profile)};
+  return no_profile(subject);
 }
 
 }  // namespace
@@ -152,11 +168,7 @@ Subject subject_of(const Case& the_case) {
 }
 
 std::optional<PortFault> drive(Port& port, const Subject& subject, Trace& trace) {
-  const ModuleInfo& info = info_of(subject.module);
-  if (!contains(port.modules(), subject.module)) {
-    return PortFault{PortFault::Kind::unsupported, 0,
-                     fmt::format("the port has no {} (extension {})", info.title, info.extension)};
-  }
+  if (!contains(port.modules(), subject.module)) return lacks_module(port, subject);
   const auto create = [&] {
     return port.create_unit(subject.module, subject.profile, subject.mixer);
   };

@@ -81,7 +81,8 @@ class AbiPort final : public Port {
   ModuleSet modules() const override {
     ModuleSet set;
     for (const ModuleInfo& info : attest::modules()) {
-      const bool has = info.extension ? extension<void>(info.extension) != nullptr : table_.create;
+      const bool has =
+          info.extension ? extension<void>(info.extension) != nullptr : table_.create != nullptr;
       if (has) set |= only(info.module);
     }
     return set;

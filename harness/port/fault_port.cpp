@@ -75,7 +75,9 @@ class FaultPort final : public Port {
   std::string name() const override { return "fault " + ids_; }
   std::string version() const override { return "of the catalogue"; }
   std::optional<int> fraction_bits() const override { return fraction_bits_; }
-  ModuleSet modules() const override { return ModuleSet().set(); }
+  ModuleSet modules() const override {
+    return only(Module::mc_att_control) | only(Module::mixer) | only(Module::battery_status);
+  }
   std::unique_ptr<Unit> create_unit(Module module, const std::string& profile,
                                     const std::string& definition) override {
     if (module == Module::mc_att_control) {

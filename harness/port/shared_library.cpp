@@ -13,14 +13,50 @@ namespace {
 
 constexpr const char* symbol_name = "attest_unit_v1";
 
-std::string missing_function(const attest_unit& unit) {
+// A port without the controller has none of its functions.
+bool has_controller(const attest_unit& unit) {
+  return unit.create || unit.destroy || unit.set_parameter || unit.step;
+}
+
+std::string missing_member(const attest_unit& unit) {
   if (!unit.name) return "name";
   if (!unit.version) return "version";
+  if (!has_controller(unit)) return unit.extension ? "" : "create";
   if (!unit.create) return "create";
   if (!unit.destroy) return "destroy";
   if (!unit.set_parameter) return "set_parameter";
   if (!unit.step) return "step";
   return "";
+}
+
+template <typename Table>
+bool is_complete(const Table& table) {
+  bool has_parameters = true;
+  if constexpr (requires { table.set_parameter; }) has_parameters = table.set_parameter;
+  return table.create && table.destroy && table.step && has_parameters;
+}
+
+// Of an extension that the port has; true if it has it not.
+template <typename Table>
+bool is_complete(const attest_unit& unit, const char* id) {
+  const auto* table = static_cast<const Table*>(unit.extension(id));
+  return table == nullptr || is_complete(*table);
+}
+
+bool is_complete(const attest_unit& unit, const ModuleInfo& info) {
+  switch (info.module) {
+    case Module::mc_att_control:
+      return true;
+    case Module::mixer:
+      return is_complete<attest_mixer>(unit, info.extension);
+    case Module::battery_status:
+      return is_complete<attest_battery_status>(unit, info.extension);
+    case Module::attitude_unit:
+      return is_complete<attest_attitude_unit>(unit, info.extension);
+    case Module::rate_unit:
+      return is_complete<attest_rate_unit>(unit, info.extension);
+  }
+  return false;
 }
 
 // An extension that the port has must be complete.
@@ -30,15 +66,8 @@ Result<void> check_extensions(const attest_unit& unit, const std::string& path) 
                    fmt::format("a member of its extension {} is NULL; every one must be set", id));
   };
   if (!unit.extension) return {};
-  const auto* mixer = static_cast<const attest_mixer*>(unit.extension(ATTEST_EXTENSION_MIXER));
-  if (mixer && !(mixer->create && mixer->destroy && mixer->step)) {
-    return incomplete(ATTEST_EXTENSION_MIXER);
-  }
-  const auto* battery =
-      static_cast<const attest_battery_status*>(unit.extension(ATTEST_EXTENSION_BATTERY_STATUS));
-  if (battery &&
-      !(battery->create && battery->destroy && battery->set_parameter && battery->step)) {
-    return incomplete(ATTEST_EXTENSION_BATTERY_STATUS);
+  for (const ModuleInfo& info : modules()) {
+    if (!is_complete(unit, info)) return incomplete(info.extension);
   }
   const auto* times = static_cast<const attest_timestamp_sample*>(
       unit.extension(ATTEST_EXTENSION_TIMESTAMP_SAMPLE));
@@ -63,7 +92,7 @@ Result<void> check_table(const attest_unit* unit, const std::string& path) {
                                      "port with the attest_unit.h of this attest",
                                      unit->abi_version, ATTEST_UNIT_ABI_VERSION));
   }
-  if (const std::string name = missing_function(*unit); !name.empty()) {
+  if (const std::string name = missing_member(*unit); !name.empty()) {
     return fail_at(path, fmt::format("attest_unit.{} is NULL; every member but extension must be "
                                      "set",
                                      name));

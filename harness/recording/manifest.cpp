@@ -40,8 +40,7 @@ std::vector<std::string> texts(const TomlTable& table, std::string_view key) {
 }
 
 // The output channels with that name. An error at `key` if there is none.
-ChannelSet outputs_named(const std::string& name, const TomlTable& table,
-                                        std::string_view key) {
+ChannelSet outputs_named(const std::string& name, const TomlTable& table, std::string_view key) {
   if (name == "timestamp" || name.starts_with("out/")) {
     if (const ChannelSet named = channels_named(name); named.any()) return named;
   }

@@ -24,6 +24,7 @@ Result<void> set_recorded_outputs(const Table& table, const Manifest& manifest,
 void keep_unpublished(Trace& trace);
 
 // The columns that are neither an output nor an input nor `timestamp`.
-std::vector<std::string> ignored_columns(const Table& table, const Manifest& manifest);
+std::vector<std::string> ignored_columns(const Table& table, const Manifest& manifest,
+                                         Module module);
 
 }  // namespace attest

@@ -106,7 +106,7 @@ std::string_view name_of(Stage stage);        // "attitude law"
 double value_of(const Channel& channel, const Sample& sample);
 // REQUIRES: 0 <= value < 2^53 for u64, an integer 0..255 for u8; any value for f32 and bit.
 void set_value(const Channel& channel, Sample& sample, double value);
-float float_of(const Channel& channel, const Sample& sample);           // REQUIRES: type f32
+float float_of(const Channel& channel, const Sample& sample);            // REQUIRES: type f32
 std::uint64_t integer_of(const Channel& channel, const Sample& sample);  // REQUIRES: type u64
 
 }  // namespace attest

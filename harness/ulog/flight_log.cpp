@@ -264,8 +264,8 @@ void hold_unpublished(const LogSeries& output, const Channel& published, Trace& 
 
 LoggedOutput fill_outputs(const LogSeries& output, const LogSeries& ticks, Trace& trace) {
   LoggedOutput logged{std::string(output.topic()), output.size(), 0};
-  const auto published = find_channel(
-      Module::mc_att_control, fmt::format("out/{}.published", output.topic()));
+  const auto published =
+      find_channel(Module::mc_att_control, fmt::format("out/{}.published", output.topic()));
   trace.present.set(*published);
   for (const std::size_t channel : output.channels()) trace.present.set(channel);
   for (std::size_t row = 0; row < output.size(); ++row) {

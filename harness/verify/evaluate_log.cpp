@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "harness/casefile/parse.hpp"
+#include "harness/port/profiles.hpp"
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/judge.hpp"
 

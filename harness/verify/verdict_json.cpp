@@ -19,14 +19,25 @@ std::string float_bits(double value) {
   return fmt::format("0x{:08x}", std::bit_cast<std::uint32_t>(static_cast<float>(value)));
 }
 
+// The name of a channel, and its module if the name alone is that of an earlier one.
+void name_channel(std::size_t index, json& out) {
+  const Channel& channel = channels()[index];
+  out["channel"] = channel.name;
+  if (channels_named(channel.name)._Find_first() != index) out["module"] = name_of(channel.module);
+}
+
 json deviation_to_json(const Deviation& deviation) {
   const Channel& channel = channels()[deviation.channel];
   json out = {
-      {"tick", deviation.tick},        {"timestamp_us", deviation.timestamp_us},
-      {"channel", channel.name},       {"stage", name_of(channel.stage)},
-      {"got", json_of(deviation.got)}, {"want", json_of(deviation.want)},
-      {"ulp", deviation.ulp},          {"tolerance", json_of(deviation.tolerance)},
+      {"tick", deviation.tick},
+      {"timestamp_us", deviation.timestamp_us},
+      {"stage", name_of(channel.stage)},
+      {"got", json_of(deviation.got)},
+      {"want", json_of(deviation.want)},
+      {"ulp", deviation.ulp},
+      {"tolerance", json_of(deviation.tolerance)},
   };
+  name_channel(deviation.channel, out);
   if (channel.type == ChannelType::f32) {
     out["got_bits"] = float_bits(deviation.got);
     out["want_bits"] = float_bits(deviation.want);
@@ -35,9 +46,9 @@ json deviation_to_json(const Deviation& deviation) {
 }
 
 json headroom_to_json(const Headroom& headroom) {
-  return {{"ratio", json_of(headroom.ratio)},
-          {"tick", headroom.tick},
-          {"channel", channels()[headroom.channel].name}};
+  json out = {{"ratio", json_of(headroom.ratio)}, {"tick", headroom.tick}};
+  name_channel(headroom.channel, out);
+  return out;
 }
 
 std::size_t channel_from(JsonReader& reader, const char* key) {

@@ -137,9 +137,8 @@ PlotGroup plots_of_outputs(const Trace& want, const Trace& got, const char* name
   for (std::size_t i = 0; i < channels().size(); ++i) {
     if (!outputs[i] || channels()[i].type != ChannelType::f32) continue;
     const std::string_view name = channels()[i].name;
-    const auto published =
-        find_channel(Module::mc_att_control,
-                     fmt::format("{}.published", name.substr(0, name.find('.'))));
+    const auto published = find_channel(
+        Module::mc_att_control, fmt::format("{}.published", name.substr(0, name.find('.'))));
     group.plots.push_back(plot_of_output(i, channels()[*published], want, got, name_of_want));
   }
   return group;

@@ -65,11 +65,11 @@ TEST(ParseCase, ReadsToleranceOverrides) {
 
 TEST(ParseCase, EveryTopicIsThereOnceInTheOrderOfItsBits) {
   const Case parsed = case_of("[battery_status]\nscale = 0.9\n");
-  ASSERT_EQ(parsed.topics.size(), updated_topics().size());
+  ASSERT_EQ(parsed.topics.size(), updated_topics(Module::mc_att_control).size());
   EXPECT_EQ(parsed.topics[0].topic, "control_state");
   EXPECT_EQ(parsed.topics[0].updated_bit, 0u);
   for (std::size_t i = 1; i < parsed.topics.size(); ++i) {
-    EXPECT_EQ(parsed.topics[i].topic, updated_topics()[i - 1]);
+    EXPECT_EQ(parsed.topics[i].topic, updated_topics(Module::mc_att_control)[i - 1]);
     EXPECT_EQ(parsed.topics[i].updated_bit, 1u << (i - 1));
   }
 }

@@ -17,8 +17,10 @@ TEST(FirstInputDifference, ThereIsNoneBetweenTheSame) {
 }
 
 TEST(FirstInputDifference, SeesEveryInput) {
-  const Trace a = sample_trace(3);
   for (const Channel& what : channels()) {
+    Trace a = sample_trace(3);
+    a.present = channels_of(what.module);
+    if (what.module != Module::mc_att_control) a.samples.assign(3, Sample{});
     Trace b = a;
     const double value = value_of(what, a.samples[1]);
     set_value(what, b.samples[1], what.type == ChannelType::bit ? 1 - value : value + 1);

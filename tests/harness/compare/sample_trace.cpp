@@ -5,7 +5,7 @@
 namespace attest {
 
 std::size_t channel(std::string_view name) {
-  const auto found = find_channel(name);
+  const auto found = find_channel(Module::mc_att_control, name);
   if (!found) std::abort();
   return *found;
 }

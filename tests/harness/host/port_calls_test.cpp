@@ -1,11 +1,13 @@
 // The note of the running call: written around each call of a port, in whichever module.
 #include "harness/host/port_calls.hpp"
 
+#include <algorithm>
 #include <functional>
 
 #include <gtest/gtest.h>
 
 #include "harness/port/builtin.hpp"
+#include "harness/port/profiles.hpp"
 
 namespace attest {
 namespace {
@@ -113,7 +115,13 @@ TEST(PortCalls, TheNotedPortIsThePort) {
   const auto builtin = open_builtin();
   const auto whole = calls->noted(*builtin);
   for (const ModuleInfo& info : modules()) {
-    EXPECT_NE(whole->create_unit(info.module, "px4-v1.5.5", mixer), nullptr) << info.name;
+    const auto all = known_profiles();
+    const auto profile = std::find_if(all.begin(), all.end(), [&](const ProfileInfo& one) {
+      return contains(one.modules, info.module);
+    });
+    ASSERT_NE(profile, all.end()) << info.name;
+    const std::string name(profile->name);
+    EXPECT_NE(whole->create_unit(info.module, name, mixer), nullptr) << info.name;
   }
 }
 

@@ -101,7 +101,8 @@ Vehicle quad() {
 
 TopicStimulus armed(bool value) {
   TopicStimulus topic{"actuator_armed", ATTEST_UPDATED_ACTUATOR_ARMED, {}, {}, {}};
-  topic.fields.push_back({*find_channel("in/actuator_armed.armed"), Constant{value ? 1.0 : 0.0}});
+  topic.fields.push_back({*find_channel(Module::mc_att_control, "in/actuator_armed.armed"),
+                          Constant{value ? 1.0 : 0.0}});
   return topic;
 }
 

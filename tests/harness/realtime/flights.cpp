@@ -12,7 +12,8 @@ Case hover_case(double duration_s) {
   hover.name = "hover";
   hover.duration = {duration_s, Span::In::seconds};
   TopicStimulus armed{"actuator_armed", ATTEST_UPDATED_ACTUATOR_ARMED, {}, {}, {}};
-  armed.fields.push_back({*find_channel("in/actuator_armed.armed"), Constant{1}});
+  armed.fields.push_back(
+      {*find_channel(Module::mc_att_control, "in/actuator_armed.armed"), Constant{1}});
   hover.topics.push_back(armed);
   hover.flight.emplace();
   return hover;

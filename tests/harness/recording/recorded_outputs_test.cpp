@@ -72,7 +72,7 @@ TEST(RecordedOutputs, AreThoseOfTheTableInAnyOrder) {
     if (channel.type != ChannelType::f32) continue;
     EXPECT_FLOAT_EQ(float_of(channel, trace.samples[3]), static_cast<float>(i) + 0.3f);
   }
-  EXPECT_THAT(ignored_columns(table, {}), ElementsAre("temperature"));
+  EXPECT_THAT(ignored_columns(table, {}, Module::mc_att_control), ElementsAre("temperature"));
 }
 
 TEST(RecordedOutputs, ATopicThatIsNotPublishedKeepsItsValues) {
@@ -82,7 +82,8 @@ TEST(RecordedOutputs, ATopicThatIsNotPublishedKeepsItsValues) {
   ASSERT_TRUE(set_recorded_outputs(table, {}, "x.out.csv", trace));
   std::vector<float> got;
   for (const Sample& sample : trace.samples) got.push_back(sample.out.vehicle_rates_setpoint.roll);
-  const auto first = static_cast<float>(*find_channel("out/vehicle_rates_setpoint.roll"));
+  const auto first =
+      static_cast<float>(*find_channel(Module::mc_att_control, "out/vehicle_rates_setpoint.roll"));
   EXPECT_THAT(got, ElementsAre(0, first + 0.1f, first + 0.1f, first + 0.1f, first + 0.4f));
 }
 

@@ -33,7 +33,7 @@ CaseResult died(Verdict verdict, const std::string& name, Rate rate, const std::
 }
 
 CaseResult with_headroom(CaseResult out, const char* channel, double ratio, std::size_t tick) {
-  out.tightest = Headroom{ratio, tick, *find_channel(channel)};
+  out.tightest = Headroom{ratio, tick, *find_channel(Module::mc_att_control, channel)};
   return out;
 }
 
@@ -126,7 +126,7 @@ Deviation deviation(const char* channel, std::size_t tick, float got, float want
   Deviation out;
   out.tick = tick;
   out.timestamp_us = 4000 * tick;
-  out.channel = *find_channel(channel);
+  out.channel = *find_channel(Module::mc_att_control, channel);
   out.got = static_cast<double>(got);
   out.want = static_cast<double>(want);
   out.tolerance = tolerance;

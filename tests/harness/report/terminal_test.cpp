@@ -139,8 +139,9 @@ TEST(Summary, ReasonsOfWhatIsCountedApartAreAggregated) {
 TEST(Headroom, NamesTheTightestFirst) {
   RunResult run = passing_run();
   run.level = Level::numeric;
-  const std::size_t control = *find_channel("out/actuator_controls_0.control[0]");
-  const std::size_t rate = *find_channel("out/vehicle_rates_setpoint.yaw");
+  const std::size_t control =
+      *find_channel(Module::mc_att_control, "out/actuator_controls_0.control[0]");
+  const std::size_t rate = *find_channel(Module::mc_att_control, "out/vehicle_rates_setpoint.yaw");
   run.results[0].tightest = Headroom{30, 4, control};
   run.results[1].tightest = Headroom{20, 5, control};
   run.results[2].tightest = Headroom{7.26, 6, rate};

@@ -2,6 +2,9 @@
 
 #include <cmath>
 #include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +16,21 @@ namespace {
 
 using testing::ElementsAre;
 
-const Channel& channel(std::string_view name) { return channels()[find_channel(name).value()]; }
+// Of the first module that has one of that name.
+const Channel& channel(std::string_view name) {
+  const ChannelSet named = channels_named(name);
+  if (named.none()) throw std::invalid_argument(std::string(name));
+  return channels()[named._Find_first()];
+}
+
+std::vector<Channel> channels_in(Module module) {
+  const ChannelSet set = channels_of(module);
+  std::vector<Channel> own;
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    if (set[i]) own.push_back(channels()[i]);
+  }
+  return own;
+}
 
 TEST(Channels, AreTheColumnsOfTheRecordedFilesInTheirOrder) {
   // Those files leave out three controls that are always zero.
@@ -31,35 +48,58 @@ TEST(Channels, AreTheColumnsOfTheRecordedFilesInTheirOrder) {
   EXPECT_EQ(channels().size(), max_channels);
 }
 
-TEST(Channels, CoverEveryByteOfTheAbiOnce) {
-  // All but padding: a member without a channel would be neither recorded nor compared.
+// How many bytes of the module's structs belong to a channel. No byte may belong to two.
+std::size_t bytes_with_a_channel(Module module) {
   std::multiset<std::size_t> bytes;
-  for (const Channel& c : channels()) {
-    if (c.type == ChannelType::bit) continue;
+  for (const Channel& c : channels_in(module)) {
+    if (c.type == ChannelType::bit || c.module != module) continue;
     const std::size_t size = c.type == ChannelType::u64 ? 8 : c.type == ChannelType::f32 ? 4 : 1;
     for (std::size_t i = 0; i < size; ++i) bytes.insert(c.offset + i);
   }
   const std::set<std::size_t> distinct(bytes.begin(), bytes.end());
-  EXPECT_EQ(distinct.size(), bytes.size());
-  // 120 bytes of inputs and 72 of outputs, less `updated` (4) and the paddings: 3 after
-  // disable_mc_yaw_control, and 3 after each `published`. Of the mixer 20 and 36, less 1; of the
-  // battery estimate 16 and 4, less 3 after `armed`.
-  EXPECT_EQ(distinct.size(), (192u - 4u - 4u * 3u) + (56u - 1u) + (20u - 3u));
+  EXPECT_EQ(distinct.size(), bytes.size()) << name_of(module);
+  return distinct.size();
 }
 
-TEST(Channels, HaveDistinctNames) {
-  std::set<std::string_view> names;
-  for (const Channel& c : channels()) EXPECT_TRUE(names.insert(c.name).second) << c.name;
+TEST(Channels, CoverEveryByteOfTheAbiOnce) {
+  // All but padding: a member without a channel would be neither recorded nor compared.
+  // 120 bytes of inputs and 72 of outputs, less `updated` (4) and the paddings: 3 after
+  // disable_mc_yaw_control, and 3 after each `published`.
+  EXPECT_EQ(bytes_with_a_channel(Module::mc_att_control), 192u - 4u - 4u * 3u);
+  EXPECT_EQ(bytes_with_a_channel(Module::mixer), 56u - 1u);
+  EXPECT_EQ(bytes_with_a_channel(Module::battery_status), 20u - 3u);  // 3 after `armed`
+  // 192 + 64, less the first 16 (timestamp, updated, reserved) and the paddings: 7 after
+  // quat_reset_counter, 3 after is_vtol_tailsitter, 3 after `state`, 3 after
+  // heading_good_for_control, 3 after `valid`, 2 at the end; 3 after each `published`.
+  EXPECT_EQ(bytes_with_a_channel(Module::attitude_unit), 256u - 16u - 21u - 2u * 3u);
+  // 120 + 76, less the first 16, 3 after each of torque_setpoint_achieved and `connected`, 1 at the
+  // end, and 3 after each `published`.
+  EXPECT_EQ(bytes_with_a_channel(Module::rate_unit), 196u - 16u - 7u - 4u * 3u);
+}
+
+TEST(Channels, OfAModuleHaveDistinctNames) {
+  for (const ModuleInfo& info : modules()) {
+    std::set<std::string_view> names;
+    for (const Channel& c : channels_in(info.module)) {
+      EXPECT_TRUE(names.insert(c.name).second) << c.name;
+    }
+  }
+}
+
+TEST(Channels, OfTheSameNameHaveTheSameType) {
+  for (const Channel& c : channels()) EXPECT_EQ(channel(c.name).type, c.type) << c.name;
 }
 
 TEST(Channels, AreFoundByName) {
-  EXPECT_EQ(find_channel("timestamp"), 0u);
+  for (const ModuleInfo& info : modules()) EXPECT_EQ(find_channel(info.module, "timestamp"), 0u);
+  EXPECT_FALSE(find_channel(Module::rate_unit, "in/vehicle_attitude.q[0]"));
+  EXPECT_TRUE(find_channel(Module::attitude_unit, "in/vehicle_attitude.q[0]"));
   EXPECT_EQ(channel("in/control_state.q[3]").name, "in/control_state.q[3]");
-  EXPECT_FALSE(find_channel("in/control_state.q[4]"));
-  EXPECT_FALSE(find_channel("control_state.q[3]"));
+  EXPECT_FALSE(find_channel(Module::mc_att_control, "in/control_state.q[4]"));
+  EXPECT_FALSE(find_channel(Module::mc_att_control, "control_state.q[3]"));
   EXPECT_EQ(channel("out/actuator_outputs.output[7]").module, Module::mixer);
-  EXPECT_FALSE(find_channel("in/parameter.MC_ROLL_P"));
-  EXPECT_FALSE(find_channel(""));
+  EXPECT_FALSE(find_channel(Module::mc_att_control, "in/parameter.MC_ROLL_P"));
+  EXPECT_FALSE(find_channel(Module::mc_att_control, ""));
 }
 
 TEST(Channels, AreTheirMembers) {
@@ -81,14 +121,17 @@ TEST(Channels, AreTheirMembers) {
 }
 
 TEST(Channels, ReadBackWhatWasSetAndNothingElseChanges) {
-  for (std::size_t i = 0; i < channels().size(); ++i) {
-    Sample sample{};
-    set_value(channels()[i], sample, 1);
-    for (std::size_t j = 0; j < channels().size(); ++j) {
-      EXPECT_EQ(value_of(channels()[j], sample), i == j ? 1 : 0) << channels()[j].name;
+  for (const ModuleInfo& info : modules()) {
+    const std::vector<Channel> own = channels_in(info.module);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      Sample sample{};
+      set_value(own[i], sample, 1);
+      for (std::size_t j = 0; j < own.size(); ++j) {
+        EXPECT_EQ(value_of(own[j], sample), i == j ? 1 : 0) << own[j].name;
+      }
+      set_value(own[i], sample, 0);
+      EXPECT_EQ(value_of(own[i], sample), 0);
     }
-    set_value(channels()[i], sample, 0);
-    EXPECT_EQ(value_of(channels()[i], sample), 0);
   }
 }
 
@@ -118,9 +161,9 @@ TEST(Channels, HaveUnits) {
 }
 
 TEST(Channels, AreOfOnePart) {
-  for (const Module module : {Module::mc_att_control, Module::mixer, Module::battery_status}) {
-    EXPECT_EQ(module_of(channels_of(module)), module) << name_of(module);
-    EXPECT_TRUE(channels_of(module)[0]) << name_of(module);
+  for (const ModuleInfo& info : modules()) {
+    EXPECT_EQ(module_of(channels_of(info.module)), info.module) << info.name;
+    EXPECT_TRUE(channels_of(info.module)[0]) << info.name;
   }
 }
 
@@ -128,6 +171,8 @@ TEST(Channels, AreChosenByPrefix) {
   EXPECT_EQ(channels_of(Module::mc_att_control).count(), 64u);
   EXPECT_EQ(channels_of(Module::mixer).count(), 17u);
   EXPECT_EQ(channels_of(Module::battery_status).count(), 6u);
+  EXPECT_EQ(channels_of(Module::attitude_unit).count(), 71u);
+  EXPECT_EQ(channels_of(Module::rate_unit).count(), 58u);
   EXPECT_EQ(channels_of(Module::mc_att_control, "in/").count(), 45u);
   EXPECT_EQ(channels_of(Module::mc_att_control, "out/").count(), 18u);
   EXPECT_EQ(channels_of(Module::mc_att_control, "in/updated.").count(), 9u);
@@ -135,12 +180,13 @@ TEST(Channels, AreChosenByPrefix) {
 
 TEST(Channels, NameTheTopicsOfTheFreshnessBitsInBitOrder) {
   EXPECT_THAT(
-      updated_topics(),
+      updated_topics(Module::mc_att_control),
       ElementsAre("vehicle_attitude_setpoint", "vehicle_rates_setpoint", "manual_control_setpoint",
                   "vehicle_control_mode", "actuator_armed", "vehicle_status",
                   "multirotor_motor_limits", "battery_status", "parameter_update"));
-  for (std::size_t i = 0; i < updated_topics().size(); ++i) {
-    EXPECT_EQ(channel("in/updated." + std::string(updated_topics()[i])).bit, 1u << i);
+  for (std::size_t i = 0; i < updated_topics(Module::mc_att_control).size(); ++i) {
+    EXPECT_EQ(channel("in/updated." + std::string(updated_topics(Module::mc_att_control)[i])).bit,
+              1u << i);
   }
 }
 
@@ -154,7 +200,8 @@ TEST(Channels, ParameterColumnsHaveAPrefix) {
 TEST(Channels, OutputsHaveTheQuantityOfTheirTopic) {
   for (const Channel& c : channels()) {
     if (!c.is_output() || c.type != ChannelType::f32) continue;
-    const bool is_thrust = c.name == "out/vehicle_rates_setpoint.thrust";
+    if (c.module == Module::attitude_unit) continue;  // its thrust may be made of the sticks
+    const bool is_thrust = c.name.starts_with("out/vehicle_rates_setpoint.thrust");
     if (c.name.starts_with("out/vehicle_rates_setpoint.")) {
       EXPECT_EQ(c.quantity, is_thrust ? Quantity::thrust : Quantity::rate) << c.name;
     }
@@ -168,15 +215,14 @@ TEST(Channels, OutputsHaveTheQuantityOfTheirTopic) {
 }
 
 TEST(SampleOutputs, OfAllModulesAreClearedAndCopied) {
-  Sample full{}, other{};
-  for (const Channel& c : channels()) set_value(c, full, 1);
-  other.copy_outputs(full);
-  for (const Channel& c : channels()) {
-    EXPECT_EQ(value_of(c, other), c.is_output() ? 1 : 0) << c.name;
-  }
-  full.clear_outputs();
-  for (const Channel& c : channels()) {
-    EXPECT_EQ(value_of(c, full), c.is_output() ? 0 : 1) << c.name;
+  for (const ModuleInfo& info : modules()) {
+    const std::vector<Channel> own = channels_in(info.module);
+    Sample full{}, other{};
+    for (const Channel& c : own) set_value(c, full, 1);
+    other.copy_outputs(full);
+    for (const Channel& c : own) EXPECT_EQ(value_of(c, other), c.is_output() ? 1 : 0) << c.name;
+    full.clear_outputs();
+    for (const Channel& c : own) EXPECT_EQ(value_of(c, full), c.is_output() ? 0 : 1) << c.name;
   }
 }
 

@@ -50,8 +50,10 @@ TEST_F(CsvReader, ReadsARecordedTrace) {
 TEST_F(CsvReader, ChannelsWithoutAColumnAreNotPresent) {
   const Trace trace = read(Sheet::recorded().text());
   EXPECT_EQ(trace.present.count(), channels_of(Module::mc_att_control).count() - 3);
-  EXPECT_FALSE(trace.present[*find_channel("out/actuator_controls_0.control[4]")]);
-  EXPECT_TRUE(trace.present[*find_channel("out/actuator_controls_0.control[7]")]);
+  EXPECT_FALSE(
+      trace.present[*find_channel(Module::mc_att_control, "out/actuator_controls_0.control[4]")]);
+  EXPECT_TRUE(
+      trace.present[*find_channel(Module::mc_att_control, "out/actuator_controls_0.control[7]")]);
 }
 
 TEST_F(CsvReader, TakesWhatIsNeededAndNoMore) {
@@ -195,8 +197,9 @@ TEST_F(CsvReader, TakesConstantsFromTheProvenanceNextToTheFile) {
     EXPECT_TRUE(std::signbit(sample.out.actuator_controls_0.control[4]));
   }
   EXPECT_EQ(trace.samples[2].in.updated, unsigned{ATTEST_UPDATED_BATTERY_STATUS});
-  EXPECT_TRUE(trace.present[*find_channel("in/battery_status.scale")]);
-  EXPECT_TRUE(trace.present[*find_channel("out/actuator_controls_0.control[4]")]);
+  EXPECT_TRUE(trace.present[*find_channel(Module::mc_att_control, "in/battery_status.scale")]);
+  EXPECT_TRUE(
+      trace.present[*find_channel(Module::mc_att_control, "out/actuator_controls_0.control[4]")]);
   EXPECT_THAT(trace.parameters, ElementsAre(ParameterChange{0, "MC_ROLL_P", 6.5f},
                                             ParameterChange{0, "MC_YAW_P", 2.0f}));
 }

@@ -21,7 +21,7 @@ class CsvWriter : public testing::Test {
     }
     for (const char* name : {"timestamp", "in/battery_status.scale", "in/actuator_armed.armed",
                              "in/updated.parameter_update", "out/vehicle_rates_setpoint.yaw"}) {
-      trace_.present.set(*find_channel(name));
+      trace_.present.set(*find_channel(Module::mc_att_control, name));
     }
   }
 
@@ -58,8 +58,8 @@ TEST_F(CsvWriter, WritesTimestampInputsParametersOutputs) {
 TEST_F(CsvWriter, WritesTheChosenColumnsOnly) {
   trace_.parameters = {{0, "MC_YAW_P", 2.8f}, {0, "MC_ROLL_P", 6.5f}};
   CsvColumns columns;
-  columns.channels.set(*find_channel("timestamp"));
-  columns.channels.set(*find_channel("out/vehicle_rates_setpoint.yaw"));
+  columns.channels.set(*find_channel(Module::mc_att_control, "timestamp"));
+  columns.channels.set(*find_channel(Module::mc_att_control, "out/vehicle_rates_setpoint.yaw"));
   columns.parameters = {"MC_ROLL_P"};
   EXPECT_EQ(written(columns),
             "timestamp,in/parameter.MC_ROLL_P,out/vehicle_rates_setpoint.yaw\n"
@@ -69,8 +69,8 @@ TEST_F(CsvWriter, WritesTheChosenColumnsOnly) {
 
 TEST_F(CsvWriter, HasOneNaNAndTwoInfinities) {
   CsvColumns columns;
-  columns.channels.set(*find_channel("timestamp"));
-  columns.channels.set(*find_channel("in/battery_status.scale"));
+  columns.channels.set(*find_channel(Module::mc_att_control, "timestamp"));
+  columns.channels.set(*find_channel(Module::mc_att_control, "in/battery_status.scale"));
   const auto cell = [&](float value) {
     trace_.samples[0].in.battery_status.scale = value;
     const std::string text = written(columns);
@@ -91,7 +91,7 @@ TEST_F(CsvWriter, KeepsEveryTimestamp) {
 TEST_F(CsvWriter, WritesMoreThanFitsABlock) {
   trace_.samples.resize(1);
   CsvColumns columns;
-  columns.channels.set(*find_channel("timestamp"));
+  columns.channels.set(*find_channel(Module::mc_att_control, "timestamp"));
   std::string names = "timestamp";
   std::string values = "4000";
   for (int i = 0; i < 10; ++i) {

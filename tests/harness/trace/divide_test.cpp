@@ -23,14 +23,14 @@ Trace trace_of(float scale_0, float scale_1, std::uint8_t armed = 1) {
     trace.samples.push_back(sample);
   }
   for (const char* name : {"timestamp", "in/battery_status.scale", "in/actuator_armed.armed"}) {
-    trace.present.set(*find_channel(name));
+    trace.present.set(*find_channel(Module::mc_att_control, name));
   }
   return trace;
 }
 
 ChannelSet set_of(std::initializer_list<const char*> names) {
   ChannelSet set;
-  for (const char* name : names) set.set(*find_channel(name));
+  for (const char* name : names) set.set(*find_channel(Module::mc_att_control, name));
   return set;
 }
 

@@ -116,9 +116,10 @@ std::size_t Sheet::index(std::string_view column) const {
 bool same_samples(const Trace& a, const Trace& b) {
   if (a.samples.size() != b.samples.size()) return false;
   for (std::size_t i = 0; i < a.samples.size(); ++i) {
-    for (const Channel& channel : channels()) {
-      const double in_a = value_of(channel, a.samples[i]);
-      const double in_b = value_of(channel, b.samples[i]);
+    for (std::size_t c = 0; c < channels().size(); ++c) {
+      if (!a.present[c] && !b.present[c]) continue;
+      const double in_a = value_of(channels()[c], a.samples[i]);
+      const double in_b = value_of(channels()[c], b.samples[i]);
       if (canonical_bits(in_a) != canonical_bits(in_b)) return false;
     }
   }

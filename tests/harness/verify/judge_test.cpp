@@ -34,7 +34,7 @@ TEST(LeaveOutFrom, TheTicksBeforeAreAsTheyWereAnswered) {
 TEST(TolerancesOf, TheLsbOfAPortIsAllowedInAdditionToTheToleranceOfTheCase) {
   const Case strict =
       case_of("[tolerance]\nwhy = \"x\"\nvehicle_rates_setpoint = { absolute = 1e-9 }\n");
-  const std::size_t channel = *find_channel(roll);
+  const std::size_t channel = *find_channel(Module::mc_att_control, roll);
   const auto absolute = [&](std::optional<int> bits) {
     return tolerances_of(strict, Level::numeric, bits, 100).of(channel).absolute;
   };

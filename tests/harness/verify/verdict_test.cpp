@@ -126,7 +126,7 @@ TEST(VerdictJson, RoundTripsEveryKindOfNumber) {
     Deviation first;
     first.tick = std::numeric_limits<std::size_t>::max();
     first.timestamp_us = std::numeric_limits<std::uint64_t>::max();
-    first.channel = *find_channel("out/vehicle_rates_setpoint.yaw");
+    first.channel = *find_channel(Module::mc_att_control, "out/vehicle_rates_setpoint.yaw");
     first.got = value;
     first.want = -value;
     first.ulp = std::numeric_limits<std::int64_t>::min();
@@ -190,7 +190,7 @@ TEST(VerdictJson, IsWhatTheHeaderSays) {
   CaseResult result = with(Verdict::fail);
   result.first = Deviation{};
   result.first->tick = 17;
-  result.first->channel = *find_channel("out/vehicle_rates_setpoint.roll");
+  result.first->channel = *find_channel(Module::mc_att_control, "out/vehicle_rates_setpoint.roll");
   result.first->got = -1;
   result.first->want = std::numeric_limits<double>::quiet_NaN();
   const json out = to_json(result);
@@ -203,7 +203,8 @@ TEST(VerdictJson, IsWhatTheHeaderSays) {
   EXPECT_EQ(out["first"]["want"], "nan");
   EXPECT_EQ(out["first"]["want_bits"], "0x7fc00000");
   EXPECT_FALSE(out.contains("tightest"));
-  result.first->channel = *find_channel("out/vehicle_rates_setpoint.published");
+  result.first->channel =
+      *find_channel(Module::mc_att_control, "out/vehicle_rates_setpoint.published");
   EXPECT_FALSE(to_json(result)["first"].contains("got_bits"));
 }
 
@@ -217,7 +218,7 @@ TEST(VerdictJson, WordsThatAreNotUtf8AreRepaired) {
 TEST(VerdictJson, NothingIsTakenOnTrust) {
   CaseResult result = with(Verdict::fail);
   result.first = Deviation{};
-  result.first->channel = *find_channel("out/vehicle_rates_setpoint.roll");
+  result.first->channel = *find_channel(Module::mc_att_control, "out/vehicle_rates_setpoint.roll");
   result.tightest = Headroom{};
   const json right = to_json(result);
   const auto complaint = [](const json& wrong) {

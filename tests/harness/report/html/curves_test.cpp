@@ -25,7 +25,9 @@ Trace trace_of(const std::vector<float>& rolls) {
   return trace;
 }
 
-std::size_t roll() { return *find_channel("out/vehicle_rates_setpoint.roll"); }
+std::size_t roll() {
+  return *find_channel(Module::mc_att_control, "out/vehicle_rates_setpoint.roll");
+}
 
 Curves roll_curves(const std::vector<float>& got, const std::vector<float>& want, float allowed) {
   const Trace allowed_trace = trace_of(std::vector<float>(want.size(), allowed));

@@ -1,0 +1,66 @@
+#include "harness/casefile/baseline.hpp"
+
+#include <limits>
+#include <map>
+
+namespace attest {
+namespace {
+
+// Channels that are not listed are zero.
+double controller_baseline(std::string_view name) {
+  static const std::map<std::string_view, double> values = {
+      {"in/control_state.q[0]", 1},
+      {"in/vehicle_attitude_setpoint.q_d[0]", 1},
+      {"in/vehicle_attitude_setpoint.thrust", 0.5},
+      {"in/manual_control_setpoint.z", 0.5},
+      {"in/battery_status.scale", 1},
+      {"in/actuator_armed.armed", 1},
+      {"in/vehicle_status.is_rotary_wing", 1},
+      {"in/vehicle_control_mode.flag_control_manual_enabled", 1},
+      {"in/vehicle_control_mode.flag_control_rates_enabled", 1},
+      {"in/vehicle_control_mode.flag_control_attitude_enabled", 1},
+      {"in/vehicle_control_mode.flag_control_rattitude_enabled", 1},
+      {"in/actuator_controls_0.control[3]", 0.5},
+      {"in/battery.voltage_v", 12.15},
+      {"in/battery.throttle", 0.5},
+      {"in/battery.armed", 1},
+  };
+  const auto found = values.find(name);
+  return found == values.end() ? 0 : found->second;
+}
+
+// The same for the units of the cascade. The setpoints come from outside, as in a mission.
+double cascade_baseline(std::string_view name) {
+  static const std::map<std::string_view, double> values = {
+      {"in/vehicle_attitude.q[0]", 1},
+      {"in/vehicle_attitude.delta_q_reset[0]", 1},
+      {"in/vehicle_attitude_setpoint.q_d[0]", 1},
+      {"in/vehicle_attitude_setpoint.thrust_body[2]", -0.5},
+      {"in/vehicle_rates_setpoint.thrust_body[2]", -0.5},
+      {"in/vehicle_status.armed", 1},
+      {"in/vehicle_status.is_rotary_wing", 1},
+      {"in/vehicle_local_position.unaided_heading", std::numeric_limits<double>::quiet_NaN()},
+      {"in/vehicle_local_position.heading_good_for_control", 1},
+      {"in/vehicle_control_mode.flag_armed", 1},
+      {"in/vehicle_control_mode.flag_control_altitude_enabled", 1},
+      {"in/vehicle_control_mode.flag_control_velocity_enabled", 1},
+      {"in/vehicle_control_mode.flag_control_position_enabled", 1},
+      {"in/vehicle_control_mode.flag_control_attitude_enabled", 1},
+      {"in/vehicle_control_mode.flag_control_rates_enabled", 1},
+      {"in/control_allocator_status.torque_setpoint_achieved", 1},
+      {"in/battery_status.scale", 1},
+      {"in/battery_status.connected", 1},
+  };
+  const auto found = values.find(name);
+  return found == values.end() ? 0 : found->second;
+}
+
+}  // namespace
+
+double baseline(const Channel& channel) {
+  const bool is_cascade =
+      channel.module == Module::attitude_unit || channel.module == Module::rate_unit;
+  return is_cascade ? cascade_baseline(channel.name) : controller_baseline(channel.name);
+}
+
+}  // namespace attest

@@ -1,0 +1,111 @@
+#include "harness/port/profiles.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "controller/actuation/battery_status.hpp"
+#include "controller/actuation/unit_table.hpp"
+#include "controller/cascade/parameters.hpp"
+#include "controller/reference/parameters.hpp"
+
+namespace attest {
+namespace {
+
+std::vector<ProfileInfo> make_profiles() {
+  std::vector<ProfileInfo> all;
+  for (const std::string_view name : reference::profile_names()) {
+    ModuleSet modules = only(Module::mc_att_control);
+    if (actuation::is_profile(name.data())) {
+      modules |= only(Module::mixer) | only(Module::battery_status);
+    }
+    all.push_back({name, modules});
+  }
+  for (const std::string_view name : cascade::profile_names()) {
+    all.push_back({name, only(Module::attitude_unit) | only(Module::rate_unit)});
+  }
+  return all;
+}
+
+// Of a table whose rows say of which profiles they are.
+template <typename Table, typename Profile>
+std::vector<Parameter> rows_of(const Table& table, Profile profile) {
+  std::vector<Parameter> parameters;
+  for (const auto& row : table) {
+    if (!row.profiles.contains(profile)) continue;
+    parameters.push_back(
+        {row.name, row.default_value, row.min, row.max, row.unit, row.description});
+  }
+  return parameters;
+}
+
+std::vector<Parameter> battery_parameters() {
+  constexpr float any = std::numeric_limits<float>::infinity();
+  std::vector<Parameter> parameters;
+  for (const auto& row : actuation::battery_parameters()) {
+    parameters.push_back({row.name, row.default_value, -any, any, row.unit, row.description});
+  }
+  return parameters;
+}
+
+}  // namespace
+
+std::span<const ProfileInfo> known_profiles() {
+  static const std::vector<ProfileInfo> all = make_profiles();
+  return all;
+}
+
+std::vector<std::string> known_profile_names() {
+  std::vector<std::string> names;
+  for (const ProfileInfo& profile : known_profiles()) names.emplace_back(profile.name);
+  return names;
+}
+
+const ProfileInfo* find_profile(std::string_view name) {
+  const auto all = known_profiles();
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const ProfileInfo& one) { return one.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+bool makes_unit_of(Port& port, const std::string& profile) {
+  const ProfileInfo* const known = find_profile(profile);
+  const ModuleSet own = (known ? known->modules : only(Module::mc_att_control)) & port.modules();
+  const auto all = modules();
+  return std::any_of(all.begin(), all.end(), [&](const ModuleInfo& info) {
+    const bool is_asked = contains(own, info.module) && info.has_updated;
+    return is_asked && port.create_unit(info.module, profile, "") != nullptr;
+  });
+}
+
+std::vector<Parameter> parameters_of(Module module, const ProfileInfo& profile) {
+  if (!contains(profile.modules, module)) return {};
+  switch (module) {
+    case Module::mc_att_control:
+      return rows_of(reference::parameter_table(), *reference::profile_from_name(profile.name));
+    case Module::mixer:
+      return {};
+    case Module::battery_status:
+      return battery_parameters();
+    case Module::attitude_unit:
+      return rows_of(cascade::attitude_parameters(), *cascade::profile_from_name(profile.name));
+    case Module::rate_unit:
+      return rows_of(cascade::rate_parameters(), *cascade::profile_from_name(profile.name));
+  }
+  return {};
+}
+
+std::vector<std::string> parameter_names(Module module, std::string_view profile) {
+  const ProfileInfo* const known = find_profile(profile);
+  std::vector<std::string> names;
+  std::set<std::string_view> seen;
+  for (const ProfileInfo& one : known_profiles()) {
+    if (known != nullptr && known != &one) continue;
+    for (const Parameter& parameter : parameters_of(module, one)) {
+      if (seen.insert(parameter.name).second) names.emplace_back(parameter.name);
+    }
+  }
+  return names;
+}
+
+}  // namespace attest

@@ -1,0 +1,45 @@
+// The versions of the law that attest knows, the modules of each, and their parameters.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/port/port.hpp"
+#include "harness/trace/module.hpp"
+
+namespace attest {
+
+struct ProfileInfo {
+  std::string_view name;  // "px4-v1.5.5"
+  ModuleSet modules;      // that this version of the firmware has and attest knows
+};
+
+// Every profile: those of the controller, then those of the cascade.
+std::span<const ProfileInfo> known_profiles();
+std::vector<std::string> known_profile_names();
+
+// Null if there is none of that name.
+const ProfileInfo* find_profile(std::string_view name);
+
+// True if the port makes a unit of that profile. Of a profile that is not known: a controller.
+bool makes_unit_of(Port& port, const std::string& profile);
+
+// A parameter of a module.
+struct Parameter {
+  std::string_view name;
+  float default_value;
+  float min, max;         // the bounds of the ground station, which the law does not enforce
+  std::string_view unit;  // "1" when dimensionless
+  std::string_view description;
+};
+
+// Those of a module in a profile. In the order of the law's own table.
+std::vector<Parameter> parameters_of(Module module, const ProfileInfo& profile);
+
+// The names of a module's parameters. If the profile is not known, those of all profiles.
+std::vector<std::string> parameter_names(Module module, std::string_view profile);
+
+}  // namespace attest
