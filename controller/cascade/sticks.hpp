@@ -38,8 +38,8 @@ struct StickInput {
 template <typename Scalar, typename Stages = StickStages<Scalar>>
 class Sticks {
  public:
-  explicit Sticks(Profile profile, Stages stages = {})
-      : traits_(traits_of(profile)), stages_(std::move(stages)) {}
+  explicit Sticks(const ProfileTraits& traits, Stages stages = {})
+      : traits_(traits), stages_(std::move(stages)) {}
 
   void set_gains(const StickGains<Scalar>& gains) { gains_ = gains; }
 
