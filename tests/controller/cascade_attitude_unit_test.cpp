@@ -87,6 +87,11 @@ TEST_P(CascadeAttitudeUnit, PublishesRatesOnlyWhileItControlsTheAttitude) {
   EXPECT_EQ(out_.vehicle_rates_setpoint.published, 0);
 }
 
+TEST_P(CascadeAttitudeUnit, BeforeTheFirstStatusItIsARotaryWing) {
+  step(everything & ~status_bit);
+  EXPECT_EQ(out_.vehicle_rates_setpoint.published, 1);
+}
+
 TEST_P(CascadeAttitudeUnit, APendingSetpointIsLatchedLater) {
   in_.vehicle_control_mode.flag_control_attitude_enabled = 0;
   send_setpoint(-0.7f, in_.timestamp);

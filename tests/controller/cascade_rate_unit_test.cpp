@@ -93,6 +93,13 @@ TEST_P(CascadeRateUnit, FixedWingStartsFromAnIntegralOfZeroToo) {
   EXPECT_EQ(integral(), once);
 }
 
+TEST_P(CascadeRateUnit, BeforeTheFirstStatusItIsARotaryWing) {
+  step(everything & ~std::uint32_t{ATTEST_RATE_UPDATED_VEHICLE_STATUS});
+  const float once = integral();
+  step(0);
+  EXPECT_GT(integral(), once);
+}
+
 TEST_P(CascadeRateUnit, LandedFreezesTheIntegral) {
   step(everything);
   step(0);
