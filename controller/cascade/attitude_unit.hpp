@@ -49,6 +49,9 @@ struct AttitudeStepStages {
   using Topics = AttitudeTopics;
   using Status = decltype(Topics::status);
 
+  // A fault may follow another profile in one point.
+  static ProfileTraits traits(Profile profile) { return traits_of(profile); }
+
   static AttitudeUnitGains<Scalar> gains(const Parameters& parameters) {
     return attitude_unit_gains<Scalar>(parameters);
   }
@@ -86,6 +89,9 @@ struct AttitudeStepStages {
     return mode.flag_control_manual_enabled != 0 && mode.flag_control_altitude_enabled == 0 &&
            mode.flag_control_velocity_enabled == 0 && mode.flag_control_position_enabled == 0;
   }
+
+  // A sample stays pending until the law uses it.
+  ATTEST_INLINE static bool is_pending(bool before, bool updated) { return before || updated; }
 
   // Whether the unit's own attitude setpoint replaces a pending external one.
   ATTEST_INLINE static bool supersedes_pending() { return true; }

@@ -8,10 +8,10 @@ namespace attest::cascade {
 template <typename Scalar, typename Law>
 AttitudeUnit<Scalar, Law>::AttitudeUnit(Profile profile, const Law& law)
     : profile_(profile),
-      traits_(traits_of(profile)),
+      traits_(law.step.traits(profile)),
       parameters_(default_parameters(attitude_parameters(), profile)),
       stages_(law.step),
-      sticks_(profile, law.sticks),
+      sticks_(traits_, law.sticks),
       attitude_(law.attitude) {}
 
 template <typename Scalar, typename Law>
@@ -63,12 +63,13 @@ void AttitudeUnit<Scalar, Law>::read_parameters() {
 template <typename Scalar, typename Law>
 void AttitudeUnit<Scalar, Law>::latch_newest(const attest_attitude_inputs& in) {
   const auto updated = [&in](std::uint32_t topic) { return (in.updated & topic) != 0; };
-  if (updated(ATTEST_ATTITUDE_UPDATED_VEHICLE_ATTITUDE_SETPOINT)) {
+  const bool new_setpoint = updated(ATTEST_ATTITUDE_UPDATED_VEHICLE_ATTITUDE_SETPOINT);
+  setpoint_pending_ = stages_.is_pending(setpoint_pending_, new_setpoint);
+  if (new_setpoint) {
     const auto& setpoint = in.vehicle_attitude_setpoint;
     newest_setpoint_ = {setpoint.timestamp, quaternion_from<Scalar>(setpoint.q_d),
                         vector_from<Scalar>(setpoint.thrust_body),
                         Scalar(setpoint.yaw_sp_move_rate)};
-    setpoint_pending_ = true;
   }
   if (updated(ATTEST_ATTITUDE_UPDATED_AUTOTUNE_ATTITUDE_CONTROL_STATUS)) {
     topics_.autotune = in.autotune_attitude_control_status;

@@ -40,6 +40,9 @@ struct RateStepStages {
   using Vector = Vector3<Scalar>;
   using Sticks = decltype(attest_rate_inputs::manual_control_setpoint);
 
+  // A fault may follow another profile in one point.
+  static ProfileTraits traits(Profile profile) { return traits_of(profile); }
+
   static RateUnitGains<Scalar> gains(const Parameters& parameters) {
     return rate_unit_gains<Scalar>(parameters);
   }
@@ -61,6 +64,11 @@ struct RateStepStages {
     for (int i = 0; i < 3; ++i) curve[i] = superexpo(stick[i], gains.expo[i], gains.superexpo[i]);
     const Scalar thrust = -(Scalar(sticks.throttle) + Scalar(1)) * Scalar(0.5f);
     return {curve.cwiseProduct(gains.rate_max_rad_s), {Scalar(0), Scalar(0), thrust}};
+  }
+
+  // Bits of topics: a sample stays pending until the law uses it.
+  ATTEST_INLINE static std::uint32_t pending(std::uint32_t before, std::uint32_t updated) {
+    return before | updated;
   }
 
   // Whether the unit's own rates setpoint replaces a pending external one.

@@ -13,7 +13,7 @@ inline constexpr std::uint32_t latched_on_demand =
 template <typename Scalar, typename Law>
 RateUnit<Scalar, Law>::RateUnit(Profile profile, const Law& law)
     : profile_(profile),
-      traits_(traits_of(profile)),
+      traits_(law.step.traits(profile)),
       parameters_(default_parameters(rate_parameters(), profile)),
       stages_(law.step),
       rate_(law.rate) {}
@@ -53,7 +53,7 @@ void RateUnit<Scalar, Law>::read_parameters() {
 template <typename Scalar, typename Law>
 void RateUnit<Scalar, Law>::latch_topics(const attest_rate_inputs& in) {
   const auto updated = [&in](std::uint32_t topic) { return (in.updated & topic) != 0; };
-  pending_ |= in.updated & latched_on_demand;
+  pending_ = stages_.pending(pending_, in.updated & latched_on_demand);
   if (updated(ATTEST_RATE_UPDATED_VEHICLE_RATES_SETPOINT)) {
     const auto& setpoint = in.vehicle_rates_setpoint;
     newest_setpoint_ = {{Scalar(setpoint.roll), Scalar(setpoint.pitch), Scalar(setpoint.yaw)},

@@ -111,6 +111,17 @@ struct StickStages {
     return shortest_rotation(up, z_axis(product(product(inverse(desired_yaw), yaw), tilt)));
   }
 
+  // First the tilt, then the yaw. Not normalised in the published sample.
+  ATTEST_INLINE static Q desired_attitude(const Q& yaw, const Q& tilt) {
+    return product(yaw, tilt);
+  }
+
+  // Whether a step in another mode clears the low-pass of the tilt. `runs`: the unit controls the
+  // attitude in this step.
+  ATTEST_INLINE static bool clears_tilt(bool runs, const ProfileTraits& law) {
+    return runs || law.locks_yaw;
+  }
+
   // A stick of -1..1: straight, or in two parts that meet at the hover thrust.
   static Scalar throttle(Scalar stick, const Gains& gains, const ThrustLimits<Scalar>& limits) {
     const Scalar idle = -1, centre = 0, full = 1;

@@ -38,8 +38,8 @@ struct StickInput {
 template <typename Scalar, typename Stages = StickStages<Scalar>>
 class Sticks {
  public:
-  explicit Sticks(Profile profile, Stages stages = {})
-      : traits_(traits_of(profile)), stages_(std::move(stages)) {}
+  explicit Sticks(const ProfileTraits& traits, Stages stages = {})
+      : traits_(traits), stages_(std::move(stages)) {}
 
   void set_gains(const StickGains<Scalar>& gains) { gains_ = gains; }
 
@@ -79,7 +79,7 @@ AttitudeSetpoint<Scalar> Sticks<Scalar, Stages>::update(const StickInput<Scalar>
   const Quaternion<Scalar> yaw = yaw_rotation(follows ? heading : yaw_sp_);
   Quaternion<Scalar> tilted = tilt(in);
   if (in.is_vtol) tilted = stages_.tilt_for_yaw_error(tilted, yaw, in.q_WB);
-  setpoint.q_WD = product(yaw, tilted);
+  setpoint.q_WD = stages_.desired_attitude(yaw, tilted);
   setpoint.thrust_B = {Scalar(0), Scalar(0), -thrust(in)};
   return setpoint;
 }
@@ -128,9 +128,10 @@ Scalar Sticks<Scalar, Stages>::thrust(const StickInput<Scalar>& in) const {
 template <typename Scalar, typename Stages>
 void Sticks<Scalar, Stages>::release(const Quaternion<Scalar>& q_WB, Scalar unaided_heading,
                                      bool runs) {
-  if (!traits_.locks_yaw && !runs) return;
-  roll_.state = Scalar(0);
-  pitch_.state = Scalar(0);
+  if (stages_.clears_tilt(runs, traits_)) {
+    roll_.state = Scalar(0);
+    pitch_.state = Scalar(0);
+  }
   if (!traits_.locks_yaw) return;
   yaw_sp_ = stages_.no_yaw();
   if (is_finite(unaided_heading)) {
