@@ -86,10 +86,9 @@ int compare_by_time(const CompareOptions& options, Level level, bool quiet) {
 int compare_command(const CompareOptions& options, const Globals& globals) {
   const auto level = parse_level(options.level);
   if (!level) return report_error(level.error());
-  if (const auto suite = find_suite(globals.suite); suite && !options.html.empty()) {
-    const auto checked = check_outputs({options.html}, {"", {options.got, options.want}}, *suite);
-    if (!checked) return report_error(checked.error());
-  }
+  const auto checked =
+      check_outputs({options.html}, {"", {options.got, options.want}}, globals.suite);
+  if (!checked) return report_error(checked.error());
   if (options.by_time || is_log(options.got) || is_log(options.want)) {
     return compare_by_time(options, *level, globals.quiet);
   }
