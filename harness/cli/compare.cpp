@@ -49,16 +49,27 @@ Result<std::int64_t> shift_of(const std::string& text, const TimedSignals& got,
   return fail(fmt::format("--shift {}: write a whole number of microseconds, or auto", text));
 }
 
+std::string shift_text(std::int64_t shift_us) {
+  return shift_us == 0 ? "" : fmt::format(", shifted by {} us", shift_us);
+}
+
+Result<void> check_compared(const CompareOptions& options, const SignalsComparison& found,
+                            std::int64_t shift_us) {
+  if (found.compared() > 0) return {};
+  if (found.signals.empty()) {
+    return fail(fmt::format("{} and {} have no signal in common", options.got, options.want));
+  }
+  return fail(
+      fmt::format("{} and {} have no timestamp in common{}, so no sample was compared; "
+                  "--shift US moves the first one",
+                  options.got, options.want, shift_text(shift_us)));
+}
+
 int print_by_time(const CompareOptions& options, const SignalsComparison& found,
                   std::int64_t shift_us, bool quiet) {
-  const std::string shifted = shift_us == 0 ? "" : fmt::format(", shifted by {} us", shift_us);
-  if (found.compared() == 0) {
-    return report_error({fmt::format("{} and {} have no signal in common at equal times{}",
-                                     options.got, options.want, shifted)});
-  }
   if (found.agrees() && quiet) return exit_ok;
   fmt::print("{}: {} (got), {} (want), by time{}: {} of {} common signals agree, {} samples\n",
-             found.agrees() ? "agree" : "differ", options.got, options.want, shifted,
+             found.agrees() ? "agree" : "differ", options.got, options.want, shift_text(shift_us),
              found.signals.size() - found.deviating_signals(), found.signals.size(),
              found.compared());
   fmt::print("{}", signals_text(found));
@@ -74,6 +85,9 @@ int compare_by_time(const CompareOptions& options, Level level, bool quiet) {
   const auto shift = shift_of(options.shift, *got, *want);
   if (!shift) return report_error(shift.error());
   const auto found = compare_signals(*got, *want, Tolerances(level), options.others, *shift);
+  if (const auto checked = check_compared(options, found, *shift); !checked) {
+    return report_error(checked.error());
+  }
   if (!options.html.empty()) {
     const auto written = write_file(options.html, comparison_page(found, *got, *want, *shift));
     if (!written) return report_error(written.error());
