@@ -45,6 +45,9 @@ Result<std::int64_t> shift_of(const std::string& text, const TimedSignals& got,
   std::int64_t us = 0;
   const char* const end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, us);
+  if (error == std::errc::result_out_of_range || us < -latest_us || us > latest_us) {
+    return fail(fmt::format("--shift {}: is beyond {} us", text, latest_us));
+  }
   if (error == std::errc{} && rest == end) return us;
   return fail(fmt::format("--shift {}: write a whole number of microseconds, or auto", text));
 }

@@ -133,7 +133,7 @@ std::optional<TimeShift> estimate_shift(const TimedSignals& got, const TimedSign
   if (of_got == nullptr) return std::nullopt;
   const auto unshifted = rms_difference(*of_got, *of_want, 0);
   const std::int64_t period = period_of(*of_want);
-  if (!unshifted || period == 0) return std::nullopt;
+  if (!unshifted || period == 0 || period > latest_us / most_periods) return std::nullopt;
   TimeShift best{0, of_want->name, *unshifted, *unshifted};
   for (std::int64_t periods = -most_periods; periods <= most_periods; ++periods) {
     const auto rms = rms_difference(*of_got, *of_want, periods * period);

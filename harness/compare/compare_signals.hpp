@@ -50,7 +50,8 @@ struct SignalsComparison {
 // The signals of `got` are moved earlier by `shift_us` before they are compared. An output of the
 // controller has the tolerance of `tolerances`, any other signal must be within `others`. Any NaN
 // equals any NaN; NaN and infinity differ from every number. At the level exact, a signal without
-// tolerance must have equal bits, so -0 differs from 0.
+// tolerance must have equal bits, so -0 differs from 0. REQUIRES: `shift_us` between -latest_us and
+// latest_us.
 SignalsComparison compare_signals(const TimedSignals& got, const TimedSignals& want,
                                   const Tolerances& tolerances, double others,
                                   std::int64_t shift_us = 0);

@@ -294,6 +294,10 @@ void add_notes(const Contents& log, std::vector<std::string>& notes) {
                       "increase",
                       series.left_out(), series.topic()));
     }
+    if (series.without_time() > 0) {
+      notes.push_back(fmt::format("{} samples of {} left out, because the topic has no timestamp",
+                                  series.without_time(), series.topic()));
+    }
   }
   if (log.dropouts > 0) {
     notes.push_back(fmt::format("the logger lost messages {} times", log.dropouts));
@@ -327,7 +331,7 @@ Result<FlightLog> read_flight_log(const std::filesystem::path& path,
   fill_parameters(std::move(log->parameters), flight.trace);
   flight.has_every_step = log->dropouts == 0 && log->damage.empty();
   for (const LogSeries& series : log->series) {
-    if (series.left_out() > 0) flight.has_every_step = false;
+    if (series.left_out() + series.without_time() > 0) flight.has_every_step = false;
     if (!series.is_output() || series.size() == 0) continue;
     flight.outputs.push_back(fill_outputs(series, log->inputs(control_state), flight.trace));
     if (flight.outputs.back().paired < series.size()) flight.has_every_step = false;

@@ -52,8 +52,12 @@ void LogSeries::locate(const Reader& reader, const Subscription& subscription) {
 
 void LogSeries::add(const Reader& reader, const Data& data) {
   if (located_ != data.subscription->index) locate(reader, *data.subscription);
-  const auto time = time_ ? value_in<std::uint64_t>(data, *time_) : 0;
-  if (!time_ || (!times_.empty() && time <= times_.back())) {
+  if (!time_) {
+    ++without_time_;
+    return;
+  }
+  const auto time = value_in<std::uint64_t>(data, *time_);
+  if (!times_.empty() && time <= times_.back()) {
     ++left_out_;
     return;
   }

@@ -27,11 +27,14 @@ class LogSeries {
   bool accepts(const Subscription& subscription) const {
     return subscription.multi_id == multi_id_ && subscription.topic == topic_;
   }
-  // Leaves out a sample whose timestamp is not after the one before. REQUIRES: accepts it.
+  // Leaves out a sample without a timestamp, or whose timestamp is not after the one before.
+  // REQUIRES: accepts it.
   void add(const Reader& reader, const Data& data);
 
   std::size_t size() const { return times_.size(); }
   std::size_t left_out() const { return left_out_; }
+  // The same, because the topic has no timestamp. Not counted in left_out().
+  std::size_t without_time() const { return without_time_; }
   std::uint64_t time(std::size_t row) const { return times_[row]; }  // us
   // Of the control_state that an output answers; empty if the topic has no such field.
   std::optional<std::uint64_t> sample_time(std::size_t row) const;
@@ -60,7 +63,7 @@ class LogSeries {
   std::vector<std::optional<Column>> columns_;  // of fields_
   std::vector<std::uint64_t> times_, sample_times_;
   std::vector<float> values_;  // of a sample after the other
-  std::size_t left_out_ = 0;
+  std::size_t left_out_ = 0, without_time_ = 0;
   std::size_t next_ = 0;  // of advance_to
 };
 

@@ -143,3 +143,16 @@ load common
   [ "$status" -eq 2 ]
   has "would be overwritten"
 }
+
+@test "a shift that no file can have is refused" {
+  printf 'timestamp,x\n1,2\n18446744073709551615,2\n' >a.csv
+  for shift in -9223372036854775808 9223372036854775807 99999999999999999999; do
+    run "$ATTEST" compare a.csv a.csv --by-time --shift=$shift
+    [ "$status" -eq 2 ]
+    has "--shift $shift: is beyond 4611686018427387903 us"
+  done
+  run "$ATTEST" compare a.csv a.csv --by-time --shift=4611686018427387903
+  [ "$status" -eq 2 ]
+  has "no timestamp in common"
+  has "1 rows left out, because their timestamps are beyond"
+}

@@ -113,6 +113,22 @@ TEST_F(FlightLogFile, AStepIsAControlStateWithItsOutputs) {
   EXPECT_TRUE(log.has_every_step);
 }
 
+TEST_F(FlightLogFile, SamplesWithoutTimestampAreCounted) {
+  ulog::Crafted log;
+  log.flag_bits().format(state).format(setpoint).format(rates).format(
+      "battery_status:float scale;");
+  log.subscribe(0, "control_state").subscribe(1, "vehicle_attitude_setpoint");
+  log.subscribe(2, "vehicle_rates_setpoint").subscribe(3, "battery_status");
+  const std::uint64_t time = 1000;
+  log.data(0, raw(time) + std::string(28, '\0')).data(1, raw(time) + std::string(24, '\0'));
+  log.data(2, raw(time) + std::string(16, '\0')).data(3, raw(1.0f)).data(3, raw(0.5f));
+  const auto read = read_flight_log(write(log));
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_THAT(read->notes,
+              Contains("2 samples of battery_status left out, because the topic has no timestamp"));
+  EXPECT_FALSE(read->has_every_step);
+}
+
 TEST_F(FlightLogFile, ASecondOutputBeforeTheNextStateAnswersASampleThatIsNotLogged) {
   start();
   add_rates(3050, 0.375f);
