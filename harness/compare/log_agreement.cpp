@@ -30,7 +30,9 @@ std::vector<Topic> topics_in(const ChannelSet& present) {
     else
       topics.back().fields.push_back(i);
   }
-  std::erase_if(topics, [](const Topic& topic) { return topic.published == nullptr; });
+  std::erase_if(topics, [](const Topic& topic) {
+    return topic.published == nullptr || topic.fields.empty();
+  });
   return topics;
 }
 

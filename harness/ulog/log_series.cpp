@@ -78,11 +78,20 @@ std::size_t LogSeries::first_after(std::uint64_t time) const {
                                   times_.begin());
 }
 
-std::string LogSeries::missing_field() const {
+std::vector<std::string> LogSeries::missing_fields() const {
+  std::vector<std::string> missing;
   for (std::size_t i = 0; i < columns_.size(); ++i) {
-    if (!columns_[i]) return fields_[i];
+    if (!columns_[i]) missing.push_back(fields_[i]);
   }
-  return "";
+  return missing;
+}
+
+std::vector<std::size_t> LogSeries::logged_channels() const {
+  std::vector<std::size_t> logged;
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    if (columns_[i]) logged.push_back(channels_[i]);
+  }
+  return logged;
 }
 
 void LogSeries::copy(std::size_t row, Sample& to) const {

@@ -41,8 +41,10 @@ class LogSeries {
   // Index of the first sample after that time; size() if there is none.
   std::size_t first_after(std::uint64_t time) const;
 
-  // The first field that the log's topic does not have; empty if it has all.
-  std::string missing_field() const;
+  // The fields that the log's topic does not have. REQUIRES: size() > 0.
+  std::vector<std::string> missing_fields() const;
+  // The channels of the fields that it has. REQUIRES: size() > 0.
+  std::vector<std::size_t> logged_channels() const;
 
   // Writes the channels of a sample.
   void copy(std::size_t row, Sample& to) const;

@@ -113,6 +113,32 @@ TEST_F(FlightLogFile, AStepIsAControlStateWithItsOutputs) {
   EXPECT_TRUE(log.has_every_step);
 }
 
+TEST_F(FlightLogFile, AnOutputThatTheTopicLacksIsNotCompared) {
+  define({state, setpoint, "vehicle_rates_setpoint:uint64_t timestamp;float roll;float thrust;",
+          "actuator_controls_0:uint64_t timestamp;uint64_t timestamp_sample;"});
+  add_setpoint(1000);
+  add_state(1000);
+  add("vehicle_rates_setpoint", 1050, 0.25f, 0.5f);
+  add("actuator_controls_0", 1080, std::uint64_t{1000});
+  const FlightLog log = read();
+  const ChannelSet outputs = channels_of(Module::mc_att_control, "out/") & log.trace.present;
+  EXPECT_EQ(outputs.count(), 3u);
+  EXPECT_TRUE(outputs[*find_channel("out/vehicle_rates_setpoint.roll")]);
+  EXPECT_FALSE(outputs[*find_channel("out/vehicle_rates_setpoint.yaw")]);
+  ASSERT_EQ(log.outputs.size(), 1u);
+  EXPECT_EQ(log.outputs[0].topic, "vehicle_rates_setpoint");
+  EXPECT_THAT(log.notes, Contains("not in the log, so not compared: vehicle_rates_setpoint.pitch, "
+                                  "vehicle_rates_setpoint.yaw"));
+}
+
+TEST_F(FlightLogFile, ALogWithoutAnyFieldOfAnOutputIsAnError) {
+  define({state, setpoint, "vehicle_rates_setpoint:uint64_t timestamp;"});
+  add_setpoint(1000);
+  add_state(1000);
+  add("vehicle_rates_setpoint", 1050);
+  EXPECT_THAT(error(), HasSubstr("there is nothing to compare a port with"));
+}
+
 TEST_F(FlightLogFile, SamplesWithoutTimestampAreCounted) {
   ulog::Crafted log;
   log.flag_bits().format(state).format(setpoint).format(rates).format(
