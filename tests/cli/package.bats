@@ -3,9 +3,9 @@ load common
 # tried [COMMAND]: runs ci/package-try on stand-ins, of which the attest COMMAND fails.
 tried() {
   local command
-  mkdir -p usr/share/{man/man1,bash-completion/completions,zsh/site-functions}
+  mkdir -p usr/share/{man/man1,bash-completion/completions,zsh/vendor-completions}
   for command in attest attest-run; do echo page | gzip >usr/share/man/man1/$command.1.gz; done
-  tee usr/share/zsh/site-functions/_attest >usr/share/bash-completion/completions/attest \
+  tee usr/share/zsh/vendor-completions/_attest >usr/share/bash-completion/completions/attest \
     <<<completion
   fake apt-get <<<'rm -f "$LACKS"; [ ! -e no-apt ]'
   fake dpkg-query <<<'echo attest'
@@ -44,7 +44,7 @@ FAKE
 
 @test "a package without manual or completion fails the trial" {
   for file in man/man1/attest-run.1.gz bash-completion/completions/attest \
-    zsh/site-functions/_attest; do
+    zsh/vendor-completions/_attest; do
     LACKS=usr/share/$file tried
     [ "$status" -eq 1 ]
     has "usr/share/$file"
