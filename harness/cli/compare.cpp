@@ -45,20 +45,34 @@ Result<std::int64_t> shift_of(const std::string& text, const TimedSignals& got,
   std::int64_t us = 0;
   const char* const end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, us);
+  if (error == std::errc::result_out_of_range || us < -latest_us || us > latest_us) {
+    return fail(fmt::format("--shift {}: is beyond {} us", text, latest_us));
+  }
   if (error == std::errc{} && rest == end) return us;
   return fail(fmt::format("--shift {}: write a whole number of microseconds, or auto", text));
 }
 
+std::string shift_text(std::int64_t shift_us) {
+  return shift_us == 0 ? "" : fmt::format(", shifted by {} us", shift_us);
+}
+
+Result<void> check_compared(const CompareOptions& options, const SignalsComparison& found,
+                            std::int64_t shift_us) {
+  if (found.compared() > 0) return {};
+  if (found.signals.empty()) {
+    return fail(fmt::format("{} and {} have no signal in common", options.got, options.want));
+  }
+  return fail(
+      fmt::format("{} and {} have no timestamp in common{}, so no sample was compared; "
+                  "--shift US moves the first one",
+                  options.got, options.want, shift_text(shift_us)));
+}
+
 int print_by_time(const CompareOptions& options, const SignalsComparison& found,
                   std::int64_t shift_us, bool quiet) {
-  const std::string shifted = shift_us == 0 ? "" : fmt::format(", shifted by {} us", shift_us);
-  if (found.compared() == 0) {
-    return report_error({fmt::format("{} and {} have no signal in common at equal times{}",
-                                     options.got, options.want, shifted)});
-  }
   if (found.agrees() && quiet) return exit_ok;
   fmt::print("{}: {} (got), {} (want), by time{}: {} of {} common signals agree, {} samples\n",
-             found.agrees() ? "agree" : "differ", options.got, options.want, shifted,
+             found.agrees() ? "agree" : "differ", options.got, options.want, shift_text(shift_us),
              found.signals.size() - found.deviating_signals(), found.signals.size(),
              found.compared());
   fmt::print("{}", signals_text(found));
@@ -74,6 +88,9 @@ int compare_by_time(const CompareOptions& options, Level level, bool quiet) {
   const auto shift = shift_of(options.shift, *got, *want);
   if (!shift) return report_error(shift.error());
   const auto found = compare_signals(*got, *want, Tolerances(level), options.others, *shift);
+  if (const auto checked = check_compared(options, found, *shift); !checked) {
+    return report_error(checked.error());
+  }
   if (!options.html.empty()) {
     const auto written = write_file(options.html, comparison_page(found, *got, *want, *shift));
     if (!written) return report_error(written.error());
@@ -86,10 +103,9 @@ int compare_by_time(const CompareOptions& options, Level level, bool quiet) {
 int compare_command(const CompareOptions& options, const Globals& globals) {
   const auto level = parse_level(options.level);
   if (!level) return report_error(level.error());
-  if (const auto suite = find_suite(globals.suite); suite && !options.html.empty()) {
-    const auto checked = check_outputs({options.html}, {"", {options.got, options.want}}, *suite);
-    if (!checked) return report_error(checked.error());
-  }
+  const auto checked =
+      check_outputs({options.html}, {"", {options.got, options.want}}, globals.suite);
+  if (!checked) return report_error(checked.error());
   if (options.by_time || is_log(options.got) || is_log(options.want)) {
     return compare_by_time(options, *level, globals.quiet);
   }

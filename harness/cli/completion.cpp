@@ -22,21 +22,22 @@ constexpr std::array listed_types{"CASE", "GROUP", "HZ", "HZ,...", "PROFILE", "V
 
 constexpr std::string_view functions = R"(# Completion for attest.
 
+# The first column of what attest lists; two spaces are between the columns.
+_attest_listed() {
+  local line
+  attest list "$@" 2>/dev/null |
+    while IFS= read -r line; do printf '%s\n' "${line%%  *}"; done
+}
+
 _attest_values() {
-  local id rest
+  local id
   case $1 in
-    CASE)
-      attest list 2>/dev/null |
-        while read -r id rest; do printf '%s\n' "$id" "${id##*/}"; done ;;
-    GROUP)
-      attest list --groups 2>/dev/null |
-        while read -r id rest; do printf '%s\n' "${id##*/}"; done ;;
-    PROFILE)
-      attest list --groups 2>/dev/null |
-        while read -r id rest; do printf '%s\n' "${id%%/*}"; done ;;
+    CASE) _attest_listed | while IFS= read -r id; do printf '%s\n' "$id" "${id##*/}"; done ;;
+    GROUP) _attest_listed --groups | while IFS= read -r id; do printf '%s\n' "${id##*/}"; done ;;
+    PROFILE) _attest_listed --groups | while IFS= read -r id; do printf '%s\n' "${id%%/*}"; done ;;
     VEHICLE)
-      attest list --vehicles 2>/dev/null |
-        while read -r id rest; do [ "$id" = vehicle ] || printf '%s\n' "$id"; done ;;
+      _attest_listed --vehicles |
+        while IFS= read -r id; do [ "$id" = vehicle ] || printf '%s\n' "$id"; done ;;
     HZ*)
       printf '%s\n' 50 100 250 333 400 500 800 1000 2000 4000 8000 ;;
   esac
@@ -65,12 +66,18 @@ std::vector<std::string> words_in_backquotes(const std::string& help) {
   return words;
 }
 
+// Words as a text in the script, one in a line. They are names of the command line, so they need no
+// quotes.
+std::string quoted_lines(const std::vector<std::string>& words) {
+  return fmt::format("$'{}'", fmt::join(words, "\\n"));
+}
+
 // The right-hand side of an assignment in the script: what completes a value of the option.
 std::string values_of(const CLI::Option& option) {
   const std::string type = value_name(option);
   if (is_one_of(type, listed_types)) return fmt::format("$(_attest_values {})", type);
   if (!is_one_of(type, fixed_types)) return "";
-  return fmt::format("{}", fmt::join(words_in_backquotes(option.get_description()), " "));
+  return quoted_lines(words_in_backquotes(option.get_description()));
 }
 
 std::vector<std::string> names_of(const CLI::Option& option) {
@@ -89,8 +96,7 @@ std::string value_lines(const CLI::App& command, const std::string& name) {
     for (const std::string& each : names_of(*option)) {
       patterns.push_back(fmt::format("\"{} {}\"", name, each));
     }
-    lines +=
-        fmt::format("    {}) words=\"{}\" ;;\n", fmt::join(patterns, " | "), values_of(*option));
+    lines += fmt::format("    {}) words={} ;;\n", fmt::join(patterns, " | "), values_of(*option));
   }
   return lines;
 }
@@ -103,20 +109,23 @@ std::string other_line(const CLI::App& command, const std::string& name) {
     if (option->get_positional() && values.empty()) values = values_of(*option);
     for (const std::string& each : names_of(*option)) options.push_back(each);
   }
-  return fmt::format("    \"{} \"*) words=\"{}\"; [[ $cur == -* ]] || words=\"{}\" ;;\n", name,
-                     fmt::join(options, " "), values);
+  return fmt::format("    \"{} \"*) words={}; [[ $cur == -* ]] || words={} ;;\n", name,
+                     quoted_lines(options), values);
 }
 
 std::string script_body(const CLI::App& app) {
-  std::vector<std::string> commands;
+  std::vector<std::string> commands, first_words;
   std::string lines;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
     const std::string& name = command->get_name();
     commands.push_back(name);
     lines += value_lines(*command, name) + other_line(*command, name);
   }
+  first_words = commands;
+  first_words.insert(first_words.end(), {"--suite", "--quiet", "--version", "--help"});
   return std::string(functions) + fmt::format(R"(_attest() {{
   local cur=${{COMP_WORDS[COMP_CWORD]}} prev=${{COMP_WORDS[COMP_CWORD-1]}} command= words= i
+  local word quoted
   for ((i = 1; i < COMP_CWORD; ++i)); do
     case ${{COMP_WORDS[i]}} in
       {0}) command=${{COMP_WORDS[i]}}; break ;;
@@ -124,13 +133,19 @@ std::string script_body(const CLI::App& app) {
   done
   case "$command $prev" in
 {1}    *" --suite") ;;
-    *) words="{2} --suite --quiet --version --help" ;;
+    *) words={2} ;;
   esac
-  COMPREPLY=($(compgen -W "$words" -- "$cur"))
+  COMPREPLY=()
+  # Names are files' names, so they are never expanded, and are quoted for the command line.
+  while IFS= read -r word; do
+    [[ -n $word ]] || continue
+    printf -v quoted %q "$word"
+    [[ $word == "$cur"* || $quoted == "$cur"* ]] && COMPREPLY+=("$quoted")
+  done <<<"$words"
 }}
 )",
                                               fmt::join(commands, " | "), lines,
-                                              fmt::join(commands, " "));
+                                              quoted_lines(first_words));
 }
 
 constexpr const char* registration = "complete -o default -F _attest attest\n";
@@ -140,8 +155,10 @@ constexpr const char* registration = "complete -o default -F _attest attest\n";
 std::string bash_completion(const CLI::App& app) { return script_body(app) + registration; }
 
 std::string zsh_completion(const CLI::App& app) {
+  // The function path loads the file at the first completion, which must be answered, too.
   return "#compdef attest\nautoload -U +X bashcompinit && bashcompinit\n" + script_body(app) +
-         registration;
+         registration +
+         "[[ ${funcstack[1]-} != _attest ]] || _bash_complete -o default -F _attest\n";
 }
 
 }  // namespace attest::cli

@@ -45,10 +45,9 @@ std::set<fs::path> identities_of(const Inputs& inputs) {
   return files;
 }
 
-}  // namespace
-
-Result<void> check_outputs(const std::vector<std::string>& outputs, const Inputs& inputs,
-                           const SuiteFolder& suite) {
+// `suite` is null if there is none.
+Result<void> check_each(const std::vector<std::string>& outputs, const Inputs& inputs,
+                        const SuiteFolder* suite) {
   const std::set<fs::path> read = identities_of(inputs);
   std::set<fs::path> written;
   for (const std::string& output : outputs) {
@@ -61,11 +60,24 @@ Result<void> check_outputs(const std::vector<std::string>& outputs, const Inputs
     if (read.contains(file)) {
       return fail_at(output, "is read by this command and would be overwritten; name another file");
     }
-    if (is_of_suite(file, suite) && fs::exists(file, ignored)) {
+    if (suite != nullptr && is_of_suite(file, *suite) && fs::exists(file, ignored)) {
       return fail_at(output, "is a file of the suite and would be overwritten; name another file");
     }
   }
   return {};
+}
+
+}  // namespace
+
+Result<void> check_outputs(const std::vector<std::string>& outputs, const Inputs& inputs,
+                           const SuiteFolder& suite) {
+  return check_each(outputs, inputs, &suite);
+}
+
+Result<void> check_outputs(const std::vector<std::string>& outputs, const Inputs& inputs,
+                           const std::string& suite_folder) {
+  const auto suite = find_suite(suite_folder);
+  return check_each(outputs, inputs, suite ? &*suite : nullptr);
 }
 
 Result<void> check_output_folder(const std::string& folder, const SuiteFolder& suite) {

@@ -20,6 +20,10 @@ struct Inputs {
 // it before the command writes or runs anything.
 Result<void> check_outputs(const std::vector<std::string>& outputs, const Inputs& inputs,
                            const SuiteFolder& suite);
+// The same for a command that works without a suite. `suite_folder`: as for find_suite(). If there
+// is no suite, the inputs are protected still.
+Result<void> check_outputs(const std::vector<std::string>& outputs, const Inputs& inputs,
+                           const std::string& suite_folder);
 
 // Makes the folder for saved traces; an empty name: does nothing. Errors: it is not empty, so that
 // traces of an earlier run could be mistaken for those of this run; it cannot be written; it is a

@@ -9,7 +9,6 @@
 
 #include "harness/cli/command.hpp"
 #include "harness/cli/outputs.hpp"
-#include "harness/cli/suite_folder.hpp"
 #include "harness/compare/timed_signals.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/suggestion.hpp"
@@ -74,6 +73,12 @@ Result<std::vector<std::string>> chosen(const std::vector<std::string>& all,
 }  // namespace
 
 int plot_command(const PlotOptions& options, const Globals& globals) {
+  const std::string first = std::filesystem::path(options.files.front()).stem().string();
+  const std::string page = options.html.empty() ? first + ".html" : options.html;
+  if (!options.list) {
+    const auto checked = check_outputs({page}, {"", options.files}, globals.suite);
+    if (!checked) return report_error(checked.error());
+  }
   const auto sources = sources_of(options.files);
   if (!sources) return report_error(sources.error());
   const std::vector<std::string> all = names_in(*sources);
@@ -91,13 +96,6 @@ int plot_command(const PlotOptions& options, const Globals& globals) {
                        names->size(), most_signals)});
     }
     names->resize(most_signals);
-  }
-  const std::string first = std::filesystem::path(options.files.front()).stem().string();
-  const std::string page = options.html.empty() ? first + ".html" : options.html;
-  const auto suite = find_suite(globals.suite);
-  if (suite) {
-    const auto checked = check_outputs({page}, {"", options.files}, *suite);
-    if (!checked) return report_error(checked.error());
   }
   if (auto written = write_file(page, signals_page(*sources, *names)); !written) {
     return report_error(written.error());

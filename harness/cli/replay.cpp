@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
@@ -8,7 +9,6 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/read_log.hpp"
-#include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/version.hpp"
 #include "harness/golden/recorded.hpp"
@@ -16,6 +16,7 @@
 #include "harness/report/html/signals_page.hpp"
 #include "harness/report/log_text.hpp"
 #include "harness/report/text.hpp"
+#include "harness/trace/provenance.hpp"
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/evaluate_log.hpp"
 
@@ -59,9 +60,12 @@ Result<FlightLog> log_in(const std::string& file, const ReplayOptions& options) 
 Result<void> check_page(const ReplayOptions& options, const Globals& globals) {
   if (options.html.empty()) return {};
   if (options.files.size() > 1) return fail("--html shows one trace or log; name one");
-  const auto suite = find_suite(globals.suite);
-  if (!suite) return {};
-  return check_outputs({options.html}, {options.host.port, options.files}, *suite);
+  Inputs inputs{options.host.port, options.files};
+  for (const std::string& file : options.files) {
+    const auto folder = std::filesystem::path(file).parent_path();
+    inputs.files.push_back((folder / provenance_name).string());
+  }
+  return check_outputs({options.html}, inputs, globals.suite);
 }
 
 // One line per trace, more if it differs. `judged_by`: the level, or "log".

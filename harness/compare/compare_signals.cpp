@@ -1,7 +1,9 @@
 #include "harness/compare/compare_signals.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
 
 namespace attest {
 namespace {
@@ -15,14 +17,21 @@ Tolerance tolerance_of(const std::string& name, const Tolerances& tolerances, do
   return outputs.any() ? tolerances.of(outputs._Find_first()) : Tolerance{others, 0};
 }
 
-bool is_within(float got, float want, const Tolerance& tolerance) {
-  if (got == want || (std::isnan(got) && std::isnan(want))) return true;
+// `by_bits`: -0 is not 0. A number never agrees with infinity, whose relative tolerance would be
+// infinite.
+bool is_within(float got, float want, const Tolerance& tolerance, bool by_bits) {
+  if (std::isnan(got) && std::isnan(want)) return true;
+  if (by_bits) return std::bit_cast<std::uint32_t>(got) == std::bit_cast<std::uint32_t>(want);
+  if (got == want) return true;
+  if (!std::isfinite(got) || !std::isfinite(want)) return false;
   const double off = std::abs(static_cast<double>(got) - static_cast<double>(want));
   return off <= std::max(tolerance.absolute, tolerance.relative * std::abs(want));
 }
 
+// Of values that deviate: NaN is infinitely far from all.
 double distance(const SignalPair& pair) {
-  return std::abs(static_cast<double>(pair.got) - static_cast<double>(pair.want));
+  const double off = std::abs(static_cast<double>(pair.got) - static_cast<double>(pair.want));
+  return std::isnan(off) ? std::numeric_limits<double>::infinity() : off;
 }
 
 std::int64_t moved(std::uint64_t time_us, std::int64_t shift_us) {
@@ -49,13 +58,13 @@ void align(const TimedSignal& got, const TimedSignal& want, std::int64_t shift_u
 }
 
 SignalComparison compare_signal(const TimedSignal& got, const TimedSignal& want,
-                                const Tolerance& tolerance, std::int64_t shift_us) {
+                                const Tolerance& tolerance, bool by_bits, std::int64_t shift_us) {
   SignalComparison found;
   found.name = want.name;
   found.tolerance = tolerance;
   align(got, want, shift_us, found.only_got, found.only_want, [&](std::size_t i, std::size_t j) {
     ++found.compared;
-    if (is_within(got.values[i], want.values[j], tolerance)) return;
+    if (is_within(got.values[i], want.values[j], tolerance, by_bits)) return;
     ++found.deviating;
     const SignalPair pair{want.times_us[j], got.values[i], want.values[j]};
     if (!found.first) found.first = pair;
@@ -98,7 +107,7 @@ std::pair<const TimedSignal*, const TimedSignal*> most_different(const TimedSign
   for (const TimedSignal& one : want.all) {
     const TimedSignal* const other = got.find(one.name);
     if (other == nullptr) continue;
-    const std::size_t deviating = compare_signal(*other, one, {}, 0).deviating;
+    const std::size_t deviating = compare_signal(*other, one, {}, false, 0).deviating;
     if (deviating <= most) continue;
     most = deviating;
     found = {other, &one};
@@ -124,7 +133,7 @@ std::optional<TimeShift> estimate_shift(const TimedSignals& got, const TimedSign
   if (of_got == nullptr) return std::nullopt;
   const auto unshifted = rms_difference(*of_got, *of_want, 0);
   const std::int64_t period = period_of(*of_want);
-  if (!unshifted || period == 0) return std::nullopt;
+  if (!unshifted || period == 0 || period > latest_us / most_periods) return std::nullopt;
   TimeShift best{0, of_want->name, *unshifted, *unshifted};
   for (std::int64_t periods = -most_periods; periods <= most_periods; ++periods) {
     const auto rms = rms_difference(*of_got, *of_want, periods * period);
@@ -147,7 +156,8 @@ SignalsComparison compare_signals(const TimedSignals& got, const TimedSignals& w
       found.only_in_want.push_back(signal.name);
     } else {
       const Tolerance tolerance = tolerance_of(signal.name, tolerances, others);
-      found.signals.push_back(compare_signal(*other, signal, tolerance, shift_us));
+      const bool by_bits = tolerances.level() == Level::exact && tolerance.absolute == 0;
+      found.signals.push_back(compare_signal(*other, signal, tolerance, by_bits, shift_us));
     }
   }
   if (!found.agrees() && shift_us == 0) found.shift = estimate_shift(got, want);

@@ -25,7 +25,8 @@ struct SignalComparison {
   std::size_t only_got = 0, only_want = 0;  // samples at times that the other does not have
   std::optional<SignalPair> first, worst;   // of those that deviate
 
-  bool agrees() const { return deviating == 0; }
+  // Without a sample at equal times, it is unknown whether they do.
+  bool agrees() const { return compared > 0 && deviating == 0; }
 };
 
 // `got` lags by this time: each of its samples has the value that `want` has so much earlier.
@@ -48,7 +49,9 @@ struct SignalsComparison {
 
 // The signals of `got` are moved earlier by `shift_us` before they are compared. An output of the
 // controller has the tolerance of `tolerances`, any other signal must be within `others`. Any NaN
-// equals any NaN.
+// equals any NaN; NaN and infinity differ from every number. At the level exact, a signal without
+// tolerance must have equal bits, so -0 differs from 0. REQUIRES: `shift_us` between -latest_us and
+// latest_us.
 SignalsComparison compare_signals(const TimedSignals& got, const TimedSignals& want,
                                   const Tolerances& tolerances, double others,
                                   std::int64_t shift_us = 0);

@@ -30,7 +30,9 @@ std::vector<Topic> topics_in(const ChannelSet& present) {
     else
       topics.back().fields.push_back(i);
   }
-  std::erase_if(topics, [](const Topic& topic) { return topic.published == nullptr; });
+  std::erase_if(topics, [](const Topic& topic) {
+    return topic.published == nullptr || topic.fields.empty();
+  });
   return topics;
 }
 
@@ -41,18 +43,24 @@ double deviation(double got, double logged) {
   return std::isnan(off) ? std::numeric_limits<double>::infinity() : off;
 }
 
-// The port's values of a field at a tick and its neighbours.
+// The reference's values of a field at a tick and its neighbours, numbers only.
 struct Range {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
+
+  // False for NaN and infinity.
+  bool has(double value, double tolerance) const {
+    return std::isfinite(value) && value >= low - tolerance && value <= high + tolerance;
+  }
 };
 
-Range range_around(std::size_t tick, const Channel& channel, const Topic& topic, const Trace& got) {
+Range range_around(std::size_t tick, const Channel& channel, const Topic& topic,
+                   const Trace& reference) {
   Range range;
-  const std::size_t last = std::min(tick + 2, got.samples.size());
+  const std::size_t last = std::min(tick + 2, reference.samples.size());
   for (std::size_t i = tick > 0 ? tick - 1 : 0; i < last; ++i) {
-    if (!topic.is_in(got.samples[i])) continue;
-    const double value = value_of(channel, got.samples[i]);
+    const double value = value_of(channel, reference.samples[i]);
+    if (!topic.is_in(reference.samples[i]) || !std::isfinite(value)) continue;
     range.low = std::min(range.low, value);
     range.high = std::max(range.high, value);
   }
@@ -61,8 +69,13 @@ Range range_around(std::size_t tick, const Channel& channel, const Topic& topic,
 
 class Agreement {
  public:
-  Agreement(Topic topic, const Trace& got, const Trace& logged, const LogLimits& limits)
-      : topic_(std::move(topic)), got_(got), logged_(logged), limits_(limits) {
+  Agreement(Topic topic, const Trace& got, const Trace& logged, const Trace& reference,
+            const LogLimits& limits)
+      : topic_(std::move(topic)),
+        got_(got),
+        logged_(logged),
+        reference_(reference),
+        limits_(limits) {
     found_.topic = topic_.name;
   }
 
@@ -88,6 +101,10 @@ class Agreement {
     for (const std::size_t field : topic_.fields) {
       if (deviation_at(tick, field) > deviation_at(tick, worst)) worst = field;
     }
+    if (std::any_of(topic_.fields.begin(), topic_.fields.end(),
+                    [&](std::size_t field) { return is_no_number(tick, field); })) {
+      ++found_.non_finite;
+    }
     const double largest = deviation_at(tick, worst);
     deviations_.push_back(largest);
     if (largest <= limits_.within)
@@ -104,12 +121,20 @@ class Agreement {
                      value_of(channel, logged_.samples[tick]));
   }
 
+  // Where the log has one.
+  bool is_no_number(std::size_t tick, std::size_t field) const {
+    const Channel& channel = channels()[field];
+    return !std::isfinite(value_of(channel, got_.samples[tick])) &&
+           std::isfinite(value_of(channel, logged_.samples[tick]));
+  }
+
   bool is_between(std::size_t tick) const {
     return std::all_of(topic_.fields.begin(), topic_.fields.end(), [&](std::size_t field) {
       const Channel& channel = channels()[field];
-      const Range range = range_around(tick, channel, topic_, got_);
-      const double value = value_of(channel, logged_.samples[tick]);
-      return value >= range.low - limits_.within && value <= range.high + limits_.within;
+      if (deviation_at(tick, field) <= limits_.within) return true;
+      const Range range = range_around(tick, channel, topic_, reference_);
+      return range.has(value_of(channel, logged_.samples[tick]), limits_.within) &&
+             range.has(value_of(channel, got_.samples[tick]), limits_.within);
     });
   }
 
@@ -129,6 +154,7 @@ class Agreement {
   Topic topic_;
   const Trace& got_;
   const Trace& logged_;
+  const Trace& reference_;
   LogLimits limits_;
   std::vector<double> deviations_;
   TopicAgreement found_;
@@ -144,15 +170,15 @@ double TopicAgreement::part_within() const { return part_of(within, paired); }
 double TopicAgreement::part_unexplained() const { return part_of(unexplained(), paired); }
 
 bool TopicAgreement::agrees(const LogLimits& limits) const {
-  return paired > 0 && part_within() >= limits.least_part_within &&
+  return paired > 0 && non_finite == 0 && part_within() >= limits.least_part_within &&
          part_unexplained() <= limits.most_unexplained;
 }
 
 std::vector<TopicAgreement> agreement_with_log(const Trace& got, const Trace& logged,
-                                               const LogLimits& limits) {
+                                               const Trace& reference, const LogLimits& limits) {
   std::vector<TopicAgreement> found;
   for (Topic& topic : topics_in(logged.present)) {
-    found.push_back(Agreement(std::move(topic), got, logged, limits).found());
+    found.push_back(Agreement(std::move(topic), got, logged, reference, limits).found());
   }
   return found;
 }

@@ -34,12 +34,15 @@ struct TopicAgreement {
   bool is_judged = true;    // false: only reported
   std::size_t paired = 0;   // ticks with an output in the log
   std::size_t missing = 0;  // of these: the port published nothing
+  // Of the pairs that both have: the port has NaN or infinity where the log has a number. One is
+  // enough for the port not to agree.
+  std::size_t non_finite = 0;
   // Of the pairs that both have. Nearest rank; 0 without pairs.
   double median = 0, p90 = 0, p99 = 0, largest = 0;
   std::size_t within = 0;
-  // Not within, but every field is between the port's smallest and largest value at the tick and
-  // its two neighbours: the log has the answer to a sample between these. A law without memory that
-  // is wrong does not have its error bracketed.
+  // Not within, but the log and the port are, in every field, between the reference's smallest and
+  // largest value at the tick and its two neighbours: the log has the answer to a sample between
+  // these. The range is the reference's, because a port with wild values would widen its own.
   std::size_t between_samples = 0;
   std::optional<LoggedPair> first_unexplained;
 
@@ -49,9 +52,9 @@ struct TopicAgreement {
   bool agrees(const LogLimits& limits) const;
 };
 
-// The topics that the log has, in the order of the channels. `got` and `logged` have the same
-// ticks.
+// The topics that the log has, in the order of the channels. `reference`: the reference's outputs
+// for the inputs of the log. `got`, `logged` and `reference` have the same ticks.
 std::vector<TopicAgreement> agreement_with_log(const Trace& got, const Trace& logged,
-                                               const LogLimits& limits);
+                                               const Trace& reference, const LogLimits& limits);
 
 }  // namespace attest

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <utility>
@@ -16,60 +17,86 @@
 namespace attest {
 namespace {
 
-// Appends a sample. False: its time is not after the one before.
-bool add(TimedSignal& signal, std::uint64_t time_us, float value) {
-  if (!signal.times_us.empty() && time_us <= signal.times_us.back()) return false;
-  signal.times_us.push_back(time_us);
-  signal.values.push_back(value);
-  return true;
+// Samples that are not in the signals.
+struct LeftOut {
+  std::size_t not_later = 0, too_late = 0, without_time = 0;
+
+  // `what`: "samples of pose".
+  void note(const std::string& what, std::vector<std::string>& notes) const {
+    const auto add = [&](std::size_t count, const std::string& why) {
+      if (count > 0) notes.push_back(fmt::format("{} {} left out, because {}", count, what, why));
+    };
+    add(not_later, "their timestamps do not increase");
+    add(too_late, fmt::format("their timestamps are beyond {} us", latest_us));
+    add(without_time, "the topic has no timestamp");
+  }
+};
+
+// Appends a sample of signals, `value(i)`, unless it is left out.
+template <typename Signals, typename Value>
+void add_sample(Signals& signals, std::uint64_t time_us, LeftOut& left_out, Value value) {
+  if (time_us > static_cast<std::uint64_t>(latest_us)) {
+    ++left_out.too_late;
+    return;
+  }
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    TimedSignal& signal = signals[i];
+    if (!signal.times_us.empty() && time_us <= signal.times_us.back()) {
+      ++left_out.not_later;
+      return;
+    }
+    signal.times_us.push_back(time_us);
+    signal.values.push_back(value(i));
+  }
 }
 
 // The numbers of a subscription's topic.
 struct Topic {
   std::optional<ulog::Column> time;
-  std::vector<std::pair<ulog::Column, TimedSignal>> signals;
-  std::size_t left_out = 0;
+  std::vector<ulog::Column> columns;
+  std::vector<TimedSignal> signals;  // of columns
+  LeftOut left_out;
 };
 
-std::string name_of_topic(const ulog::Subscription& subscription) {
-  return subscription.multi_id == 0
-             ? subscription.topic
-             : fmt::format("{}[{}]", subscription.topic, subscription.multi_id);
+std::string name_of_topic(const std::string& topic, std::uint8_t multi_id) {
+  return multi_id == 0 ? topic : fmt::format("{}[{}]", topic, multi_id);
 }
 
 Topic topic_of(const ulog::Subscription& subscription) {
   Topic topic;
+  const std::string name = name_of_topic(subscription.topic, subscription.multi_id);
   for (const ulog::Field& leaf : subscription.format->leaves) {
     if (leaf.type == ulog::Type::character) continue;
-    if (leaf.name == "timestamp" && leaf.type == ulog::Type::u64) {
+    if (leaf.name == "timestamp" && leaf.type == ulog::Type::u64 && !leaf.is_array) {
       topic.time = ulog::Column{&subscription, leaf.type, leaf.offset};
       continue;
     }
     for (std::uint32_t i = 0; i < leaf.count; ++i) {
       const std::string index = leaf.is_array ? fmt::format("[{}]", i) : "";
-      const ulog::Column column{&subscription, leaf.type,
-                                leaf.offset + i * ulog::bytes_of(leaf.type)};
-      const std::string name = name_of_topic(subscription) + "." + leaf.name + index;
-      topic.signals.push_back({column, {name, {}, {}}});
+      topic.columns.push_back(
+          {&subscription, leaf.type, leaf.offset + i * ulog::bytes_of(leaf.type)});
+      topic.signals.push_back({name + "." + leaf.name + index, {}, {}});
     }
   }
   return topic;
 }
 
 void add_data(const ulog::Data& data, Topic& topic) {
-  if (!topic.time) return;
-  const auto time_us = topic.time->of<std::uint64_t>(data);
-  bool is_later = true;
-  for (auto& [column, signal] : topic.signals) {
-    is_later = add(signal, time_us, column.of<float>(data)) && is_later;
+  if (!topic.time) {
+    ++topic.left_out.without_time;
+    return;
   }
-  topic.left_out += is_later ? 0 : 1;
+  add_sample(topic.signals, topic.time->of<std::uint64_t>(data), topic.left_out,
+             [&](std::size_t i) { return topic.columns[i].of<float>(data); });
 }
+
+// By topic and instance: the name of a topic may look like that of an instance of another one.
+using TopicsOfLog = std::map<std::pair<std::string, std::uint8_t>, Topic>;
 
 Result<TimedSignals> signals_of_log(const std::filesystem::path& path) {
   auto reader = ulog::Reader::open(path);
   if (!reader) return tl::unexpected(reader.error());
-  std::map<std::string, Topic> topics;
+  TopicsOfLog topics;
   std::vector<Topic*> by_subscription;
   ulog::Message message;
   while (true) {
@@ -81,20 +108,18 @@ Result<TimedSignals> signals_of_log(const std::filesystem::path& path) {
     const std::size_t index = data->subscription->index;
     if (by_subscription.size() <= index) by_subscription.resize(index + 1);
     if (by_subscription[index] == nullptr) {
-      const std::string name = name_of_topic(*data->subscription);
-      by_subscription[index] =
-          &topics.try_emplace(name, topic_of(*data->subscription)).first->second;
+      const ulog::Subscription& subscription = *data->subscription;
+      const auto [added, is_new] = topics.try_emplace({subscription.topic, subscription.multi_id});
+      if (is_new) added->second = topic_of(subscription);
+      by_subscription[index] = &added->second;
     }
     add_data(*data, *by_subscription[index]);
   }
   TimedSignals signals{path.string(), {}, {}};
-  for (auto& [name, topic] : topics) {
-    for (auto& [column, signal] : topic.signals) signals.all.push_back(std::move(signal));
-    if (topic.left_out == 0) continue;
-    signals.notes.push_back(
-        fmt::format("{} samples of {} left out, because their timestamps do "
-                    "not increase",
-                    topic.left_out, name));
+  for (auto& [instance, topic] : topics) {
+    std::move(topic.signals.begin(), topic.signals.end(), std::back_inserter(signals.all));
+    const auto& [name, multi_id] = instance;
+    topic.left_out.note("samples of " + name_of_topic(name, multi_id), signals.notes);
   }
   if (const auto damages = reader->damage().total(); damages > 0) {
     signals.notes.push_back(fmt::format("damaged in {} places; the first: byte {}: {}", damages,
@@ -156,23 +181,29 @@ Result<TimedSignals> signals_of_csv(const std::filesystem::path& path) {
   }
   rows->set_columns(std::move(columns));
   Row row{std::vector<char>(Row::first + sizeof(float) * signals.all.size())};
-  std::size_t left_out = 0;
+  LeftOut left_out;
   while (true) {
     const auto more = rows->next(row.bytes.data());
     if (!more) return tl::unexpected(more.error());
     if (!*more) break;
-    bool is_later = true;
-    for (std::size_t i = 0; i < signals.all.size(); ++i) {
-      const auto value = row.at<float>(Row::first + sizeof(float) * i);
-      is_later = add(signals.all[i], row.at<std::uint64_t>(Row::time), value) && is_later;
-    }
-    left_out += is_later ? 0 : 1;
+    add_sample(signals.all, row.at<std::uint64_t>(Row::time), left_out,
+               [&](std::size_t i) { return row.at<float>(Row::first + sizeof(float) * i); });
   }
-  if (left_out > 0) {
-    signals.notes.push_back(
-        fmt::format("{} rows left out, because their timestamps do not increase", left_out));
-  }
+  left_out.note("rows", signals.notes);
   return signals;
+}
+
+// REQUIRES: sorted by name.
+void leave_out_repeated_names(TimedSignals& signals) {
+  const auto repeated = [](const TimedSignal& a, const TimedSignal& b) { return a.name == b.name; };
+  const auto first = std::adjacent_find(signals.all.begin(), signals.all.end(), repeated);
+  if (first == signals.all.end()) return;
+  const std::string name = first->name;
+  const auto end = std::unique(first, signals.all.end(), repeated);
+  signals.notes.push_back(
+      fmt::format("{} signals left out, because another one has the same name; the first: {}",
+                  signals.all.end() - end, name));
+  signals.all.erase(end, signals.all.end());
 }
 
 }  // namespace
@@ -191,6 +222,7 @@ Result<TimedSignals> read_timed_signals(const std::filesystem::path& path) {
   if (signals->all.empty()) return fail_at(path.string(), "has no sample of a signal");
   std::stable_sort(signals->all.begin(), signals->all.end(),
                    [](const TimedSignal& a, const TimedSignal& b) { return a.name < b.name; });
+  leave_out_repeated_names(*signals);
   return signals;
 }
 

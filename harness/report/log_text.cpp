@@ -24,10 +24,12 @@ std::string deviations_text(const TopicAgreement& topic, const LogLimits& limits
   text += part_text(topic.within, topic, fmt::format("within {:g}", limits.within));
   if (topic.within == topic.paired) return text;
   text += part_text(topic.between_samples, topic,
-                    "between the port's values for neighbouring samples, of which the log has not "
-                    "all");
+                    "between the reference's values for neighbouring samples, of which the log has "
+                    "not all");
   text += part_text(topic.unexplained(), topic, "not explained");
   if (topic.missing > 0) text += part_text(topic.missing, topic, "not published by the port");
+  if (topic.non_finite > 0)
+    text += part_text(topic.non_finite, topic, "NaN or infinity where the log has a number");
   return text;
 }
 

@@ -21,6 +21,9 @@ std::string pair_text(const char* which, const SignalPair& pair) {
 }
 
 std::string deviating_text(const SignalComparison& signal) {
+  if (signal.compared == 0) {
+    return fmt::format("  {}: no timestamp in common, so no sample was compared\n", signal.name);
+  }
   return fmt::format("  {}: {} of {} samples deviate by more than {}\n", signal.name,
                      signal.deviating, signal.compared, tolerance_text(signal.tolerance)) +
          pair_text("first", *signal.first) + pair_text("worst", *signal.worst);

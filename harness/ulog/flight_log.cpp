@@ -136,20 +136,21 @@ Result<void> check_topics(const std::filesystem::path& path, Contents& log) {
     return fail_at(path.string(), "no sample of the topic vehicle_attitude_setpoint");
   }
   const bool has_outputs =
-      std::any_of(log.series.begin(), log.series.end(),
-                  [](const LogSeries& series) { return series.is_output() && series.size() > 0; });
+      std::any_of(log.series.begin(), log.series.end(), [](const LogSeries& series) {
+        return series.is_output() && series.size() > 0 && !series.logged_channels().empty();
+      });
   if (!has_outputs) {
     return fail_at(path.string(),
                    "no sample of vehicle_rates_setpoint or actuator_controls_0, so "
                    "there is nothing to compare a port with");
   }
   for (const char* topic : {"control_state", "vehicle_attitude_setpoint"}) {
-    const std::string missing = log.inputs(topic).missing_field();
-    if (missing.empty() || missing == "landing_gear" || missing == "disable_mc_yaw_control")
-      continue;
-    return fail_at(path.string(), fmt::format("the topic {} has no field {}; is the log of another "
-                                              "version of PX4?",
-                                              topic, missing));
+    for (const std::string& missing : log.inputs(topic).missing_fields()) {
+      if (missing == "landing_gear" || missing == "disable_mc_yaw_control") continue;
+      return fail_at(path.string(), fmt::format("the topic {} has no field {}; is the log of "
+                                                "another version of PX4?",
+                                                topic, missing));
+    }
   }
   return {};
 }
@@ -267,7 +268,7 @@ LoggedOutput fill_outputs(const LogSeries& output, const LogSeries& ticks, Trace
   const auto published =
       find_channel(Module::mc_att_control, fmt::format("out/{}.published", output.topic()));
   trace.present.set(*published);
-  for (const std::size_t channel : output.channels()) trace.present.set(channel);
+  for (const std::size_t channel : output.logged_channels()) trace.present.set(channel);
   for (std::size_t row = 0; row < output.size(); ++row) {
     const auto tick = tick_of(output, row, ticks);
     if (!tick || value_of(channels()[*published], trace.samples[*tick]) != 0) continue;
@@ -279,21 +280,30 @@ LoggedOutput fill_outputs(const LogSeries& output, const LogSeries& ticks, Trace
   return logged;
 }
 
+void add_missing(const LogSeries& series, std::vector<std::string>& notes) {
+  std::vector<std::string> missing = series.missing_fields();
+  if (missing.empty()) return;
+  for (std::string& field : missing) field.insert(0, series.topic() + ".");
+  notes.push_back(fmt::format("not in the log, so {}: {}",
+                              series.is_output() ? "not compared" : "0", fmt::join(missing, ", ")));
+}
+
 void add_notes(const Contents& log, std::vector<std::string>& notes) {
   if (!log.system.empty()) {
     notes.push_back(
         fmt::format("logged by {}{}{}", log.system, log.firmware.empty() ? "" : " ", log.firmware));
   }
   for (const LogSeries& series : log.series) {
-    const std::string missing = series.missing_field();
-    if (series.size() > 0 && !missing.empty()) {
-      notes.push_back(fmt::format("{}.{} is not in the log: 0", series.topic(), missing));
-    }
+    if (series.size() > 0) add_missing(series, notes);
     if (series.left_out() > 0) {
       notes.push_back(
           fmt::format("{} samples of {} left out, because their timestamps do not "
                       "increase",
                       series.left_out(), series.topic()));
+    }
+    if (series.without_time() > 0) {
+      notes.push_back(fmt::format("{} samples of {} left out, because the topic has no timestamp",
+                                  series.without_time(), series.topic()));
     }
   }
   if (log.dropouts > 0) {
@@ -328,8 +338,8 @@ Result<FlightLog> read_flight_log(const std::filesystem::path& path,
   fill_parameters(std::move(log->parameters), flight.trace);
   flight.has_every_step = log->dropouts == 0 && log->damage.empty();
   for (const LogSeries& series : log->series) {
-    if (series.left_out() > 0) flight.has_every_step = false;
-    if (!series.is_output() || series.size() == 0) continue;
+    if (series.left_out() + series.without_time() > 0) flight.has_every_step = false;
+    if (!series.is_output() || series.size() == 0 || series.logged_channels().empty()) continue;
     flight.outputs.push_back(fill_outputs(series, log->inputs(control_state), flight.trace));
     if (flight.outputs.back().paired < series.size()) flight.has_every_step = false;
   }

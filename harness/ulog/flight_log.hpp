@@ -32,6 +32,7 @@ struct FlightLog {
   // A tick for each sample of control_state, at its timestamp. An input is the last sample logged
   // at that time or before. A tick has an output, with `published` 1, if the log has the answer to
   // its control_state. A tick without one has the values of the tick before.
+  // An output that the log's topic does not have is not in `trace.present`.
   Trace trace;
   std::vector<LoggedOutput> outputs;
   // The log has every step of the controller. Otherwise outputs that depend on earlier steps (the

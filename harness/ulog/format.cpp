@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -120,6 +121,14 @@ Result<Field> Format::locate(std::string_view path) const {
     paths.push_back(leaf.name + (leaf.is_array ? fmt::format("[{}]", leaf.count - 1) : ""));
   }
   return fail(fmt::format("{} has no number {}{}", name, path, suggestion(path, paths)));
+}
+
+std::string Format::repeated_leaf() const {
+  std::set<std::string_view> names;
+  for (const Field& leaf : leaves) {
+    if (!names.insert(leaf.name).second) return leaf.name;
+  }
+  return "";
 }
 
 }  // namespace attest::ulog

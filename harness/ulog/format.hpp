@@ -70,9 +70,12 @@ struct Format {
   std::uint32_t bytes = 0;        // 0: not measured
   std::uint32_t least_bytes = 0;  // without padding at the end
 
-  // Finds a number by its path: "roll", "q[0]", "a.b[2]". Errors: no such field; an array without
-  // an index, or with one past its end. REQUIRES: measured.
+  // Finds a number by its path, the first of that name: "roll", "q[0]", "a.b[2]". Errors: no such
+  // field; an array without an index, or with one past its end. REQUIRES: measured.
   Result<Field> locate(std::string_view path) const;
+  // The name of the first leaf that another one has before it; empty if all differ. REQUIRES:
+  // measured.
+  std::string repeated_leaf() const;
 };
 
 class Formats {

@@ -52,8 +52,12 @@ void LogSeries::locate(const Reader& reader, const Subscription& subscription) {
 
 void LogSeries::add(const Reader& reader, const Data& data) {
   if (located_ != data.subscription->index) locate(reader, *data.subscription);
-  const auto time = time_ ? value_in<std::uint64_t>(data, *time_) : 0;
-  if (!time_ || (!times_.empty() && time <= times_.back())) {
+  if (!time_) {
+    ++without_time_;
+    return;
+  }
+  const auto time = value_in<std::uint64_t>(data, *time_);
+  if (!times_.empty() && time <= times_.back()) {
     ++left_out_;
     return;
   }
@@ -74,11 +78,20 @@ std::size_t LogSeries::first_after(std::uint64_t time) const {
                                   times_.begin());
 }
 
-std::string LogSeries::missing_field() const {
+std::vector<std::string> LogSeries::missing_fields() const {
+  std::vector<std::string> missing;
   for (std::size_t i = 0; i < columns_.size(); ++i) {
-    if (!columns_[i]) return fields_[i];
+    if (!columns_[i]) missing.push_back(fields_[i]);
   }
-  return "";
+  return missing;
+}
+
+std::vector<std::size_t> LogSeries::logged_channels() const {
+  std::vector<std::size_t> logged;
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    if (columns_[i]) logged.push_back(channels_[i]);
+  }
+  return logged;
 }
 
 void LogSeries::copy(std::size_t row, Sample& to) const {

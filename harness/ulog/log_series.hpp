@@ -27,19 +27,24 @@ class LogSeries {
   bool accepts(const Subscription& subscription) const {
     return subscription.multi_id == multi_id_ && subscription.topic == topic_;
   }
-  // Leaves out a sample whose timestamp is not after the one before. REQUIRES: accepts it.
+  // Leaves out a sample without a timestamp, or whose timestamp is not after the one before.
+  // REQUIRES: accepts it.
   void add(const Reader& reader, const Data& data);
 
   std::size_t size() const { return times_.size(); }
   std::size_t left_out() const { return left_out_; }
+  // The same, because the topic has no timestamp. Not counted in left_out().
+  std::size_t without_time() const { return without_time_; }
   std::uint64_t time(std::size_t row) const { return times_[row]; }  // us
   // Of the control_state that an output answers; empty if the topic has no such field.
   std::optional<std::uint64_t> sample_time(std::size_t row) const;
   // Index of the first sample after that time; size() if there is none.
   std::size_t first_after(std::uint64_t time) const;
 
-  // The first field that the log's topic does not have; empty if it has all.
-  std::string missing_field() const;
+  // The fields that the log's topic does not have. REQUIRES: size() > 0.
+  std::vector<std::string> missing_fields() const;
+  // The channels of the fields that it has. REQUIRES: size() > 0.
+  std::vector<std::size_t> logged_channels() const;
 
   // Writes the channels of a sample.
   void copy(std::size_t row, Sample& to) const;
@@ -60,7 +65,7 @@ class LogSeries {
   std::vector<std::optional<Column>> columns_;  // of fields_
   std::vector<std::uint64_t> times_, sample_times_;
   std::vector<float> values_;  // of a sample after the other
-  std::size_t left_out_ = 0;
+  std::size_t left_out_ = 0, without_time_ = 0;
   std::size_t next_ = 0;  // of advance_to
 };
 

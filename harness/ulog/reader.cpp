@@ -242,6 +242,10 @@ bool Reader::accept_subscription(std::string_view body, Message& message) {
   const auto format = formats_.measure(subscription.topic);
   if (!format) return refuse(bad_format, format.error().message);
   subscription.format = *format;
+  if (const std::string name = (*format)->repeated_leaf(); !name.empty()) {
+    refuse(bad_format, fmt::format("{} has the field {} more than once; the first one is used",
+                                   subscription.topic, name));
+  }
   message = Subscribed{&subscription, false};
   return true;
 }

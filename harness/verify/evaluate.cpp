@@ -27,7 +27,8 @@ struct Expected {
   BranchAlternatives branch_alternatives;
 };
 
-// Drives a fresh unit through `answered`, whose inputs are those of `want`, and compares. Branch
+// Drives a fresh unit through `answered`, whose inputs are those of `want`, and compares. After a
+// fault, `answered` keeps only the ticks that were answered. Branch
 // alternatives are equally correct, but the exact level accepts the law's branch only.
 void run_and_judge(Trace& answered, const Expected& expected, const Subject& subject,
                    PortHost& host, const Tolerances& tolerances, const Tolerances& of_branches,
@@ -52,8 +53,8 @@ void run_and_judge(Trace& answered, const Expected& expected, const Subject& sub
     }
     if (fault) judge_after(*fault, result);
   }
-  if (!saves_traces(saved_traces, result)) return;
   if (fault) answered.keep_first(fault->tick);
+  if (!saves_traces(saved_traces, result)) return;
   save_traces(saved_traces, subject, {answered, *want, tolerances}, result);
 }
 

@@ -58,7 +58,8 @@ Result<CaseResult> evaluate_timed_flight(const Case& the_case,
 std::string how_it_ended(const Flown& flown);
 
 // Gives the recorded inputs to a fresh instance of that module of the port, and compares the
-// outputs with the recorded ones. `got`: becomes the trace with the port's outputs, unless null.
+// outputs with the recorded ones. `got`: becomes the trace with the port's outputs, unless null; up
+// to the fault, if there was one.
 CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHost& host,
                           const Tolerances& tolerances, Trace* got = nullptr);
 

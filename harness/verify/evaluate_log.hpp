@@ -18,8 +18,9 @@ struct LogResult {
 
 // Gives the log's inputs to a fresh unit and compares its outputs with the logged ones. A rates
 // setpoint depends on one sample only, so it is judged in every log. Outputs that depend on earlier
-// steps are judged if the log has every step. Parameters that the profile does not have are left
-// out. The verdict is never a statement of conformance: a log shows few situations.
+// steps are judged if the log has every step. NaN or infinity where the log has a number is judged
+// in every output (Verdict::non_finite). Parameters that the profile does not have are left out.
+// The verdict is never a statement of conformance: a log shows few situations.
 LogResult evaluate_log(const FlightLog& log, const std::string& profile, PortHost& host,
                        const LogLimits& limits);
 

@@ -128,3 +128,24 @@ refused() {
   done
   [ "$before" = "$(cat $case_file $golden)" ]
 }
+
+@test "an output is never one of the files that are read, with or without a suite" {
+  for file in a.csv b.csv; do "$ATTEST" sim gust --rate 250 --out $file; done
+  cp "$SOURCE"/golden/recorded/px4-v1.5.5/{fuzz_250hz.csv,provenance.toml} .
+  cp a.csv a.html
+  sha256sum *.csv *.toml *.html >before
+  ln -s a.csv link.csv
+  for suite in "$SOURCE" nowhere; do
+    for command in "compare a.csv b.csv --by-time --html a.csv" "plot a.csv b.csv --html b.csv" \
+      "compare a.csv b.csv --html ./b.csv" "compare a.csv b.csv --by-time --html link.csv" \
+      "plot a.html" "replay fuzz_250hz.csv --html fuzz_250hz.csv" \
+      "replay fuzz_250hz.csv --html provenance.toml"; do
+      ATTEST_SUITE=$suite run "$ATTEST" $command
+      [ "$status" -eq 2 ]
+      has "would be overwritten"
+      sha256sum --quiet --check before
+    done
+  done
+  run "$ATTEST" plot missing.csv --html missing.csv
+  has "would be overwritten"
+}

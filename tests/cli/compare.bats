@@ -99,6 +99,25 @@ load common
   has "c.ulg"
 }
 
+@test "infinity, the sign of zero and signals without common times are differences" {
+  printf 'timestamp,vehicle_rates_setpoint.roll,x\n1,inf,0\n2,1,0\n' >a.csv
+  printf 'timestamp,vehicle_rates_setpoint.roll,x\n1,2,0\n2,1,0\n' >b.csv
+  run "$ATTEST" compare b.csv a.csv --by-time
+  [ "$status" -eq 1 ]
+  has "got 2, want inf"
+  sed 's/,0$/,-0/; s/inf/2/' a.csv >c.csv
+  run "$ATTEST" compare c.csv b.csv --by-time
+  [ "$status" -eq 0 ]
+  run "$ATTEST" compare c.csv b.csv --by-time --level exact
+  [ "$status" -eq 1 ]
+  has "x: 2 of 2 samples deviate"
+  printf 'timestamp,x\n3,0\n4,0\n' >d.csv
+  run "$ATTEST" compare d.csv b.csv --by-time --html page.html
+  [ "$status" -eq 2 ]
+  has "d.csv and b.csv have no timestamp in common, so no sample was compared; --shift"
+  [ ! -e page.html ]
+}
+
 @test "compare and plot write pages, and overwrite nothing that they read" {
   for file in a.csv a.ulg; do "$ATTEST" sim gust --rate 250 --out $file; done
   "$ATTEST" sim gust --rate 250 --port fault:yaw-dropped --out b.ulg
@@ -123,4 +142,17 @@ load common
   run "$ATTEST" plot b.ulg --html b.ulg
   [ "$status" -eq 2 ]
   has "would be overwritten"
+}
+
+@test "a shift that no file can have is refused" {
+  printf 'timestamp,x\n1,2\n18446744073709551615,2\n' >a.csv
+  for shift in -9223372036854775808 9223372036854775807 99999999999999999999; do
+    run "$ATTEST" compare a.csv a.csv --by-time --shift=$shift
+    [ "$status" -eq 2 ]
+    has "--shift $shift: is beyond 4611686018427387903 us"
+  done
+  run "$ATTEST" compare a.csv a.csv --by-time --shift=4611686018427387903
+  [ "$status" -eq 2 ]
+  has "no timestamp in common"
+  has "1 rows left out, because their timestamps are beyond"
 }

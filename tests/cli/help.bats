@@ -116,8 +116,42 @@ completed() {
   [ "$status" -eq 2 ]
 }
 
-@test "zsh completes the same" {
+@test "names of files are completed without being expanded" {
+  make_suite
+  cp suite/cases/px4-v1.5.5/attitude/{roll,'a$(touch pwned) "b'}.toml
+  export ATTEST_SUITE=$PWD/suite
+  source <("$ATTEST" help --completion bash)
+  completed() {
+    COMP_WORDS=("$@") COMP_CWORD=$(($# - 1))
+    PATH=$(dirname "$ATTEST"):$PATH _attest || true
+  }
+  completed attest sim a
+  [ "${#COMPREPLY[@]}" -eq 1 ]
+  [ "${COMPREPLY[0]}" = 'a\$\(touch\ pwned\)\ \"b' ]
+  completed attest sim 'a\$'
+  [ "${#COMPREPLY[@]}" -eq 1 ]
+  eval "name=${COMPREPLY[0]}"
+  [ "$name" = 'a$(touch pwned) "b' ]
+  [ ! -e pwned ]
+}
+
+@test "zsh completes the same, from the first time on" {
   command -v zsh >/dev/null || skip "zsh is not installed"
   "$ATTEST" help --completion zsh >_attest
   zsh -n _attest
+  # A shell in a terminal of its own, whose first TAB loads the file.
+  cat >tab.zsh <<'ZSH'
+zmodload zsh/zpty
+zpty -b shell 'TERM=dumb zsh -fi'
+zpty -w shell "fpath=($PWD \$fpath); autoload -Uz compinit; compinit -u -D; print re''ady"
+zpty -r -m shell line '*ready*'
+zpty -w -n shell $'attest new-port mine --lang pyt\t'
+zpty -r -m shell line '*--lang python*'
+zpty -w -n shell $'\C-uattest ru\t'
+zpty -r -m shell line '*attest run*'
+print completed
+zpty -d shell
+ZSH
+  PATH=$(dirname "$ATTEST"):$PATH run timeout 30 zsh -f tab.zsh
+  has completed
 }

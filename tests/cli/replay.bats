@@ -184,6 +184,17 @@ flight_log() {
   has "FAIL 0 of 1"
 }
 
+@test "an output field that the log lacks is not compared, and named" {
+  log="$BATS_TEST_TMPDIR/flight.ulg"
+  flight_log "$log"
+  # Gives the field roll another name of the same length.
+  sed -i 's/\(vehicle_rates_setpoint:[^:]*\)float roll;/\1float rowl;/' "$log"
+  run "$ATTEST" replay "$log"
+  has "not in the log, so not compared: vehicle_rates_setpoint.roll"
+  [ "$status" -eq 0 ]
+  has "500 100.0%  within 0.0001"
+}
+
 @test "the limits and assumptions for a log are options" {
   log="$BATS_TEST_TMPDIR/flight.ulg"
   flight_log "$log"
@@ -198,6 +209,48 @@ flight_log() {
   run "$ATTEST" replay "$log" --param MC_ROL_P=7
   [ "$status" -eq 2 ]
   has 'did you mean `MC_ROLL_P`'
+}
+
+# wild VALUE: the port wild.so, the C starter with this rates setpoint in every 25th tick.
+wild() {
+  local starter="$SOURCE/controller/starters/c"
+  cat >wild.c <<'WILD'
+#define attest_unit_v1 right_unit_v1
+#include "unit.c"
+#undef attest_unit_v1
+
+static int wild_step(void* self, const attest_inputs* in, attest_outputs* out) {
+  static int ticks;
+  const int result = step(self, in, out);
+  if (++ticks % 25 == 0) out->vehicle_rates_setpoint.roll = WILD;
+  return result;
+}
+
+const attest_unit* attest_unit_v1(void) {
+  static attest_unit unit;
+  unit = *right_unit_v1();
+  unit.step = wild_step;
+  return &unit;
+}
+WILD
+  cc -shared -fPIC "-DWILD=($1)" "-I$SOURCE/controller" "-I$starter" wild.c \
+    "$starter"/{attitude,rate,tailsitter}.c -lm -o wild.so
+}
+
+@test "wild values of a port do not explain deviations from a log" {
+  log="$BATS_TEST_TMPDIR/flight.ulg"
+  flight_log "$log"
+  for value in 100 -100; do
+    wild $value
+    run "$ATTEST" replay "$log" --port lib:./wild.so
+    [ "$status" -eq 1 ]
+    has "4.0% of vehicle_rates_setpoint are not explained; at most 2% may be"
+  done
+  wild NAN
+  run "$ATTEST" replay "$log" --port lib:./wild.so
+  [ "$status" -eq 1 ]
+  has "non-finite"
+  has "NaN or infinity in 20 samples of vehicle_rates_setpoint where the log has numbers"
 }
 
 @test "a port that crashes on a log fails" {

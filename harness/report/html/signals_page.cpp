@@ -87,7 +87,10 @@ std::vector<PageCell> row_of(const SignalComparison& signal) {
     return pair ? fmt::format("{:.4g}", std::abs(pair->got - pair->want)) : std::string();
   };
   return {signal.name,
-          {signal.agrees() ? "agrees" : "differs", signal.agrees() ? Verdict::pass : Verdict::fail},
+          {signal.agrees()       ? "agrees"
+           : signal.compared > 0 ? "differs"
+                                 : "no timestamp in common",
+           signal.agrees() ? Verdict::pass : Verdict::fail},
           fmt::to_string(signal.compared),
           fmt::to_string(signal.deviating),
           signal.first ? fmt::to_string(signal.first->time_us) : "",

@@ -74,6 +74,43 @@ TEST(CompareSignals, NanEqualsNanOnly) {
   EXPECT_FALSE(compared(only(sampled("x", {1})), only(sampled("x", {nan})), 1e9).agrees());
 }
 
+TEST(CompareSignals, InfinityEqualsItselfOnly) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const std::string output = "vehicle_rates_setpoint.roll";  // with a relative tolerance
+  const auto agrees = [&](float got, float want) {
+    return compared(only(sampled(output, {got})), only(sampled(output, {want}))).agrees();
+  };
+  EXPECT_TRUE(agrees(infinity, infinity));
+  EXPECT_FALSE(agrees(1, infinity));
+  EXPECT_FALSE(agrees(infinity, 1));
+  EXPECT_FALSE(agrees(-infinity, infinity));
+  EXPECT_FALSE(agrees(nan, infinity));
+}
+
+TEST(CompareSignals, NanIsTheWorstDeviation) {
+  const auto found = compared(only(sampled("x", {9, nan, 99})), only(sampled("x", {1, 1, 1})));
+  EXPECT_TRUE(std::isnan(found.signals[0].worst->got));
+}
+
+TEST(CompareSignals, TheSignOfZeroCountsAtTheLevelExactOnly) {
+  const auto agrees = [](const std::string& name, Level level, double others) {
+    const auto got = only(sampled(name, {-0.0f})), want = only(sampled(name, {0.0f}));
+    return compare_signals(got, want, Tolerances(level), others).agrees();
+  };
+  for (const char* name : {"vehicle_rates_setpoint.roll", "x"}) {
+    EXPECT_FALSE(agrees(name, Level::exact, 0));
+    EXPECT_TRUE(agrees(name, Level::numeric, 0));
+  }
+  EXPECT_TRUE(agrees("x", Level::exact, 1e-3));
+}
+
+TEST(CompareSignals, SignalsWithoutACommonTimestampDoNotAgree) {
+  const auto found = compared(only(sampled("x", {1, 2})), only(sampled("x", {1, 2}, 999'999)));
+  EXPECT_EQ(found.signals[0].compared, 0u);
+  EXPECT_FALSE(found.signals[0].agrees());
+  EXPECT_EQ(found.deviating_signals(), 1u);
+}
+
 TEST(CompareSignals, ListsWhatOnlyOneHasAndNothingInCommonIsNoAgreement) {
   const auto found = compared(only(sampled("a", {1})), only(sampled("b", {1})));
   EXPECT_THAT(found.only_in_got, ElementsAre("a"));

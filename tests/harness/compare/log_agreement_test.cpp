@@ -28,8 +28,11 @@ Trace trace_of(const Rolls& rolls) {
   return trace;
 }
 
-TopicAgreement agreement(const Rolls& got, const Rolls& logged, const LogLimits& limits = {}) {
-  return agreement_with_log(trace_of(got), trace_of(logged), limits).at(0);
+TopicAgreement agreement(const Rolls& got, const Rolls& logged, const LogLimits& limits = {},
+                         const Rolls& reference = {}) {
+  return agreement_with_log(trace_of(got), trace_of(logged),
+                            trace_of(reference.empty() ? got : reference), limits)
+      .at(0);
 }
 
 TEST(LogAgreement, CountsWhatIsWithin) {
@@ -61,6 +64,47 @@ TEST(LogAgreement, AValueBeyondTheNeighboursIsNotExplained) {
   EXPECT_EQ(found.first_unexplained->tick, 1u);
   EXPECT_EQ(found.first_unexplained->logged, 3.5);
   EXPECT_FALSE(found.agrees({}));
+}
+
+// A ramp of 100 ticks, of whose last 20 the log has the answers to later samples.
+Rolls ramp(float added) {
+  Rolls rolls;
+  for (int i = 0; i < 100; ++i) rolls.push_back(static_cast<float>(i) + (i < 80 ? 0.0f : added));
+  return rolls;
+}
+
+TEST(LogAgreement, AnExcursionOfThePortExplainsNothing) {
+  const LogLimits lenient{1e-4, 0.5};
+  EXPECT_TRUE(agreement(ramp(0), ramp(0.5f), lenient).agrees(lenient));
+  for (const float wild : {100.0f, -100.0f}) {
+    Rolls got = ramp(0);
+    for (std::size_t i = 0; i < got.size(); i += 25) got[i] = wild;
+    const TopicAgreement found = agreement(got, ramp(0.5f), lenient, ramp(0));
+    EXPECT_EQ(found.unexplained(), 5u);  // with the last tick, which has no later sample
+    EXPECT_FALSE(found.agrees(lenient));
+  }
+  // Next to an excursion of the port, a wrong value stays wrong.
+  const Rolls zeros(4, 0.0f);
+  const TopicAgreement next = agreement({0.0f, 100.0f, 9.0f, -100.0f}, zeros, {}, zeros);
+  EXPECT_EQ(next.unexplained(), 3u);
+}
+
+TEST(LogAgreement, ANumberIsNeverAnsweredByNanOrInfinity) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  for (const float wrong : {nan, infinity, -infinity}) {
+    Rolls got = ramp(0);
+    got[50] = wrong;
+    const TopicAgreement found = agreement(got, ramp(0));
+    EXPECT_EQ(found.non_finite, 1u);
+    EXPECT_EQ(found.unexplained(), 1u);
+    EXPECT_EQ(found.first_unexplained->tick, 50u);
+    EXPECT_FALSE(found.agrees({}));  // 1% of wrong numbers would be allowed
+  }
+  // Infinities of the reference widen nothing.
+  const Rolls reference{infinity, 1.0f, -infinity};
+  EXPECT_EQ(agreement({infinity, 5.0f, 1.0f}, {infinity, 1.0f, 1.0f}, {}, reference).within, 2u);
+  EXPECT_EQ(agreement({infinity, 5.0f, 1.0f}, {infinity, 1.0f, 1.0f}, {}, reference).unexplained(),
+            1u);
 }
 
 TEST(LogAgreement, AWrongSignIsNotExplained) {

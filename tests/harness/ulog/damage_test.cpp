@@ -8,6 +8,8 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
 
 class ULogDamage : public LogFile {
  protected:
@@ -34,6 +36,16 @@ class ULogDamage : public LogFile {
     return {read.lines.begin() + 2, read.lines.end()};
   }
 };
+
+TEST_F(ULogDamage, AFieldMoreThanOnce) {
+  Crafted log;
+  log.flag_bits().format("inner:float x;float x;").format("a:uint64_t timestamp;inner b;");
+  const std::uint64_t offset = log.size();
+  log.subscribe(0, "a").data(0, sample(1) + std::string(4, '\0'));
+  EXPECT_THAT(data_lines(log, DamageKind::bad_format, offset,
+                         "a has the field b.x more than once; the first one is used"),
+              Not(IsEmpty()));
+}
 
 TEST_F(ULogDamage, DataOfAnUnknownId) {
   Crafted log = started();

@@ -113,6 +113,48 @@ TEST_F(FlightLogFile, AStepIsAControlStateWithItsOutputs) {
   EXPECT_TRUE(log.has_every_step);
 }
 
+TEST_F(FlightLogFile, AnOutputThatTheTopicLacksIsNotCompared) {
+  define({state, setpoint, "vehicle_rates_setpoint:uint64_t timestamp;float roll;float thrust;",
+          "actuator_controls_0:uint64_t timestamp;uint64_t timestamp_sample;"});
+  add_setpoint(1000);
+  add_state(1000);
+  add("vehicle_rates_setpoint", 1050, 0.25f, 0.5f);
+  add("actuator_controls_0", 1080, std::uint64_t{1000});
+  const FlightLog log = read();
+  const ChannelSet outputs = channels_of(Module::mc_att_control, "out/") & log.trace.present;
+  EXPECT_EQ(outputs.count(), 3u);
+  EXPECT_TRUE(outputs[*find_channel("out/vehicle_rates_setpoint.roll")]);
+  EXPECT_FALSE(outputs[*find_channel("out/vehicle_rates_setpoint.yaw")]);
+  ASSERT_EQ(log.outputs.size(), 1u);
+  EXPECT_EQ(log.outputs[0].topic, "vehicle_rates_setpoint");
+  EXPECT_THAT(log.notes, Contains("not in the log, so not compared: vehicle_rates_setpoint.pitch, "
+                                  "vehicle_rates_setpoint.yaw"));
+}
+
+TEST_F(FlightLogFile, ALogWithoutAnyFieldOfAnOutputIsAnError) {
+  define({state, setpoint, "vehicle_rates_setpoint:uint64_t timestamp;"});
+  add_setpoint(1000);
+  add_state(1000);
+  add("vehicle_rates_setpoint", 1050);
+  EXPECT_THAT(error(), HasSubstr("there is nothing to compare a port with"));
+}
+
+TEST_F(FlightLogFile, SamplesWithoutTimestampAreCounted) {
+  ulog::Crafted log;
+  log.flag_bits().format(state).format(setpoint).format(rates).format(
+      "battery_status:float scale;");
+  log.subscribe(0, "control_state").subscribe(1, "vehicle_attitude_setpoint");
+  log.subscribe(2, "vehicle_rates_setpoint").subscribe(3, "battery_status");
+  const std::uint64_t time = 1000;
+  log.data(0, raw(time) + std::string(28, '\0')).data(1, raw(time) + std::string(24, '\0'));
+  log.data(2, raw(time) + std::string(16, '\0')).data(3, raw(1.0f)).data(3, raw(0.5f));
+  const auto read = read_flight_log(write(log));
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_THAT(read->notes,
+              Contains("2 samples of battery_status left out, because the topic has no timestamp"));
+  EXPECT_FALSE(read->has_every_step);
+}
+
 TEST_F(FlightLogFile, ASecondOutputBeforeTheNextStateAnswersASampleThatIsNotLogged) {
   start();
   add_rates(3050, 0.375f);

@@ -157,6 +157,18 @@ TEST_F(EvaluateTest, ARecordedTraceIsGivenToThePort) {
   EXPECT_EQ(result.first->tick, 5u);
 }
 
+TEST_F(EvaluateTest, OnlyTheTicksThatThePortAnsweredAreItsOutputs) {
+  suite_.add("pitch", pitching);
+  const Trace recorded = answers_of_reference(suite_[0])[0].trace;
+  ASSERT_GT(recorded.samples.size(), 20u);
+  for (const auto& [port, ticks] : std::map<std::string, std::size_t>{
+           {test_port("step_fails"), 20}, {test_port("unsupported_step"), 0}}) {
+    Trace got;
+    evaluate_trace(recorded, {"px4-v1.5.5"}, *opened(port), Tolerances(), &got);
+    EXPECT_EQ(got.samples.size(), ticks);
+  }
+}
+
 TEST_F(EvaluateTest, AtTheEventsLevelAControllerIsJudgedByItsEvents) {
   suite_.add("pitch", pitching);
   Trace answers = answers_of_reference(suite_[0])[0].trace;
