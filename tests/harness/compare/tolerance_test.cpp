@@ -80,8 +80,8 @@ TEST(Tolerances, OfFixedPointAreAtLeastItsLsbs) {
   // Fixed point rounds only computed values.
   for (std::size_t i = 0; i < channels().size(); ++i) {
     const Quantity quantity = channels()[i].quantity;
-    const bool is_computed = channels()[i].is_output() && quantity != Quantity::flag &&
-                             quantity != Quantity::time;
+    const bool is_computed =
+        channels()[i].is_output() && quantity != Quantity::flag && quantity != Quantity::time;
     if (is_computed) continue;
     EXPECT_EQ(coarse.of(i).absolute, Tolerances().of(i).absolute) << channels()[i].name;
     EXPECT_EQ(coarse.of(i).relative, Tolerances().of(i).relative) << channels()[i].name;

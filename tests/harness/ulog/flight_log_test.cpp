@@ -123,8 +123,8 @@ TEST_F(FlightLogFile, AnOutputThatTheTopicLacksIsNotCompared) {
   const FlightLog log = read();
   const ChannelSet outputs = channels_of(Module::mc_att_control, "out/") & log.trace.present;
   EXPECT_EQ(outputs.count(), 3u);
-  EXPECT_TRUE(outputs[*find_channel("out/vehicle_rates_setpoint.roll")]);
-  EXPECT_FALSE(outputs[*find_channel("out/vehicle_rates_setpoint.yaw")]);
+  EXPECT_TRUE(outputs[*find_channel(Module::mc_att_control, "out/vehicle_rates_setpoint.roll")]);
+  EXPECT_FALSE(outputs[*find_channel(Module::mc_att_control, "out/vehicle_rates_setpoint.yaw")]);
   ASSERT_EQ(log.outputs.size(), 1u);
   EXPECT_EQ(log.outputs[0].topic, "vehicle_rates_setpoint");
   EXPECT_THAT(log.notes, Contains("not in the log, so not compared: vehicle_rates_setpoint.pitch, "
