@@ -70,19 +70,11 @@ Result<Layout> layout_of(const CsvRows& rows, Module module, TraceNeed need) {
   return layout;
 }
 
-// A file with a base may have few columns of its own. What its columns and the constants share with
-// no other module decides then, too.
-Module module_of_file(const CsvRows& rows, const Provenance& provenance) {
-  std::vector<std::string> names(rows.header().begin(), rows.header().end());
-  for (const auto& [name, value] : provenance.constants) names.push_back(name);
-  return module_with(names);
-}
-
 // The base of a trace (Provenance::base): it supplies the columns that the trace itself lacks.
 class Base {
  public:
   static Result<std::unique_ptr<Base>> open(const std::filesystem::path& path,
-                                            const ChannelSet& own, const std::string& folder) {
+                                            const std::string& folder) {
     const auto place = (path.parent_path() / folder / path.filename()).lexically_normal();
     const auto provenance = provenance_in(place.parent_path());
     if (!provenance) return tl::unexpected(provenance.error());
@@ -92,10 +84,13 @@ class Base {
     }
     auto reader = TraceReader::open(place, TraceNeed::outputs);
     if (!reader) return tl::unexpected(reader.error());
-    return std::unique_ptr<Base>(new Base(std::move(*reader), own));
+    return std::unique_ptr<Base>(new Base(std::move(*reader)));
   }
 
   const ChannelSet& present() const { return reader_.present(); }
+
+  // The channels that the trace itself has.
+  void set_own(const ChannelSet& own) { own_ = own; }
 
   // Reads the base's next tick, and fills in the channels that the trace itself does not have.
   // `more`: the trace has a next sample, which is `sample`. Parameters are those of the base.
@@ -117,11 +112,19 @@ class Base {
   }
 
  private:
-  Base(TraceReader reader, const ChannelSet& own) : reader_(std::move(reader)), own_(own) {}
+  explicit Base(TraceReader reader) : reader_(std::move(reader)) {}
 
   TraceReader reader_;
   ChannelSet own_;
 };
+
+// A file that has a base may have few columns of its own, whose names are those of several modules.
+Module module_of_file(const CsvRows& rows, const Provenance& provenance, const Base* base) {
+  if (base) return module_of(base->present());
+  std::vector<std::string> names(rows.header().begin(), rows.header().end());
+  for (const auto& [name, value] : provenance.constants) names.push_back(name);
+  return module_with(names);
+}
 
 // Applies the constants: channels to `sample`, parameters as changes at tick 0.
 Result<void> apply_constants(const std::map<std::string, double>& constants, const CsvRows& rows,
@@ -263,7 +266,13 @@ Result<TraceReader> TraceReader::open(const std::filesystem::path& path, TraceNe
   if (!rows) return tl::unexpected(rows.error());
   const auto provenance = provenance_in(path.parent_path());
   if (!provenance) return tl::unexpected(provenance.error());
-  const Module module = module_of_file(*rows, *provenance);
+  std::unique_ptr<Base> base;
+  if (!provenance->base.empty()) {
+    auto opened = Base::open(path, provenance->base);
+    if (!opened) return tl::unexpected(opened.error());
+    base = std::move(*opened);
+  }
+  const Module module = module_of_file(*rows, *provenance, base.get());
   auto layout = layout_of(*rows, module, need);
   if (!layout) return tl::unexpected(layout.error());
 
@@ -278,11 +287,10 @@ Result<TraceReader> TraceReader::open(const std::filesystem::path& path, TraceNe
       !done) {
     return tl::unexpected(done.error());
   }
-  if (!provenance->base.empty()) {
-    auto base = Base::open(path, impl->present, provenance->base);
-    if (!base) return tl::unexpected(base.error());
-    impl->present |= (*base)->present();
-    impl->base = std::move(*base);
+  if (base) {
+    base->set_own(impl->present);
+    impl->present |= base->present();
+    impl->base = std::move(base);
   }
   if (const auto done = check_need(impl->present, need, impl->rows.file()); !done) {
     return tl::unexpected(done.error());
