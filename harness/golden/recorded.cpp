@@ -47,19 +47,6 @@ Result<void> check_mixer(const Trace& trace, const std::string& definition) {
                                            definition, mixer->rotors.size()));
 }
 
-// The outputs must be of one module only.
-Result<void> check_module(const Trace& trace, Module module) {
-  const ChannelSet others = trace.present & ~channels_of(module, "out/");
-  const auto table = channels();
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    if (!others[i] || !table[i].is_output()) continue;
-    return fail_at(trace.source, fmt::format("{} is of another module than {}; keep the outputs of "
-                                             "one module",
-                                             table[i].name, name_of(module)));
-  }
-  return {};
-}
-
 bool is_one_of(const std::string& name, const std::vector<std::string>& names) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -163,9 +150,6 @@ Result<Recorded> read_recorded(const std::filesystem::path& file, const std::str
   Recorded recorded{std::move(*trace), {profile, Module::mc_att_control, ""}, {}};
   Subject& subject = recorded.subject;
   subject.module = module_of(recorded.trace.present);
-  if (auto checked = check_module(recorded.trace, subject.module); !checked) {
-    return tl::unexpected(checked.error());
-  }
   note_ignored_columns(recorded);
   if (subject.profile.empty()) subject.profile = provenance.profile;
   if (subject.profile.empty()) subject.profile = default_profile;

@@ -16,12 +16,13 @@ struct SmokeFinding {
   bool is_good = true;
 };
 
-// Lets fresh units of `profile` control a vehicle that shakes, at the port's fixed step or 250 Hz:
+// Lets fresh units of `profile`, of each of its modules that the port has, control a vehicle that
+// shakes, at the port's fixed step or 250 Hz:
 //
 //     steps       every step returns ATTEST_OK
-//     outputs     the rates setpoint and the controls are published, and are numbers
+//     outputs     the topics that carry the result are published, and have numbers
 //     repeatable  a second process of the port gives the same bits
-//     parameters  MC_ROLL_P is accepted; says if an unknown name is, too
+//     parameters  a known name is accepted; says if an unknown name is, too
 //     instances   a unit gives the same bits after another one, and together with one; of a
 //                 program, also step by step as in batches
 //     NaN         inputs that are no numbers end no step

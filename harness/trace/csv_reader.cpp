@@ -58,8 +58,13 @@ Result<Layout> layout_of(const CsvRows& rows, Module module, TraceNeed need) {
       layout.columns.push_back(ignored_column);
     } else {
       std::vector<std::string> names;
-      for (const Channel& channel : channels()) names.emplace_back(channel.name);
+      for (const std::string_view known : names_of(channels_of(module))) names.emplace_back(known);
       const std::string meant = suggestion(name, names);
+      if (channels_named(name).any()) {
+        return rows.fail_at_name(
+            i, fmt::format("{} is of another module than {}; keep the columns of one module",
+                           in_backquotes(name), name_of(module)));
+      }
       if (!may_be_ignored(name, rows, meant, need)) {
         return rows.fail_at_name(i, fmt::format("unknown column {}{}", in_backquotes(name), meant));
       }

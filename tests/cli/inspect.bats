@@ -34,7 +34,7 @@ load common
 
 @test "doctor names the groups that no recording covers" {
   run "$ATTEST" doctor
-  has "no recording covers px4-v1.3.4/flight, px4-v1.3.4/flight_timing, px4-v1.3.4/instances"
+  has "px4-v1.3.4/flight, px4-v1.3.4/flight_timing, px4-v1.3.4/instances, px4-v1.5.5/flight"
   lacks "px4-v1.3.4/tpa"
   lacks "px4-v1.5.5/battery_status"
 }
@@ -43,7 +43,7 @@ load common
   run "$ATTEST" doctor
   has "of a port's process: 10 s per answer"
   [ "$status" -eq 0 ]
-  has "agrees with 43 of 43 traces recorded from the firmware"
+  has "agrees with 68 of 68 traces recorded from the firmware"
   lacks "BAD"
 }
 

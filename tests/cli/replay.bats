@@ -123,7 +123,7 @@ for name, column in added.items():
 PYTHON
   run "$ATTEST" replay part.csv
   [ "$status" -eq 2 ]
-  has "out/actuator_outputs.output[0] is of another module than mc_att_control"
+  has "\`out/actuator_outputs.output[0]\` is of another module than mc_att_control"
   run "$ATTEST" replay name.csv
   [ "$status" -eq 2 ]
   has 'did you mean `MC_ROLL_P`'
