@@ -1,5 +1,6 @@
 #include "harness/cli/run_plan.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <ctime>
@@ -18,6 +19,7 @@
 #include "harness/core/version.hpp"
 #include "harness/golden/recorded.hpp"
 #include "harness/port/port.hpp"
+#include "harness/port/profiles.hpp"
 #include "harness/process/child.hpp"
 #include "harness/report/text.hpp"
 #include "harness/verify/recorded_vectors.hpp"
@@ -77,6 +79,18 @@ Result<void> set_parameters(const RunOptions& options, const std::vector<Selecte
   return {};
 }
 
+// Leaves out the profiles of which the port has no module: a port of the controller of v1.5.5 is
+// not given the cases of the cascade, unless --profile selects them. Keeps all if none would
+// remain.
+void leave_out_other_laws(const RunPlan& plan, std::vector<SelectedCase>& cases) {
+  if (!plan.host.said) return;
+  const auto is_other = [&](const SelectedCase& one) {
+    const ProfileInfo* const profile = find_profile(one.the_case.profile);
+    return profile && (profile->modules & plan.host.said->modules).none();
+  };
+  if (!std::all_of(cases.begin(), cases.end(), is_other)) std::erase_if(cases, is_other);
+}
+
 // Plans the selected cases. Their ticks are those of the case files, not of a recorded timing.
 Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, RunPlan& plan) {
   auto cases = options.select.cases_in(suite.case_folders());
@@ -89,6 +103,10 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
                                                                    ? "--param leaves them out"
                                                                    : own_law_only));
   }
+  std::set<std::string> profiles;
+  for (const SelectedCase& selected : *cases) profiles.insert(selected.the_case.profile);
+  if (auto asked = ask_port({profiles.begin(), profiles.end()}, plan); !asked) return asked;
+  if (options.select.profiles.empty()) leave_out_other_laws(plan, *cases);
   std::set<Rate> rates;
   bool all_configurations = true;
   for (const SelectedCase& selected : *cases) {
@@ -98,9 +116,6 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
       rates.insert(configuration.rate);
     plan.results += selected.configurations.size();
   }
-  std::set<std::string> profiles;
-  for (const SelectedCase& selected : *cases) profiles.insert(selected.the_case.profile);
-  if (auto asked = ask_port({profiles.begin(), profiles.end()}, plan); !asked) return asked;
   if (auto checked = check_recorded(*cases, plan); !checked) return checked;
   VehicleModels vehicle_models(suite.models());
   auto jobs = case_jobs(*cases, suite.golden(), vehicle_models,

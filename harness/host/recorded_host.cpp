@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/port/profiles.hpp"
 #include "harness/recording/manifest.hpp"
 #include "harness/recording/recorded_outputs.hpp"
 #include "harness/recording/table_file.hpp"
@@ -27,12 +28,13 @@ PortSays said_by(const Manifest& manifest) {
   says.unsupported_groups = manifest.unsupported_groups;
   says.fraction_bits = manifest.fraction_bits;
   says.fixed_step = manifest.fixed_step;
-  says.modules.set();
   says.is_recorded = true;
   says.not_recorded = manifest.not_recorded;
   for (const auto& [id, hash] : manifest.vectors) {
     const std::string profile = profile_of(id);
     if (says.profiles.empty() || says.profiles.back() != profile) says.profiles.push_back(profile);
+    const ProfileInfo* const known = find_profile(profile);
+    says.modules |= known ? known->modules : only(Module::mc_att_control);
   }
   return says;
 }

@@ -27,6 +27,7 @@ UPDATED = (
     "vehicle_attitude_setpoint vehicle_rates_setpoint manual_control_setpoint vehicle_control_mode "
     "actuator_armed vehicle_status multirotor_motor_limits battery_status parameter_update"
 ).split()
+PROFILES = ("px4-v1.5.5", "px4-v1.3.4")  # the board has the controller of these
 PARAMETER = "in/parameter."
 
 
@@ -123,6 +124,8 @@ def main():
         if path.name.endswith(".out.csv"):
             continue
         profile = path.relative_to(arguments.folder).parts[0]
+        if profile not in PROFILES:
+            continue
         with path.open(newline="") as file:
             rows = answers(file, profile, controller)
         header, rows = with_mistake(arguments.mistake, ["timestamp", *OUTPUTS], rows)
