@@ -90,6 +90,10 @@ const std::vector<Pair>& pairs() {
   static const std::vector<Pair> list = {
       {"controller step", "step/reference", "step/by_hand", 1.15,
        "at most 1.15x the law written by hand in C"},
+      {"step of the attitude unit", "cascade/attitude", "cascade/attitude_by_hand", 1.0,
+       "at most 1.0x the law written by hand in C"},
+      {"step of the rate unit", "cascade/rate", "cascade/rate_by_hand", 1.0,
+       "at most 1.0x the law written by hand in C"},
       {"step of a program, on one CPU", "program/step", "program/bare_pipe", 1.25,
        "at most 1.25x a bare pipe"},
       {"trace of a program, in one batch", "program/trace_in_batch", "program/trace_in_steps",

@@ -110,12 +110,14 @@ void add_new_port(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("folder", options->folder, "The new folder")->type_name("DIR")->required();
   command
       ->add_option("--lang", options->language,
-                   "`c`, `cpp`, `numpy`, `python`, `rust` or `simulink`")
+                   "`c`, `cpp`, `numpy`, `python`, `rust` or `simulink`: a port of v1.5.5 and "
+                   "v1.3.4; `c_cascade`: a port of v1.14 to v1.16")
       ->type_name("LANG")
       ->required();
   add_examples(
       *command,
       {{"attest new-port mine --lang c", "a port in C; mine/check builds and runs it"},
+       {"attest new-port mine --lang c_cascade", "the same of PX4 v1.14 to v1.16"},
        {"attest new-port mine --lang simulink", "a wrapper for C code that Simulink generated"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return new_port_command(*options, globals); };

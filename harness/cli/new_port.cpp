@@ -29,6 +29,7 @@ struct Language {
 
 constexpr std::array languages{
     Language{"c", "C", "cc", true},
+    Language{"c_cascade", "C, with both units of PX4 v1.14 to v1.16", "cc", true},
     Language{"cpp", "C++", "c++", true},
     Language{"numpy", "Python with numpy", "python3", false},
     Language{"python", "Python", "python3", false},
@@ -88,7 +89,7 @@ void lay_out(const Parts& parts, const Language& language, const fs::path& folde
   copy_starter(parts.starter, folder);
   if (language.has_headers) {
     fs::create_directories(folder / "include");
-    for (const char* header : {"attest_unit.h", "attest_actuation.h"}) {
+    for (const char* header : {"attest_unit.h", "attest_actuation.h", "attest_cascade.h"}) {
       fs::copy_file(parts.headers / header, folder / "include" / header);
     }
   }

@@ -62,7 +62,12 @@ class TextConversation final : public Conversation {
     json request = {{"timestamp_sample", step.timestamp_sample_us},
                     {"timestamp", step.sample.in.timestamp}};
     for_each_channel(module, "in/", [&](const Channel& channel) {
-      request[std::string(channel.name)] = to_json(value_of(channel, step.sample));
+      json& member = request[std::string(channel.name)];
+      if (channel.type == ChannelType::u64) {
+        member = integer_of(channel, step.sample);
+      } else {
+        member = to_json(value_of(channel, step.sample));
+      }
     });
     const json answer = exchange(Request::step, unit, std::move(request));
     // Topics of which the answer says nothing are not published.

@@ -21,6 +21,11 @@ made() {
 }
 
 @test "a new port in C" { made c cc; }
+@test "a new port in C of the cascade" {
+  made c_cascade cc
+  has "px4-v1.16.0/rates"
+  lacks "px4-v1.5.5"
+}
 @test "a new port in C++" { made cpp c++; }
 @test "a new port in Python with numpy" {
   python3 -c "import numpy" 2>/dev/null || skip "no numpy for $(command -v python3)"
@@ -34,7 +39,7 @@ made() {
   run "$ATTEST" new-port mine --lang pyton
   [ "$status" -eq 2 ]
   has "no starter in \`pyton\`; did you mean \`python\`?"
-  has "; there are c, cpp, numpy, python, rust, simulink"
+  has "; there are c, c_cascade, cpp, numpy, python, rust, simulink"
   [ ! -e mine ]
   mkdir mine
   echo mine >mine/file
