@@ -145,21 +145,37 @@ ATTEST_INLINE Quaternion<Scalar> yaw_rotation(Scalar yaw) {
   return {cos(yaw / Scalar(2)), Scalar(0), Scalar(0), sin(yaw / Scalar(2))};
 }
 
+// 1 with the nose straight up, -1 straight down, 0 elsewhere.
+template <typename Scalar>
+int pole_at(Scalar R20) {
+  constexpr float half_pi = 1.57079637f, near_pole = 0.001f;
+  using std::abs;
+  using std::asin;
+  const Scalar pitch = asin(-R20);
+  if (abs(pitch - Scalar(half_pi)) < Scalar(near_pole)) return 1;
+  return abs(pitch + Scalar(half_pi)) < Scalar(near_pole) ? -1 : 0;
+}
+
 // The yaw angle [rad] of the order yaw, pitch, roll. Near the poles, where yaw and roll are about
 // the same axis, all of it counts as yaw.
 template <typename Scalar>
 Scalar heading(const Quaternion<Scalar>& q, const ProfileTraits& law) {
-  constexpr float half_pi = 1.57079637f, near_pole = 0.001f;
   using std::abs;
-  using std::asin;
   using std::atan2;
   const Scalar two = 2;
   const Scalar R20 = two * (q[1] * q[3] - q[0] * q[2]);
-  const Scalar R12 = two * (q[2] * q[3] - q[0] * q[1]);
-  const Scalar R02 = two * (q[0] * q[2] + q[1] * q[3]);
-  const Scalar pitch = asin(-R20);
-  if (abs(pitch - Scalar(half_pi)) < Scalar(near_pole)) return atan2(R12, R02);
-  if (abs(pitch + Scalar(half_pi)) < Scalar(near_pole)) return atan2(-R12, -R02);
+  // asin(0.99) is 0.14 rad short of a pole, and asin is expensive. A NaN is near, too.
+  constexpr float surely_far = 0.99f;
+  if (!(abs(R20) < Scalar(surely_far))) {
+    const Scalar R12 = two * (q[2] * q[3] - q[0] * q[1]);
+    const Scalar R02 = two * (q[0] * q[2] + q[1] * q[3]);
+    switch (pole_at(R20)) {
+      case 1:
+        return atan2(R12, R02);
+      case -1:
+        return atan2(-R12, -R02);
+    }
+  }
   const Scalar R10 = two * (q[1] * q[2] + q[0] * q[3]);
   const Scalar R00 = law.squares_heading ? q[0] * q[0] + q[1] * q[1] - q[2] * q[2] - q[3] * q[3]
                                          : Scalar(1) - two * (q[2] * q[2] + q[3] * q[3]);
