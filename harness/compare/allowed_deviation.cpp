@@ -6,25 +6,58 @@
 
 namespace attest {
 
-void AllowedDeviation::next(const attest_inputs& in, std::span<const ParameterChange> changes) {
+namespace {
+
+AttitudeQuaternion quaternion(const float (&q)[4]) { return {q[0], q[1], q[2], q[3]}; }
+
+// The attitude setpoint that is new at this tick: from outside, or of the unit's own sticks.
+const float (*new_setpoint(const Sample& tick, Module module, bool is_first))[4] {
+  if (module == Module::mc_att_control) {
+    const bool is_new = (tick.in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;
+    return is_new || is_first ? &tick.in.vehicle_attitude_setpoint.q_d : nullptr;
+  }
+  const auto& own = tick.attitude_out.vehicle_attitude_setpoint;
+  if (own.published != 0) return &own.q_d;
+  const bool is_new = (tick.in.updated & ATTEST_ATTITUDE_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;
+  return is_new || is_first ? &tick.attitude_in.vehicle_attitude_setpoint.q_d : nullptr;
+}
+
+}  // namespace
+
+void AllowedDeviation::next(const Sample& want, std::span<const ParameterChange> changes) {
   for (const ParameterChange& change : changes) gain_.set(change);
-  const bool has_setpoint = (in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;
-  if (is_first_ || has_setpoint) setpoint_ = in;
+  if (module_ != Module::mc_att_control && module_ != Module::attitude_unit) return;
+  if (const auto* q_d = new_setpoint(want, module_, is_first_)) setpoint_ = quaternion(*q_d);
   is_first_ = false;
 }
 
-double AllowedDeviation::of(std::size_t channel, const attest_inputs& in, float got,
-                            float want) const {
+bool AllowedDeviation::widens(std::size_t channel, const Sample& tick) const {
+  const Channel& what = channels()[channel];
+  if (what.quantity != Quantity::rate || tolerances_.level() != Level::numeric) return false;
+  if (module_ == Module::attitude_unit) return what.stage == Stage::attitude_law;
+  return module_ == Module::mc_att_control &&
+         tick.in.vehicle_control_mode.flag_control_attitude_enabled != 0;
+}
+
+double AllowedDeviation::widening(const Sample& tick) const {
+  if (module_ == Module::mc_att_control) {
+    const double error = tilt_error(quaternion(tick.in.control_state.q), setpoint_);
+    return tolerances_.widening(error, gain_.value());
+  }
+  // The law of the cascade computes yaw from what tilt leaves, so its noise is larger: in float and
+  // double 1.3e-4 rad/s apart at 179 deg, 1.5e-3 at 179.9 (measured on random attitudes).
+  constexpr double noise = 10.0 / 3;
+  const double error = attitude_error(quaternion(tick.attitude_in.vehicle_attitude.q), setpoint_);
+  return tolerances_.widening(error, noise * gain_.value());
+}
+
+double AllowedDeviation::of(std::size_t channel, const Sample& tick, float got, float want) const {
   const Tolerance base = tolerances_.of(channel);
   const double w = want;
   const double tolerance = std::max(base.absolute, base.relative * std::abs(w));
   const double difference = std::abs(static_cast<double>(got) - w);
-  const bool widens = channels()[channel].module == Module::mc_att_control &&
-                      channels()[channel].quantity == Quantity::rate &&
-                      tolerances_.level() == Level::numeric &&
-                      in.vehicle_control_mode.flag_control_attitude_enabled != 0;
-  if (!widens || difference <= tolerance) return tolerance;
-  const double wider = tolerances_.widening(tilt_error(in, setpoint_), gain_.value());
+  if (difference <= tolerance || !widens(channel, tick)) return tolerance;
+  const double wider = widening(tick);
   // Not finite without an attitude, or with a time constant of zero: then nothing is added.
   return std::isfinite(wider) ? tolerance + wider : tolerance;
 }
@@ -39,18 +72,18 @@ Trace allowed_deviations(const Trace& want, const Tolerances& tolerances) {
       allowed.present[i] = false;
   }
   allowed.samples.resize(want.samples.size());
-  AllowedDeviation deviation(tolerances);
+  AllowedDeviation deviation(tolerances, module_of(want.present));
   PendingChanges changes(want.parameters);
   for (std::size_t tick = 0; tick < want.samples.size(); ++tick) {
     const Sample& sample = want.samples[tick];
-    deviation.next(sample.in, changes.take_until(tick));
+    deviation.next(sample, changes.take_until(tick));
     allowed.samples[tick].in.timestamp = sample.in.timestamp;
     for (std::size_t i = 0; i < channels().size(); ++i) {
       const Channel& channel = channels()[i];
       if (!allowed.present[i] || channel.type != ChannelType::f32) continue;
       const float value = float_of(channel, sample);
       set_value(channel, allowed.samples[tick],
-                std::isfinite(value) ? deviation.of(i, sample.in, any, value) : 0);
+                std::isfinite(value) ? deviation.of(i, sample, any, value) : 0);
     }
   }
   return allowed;

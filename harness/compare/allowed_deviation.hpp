@@ -1,5 +1,5 @@
-// The allowed |got - want| of each value of a trace, which depends on the tick: near a tilt error
-// of 180 deg the tolerance of the rates setpoint is wider (Tolerances::widening).
+// The allowed |got - want| of each value of a trace, which depends on the tick: near an attitude
+// error of 180 deg the tolerance of the rates setpoint is wider (Tolerances::widening).
 #pragma once
 
 #include <cstddef>
@@ -15,19 +15,24 @@ namespace attest {
 class AllowedDeviation {
  public:
   // REQUIRES: the tolerances outlive this.
-  explicit AllowedDeviation(const Tolerances& tolerances) : tolerances_(tolerances) {}
+  AllowedDeviation(const Tolerances& tolerances, Module module)
+      : tolerances_(tolerances), module_(module), gain_(module) {}
 
-  // The next tick, with the parameters that it sets.
-  void next(const attest_inputs& in, std::span<const ParameterChange> changes);
+  // The next tick of the expected trace, with the parameters that it sets.
+  void next(const Sample& want, std::span<const ParameterChange> changes);
 
-  // Of that tick, whose inputs are `in`. If `got` is within the tolerance without widening, the
-  // result is that tolerance, because the widening takes time to compute.
-  double of(std::size_t channel, const attest_inputs& in, float got, float want) const;
+  // Of that tick. If `got` is within the tolerance without widening, the result is that tolerance,
+  // because the widening takes time to compute.
+  double of(std::size_t channel, const Sample& tick, float got, float want) const;
 
  private:
+  bool widens(std::size_t channel, const Sample& tick) const;
+  double widening(const Sample& tick) const;
+
   const Tolerances& tolerances_;
+  Module module_;
   bool is_first_ = true;
-  attest_inputs setpoint_{};  // the inputs with the last new attitude setpoint
+  AttitudeQuaternion setpoint_{};  // the last new one
   AttitudeGain gain_;
 };
 

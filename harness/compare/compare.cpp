@@ -52,7 +52,7 @@ double excess(const Deviation& deviation) {
 
 TickComparer::TickComparer(const ChannelSet& got, const ChannelSet& want,
                            const Tolerances& tolerances)
-    : level_(tolerances.level()), allowed_(tolerances) {
+    : level_(tolerances.level()), allowed_(tolerances, module_of(want)) {
   const auto table = channels();
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (!table[i].is_output() || !want[i]) continue;
@@ -77,7 +77,7 @@ void TickComparer::add(const Sample& got, const Sample& want,
         tick_, got.in.timestamp, want.in.timestamp);
     return;
   }
-  allowed_.next(want.in, changes);
+  allowed_.next(want, changes);
   const bool differs = outputs_differ(got, want);
   if (differs && level_ != Level::events) {
     bool deviates = false;
@@ -114,7 +114,7 @@ bool TickComparer::channel_agrees(std::size_t channel, const Sample& got, const 
   const float w = float_of(what, want);
   if (same_bits(g, w)) return true;
   const bool both_finite = std::isfinite(g) && std::isfinite(w);
-  const double tolerance = both_finite ? allowed_.of(channel, want.in, g, w) : 0;
+  const double tolerance = both_finite ? allowed_.of(channel, want, g, w) : 0;
   const double difference = std::abs(static_cast<double>(g) - static_cast<double>(w));
   // Written so that a NaN difference is outside.
   if (level_ == Level::numeric && both_finite && difference <= tolerance) {

@@ -1,26 +1,35 @@
-// The tilt error: the angle between the thrust axis and its setpoint. The tolerance of rates
-// setpoints is wider where it is near 180 deg.
+// The attitude error that a rates setpoint corrects. The tolerance of rates setpoints is wider
+// where it is near 180 deg.
 #pragma once
+
+#include <array>
 
 #include "harness/trace/trace.hpp"
 
 namespace attest {
 
-// Angle [rad] between the body z axes of the attitude in `state` and of the setpoint in `setpoint`
-// (the sample in which the setpoint was last published), in double. NaN when a quaternion is zero
-// or not finite.
-double tilt_error(const attest_inputs& state, const attest_inputs& setpoint);
+using AttitudeQuaternion = std::array<double, 4>;  // w, x, y, z, of any norm
 
-// The larger of the roll and pitch attitude gains [1/s], without their signs. It follows the
-// parameter changes.
+// Angle [rad] between the body z axes of two attitudes, in double. NaN when a quaternion is zero or
+// not finite.
+double tilt_error(const AttitudeQuaternion& q, const AttitudeQuaternion& q_d);
+
+// Angle [rad] of the rotation between two attitudes: near 180 deg if the tilt error or the yaw
+// error is. NaN as above.
+double attitude_error(const AttitudeQuaternion& q, const AttitudeQuaternion& q_d);
+
+// The largest attitude gain [1/s] of a module, without its sign. It follows the parameter changes.
 class AttitudeGain {
  public:
+  explicit AttitudeGain(Module module);
   void set(const ParameterChange& change);
   double value() const;
 
  private:
-  // Defaults of PX4 v1.5.5: MC_{ROLL,PITCH}_P and MC_{ROLL,PITCH}_TC.
+  Module module_;
+  // Defaults of PX4 v1.5.5, MC_{ROLL,PITCH}_P and MC_{ROLL,PITCH}_TC, and of the cascade.
   double roll_p_ = 6.5, roll_tc_ = 0.2, pitch_p_ = 6.5, pitch_tc_ = 0.2;
+  double yaw_p_ = 2.8, yaw_weight_ = 0.4;
 };
 
 }  // namespace attest

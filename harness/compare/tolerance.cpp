@@ -118,14 +118,14 @@ Tolerances Tolerances::scaled(double factor) const {
   return result;
 }
 
-double Tolerances::widening(double tilt_rad, double gain) const {
+double Tolerances::widening(double error_rad, double gain) const {
   // Measured with correct builds: 3e-6 rad/s at one radian from 180 deg with the default gain.
   constexpr double noise_rad_s = 3e-6;
   constexpr double default_gain = 6.5;
   // 0.1 deg: there the widening is as large as the smallest error of a wrong port. Vectors nearer
   // to 180 deg belong to the exact level.
   constexpr double nearest_rad = 1.7e-3;
-  const double distance = std::max(std::numbers::pi - tilt_rad, nearest_rad);
+  const double distance = std::max(std::numbers::pi - error_rad, nearest_rad);
   return scale_ * noise_rad_s * (gain / default_gain) / distance;
 }
 
