@@ -2,6 +2,10 @@
 
 #include "controller/cascade/unit_table.hpp"
 
+#ifndef ATTEST_REFERENCE_SCALAR
+#define ATTEST_REFERENCE_SCALAR float
+#endif
+
 #ifndef ATTEST_REFERENCE_VERSION
 #define ATTEST_REFERENCE_VERSION "unversioned"
 #endif
@@ -21,7 +25,7 @@ constexpr attest_unit table{ATTEST_UNIT_ABI_VERSION,
 
 }  // namespace
 
-const attest_unit* cascade_unit() { return &table<float>; }
+const attest_unit* cascade_unit() { return &table<ATTEST_REFERENCE_SCALAR>; }
 
 const attest_unit* cascade_unit_in_double() { return &table<double>; }
 

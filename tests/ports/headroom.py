@@ -39,11 +39,11 @@ KINDS = ("rates", "controls", "integrals", "motors and battery")
 
 
 def kind_of(channel):
-    if "vehicle_rates_setpoint" in channel:
+    if "vehicle_rates_setpoint" in channel or "vehicle_attitude_setpoint" in channel:
         return "rates"
     if "actuator_outputs" in channel or "battery_status" in channel:
         return "motors and battery"
-    return "integrals" if "mc_att_ctrl_status" in channel else "controls"
+    return "integrals" if "ctrl_status" in channel else "controls"
 
 
 def tightest(results):

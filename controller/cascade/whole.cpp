@@ -1,0 +1,31 @@
+#include "controller/cascade/whole.hpp"
+
+#include "controller/cascade/unit.hpp"
+#include "controller/reference/unit.hpp"
+
+namespace attest::cascade {
+namespace {
+
+// The controller's table, with the extensions of both.
+template <const attest_unit* (*controller)(), const attest_unit* (*units)()>
+const attest_unit* whole() {
+  static const attest_unit table = [] {
+    attest_unit unit = *controller();
+    unit.extension = [](const char* id) {
+      const void* const found = controller()->extension(id);
+      return found ? found : units()->extension(id);
+    };
+    return unit;
+  }();
+  return &table;
+}
+
+}  // namespace
+
+const attest_unit* whole_reference() { return whole<reference::reference_unit, cascade_unit>(); }
+
+const attest_unit* whole_reference_in_double() {
+  return whole<reference::reference_unit_in_double, cascade_unit_in_double>();
+}
+
+}  // namespace attest::cascade
