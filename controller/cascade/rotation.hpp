@@ -52,11 +52,18 @@ ATTEST_INLINE Scalar squared_norm(const Quaternion<Scalar>& q) {
   return Scalar(0) + q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
 }
 
+// By component. Eigen's q * factor takes all four as one vector, which makes components that were
+// just computed pass through memory: a step of the attitude unit was measured a tenth slower.
+template <typename Scalar>
+ATTEST_INLINE Quaternion<Scalar> scaled(const Quaternion<Scalar>& q, Scalar factor) {
+  return {q[0] * factor, q[1] * factor, q[2] * factor, q[3] * factor};
+}
+
 // Of norm 1. A zero has no direction and gives NaN.
 template <typename Scalar>
 ATTEST_INLINE Quaternion<Scalar> unit(const Quaternion<Scalar>& q) {
   using std::sqrt;
-  return q * (Scalar(1) / sqrt(squared_norm(q)));
+  return scaled(q, Scalar(1) / sqrt(squared_norm(q)));
 }
 
 // q p: first p, then q. All sixteen products count, also those with a factor that is 0.
@@ -80,7 +87,7 @@ template <typename Scalar>
 ATTEST_INLINE Quaternion<Scalar> canonical(const Quaternion<Scalar>& q) {
   using std::abs;
   for (int i = 0; i < 4; ++i) {
-    if (abs(q[i]) > Scalar(epsilon)) return q * Scalar(q[i] > Scalar(0) ? 1 : -1);
+    if (abs(q[i]) > Scalar(epsilon)) return scaled(q, Scalar(q[i] > Scalar(0) ? 1 : -1));
   }
   return q;
 }
@@ -114,7 +121,7 @@ ATTEST_INLINE Quaternion<Scalar> shortest_rotation(const Vector3<Scalar>& a,
                                                    const Vector3<Scalar>& b) {
   Vector3<Scalar> axis = cross(a, b);
   Scalar w = dot(a, b);
-  if (length(axis) < Scalar(1e-5f) && w < Scalar(0)) {
+  if (w < Scalar(0) && length(axis) < Scalar(1e-5f)) {
     axis = cross(a, farthest_axis(a));
     w = Scalar(0);
   } else {
