@@ -24,8 +24,11 @@ void print_nearest(const SuiteMargins& margins) {
     fmt::print("{:<20} {:>9.2g} {:>9.2g}  {}@{} at tick {}\n", name_of(decision), margin.distance,
                least_margin(decision), the_case->id(), configuration.label(), margin.tick);
   }
-  fmt::print("{} numeric vectors, {} too near to a decision\n", margins.vectors,
+  fmt::print("{} numeric vectors, {} too near to a decision", margins.vectors,
              margins.too_near.size());
+  if (margins.not_measured == 0) return fmt::print("\n");
+  fmt::print("; {} of other modules, whose distance to decisions is not measured\n",
+             margins.not_measured);
 }
 
 }  // namespace

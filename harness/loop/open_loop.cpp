@@ -49,33 +49,63 @@ class Drive {
   std::size_t tick_ = 0;
 };
 
+// Parameters of the module that a trace may leave at their default.
+std::vector<std::string> some_gains(Module module) {
+  switch (module) {
+    case Module::mc_att_control:
+      return {"MC_PITCH_P", "MC_YAW_P", "MC_ROLLRATE_P", "MC_PITCHRATE_D"};
+    case Module::attitude_unit:
+      return {"MC_PITCH_P", "MC_YAW_P"};
+    case Module::rate_unit:
+      return {"MC_ROLLRATE_P", "MC_PITCHRATE_D"};
+    case Module::mixer:
+    case Module::battery_status:
+      break;
+  }
+  return {};
+}
+
 // Other gains from the first step on: those of the trace, and some that it leaves at their default.
-void change_gains(Trace& trace) {
+void change_gains(Trace& trace, Module module) {
   constexpr float factor = 0.75f;
+  if (!info_of(module).has_updated) return;
   for (ParameterChange& change : trace.parameters) {
     if (change.name.starts_with("MC_")) change.value *= factor;
   }
-  for (const char* name : {"MC_PITCH_P", "MC_YAW_P", "MC_ROLLRATE_P", "MC_PITCHRATE_D"}) {
+  for (const std::string& name : some_gains(module)) {
     const auto is_it = [&](const ParameterChange& change) { return change.name == name; };
     if (std::any_of(trace.parameters.begin(), trace.parameters.end(), is_it)) continue;
     trace.parameters.insert(trace.parameters.begin(), {0, name, 1.0f});
   }
 }
 
+double mirrored(const Channel& channel, double value) {
+  switch (channel.quantity) {
+    case Quantity::rate:
+    case Quantity::angular_acceleration:
+      return -value;
+    case Quantity::quaternion:
+      return channel.name.ends_with("[0]") ? value : -value;
+    case Quantity::control:
+      return 1 - value;
+    case Quantity::voltage:
+      return 0.9 * value;
+    default:
+      return channel.name.ends_with(".flag_armed") ? 1 - value : value;
+  }
+}
+
 // Other inputs at the same times, and other gains, so that the states of two instances differ in
 // everything.
 Trace mirrored(Trace trace, Module module) {
-  if (module == Module::mc_att_control) change_gains(trace);
-  for (Sample& sample : trace.samples) {
-    auto& state = sample.in.control_state;
-    for (float* const value : {&state.q[1], &state.q[2], &state.q[3], &state.roll_rate,
-                               &state.pitch_rate, &state.yaw_rate}) {
-      *value = -*value;
+  change_gains(trace, module);
+  const ChannelSet inputs = channels_of(module, "in/");
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    const Channel& channel = channels()[i];
+    if (!inputs[i] || channel.type == ChannelType::u64) continue;
+    for (Sample& sample : trace.samples) {
+      set_value(channel, sample, mirrored(channel, value_of(channel, sample)));
     }
-    auto& setpoint = sample.in.vehicle_rates_setpoint;
-    for (float* const value : {&setpoint.roll, &setpoint.pitch, &setpoint.yaw}) *value = -*value;
-    for (float& control : sample.mixer_in.actuator_controls_0.control) control = 1 - control;
-    sample.battery_in.battery.voltage_v *= 0.9f;
   }
   return trace;
 }

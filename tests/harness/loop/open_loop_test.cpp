@@ -312,6 +312,52 @@ TEST_F(Company, CrossedDestroysTheFirstWhileTheJudgedLives) {
                                        "destroy 1", "step 2 1", "step 2 1", "destroy 2"));
 }
 
+// Notes what each of two rate units is given.
+class RatePort final : public Port {
+ public:
+  class Noting final : public UnitOf<attest_rate_inputs, attest_rate_outputs> {
+   public:
+    explicit Noting(std::vector<std::string>& notes) : notes_(notes) {}
+    int set_parameter(const std::string& name, float value) override {
+      notes_.push_back(fmt::format("{}={}", name, value));
+      return ATTEST_OK;
+    }
+    int step(const attest_rate_inputs& in, attest_rate_outputs&) override {
+      notes_.push_back(fmt::format("{} {} {}", in.vehicle_angular_velocity.timestamp_sample,
+                                   in.vehicle_angular_velocity.xyz[1],
+                                   in.vehicle_control_mode.flag_armed));
+      return ATTEST_OK;
+    }
+
+   private:
+    std::vector<std::string>& notes_;
+  };
+
+  std::string name() const override { return "rate"; }
+  std::string version() const override { return "1"; }
+  ModuleSet modules() const override { return only(Module::rate_unit); }
+  std::unique_ptr<Unit> create_unit(Module, const std::string&, const std::string&) override {
+    return std::make_unique<Noting>(notes);
+  }
+
+  std::vector<std::string> notes;
+};
+
+TEST(CompanyOfAUnit, HasOtherInputsAndGainsAtTheSameTimes) {
+  RatePort port;
+  Trace trace = trace_of(1);
+  trace.parameters = {{0, "MC_YAWRATE_P", 0.5f}};
+  auto& in = trace.samples[0].rate_in;
+  in.vehicle_angular_velocity.timestamp_sample = 7;
+  in.vehicle_angular_velocity.xyz[1] = 3;
+  in.vehicle_control_mode.flag_armed = 1;
+  Subject subject{.profile = "px4-v1.16.0", .module = Module::rate_unit};
+  subject.instances = Instances::again;
+  EXPECT_FALSE(drive(port, subject, trace));
+  EXPECT_THAT(port.notes, ElementsAre("MC_PITCHRATE_D=1", "MC_ROLLRATE_P=1", "MC_YAWRATE_P=0.375",
+                                      "7 -3 0", "MC_YAWRATE_P=0.5", "7 3 1"));
+}
+
 TEST_F(Company, APortThatMakesOneInstanceDoesNotSupportTwo) {
   port_.most_alive = 1;
   const auto fault = drive_with(Instances::together);
