@@ -9,7 +9,7 @@ namespace attest::faults {
 
 std::string_view name_of(Stage stage) {
   // In the order of the enumerators.
-  constexpr std::array<std::string_view, 26> names{"input",
+  constexpr std::array<std::string_view, 34> names{"input",
                                                    "tilt",
                                                    "yaw",
                                                    "blend",
@@ -34,8 +34,30 @@ std::string_view name_of(Stage stage) {
                                                    "mixer fit",
                                                    "mixer yaw",
                                                    "mixer output",
-                                                   "battery status"};
+                                                   "battery status",
+                                                   "sticks",
+                                                   "yaw lock",
+                                                   "throttle",
+                                                   "latching",
+                                                   "estimator reset",
+                                                   "autotune",
+                                                   "saturation",
+                                                   "yaw filter"};
   return names[static_cast<std::size_t>(stage)];
+}
+
+bool ProfileSet::contains(std::string_view profile) const {
+  if (controller_) {
+    const auto known = reference::profile_from_name(profile);
+    return known && controller_->contains(*known);
+  }
+  const auto known = cascade::profile_from_name(profile);
+  return known && cascade_->contains(*known);
+}
+
+bool ProfileSet::is_of_law_of(std::string_view profile) const {
+  return controller_ ? reference::profile_from_name(profile).has_value()
+                     : cascade::profile_from_name(profile).has_value();
 }
 
 namespace {
@@ -43,33 +65,58 @@ namespace {
 // Faults of one subject, and the profiles whose law has that subject.
 struct Subject {
   std::span<const Fault> faults;
-  reference::ProfileSet profiles = reference::all_profiles;
+  ProfileSet profiles = reference::all_profiles;
 };
 
+constexpr auto from_v1_5_5 = reference::from_v1_5_5;
+constexpr auto cascades = cascade::all_profiles;
+constexpr auto from_v1_16_0 = cascade::from_v1_16_0;
+
+// In the order of the catalogue.
+std::vector<Subject> subjects() {
+  return {{attitude_faults()},
+          {yaw_faults()},
+          {large_angle_faults()},
+          {rate_limit_faults()},
+          {yaw_feed_forward_faults()},
+          {weathervane_faults()},
+          {rate_faults()},
+          {tpa_faults(), from_v1_5_5},
+          {anti_windup_faults()},
+          {battery_faults(), from_v1_5_5},
+          {mode_faults()},
+          {arming_faults()},
+          {parameter_faults()},
+          {timing_faults()},
+          {robustness_faults()},
+          {tailsitter_faults()},
+          {actuator_faults()},
+          {v1_3_4_faults()},
+          {mixer_faults(), from_v1_5_5},
+          {mixer_fit_faults(), from_v1_5_5},
+          {battery_status_faults(), from_v1_5_5},
+          {in_cascade::attitude_faults(), cascades},
+          {in_cascade::large_angle_faults(), cascades},
+          {in_cascade::yaw_weight_faults(), cascades},
+          {in_cascade::stick_faults(), cascades},
+          {in_cascade::yaw_lock_faults(), from_v1_16_0},
+          {in_cascade::throttle_faults(), cascades},
+          {in_cascade::spool_up_faults(), cascade::from_v1_15_4},
+          {in_cascade::reset_faults(), cascades},
+          {in_cascade::attitude_mode_faults(), cascades},
+          {in_cascade::guard_faults(), cascades},
+          {in_cascade::torque_faults(), cascades},
+          {in_cascade::integral_faults(), cascades},
+          {in_cascade::rate_mode_faults(), cascades},
+          {in_cascade::yaw_filter_faults(), from_v1_16_0},
+          {in_cascade::battery_faults(), cascades},
+          {in_cascade::parameter_faults(), cascades},
+          {in_cascade::timing_faults(), cascades}};
+}
+
 std::vector<Fault> all_faults() {
-  using reference::from_v1_5_5;
   std::vector<Fault> all;
-  for (const auto& [faults, profiles] : {Subject{attitude_faults()},
-                                         Subject{yaw_faults()},
-                                         Subject{large_angle_faults()},
-                                         Subject{rate_limit_faults()},
-                                         Subject{yaw_feed_forward_faults()},
-                                         Subject{weathervane_faults()},
-                                         Subject{rate_faults()},
-                                         Subject{tpa_faults(), from_v1_5_5},
-                                         Subject{anti_windup_faults()},
-                                         Subject{battery_faults(), from_v1_5_5},
-                                         Subject{mode_faults()},
-                                         Subject{arming_faults()},
-                                         Subject{parameter_faults()},
-                                         Subject{timing_faults()},
-                                         Subject{robustness_faults()},
-                                         Subject{tailsitter_faults()},
-                                         Subject{actuator_faults()},
-                                         Subject{v1_3_4_faults()},
-                                         Subject{mixer_faults(), from_v1_5_5},
-                                         Subject{mixer_fit_faults(), from_v1_5_5},
-                                         Subject{battery_status_faults(), from_v1_5_5}}) {
+  for (const auto& [faults, profiles] : subjects()) {
     for (Fault fault : faults) {
       if (!fault.profiles) fault.profiles = profiles;
       all.push_back(fault);

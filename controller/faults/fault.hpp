@@ -1,6 +1,6 @@
-// The catalogue of faults as data: the mistakes that ports of this law make, each the reference
-// with one stage replaced (faulty_controller.hpp). The share of faults that a suite catches is a
-// measure of the suite. The diagnosis compares a failing port with them.
+// The catalogue of faults as data: the mistakes that ports of the controller and of the cascade
+// make, each the reference with one stage replaced (faulty_controller.hpp). The share of faults
+// that a suite catches is a measure of the suite. The diagnosis compares a failing port with them.
 //
 // The table is static and constant; any thread.
 #pragma once
@@ -9,6 +9,7 @@
 #include <span>
 #include <string_view>
 
+#include "controller/cascade/profile.hpp"
 #include "controller/reference/profile.hpp"
 
 namespace attest::faults {
@@ -44,8 +45,32 @@ enum class Stage {
   mixer_yaw,
   mixer_output,
   battery_status,
+  sticks,
+  yaw_lock,
+  throttle,
+  latching,
+  estimator_reset,
+  autotune,
+  saturation,
+  yaw_filter,
 };
 std::string_view name_of(Stage stage);  // "integrator gate"
+
+// Profiles of one law: of the controller, or of the cascade.
+class ProfileSet {
+ public:
+  constexpr ProfileSet(reference::ProfileSet profiles) : controller_(profiles) {}
+  constexpr ProfileSet(cascade::ProfileRange profiles) : cascade_(profiles) {}
+
+  // False for the name of no profile.
+  bool contains(std::string_view profile) const;
+  // Whether the profile, in the set or not, is one of the same law.
+  bool is_of_law_of(std::string_view profile) const;
+
+ private:
+  std::optional<reference::ProfileSet> controller_;
+  std::optional<cascade::ProfileRange> cascade_;
+};
 
 struct Fault {
   std::string_view id;     // "quat-order-xyzw"
@@ -59,9 +84,9 @@ struct Fault {
   std::string_view equivalent = {};
   // The profiles in which some input distinguishes the fault from the law. If empty, the catalogue
   // fills in the profiles that have the part of the law concerned.
-  std::optional<reference::ProfileSet> profiles = {};
+  std::optional<ProfileSet> profiles = {};
 
-  bool is_detectable(Profile profile) const {
+  bool is_detectable(std::string_view profile) const {
     return equivalent.empty() && profiles->contains(profile);
   }
 };

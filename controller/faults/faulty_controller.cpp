@@ -1,5 +1,9 @@
 #include "controller/faults/faulty_controller.hpp"
 
+#include <type_traits>
+
+#include "controller/cascade/attitude_unit_definition.hpp"
+#include "controller/cascade/rate_unit_definition.hpp"
 #include "controller/reference/mc_att_control_definition.hpp"
 
 namespace attest::faults {
@@ -33,5 +37,38 @@ void FaultyController::step(const attest_inputs& in, attest_outputs& out) {
   controller_->control.step(given, out);
   law_.after(given, out);
 }
+
+namespace {
+
+template <typename Law>
+Law part_of(const FaultyLaw& law) {
+  if constexpr (std::is_same_v<Law, AttitudeUnitLaw>) {
+    return law.attitude_unit;
+  } else {
+    return law.rate_unit;
+  }
+}
+
+}  // namespace
+
+template <typename Law>
+FaultyUnit<Law>::FaultyUnit(cascade::Profile profile, std::span<const Fault* const> faults)
+    : law_(part_of<Law>(law_with(faults))), unit_(profile, law_) {}
+
+template <typename Law>
+bool FaultyUnit<Law>::set_parameter(std::string_view name, float value) {
+  return unit_.set_parameter(name, value);
+}
+
+template <typename Law>
+void FaultyUnit<Law>::step(const Inputs& in, Outputs& out) {
+  Inputs given = in;
+  law_.before(given);
+  unit_.step(given, out);
+  law_.after(given, out);
+}
+
+template class FaultyUnit<AttitudeUnitLaw>;
+template class FaultyUnit<RateUnitLaw>;
 
 }  // namespace attest::faults

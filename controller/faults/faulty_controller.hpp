@@ -1,4 +1,5 @@
-// The wrong controllers: a law with faults of the catalogue, and a controller that runs it.
+// The wrong controllers: a law with faults of the catalogue, and a controller or a unit of the
+// cascade that runs it.
 #pragma once
 
 #include <memory>
@@ -29,5 +30,28 @@ class FaultyController {
   struct Controller;
   std::unique_ptr<Controller> controller_;
 };
+
+// A unit of the cascade with some faults. Law is AttitudeUnitLaw or RateUnitLaw.
+template <typename Law>
+class FaultyUnit {
+ public:
+  using Inputs = typename Law::Inputs;
+  using Outputs = typename Law::Outputs;
+
+  FaultyUnit(cascade::Profile profile, std::span<const Fault* const> faults);
+
+  // Same as in cascade::AttitudeUnit and cascade::RateUnit.
+  bool set_parameter(std::string_view name, float value);
+  void step(const Inputs& in, Outputs& out);
+
+ private:
+  Law law_;
+  typename Law::Unit unit_;
+};
+
+using FaultyAttitudeUnit = FaultyUnit<AttitudeUnitLaw>;
+using FaultyRateUnit = FaultyUnit<RateUnitLaw>;
+extern template class FaultyUnit<AttitudeUnitLaw>;
+extern template class FaultyUnit<RateUnitLaw>;
 
 }  // namespace attest::faults

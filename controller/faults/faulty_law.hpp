@@ -12,12 +12,11 @@
 #include "controller/actuation/battery_status.hpp"
 #include "controller/actuation/mixer.hpp"
 #include "controller/faults/fault.hpp"
+#include "controller/faults/faulty_cascade.hpp"
 #include "controller/reference/mc_att_control.hpp"
 
 namespace attest::faults {
 
-using Scalar = float;
-using Vector = reference::Vector3<Scalar>;
 using Matrix = reference::Matrix3<Scalar>;
 using Quaternion = reference::Quaternion<Scalar>;
 using Tilt = reference::TiltError<Scalar>;
@@ -124,31 +123,30 @@ struct BatteryStages {
   std::function<bool(Scalar)> is_plugged_in = Law::is_plugged_in;
 };
 
-struct FaultyLaw {
+struct FaultyLaw : Around<attest_inputs, attest_outputs> {
   StepStages step;
   AttitudeStages attitude;
   RateStages rate;
   RecoveryStages recovery;
   MixerStages mixer;
   BatteryStages battery;
-
-  // Changes to the inputs before the law and to the outputs after it.
-  std::function<void(attest_inputs&)> before = [](attest_inputs&) {};
-  std::function<void(const attest_inputs&, attest_outputs&)> after = [](const attest_inputs&,
-                                                                        attest_outputs&) {};
+  AttitudeUnitLaw attitude_unit;
+  RateUnitLaw rate_unit;
 };
 
-// Append a function to the present one, so that two faults can act at once.
-template <typename Added>
-void also_before(FaultyLaw& law, Added added) {
-  law.before = [then = law.before, added](attest_inputs& in) mutable {
+// Append a function to the present one, so that two faults can act at once. Law is FaultyLaw, or
+// that of a unit of the cascade.
+template <typename Law, typename Added>
+void also_before(Law& law, Added added) {
+  law.before = [then = law.before, added](typename Law::Inputs& in) mutable {
     then(in);
     added(in);
   };
 }
-template <typename Added>
-void also_after(FaultyLaw& law, Added added) {
-  law.after = [then = law.after, added](const attest_inputs& in, attest_outputs& out) mutable {
+template <typename Law, typename Added>
+void also_after(Law& law, Added added) {
+  law.after = [then = law.after, added](const typename Law::Inputs& in,
+                                        typename Law::Outputs& out) mutable {
     then(in, out);
     added(in, out);
   };

@@ -30,4 +30,25 @@ std::span<const Fault> mixer_faults();
 std::span<const Fault> mixer_fit_faults();
 std::span<const Fault> battery_status_faults();
 
+// Of the two units of the cascade: files cascade_*.cpp.
+namespace in_cascade {
+std::span<const Fault> attitude_faults();
+std::span<const Fault> large_angle_faults();
+std::span<const Fault> yaw_weight_faults();
+std::span<const Fault> stick_faults();
+std::span<const Fault> yaw_lock_faults();
+std::span<const Fault> throttle_faults();
+std::span<const Fault> spool_up_faults();
+std::span<const Fault> reset_faults();
+std::span<const Fault> attitude_mode_faults();
+std::span<const Fault> guard_faults();
+std::span<const Fault> torque_faults();
+std::span<const Fault> integral_faults();
+std::span<const Fault> rate_mode_faults();
+std::span<const Fault> yaw_filter_faults();
+std::span<const Fault> battery_faults();
+std::span<const Fault> parameter_faults();
+std::span<const Fault> timing_faults();
+}  // namespace in_cascade
+
 }  // namespace attest::faults

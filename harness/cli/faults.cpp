@@ -11,6 +11,7 @@
 #include "harness/diagnosis/fault_job.hpp"
 #include "harness/diagnosis/naive_suite.hpp"
 #include "harness/port/fault_port.hpp"
+#include "harness/port/profiles.hpp"
 #include "harness/report/diagnosis_text.hpp"
 #include "harness/report/fault_table.hpp"
 
@@ -83,7 +84,7 @@ int verdict(const std::vector<FaultFinding>& findings) {
   return good ? exit_ok : exit_failed;
 }
 
-int diagnose_all(const std::vector<SelectedCase>& cases, faults::Profile profile) {
+int diagnose_all(const std::vector<SelectedCase>& cases, const std::string& profile) {
   const std::vector<SelfDiagnosis> results = diagnose_catalogue(cases, profile);
   std::size_t named = 0, stages = 0;
   for (const SelfDiagnosis& result : results) {
@@ -98,16 +99,15 @@ int diagnose_all(const std::vector<SelectedCase>& cases, faults::Profile profile
   fmt::print(
       "{}: {} of {} faults are named first, alone or with faults that match equally well "
       "({:.1f}%); the stage of {} is named\n",
-      name_of(profile), named, results.size(), part, stages);
+      profile, named, results.size(), part, stages);
   constexpr double enough = 95;
   return part >= enough ? exit_ok : exit_failed;
 }
 
 // Whether every fault that is detectable in the profile is caught, by its own group.
-Result<int> measure(const FaultOptions& options, const SuiteFolder& suite, faults::Profile profile,
-                    const std::vector<const Fault*>& faults) {
-  const std::string name(name_of(profile));
-  const auto cases = open_loop_cases(suite, name);
+Result<int> measure(const FaultOptions& options, const SuiteFolder& suite,
+                    const std::string& profile, const std::vector<const Fault*>& faults) {
+  const auto cases = open_loop_cases(suite, profile);
   if (!cases) return tl::unexpected(cases.error());
   if (options.diagnose) return diagnose_all(*cases, profile);
   Jobs<FaultCatch> jobs;
@@ -121,36 +121,40 @@ Result<int> measure(const FaultOptions& options, const SuiteFolder& suite, fault
   const JobResults<FaultCatch> outcome = run_jobs(jobs, workers);
   if (interrupted()) return exit_interrupted;
   if (!outcome.errors.empty()) return tl::unexpected(outcome.errors.front());
-  std::vector<FaultFinding> findings = find_naively(faults, name);
+  std::vector<FaultFinding> findings = find_naively(faults, profile);
   for (std::size_t i = 0; i < findings.size(); ++i) findings[i].found = outcome.results[i];
   fmt::print("{}", render_fault_table(findings));
   return verdict(findings);
 }
 
-// The requested profiles; by default all.
-Result<std::vector<faults::Profile>> chosen_profiles(const FaultOptions& options) {
-  const auto known = reference::profile_names();
-  std::vector<std::string> names = options.profiles;
-  if (names.empty()) names.assign(known.begin(), known.end());
-  std::vector<faults::Profile> profiles;
-  for (const std::string& name : names) {
-    const auto profile = reference::profile_from_name(name);
-    if (!profile) {
-      return fail(fmt::format("no profile `{}`{}; there are {}", name,
-                              suggestion(name, {known.begin(), known.end()}),
-                              fmt::join(known, ", ")));
-    }
-    profiles.push_back(*profile);
+// Those of the profile's law. A diagnosis compares with all faults.
+std::vector<const Fault*> of_law_of(const std::string& profile, std::vector<const Fault*> faults) {
+  std::erase_if(faults,
+                [&](const Fault* fault) { return !fault->profiles->is_of_law_of(profile); });
+  return faults;
+}
+
+// The requested profiles; by default those of the laws that the faults are of.
+Result<std::vector<std::string>> chosen_profiles(const FaultOptions& options,
+                                                 const std::vector<const Fault*>& faults) {
+  const std::vector<std::string> known = known_profile_names();
+  for (const std::string& name : options.profiles) {
+    if (find_profile(name) != nullptr) continue;
+    return fail(fmt::format("no profile `{}`{}; there are {}", name, suggestion(name, known),
+                            fmt::join(known, ", ")));
   }
+  if (!options.profiles.empty()) return options.profiles;
+  std::vector<std::string> profiles = known;
+  std::erase_if(profiles, [&](const std::string& name) { return of_law_of(name, faults).empty(); });
   return profiles;
 }
 
 // Those of `faults` that at least one of `profiles` can tell from the law.
 std::vector<const Fault*> detectable(std::vector<const Fault*> faults,
-                                     const std::vector<faults::Profile>& profiles) {
+                                     const std::vector<std::string>& profiles) {
   std::erase_if(faults, [&](const Fault* fault) {
     return std::none_of(profiles.begin(), profiles.end(),
-                        [&](faults::Profile profile) { return fault->is_detectable(profile); });
+                        [&](const std::string& profile) { return fault->is_detectable(profile); });
   });
   return faults;
 }
@@ -160,7 +164,7 @@ std::vector<const Fault*> detectable(std::vector<const Fault*> faults,
 int faults_command(const FaultOptions& options, const Globals& globals) {
   const auto faults = chosen(options);
   if (!faults) return report_error(faults.error());
-  const auto profiles = chosen_profiles(options);
+  const auto profiles = chosen_profiles(options, *faults);
   if (!profiles) return report_error(profiles.error());
   if (options.list) {
     fmt::print("{}", render_fault_list(options.profiles.empty() ? *faults
@@ -171,10 +175,11 @@ int faults_command(const FaultOptions& options, const Globals& globals) {
   if (!suite) return report_error(suite.error());
   note_interrupts();
   int worst = exit_ok;
-  for (const faults::Profile profile : *profiles) {
-    if (profile != profiles->front()) fmt::print("\n");
-    if (!options.diagnose) fmt::print("### {}\n\n", name_of(profile));
-    const auto code = measure(options, *suite, profile, *faults);
+  for (const std::string& profile : *profiles) {
+    if (&profile != &profiles->front()) fmt::print("\n");
+    if (!options.diagnose) fmt::print("### {}\n\n", profile);
+    const auto of_profile = options.ids.empty() ? of_law_of(profile, *faults) : *faults;
+    const auto code = measure(options, *suite, profile, of_profile);
     if (!code) return report_error(code.error());
     if (*code == exit_interrupted) return *code;
     worst = std::max(worst, *code);

@@ -51,7 +51,7 @@ bool SelfDiagnosis::is_named() const {
 bool SelfDiagnosis::is_stage_named() const { return diagnosis && diagnosis->stage == fault->stage; }
 
 std::vector<SelfDiagnosis> diagnose_catalogue(const std::vector<SelectedCase>& cases,
-                                              faults::Profile profile) {
+                                              const std::string& profile) {
   const auto catalogue = faults::catalogue();
   std::vector<Answered> vectors;
   for (const SelectedCase& selected : cases) {

@@ -21,6 +21,6 @@ struct SelfDiagnosis {
 // For the faults that are detectable in the profile, on one vector per case, at 250 Hz where there
 // is one. `cases` are open loop, all of that profile.
 std::vector<SelfDiagnosis> diagnose_catalogue(const std::vector<SelectedCase>& cases,
-                                              faults::Profile profile);
+                                              const std::string& profile);
 
 }  // namespace attest

@@ -59,6 +59,7 @@ Result<FaultCatch> FaultJob::run(std::size_t) {
   if (!port) return tl::unexpected(port.error());
   HostHere host(*std::move(port));
   FaultCatch found;
+  if (!fault_.profiles->is_of_law_of(profile_)) return found;
   // The fault is of a module that the profile's cases do not have.
   const bool has_group = std::any_of(cases_.begin(), cases_.end(), [&](const SelectedCase& one) {
     return one.the_case.group == fault_.group;

@@ -34,11 +34,10 @@ struct Codec<FaultCatch> {
 class FaultJob final : public Job<FaultCatch> {
  public:
   // `cases` are open loop, all of `profile`, and outlive this.
-  FaultJob(const faults::Fault& fault, faults::Profile profile,
-           const std::vector<SelectedCase>& cases, std::filesystem::path golden_root,
-           std::optional<int> fraction_bits)
+  FaultJob(const faults::Fault& fault, std::string profile, const std::vector<SelectedCase>& cases,
+           std::filesystem::path golden_root, std::optional<int> fraction_bits)
       : fault_(fault),
-        profile_(profile),
+        profile_(std::move(profile)),
         cases_(cases),
         golden_root_(std::move(golden_root)),
         fraction_bits_(fraction_bits) {}
@@ -51,7 +50,7 @@ class FaultJob final : public Job<FaultCatch> {
 
  private:
   const faults::Fault& fault_;
-  faults::Profile profile_;
+  std::string profile_;
   const std::vector<SelectedCase>& cases_;
   std::filesystem::path golden_root_;
   std::optional<int> fraction_bits_;  // judged as a port with so many would be

@@ -5,6 +5,7 @@
 #include "harness/compare/compare.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/port/builtin.hpp"
+#include "harness/port/profiles.hpp"
 #include "harness/schedule/random.hpp"
 
 namespace attest {
@@ -36,61 +37,132 @@ Sample hovering(std::size_t tick) {
   return sample;
 }
 
+// The same for the attitude unit, with a setpoint from outside in each step.
+Sample attitude_held(std::size_t tick) {
+  Sample sample{};
+  auto& in = sample.attitude_in;
+  in.timestamp = 5'000'000 + 4000 * tick;
+  in.updated = ATTEST_ATTITUDE_UPDATED_VEHICLE_ATTITUDE_SETPOINT;
+  if (tick == 0) in.updated = ~0u;
+  in.vehicle_attitude.timestamp = in.vehicle_attitude.timestamp_sample = in.timestamp;
+  in.vehicle_attitude.q[0] = in.vehicle_attitude.delta_q_reset[0] = 1;
+  in.vehicle_attitude_setpoint.timestamp = in.timestamp;
+  in.vehicle_attitude_setpoint.q_d[0] = 1;
+  in.vehicle_attitude_setpoint.thrust_body[2] = -0.5f;
+  in.vehicle_status.armed = in.vehicle_status.is_rotary_wing = 1;
+  in.vehicle_local_position.heading_good_for_control = 1;
+  in.vehicle_control_mode.flag_control_attitude_enabled = 1;
+  in.vehicle_control_mode.flag_control_altitude_enabled = 1;
+  return sample;
+}
+
+// And for the rate unit, in flight.
+Sample rates_held(std::size_t tick) {
+  Sample sample{};
+  auto& in = sample.rate_in;
+  in.timestamp = 5'000'000 + 4000 * tick;
+  in.updated = ATTEST_RATE_UPDATED_VEHICLE_RATES_SETPOINT;
+  if (tick == 0) in.updated = ~0u;
+  in.vehicle_angular_velocity.timestamp_sample = in.timestamp;
+  in.vehicle_rates_setpoint.thrust_body[2] = -0.5f;
+  in.control_allocator_status.torque_setpoint_achieved = 1;
+  in.battery_status = {1, 1};
+  in.vehicle_control_mode = {1, 0, 1, 1};
+  in.vehicle_status.is_rotary_wing = 1;
+  return sample;
+}
+
+Sample held(Module module, std::size_t tick) {
+  if (module == Module::attitude_unit) return attitude_held(tick);
+  return module == Module::rate_unit ? rates_held(tick) : hovering(tick);
+}
+
+using Q = float[4];
+Q& attitude_in(Sample& sample, Module module) {
+  return module == Module::attitude_unit ? sample.attitude_in.vehicle_attitude.q
+                                         : sample.in.control_state.q;
+}
+Q& setpoint_in(Sample& sample, Module module) {
+  return module == Module::attitude_unit ? sample.attitude_in.vehicle_attitude_setpoint.q_d
+                                         : sample.in.vehicle_attitude_setpoint.q_d;
+}
+
+void set_rates(Sample& sample, Module module, float roll, float pitch, float yaw) {
+  if (module == Module::rate_unit) {
+    float(&xyz)[3] = sample.rate_in.vehicle_angular_velocity.xyz;
+    xyz[0] = roll, xyz[1] = pitch, xyz[2] = yaw;
+  } else if (module == Module::mc_att_control) {
+    auto& state = sample.in.control_state;
+    state.roll_rate = roll, state.pitch_rate = pitch, state.yaw_rate = yaw;
+  }
+}
+
 // Small attitude errors and rates that wander, and a setpoint that tilts a little.
-Trace hover() {
+Trace hover(Module module) {
   Trace trace;
-  trace.present = channels_of(Module::mc_att_control);
+  trace.present = channels_of(module);
   Random random(1);
   double roll = 0, pitch = 0;
   for (std::size_t tick = 0; tick < 2500; ++tick) {
-    Sample sample = hovering(tick);
+    Sample sample = held(module, tick);
     roll = 0.99 * roll + between(random, -0.003, 0.003);
     pitch = 0.99 * pitch + between(random, -0.003, 0.003);
-    set_quaternion(sample.in.control_state.q, 1, roll, pitch, 0);
-    auto& state = sample.in.control_state;
-    state.roll_rate = static_cast<float>(between(random, -0.05, 0.05));
-    state.pitch_rate = static_cast<float>(between(random, -0.05, 0.05));
-    state.yaw_rate = static_cast<float>(between(random, -0.02, 0.02));
+    if (module != Module::rate_unit) set_quaternion(attitude_in(sample, module), 1, roll, pitch, 0);
+    const auto p = static_cast<float>(between(random, -0.05, 0.05));
+    const auto q = static_cast<float>(between(random, -0.05, 0.05));
+    const auto r = static_cast<float>(between(random, -0.02, 0.02));
+    set_rates(sample, module, p, q, r);
     trace.samples.push_back(sample);
   }
   return trace;
 }
 
-Trace random_attitudes() {
+// The rates setpoint alone is compared.
+Trace random_attitudes(Module module) {
   Trace trace;
-  trace.present =
-      channels_of(Module::mc_att_control) & ~channels_of(Module::mc_att_control, "out/");
-  trace.present |= channels_of(Module::mc_att_control, "out/vehicle_rates_setpoint.");
+  trace.present = channels_of(module) & ~channels_of(module, "out/");
+  trace.present |= channels_of(module, "out/vehicle_rates_setpoint.");
   Random random(2);
   const auto any = [&](float(&q)[4]) {
     set_quaternion(q, between(random, -1, 1), between(random, -1, 1), between(random, -1, 1),
                    between(random, -1, 1));
   };
   for (std::size_t tick = 0; tick < 1000; ++tick) {
-    Sample sample = hovering(tick);
-    any(sample.in.control_state.q);
-    any(sample.in.vehicle_attitude_setpoint.q_d);
+    Sample sample = held(module, tick);
+    any(attitude_in(sample, module));
+    any(setpoint_in(sample, module));
     trace.samples.push_back(sample);
   }
   return trace;
 }
 
-bool differs(Port& port, const std::string& profile, Trace given) {
+bool differs(Port& port, const std::string& profile, Module module, Trace given) {
   Trace want = given;
+  const Subject subject{.profile = profile, .module = module};
   const auto reference = open_builtin();
-  drive(*reference->create(profile), want);
-  if (drive(*port.create(profile), given)) return true;
+  drive(*reference, subject, want);
+  if (drive(port, subject, given)) return true;
   return compare(given, want, Tolerances()).first.has_value();
+}
+
+bool has_cascade(const std::string& profile) {
+  const ProfileInfo* const known = find_profile(profile);
+  return known != nullptr && contains(known->modules, Module::attitude_unit);
 }
 
 }  // namespace
 
 bool caught_by_hover(Port& port, const std::string& profile) {
-  return differs(port, profile, hover());
+  const auto differs_in = [&](Module module) {
+    return differs(port, profile, module, hover(module));
+  };
+  if (!has_cascade(profile)) return differs_in(Module::mc_att_control);
+  return differs_in(Module::attitude_unit) || differs_in(Module::rate_unit);
 }
 
 bool caught_by_random_attitudes(Port& port, const std::string& profile) {
-  return differs(port, profile, random_attitudes());
+  const Module module = has_cascade(profile) ? Module::attitude_unit : Module::mc_att_control;
+  return differs(port, profile, module, random_attitudes(module));
 }
 
 }  // namespace attest

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "controller/actuation/unit_table.hpp"
+#include "controller/cascade/profile.hpp"
 #include "controller/faults/faulty_controller.hpp"
 #include "controller/reference/profile.hpp"
 #include "harness/core/suggestion.hpp"
@@ -16,22 +17,30 @@ namespace {
 
 using faults::Fault;
 
-class FaultyUnit final : public UnitOf<attest_inputs, attest_outputs> {
+// Controller is FaultyController, FaultyAttitudeUnit or FaultyRateUnit.
+template <typename Controller, typename Inputs, typename Outputs>
+class FaultyUnit final : public UnitOf<Inputs, Outputs> {
  public:
-  FaultyUnit(reference::Profile profile, const std::vector<const Fault*>& faults)
+  template <typename Profile>
+  FaultyUnit(Profile profile, const std::vector<const Fault*>& faults)
       : controller_(profile, faults) {}
 
   int set_parameter(const std::string& name, float value) override {
     return controller_.set_parameter(name, value) ? ATTEST_OK : ATTEST_INVALID;
   }
-  int step(const attest_inputs& in, attest_outputs& out) override {
+  int step(const Inputs& in, Outputs& out) override {
     controller_.step(in, out);
     return ATTEST_OK;
   }
 
  private:
-  faults::FaultyController controller_;
+  Controller controller_;
 };
+
+using FaultyControllerUnit = FaultyUnit<faults::FaultyController, attest_inputs, attest_outputs>;
+using FaultyAttitudeUnit =
+    FaultyUnit<faults::FaultyAttitudeUnit, attest_attitude_inputs, attest_attitude_outputs>;
+using FaultyRateUnit = FaultyUnit<faults::FaultyRateUnit, attest_rate_inputs, attest_rate_outputs>;
 
 class FaultyMixer final : public UnitOf<attest_mixer_inputs, attest_mixer_outputs> {
  public:
@@ -75,14 +84,19 @@ class FaultPort final : public Port {
   std::string name() const override { return "fault " + ids_; }
   std::string version() const override { return "of the catalogue"; }
   std::optional<int> fraction_bits() const override { return fraction_bits_; }
-  ModuleSet modules() const override {
-    return only(Module::mc_att_control) | only(Module::mixer) | only(Module::battery_status);
-  }
+  ModuleSet modules() const override { return ModuleSet().set(); }
   std::unique_ptr<Unit> create_unit(Module module, const std::string& profile,
                                     const std::string& definition) override {
-    if (module == Module::mc_att_control) {
-      const auto known = reference::profile_from_name(profile);
-      return known ? std::make_unique<FaultyUnit>(*known, faults_) : nullptr;
+    switch (module) {
+      case Module::mc_att_control:
+        return make<FaultyControllerUnit>(reference::profile_from_name(profile));
+      case Module::attitude_unit:
+        return make<FaultyAttitudeUnit>(cascade::profile_from_name(profile));
+      case Module::rate_unit:
+        return make<FaultyRateUnit>(cascade::profile_from_name(profile));
+      case Module::mixer:
+      case Module::battery_status:
+        break;
     }
     if (!actuation::is_profile(profile.c_str())) return nullptr;
     if (module == Module::battery_status) {
@@ -94,6 +108,12 @@ class FaultPort final : public Port {
   }
 
  private:
+  // Null without a profile.
+  template <typename Made, typename Profile>
+  std::unique_ptr<Unit> make(std::optional<Profile> profile) const {
+    return profile ? std::make_unique<Made>(*profile, faults_) : nullptr;
+  }
+
   std::string ids_;
   std::vector<const Fault*> faults_;
   std::optional<int> fraction_bits_;

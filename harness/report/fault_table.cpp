@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/port/profiles.hpp"
 #include "harness/report/text.hpp"
 
 namespace attest {
@@ -60,9 +61,7 @@ double percent(std::size_t part, std::size_t whole) {
 
 }  // namespace
 
-bool FaultFinding::is_detectable() const {
-  return fault->is_detectable(*reference::profile_from_name(profile));
-}
+bool FaultFinding::is_detectable() const { return fault->is_detectable(profile); }
 
 bool FaultFinding::is_caught_by_own_group() const {
   const std::string own = profile + "/" + std::string(fault->group) + "/";
@@ -122,9 +121,9 @@ std::string render_fault_list(const std::vector<const faults::Fault*>& faults) {
   std::string out;
   for (const faults::Fault* fault : faults) {
     std::string profiles;
-    for (const std::string_view name : reference::profile_names()) {
-      if (!fault->is_detectable(*reference::profile_from_name(name))) continue;
-      profiles += fmt::format("{}{}", profiles.empty() ? "" : " ", name);
+    for (const ProfileInfo& profile : known_profiles()) {
+      if (!fault->is_detectable(profile.name)) continue;
+      profiles += fmt::format("{}{}", profiles.empty() ? "" : " ", profile.name);
     }
     out += fmt::format("{:<36} {:<17} {:<16} {:<22} {}\n", fault->id, fault->group,
                        name_of(fault->stage), profiles, fault->what);

@@ -1,0 +1,114 @@
+// Mistakes of the attitude unit of the cascade with quaternions of another norm, NaN and
+// infinities.
+#include <algorithm>
+#include <cmath>
+
+#include "controller/faults/cascade_change.hpp"
+#include "controller/faults/groups.hpp"
+
+namespace attest::faults::in_cascade {
+namespace {
+
+using QuaternionLaw = QuaternionStages::Law;
+
+// NaN becomes a bound: the comparisons of std::fmin and std::fmax drop it.
+Vector limited_by_fmin(const Vector& rates, const QuaternionGains& gains) {
+  Vector limited;
+  for (int i = 0; i < 3; ++i) {
+    const float max = gains.rate_max_rad_s[i];
+    limited[i] = std::fmax(-max, std::fmin(rates[i], max));
+  }
+  return limited;
+}
+
+bool is_usable(const Quat& q) { return std::isfinite(q.sum()); }
+
+const Fault guard_list[] = {
+    {"cascade-acos-not-guarded", "robustness", Stage::guard,
+     "does not clamp the arguments of acos and asin: NaN now and then",
+     "a small yaw error, or an attitude of another norm", "a missing clamp",
+     [](FaultyLaw& law) { law.attitude_unit.attitude.in_domain = [](Scalar x) { return x; }; }},
+    {"cascade-attitude-normalised", "robustness", Stage::input, "normalises the attitude",
+     "an attitude of another norm", "a helpful extra",
+     [](FaultyLaw& law) {
+       also_before(law.attitude_unit, [](AttitudeIn& in) {
+         float(&q)[4] = in.vehicle_attitude.q;
+         const Quat unit = cascade::unit(cascade::quaternion_from<Scalar>(q));
+         for (int i = 0; i < 4; ++i) q[i] = unit[i];
+       });
+     }},
+    {"cascade-inverse-is-conjugate", "robustness", Stage::tilt,
+     "takes the conjugate of a quaternion for its inverse", "an attitude of another norm",
+     "a shortcut",
+     [](FaultyLaw& law) {
+       const auto conjugate_product = [](const Quat& q, const Quat& p) {
+         return cascade::canonical(cascade::product(Quat(q[0], -q[1], -q[2], -q[3]), p));
+       };
+       law.attitude_unit.attitude.remaining_yaw = conjugate_product;
+       law.attitude_unit.attitude.error = conjugate_product;
+     }},
+    {"cascade-yaw-ff-of-nan", "rate_limit", Stage::feed_forward,
+     "adds a commanded yaw rate that is not finite", "a yaw rate of NaN", "a missing guard",
+     [](FaultyLaw& law) {
+       law.attitude_unit.attitude.feed_forward = [](const Vector& rates, const Quat& q_WB,
+                                                    Scalar yaw_rate) {
+         return Vector(rates + cascade::z_axis(cascade::inverse(q_WB)) * yaw_rate);
+       };
+     }},
+    {"cascade-yaw-ff-of-infinity", "rate_limit", Stage::feed_forward,
+     "adds an infinite yaw rate: it tests for NaN only", "an infinite yaw rate",
+     "isnan for isfinite",
+     [](FaultyLaw& law) {
+       law.attitude_unit.attitude.feed_forward = [](const Vector& rates, const Quat& q_WB,
+                                                    Scalar yaw_rate) {
+         if (std::isnan(yaw_rate)) return rates;
+         return Vector(rates + cascade::z_axis(cascade::inverse(q_WB)) * yaw_rate);
+       };
+     }},
+    {"cascade-limit-drops-nan", "robustness", Stage::limit, "limits a rate that is NaN to a number",
+     "an attitude of NaN", "order of arguments",
+     [](FaultyLaw& law) { law.attitude_unit.attitude.limit = limited_by_fmin; }},
+    {"cascade-setpoint-nan-dropped", "robustness", Stage::guard,
+     "keeps the old attitude setpoint instead of one that is not finite",
+     "an attitude setpoint of NaN", "a helpful extra",
+     [](FaultyLaw& law) {
+       law.attitude_unit.attitude.setpoint =
+           [last = cascade::identity<Scalar>()](const Quat& given) mutable {
+             const Quat q = QuaternionLaw::setpoint(given);
+             return is_usable(q) ? last = q : last;
+           };
+     }},
+    {"cascade-setpoint-0-is-level", "robustness", Stage::guard,
+     "takes an attitude setpoint of 0 for level", "an attitude setpoint of 0", "a guard too many",
+     [](FaultyLaw& law) {
+       law.attitude_unit.attitude.setpoint = [](const Quat& given) {
+         return given.isZero(0) ? cascade::identity<Scalar>() : QuaternionLaw::setpoint(given);
+       };
+     }},
+    {"cascade-rates-nan-is-0", "robustness", Stage::guard, "publishes rates of 0 instead of NaN",
+     "an attitude of NaN", "a guard too many",
+     [](FaultyLaw& law) {
+       also_after(law.attitude_unit, [](const AttitudeIn&, AttitudeOut& out) {
+         auto& rates = out.vehicle_rates_setpoint;
+         for (float* rate : {&rates.roll, &rates.pitch, &rates.yaw}) {
+           if (!std::isfinite(*rate)) *rate = 0;
+         }
+       });
+     }},
+    {"cascade-stick-nan-is-0", "robustness", Stage::guard, "takes a stick of NaN for centred",
+     "a stick of NaN", "a guard too many",
+     [](FaultyLaw& law) {
+       also_before(law.attitude_unit, [](AttitudeIn& in) {
+         auto& sticks = in.manual_control_setpoint;
+         for (float* stick : {&sticks.roll, &sticks.pitch, &sticks.yaw}) {
+           if (std::isnan(*stick)) *stick = 0;
+         }
+       });
+     }},
+};
+
+}  // namespace
+
+std::span<const Fault> guard_faults() { return guard_list; }
+
+}  // namespace attest::faults::in_cascade

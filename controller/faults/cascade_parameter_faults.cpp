@@ -1,0 +1,167 @@
+// Parameters of the cascade that are read wrongly: from another name, in another unit, at another
+// time.
+#include <optional>
+#include <utility>
+
+#include "controller/faults/cascade_change.hpp"
+#include "controller/faults/groups.hpp"
+
+namespace attest::faults::in_cascade {
+namespace {
+
+using P = CascadeParameters;
+
+// One parameter always has this value, that of the default.
+template <float P::*member>
+void keep_at(FaultyLaw& law, float value) {
+  const auto change = [value](P& p) { p.*member = value; };
+  change_parameters(law.attitude_unit, change);
+  change_parameters(law.rate_unit, change);
+}
+
+template <typename Unit>
+void read_once(Unit& unit) {
+  unit.step.gains = [first = std::optional<P>{}](const P& p) mutable {
+    if (!first) first = p;
+    return decltype(unit.step)::Law::gains(*first);
+  };
+}
+
+template <typename Unit>
+void read_late(Unit& unit) {
+  unit.step.gains = [last = std::optional<P>{}](const P& p) mutable {
+    return decltype(unit.step)::Law::gains(std::exchange(last, p).value_or(p));
+  };
+}
+
+constexpr const char* wrong_name = "a wrong parameter";
+constexpr const char* not_read = "a missing parameter";
+
+const Fault parameter_list[] = {
+    {"cascade-attitude-param-once", "parameters", Stage::parameters,
+     "reads the parameters of the attitude unit once", "a parameter that changes in flight",
+     "a latch", [](FaultyLaw& law) { read_once(law.attitude_unit); }},
+    {"cascade-rate-param-once", "parameters", Stage::parameters,
+     "reads the parameters of the rate unit once", "a parameter that changes in flight", "a latch",
+     [](FaultyLaw& law) { read_once(law.rate_unit); }},
+    {"cascade-attitude-param-late", "parameters", Stage::parameters,
+     "uses the parameters of the previous update in the attitude unit",
+     "a parameter that changes in flight", "one-tick delay",
+     [](FaultyLaw& law) { read_late(law.attitude_unit); }},
+    {"cascade-rate-param-late", "parameters", Stage::parameters,
+     "uses the parameters of the previous update in the rate unit",
+     "a parameter that changes in flight", "one-tick delay",
+     [](FaultyLaw& law) { read_late(law.rate_unit); }},
+    {"cascade-attitude-param-at-once",
+     "robustness",
+     Stage::parameters,
+     "reads the parameters of the attitude unit in each step",
+     "an estimated hover thrust that becomes NaN",
+     "a latch",
+     [](FaultyLaw& law) {
+       also_before(law.attitude_unit,
+                   [](AttitudeIn& in) { in.updated |= ATTEST_ATTITUDE_UPDATED_PARAMETER_UPDATE; });
+     },
+     {},
+     from_v1_16_0},
+    {"cascade-pitch-p-of-roll", "parameters", Stage::parameters,
+     "reads MC_ROLL_P instead of MC_PITCH_P", "gains that differ", wrong_name,
+     read_from<&P::mc_pitch_p, &P::mc_roll_p>},
+    {"cascade-yaw-p-of-roll", "parameters", Stage::parameters,
+     "reads MC_ROLL_P instead of MC_YAW_P", "any yaw error", wrong_name,
+     read_from<&P::mc_yaw_p, &P::mc_roll_p>},
+    {"cascade-pitchrate-max-of-roll", "parameters", Stage::parameters,
+     "reads MC_ROLLRATE_MAX instead of MC_PITCHRATE_MAX", "limits that differ", wrong_name,
+     read_from<&P::mc_pitchrate_max, &P::mc_rollrate_max>},
+    {"cascade-yawrate-max-of-roll", "parameters", Stage::parameters,
+     "reads MC_ROLLRATE_MAX instead of MC_YAWRATE_MAX", "a large yaw error", wrong_name,
+     read_from<&P::mc_yawrate_max, &P::mc_rollrate_max>},
+    {"cascade-man-yaw-of-yawrate-max", "parameters", Stage::parameters,
+     "reads MC_YAWRATE_MAX instead of MPC_MAN_Y_MAX", "the yaw stick", wrong_name,
+     read_from<&P::mpc_man_y_max, &P::mc_yawrate_max>},
+    {"cascade-roll-p-not-read", "parameters", Stage::parameters, "does not read MC_ROLL_P",
+     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mc_roll_p>(law, 6.5f); }},
+    {"cascade-yaw-p-not-read", "parameters", Stage::parameters, "does not read MC_YAW_P",
+     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mc_yaw_p>(law, 2.8f); }},
+    {"cascade-yaw-weight-not-read", "parameters", Stage::parameters, "does not read MC_YAW_WEIGHT",
+     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mc_yaw_weight>(law, 0.4f); }},
+    {"cascade-rollrate-max-not-read", "parameters", Stage::parameters,
+     "does not read MC_ROLLRATE_MAX", "another value", not_read,
+     [](FaultyLaw& law) { keep_at<&P::mc_rollrate_max>(law, 220.0f); }},
+    {"cascade-yawrate-max-not-read", "parameters", Stage::parameters,
+     "does not read MC_YAWRATE_MAX", "another value", not_read,
+     [](FaultyLaw& law) { keep_at<&P::mc_yawrate_max>(law, 200.0f); }},
+    {"cascade-tilt-max-not-read", "parameters", Stage::parameters, "does not read MPC_MAN_TILT_MAX",
+     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mpc_man_tilt_max>(law, 35.0f); }},
+    {"cascade-man-yaw-not-read", "parameters", Stage::parameters, "does not read MPC_MAN_Y_MAX",
+     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mpc_man_y_max>(law, 150.0f); }},
+    {"cascade-spoolup-time-not-read",
+     "spool_up",
+     Stage::parameters,
+     "does not read COM_SPOOLUP_TIME",
+     "another value",
+     not_read,
+     [](FaultyLaw& law) { keep_at<&P::com_spoolup_time>(law, 1.0f); },
+     {},
+     from_v1_15_4},
+    {"cascade-pitchrate-p-of-roll", "parameters", Stage::parameters,
+     "reads the roll rate gain for pitch", "gains that differ", wrong_name,
+     read_from<&P::mc_pitchrate_p, &P::mc_rollrate_p>},
+    {"cascade-pitchrate-i-of-roll", "parameters", Stage::parameters,
+     "reads the roll integral gain for pitch", "gains that differ", wrong_name,
+     read_from<&P::mc_pitchrate_i, &P::mc_rollrate_i>},
+    {"cascade-pitchrate-d-of-roll", "parameters", Stage::parameters,
+     "reads the roll D gain for pitch", "gains that differ", wrong_name,
+     read_from<&P::mc_pitchrate_d, &P::mc_rollrate_d>},
+    {"cascade-pitchrate-ff-of-roll", "parameters", Stage::parameters,
+     "reads the roll feed-forward for pitch", "gains that differ", wrong_name,
+     read_from<&P::mc_pitchrate_ff, &P::mc_rollrate_ff>},
+    {"cascade-pitchrate-k-of-roll", "parameters", Stage::parameters,
+     "reads MC_ROLLRATE_K instead of MC_PITCHRATE_K", "gains that differ", wrong_name,
+     read_from<&P::mc_pitchrate_k, &P::mc_rollrate_k>},
+    {"cascade-yawrate-d-of-roll", "parameters", Stage::parameters, "reads the roll D gain for yaw",
+     "a yaw acceleration", wrong_name, read_from<&P::mc_yawrate_d, &P::mc_rollrate_d>},
+    {"cascade-yawrate-i-of-p", "parameters", Stage::parameters,
+     "reads MC_YAWRATE_P instead of MC_YAWRATE_I", "a yaw rate error that lasts", wrong_name,
+     read_from<&P::mc_yawrate_i, &P::mc_yawrate_p>},
+    {"cascade-int-lim-of-roll", "parameters", Stage::parameters, "reads MC_RR_INT_LIM for pitch",
+     "limits that differ", wrong_name, read_from<&P::mc_pr_int_lim, &P::mc_rr_int_lim>},
+    {"cascade-acro-pitch-of-roll", "parameters", Stage::parameters,
+     "reads MC_ACRO_R_MAX instead of MC_ACRO_P_MAX", "acro limits that differ", wrong_name,
+     read_from<&P::mc_acro_p_max, &P::mc_acro_r_max>},
+    {"cascade-acro-yaw-of-roll", "parameters", Stage::parameters,
+     "reads MC_ACRO_R_MAX instead of MC_ACRO_Y_MAX", "acro limits that differ", wrong_name,
+     read_from<&P::mc_acro_y_max, &P::mc_acro_r_max>},
+    {"cascade-rollrate-p-not-read", "parameters", Stage::parameters, "does not read MC_ROLLRATE_P",
+     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mc_rollrate_p>(law, 0.15f); }},
+    {"cascade-rollrate-i-not-read", "parameters", Stage::parameters, "does not read MC_ROLLRATE_I",
+     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mc_rollrate_i>(law, 0.2f); }},
+    {"cascade-rollrate-d-not-read", "parameters", Stage::parameters, "does not read MC_ROLLRATE_D",
+     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mc_rollrate_d>(law, 0.003f); }},
+    {"cascade-rollrate-ff-not-read", "parameters", Stage::parameters,
+     "does not read MC_ROLLRATE_FF", "another value", not_read,
+     [](FaultyLaw& law) { keep_at<&P::mc_rollrate_ff>(law, 0.0f); }},
+    {"cascade-rollrate-k-not-read", "parameters", Stage::parameters, "does not read MC_ROLLRATE_K",
+     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mc_rollrate_k>(law, 1.0f); }},
+    {"cascade-yawrate-p-not-read", "parameters", Stage::parameters, "does not read MC_YAWRATE_P",
+     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mc_yawrate_p>(law, 0.2f); }},
+    {"cascade-yawrate-k-not-read", "parameters", Stage::parameters, "does not read MC_YAWRATE_K",
+     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mc_yawrate_k>(law, 1.0f); }},
+    {"cascade-rr-int-lim-not-read", "parameters", Stage::parameters, "does not read MC_RR_INT_LIM",
+     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mc_rr_int_lim>(law, 0.3f); }},
+    {"cascade-yaw-tq-cutoff-not-read",
+     "yaw_filter",
+     Stage::parameters,
+     "does not read MC_YAW_TQ_CUTOFF",
+     "another value",
+     not_read,
+     [](FaultyLaw& law) { keep_at<&P::mc_yaw_tq_cutoff>(law, 2.0f); },
+     {},
+     from_v1_16_0},
+};
+
+}  // namespace
+
+std::span<const Fault> parameter_faults() { return parameter_list; }
+
+}  // namespace attest::faults::in_cascade

@@ -1,0 +1,255 @@
+// Mistakes in stabilized mode of the cascade that every profile has: tilt, yaw rate, throttle.
+#include <algorithm>
+#include <cmath>
+
+#include "controller/faults/cascade_change.hpp"
+#include "controller/faults/groups.hpp"
+
+namespace attest::faults::in_cascade {
+namespace {
+
+using cascade::product;
+
+template <typename Change>
+void change_sticks(FaultyLaw& law, Change change) {
+  also_before(law.attitude_unit, [change](AttitudeIn& in) { change(in.manual_control_setpoint); });
+}
+using SticksIn = decltype(AttitudeIn::manual_control_setpoint);
+
+// Combine is Quat(yaw, tilt).
+template <typename Combine>
+void change_desired(FaultyLaw& law, Combine combine) {
+  law.attitude_unit.sticks.desired_attitude = combine;
+}
+
+template <typename Limit>
+void change_tilt_limit(FaultyLaw& law, Limit limit) {
+  law.attitude_unit.sticks.limited_tilt = [limit](Scalar x, Scalar y, const StickGains& gains) {
+    return Vector(limit(x, y, gains.tilt_max_rad));
+  };
+}
+
+// The tilt as a roll angle and a pitch angle, one after the other.
+Quat tilt_of_angles(const Vector& v) {
+  const Quat roll(std::cos(v[0] / 2), std::sin(v[0] / 2), 0, 0);
+  const Quat pitch(std::cos(v[1] / 2), 0, std::sin(v[1] / 2), 0);
+  return product(pitch, roll);
+}
+
+void filter_roll_only(FaultyLaw& law) {
+  auto pitch = std::make_shared<Scalar>(0.0f);
+  also_before(law.attitude_unit, [pitch, stick = 0.0f](AttitudeIn& in) mutable {
+    if ((in.updated & ATTEST_ATTITUDE_UPDATED_MANUAL_CONTROL_SETPOINT) != 0) {
+      stick = in.manual_control_setpoint.pitch;
+    }
+    *pitch = stick;
+  });
+  law.attitude_unit.sticks.limited_tilt = [pitch](Scalar x, Scalar, const StickGains& gains) {
+    return StickStages::Law::limited_tilt(x, -*pitch * gains.tilt_max_rad, gains);
+  };
+}
+
+template <typename Test>
+void change_lowest_throttle(FaultyLaw& law, Test test) {
+  law.attitude_unit.sticks.is_lowest_throttle = test;
+}
+
+const Fault stick_list[] = {
+    {"cascade-sticks-exchanged", "sticks", Stage::sticks, "exchanges roll and pitch stick",
+     "one of the sticks", "wrong axis",
+     [](FaultyLaw& law) {
+       change_sticks(law, [](SticksIn& sticks) { std::swap(sticks.roll, sticks.pitch); });
+     }},
+    {"cascade-pitch-stick-reversed", "sticks", Stage::sticks, "pitches up with the stick forward",
+     "the pitch stick", "a sign",
+     [](FaultyLaw& law) {
+       change_sticks(law, [](SticksIn& sticks) { sticks.pitch = -sticks.pitch; });
+     }},
+    {"cascade-roll-stick-reversed", "sticks", Stage::sticks, "rolls left with the stick right",
+     "the roll stick", "a sign",
+     [](FaultyLaw& law) {
+       change_sticks(law, [](SticksIn& sticks) { sticks.roll = -sticks.roll; });
+     }},
+    {"cascade-yaw-stick-reversed", "sticks", Stage::sticks, "yaws left with the stick right",
+     "the yaw stick", "a sign",
+     [](FaultyLaw& law) {
+       change_sticks(law, [](SticksIn& sticks) { sticks.yaw = -sticks.yaw; });
+     }},
+    {"cascade-tilt-sticks-clamped", "robustness", Stage::sticks, "clamps roll and pitch stick",
+     "a stick beyond 1 with a slow filter", "a helpful extra",
+     [](FaultyLaw& law) {
+       change_sticks(law, [](SticksIn& sticks) {
+         sticks.roll = std::clamp(sticks.roll, -1.0f, 1.0f);
+         sticks.pitch = std::clamp(sticks.pitch, -1.0f, 1.0f);
+       });
+     }},
+    {"cascade-tilt-stick-deadzone", "sticks", Stage::sticks,
+     "gives roll and pitch stick a deadzone", "a small stick", "a helpful extra",
+     [](FaultyLaw& law) {
+       change_sticks(law, [](SticksIn& sticks) {
+         for (float* stick : {&sticks.roll, &sticks.pitch}) {
+           if (std::abs(*stick) < 0.05f) *stick = 0;
+         }
+       });
+     }},
+    {"cascade-tilt-not-limited", "sticks", Stage::sticks,
+     "does not limit the tilt of both sticks together", "both sticks at full", "a missing clamp",
+     [](FaultyLaw& law) {
+       change_tilt_limit(law, [](Scalar x, Scalar y, Scalar) { return Vector(x, y, 0); });
+     }},
+    {"cascade-tilt-limited-by-axis", "sticks", Stage::sticks, "limits the tilt of each axis",
+     "both sticks at full", "another limit",
+     [](FaultyLaw& law) {
+       change_tilt_limit(law, [](Scalar x, Scalar y, Scalar max) {
+         return Vector(cascade::clamp(x, -max, max), cascade::clamp(y, -max, max), 0);
+       });
+     }},
+    {"cascade-tilt-of-square", "sticks", Stage::sticks,
+     "scales the tilt to the circle at every deflection", "both sticks at half", "another limit",
+     [](FaultyLaw& law) {
+       change_tilt_limit(law, [](Scalar x, Scalar y, Scalar) {
+         const Scalar longest = std::max(std::abs(x), std::abs(y));
+         const Vector v(x, y, 0);
+         return longest > 0 ? Vector(v * (longest / v.norm())) : v;
+       });
+     }},
+    {"cascade-tilt-max-in-degrees", "sticks", Stage::sticks, "takes MPC_MAN_TILT_MAX as rad",
+     "the roll stick", "degrees",
+     [](FaultyLaw& law) {
+       change_gains(law.attitude_unit, [](AttitudeUnitGains& gains, const CascadeParameters& p) {
+         gains.sticks.tilt_max_rad = p.mpc_man_tilt_max;
+       });
+     }},
+    {"cascade-tilt-is-angles", "sticks", Stage::sticks,
+     "takes the sticks as roll and pitch angle instead of a rotation vector", "both sticks at half",
+     "another rotation", [](FaultyLaw& law) { law.attitude_unit.sticks.tilt = tilt_of_angles; }},
+    {"cascade-tilt-half-angle", "sticks", Stage::sticks,
+     "does not halve the tilt angle for the quaternion", "the roll stick", "a missing factor",
+     [](FaultyLaw& law) {
+       law.attitude_unit.sticks.tilt = [](const Vector& v) {
+         return cascade::rotation_about(2 * v[0], 2 * v[1]);
+       };
+     }},
+    {"cascade-tilt-filter-missing", "sticks", Stage::sticks, "does not filter the tilt",
+     "MC_MAN_TILT_TAU and a stick that moves", "a missing filter",
+     [](FaultyLaw& law) {
+       change_gains(law.attitude_unit, [](AttitudeUnitGains& gains, const CascadeParameters&) {
+         gains.sticks.tilt_tau_s = 0;
+       });
+     }},
+    {"cascade-tilt-filter-on-roll-only", "sticks", Stage::sticks, "filters the roll stick only",
+     "MC_MAN_TILT_TAU and a pitch stick that moves", "a missing axis", filter_roll_only},
+    {"cascade-tilt-filter-kept", "sticks", Stage::sticks,
+     "does not clear the filter of the tilt in other modes",
+     "MC_MAN_TILT_TAU and a change to position mode and back", "a missing reset",
+     [](FaultyLaw& law) {
+       law.attitude_unit.sticks.clears_tilt = [](bool, const CascadeTraits&) { return false; };
+     }},
+    {"cascade-yaw-then-tilt", "sticks", Stage::sticks, "tilts about the world's axes",
+     "a tilt at a heading other than north", "factors exchanged",
+     [](FaultyLaw& law) {
+       change_desired(law, [](const Quat& yaw, const Quat& tilt) { return product(tilt, yaw); });
+     }},
+    {"cascade-yaw-not-halved", "sticks", Stage::sticks,
+     "does not halve the yaw angle for the quaternion", "a heading other than north",
+     "a missing factor",
+     [](FaultyLaw& law) {
+       change_desired(
+           law, [](const Quat& yaw, const Quat& tilt) { return product(product(yaw, yaw), tilt); });
+     }},
+    {"cascade-yaw-rate-in-degrees", "sticks", Stage::sticks, "takes MPC_MAN_Y_MAX as rad/s",
+     "the yaw stick", "degrees",
+     [](FaultyLaw& law) {
+       change_gains(law.attitude_unit, [](AttitudeUnitGains& gains, const CascadeParameters& p) {
+         gains.sticks.yaw_rate_max_rad_s = p.mpc_man_y_max;
+       });
+     }},
+    {"cascade-yaw-rate-not-fed-forward", "sticks", Stage::sticks,
+     "publishes a yaw_sp_move_rate of 0", "the yaw stick", "a missing term",
+     [](FaultyLaw& law) {
+       also_after(law.attitude_unit, [](const AttitudeIn&, AttitudeOut& out) {
+         out.vehicle_attitude_setpoint.yaw_sp_move_rate = 0;
+       });
+     }},
+    {"cascade-idle-yaw-ignored", "sticks", Stage::sticks,
+     "holds the yaw also at the lowest throttle", "throttle -1 and a heading that drifts",
+     "a missing case",
+     [](FaultyLaw& law) {
+       change_lowest_throttle(law, [](Scalar, const StickGains&) { return false; });
+     }},
+    {"cascade-idle-yaw-below-0", "sticks", Stage::sticks, "takes any throttle below 0 for idle",
+     "throttle -0.5 and a heading that drifts", "a wrong threshold",
+     [](FaultyLaw& law) {
+       change_lowest_throttle(law, [](Scalar throttle, const StickGains& gains) {
+         return throttle < 0 && !gains.yaws_at_lowest_throttle;
+       });
+     }},
+    {"cascade-idle-yaw-from-0.1", "sticks", Stage::sticks,
+     "takes a throttle below 0.1 for idle, as if it began at 0",
+     "throttle 0 and a heading that drifts", "another range",
+     [](FaultyLaw& law) {
+       change_lowest_throttle(law, [](Scalar throttle, const StickGains& gains) {
+         return throttle < 0.1f && !gains.yaws_at_lowest_throttle;
+       });
+     }},
+    {"cascade-airmode-ignored", "sticks", Stage::sticks, "does not read MC_AIRMODE",
+     "MC_AIRMODE 2 at throttle -1", "a missing parameter",
+     [](FaultyLaw& law) {
+       change_lowest_throttle(law,
+                              [](Scalar throttle, const StickGains&) { return throttle < -0.9f; });
+     }},
+    {"cascade-airmode-1-yaws", "sticks", Stage::sticks, "takes MC_AIRMODE 1 like 2",
+     "MC_AIRMODE 1 at throttle -1", "flag comparison",
+     [](FaultyLaw& law) {
+       change_gains(law.attitude_unit, [](AttitudeUnitGains& gains, const CascadeParameters& p) {
+         gains.sticks.yaws_at_lowest_throttle = p.mc_airmode != 0;
+       });
+     }},
+    {"cascade-heading-of-nose-down", "sticks", Stage::sticks,
+     "takes the heading from q0 and q3 alone", "a large tilt", "a shortcut",
+     [](FaultyLaw& law) {
+       law.attitude_unit.sticks.heading = [](const Quat& q, const CascadeTraits&) {
+         return cascade::wrap(2 * std::atan2(q[3], q[0]));
+       };
+     }},
+    {"cascade-vtol-tilt-missing", "sticks", Stage::sticks,
+     "does not turn the tilt of a VTOL into its present heading",
+     "a VTOL with a yaw error and a tilt", "a missing step",
+     [](FaultyLaw& law) {
+       law.attitude_unit.sticks.tilt_for_yaw_error = [](const Quat& tilt, const Quat&,
+                                                        const Quat&) { return tilt; };
+     }},
+    {"cascade-vtol-tilt-reversed", "sticks", Stage::sticks,
+     "turns the tilt of a VTOL by the yaw error the other way",
+     "a VTOL with a yaw error and a tilt", "a sign",
+     [](FaultyLaw& law) {
+       law.attitude_unit.sticks.tilt_for_yaw_error = [](const Quat& tilt, const Quat& desired,
+                                                        const Quat& q_WB) {
+         const Vector up(0, 0, 1);
+         const Quat lean = cascade::shortest_rotation(up, cascade::z_axis(q_WB));
+         const Quat yaw = product(cascade::inverse(lean), q_WB);
+         const Quat turned = product(product(cascade::inverse(yaw), desired), tilt);
+         return cascade::shortest_rotation(up, cascade::z_axis(turned));
+       };
+     }},
+    {"cascade-vtol-tilt-for-all", "sticks", Stage::sticks,
+     "turns the tilt of every vehicle like that of a VTOL", "a yaw error and a tilt",
+     "a missing case",
+     [](FaultyLaw& law) {
+       also_before(law.attitude_unit, [](AttitudeIn& in) { in.vehicle_status.is_vtol = 1; });
+       start_with(law.attitude_unit, ATTEST_ATTITUDE_UPDATED_VEHICLE_STATUS, [](AttitudeIn& in) {
+         in.vehicle_status = {.armed_time = 0,
+                              .armed = 0,
+                              .is_rotary_wing = 1,
+                              .is_vtol = 1,
+                              .in_transition_mode = 0,
+                              .is_vtol_tailsitter = 0};
+       });
+     }},
+};
+
+}  // namespace
+
+std::span<const Fault> stick_faults() { return stick_list; }
+
+}  // namespace attest::faults::in_cascade

@@ -1,0 +1,211 @@
+// Wrong time steps of both units of the cascade.
+#include <algorithm>
+#include <cmath>
+
+#include "controller/faults/cascade_change.hpp"
+#include "controller/faults/groups.hpp"
+
+namespace attest::faults::in_cascade {
+namespace {
+
+struct Bounds {
+  float min_s, max_s;
+};
+constexpr Bounds attitude_bounds{0.0002f, 0.02f};
+constexpr Bounds rate_bounds{0.000125f, 0.02f};
+
+float seconds_between(std::uint64_t now_us, std::uint64_t last_us) {
+  return static_cast<float>(now_us - last_us) * 1e-6f;
+}
+
+float clamped(float dt_s, const Bounds& bounds) {
+  return cascade::clamp(dt_s, bounds.min_s, bounds.max_s);
+}
+
+// Other bounds of dt.
+template <typename Unit>
+void set_bounds(Unit& unit, Bounds bounds) {
+  unit.step.step_time = [bounds](std::uint64_t now_us, std::uint64_t last_us) {
+    return clamped(seconds_between(now_us, last_us), bounds);
+  };
+}
+
+// Another time between two samples, with the bounds of the unit. Measure is float(now, last).
+template <typename Unit, typename Measure>
+void measure(Unit& unit, const Bounds& bounds, Measure measured) {
+  unit.step.step_time = [bounds, measured](std::uint64_t now_us, std::uint64_t last_us) mutable {
+    return clamped(measured(now_us, last_us), bounds);
+  };
+}
+template <typename Measure>
+void measure_attitude(FaultyLaw& law, Measure measured) {
+  measure(law.attitude_unit, attitude_bounds, measured);
+}
+template <typename Measure>
+void measure_rate(FaultyLaw& law, Measure measured) {
+  measure(law.rate_unit, rate_bounds, measured);
+}
+
+// Timestamps in an integer type, and their difference without wrap-around.
+template <typename Integer>
+float difference_as(std::uint64_t now_us, std::uint64_t last_us) {
+  const double now = static_cast<double>(static_cast<Integer>(now_us));
+  return static_cast<float>((now - static_cast<double>(static_cast<Integer>(last_us))) * 1e-6);
+}
+
+float whole_milliseconds(std::uint64_t now_us, std::uint64_t last_us) {
+  return static_cast<float>((now_us - last_us) / 1000) * 1e-3f;
+}
+
+float of_float_clock(std::uint64_t now_us, std::uint64_t last_us) {
+  return (static_cast<float>(now_us) - static_cast<float>(last_us)) * 1e-6f;
+}
+
+float four_ms(std::uint64_t, std::uint64_t) { return 0.004f; }
+
+// The time of the previous step.
+auto one_late() {
+  return [dt_s = 0.02f](std::uint64_t now_us, std::uint64_t last_us) mutable {
+    return std::exchange(dt_s, seconds_between(now_us, last_us));
+  };
+}
+
+auto nominal() {
+  return [n = 0, dt_s = 0.0f](std::uint64_t now_us, std::uint64_t last_us) mutable {
+    if (n < 2) ++n, dt_s = seconds_between(now_us, last_us);
+    return dt_s;
+  };
+}
+
+auto filtered() {
+  return [dt_s = 0.0f](std::uint64_t now_us, std::uint64_t last_us) mutable {
+    const float fresh = seconds_between(now_us, last_us);
+    dt_s = dt_s == 0 || last_us == 0 ? fresh : dt_s + 0.25f * (fresh - dt_s);
+    return dt_s;
+  };
+}
+
+const Fault timing_list[] = {
+    {"cascade-attitude-dt-from-2-ms", "timing", Stage::timing,
+     "bounds dt of the attitude unit below at 2 ms, as the older law", "rates above 500 Hz",
+     "wrong clamp",
+     [](FaultyLaw& law) {
+       set_bounds(law.attitude_unit, {0.002f, 0.02f});
+     }},
+    {"cascade-attitude-dt-from-0.125-ms", "timing", Stage::timing,
+     "bounds dt of the attitude unit below at that of the rate unit", "rates above 5 kHz",
+     "wrong clamp",
+     [](FaultyLaw& law) {
+       set_bounds(law.attitude_unit, {0.000125f, 0.02f});
+     }},
+    {"cascade-attitude-dt-no-maximum", "timing", Stage::timing,
+     "does not bound dt of the attitude unit from above", "a gap of more than 20 ms",
+     "missing clamp",
+     [](FaultyLaw& law) {
+       set_bounds(law.attitude_unit, {0.0002f, 1e9f});
+     }},
+    {"cascade-attitude-dt-to-50-ms", "timing", Stage::timing,
+     "bounds dt of the attitude unit above at 50 ms", "a gap of more than 20 ms", "wrong clamp",
+     [](FaultyLaw& law) {
+       set_bounds(law.attitude_unit, {0.0002f, 0.05f});
+     }},
+    {"cascade-attitude-dt-fixed", "timing", Stage::timing, "uses 4 ms as dt of the attitude unit",
+     "any rate except 250 Hz", "a fixed rate",
+     [](FaultyLaw& law) { measure_attitude(law, four_ms); }},
+    {"cascade-attitude-dt-nominal", "timing", Stage::timing,
+     "uses the first period as dt of the attitude unit in all steps", "jitter", "a fixed rate",
+     [](FaultyLaw& law) { measure_attitude(law, nominal()); }},
+    {"cascade-attitude-dt-one-late", "timing", Stage::timing,
+     "uses the previous period in the attitude unit", "jitter", "one-tick delay",
+     [](FaultyLaw& law) { measure_attitude(law, one_late()); }},
+    {"cascade-attitude-dt-in-ms", "timing", Stage::timing,
+     "counts whole milliseconds in the attitude unit", "333 Hz, or jitter", "integer division",
+     [](FaultyLaw& law) { measure_attitude(law, whole_milliseconds); }},
+    {"cascade-attitude-dt-of-step", "timing", Stage::timing,
+     "takes dt of the attitude unit from the time of the step, not of the sample",
+     "samples of another age", "another time",
+     [](FaultyLaw& law) {
+       also_before(law.attitude_unit,
+                   [](AttitudeIn& in) { in.vehicle_attitude.timestamp_sample = in.timestamp; });
+     }},
+    {"cascade-attitude-dt-of-publication", "timing", Stage::timing,
+     "takes dt of the attitude unit from the publication of the attitude, not from its sample",
+     "samples of another age", "another time",
+     [](FaultyLaw& law) {
+       also_before(law.attitude_unit, [](AttitudeIn& in) {
+         in.vehicle_attitude.timestamp_sample = in.vehicle_attitude.timestamp;
+       });
+     }},
+    {"cascade-attitude-clock-in-float", "timing", Stage::timing,
+     "holds timestamps of the attitude unit in float32", "a timestamp of seconds", "a narrow type",
+     [](FaultyLaw& law) { measure_attitude(law, of_float_clock); }},
+    {"cascade-attitude-clock-in-uint32", "timing", Stage::timing,
+     "holds timestamps of the attitude unit in 32 bits, without wrap-around",
+     "timestamps across 2^32 us", "a narrow type",
+     [](FaultyLaw& law) { measure_attitude(law, difference_as<std::uint32_t>); }},
+    {"cascade-attitude-dt-filtered", "timing", Stage::timing, "low-passes dt of the attitude unit",
+     "jitter", "a helpful extra", [](FaultyLaw& law) { measure_attitude(law, filtered()); }},
+    {"cascade-rate-dt-from-2-ms", "timing", Stage::timing,
+     "bounds dt of the rate unit below at 2 ms, as the older law", "rates above 500 Hz",
+     "wrong clamp",
+     [](FaultyLaw& law) {
+       set_bounds(law.rate_unit, {0.002f, 0.02f});
+     }},
+    {"cascade-rate-dt-from-0.2-ms", "timing", Stage::timing,
+     "bounds dt of the rate unit below at that of the attitude unit", "rates above 5 kHz",
+     "wrong clamp",
+     [](FaultyLaw& law) {
+       set_bounds(law.rate_unit, {0.0002f, 0.02f});
+     }},
+    {"cascade-rate-dt-no-minimum", "timing", Stage::timing,
+     "does not bound dt of the rate unit from below", "two samples of one time", "missing clamp",
+     [](FaultyLaw& law) {
+       set_bounds(law.rate_unit, {0, 0.02f});
+     }},
+    {"cascade-rate-dt-no-maximum", "timing", Stage::timing,
+     "does not bound dt of the rate unit from above", "a gap of more than 20 ms", "missing clamp",
+     [](FaultyLaw& law) {
+       set_bounds(law.rate_unit, {0.000125f, 1e9f});
+     }},
+    {"cascade-rate-dt-to-50-ms", "timing", Stage::timing,
+     "bounds dt of the rate unit above at 50 ms", "a gap of more than 20 ms", "wrong clamp",
+     [](FaultyLaw& law) {
+       set_bounds(law.rate_unit, {0.000125f, 0.05f});
+     }},
+    {"cascade-rate-dt-fixed", "timing", Stage::timing, "uses 1 ms as dt of the rate unit",
+     "any rate except 1 kHz", "a fixed rate",
+     [](FaultyLaw& law) {
+       measure_rate(law, [](std::uint64_t, std::uint64_t) { return 0.001f; });
+     }},
+    {"cascade-rate-dt-nominal", "timing", Stage::timing,
+     "uses the first period as dt of the rate unit in all steps", "jitter", "a fixed rate",
+     [](FaultyLaw& law) { measure_rate(law, nominal()); }},
+    {"cascade-rate-dt-one-late", "timing", Stage::timing,
+     "uses the previous period in the rate unit", "jitter", "one-tick delay",
+     [](FaultyLaw& law) { measure_rate(law, one_late()); }},
+    {"cascade-rate-dt-in-ms", "timing", Stage::timing, "counts whole milliseconds in the rate unit",
+     "333 Hz, or jitter", "integer division",
+     [](FaultyLaw& law) { measure_rate(law, whole_milliseconds); }},
+    {"cascade-rate-dt-of-step", "timing", Stage::timing,
+     "takes dt of the rate unit from the time of the step, not of the sample",
+     "samples of another age", "another time",
+     [](FaultyLaw& law) {
+       also_before(law.rate_unit,
+                   [](RateIn& in) { in.vehicle_angular_velocity.timestamp_sample = in.timestamp; });
+     }},
+    {"cascade-rate-clock-in-float", "timing", Stage::timing,
+     "holds timestamps of the rate unit in float32", "a timestamp of seconds", "a narrow type",
+     [](FaultyLaw& law) { measure_rate(law, of_float_clock); }},
+    {"cascade-rate-clock-in-uint32", "timing", Stage::timing,
+     "holds timestamps of the rate unit in 32 bits, without wrap-around",
+     "timestamps across 2^32 us", "a narrow type",
+     [](FaultyLaw& law) { measure_rate(law, difference_as<std::uint32_t>); }},
+    {"cascade-rate-dt-filtered", "timing", Stage::timing, "low-passes dt of the rate unit",
+     "jitter", "a helpful extra", [](FaultyLaw& law) { measure_rate(law, filtered()); }},
+};
+
+}  // namespace
+
+std::span<const Fault> timing_faults() { return timing_list; }
+
+}  // namespace attest::faults::in_cascade
