@@ -90,9 +90,10 @@ void add_record(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("F")
       ->capture_default_str();
   add_timeout(*command, options->host.timeout_s);
-  add_examples(*command, {{"attest record rates/p_alone --rate 250 --port lib:./libmine.so --out "
-                           "mine.csv",
-                           "for a plot, or for `attest replay` and `attest compare`"}});
+  add_examples(*command,
+               {{"attest record px4-v1.5.5/rates/p_alone --rate 250 --port lib:./libmine.so --out "
+                 "mine.csv",
+                 "for a plot, or for `attest replay` and `attest compare`"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return record_command(*options, globals); };
   });

@@ -70,7 +70,9 @@ void change_gains(Trace& trace, Module module) {
   constexpr float factor = 0.75f;
   if (!info_of(module).has_updated) return;
   for (ParameterChange& change : trace.parameters) {
-    if (change.name.starts_with("MC_")) change.value *= factor;
+    const bool is_gain =
+        change.name.starts_with("MC_") && !is_integer_parameter(module, change.name);
+    if (is_gain) change.value *= factor;
   }
   for (const std::string& name : some_gains(module)) {
     const auto is_it = [&](const ParameterChange& change) { return change.name == name; };

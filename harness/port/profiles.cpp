@@ -33,8 +33,8 @@ std::vector<Parameter> rows_of(const Table& table, Profile profile) {
   std::vector<Parameter> parameters;
   for (const auto& row : table) {
     if (!row.profiles.contains(profile)) continue;
-    parameters.push_back(
-        {row.name, row.default_value, row.min, row.max, row.unit, row.description});
+    parameters.push_back({row.name, row.default_value, row.min, row.max, row.unit, row.description,
+                          row.type == decltype(row.type)::integer});
   }
   return parameters;
 }
@@ -43,7 +43,8 @@ std::vector<Parameter> battery_parameters() {
   constexpr float any = std::numeric_limits<float>::infinity();
   std::vector<Parameter> parameters;
   for (const auto& row : actuation::battery_parameters()) {
-    parameters.push_back({row.name, row.default_value, -any, any, row.unit, row.description});
+    parameters.push_back(
+        {row.name, row.default_value, -any, any, row.unit, row.description, false});
   }
   return parameters;
 }
@@ -93,6 +94,15 @@ std::vector<Parameter> parameters_of(Module module, const ProfileInfo& profile) 
       return rows_of(cascade::rate_parameters(), *cascade::profile_from_name(profile.name));
   }
   return {};
+}
+
+bool is_integer_parameter(Module module, std::string_view name) {
+  for (const ProfileInfo& profile : known_profiles()) {
+    for (const Parameter& parameter : parameters_of(module, profile)) {
+      if (parameter.name == name && parameter.is_integer) return true;
+    }
+  }
+  return false;
 }
 
 std::vector<std::string> parameter_names(Module module, std::string_view profile) {

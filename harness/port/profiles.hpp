@@ -34,10 +34,14 @@ struct Parameter {
   float min, max;         // the bounds of the ground station, which the law does not enforce
   std::string_view unit;  // "1" when dimensionless
   std::string_view description;
+  bool is_integer;
 };
 
 // Those of a module in a profile. In the order of the law's own table.
 std::vector<Parameter> parameters_of(Module module, const ProfileInfo& profile);
+
+// True if the module has an integer parameter of that name in some profile.
+bool is_integer_parameter(Module module, std::string_view name);
 
 // The names of a module's parameters. If the profile is not known, those of all profiles.
 std::vector<std::string> parameter_names(Module module, std::string_view profile);

@@ -109,7 +109,7 @@ CHECK
   [ "$status" -eq 1 ]
   has "the flight ended at"
   [ -s lost.csv ]
-  run "$ATTEST" sim attitude/both_tilted --rate 250 --out x.csv
+  run "$ATTEST" sim px4-v1.5.5/attitude/both_tilted --rate 250 --out x.csv
   [ "$status" -eq 2 ]
   has "has no [flight]"
   run "$ATTEST" sim hover --rate 250 --vehicle irsi --out x.csv
@@ -254,7 +254,7 @@ CHECK
   [ "$(head -c 4 hover.ulg)" = ULog ]
   grep -aq "vehicle_attitude:uint64_t timestamp;float\[4\] q;" hover.ulg
   grep -aq MC_ROLL_P hover.ulg
-  "$ATTEST" record rates/p_alone --rate 250 --out p_alone.ulg
+  "$ATTEST" record px4-v1.5.5/rates/p_alone --rate 250 --out p_alone.ulg
   grep -aq "actuator_controls_0:uint64_t timestamp;float\[8\] control;" p_alone.ulg
   run "$ATTEST" record px4-v1.5.5/mixer/controls_beyond_1 --rate 250 --out 4x.ulg
   [ "$status" -eq 2 ]

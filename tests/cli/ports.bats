@@ -187,7 +187,8 @@ TASKS
 @test "a port that forks is judged once a case, at once, and leaves nothing behind" {
   judged forks
   [ "$status" -eq 0 ]
-  "$ATTEST" run --filter 'rates/*@250hz' --json reference.json
+  "$ATTEST" run --profile px4-v1.5.5 --profile px4-v1.3.4 --filter 'rates/*@250hz' \
+    --json reference.json
   [ "$(grep -c '"id"' report.json)" -eq "$(grep -c '"id"' reference.json)" ]
   # The process would sleep for 60 s, so it was killed. Its command line would name the port.
   ! grep -qa "port_fork[s].so" /proc/[0-9]*/cmdline 2>/dev/null

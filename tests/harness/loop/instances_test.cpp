@@ -1,0 +1,146 @@
+// The other instance of a port, before the judged one or at the same time.
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/loop/open_loop.hpp"
+#include "tests/harness/loop/numbered_trace.hpp"
+
+namespace attest {
+namespace {
+
+using testing::ElementsAre;
+
+using Kind = PortFault::Kind;
+
+// Records the calls of its instances, of which at most `most_alive` may exist at a time.
+class CountingPort final : public Port {
+ public:
+  std::string name() const override { return "counting"; }
+  std::string version() const override { return "1"; }
+  std::unique_ptr<Unit> create_unit(Module, const std::string&, const std::string&) override {
+    if (alive_ == most_alive) return nullptr;
+    ++alive_;
+    calls.push_back(fmt::format("create {}", ++made_));
+    return std::make_unique<Counting>(*this, made_);
+  }
+
+  int most_alive = 9;
+  std::vector<std::string> calls;
+
+ private:
+  class Counting final : public UnitOf<attest_inputs, attest_outputs> {
+   public:
+    Counting(CountingPort& port, int number) : port_(port), number_(number) {}
+    ~Counting() override {
+      port_.calls.push_back(fmt::format("destroy {}", number_));
+      --port_.alive_;
+    }
+    int set_parameter(const std::string&, float) override { return ATTEST_OK; }
+    int step(const attest_inputs& in, attest_outputs& out) override {
+      port_.calls.push_back(fmt::format("step {} {:g}", number_, in.control_state.roll_rate));
+      out.actuator_controls_0.control[0] = in.control_state.roll_rate;
+      return ATTEST_OK;
+    }
+
+   private:
+    CountingPort& port_;
+    int number_;
+  };
+
+  int made_ = 0, alive_ = 0;
+};
+
+class Company : public testing::Test {
+ protected:
+  std::optional<PortFault> drive_with(Instances instances) {
+    trace_ = trace_of(2);
+    for (Sample& sample : trace_.samples) sample.in.control_state.roll_rate = 1;
+    return drive(port_, Subject{.profile = "any", .instances = instances}, trace_);
+  }
+
+  CountingPort port_;
+  Trace trace_;
+};
+
+TEST_F(Company, AgainDestroysTheOtherBeforeTheJudgedIsMade) {
+  EXPECT_FALSE(drive_with(Instances::again));
+  EXPECT_THAT(port_.calls, ElementsAre("create 1", "step 1 -1", "step 1 -1", "destroy 1",
+                                       "create 2", "step 2 1", "step 2 1", "destroy 2"));
+  EXPECT_EQ(trace_.samples[1].out.actuator_controls_0.control[0], 1);
+}
+
+TEST_F(Company, TogetherStepsThemAlternately) {
+  EXPECT_FALSE(drive_with(Instances::together));
+  EXPECT_THAT(port_.calls, ElementsAre("create 1", "create 2", "step 1 -1", "step 2 1", "step 1 -1",
+                                       "step 2 1", "destroy 2", "destroy 1"));
+}
+
+TEST_F(Company, CrossedDestroysTheFirstWhileTheJudgedLives) {
+  EXPECT_FALSE(drive_with(Instances::crossed));
+  EXPECT_THAT(port_.calls, ElementsAre("create 1", "create 2", "step 1 -1", "step 1 -1",
+                                       "destroy 1", "step 2 1", "step 2 1", "destroy 2"));
+}
+
+// Notes what each of two rate units is given.
+class RatePort final : public Port {
+ public:
+  class Noting final : public UnitOf<attest_rate_inputs, attest_rate_outputs> {
+   public:
+    explicit Noting(std::vector<std::string>& notes) : notes_(notes) {}
+    int set_parameter(const std::string& name, float value) override {
+      notes_.push_back(fmt::format("{}={}", name, value));
+      return ATTEST_OK;
+    }
+    int step(const attest_rate_inputs& in, attest_rate_outputs&) override {
+      notes_.push_back(fmt::format("{} {} {}", in.vehicle_angular_velocity.timestamp_sample,
+                                   in.vehicle_angular_velocity.xyz[1],
+                                   in.vehicle_control_mode.flag_armed));
+      return ATTEST_OK;
+    }
+
+   private:
+    std::vector<std::string>& notes_;
+  };
+
+  std::string name() const override { return "rate"; }
+  std::string version() const override { return "1"; }
+  ModuleSet modules() const override { return only(Module::rate_unit); }
+  std::unique_ptr<Unit> create_unit(Module, const std::string&, const std::string&) override {
+    return std::make_unique<Noting>(notes);
+  }
+
+  std::vector<std::string> notes;
+};
+
+TEST(CompanyOfAUnit, HasOtherInputsAndGainsAtTheSameTimes) {
+  RatePort port;
+  Trace trace = trace_of(1);
+  trace.parameters = {{0, "MC_YAWRATE_P", 0.5f}, {0, "MC_BAT_SCALE_EN", 1}};
+  auto& in = trace.samples[0].rate_in;
+  in.vehicle_angular_velocity.timestamp_sample = 7;
+  in.vehicle_angular_velocity.xyz[1] = 3;
+  in.vehicle_control_mode.flag_armed = 1;
+  Subject subject{.profile = "px4-v1.16.0", .module = Module::rate_unit};
+  subject.instances = Instances::again;
+  EXPECT_FALSE(drive(port, subject, trace));
+  EXPECT_THAT(port.notes, ElementsAre("MC_PITCHRATE_D=1", "MC_ROLLRATE_P=1", "MC_YAWRATE_P=0.375",
+                                      "MC_BAT_SCALE_EN=1", "7 -3 0", "MC_YAWRATE_P=0.5",
+                                      "MC_BAT_SCALE_EN=1", "7 3 1"));
+}
+
+TEST_F(Company, APortThatMakesOneInstanceDoesNotSupportTwo) {
+  port_.most_alive = 1;
+  const auto fault = drive_with(Instances::together);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->kind, Kind::unsupported);
+  EXPECT_FALSE(drive_with(Instances::again));
+}
+
+}  // namespace
+}  // namespace attest
