@@ -63,4 +63,21 @@ double baseline(const Channel& channel) {
   return is_cascade ? cascade_baseline(channel.name) : controller_baseline(channel.name);
 }
 
+std::optional<double> baseline_of_hover(const Channel& channel) {
+  // For the controller a fraction 0..1 of the motors' full thrust, for the cascade along body z.
+  const auto is = [&](Module module, std::string_view name) {
+    return channel.module == module && channel.name == name;
+  };
+  if (is(Module::mc_att_control, "in/vehicle_attitude_setpoint.thrust") ||
+      is(Module::mc_att_control, "in/vehicle_rates_setpoint.thrust") ||
+      is(Module::mc_att_control, "in/manual_control_setpoint.z")) {
+    return 1;
+  }
+  if (is(Module::attitude_unit, "in/vehicle_attitude_setpoint.thrust_body[2]") ||
+      is(Module::rate_unit, "in/vehicle_rates_setpoint.thrust_body[2]")) {
+    return -1;
+  }
+  return std::nullopt;
+}
+
 }  // namespace attest

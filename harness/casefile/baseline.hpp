@@ -1,11 +1,17 @@
 // The values of the inputs that a case leaves out: a vehicle that hovers level and armed.
 #pragma once
 
+#include <optional>
+
 #include "harness/trace/channels.hpp"
 
 namespace attest {
 
 // REQUIRES: an input.
 double baseline(const Channel& channel);
+
+// Of a thrust: its baseline in a flight, in units of the vehicle's hover thrust. Empty for other
+// channels.
+std::optional<double> baseline_of_hover(const Channel& channel);
 
 }  // namespace attest

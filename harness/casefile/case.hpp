@@ -15,7 +15,7 @@
 #include "harness/casefile/run_configuration.hpp"
 #include "harness/casefile/signal.hpp"
 #include "harness/compare/tolerance.hpp"
-#include "harness/schedule/rate.hpp"
+#include "harness/schedule/loop_rate.hpp"
 
 namespace attest {
 
@@ -96,6 +96,14 @@ struct UnitTiming {
   bool on_estimate = false;
 };
 
+// The attitude unit of a flight of the cascade. The case itself is that of the rate unit, which
+// commands the motors. Times in ticks are ticks of the rate unit, but for those in `unit`.
+struct AttitudeLoop {
+  UnitTiming unit;
+  std::vector<TopicStimulus> topics;
+  Span delay{0, Span::In::seconds};  // of vehicle_rates_setpoint, on its way to the rate unit
+};
+
 struct ToleranceOverride {
   std::string channels;  // prefix without "out/"
   Tolerance tolerance;
@@ -126,7 +134,7 @@ struct Case {
   std::string group;
   std::string name;  // stem of the file
   std::string why;   // the mistake or property that it tests
-  std::vector<Rate> rates;
+  std::vector<LoopRate> rates;
   Span duration;
   UnitTiming unit;
   std::vector<ParameterStimulus> parameters;
@@ -141,9 +149,10 @@ struct Case {
   bool numeric_only = false;
   EitherBranch either_branch;
   Instances instances = Instances::one;
-  std::optional<Flight> flight;            // empty: open loop, every input is scripted
-  Module module = Module::mc_att_control;  // the module under test
-  std::string mixer;                       // for Module::mixer: its definition
+  std::optional<Flight> flight;               // empty: open loop, every input is scripted
+  std::optional<AttitudeLoop> attitude_loop;  // of a flight of the cascade
+  Module module = Module::mc_att_control;     // the module under test
+  std::string mixer;                          // for Module::mixer: its definition
 
   // All run configurations. Open loop: one for each rate, ascending. A flight: ordered by plant
   // configuration, then by rate.
@@ -161,6 +170,10 @@ struct Case {
 
   // The same case of another profile of its file.
   Case in_profile(const std::string& other) const;
+
+  // What this flight scripts for one of its units: its module, timing, topics and parameters.
+  // REQUIRES: a unit of this flight.
+  Case of_module(Module unit_of_flight) const;
 
   // The same case with its first timestamp at one period, so that each dt is the period. For ports
   // with a fixed step.

@@ -39,7 +39,14 @@ struct FlightStart {
   bool rotors_stopped = false;      // else they turn at hover speed
 };
 
-// The estimate of attitude and rates that the unit receives: delayed and noisy.
+// The estimator finds that its attitude was wrong: from `at` on its estimate is turned.
+struct EstimatorReset {
+  Span at;
+  Quaternion turn;  // the estimate after it = turn * the estimate before it
+};
+
+// The estimate of attitude and rates that the units receive: delayed and noisy. Delay and drift are
+// those of the attitude; the cascade's rate unit reads the gyro at its tick.
 struct Estimator {
   Span delay{0, Span::In::seconds};
   // Empty: the estimator runs once for each tick of the unit. Else it runs on its own clock, faster
@@ -48,6 +55,7 @@ struct Estimator {
   double attitude_noise_deg = 0;  // standard deviation of a rotation about each body axis
   double rate_noise_rad_s = 0;    // standard deviation, each axis
   std::uint64_t seed = 1;
+  std::optional<EstimatorReset> reset = std::nullopt;  // of the cascade
 };
 
 // A battery that empties. Its voltage limits the rotors' speed, and battery_status is computed from
@@ -75,13 +83,15 @@ struct RealtimeBudget {
 struct Flight {
   std::vector<PlantConfiguration> plant_configurations;  // ascending
   std::string lead_vehicle;                              // flies at all rates of the case
-  std::vector<Rate> other_rates;                         // of the other vehicles, ascending
+  std::vector<LoopRate> other_rates;                     // of the other vehicles, ascending
   std::optional<Rate> physics;  // of MuJoCo; empty: 1 kHz, or the loop rate if that is higher
   int physics_line = 0;         // of the case file, for messages
   bool floor = false;
   FlightStart start;
   Estimator estimator;
-  TaskTiming motor_limits;                    // the firmware publishes at 50 Hz
+  // Publishes what the actuators could not realise: multirotor_motor_limits, at 50 Hz in the
+  // firmware; of the cascade control_allocator_status.
+  TaskTiming saturation;
   Span actuator_delay{0, Span::In::seconds};  // from the unit's tick to the motors
   std::optional<BatteryFlight> battery;
   std::array<Signal, 3> wind_m_s{};  // of the air, NED

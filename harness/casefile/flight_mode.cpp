@@ -2,7 +2,13 @@
 
 namespace attest {
 
-std::span<const FlightMode> flight_modes() {
+namespace {
+
+bool is_of_cascade(Module module) {
+  return module == Module::attitude_unit || module == Module::rate_unit;
+}
+
+std::span<const FlightMode> modes_of_controller() {
   static constexpr FlightMode modes[] = {
       {"STABILIZED", {1, 0, 1, 1, 1, 0}},
       {"RATTITUDE", {1, 0, 1, 1, 1, 0}},
@@ -26,14 +32,58 @@ std::span<const FlightMode> flight_modes() {
   return modes;
 }
 
+std::span<const FlightMode> modes_of_cascade() {
+  static constexpr FlightMode modes[] = {
+      {"STABILIZED", {1, 0, 0, 0, 1, 1}},
+      {"MANUAL", {1, 0, 0, 0, 1, 1}},
+      {"ACRO", {1, 0, 0, 0, 0, 1}},
+      {"ALTCTL", {1, 1, 0, 0, 1, 1}},
+      {"POSCTL", {1, 1, 1, 1, 1, 1}},
+      {"AUTO_MISSION", {0, 1, 1, 1, 1, 1}},
+      {"AUTO_LOITER", {0, 1, 1, 1, 1, 1}},
+      {"AUTO_RTL", {0, 1, 1, 1, 1, 1}},
+      {"AUTO_LAND", {0, 1, 1, 1, 1, 1}},
+      {"AUTO_TAKEOFF", {0, 1, 1, 1, 1, 1}},
+      {"ORBIT", {0, 1, 1, 1, 1, 1}},
+      {"AUTO_FOLLOW_TARGET", {0, 1, 1, 1, 1, 1}},
+      {"OFFBOARD_POSITION", {0, 1, 1, 1, 1, 1}},
+      {"OFFBOARD_VELOCITY", {0, 1, 1, 0, 1, 1}},
+      {"DESCEND", {0, 0, 0, 0, 1, 1}},
+      {"OFFBOARD_ACCELERATION", {0, 0, 0, 0, 1, 1}},
+      {"OFFBOARD_ATTITUDE", {0, 0, 0, 0, 1, 1}},
+      {"OFFBOARD_RATES", {0, 0, 0, 0, 0, 1}},
+      {"OFFBOARD_THRUST_AND_TORQUE", {0, 0, 0, 0, 0, 0}},
+      {"TERMINATION", {0, 0, 0, 0, 0, 0}},
+  };
+  return modes;
+}
+
+}  // namespace
+
+const std::array<std::string_view, 6>& flag_names(Module module) {
+  static constexpr std::array<std::string_view, 6> of_controller{
+      "flag_control_manual_enabled",    "flag_control_auto_enabled",
+      "flag_control_rates_enabled",     "flag_control_attitude_enabled",
+      "flag_control_rattitude_enabled", "flag_control_velocity_enabled"};
+  static constexpr std::array<std::string_view, 6> of_cascade{
+      "flag_control_manual_enabled",   "flag_control_altitude_enabled",
+      "flag_control_velocity_enabled", "flag_control_position_enabled",
+      "flag_control_attitude_enabled", "flag_control_rates_enabled"};
+  return is_of_cascade(module) ? of_cascade : of_controller;
+}
+
+std::span<const FlightMode> flight_modes(Module module) {
+  return is_of_cascade(module) ? modes_of_cascade() : modes_of_controller();
+}
+
 std::array<std::uint8_t, 6> FlightMode::flags_in_transition() const {
   auto result = flags;
   if (name.starts_with("AUTO_")) result.back() = 0;  // velocity
   return result;
 }
 
-const FlightMode* find_flight_mode(std::string_view name) {
-  for (const FlightMode& mode : flight_modes()) {
+const FlightMode* find_flight_mode(Module module, std::string_view name) {
+  for (const FlightMode& mode : flight_modes(module)) {
     if (mode.name == name) return &mode;
   }
   return nullptr;

@@ -6,21 +6,26 @@
 #include <span>
 #include <string_view>
 
+#include "harness/trace/module.hpp"
+
 namespace attest {
 
 struct FlightMode {
   std::string_view name;
-  // manual, auto, rates, attitude, rattitude, velocity: in the order of the channel table.
-  std::array<std::uint8_t, 6> flags;
+  std::array<std::uint8_t, 6> flags;  // in the order of flag_names()
 
   // The flags while a VTOL is in transition: AUTO_* then does not control the velocity.
   std::array<std::uint8_t, 6> flags_in_transition() const;
 };
 
-// The modes of PX4 v1.5.5's commander, with the flags it sets for a multicopter.
-std::span<const FlightMode> flight_modes();
+// The flags of vehicle_control_mode that depend on the mode, of the law of a unit.
+const std::array<std::string_view, 6>& flag_names(Module module);
+
+// The modes, with the flags that the firmware sets for a multicopter: for the controller those of
+// PX4 v1.5.5's commander, for the units of the cascade those of v1.14 to v1.16.
+std::span<const FlightMode> flight_modes(Module module);
 
 // The entry of that name, or nullptr.
-const FlightMode* find_flight_mode(std::string_view name);
+const FlightMode* find_flight_mode(Module module, std::string_view name);
 
 }  // namespace attest

@@ -12,6 +12,7 @@
 #include "controller/actuation/mixer.hpp"
 #include "harness/casefile/parse_flight.hpp"
 #include "harness/casefile/parse_limits.hpp"
+#include "harness/casefile/parse_rates.hpp"
 #include "harness/casefile/parse_signal.hpp"
 #include "harness/casefile/parse_topic.hpp"
 #include "harness/casefile/parse_unit.hpp"
@@ -24,47 +25,6 @@ namespace attest {
 namespace {
 
 namespace fs = std::filesystem;
-
-// A mixer has no clock. The firmware measures the battery 100 times a second. The estimator makes
-// 50 to 1000 attitudes a second.
-std::vector<Rate> default_rates(Module module) {
-  switch (module) {
-    case Module::mixer:
-      return {Rate::hz(250)};
-    case Module::battery_status:
-      return {Rate::hz(100)};
-    case Module::attitude_unit:
-      return {Rate::hz(50), Rate::hz(100), Rate::hz(250), Rate::hz(500), Rate::hz(1000)};
-    case Module::mc_att_control:
-    case Module::rate_unit:
-      return standard_rates();
-  }
-  return {};
-}
-
-std::vector<Rate> parse_rates(const TomlTable& root, Module module) {
-  constexpr const char* key = "rates_hz";
-  if (!root.has(key)) {
-    if (root.has("rates_why")) root.error("rates_why", "explains `rates_hz`, which is not there");
-    return default_rates(module);
-  }
-  root.text("rates_why");  // required: a case that leaves out rates must say why
-  std::vector<Rate> rates;
-  for (const double hertz : root.numbers(key)) {
-    const auto rate = Rate::parse(fmt::format("{}", hertz));
-    if (!rate) {
-      root.error(key, rate.error().message);
-    } else {
-      rates.push_back(*rate);
-    }
-  }
-  std::sort(rates.begin(), rates.end());
-  if (rates.empty()) root.error(key, "names no rate");
-  if (std::adjacent_find(rates.begin(), rates.end()) != rates.end()) {
-    root.error(key, "names a rate twice");
-  }
-  return rates;
-}
 
 EitherBranch parse_either_branch(const TomlTable& root) {
   constexpr const char* key = "either_branch";
@@ -109,6 +69,19 @@ void check_module(const TomlTable& root, const Case& parsed) {
   }
 }
 
+// In a flight of the cascade the case is that of the rate unit, which commands the motors.
+void parse_module_of_flight(const TomlTable& root, Case& parsed) {
+  const ProfileInfo* const profile = find_profile(parsed.profile);
+  const bool is_cascade = profile && contains(profile->modules, Module::rate_unit);
+  if (!is_cascade) return;
+  if (root.has("module")) {
+    root.text("module");
+    root.error("module", "both units of the cascade take part in a flight; leave it out");
+  }
+  parsed.module = Module::rate_unit;
+  parsed.attitude_loop.emplace();
+}
+
 // `[mixer]`, `[battery]` or `module` names the module under test. Without them it is the
 // controller.
 void parse_module(const TomlTable& root, Case& parsed) {
@@ -120,7 +93,9 @@ void parse_module(const TomlTable& root, Case& parsed) {
       root.error(other, "`mixer` is given too; keep one");
     parsed.module = root.has("mixer") ? Module::mixer : Module::battery_status;
   }
-  if (root.has(key)) {
+  if (root.has("flight")) {
+    parse_module_of_flight(root, parsed);
+  } else if (root.has(key)) {
     const auto module = module_named(root.text(key));
     const bool is_unit = module && info_of(*module).has_updated;
     if (!is_unit) root.error(key, "must be mc_att_control, attitude_unit or rate_unit");
@@ -142,7 +117,11 @@ void parse_module(const TomlTable& root, Case& parsed) {
 void check_parameter_name(const TomlTable& table, const std::string& name, const Case& parsed) {
   for (const std::string& profile : parsed.profiles) {
     if (!find_profile(profile)) continue;  // of a law that has its own parameters
-    const std::vector<std::string> known = parameter_names(parsed.module, profile);
+    std::vector<std::string> known = parameter_names(parsed.module, profile);
+    if (parsed.attitude_loop) {
+      const auto others = parameter_names(Module::attitude_unit, profile);
+      known.insert(known.end(), others.begin(), others.end());
+    }
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     table.error(name, fmt::format("unknown parameter `{}`{}; `attest list --parameters --profile "
                                   "{}` shows those of {}",
@@ -230,7 +209,7 @@ void parse_identity(const TomlTable& root, const fs::path& file, Case& parsed) {
 
 // At the fastest rate; 0 without a rate, which is an error of its own.
 std::int64_t most_ticks(const Case& parsed) {
-  return parsed.rates.empty() ? 0 : tick_count(parsed.duration, parsed.rates.back());
+  return parsed.rates.empty() ? 0 : tick_count(parsed.duration, parsed.rates.back().unit);
 }
 
 void parse_duration(const TomlTable& root, Case& parsed) {
@@ -254,12 +233,37 @@ fs::path models_of_suite(const fs::path& file) {
   return folder.parent_path().parent_path().parent_path() / "models";
 }
 
+void parse_units(const TomlTable& root, Case& parsed) {
+  std::vector<Rate> rates, attitude_rates;
+  for (const LoopRate& rate : parsed.rates) {
+    rates.push_back(rate.unit);
+    attitude_rates.push_back(rate.attitude_unit.value_or(rate.unit));
+  }
+  parsed.unit = parse_unit(root);
+  check_unit(root, "unit", parsed.unit, rates, parsed.duration);
+  if (!parsed.attitude_loop) return;
+  constexpr const char* name = "attitude_unit";
+  parsed.attitude_loop->unit = parse_unit(root, name);
+  check_unit(root, name, parsed.attitude_loop->unit, attitude_rates, parsed.duration);
+  for (const char* table : {"unit", name}) {
+    if (root.has(table) && root.table(table).has("trigger")) {
+      root.table(table).error("trigger",
+                              "is for the controller; the units of the cascade are "
+                              "stepped at their own rates");
+    }
+  }
+  if (root.has(name) && root.table(name).has("start_s")) {
+    root.table(name).error("start_s", "is that of [unit]: both units have one clock");
+  }
+  parsed.attitude_loop->topics = parse_topics(root, Module::attitude_unit, true);
+}
+
 void parse_body(const TomlTable& root, Case& parsed) {
   if (root.integer("schema") != schema_version && root.has("schema")) {
     root.error("schema", fmt::format("must be {}", schema_version));
   }
   parse_module(root, parsed);
-  parsed.rates = parse_rates(root, parsed.module);
+  parsed.rates = parse_rates(root, parsed);
   parse_duration(root, parsed);
   if (root.has("level")) {
     const std::string level = root.text("level");
@@ -273,8 +277,7 @@ void parse_body(const TomlTable& root, Case& parsed) {
                "is for cases of at most 1000 ticks, whose goldens keep every tick");
   }
   parsed.instances = parse_instances(root);
-  parsed.unit = parse_unit(root);
-  check_unit(root, parsed);
+  parse_units(root, parsed);
   parsed.parameters = parse_parameters(root, parsed);
   parsed.topics = parse_topics(root, parsed.module, root.has("flight"));
   if (root.has("flight")) parse_flight(root, models_of_suite(parsed.file), parsed);

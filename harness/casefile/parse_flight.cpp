@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "harness/casefile/parse_cascade.hpp"
+#include "harness/casefile/parse_rates.hpp"
 #include "harness/casefile/parse_signal.hpp"
 #include "harness/core/suggestion.hpp"
 
@@ -14,8 +16,11 @@ namespace {
 constexpr const char* default_lead = "iris";
 
 // For the vehicles other than the lead: a slow rate, one that does not divide a second evenly, and
-// a fast one.
-const std::vector<Rate> default_other_rates = {Rate::hz(100), Rate::hz(333), Rate::hz(1000)};
+// a fast one; of the cascade, the usual pair.
+std::vector<LoopRate> default_other_rates(bool is_cascade) {
+  if (is_cascade) return {LoopRate(Rate::hz(250), Rate::hz(1000))};
+  return {Rate::hz(100), Rate::hz(333), Rate::hz(1000)};
+}
 
 std::vector<std::string> parse_vehicles(const TomlTable& table,
                                         const std::vector<std::string>& known) {
@@ -61,57 +66,29 @@ void parse_plant_configurations(const TomlTable& table, const std::vector<std::s
   flight.lead_vehicle = lead == vehicles.end() ? vehicles.front() : *lead;
 }
 
-std::vector<Rate> parse_other_rates(const TomlTable& table, const std::vector<Rate>& rates) {
-  std::vector<Rate> others;
-  if (!table.has("other_rates_hz")) {
-    std::copy_if(default_other_rates.begin(), default_other_rates.end(), std::back_inserter(others),
-                 [&](const Rate& rate) {
-                   return std::find(rates.begin(), rates.end(), rate) != rates.end();
-                 });
-    return others.empty() ? rates : others;
-  }
-  for (const double hertz : table.numbers("other_rates_hz")) {
-    const auto rate = Rate::parse(fmt::format("{}", hertz));
-    if (!rate) table.error("other_rates_hz", rate.error().message);
-    if (rate) others.push_back(*rate);
-  }
-  std::sort(others.begin(), others.end());
-  if (others.empty()) table.error("other_rates_hz", "names no rate");
-  if (std::adjacent_find(others.begin(), others.end()) != others.end()) {
-    table.error("other_rates_hz", "names a rate twice");
-  }
-  return others;
+std::vector<LoopRate> parse_other_rates(const TomlTable& table, const Case& parsed) {
+  constexpr const char* key = "other_rates_hz";
+  const bool is_cascade = parsed.attitude_loop.has_value();
+  if (table.has(key)) return parse_loop_rates(table, key, is_cascade);
+  std::vector<LoopRate> others = default_other_rates(is_cascade);
+  std::erase_if(others, [&](const LoopRate& rate) {
+    return std::find(parsed.rates.begin(), parsed.rates.end(), rate) == parsed.rates.end();
+  });
+  return others.empty() ? parsed.rates : others;
 }
 
-void parse_physics(const TomlTable& table, const std::vector<Rate>& rates, Flight& flight) {
+void parse_physics(const TomlTable& table, const std::vector<LoopRate>& rates, Flight& flight) {
   constexpr const char* key = "physics_hz";
   if (!table.has(key)) return;
   flight.physics_line = table.line(key);
   const auto physics = Rate::parse(fmt::format("{}", table.number(key)));
   if (!physics) return table.error(key, physics.error().message);
   flight.physics = *physics;
-  if (!rates.empty() && *physics < rates.back()) {
+  if (!rates.empty() && *physics < rates.back().unit) {
     table.error(key, fmt::format("physics at {} Hz is slower than the loop at {} Hz; raise it, "
                                  "leave it out, or give the slower `rates_hz`",
-                                 physics->to_string(), rates.back().to_string()));
+                                 physics->to_string(), rates.back().unit.to_string()));
   }
-}
-
-TaskTiming parse_timing(const TomlTable& table, TaskTiming timing) {
-  if (table.has("rate_hz")) {
-    const auto rate = Rate::parse(fmt::format("{}", table.number("rate_hz")));
-    if (!rate) table.error("rate_hz", rate.error().message);
-    if (rate) timing.rate = *rate;
-  }
-  timing.phase = parse_optional_span(table, "phase").value_or(timing.phase);
-  timing.delay = parse_optional_span(table, "delay").value_or(timing.delay);
-  timing.jitter = table.number("jitter", 0);
-  if (!(timing.jitter >= 0 && timing.jitter < 1)) {
-    table.error("jitter", "is a fraction of a period: must be 0 or more, and less than 1");
-  }
-  timing.seed = static_cast<std::uint64_t>(table.integer("seed", 1));
-  if (table.has("drop_ticks")) timing.drop_ticks = table.integers("drop_ticks");
-  return timing;
 }
 
 Vector3 parse_vector(const TomlTable& table, const std::string& key) {
@@ -256,13 +233,15 @@ void parse_flight(const TomlTable& root, const std::filesystem::path& models, Ca
   }
   Flight& flight = parsed.flight.emplace();
   parse_plant_configurations(table, known, flight);
-  flight.other_rates = parse_other_rates(table, parsed.rates);
+  flight.other_rates = parse_other_rates(table, parsed);
   parse_physics(table, parsed.rates, flight);
   flight.floor = table.boolean("floor", false);
   flight.start = parse_start(table);
   flight.estimator = parse_estimator(table);
-  if (table.has("motor_limits")) {
-    flight.motor_limits = parse_timing(table.table("motor_limits"), flight.motor_limits);
+  if (parsed.attitude_loop) {
+    parse_cascade_flight(root, table, parsed);
+  } else if (table.has("motor_limits")) {
+    flight.saturation = parse_timing(table.table("motor_limits"), flight.saturation);
   }
   flight.actuator_delay = parse_optional_span(table, "actuator_delay").value_or(Span{});
   parse_battery(root, table, parsed);

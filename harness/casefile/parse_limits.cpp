@@ -61,7 +61,7 @@ void check_task(const TomlTable& flight, const std::string& key, const TaskTimin
 }
 
 void check_flight(const TomlTable& flight, const Flight& parsed, const Timeline& timeline) {
-  check_task(flight, "motor_limits", parsed.motor_limits, timeline);
+  check_task(flight, "motor_limits", parsed.saturation, timeline);
   if (parsed.battery) check_task(flight, "battery", parsed.battery->timing, timeline);
   const auto check = [&](const char* key, const std::array<Signal, 3>& signals) {
     const bool too_far = std::any_of(signals.begin(), signals.end(), [&](const Signal& signal) {
@@ -78,8 +78,13 @@ void check_flight(const TomlTable& flight, const Flight& parsed, const Timeline&
 void check_limits(const TomlTable& root, const Case& parsed) {
   if (parsed.rates.empty()) return;
   // A case in ticks lasts longest at the slowest rate.
-  const Timeline timeline = timeline_of(parsed, parsed.rates.front());
+  const Timeline timeline = timeline_of(parsed, parsed.rates.front().unit);
   for (const TopicStimulus& topic : parsed.topics) check_topic(root, topic, timeline);
+  if (parsed.attitude_loop) {
+    for (const TopicStimulus& topic : parsed.attitude_loop->topics) {
+      check_topic(root, topic, timeline);
+    }
+  }
   for (const ParameterStimulus& parameter : parsed.parameters) {
     if (walks_too_far(parameter.signal, timeline)) {
       complain_of_walk(root.table("parameters"), parameter.name);

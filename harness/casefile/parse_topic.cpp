@@ -18,12 +18,15 @@ namespace {
 constexpr std::string_view input_prefix = "in/";
 constexpr std::string_view control_state = "control_state";
 constexpr std::string_view control_mode = "vehicle_control_mode";
-constexpr std::string_view motor_limits = "multirotor_motor_limits";
 
-// As a fraction 0..1 of the full thrust of the motors.
-constexpr std::array<std::string_view, 3> thrusts = {"in/vehicle_attitude_setpoint.thrust",
-                                                     "in/vehicle_rates_setpoint.thrust",
-                                                     "in/manual_control_setpoint.z"};
+std::string_view topic_of(std::string_view channel) {
+  const std::string_view name = channel.substr(input_prefix.size());
+  return name.substr(0, name.find('.'));
+}
+
+std::string_view field_of(std::string_view channel) {
+  return channel.substr(channel.find('.') + 1);
+}
 
 constexpr const char* not_a_flag =
     "is a flag: a constant, a step or samples of whole numbers from 0 to 255";
@@ -82,9 +85,9 @@ void parse_quaternion(const TomlTable& table, const std::string& key, TopicStimu
   }
 }
 
-std::vector<std::string> mode_names() {
+std::vector<std::string> mode_names(Module module) {
   std::vector<std::string> names;
-  for (const FlightMode& mode : flight_modes()) names.emplace_back(mode.name);
+  for (const FlightMode& mode : flight_modes(module)) names.emplace_back(mode.name);
   return names;
 }
 
@@ -98,7 +101,7 @@ std::optional<Signal> parse_in_transition(const TomlTable& table) {
 }
 
 // `flight_mode = "ACRO"`, or `{ times_ticks = [0, 20], modes = ["ACRO", "POSCTL"] }`.
-void parse_flight_mode(const TomlTable& table, TopicStimulus& topic) {
+void parse_flight_mode(const TomlTable& table, Module module, TopicStimulus& topic) {
   constexpr const char* key = "flight_mode";
   if (!table.has(key)) {
     if (table.has("in_transition"))
@@ -119,10 +122,10 @@ void parse_flight_mode(const TomlTable& table, TopicStimulus& topic) {
   }
   std::vector<const FlightMode*> modes;
   for (const std::string& name : names) {
-    modes.push_back(find_flight_mode(name));
+    modes.push_back(find_flight_mode(module, name));
     if (modes.back()) continue;
     return table.error(
-        key, fmt::format("unknown flight mode `{}`{}", name, suggestion(name, mode_names())));
+        key, fmt::format("unknown flight mode `{}`{}", name, suggestion(name, mode_names(module))));
   }
   const auto signal_of = [&](auto&& value) -> Signal {
     if (modes.size() == 1) return Constant{static_cast<double>(value(*modes[0]))};
@@ -130,9 +133,14 @@ void parse_flight_mode(const TomlTable& table, TopicStimulus& topic) {
     for (const FlightMode* mode : modes) samples.values.push_back(value(*mode));
     return samples;
   };
-  const auto transition = parse_in_transition(table);
-  for (std::size_t flag = 0; flag < topic.fields.size(); ++flag) {
-    FieldStimulus& field = topic.fields[flag];
+  const bool has_transition = module == Module::mc_att_control;
+  const auto transition = has_transition ? parse_in_transition(table) : std::nullopt;
+  const auto& flags = flag_names(module);
+  for (FieldStimulus& field : topic.fields) {
+    const auto found =
+        std::find(flags.begin(), flags.end(), field_of(channels()[field.channel].name));
+    if (found == flags.end()) continue;  // flag_armed
+    const auto flag = static_cast<std::size_t>(found - flags.begin());
     field.signal = signal_of([&](const FlightMode& mode) { return mode.flags[flag]; });
     if (!transition) continue;
     field.replacement = {*transition, signal_of([&](const FlightMode& mode) {
@@ -200,15 +208,6 @@ Publication parse_publication(const TomlTable& table) {
   return publication;
 }
 
-std::string_view topic_of(std::string_view channel) {
-  const std::string_view name = channel.substr(input_prefix.size());
-  return name.substr(0, name.find('.'));
-}
-
-std::string_view field_of(std::string_view channel) {
-  return channel.substr(channel.find('.') + 1);
-}
-
 // The topic with its baseline values.
 TopicStimulus baseline_topic(Module module, std::string_view name, std::uint32_t updated_bit,
                              bool is_flight) {
@@ -218,9 +217,9 @@ TopicStimulus baseline_topic(Module module, std::string_view name, std::uint32_t
     const bool is_field = table[i].module == module && table[i].name.starts_with(input_prefix) &&
                           table[i].type != ChannelType::bit && topic_of(table[i].name) == name;
     if (!is_field) continue;
-    const bool of_hover =
-        is_flight && std::find(thrusts.begin(), thrusts.end(), table[i].name) != thrusts.end();
-    topic.fields.push_back({i, Constant{of_hover ? 1 : baseline(table[i])}, of_hover});
+    const auto of_hover = is_flight ? baseline_of_hover(table[i]) : std::nullopt;
+    const double value = of_hover.value_or(baseline(table[i]));
+    topic.fields.push_back({i, Constant{value}, of_hover.has_value()});
   }
   return topic;
 }
@@ -283,8 +282,7 @@ std::size_t index_of(const std::string& field, const TopicStimulus& topic) {
 
 void parse_topic(const TomlTable& table, TopicStimulus& topic) {
   const Module module = channels()[topic.fields.front().channel].module;
-  const bool has_modes = topic.topic == control_mode && module == Module::mc_att_control;
-  if (has_modes) parse_flight_mode(table, topic);
+  if (topic.topic == control_mode) parse_flight_mode(table, module, topic);
   for (FieldStimulus& field : topic.fields) {
     const std::string name(field_of(channels()[field.channel].name));
     parse_field(table, name, field);
@@ -296,20 +294,33 @@ void parse_topic(const TomlTable& table, TopicStimulus& topic) {
   if (topic.updated_bit != 0) topic.publication = parse_publication(table);
 }
 
+// What a flight computes: the plant, the actuators, and for the rate unit the attitude unit.
+bool is_computed(const std::string& topic) {
+  constexpr std::array<std::string_view, 5> computed{control_state, "multirotor_motor_limits",
+                                                     "vehicle_attitude", "vehicle_angular_velocity",
+                                                     "control_allocator_status"};
+  return std::find(computed.begin(), computed.end(), topic) != computed.end();
+}
+
+void leave_out_computed(const TomlTable& root, Module module, std::vector<TopicStimulus>& topics) {
+  std::erase_if(topics, [&](const TopicStimulus& topic) {
+    // The rate unit takes the attitude unit's setpoint, but in modes without attitude control.
+    const bool is_own = module == Module::rate_unit && topic.topic == "vehicle_rates_setpoint";
+    if (is_own) return !root.has(topic.topic);
+    if (!is_computed(topic.topic)) return false;
+    if (root.has(topic.topic)) {
+      root.table(topic.topic);
+      root.error(topic.topic, "comes from the plant in a flight; see [flight]");
+    }
+    return true;
+  });
+}
+
 }  // namespace
 
 std::vector<TopicStimulus> parse_topics(const TomlTable& root, Module module, bool is_flight) {
   std::vector<TopicStimulus> topics = baseline_topics(module, is_flight);
-  if (is_flight) {
-    std::erase_if(topics, [&](const TopicStimulus& topic) {
-      if (topic.topic != control_state && topic.topic != motor_limits) return false;
-      if (root.has(topic.topic)) {
-        root.table(topic.topic);
-        root.error(topic.topic, "comes from the plant in a flight; see [flight]");
-      }
-      return true;
-    });
-  }
+  if (is_flight) leave_out_computed(root, module, topics);
   for (TopicStimulus& topic : topics) {
     if (root.has(topic.topic)) parse_topic(root.table(topic.topic), topic);
   }

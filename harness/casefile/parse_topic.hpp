@@ -9,9 +9,8 @@
 namespace attest {
 
 // Every topic of a module's inputs. A topic that the file does not mention has the values of a
-// vehicle that hovers level, armed, in STABILIZED (SCHEMA.md). In a flight the baseline thrust is
-// the vehicle's hover thrust. control_state and multirotor_motor_limits are then left out, because
-// the plant and the mixer compute them.
+// vehicle that hovers level, armed (SCHEMA.md). In a flight the baseline thrust is the vehicle's
+// hover thrust. The topics that plant, actuators and the other unit compute are then left out.
 std::vector<TopicStimulus> parse_topics(const TomlTable& root, Module module, bool is_flight);
 
 }  // namespace attest

@@ -1,5 +1,6 @@
 #include "harness/casefile/parse_unit.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <set>
@@ -22,10 +23,10 @@ UnitStall parse_stall(const TomlTable& table) {
 
 }  // namespace
 
-UnitTiming parse_unit(const TomlTable& root) {
+UnitTiming parse_unit(const TomlTable& root, const char* name) {
   UnitTiming unit;
-  if (!root.has("unit")) return unit;
-  const TomlTable table = root.table("unit");
+  if (!root.has(name)) return unit;
+  const TomlTable table = root.table(name);
   unit.start.amount = table.number("start_s", unit.start.amount);
   // A double holds 285 years (9e9 s) of whole microseconds. The longest case lasts 1e9 s.
   if (!(unit.start.amount >= 0 && unit.start.amount <= 8e9)) {
@@ -55,31 +56,31 @@ UnitTiming parse_unit(const TomlTable& root) {
   return unit;
 }
 
-void check_unit(const TomlTable& root, const Case& parsed) {
-  const bool is_known = parsed.duration.amount > 0 && !parsed.rates.empty();
-  if (!root.has("unit") || !is_known) return;
-  const TomlTable table = root.table("unit");
-  const Rate& slowest = parsed.rates.front();
-  const Rate& fastest = parsed.rates.back();
+void check_unit(const TomlTable& root, const char* name, const UnitTiming& unit,
+                const std::vector<Rate>& rates, const Span& duration) {
+  const bool is_known = duration.amount > 0 && !rates.empty();
+  if (!root.has(name) || !is_known) return;
+  const TomlTable table = root.table(name);
+  const auto [slowest_at, fastest_at] = std::minmax_element(rates.begin(), rates.end());
+  const Rate &slowest = *slowest_at, &fastest = *fastest_at;
   // Jitter reduces the time between ticks, and timestamps (us) must increase.
-  if (!parsed.unit.heavy_tail && parsed.unit.jitter > 0 &&
-      (1 - parsed.unit.jitter) * fastest.period_s() < 1e-6) {
+  if (!unit.heavy_tail && unit.jitter > 0 && (1 - unit.jitter) * fastest.period_s() < 1e-6) {
     table.error("jitter",
                 fmt::format("leaves less than 1 us between ticks at {} Hz", fastest.to_string()));
   }
-  if (const auto& stall = parsed.unit.stall;
+  if (const auto& stall = unit.stall;
       stall && !(stall->length.on(slowest) < stall->every.on(slowest) &&
                  stall->length.on(fastest) < stall->every.on(fastest))) {
     table.error("stall", "must end before the next one begins: `for` must be less than `every`");
   }
-  const std::set<std::int64_t> drops(parsed.unit.drop_ticks.begin(), parsed.unit.drop_ticks.end());
+  const std::set<std::int64_t> drops(unit.drop_ticks.begin(), unit.drop_ticks.end());
   if (drops.empty()) return;
-  const std::int64_t last = tick_count(parsed.duration, fastest) - 1;
+  const std::int64_t last = tick_count(duration, fastest) - 1;
   if (*drops.begin() < 0 || *drops.rbegin() > last) {
     table.error("drop_ticks", fmt::format("must be ticks of the case: from 0 to {}", last));
     return;
   }
-  const std::int64_t fewest = tick_count(parsed.duration, slowest);
+  const std::int64_t fewest = tick_count(duration, slowest);
   if (std::distance(drops.begin(), drops.lower_bound(fewest)) == fewest) {
     table.error("drop_ticks", fmt::format("leaves no tick at {} Hz", slowest.to_string()));
   }

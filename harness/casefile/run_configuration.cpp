@@ -1,18 +1,24 @@
 #include "harness/casefile/run_configuration.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "harness/casefile/case.hpp"
+#include "harness/port/profiles.hpp"
 
 namespace attest {
 namespace {
 
-// Of the rates above 500 Hz only the fastest is kept: there the law uses dt = 2 ms, so that its
-// arithmetic is the same at each rate. REQUIRES: `rates` ascend.
-std::vector<Rate> distinct_time_steps(const std::vector<Rate>& rates) {
-  std::vector<Rate> distinct;
-  for (const Rate& rate : rates) {
-    if (!(Rate::hz(500) < rate) || rate == rates.back()) distinct.push_back(rate);
+// The rates at which the further profiles of a file fly. Of the controller's rates above 500 Hz
+// only the fastest is kept: there the law uses dt = 2 ms, so that its arithmetic is the same at
+// each rate. Of the cascade's the slowest and the fastest are kept: what differs between its
+// profiles does not depend on the rate. REQUIRES: `rates` ascend.
+std::vector<LoopRate> distinct_time_steps(const std::vector<LoopRate>& rates) {
+  if (rates.size() > 2 && rates.front().attitude_unit) return {rates.front(), rates.back()};
+  std::vector<LoopRate> distinct;
+  for (const LoopRate& rate : rates) {
+    if (!(Rate::hz(500) < rate.unit) || rate == rates.back()) distinct.push_back(rate);
   }
   return distinct;
 }
@@ -31,6 +37,21 @@ Case Case::in_profile(const std::string& other) const {
   return same;
 }
 
+Case Case::of_module(Module unit_of_flight) const {
+  Case own = *this;
+  if (!attitude_loop) return own;
+  own.module = unit_of_flight;
+  const std::vector<std::string> known = parameter_names(unit_of_flight, profile);
+  std::erase_if(own.parameters, [&](const ParameterStimulus& parameter) {
+    return std::find(known.begin(), known.end(), parameter.name) == known.end();
+  });
+  if (unit_of_flight != Module::attitude_unit) return own;
+  own.topics = attitude_loop->topics;
+  own.unit = attitude_loop->unit;
+  own.unit.start = unit.start;
+  return own;
+}
+
 Case Case::from_one_period_on() const {
   Case same = *this;
   same.unit.start = {1, Span::In::ticks};
@@ -40,13 +61,14 @@ Case Case::from_one_period_on() const {
 std::vector<RunConfiguration> Case::configurations() const {
   std::vector<RunConfiguration> all;
   if (!flight) {
-    for (const Rate& rate : rates) all.push_back({rate, std::nullopt});
+    for (const LoopRate& rate : rates) all.push_back({rate, std::nullopt});
     return all;
   }
-  const std::vector<Rate> lead_rates = is_of_first_profile() ? rates : distinct_time_steps(rates);
+  const std::vector<LoopRate> lead_rates =
+      is_of_first_profile() ? rates : distinct_time_steps(rates);
   for (const PlantConfiguration& plant_configuration : flight->plant_configurations) {
     const bool leads = plant_configuration.vehicle == flight->lead_vehicle;
-    for (const Rate& rate : leads ? lead_rates : flight->other_rates)
+    for (const LoopRate& rate : leads ? lead_rates : flight->other_rates)
       all.push_back({rate, plant_configuration});
   }
   return all;

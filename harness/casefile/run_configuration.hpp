@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "harness/plant/plant.hpp"
-#include "harness/schedule/rate.hpp"
+#include "harness/schedule/loop_rate.hpp"
 
 namespace attest {
 
@@ -21,10 +21,10 @@ struct PlantConfiguration {
 };
 
 struct RunConfiguration {
-  Rate rate = Rate::hz(1);
+  LoopRate rate;
   std::optional<PlantConfiguration> plant_configuration;  // empty: open loop
 
-  // For ids and file names: "250hz" or "250hz-iris-ode".
+  // For ids and file names: "250hz", "250hz-iris-ode" or, of a cascade, "250-1000hz-iris-ode".
   std::string label() const;
 
   friend bool operator==(const RunConfiguration&, const RunConfiguration&) = default;

@@ -97,8 +97,19 @@ bool may_be_selected(const fs::path& file, const Selection& selection) {
          });
 }
 
+// "1000" selects each loop whose motors are commanded at that rate, "250:1000" one pair.
+bool is_meant(const LoopRate& asked, const LoopRate& rate) {
+  return asked.attitude_unit ? asked == rate : asked.unit == rate.unit;
+}
+
+bool has_rate(const RunConfiguration& configuration, const std::vector<LoopRate>& asked) {
+  return asked.empty() || std::any_of(asked.begin(), asked.end(), [&](const LoopRate& one) {
+           return is_meant(one, configuration.rate);
+         });
+}
+
 bool is_selected(const RunConfiguration& configuration, const Selection& selection) {
-  if (!contains(selection.rates, configuration.rate)) return false;
+  if (!has_rate(configuration, selection.rates)) return false;
   if (!configuration.plant_configuration)
     return selection.vehicles.empty() && selection.plants.empty();
   return contains(selection.vehicles, configuration.plant_configuration->vehicle) &&
@@ -122,7 +133,7 @@ std::vector<RunConfiguration> selected_configurations(const Case& the_case,
 
 // The rates, profiles, vehicles, plants and names in the files that were read.
 struct Known {
-  std::set<Rate> rates;
+  std::set<LoopRate> rates;
   std::set<std::string> profiles, vehicles, plants;
   std::vector<std::string> names;
 
@@ -139,11 +150,12 @@ struct Known {
 };
 
 // Each requested rate must be that of a vector.
-Result<void> check_rates(const std::vector<Rate>& asked, const std::set<Rate>& known) {
-  for (const Rate& rate : asked) {
-    if (known.count(rate)) continue;
+Result<void> check_rates(const std::vector<LoopRate>& asked, const std::set<LoopRate>& known) {
+  for (const LoopRate& rate : asked) {
+    const auto means = [&](const LoopRate& other) { return is_meant(rate, other); };
+    if (std::any_of(known.begin(), known.end(), means)) continue;
     std::vector<std::string> names;
-    for (const Rate& other : known) names.push_back(other.to_string());
+    for (const LoopRate& other : known) names.push_back(other.to_string());
     return fail(fmt::format("no selected case runs at {} Hz; there are {} Hz", rate.to_string(),
                             fmt::join(names, ", ")));
   }
@@ -215,7 +227,7 @@ void add_selected(const Case& parsed, const Selection& selection, std::set<std::
 // " with --group attitude, --rate 250": the options that select in addition to the patterns.
 std::string scope_of(const Selection& selection) {
   std::vector<std::string> rates;
-  for (const Rate& rate : selection.rates) rates.push_back(rate.to_string());
+  for (const LoopRate& rate : selection.rates) rates.push_back(rate.to_string());
   const auto options = as_options({{"--group", selection.groups},
                                    {"--profile", selection.profiles},
                                    {"--rate", rates},

@@ -38,7 +38,7 @@ struct Selection {
   std::vector<std::string> excludes;  // patterns as above; vectors that match are left out
   std::vector<std::string> groups;
   std::vector<std::string> profiles;
-  std::vector<Rate> rates;
+  std::vector<LoopRate> rates;
   std::vector<std::string> vehicles;  // these two select flights only
   std::vector<std::string> plants;
   Shard shard;

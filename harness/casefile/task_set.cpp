@@ -69,17 +69,23 @@ std::optional<std::size_t> find_task(const std::vector<ScheduledTask>& tasks,
   return static_cast<std::size_t>(found - tasks.begin());
 }
 
-// `trigger = "estimator"` of the unit, instead of a rate.
+// `trigger = "estimator"` of the unit that takes the estimate, instead of a rate.
 void parse_trigger(const TomlTable& table, const std::string& name, TaskSet& set) {
   constexpr const char* key = "trigger";
   if (!table.has(key)) return;
-  if (name != "unit") return table.error(key, "is for [task.unit] only; give `rate_hz`");
+  const bool is_attitude_unit = name == "attitude_unit";
+  if (name != "unit" && !is_attitude_unit) {
+    return table.error(key, "is for [task.unit] and [task.attitude_unit]; give `rate_hz`");
+  }
+  if (!is_attitude_unit && set.attitude_unit) {
+    return table.error(key, "the rate unit reads the gyro at its own rate: give `rate_hz`");
+  }
   for (const char* const other : {"rate_hz", "phase_us"}) {
     if (table.has(other)) table.error(other, "`trigger` is given too; keep one");
   }
   if (table.text(key) != "estimator") return table.error(key, "must be \"estimator\"");
   if (!set.estimator) return table.error(key, "needs [task.estimator]");
-  ScheduledTask& unit = set.tasks[set.unit];
+  ScheduledTask& unit = set.tasks[is_attitude_unit ? *set.attitude_unit : set.unit];
   unit.released_by = set.estimator;
   unit.rate = set.tasks[*set.estimator].rate;
 }
@@ -111,6 +117,7 @@ Result<TaskSet> read_task_set(const std::filesystem::path& path) {
     set.tasks.push_back(parse_task(tasks.table(name), name));
   }
   is_misspelt(tasks, "estimator");
+  is_misspelt(tasks, "attitude_unit");
   const bool unit_misspelt = is_misspelt(tasks, "unit");
   const auto unit = find_task(set.tasks, "unit");
   if (!unit && !unit_misspelt && root.has("task")) {
@@ -118,8 +125,13 @@ Result<TaskSet> read_task_set(const std::filesystem::path& path) {
   }
   set.unit = unit.value_or(0);
   set.estimator = find_task(set.tasks, "estimator");
+  set.attitude_unit = find_task(set.tasks, "attitude_unit");
   for (const std::string& name : tasks.keys()) parse_trigger(tasks.table(name), name, set);
   if (auto done = file->finish(); !done) return tl::unexpected(done.error());
+  if (set.attitude_unit && set.tasks[set.unit].rate < set.tasks[*set.attitude_unit].rate) {
+    return fail_at(path.string(), "[task.unit], the rate unit, is slower than [task.attitude_unit]",
+                   root.line("task"));
+  }
   return set;
 }
 

@@ -8,6 +8,7 @@
 
 #include "harness/core/result.hpp"
 #include "harness/schedule/fixed_priority.hpp"
+#include "harness/schedule/loop_rate.hpp"
 
 namespace attest {
 
@@ -15,6 +16,14 @@ struct TaskSet {
   std::vector<ScheduledTask> tasks;
   std::size_t unit = 0;                  // index of the task `unit`
   std::optional<std::size_t> estimator;  // index of the task `estimator`, if there is one
+  // Index of the task `attitude_unit`, if there is one: `unit` is then the cascade's rate unit.
+  std::optional<std::size_t> attitude_unit;
+
+  // Of `unit`, or of both units.
+  LoopRate rate() const {
+    const Rate& own = tasks[unit].rate;
+    return attitude_unit ? LoopRate(tasks[*attitude_unit].rate, own) : LoopRate(own);
+  }
 };
 
 // Errors, with file and line: no task `unit`; values out of range.

@@ -43,7 +43,9 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("case", options->case_name, "A flight: its name or id, or a case file")
       ->type_name("CASE");
   command
-      ->add_option("--rate", options->rate, "Loop rate [Hz]; also one that the case does not list")
+      ->add_option("--rate", options->rate,
+                   "Loop rate [Hz], also one that the case does not list; for a flight of the "
+                   "cascade that of both units, as 250:1000")
       ->type_name("HZ");
   command
       ->add_option("--timing", options->timing,

@@ -45,6 +45,16 @@ std::string SelectionOptions::narrowing() const {
   return fmt::format("{}", fmt::join(options, " "));
 }
 
+Result<std::vector<LoopRate>> parse_rates(const std::vector<std::string>& texts) {
+  std::vector<LoopRate> rates;
+  for (const std::string& text : texts) {
+    const auto rate = LoopRate::parse(text);
+    if (!rate) return tl::unexpected(rate.error());
+    rates.push_back(*rate);
+  }
+  return rates;
+}
+
 Result<std::vector<SelectedCase>> SelectionOptions::cases_in(const CaseFolders& folders) const {
   Selection selection;
   selection.filters = filters;
@@ -53,11 +63,9 @@ Result<std::vector<SelectedCase>> SelectionOptions::cases_in(const CaseFolders& 
   selection.profiles = profiles;
   selection.vehicles = vehicles;
   selection.plants = plants;
-  for (const std::string& text : rates) {
-    const auto rate = Rate::parse(text);
-    if (!rate) return tl::unexpected(rate.error());
-    selection.rates.push_back(*rate);
-  }
+  auto asked = parse_rates(rates);
+  if (!asked) return tl::unexpected(asked.error());
+  selection.rates = *std::move(asked);
   const auto part = Shard::parse(shard);
   if (!part) return tl::unexpected(part.error());
   selection.shard = *part;

@@ -34,6 +34,9 @@ int report_error(const Error& error);
 
 // --filter, --exclude, --group, --profile, --rate, --vehicle, --plant, --shard and --rerun-failed,
 // as text until they are used.
+// Errors: those of LoopRate::parse().
+Result<std::vector<LoopRate>> parse_rates(const std::vector<std::string>& texts);
+
 struct SelectionOptions {
   std::vector<std::string> filters, excludes, groups, profiles, rates, vehicles, plants;
   std::string shard = "1/1";

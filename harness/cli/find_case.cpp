@@ -1,6 +1,8 @@
 #include "harness/cli/find_case.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include <fmt/format.h>
@@ -11,7 +13,17 @@
 namespace attest::cli {
 namespace {
 
-Result<Case> find_case(const std::string& name, const SuiteFolder& suite) {
+// Leaves those of the law that flies at `rate`, if there are any.
+void keep_law(const LoopRate& rate, std::vector<SelectedCase>& found) {
+  const auto is_of_law = [&](const SelectedCase& one) {
+    return one.the_case.attitude_loop.has_value() == rate.attitude_unit.has_value();
+  };
+  if (std::none_of(found.begin(), found.end(), is_of_law)) return;
+  std::erase_if(found, [&](const SelectedCase& one) { return !is_of_law(one); });
+}
+
+Result<Case> find_case(const std::string& name, const SuiteFolder& suite,
+                       const std::optional<LoopRate>& rate) {
   std::error_code ignored;
   // A folder may have the name of a case by chance. A pipe or device is refused when it is read.
   const auto status = std::filesystem::status(name, ignored);
@@ -20,8 +32,9 @@ Result<Case> find_case(const std::string& name, const SuiteFolder& suite) {
   }
   Selection selection;
   selection.filters = {name};
-  const auto found = select_cases(suite.case_folders(), selection);
+  auto found = select_cases(suite.case_folders(), selection);
   if (!found) return tl::unexpected(found.error());
+  if (rate) keep_law(*rate, *found);
   // A file with several profiles stands for its first.
   std::set<std::filesystem::path> files;
   for (const SelectedCase& one : *found) files.insert(one.the_case.file);
@@ -45,8 +58,8 @@ Result<PlantConfiguration> find_plant_configuration(const Case& the_case,
 
 }  // namespace
 
-Result<Case> find_flight(const std::string& name, const SuiteFolder& suite) {
-  auto the_case = find_case(name, suite);
+Result<Case> find_flight(const std::string& name, const LoopRate& rate, const SuiteFolder& suite) {
+  auto the_case = find_case(name, suite, rate);
   if (the_case && !the_case->flight) {
     return fail_at(the_case->file.string(),
                    "has no [flight]: its inputs are scripted; `attest run` runs it");
@@ -55,16 +68,17 @@ Result<Case> find_flight(const std::string& name, const SuiteFolder& suite) {
 }
 
 Result<Case> find_open_loop_case(const std::string& name, const SuiteFolder& suite) {
-  auto the_case = find_case(name, suite);
+  auto the_case = find_case(name, suite, std::nullopt);
   if (the_case && the_case->flight) {
     return fail_at(the_case->file.string(), "is a flight; `attest sim` flies it");
   }
   return the_case;
 }
 
-Result<ChosenFlight> choose_flight(const std::string& name, const std::string& vehicle,
-                                   const std::string& plant, const SuiteFolder& suite) {
-  auto the_case = find_flight(name, suite);
+Result<ChosenFlight> choose_flight(const std::string& name, const LoopRate& rate,
+                                   const std::string& vehicle, const std::string& plant,
+                                   const SuiteFolder& suite) {
+  auto the_case = find_flight(name, rate, suite);
   if (!the_case) return tl::unexpected(the_case.error());
   auto plant_configuration = find_plant_configuration(*the_case, vehicle, plant);
   if (!plant_configuration) return tl::unexpected(plant_configuration.error());
@@ -77,7 +91,7 @@ Result<ChosenFlight> choose_flight(const std::string& name, const std::string& v
 Result<TimedFlight> find_timed_flight(const std::string& file, const SuiteFolder& suite) {
   auto timing = read_timing(file);
   if (!timing) return tl::unexpected(timing.error());
-  auto the_case = find_flight(timing->case_id, suite);
+  auto the_case = find_flight(timing->case_id, timing->configuration.rate, suite);
   if (!the_case) return tl::unexpected(the_case.error());
   if (the_case->sha256 != timing->case_sha256) {
     return fail_at(file, fmt::format("was recorded with another {}: the file has changed since",

@@ -12,9 +12,10 @@
 namespace attest::cli {
 
 // `name` is a case file, or the name, pattern or id of exactly one. A file with several profiles
-// gives the case of its first profile, unless the id has another. Errors: the case is not a flight;
-// no case or several cases match.
-Result<Case> find_flight(const std::string& name, const SuiteFolder& suite);
+// gives the case of its first profile, unless the id has another. If flights of both laws match, it
+// is that of the law that flies at `rate`: the cascade at a pair of rates, else the controller.
+// Errors: the case is not a flight; no case or several cases match.
+Result<Case> find_flight(const std::string& name, const LoopRate& rate, const SuiteFolder& suite);
 
 // The same for a case in open loop.
 Result<Case> find_open_loop_case(const std::string& name, const SuiteFolder& suite);
@@ -26,8 +27,9 @@ struct ChosenFlight {
   PlantConfiguration plant_configuration;
   std::shared_ptr<const VehicleModel> vehicle_model;
 };
-Result<ChosenFlight> choose_flight(const std::string& name, const std::string& vehicle,
-                                   const std::string& plant, const SuiteFolder& suite);
+Result<ChosenFlight> choose_flight(const std::string& name, const LoopRate& rate,
+                                   const std::string& vehicle, const std::string& plant,
+                                   const SuiteFolder& suite);
 
 // A recorded timing with its case and vehicle.
 struct TimedFlight {

@@ -101,12 +101,20 @@ void list_channels() {
   }
 }
 
-void list_modes() {
-  fmt::print("{:<19}manual auto rates attitude rattitude velocity\n", "flight_mode");
-  for (const FlightMode& mode : flight_modes()) {
-    const auto& flag = mode.flags;
-    fmt::print("{:<19}{:>6} {:>4} {:>5} {:>8} {:>9} {:>8}\n", mode.name, flag[0], flag[1], flag[2],
-               flag[3], flag[4], flag[5]);
+// "flag_control_manual_enabled" -> "manual".
+std::string short_name(std::string_view flag) {
+  constexpr std::string_view begin = "flag_control_", end = "_enabled";
+  return std::string(flag.substr(begin.size(), flag.size() - begin.size() - end.size()));
+}
+
+void list_modes(Module module) {
+  fmt::print("{:<27}", "flight_mode");
+  for (const auto flag : flag_names(module)) fmt::print("{:>10}", short_name(flag));
+  fmt::print("\n");
+  for (const FlightMode& mode : flight_modes(module)) {
+    fmt::print("{:<27}", mode.name);
+    for (const std::uint8_t flag : mode.flags) fmt::print("{:>10}", flag);
+    fmt::print("\n");
   }
 }
 
@@ -164,7 +172,11 @@ int list_command(const ListOptions& options, const Globals& globals) {
     list_parameters(*profiles);
   }
   if (options.channels) list_channels();
-  if (options.modes) list_modes();
+  if (options.modes) {
+    list_modes(Module::mc_att_control);
+    fmt::print("\nof the cascade:\n");
+    list_modes(Module::attitude_unit);
+  }
   if (options.parameters || options.channels || options.modes) return exit_ok;
 
   const auto suite = find_suite(globals.suite);

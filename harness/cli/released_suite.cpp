@@ -18,7 +18,7 @@ VectorsByGroup vectors_by_group(const SuiteFolder& suite, const std::string& sha
   VectorsByGroup groups;
   std::string group, rate;
   for (std::size_t vectors = 0; text >> group >> rate >> vectors;) {
-    if (const auto parsed = Rate::parse(rate)) groups[group][*parsed] = vectors;
+    if (const auto parsed = LoopRate::parse(rate)) groups[group][*parsed] = vectors;
   }
   return groups;
 }

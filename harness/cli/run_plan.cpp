@@ -107,7 +107,7 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
   for (const SelectedCase& selected : *cases) profiles.insert(selected.the_case.profile);
   if (auto asked = ask_port({profiles.begin(), profiles.end()}, plan); !asked) return asked;
   if (options.select.profiles.empty()) leave_out_other_laws(plan, *cases);
-  std::set<Rate> rates;
+  std::set<LoopRate> rates;
   bool all_configurations = true;
   for (const SelectedCase& selected : *cases) {
     all_configurations &=

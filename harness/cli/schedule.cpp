@@ -14,6 +14,24 @@
 namespace attest::cli {
 namespace {
 
+// The times of the units' jobs.
+FlightTiming timing_of(const TaskSet& set, const std::vector<std::vector<TaskJob>>& jobs) {
+  const std::vector<TaskJob>* estimator = set.estimator ? &jobs[*set.estimator] : nullptr;
+  if (!set.attitude_unit) return scheduled_timing(jobs[set.unit], estimator);
+  return scheduled_cascade(jobs[set.unit], jobs[*set.attitude_unit], estimator);
+}
+
+Result<void> check_law(const ScheduleOptions& options, const TaskSet& set, const Case& the_case) {
+  if (set.attitude_unit.has_value() == the_case.attitude_loop.has_value()) return {};
+  return fail_at(options.tasks,
+                 set.attitude_unit
+                     ? fmt::format("has [task.attitude_unit], but {} is a flight of the controller",
+                                   the_case.id())
+                     : fmt::format("needs [task.attitude_unit] too: {} is a flight of the cascade, "
+                                   "whose rate unit is [task.unit]",
+                                   the_case.id()));
+}
+
 struct SchedulePlan {
   TaskSet set;
   std::vector<std::vector<TaskJob>> jobs;
@@ -26,23 +44,25 @@ struct SchedulePlan {
 Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder& suite) {
   auto set = read_task_set(options.tasks);
   if (!set) return tl::unexpected(set.error());
-  const auto chosen = choose_flight(options.case_name, options.vehicle, options.plant, suite);
+  const auto chosen =
+      choose_flight(options.case_name, set->rate(), options.vehicle, options.plant, suite);
   if (!chosen) return tl::unexpected(chosen.error());
   const auto port = describe_port(options.host);
   if (!port) return tl::unexpected(port.error());
 
   const Case& the_case = chosen->the_case;
-  const RunConfiguration configuration{set->tasks[set->unit].rate, chosen->plant_configuration};
-  const Nanoseconds duration = timeline_of(the_case, configuration.rate).duration;
+  if (auto checked = check_law(options, *set, the_case); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  const RunConfiguration configuration{set->rate(), chosen->plant_configuration};
+  const Nanoseconds duration = timeline_of(the_case, configuration.rate.unit).duration;
   auto jobs = simulate(set->tasks, duration);
   if (!jobs) return fail_at(options.tasks, jobs.error().message);
-  const std::vector<TaskJob>* estimator = set->estimator ? &(*jobs)[*set->estimator] : nullptr;
-
   SchedulePlan plan;
   plan.scheduled = {the_case.id(), the_case.sha256, configuration, in_seconds(duration),
-                    scheduled_timing((*jobs)[set->unit], estimator)};
+                    timing_of(*set, *jobs)};
   TimingFile in_time = plan.scheduled;
-  in_time.ticks = case_timing(the_case, configuration.rate);
+  in_time.ticks = flight_timing(the_case, configuration.rate);
   for (const TimingFile& timing : {in_time, plan.scheduled}) {
     plan.flights.push_back(std::make_unique<TimedJob>(the_case, timing, chosen->vehicle_model,
                                                       std::filesystem::path(), options.host));
@@ -64,7 +84,7 @@ int schedule_command(const ScheduleOptions& options, const Globals& globals) {
   if (!plan) return report_error(plan.error());
   if (!globals.quiet) {
     fmt::print("{}\n{}\n", render_tasks(plan->set, plan->jobs),
-               render_delays(plan->unit(), plan->scheduled.ticks));
+               render_delays(plan->unit(), plan->scheduled.ticks.unit));
   }
   if (!options.record_timing.empty()) {
     if (auto written = write_timing(plan->scheduled, options.record_timing); !written) {

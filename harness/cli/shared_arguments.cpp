@@ -123,7 +123,8 @@ void add_selection(CLI::App& command, SelectionOptions& options) {
       "GLOB");
   add("--group", options.groups, "Only this group of cases", "GROUP");
   add("--profile", options.profiles, "Only this version of the law", "PROFILE");
-  add_rates(command, options.rates, "Only these loop rates [Hz], separated by commas")
+  add_rates(command, options.rates,
+            "Only these loop rates [Hz], separated by commas; 250:1000 is a pair of the cascade")
       ->group(option_group::selection);
   add("--vehicle", options.vehicles, "Only flights of this vehicle", "VEHICLE");
   add("--plant", options.plants, "Only flights on this plant: `mujoco` or `ode`", "PLANT");

@@ -26,7 +26,7 @@ constexpr std::string_view all_plants = "all";
 struct Sim {
   Case the_case;
   std::vector<RunConfiguration> configurations;
-  LoopTiming timing;
+  FlightTiming timing;
   std::shared_ptr<const VehicleModel> vehicle_model;
 };
 
@@ -51,10 +51,10 @@ Result<Sim> prepare_case(const SimOptions& options, const SuiteFolder& suite) {
   if (on_all && !options.out.empty()) {
     return fail("--out writes one flight; name its plant instead of `all`");
   }
-  const auto rate = Rate::parse(options.rate);
+  const auto rate = LoopRate::parse(options.rate);
   if (!rate) return tl::unexpected(rate.error());
   auto chosen =
-      choose_flight(options.case_name, options.vehicle, on_all ? "" : options.plant, suite);
+      choose_flight(options.case_name, *rate, options.vehicle, on_all ? "" : options.plant, suite);
   if (!chosen) return tl::unexpected(chosen.error());
   std::vector<RunConfiguration> configurations;
   for (const PlantKind plant : plant_kinds) {
@@ -63,7 +63,7 @@ Result<Sim> prepare_case(const SimOptions& options, const SuiteFolder& suite) {
       configurations.push_back({*rate, PlantConfiguration{one.vehicle, plant}});
     }
   }
-  LoopTiming timing = case_timing(chosen->the_case, *rate);
+  FlightTiming timing = flight_timing(chosen->the_case, *rate);
   return Sim{std::move(chosen->the_case), std::move(configurations), std::move(timing),
              std::move(chosen->vehicle_model)};
 }
@@ -97,7 +97,7 @@ Result<std::vector<SimulatedFlight>> fly_all(const Sim& sim, const HostOptions& 
 
 Result<void> write(const std::vector<SimulatedFlight>& flights, const PortSays& port,
                    const SimOptions& options) {
-  const Trace& flown = flights.front().flown;
+  const Trace& flown = flights.front().flown.trace;
   if (!options.out.empty() && !flown.samples.empty()) {
     if (auto written = write_trace(options.out, flown); !written) return written;
   }

@@ -60,7 +60,10 @@ Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& su
       check_outputs({options.html, options.json, options.junit, options.record_timing},
                     {options.host.port, {options.case_name}}, suite);
   if (!checked) return tl::unexpected(checked.error());
-  auto chosen = choose_flight(options.case_name, options.vehicle, options.plant, suite);
+  const auto rates = parse_rates(options.rates);
+  if (!rates) return tl::unexpected(rates.error());
+  auto chosen =
+      choose_flight(options.case_name, rates->front(), options.vehicle, options.plant, suite);
   if (!chosen) return tl::unexpected(chosen.error());
   const auto live = live_options(options);
   if (!live) return tl::unexpected(live.error());
@@ -78,10 +81,8 @@ Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& su
   StressPlan plan;
   plan.load = *load;
   plan.port = std::move(*port);
-  for (const std::string& text : options.rates) {
-    const auto rate = Rate::parse(text);
-    if (!rate) return tl::unexpected(rate.error());
-    plan.tasks.push_back({the_case, RunConfiguration{*rate, chosen->plant_configuration},
+  for (const LoopRate& rate : *rates) {
+    plan.tasks.push_back({the_case, RunConfiguration{rate, chosen->plant_configuration},
                           chosen->vehicle_model, plan.port, *live,
                           nanoseconds(std::min(options.duration_s, idle_s_max)),
                           options.record_timing, nanoseconds(options.host.timeout_s)});
@@ -134,7 +135,8 @@ Result<void> write_report(std::optional<AtomicFile>& file, const std::string& te
 
 // Prints a note if cyclictest is installed but fails, because its row is then missing.
 std::optional<Cyclictest> idle_by_cyclictest(const StressTask& task) {
-  auto idle = run_cyclictest(task.configuration.rate, task.idle_duration, task.live, interrupted);
+  auto idle =
+      run_cyclictest(task.configuration.rate.unit, task.idle_duration, task.live, interrupted);
   if (!idle && !interrupted() && is_installed("cyclictest")) {
     fmt::print(stderr, "attest: cyclictest failed, or gave no figures in time\n");
   }

@@ -14,7 +14,7 @@
 namespace attest::cli {
 
 // "profile/group" -> the number of vectors at each rate.
-using VectorsByGroup = std::map<std::string, std::map<Rate, std::size_t>>;
+using VectorsByGroup = std::map<std::string, std::map<LoopRate, std::size_t>>;
 
 // In the folder of a suite, names the suite whose cases it takes over.
 inline constexpr const char* base_file = "BASE";

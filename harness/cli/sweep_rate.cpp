@@ -20,7 +20,7 @@ namespace {
 
 struct SweepPlan {
   Case the_case;
-  std::vector<Rate> rates;
+  std::vector<LoopRate> rates;
   PortSays port;
   Jobs<SweepResult> jobs;
 };
@@ -45,14 +45,12 @@ Result<std::vector<PlantConfiguration>> plant_configurations_of(const Case& the_
 }
 
 Result<SweepPlan> make_plan(const SweepOptions& options, const SuiteFolder& suite) {
-  auto the_case = find_flight(options.case_name, suite);
-  if (!the_case) return tl::unexpected(the_case.error());
   SweepPlan plan;
-  for (const std::string& text : options.rates) {
-    const auto rate = Rate::parse(text);
-    if (!rate) return tl::unexpected(rate.error());
-    plan.rates.push_back(*rate);
-  }
+  auto rates = parse_rates(options.rates);
+  if (!rates) return tl::unexpected(rates.error());
+  plan.rates = *std::move(rates);
+  auto the_case = find_flight(options.case_name, plan.rates.front(), suite);
+  if (!the_case) return tl::unexpected(the_case.error());
   const auto plant_configurations = plant_configurations_of(*the_case, options);
   if (!plant_configurations) return tl::unexpected(plant_configurations.error());
   const auto port = describe_port(options.host);

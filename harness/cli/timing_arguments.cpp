@@ -88,7 +88,8 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
                                          "Let a port fly in real time, at each loop rate: latency, "
                                          "execution time, response time, misses");
   add_port(*command, options->host.port);
-  add_rates(*command, options->rates, "Loop rates [Hz], separated by commas")
+  add_rates(*command, options->rates,
+            "Loop rates [Hz], separated by commas; of the cascade pairs such as 250:1000")
       ->default_str("250,500,1000,2000,4000,8000");
   command->add_option("--duration", options->duration_s, "Duration of the flight at each rate [s]")
       ->check(CLI::Range(0.1, 3600.0))
@@ -121,7 +122,9 @@ void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("--case", options->case_name, "A flight; the bounds are those of its metrics")
       ->type_name("CASE")
       ->capture_default_str();
-  add_rates(*command, options->rates, "Loop rates at which to find the largest delay [Hz]")
+  add_rates(*command, options->rates,
+            "Loop rates at which to find the largest delay [Hz]; of the cascade pairs such "
+            "as 250:1000")
       ->default_str("50,100,250,500,1000");
   command->add_option("--vehicle", options->vehicles, "Only this vehicle")
       ->type_name("VEHICLE")

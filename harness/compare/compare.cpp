@@ -50,6 +50,22 @@ double excess(const Deviation& deviation) {
 
 }  // namespace
 
+Comparison both(Comparison one, const Comparison& other) {
+  one.ticks += other.ticks;
+  one.deviating_ticks += other.deviating_ticks;
+  const auto& first = other.first;
+  if (first && (!one.first || first->timestamp_us < one.first->timestamp_us)) one.first = first;
+  if (other.worst && (!one.worst || excess(*other.worst) > excess(*one.worst))) {
+    one.worst = other.worst;
+  }
+  if (other.tightest && (!one.tightest || other.tightest->ratio < one.tightest->ratio)) {
+    one.tightest = other.tightest;
+  }
+  if (one.mismatch.empty()) one.mismatch = other.mismatch;
+  one.got_non_finite |= other.got_non_finite;
+  return one;
+}
+
 TickComparer::TickComparer(const ChannelSet& got, const ChannelSet& want,
                            const Tolerances& tolerances)
     : level_(tolerances.level()), allowed_(tolerances, module_of(want)) {

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr float nanf = std::numeric_limits<float>::quiet_NaN();
 
 constexpr std::array<std::pair<Measure, std::string_view>, 8> names = {{
     {Measure::settling_time_s, "settling_time_s"},
@@ -34,7 +35,7 @@ double larger(double a, double b) { return std::isnan(b) || b > a ? b : a; }
 
 // The angle between two attitudes, independent of the signs and norms of their quaternions. It uses
 // atan2, because acos has no resolution where the angle is small.
-double angle_deg(const std::array<float, 4>& q, const float (&q_d)[4]) {
+double angle_deg(const std::array<float, 4>& q, const std::array<float, 4>& q_d) {
   const auto at = [&](std::size_t i) { return static_cast<double>(q[i]); };
   const auto to = [&](std::size_t i) { return static_cast<double>(q_d[i]); };
   const double w = at(0) * to(0) + at(1) * to(1) + at(2) * to(2) + at(3) * to(3);
@@ -51,13 +52,26 @@ bool is_offboard_rates(const attest_inputs& in) {
          in.vehicle_control_mode.flag_control_manual_enabled == 0;
 }
 
-double squared_rate_error(const Sample& sample, const PlantSample& plant) {
-  const auto& own = sample.out.vehicle_rates_setpoint;
-  const auto& outside = sample.in.vehicle_rates_setpoint;
-  const bool offboard = is_offboard_rates(sample.in);
-  const std::array<float, 3> wanted = {offboard ? outside.roll : own.roll,
-                                       offboard ? outside.pitch : own.pitch,
-                                       offboard ? outside.yaw : own.yaw};
+template <typename Topic>
+std::array<float, 3> rates_of(const Topic& topic) {
+  return {topic.roll, topic.pitch, topic.yaw};
+}
+
+// The rates setpoint in force.
+std::array<float, 3> wanted_rates(Module module, const Sample& sample) {
+  if (module == Module::rate_unit) {
+    const auto& mode = sample.rate_in.vehicle_control_mode;
+    const bool acro =
+        mode.flag_control_manual_enabled != 0 && mode.flag_control_attitude_enabled == 0;
+    return acro ? rates_of(sample.rate_out.vehicle_rates_setpoint)
+                : rates_of(sample.rate_in.vehicle_rates_setpoint);
+  }
+  return is_offboard_rates(sample.in) ? rates_of(sample.in.vehicle_rates_setpoint)
+                                      : rates_of(sample.out.vehicle_rates_setpoint);
+}
+
+double squared_rate_error(Module module, const Sample& sample, const PlantSample& plant) {
+  const std::array<float, 3> wanted = wanted_rates(module, sample);
   double sum = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     sum += square(static_cast<double>(wanted[i]) - static_cast<double>(plant.rate_rad_s[i]));
@@ -65,10 +79,25 @@ double squared_rate_error(const Sample& sample, const PlantSample& plant) {
   return sum;
 }
 
+// The setpoint that a step followed. The attitude unit follows the sticks in stabilized mode.
+const float (&attitude_setpoint(const Sample& sample, bool is_attitude_unit))[4] {
+  if (!is_attitude_unit) return sample.in.vehicle_attitude_setpoint.q_d;
+  const attest_attitude_inputs& in = sample.attitude_in;
+  const auto& mode = in.vehicle_control_mode;
+  const bool follows_others = mode.flag_control_altitude_enabled != 0 ||
+                              mode.flag_control_velocity_enabled != 0 ||
+                              mode.flag_control_position_enabled != 0;
+  const bool stabilized = mode.flag_control_manual_enabled != 0 &&
+                          mode.flag_control_attitude_enabled != 0 && !follows_others;
+  return stabilized ? sample.attitude_out.vehicle_attitude_setpoint.q_d
+                    : in.vehicle_attitude_setpoint.q_d;
+}
+
 // A window of a flown trace.
 class Flown {
  public:
-  Flown(const Trace& trace, const Window& window) : trace_(trace), window_(window) {
+  Flown(const Trace& trace, const Trace* attitude, const Window& window)
+      : trace_(trace), setpoints_(attitude_setpoints(trace, attitude)), window_(window) {
     const std::size_t ticks = std::min(trace.samples.size(), trace.plant.size());
     while (end_ < ticks && seconds(end_) < window.to_s) ++end_;
     while (begin_ < end_ && seconds(begin_) < window.from_s) ++begin_;
@@ -111,7 +140,7 @@ class Flown {
   }
 
   double error_deg(std::size_t tick) const {
-    return angle_deg(trace_.plant[tick].q, trace_.samples[tick].in.vehicle_attitude_setpoint.q_d);
+    return angle_deg(trace_.plant[tick].q, setpoints_[tick]);
   }
 
  private:
@@ -122,6 +151,7 @@ class Flown {
   }
 
   const Trace& trace_;
+  std::vector<std::array<float, 4>> setpoints_;
   Window window_;
   std::size_t begin_ = 0, end_ = 0;
 };
@@ -134,21 +164,30 @@ double peak_rate(const Flown& flown, const Trace& trace) {
   });
 }
 
+std::array<float, 3> integrals_of(Module module, const Sample& sample) {
+  if (module == Module::rate_unit) {
+    const auto& status = sample.rate_out.rate_ctrl_status;
+    return {status.rollspeed_integ, status.pitchspeed_integ, status.yawspeed_integ};
+  }
+  const auto& status = sample.out.mc_att_ctrl_status;
+  return {status.roll_rate_integ, status.pitch_rate_integ, status.yaw_rate_integ};
+}
+
 double peak_integral(const Flown& flown, const Trace& trace) {
+  const Module module = module_of(trace.present);
   return flown.peak([&](std::size_t tick) {
-    const auto& status = trace.samples[tick].out.mc_att_ctrl_status;
     double largest = 0;
-    for (const float integral :
-         {status.roll_rate_integ, status.pitch_rate_integ, status.yaw_rate_integ}) {
+    for (const float integral : integrals_of(module, trace.samples[tick])) {
       largest = larger(largest, std::abs(static_cast<double>(integral)));
     }
     return largest;
   });
 }
 
-double over(const Metric& metric, const Window& window, const Trace& trace) {
-  const Flown flown(trace, window);
-  if (flown.empty()) return nan;
+double over(const Metric& metric, const Window& window, const Trace& trace, const Trace* attitude) {
+  const Flown flown(trace, attitude, window);
+  if (flown.empty() || (attitude != nullptr && attitude->samples.empty())) return nan;
+  const Module module = module_of(trace.present);
   switch (metric.measure) {
     case Measure::settling_time_s:
       return flown.settling_time_s(metric.band_deg);
@@ -158,7 +197,7 @@ double over(const Metric& metric, const Window& window, const Trace& trace) {
       return flown.root_mean([&](std::size_t tick) { return square(flown.error_deg(tick)); });
     case Measure::rms_rate_error_rad_s:
       return flown.root_mean([&](std::size_t tick) {
-        return squared_rate_error(trace.samples[tick], trace.plant[tick]);
+        return squared_rate_error(module, trace.samples[tick], trace.plant[tick]);
       });
     case Measure::peak_rate_rad_s:
       return peak_rate(flown, trace);
@@ -188,9 +227,26 @@ Result<Measure> parse_measure(std::string_view name) {
                           fmt::join(known, ", ")));
 }
 
-double measured(const Metric& metric, const Trace& flown) {
-  const double value = over(metric, metric.window, flown);
-  return metric.versus ? value / over(metric, *metric.versus, flown) : value;
+std::vector<std::array<float, 4>> attitude_setpoints(const Trace& flown, const Trace* attitude) {
+  std::vector<std::array<float, 4>> setpoints;
+  setpoints.reserve(flown.samples.size());
+  std::size_t next = 0;  // tick of the attitude unit
+  for (const Sample& sample : flown.samples) {
+    const Sample* of = &sample;
+    if (attitude != nullptr) {
+      const auto& samples = attitude->samples;
+      while (next < samples.size() && samples[next].in.timestamp <= sample.in.timestamp) ++next;
+      of = next > 0 ? &samples[next - 1] : samples.empty() ? nullptr : &samples.front();
+    }
+    setpoints.push_back(of ? std::to_array(attitude_setpoint(*of, attitude != nullptr))
+                           : std::array{nanf, nanf, nanf, nanf});
+  }
+  return setpoints;
+}
+
+double measured(const Metric& metric, const Trace& flown, const Trace* attitude) {
+  const double value = over(metric, metric.window, flown, attitude);
+  return metric.versus ? value / over(metric, *metric.versus, flown, attitude) : value;
 }
 
 }  // namespace attest

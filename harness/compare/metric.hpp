@@ -2,6 +2,7 @@
 // controllers differ in the last bits, and a flight may amplify that. Metrics stay nearly the same.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
@@ -21,7 +22,7 @@ enum class Measure {
   rms_attitude_error_deg,  //
   rms_rate_error_rad_s,    // of the three axes together, against the rates setpoint in force
   peak_rate_rad_s,         // largest |body rate|
-  saturation_duty,         // fraction of the ticks with the mixer in saturation, 0..1
+  saturation_duty,         // fraction of the ticks with the mixer or allocator in saturation, 0..1
   peak_integral,           // largest |integral| of the three axes
   sink_m,                  // descent from the first tick of the window to the last
 };
@@ -45,8 +46,13 @@ struct Metric {
   double max = std::numeric_limits<double>::infinity();
 };
 
+// The attitude setpoint in force at each tick of `flown`. `attitude` as for measured().
+std::vector<std::array<float, 4>> attitude_setpoints(const Trace& flown, const Trace* attitude);
+
 // Infinite when the flight does not settle. NaN when the window has no tick, or a measured value is
-// NaN. REQUIRES: a flown trace.
-double measured(const Metric& metric, const Trace& flown);
+// NaN. `flown` is the trace of the unit that commands the motors. `attitude`: of a flight of the
+// cascade the trace of its attitude unit, which has the attitude setpoint; else null. REQUIRES:
+// flown traces.
+double measured(const Metric& metric, const Trace& flown, const Trace* attitude = nullptr);
 
 }  // namespace attest

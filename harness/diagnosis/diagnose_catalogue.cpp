@@ -18,9 +18,9 @@ struct Answered {
 
 Rate rate_for(const SelectedCase& selected) {
   for (const RunConfiguration& configuration : selected.configurations) {
-    if (configuration.rate == Rate::hz(250)) return configuration.rate;
+    if (configuration.rate == Rate::hz(250)) return configuration.rate.unit;
   }
-  return selected.configurations.front().rate;
+  return selected.configurations.front().rate.unit;
 }
 
 Answered answered(const SelectedCase& selected) {

@@ -35,9 +35,9 @@ std::vector<Vector> vectors_of(const std::vector<SelectedCase>& cases,
   std::map<std::string, Rate> nearest;
   for (const CaseResult& result : results) {
     if (result.plant_configuration || !wanted(result)) continue;
-    const auto [place, is_new] = nearest.try_emplace(result.case_id(), result.rate);
-    if (!is_new && distance_from_250(result.rate) < distance_from_250(place->second)) {
-      place->second = result.rate;
+    const auto [place, is_new] = nearest.try_emplace(result.case_id(), result.rate.unit);
+    if (!is_new && distance_from_250(result.rate.unit) < distance_from_250(place->second)) {
+      place->second = result.rate.unit;
     }
   }
   std::vector<Vector> vectors;

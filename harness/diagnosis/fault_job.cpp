@@ -17,7 +17,7 @@ namespace {
 // A vector. The likeliest to catch the fault come first: own group, then 250 Hz, then in order.
 struct Attempt {
   const Case* the_case;
-  Rate rate;
+  LoopRate rate;
   int turn;
 };
 
@@ -77,7 +77,7 @@ Result<FaultCatch> FaultJob::run(std::size_t) {
     // A fault that is equivalent to the law still differs from it by rounding.
     if (the_case->exact_only && !fault_.is_detectable(profile_)) continue;
     const Level level = the_case->exact_only ? Level::exact : Level::numeric;
-    const auto result = evaluate_case(*the_case, rate, *golden, host, {level});
+    const auto result = evaluate_case(*the_case, rate.unit, *golden, host, {level});
     if (!result) return tl::unexpected(result.error());
     if (!fails_a_run(result->verdict)) continue;
     found.verdict = result->verdict;

@@ -118,7 +118,7 @@ bool keeps_every_tick(std::size_t ticks) {
 }
 
 bool is_long(const Case& the_case) {
-  const std::int64_t ticks = tick_count(the_case.duration, the_case.rates.back());
+  const std::int64_t ticks = tick_count(the_case.duration, the_case.rates.back().unit);
   return !the_case.flight && !keeps_every_tick(static_cast<std::size_t>(ticks));
 }
 

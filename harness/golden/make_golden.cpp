@@ -24,7 +24,7 @@ bool does_not_have_it(const PortFault& fault) {
 Result<std::optional<GoldenTrace>> open_loop_trace(const Case& the_case,
                                                    const RunConfiguration& configuration,
                                                    Reference& reference, std::string& left_out) {
-  Trace trace = stimulate(the_case, configuration.rate);
+  Trace trace = stimulate(the_case, configuration.rate.unit);
   if (const auto fault = reference.drive(subject_of(the_case), trace)) {
     if (!reference.is_own() && does_not_have_it(*fault)) {
       left_out = fault->what;

@@ -14,21 +14,21 @@ namespace {
 // Other correct builds may deviate ten times as much as float32 and double do, and still pass.
 constexpr double part_of_tolerance = 0.1;
 
-Result<Trace> flown_by(Port& port, const Case& the_case, const RunConfiguration& configuration,
-                       const VehicleModel& vehicle_model, const LoopTiming& timing) {
+Result<Flown> flown_by(Port& port, const Case& the_case, const RunConfiguration& configuration,
+                       const VehicleModel& vehicle_model, const FlightTiming& timing) {
   const auto wrong = [&](const std::string& what) {
     return fail_at(the_case.file.string(), fmt::format("at {}, {}", configuration.label(), what));
   };
-  const auto unit = port.create(the_case.profile);
-  if (!unit) return wrong(fmt::format("the reference has no profile `{}`", the_case.profile));
-  auto flown = fly(the_case, configuration, vehicle_model, *unit, timing);
+  const auto units = units_for(the_case, port, port);
+  if (!units) return wrong(fmt::format("the reference has no profile `{}`", the_case.profile));
+  auto flown = fly(the_case, configuration, vehicle_model, units->for_flight(), timing);
   if (!flown) return tl::unexpected(flown.error());
   if (flown->fault) return wrong("the reference: " + flown->fault->what);
   if (flown->divergence) {
     return wrong(fmt::format("the reference loses the vehicle at {:.3f} s: {}",
                              in_seconds(flown->divergence->at), flown->divergence->what));
   }
-  return std::move(flown->trace);
+  return *std::move(flown);
 }
 
 double seconds_between(const Sample& first, const Sample& other) {
@@ -48,7 +48,7 @@ double horizon_s(const Trace& flown, const Trace& in_double, const Case& the_cas
 Result<ReferenceFlight> reference_flight(const Case& the_case,
                                          const RunConfiguration& configuration,
                                          const VehicleModel& vehicle_model,
-                                         const LoopTiming& timing) {
+                                         const FlightTiming& timing) {
   auto flown = flown_by(*open_builtin(), the_case, configuration, vehicle_model, timing);
   if (!flown) return tl::unexpected(flown.error());
   const auto in_double =
@@ -59,8 +59,8 @@ Result<ReferenceFlight> reference_flight(const Case& the_case,
   for (const Metric& metric : the_case.flight->metrics) {
     result.metrics[metric.name] = measured(metric, *flown);
   }
-  result.horizon_s = horizon_s(*flown, *in_double, the_case);
-  result.rows = std::move(*flown);
+  result.horizon_s = horizon_s(flown->trace, in_double->trace, the_case);
+  result.rows = std::move(flown->trace);
   return result;
 }
 
@@ -68,7 +68,7 @@ Result<ReferenceFlight> reference_flight(const Case& the_case,
                                          const RunConfiguration& configuration,
                                          const VehicleModel& vehicle_model) {
   auto flight = reference_flight(the_case, configuration, vehicle_model,
-                                 case_timing(the_case, configuration.rate));
+                                 flight_timing(the_case, configuration.rate));
   if (!flight) return flight;
   for (const Metric& metric : the_case.flight->metrics) {
     const double value = flight->metrics[metric.name];

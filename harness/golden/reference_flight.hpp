@@ -13,7 +13,7 @@
 namespace attest {
 
 struct ReferenceFlight {
-  Trace rows;                             // keyframes
+  Trace rows;                             // keyframes, of the unit that commands the motors
   double horizon_s = 0;                   // how long two correct controllers agree
   std::map<std::string, double> metrics;  // by name
 };
@@ -32,6 +32,6 @@ Result<ReferenceFlight> reference_flight(const Case& the_case,
 Result<ReferenceFlight> reference_flight(const Case& the_case,
                                          const RunConfiguration& configuration,
                                          const VehicleModel& vehicle_model,
-                                         const LoopTiming& timing);
+                                         const FlightTiming& timing);
 
 }  // namespace attest

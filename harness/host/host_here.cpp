@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "harness/host/step_timer.hpp"
+#include "harness/port/builtin.hpp"
 #include "harness/port/profiles.hpp"
 
 namespace attest {
@@ -32,14 +33,16 @@ std::optional<PortFault> HostHere::drive(const Subject& subject, Trace& trace) {
 Result<Flown> HostHere::fly(const FlightPlan& plan) {
   const Case& whole = *course_.the_case;
   return ports_.run([&]() -> Result<Flown> {
-    const auto unit = driven().create(whole.profile);
-    if (!unit) {
+    const auto reference = open_builtin();
+    const auto units = units_for(whole, driven(), *reference);
+    if (!units) {
       Flown none;
       none.fault = held(no_unit_of(whole.profile, says_), whole.profile);
       return none;
     }
-    auto flown = attest::fly(plan.from_one_period_on ? whole.from_one_period_on() : whole,
-                             plan.configuration, *course_.vehicle_model, *unit, plan.timing);
+    auto flown =
+        attest::fly(plan.from_one_period_on ? whole.from_one_period_on() : whole,
+                    plan.configuration, *course_.vehicle_model, units->for_flight(), plan.timing);
     if (flown) flown->fault = held(std::move(flown->fault), whole.profile);
     return flown;
   });

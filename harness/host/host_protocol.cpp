@@ -80,10 +80,11 @@ class Answerer {
 
   bool fly(const json& head) {
     FlightPlan plan;
-    plan.configuration.rate = Rate::parse(head.at("rate").get<std::string>()).value();
+    plan.configuration.rate = LoopRate::parse(head.at("rate").get<std::string>()).value();
     plan.configuration.plant_configuration = PlantConfiguration{
         head.at("vehicle").get<std::string>(), head.at("plant").get<PlantKind>()};
-    plan.timing = question_.blobs.read<LoopTick>(head.at("ticks").get<std::size_t>()).value();
+    plan.timing.unit = ticks_from(head.at("ticks"));
+    plan.timing.attitude_unit = ticks_from(head.at("attitude_ticks"));
     plan.from_one_period_on = head.at("from_one_period_on").get<bool>();
     const auto flown = host_.fly(plan);
     if (!flown) return refuse(flown.error(), question_.request, judge_);
@@ -92,7 +93,17 @@ class Answerer {
                    {"ticks", trace.samples.size()},
                    {"parameters", changes_json(trace.parameters)}};
     set_end(flown->fault, flown->divergence, answer);
-    return send(std::move(answer), {blob_of(trace.samples), blob_of(trace.plant)});
+    std::vector<Blob> blobs{blob_of(trace.samples), blob_of(trace.plant)};
+    if (const auto& attitude = flown->attitude_trace) {
+      answer["attitude_ticks"] = attitude->samples.size();
+      answer["attitude_parameters"] = changes_json(attitude->parameters);
+      blobs.push_back(blob_of(attitude->samples));
+    }
+    return send(std::move(answer), blobs);
+  }
+
+  LoopTiming ticks_from(const json& count) {
+    return question_.blobs.read<LoopTick>(count.get<std::size_t>()).value();
   }
 
   bool time(const json& head) {
@@ -132,6 +143,18 @@ auto read_answer(const Arrived& arrived, Read read) -> decltype(read(json())) {
   }
 }
 
+// The trace of one unit of a flight that had so many ticks.
+std::optional<Trace> flown_trace(const Arrived& arrived, const json& head, Module module,
+                                 std::size_t ticks) {
+  auto samples = arrived.blobs.read<Sample>(ticks);
+  if (!samples) return std::nullopt;
+  Trace trace;
+  trace.source = head.at("source").get<std::string>();
+  trace.samples = *std::move(samples);
+  trace.present = channels_of(module);
+  return trace;
+}
+
 tl::unexpected<Error> error_in(const json& head) {
   auto error = error_from_json(head.at("error"));
   return tl::unexpected(error ? *std::move(error) : error.error());
@@ -151,7 +174,8 @@ std::string fly_request(const FlightPlan& plan) {
                   {"rate", plan.configuration.rate.to_string()},
                   {"vehicle", plan.configuration.plant_configuration->vehicle},
                   {"plant", plan.configuration.plant_configuration->plant},
-                  {"ticks", plan.timing.size()},
+                  {"ticks", plan.timing.unit.size()},
+                  {"attitude_ticks", plan.timing.attitude_unit.size()},
                   {"from_one_period_on", plan.from_one_period_on}});
 }
 
@@ -175,22 +199,35 @@ std::optional<Driven> read_driven(const Arrived& arrived, std::size_t ticks) {
   });
 }
 
-std::optional<Result<Flown>> read_flown(const Arrived& arrived, std::size_t ticks) {
+std::optional<Result<Flown>> read_flown(const Arrived& arrived, const FlightTiming& timing) {
   using Answer = std::optional<Result<Flown>>;
   return read_answer(arrived, [&](const json& head) -> Answer {
     if (head.contains("error")) return error_in(head);
     Flown flown;
     flown.fault = fault_from(head, arrived.of_program);
     flown.divergence = divergence_from(head);
-    const auto count = head.at("ticks").get<std::size_t>();
     const bool ends_early = flown.fault || flown.divergence;
-    if (count > ticks || (count < ticks && !ends_early)) return std::nullopt;
-    auto samples = arrived.blobs.read<Sample>(count);
-    auto plant = samples ? arrived.blobs.read<PlantSample>(count) : std::nullopt;
+    const bool is_cascade = !timing.attitude_unit.empty();
+    const auto count_of = [&](const char* key, const LoopTiming& ticks) {
+      const auto count = head.at(key).get<std::size_t>();
+      const bool is_sane = count == ticks.size() || (count < ticks.size() && ends_early);
+      return is_sane ? std::optional(count) : std::nullopt;
+    };
+    const auto count = count_of("ticks", timing.unit);
+    if (!count) return std::nullopt;
+    auto trace =
+        flown_trace(arrived, head, is_cascade ? Module::rate_unit : Module::mc_att_control, *count);
+    auto plant = trace ? arrived.blobs.read<PlantSample>(*count) : std::nullopt;
     if (!plant) return std::nullopt;
-    flown.trace = {head.at("source").get<std::string>(), *std::move(samples),
-                   changes_from(head.at("parameters")), channels_of(Module::mc_att_control),
-                   *std::move(plant)};
+    flown.trace = *std::move(trace);
+    flown.trace.parameters = changes_from(head.at("parameters"));
+    flown.trace.plant = *std::move(plant);
+    if (!is_cascade) return flown;
+    const auto attitude_count = count_of("attitude_ticks", timing.attitude_unit);
+    if (!attitude_count) return std::nullopt;
+    flown.attitude_trace = flown_trace(arrived, head, Module::attitude_unit, *attitude_count);
+    if (!flown.attitude_trace) return std::nullopt;
+    flown.attitude_trace->parameters = changes_from(head.at("attitude_parameters"));
     return flown;
   });
 }

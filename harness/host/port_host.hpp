@@ -23,7 +23,7 @@ struct Course {
 // One flight of a course.
 struct FlightPlan {
   RunConfiguration configuration;
-  LoopTiming timing;
+  FlightTiming timing;
   bool from_one_period_on = false;  // Case::from_one_period_on()
 };
 

@@ -16,22 +16,55 @@ MotorLimits limits_of(const actuation::Saturation& saturation) {
 
 }  // namespace
 
-Actuators::Actuators(const Vehicle& vehicle)
-    : vehicle_(vehicle), mixer_(actuation::parse_mixer(vehicle.mixer).value()) {
+bool is_armed(Module module, const Sample& sample) {
+  switch (module) {
+    case Module::mc_att_control:
+      return sample.in.actuator_armed.armed != 0;
+    case Module::rate_unit:
+      return sample.rate_in.vehicle_control_mode.flag_armed != 0;
+    case Module::attitude_unit:
+    case Module::mixer:
+    case Module::battery_status:
+      break;
+  }
+  return false;
+}
+
+Actuators::Actuators(const Vehicle& vehicle, Module module)
+    : vehicle_(vehicle), module_(module), mixer_(actuation::parse_mixer(vehicle.mixer).value()) {
+  if (module == Module::rate_unit) allocator_.emplace(vehicle);
   commands_.fill(-1);
 }
 
-void Actuators::mix(const attest_outputs& out, bool armed) {
-  if (!armed) {
+void Actuators::follow(const Sample& sample) {
+  if (module_ == Module::attitude_unit) return;
+  if (!is_armed(module_, sample)) {
     commands_.fill(-1);
-    return;
+  } else if (allocator_) {
+    allocate(sample.rate_out);
+  } else {
+    mix(sample.out);
   }
+}
+
+void Actuators::mix(const attest_outputs& out) {
   if (out.actuator_controls_0.published == 0) return;
   const float* control = out.actuator_controls_0.control;
   actuation::Saturation saturation{};
   const auto mixed = mixer_.mix({control[0], control[1], control[2], control[3]}, 0, saturation);
   std::copy(mixed.begin(), mixed.end(), commands_.begin());
-  limits_ = limits_of(saturation);
+  saturation_.limits = limits_of(saturation);
+}
+
+void Actuators::allocate(const attest_rate_outputs& out) {
+  const auto& torque = out.vehicle_torque_setpoint;
+  const auto& thrust = out.vehicle_thrust_setpoint;
+  if (torque.published == 0 || thrust.published == 0) return;
+  const Allocation allocation =
+      allocator_->allocate(std::to_array(torque.xyz), std::to_array(thrust.xyz));
+  commands_ = allocation.commands;
+  saturation_.unallocated_torque = allocation.unallocated_torque;
+  saturation_.torque_setpoint_achieved = allocation.torque_setpoint_achieved;
 }
 
 std::span<const double> Actuators::speeds(const MotorCommands& commands, double supply,

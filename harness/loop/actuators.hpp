@@ -1,35 +1,31 @@
-// From the unit's controls to the commanded rotor speeds: mixer, arming, battery voltage, motor
-// failure. No allocation after construction.
+// From the controls of the unit that commands the motors to the rotor speeds: mixer or allocator,
+// arming, battery voltage, motor failure. No allocation of memory after construction.
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <optional>
 #include <span>
 
 #include "controller/actuation/mixer.hpp"
-#include "controller/attest_unit.h"
-#include "harness/core/result.hpp"
+#include "harness/loop/control_allocator.hpp"
+#include "harness/loop/motor_commands.hpp"
 #include "harness/plant/vehicle.hpp"
+#include "harness/trace/module.hpp"
 
 namespace attest {
 
-// One per rotor, from -1 (stopped) to 1 (full).
-using MotorCommands = std::array<float, rotors_max>;
-
-// Flags as the firmware sends them: bits of one mask, so any value but 0 is true.
-using MotorLimits = decltype(attest_inputs::multirotor_motor_limits);
-
 class Actuators {
  public:
-  // REQUIRES: the vehicle outlives this, and its mixer can be parsed (read_vehicle checks).
-  explicit Actuators(const Vehicle& vehicle);
+  // For the unit of that module. REQUIRES: read_vehicle accepts the vehicle, which outlives this.
+  explicit Actuators(const Vehicle& vehicle, Module module = Module::mc_att_control);
 
-  // The mixer runs when the unit publishes actuator controls. Disarmed motors stop.
-  void mix(const attest_outputs& out, bool armed);
+  // The outputs of a step. The mixer runs when the controller publishes its controls, the allocator
+  // when the rate unit publishes torque and thrust. Disarmed motors stop. The attitude unit has no
+  // actuators.
+  void follow(const Sample& sample);
 
   const MotorCommands& commands() const { return commands_; }
-  const MotorLimits& limits() const { return limits_; }  // of the mixer's last run
+  const Saturation& saturation() const { return saturation_; }  // of the last run
 
   // The speeds [rad/s] for `commands`, one per rotor, valid until the next call. They are linear in
   // the command, times the `supply` ratio of the battery, and 0 for the `failed` rotor. Empty when
@@ -38,11 +34,19 @@ class Actuators {
                                  const std::optional<std::size_t>& failed);
 
  private:
+  void mix(const attest_outputs& out);
+  void allocate(const attest_rate_outputs& out);
+
   const Vehicle& vehicle_;
+  Module module_;
   actuation::Mixer mixer_;
+  std::optional<ControlAllocator> allocator_;  // of the rate unit
   MotorCommands commands_{};
-  MotorLimits limits_{};
+  Saturation saturation_;
   std::array<double, rotors_max> speeds_{};
 };
+
+// The flag that arms the motors, in the inputs of a module.
+bool is_armed(Module module, const Sample& sample);
 
 }  // namespace attest

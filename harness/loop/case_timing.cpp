@@ -16,6 +16,16 @@ Nanoseconds drifted(Nanoseconds time, const Rate& rate, double drift) {
   return std::min(time, Nanoseconds(static_cast<std::int64_t>(samples * period_ns)));
 }
 
+Nanoseconds until_result(const Case& the_case, const Rate& rate) {
+  const bool is_attitude = the_case.module == Module::attitude_unit;
+  return (is_attitude ? the_case.attitude_loop->delay : the_case.flight->actuator_delay).on(rate);
+}
+
+// The rate unit reads the gyro itself.
+Estimator estimator_of(const Case& the_case) {
+  return the_case.module == Module::rate_unit ? Estimator{} : the_case.flight->estimator;
+}
+
 // The estimator samples on its clock, and the unit runs when the sample arrives.
 LoopTiming timing_on_estimate(const Case& the_case, const Rate& rate) {
   const Flight& flight = *the_case.flight;
@@ -34,14 +44,23 @@ LoopTiming timing_on_estimate(const Case& the_case, const Rate& rate) {
 
 LoopTiming case_timing(const Case& the_case, const Rate& rate) {
   if (the_case.unit.on_estimate) return timing_on_estimate(the_case, rate);
-  const Flight& flight = *the_case.flight;
-  const Nanoseconds before = flight.estimator.delay.on(rate);
-  const Nanoseconds after = flight.actuator_delay.on(rate);
+  const Estimator estimator = estimator_of(the_case);
+  const Nanoseconds before = estimator.delay.on(rate);
+  const Nanoseconds after = until_result(the_case, rate);
   LoopTiming timing;
   for (const Nanoseconds begins : unit_ticks(the_case, rate)) {
     Nanoseconds sampled = begins - before;
-    if (flight.estimator.drift) sampled = drifted(sampled, rate, *flight.estimator.drift);
+    if (estimator.drift) sampled = drifted(sampled, rate, *estimator.drift);
     timing.push_back({sampled, begins, begins + after});
+  }
+  return timing;
+}
+
+FlightTiming flight_timing(const Case& the_case, const LoopRate& rate) {
+  FlightTiming timing = case_timing(the_case.of_module(the_case.module), rate.unit);
+  if (rate.attitude_unit) {
+    timing.attitude_unit =
+        case_timing(the_case.of_module(Module::attitude_unit), *rate.attitude_unit);
   }
   return timing;
 }

@@ -1,22 +1,29 @@
-// A unit flies a plant. Events at the same instant happen in this order:
+// The units of a flight controller fly a plant. Events at the same instant happen in this order:
 //
 //     the plant is advanced to t
 //     disturbances    wind, centre of mass and motor failure change
-//     estimator       takes its sample of the plant
 //     battery         takes its sample of the plant
-//     motor limits    takes the flags of the mixer's last run, before t
-//     unit            stimulus; messages from estimator, battery, motor limits; step; mixer
+//     saturation      takes what the mixer or the allocator reported at its last run, before t
+//     land detector   of the cascade, if there is a floor: takes its sample of the plant
+//     estimators      take their samples of the plant, one for each unit
+//     the unit        that commands the motors: the controller, or the cascade's rate unit.
+//                     Stimulus; messages; step; mixer or allocator
+//     attitude unit   of the cascade: stimulus; messages; step
 //     actuators       the commands that have arrived are held until the next
 //
+// In the firmware the rate unit has the higher priority, so it runs before the attitude unit of the
+// same instant, and receives that unit's setpoint at its next tick.
+//
 // Each task has its own times. A task's result arrives after the task's delay; without a delay, at
-// the unit's tick of the same instant. The LoopTiming has the times of the unit's ticks, of each
-// tick's sample and of its command. It comes from the case or from a run on a real clock. Samples
-// before t = 0 do not exist. Until the first estimate arrives, the unit gets the state of the
+// the unit's tick of the same instant. The FlightTiming has the times of the units' ticks, of each
+// tick's sample and of its result. It comes from the case or from a run on a real clock. Samples
+// before t = 0 do not exist. Until the first estimate arrives, a unit gets the state of the
 // flight's start. Until the first command arrives, the rotors turn as at the start.
 #pragma once
 
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "harness/casefile/case.hpp"
 #include "harness/loop/estimator.hpp"
@@ -26,44 +33,82 @@
 #include "harness/port/port.hpp"
 #include "harness/schedule/delay_line.hpp"
 #include "harness/schedule/event_queue.hpp"
+#include "harness/schedule/loop_rate.hpp"
 #include "harness/schedule/loop_timing.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace attest {
 
 struct FlightEnd {
-  std::size_t ticks = 0;  // finished by the unit
+  std::size_t ticks = 0;           // finished by the unit that commands the motors
+  std::size_t attitude_ticks = 0;  // finished by the attitude unit
   std::optional<PortFault> fault;
   std::optional<Divergence> divergence;
 };
 
+// The units that fly. `attitude_unit` is null but in a flight of the cascade.
+struct FlightUnits {
+  FlightUnits(Unit& of_motors, Unit* attitude = nullptr)  // NOLINT(google-explicit-constructor)
+      : unit(of_motors), attitude_unit(attitude) {}
+  Unit& unit;
+  Unit* attitude_unit;
+};
+
+// What a flight records: a trace for each unit. A null one is not recorded.
+struct FlightTraces {
+  FlightTraces(Trace* of_motors = nullptr, Trace* attitude = nullptr)  // NOLINT
+      : unit(of_motors), attitude_unit(attitude) {}
+  Trace* unit;           // with Trace::plant
+  Trace* attitude_unit;  // of a flight of the cascade
+};
+
 class ClosedLoop {
  public:
-  // REQUIRES: a flight, which bound_to_vehicle() made (flight.hpp); a fresh plant and unit. All
-  // outlive this.
-  ClosedLoop(const Case& the_case, const Rate& rate, LoopTiming timing, const Vehicle& vehicle,
-             Plant& plant, Unit& unit);
+  // REQUIRES: a flight, which bound_to_vehicle() made (flight.hpp); a fresh plant and units, one or
+  // both as the case says. All outlive this.
+  ClosedLoop(const Case& the_case, const LoopRate& rate, FlightTiming timing,
+             const Vehicle& vehicle, Plant& plant, FlightUnits units);
+  ClosedLoop(const ClosedLoop&) = delete;
+  ClosedLoop& operator=(const ClosedLoop&) = delete;
 
-  // Flies to the end; records every tick into `trace` unless it is null. Allocates only for the
-  // trace and for parameters that change. Call once.
-  FlightEnd run(Trace* trace);
+  // Flies to the end and records every tick. Allocates only for the traces and for parameters that
+  // change. Call once.
+  FlightEnd run(FlightTraces traces);
 
  private:
-  void happens(const EventQueue::Event& event, Trace* trace);
-  void unit_tick(const EventQueue::Event& event);
+  // A unit with its times and the messages on their way to it.
+  struct UnitLoop {
+    UnitLoop(const Case& the_case, const Rate& own, const Rate& timeline, LoopTiming times,
+             const Vehicle& vehicle, Unit& unit, const PlantState& start);
+
+    Case scripted;
+    LoopTiming timing;
+    std::size_t first_sampled;  // the first tick with a sample
+    UnitEstimator estimator;
+    UnitTask task;
+    DelayLine<Estimate> estimates;
+    DelayLine<LandDetected> landed;
+  };
+
+  EventQueue events_of(const Case& the_case, const Rate& rate) const;
+  void happens(const EventQueue::Event& event);
+  void sample(UnitLoop& unit, const EventQueue::Event& event);
+  void tick(const EventQueue::Event& event);
+  void attitude_tick(const EventQueue::Event& event);
+  void detect_landing(Nanoseconds now);
   void record(Trace& trace) const;
   bool is_over() const;
 
-  LoopTiming timing_;
-  std::size_t first_sampled_;  // the first tick with a sample
   PlantTask plant_;
-  UnitTask unit_;
-  NoisyEstimator estimator_;
+  UnitLoop unit_;
+  std::optional<UnitLoop> attitude_unit_;
+  LandDetector land_detector_;
   EventQueue event_queue_;
+  FlightTraces traces_;
 
-  DelayLine<Estimate> estimates_;
   DelayLine<float> battery_scales_;
-  DelayLine<MotorLimits> limits_;
+  DelayLine<Saturation> saturations_;
+  DelayLine<RatesSetpoint> rates_setpoints_;
   DelayLine<MotorCommands> commands_;
 
   FlightEnd end_;

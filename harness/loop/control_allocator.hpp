@@ -9,7 +9,7 @@
 #include <array>
 #include <cstddef>
 
-#include "harness/loop/actuators.hpp"
+#include "harness/loop/motor_commands.hpp"
 #include "harness/plant/vehicle.hpp"
 
 namespace attest {

@@ -39,6 +39,55 @@ ControlState NoisyEstimator::sample(const PlantState& state) {
   return control_state_of(estimated);
 }
 
+namespace {
+
+Estimator options_for(const Case& the_case) {
+  Estimator options = the_case.flight->estimator;
+  if (the_case.module == Module::rate_unit) ++options.seed;
+  return options;
+}
+
+Quaternion product(const Quaternion& a, const Quaternion& b) {
+  return {
+      a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+      a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+}
+
+std::array<float, 4> in_single(const Quaternion& q) {
+  return {static_cast<float>(q.w), static_cast<float>(q.x), static_cast<float>(q.y),
+          static_cast<float>(q.z)};
+}
+
+}  // namespace
+
+UnitEstimator::UnitEstimator(const Case& the_case, const Rate& own, const Rate& timeline)
+    : noisy_(options_for(the_case)) {
+  const auto& reset = the_case.flight->estimator.reset;
+  if (reset && the_case.module == Module::attitude_unit) {
+    reset_ = {reset->at.on(timeline), reset->turn};
+  }
+  if (the_case.module == Module::rate_unit) derivative_.emplace(own);
+}
+
+Estimate UnitEstimator::sample(Nanoseconds now, const PlantState& state) {
+  PlantState seen = state;
+  Estimate estimate{now, {}, {}, 0, {1, 0, 0, 0}};
+  if (reset_ && now >= reset_->at) {
+    seen.attitude = product(reset_->turn, state.attitude);
+    estimate.resets = 1;
+    estimate.delta_q_reset = in_single(reset_->turn);
+  }
+  estimate.state = noisy_.sample(seen);
+  if (derivative_) {
+    const auto& [q, roll, pitch, yaw] = estimate.state;
+    const Vector3& acceleration = derivative_->sample(now, {roll, pitch, yaw});
+    for (std::size_t i = 0; i < 3; ++i) {
+      estimate.acceleration_rad_s2[i] = static_cast<float>(acceleration[i]);
+    }
+  }
+  return estimate;
+}
+
 // The sum of twelve uniform numbers has variance 1 and is close enough to normal, within +-6
 // standard deviations. It needs no logarithm or cosine, whose bits differ between platforms.
 Vector3 NoisyEstimator::normal(double deviation) {

@@ -1,9 +1,14 @@
-// The plant's state as the unit receives it: in float32, with seeded noise if the case has some.
+// The plant's state as a unit receives it: in float32, with seeded noise if the case has some.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <optional>
+
 #include "controller/attest_unit.h"
-#include "harness/casefile/flight.hpp"
+#include "harness/casefile/case.hpp"
 #include "harness/core/time.hpp"
+#include "harness/loop/angular_acceleration.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/schedule/random.hpp"
 
@@ -15,6 +20,10 @@ using ControlState = decltype(attest_inputs::control_state);
 struct Estimate {
   Nanoseconds sampled{0};
   ControlState state{};
+  std::array<float, 3> acceleration_rad_s2{};  // angular, for the rate unit
+  // The estimator's last reset, for the attitude unit: the number of resets, and the turn.
+  std::uint8_t resets = 0;
+  std::array<float, 4> delta_q_reset{1, 0, 0, 0};
 };
 
 // Without noise.
@@ -32,6 +41,27 @@ class NoisyEstimator {
 
   Estimator options_;
   Random random_;
+};
+
+// The samples of one unit: the attitude estimate with its resets for the attitude unit, the gyro
+// with its derivative for the rate unit, attitude and rates for the controller. The noise of the
+// cascade's gyro has the seed after the estimator's. No allocation.
+class UnitEstimator {
+ public:
+  // `own` is the rate of the unit of the case's module, `timeline` that of the flight. REQUIRES: a
+  // flight.
+  UnitEstimator(const Case& the_case, const Rate& own, const Rate& timeline);
+
+  Estimate sample(Nanoseconds now, const PlantState& state);
+
+ private:
+  struct Reset {
+    Nanoseconds at;
+    Quaternion turn;
+  };
+  NoisyEstimator noisy_;
+  std::optional<Reset> reset_;
+  std::optional<AngularAcceleration> derivative_;
 };
 
 }  // namespace attest

@@ -15,10 +15,25 @@ namespace {
 // by less than the float32 of the unit's inputs (models/README.md).
 const Rate slowest_physics = Rate::hz(1000);
 
+Result<void> check_rate(const Case& the_case, const LoopRate& rate) {
+  const std::string file = the_case.file.string();
+  if (the_case.attitude_loop && !rate.attitude_unit) {
+    return fail_at(file, fmt::format("is a flight of the cascade, which needs two rates: that of "
+                                     "the attitude unit and that of the rate unit, as in 250:{}",
+                                     rate.to_string()));
+  }
+  if (!the_case.attitude_loop && rate.attitude_unit) {
+    return fail_at(file, fmt::format("is a flight of the controller, which has one rate, as in {}",
+                                     rate.unit.to_string()));
+  }
+  return {};
+}
+
 Result<void> check(const Case& the_case, const RunConfiguration& configuration,
                    const Vehicle& vehicle) {
   const Flight& flight = *the_case.flight;
-  if (physics_of(the_case, configuration.rate) < configuration.rate) {
+  if (auto sane = check_rate(the_case, configuration.rate); !sane) return sane;
+  if (physics_of(the_case, configuration.rate.unit) < configuration.rate.unit) {
     return fail_at(the_case.file.string(),
                    fmt::format("physics at {} Hz is slower than the loop at {} Hz; raise "
                                "`physics_hz`, or leave it out",
@@ -32,6 +47,23 @@ Result<void> check(const Case& the_case, const RunConfiguration& configuration,
                     flight.motor_failure->rotor, vehicle.name, vehicle.rotors.size() - 1));
   }
   return {};
+}
+
+void scale_thrusts(std::vector<TopicStimulus>& topics, const Vehicle& vehicle) {
+  for (TopicStimulus& topic : topics) {
+    for (FieldStimulus& field : topic.fields) {
+      if (field.of_hover) field.scale = vehicle.hover_thrust();
+    }
+  }
+}
+
+// With the throttle stick in the middle the vehicle then hovers.
+void add_hover_thrust(const Vehicle& vehicle, Case& the_case) {
+  constexpr const char* name = "MPC_THR_HOVER";
+  for (const ParameterStimulus& own : the_case.parameters) {
+    if (own.name == name) return;
+  }
+  the_case.parameters.push_back({name, Constant{vehicle.hover_thrust()}});
 }
 
 }  // namespace
@@ -51,11 +83,9 @@ Case bound_to_vehicle(const Case& the_case, const Vehicle& vehicle) {
   }
   result.parameters.insert(result.parameters.end(), the_case.parameters.begin(),
                            the_case.parameters.end());
-  for (TopicStimulus& topic : result.topics) {
-    for (FieldStimulus& field : topic.fields) {
-      if (field.of_hover) field.scale = vehicle.hover_thrust();
-    }
-  }
+  if (the_case.attitude_loop) add_hover_thrust(vehicle, result);
+  scale_thrusts(result.topics, vehicle);
+  if (result.attitude_loop) scale_thrusts(result.attitude_loop->topics, vehicle);
   return result;
 }
 
@@ -67,30 +97,51 @@ Result<std::unique_ptr<Plant>> plant_for(const Case& the_case,
     return tl::unexpected(sane.error());
   }
   return vehicle_model.make_plant(configuration.plant_configuration->plant,
-                                  {physics_of(the_case, configuration.rate), flight.floor});
+                                  {physics_of(the_case, configuration.rate.unit), flight.floor});
+}
+
+std::optional<PortUnits> units_for(const Case& the_case, Port& port, Port& other) {
+  std::vector<Module> modules{the_case.module};
+  if (the_case.attitude_loop) modules.push_back(Module::attitude_unit);
+  const auto has = [&](Module module) { return contains(port.modules(), module); };
+  if (std::none_of(modules.begin(), modules.end(), has)) return std::nullopt;
+  PortUnits units;
+  for (const Module module : modules) {
+    auto& unit = module == the_case.module ? units.unit : units.attitude_unit;
+    unit = (has(module) ? port : other).create_unit(module, the_case.profile, "");
+    if (!unit) return std::nullopt;
+  }
+  return units;
 }
 
 Result<Flown> fly(const Case& the_case, const RunConfiguration& configuration,
-                  const VehicleModel& vehicle_model, Unit& unit) {
-  return fly(the_case, configuration, vehicle_model, unit,
-             case_timing(the_case, configuration.rate));
+                  const VehicleModel& vehicle_model, FlightUnits units) {
+  if (auto sane = check_rate(the_case, configuration.rate); !sane) {
+    return tl::unexpected(sane.error());
+  }
+  return fly(the_case, configuration, vehicle_model, units,
+             flight_timing(the_case, configuration.rate));
 }
 
 Result<Flown> fly(const Case& the_case, const RunConfiguration& configuration,
-                  const VehicleModel& vehicle_model, Unit& unit, LoopTiming timing) {
+                  const VehicleModel& vehicle_model, FlightUnits units, FlightTiming timing) {
   auto plant = plant_for(the_case, configuration, vehicle_model);
   if (!plant) return tl::unexpected(plant.error());
   const Case scripted = bound_to_vehicle(the_case, vehicle_model.vehicle());
-  const std::size_t ticks = timing.size();
-  ClosedLoop loop(scripted, configuration.rate, std::move(timing), vehicle_model.vehicle(), **plant,
-                  unit);
-
   Flown flown;
-  flown.trace.source = the_case.id_at(configuration);
-  flown.trace.present = channels_of(Module::mc_att_control);
-  reserve_large(flown.trace.samples, ticks);
-  reserve_large(flown.trace.plant, ticks);
-  FlightEnd end = loop.run(&flown.trace);
+  const auto prepare = [&](Trace& trace, Module module, std::size_t ticks) {
+    trace.source = the_case.id_at(configuration);
+    trace.present = channels_of(module);
+    reserve_large(trace.samples, ticks);
+  };
+  prepare(flown.trace, the_case.module, timing.unit.size());
+  reserve_large(flown.trace.plant, timing.unit.size());
+  if (the_case.attitude_loop) {
+    prepare(flown.attitude_trace.emplace(), Module::attitude_unit, timing.attitude_unit.size());
+  }
+  ClosedLoop loop(scripted, configuration.rate, std::move(timing), vehicle_model.vehicle(), **plant,
+                  units);
+  FlightEnd end = loop.run({&flown.trace, flown.attitude_trace ? &*flown.attitude_trace : nullptr});
   flown.fault = std::move(end.fault);
   flown.divergence = std::move(end.divergence);
   return flown;

@@ -6,6 +6,7 @@
 
 #include "harness/casefile/case.hpp"
 #include "harness/core/result.hpp"
+#include "harness/loop/closed_loop.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/port/port.hpp"
@@ -15,10 +16,17 @@
 namespace attest {
 
 struct Flown {
-  Trace trace;                           // every tick up to the end, with Trace::plant
+  // Every tick up to the end: of the unit that commands the motors, with Trace::plant.
+  Trace trace;
+  std::optional<Trace> attitude_trace;   // of the attitude unit, in a flight of the cascade
   std::optional<PortFault> fault;        // of the port: the ticks before it are valid
   std::optional<Divergence> divergence;  // early end; its time counts from the first tick
 };
+
+// The same for a whole flight.
+inline double measured(const Metric& metric, const Flown& flown) {
+  return measured(metric, flown.trace, flown.attitude_trace ? &*flown.attitude_trace : nullptr);
+}
 
 // The case bound to this vehicle: parameters that the case does not set get the vehicle's values.
 // Thrusts in units of hover thrust are scaled by the vehicle's hover thrust.
@@ -32,12 +40,24 @@ Result<std::unique_ptr<Plant>> plant_for(const Case& the_case,
                                          const RunConfiguration& configuration,
                                          const VehicleModel& vehicle_model);
 
-// Flies `the_case` with a fresh `unit`, at the times that the case schedules, or at those of
+// The units of a port for one flight.
+struct PortUnits {
+  std::unique_ptr<Unit> unit, attitude_unit;
+
+  FlightUnits for_flight() const { return {*unit, attitude_unit.get()}; }
+};
+
+// A port of the cascade may have one of the two units; the other is then that of `other`. Empty:
+// the port has no unit that flies this, or makes none of the profile. REQUIRES: a flight.
+std::optional<PortUnits> units_for(const Case& the_case, Port& port, Port& other);
+
+// Flies `the_case` with fresh units, at the times that the case schedules, or at those of
 // `timing`. REQUIRES: the case is a flight. Errors, with the case's file: physics slower than the
-// loop, a rotor that the vehicle does not have.
+// loop, a rotor that the vehicle does not have; one rate for the cascade, or a pair of rates for
+// the controller.
 Result<Flown> fly(const Case& the_case, const RunConfiguration& configuration,
-                  const VehicleModel& vehicle_model, Unit& unit);
+                  const VehicleModel& vehicle_model, FlightUnits units);
 Result<Flown> fly(const Case& the_case, const RunConfiguration& configuration,
-                  const VehicleModel& vehicle_model, Unit& unit, LoopTiming timing);
+                  const VehicleModel& vehicle_model, FlightUnits units, FlightTiming timing);
 
 }  // namespace attest

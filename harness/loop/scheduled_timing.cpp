@@ -18,4 +18,12 @@ LoopTiming scheduled_timing(const std::vector<TaskJob>& unit,
   return timing;
 }
 
+FlightTiming scheduled_cascade(const std::vector<TaskJob>& rate_unit,
+                               const std::vector<TaskJob>& attitude_unit,
+                               const std::vector<TaskJob>* estimator) {
+  FlightTiming timing = scheduled_timing(rate_unit, nullptr);
+  timing.attitude_unit = scheduled_timing(attitude_unit, estimator);
+  return timing;
+}
+
 }  // namespace attest

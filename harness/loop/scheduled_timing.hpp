@@ -14,4 +14,10 @@ namespace attest {
 LoopTiming scheduled_timing(const std::vector<TaskJob>& unit,
                             const std::vector<TaskJob>* estimator);
 
+// Of the cascade: the estimator's samples are the attitude unit's, whose setpoint arrives when its
+// job finishes. The rate unit reads the gyro at the start of its job.
+FlightTiming scheduled_cascade(const std::vector<TaskJob>& rate_unit,
+                               const std::vector<TaskJob>& attitude_unit,
+                               const std::vector<TaskJob>* estimator);
+
 }  // namespace attest

@@ -17,6 +17,7 @@ using nlohmann::json;
 constexpr int format = 1;
 
 // Enough for the three times of each tick of an hour at 8 kHz.
+constexpr const char* attitude_ticks = "attitude_ticks_ns";
 constexpr std::uintmax_t most_bytes = std::uintmax_t{2} << 30;
 
 // Ten times the longest duration, so that sums of times fit into 64 bits.
@@ -65,11 +66,20 @@ Result<LoopTiming> ticks_of(const json& values, const std::string& file) {
 }
 
 Result<RunConfiguration> configuration_of(const json& root) {
-  auto rate = Rate::parse(root.value("rate", ""));
+  auto rate = LoopRate::parse(root.value("rate", ""));
   if (!rate) return tl::unexpected(rate.error());
   auto plant = parse_plant_kind(root.value("plant", ""));
   if (!plant) return tl::unexpected(plant.error());
   return RunConfiguration{*rate, PlantConfiguration{root.value("vehicle", ""), *plant}};
+}
+
+json ticks_json(const LoopTiming& timing) {
+  json ticks = json::array();
+  for (const LoopTick& tick : timing) {
+    json commanded = tick.commanded ? json(tick.commanded->count()) : json();
+    ticks.push_back({tick.sampled.count(), tick.begins.count(), std::move(commanded)});
+  }
+  return ticks;
 }
 
 }  // namespace
@@ -92,27 +102,34 @@ Result<TimingFile> read_timing(const std::filesystem::path& path) {
   if (!configuration) return fail_at(file, configuration.error().message);
   auto ticks = ticks_of(root["ticks_ns"], file);
   if (!ticks) return tl::unexpected(ticks.error());
+  FlightTiming times(*std::move(ticks));
+  if (configuration->rate.attitude_unit) {
+    if (!root.contains(attitude_ticks) || !root[attitude_ticks].is_array()) {
+      return fail_at(file, fmt::format("has two rates, but no `{}`", attitude_ticks));
+    }
+    auto attitude = ticks_of(root[attitude_ticks], file);
+    if (!attitude) return tl::unexpected(attitude.error());
+    times.attitude_unit = *std::move(attitude);
+  }
   TimingFile timing{root["case"], root["case_sha256"], *configuration, root["duration_s"],
-                    std::move(*ticks)};
+                    std::move(times)};
   const bool sane = timing.duration_s > 0 && timing.duration_s <= 1e6;
   if (!sane) return fail_at(file, "`duration_s` must be positive, up to 1e6");
   return timing;
 }
 
 Result<void> write_timing(const TimingFile& timing, const std::filesystem::path& path) {
-  json ticks = json::array();
-  for (const LoopTick& tick : timing.ticks) {
-    json commanded = tick.commanded ? json(tick.commanded->count()) : json();
-    ticks.push_back({tick.sampled.count(), tick.begins.count(), std::move(commanded)});
+  json root = {{"attest_timing", format},
+               {"case", timing.case_id},
+               {"case_sha256", timing.case_sha256},
+               {"rate", timing.configuration.rate.to_string()},
+               {"vehicle", timing.configuration.plant_configuration->vehicle},
+               {"plant", name_of(timing.configuration.plant_configuration->plant)},
+               {"duration_s", timing.duration_s},
+               {"ticks_ns", ticks_json(timing.ticks.unit)}};
+  if (timing.configuration.rate.attitude_unit) {
+    root[attitude_ticks] = ticks_json(timing.ticks.attitude_unit);
   }
-  const json root = {{"attest_timing", format},
-                     {"case", timing.case_id},
-                     {"case_sha256", timing.case_sha256},
-                     {"rate", timing.configuration.rate.to_string()},
-                     {"vehicle", timing.configuration.plant_configuration->vehicle},
-                     {"plant", name_of(timing.configuration.plant_configuration->plant)},
-                     {"duration_s", timing.duration_s},
-                     {"ticks_ns", std::move(ticks)}};
   return write_file(path, root.dump() + "\n");
 }
 

@@ -5,7 +5,8 @@
 //      "ticks_ns": [[0, 8113, 1000000], [0, 1009001, null], ...]}
 //
 // A tick is [sampled, begins, commanded] as in LoopTick; `commanded` is null where the command was
-// overtaken.
+// overtaken. A flight of the cascade has its pair as rate, "250:1000", and the ticks of its
+// attitude unit as "attitude_ticks_ns".
 #pragma once
 
 #include <filesystem>
@@ -22,7 +23,7 @@ struct TimingFile {
   std::string case_sha256;
   RunConfiguration configuration;
   double duration_s = 0;
-  LoopTiming ticks;
+  FlightTiming ticks;
 };
 
 // Errors, with the file: it cannot be read or written; it is not a timing file; its times go

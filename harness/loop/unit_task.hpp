@@ -1,4 +1,4 @@
-// The work of the flight controller at a tick of the unit: the same in simulation and on a real
+// The work of the flight controller at a tick of a unit: the same in simulation and on a real
 // clock, for one thread.
 #pragma once
 
@@ -12,6 +12,7 @@
 #include "harness/core/float_environment.hpp"
 #include "harness/loop/actuators.hpp"
 #include "harness/loop/estimator.hpp"
+#include "harness/loop/land_detector.hpp"
 #include "harness/loop/unit_driver.hpp"
 #include "harness/plant/vehicle.hpp"
 #include "harness/port/port.hpp"
@@ -19,21 +20,26 @@
 
 namespace attest {
 
+// What the attitude unit sends to the rate unit.
+using RatesSetpoint = decltype(attest_rate_inputs::vehicle_rates_setpoint);
+
 // The messages that have arrived since the last tick.
 struct Arrivals {
   std::optional<Estimate> estimate;
   std::optional<float> battery_scale;
-  std::optional<MotorLimits> limits;
+  std::optional<Saturation> saturation;
+  std::optional<LandDetected> landed;
+  std::optional<RatesSetpoint> rates_setpoint;
 };
 
 class UnitTask {
  public:
-  // `start` is the state used before the first estimate arrives, that of time 0. REQUIRES: same as
-  // ClosedLoop.
+  // A unit of the case's module. `start` is used before the first estimate arrives, that of time 0.
+  // REQUIRES: same as ClosedLoop.
   UnitTask(const Case& the_case, const Rate& rate, const Vehicle& vehicle, Unit& unit,
-           const ControlState& start);
+           const Estimate& start);
 
-  // Stimulus and arrivals -> the unit's step -> the mixer. Allocates only for parameters that
+  // Stimulus and arrivals -> the unit's step -> the actuators. Allocates only for parameters that
   // change. REQUIRES: `tick` counts from 0, times increase.
   std::optional<PortFault> tick(std::size_t tick, Nanoseconds now, const Arrivals& arrivals);
 
@@ -42,21 +48,29 @@ class UnitTask {
   void prepare(std::size_t tick, Nanoseconds now, const Arrivals& arrivals);
   std::optional<PortFault> step(std::size_t tick);
 
+  Module module() const { return module_; }
+
   // Of the last tick.
   const Sample& sample() const { return sample_; }
   const std::vector<ParameterChange>& changes() const { return changes_; }
   const MotorCommands& commands() const { return actuators_.commands(); }
-  const MotorLimits& limits() const { return actuators_.limits(); }
-  bool is_armed() const { return sample_.in.actuator_armed.armed != 0; }
+  const Saturation& saturation() const { return actuators_.saturation(); }
+  bool is_armed() const { return attest::is_armed(module_, sample_); }
+  float throttle() const;                               // the collective thrust, 0..1 upwards
+  std::optional<RatesSetpoint> rates_setpoint() const;  // if the attitude unit published one
 
  private:
+  void take(const Arrivals& arrivals, attest_inputs& in);
+  void take(const Arrivals& arrivals, attest_attitude_inputs& in);
+  void take(const Arrivals& arrivals, attest_rate_inputs& in);
+
+  Module module_;
   Stimulus stimulus_;
   Actuators actuators_;
   UnitDriver driver_;
   PortFloatEnvironment ports_;
   Sample sample_{};
-  std::uint64_t timestamp_sample_us_ = 0;  // of the sample's control_state
-  Nanoseconds sampled_{0};
+  Estimate estimate_;
   std::vector<ParameterChange> changes_;
 };
 

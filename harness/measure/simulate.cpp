@@ -12,7 +12,8 @@ Result<SimulatedFlight> simulate_flight(const Case& the_case, FlightPlan plan, P
   SimulatedFlight flight{result_for(the_case, plan.configuration), {}};
   CaseResult& result = flight.result;
   const PortSays& port = host.says();
-  if (has_other_steps(port, the_case, plan.configuration.rate, plan.timing, result)) return flight;
+  if (has_other_steps(port, the_case, plan.configuration.rate.unit, plan.timing, result))
+    return flight;
   if (declines(port, result)) return flight;
   plan.from_one_period_on = has_fixed_step(port, the_case);
   auto flown = host.fly(plan);
@@ -25,16 +26,16 @@ Result<SimulatedFlight> simulate_flight(const Case& the_case, FlightPlan plan, P
   if (flown->divergence) {
     result.verdict = Verdict::fail;
     result.reason = how_it_ended(*flown);
-    flight.flown = std::move(flown->trace);
+    flight.flown = *std::move(flown);
     return flight;
   }
   for (const Metric& metric : the_case.flight->metrics) {
-    const double value = measured(metric, flown->trace);
+    const double value = measured(metric, *flown);
     result.metrics.push_back(
         {metric.name, metric.measure, value, value, 0, metric.min, metric.max});
     if (!result.metrics.back().within()) result.verdict = Verdict::fail;
   }
-  flight.flown = std::move(flown->trace);
+  flight.flown = *std::move(flown);
   return flight;
 }
 

@@ -9,7 +9,7 @@ namespace attest {
 
 struct SimulatedFlight {
   CaseResult result;
-  Trace flown;  // also of a flight that ends early; empty after a fault of the port
+  Flown flown;  // also of a flight that ends early; without ticks after a fault of the port
 };
 
 // Flies a fresh unit. The metrics are judged by the case's own bounds only. REQUIRES: the host's

@@ -67,14 +67,15 @@ Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
   const auto unit = port.create(task.the_case.profile);
   if (!unit) return measured;
   progress({{}, true});
-  const Histogram idle = idle_latency(task.configuration.rate, task.idle_duration, task.live, stop);
+  const Histogram idle =
+      idle_latency(task.configuration.rate.unit, task.idle_duration, task.live, stop);
   auto flight = fly_live(task.the_case, task.configuration, *task.vehicle_model, *unit, task.live,
                          checked_ticks, stop, [&](const LiveProgress& live) {
                            progress({live, false});
                          });
   if (!flight) return tl::unexpected(flight.error());
   measured.stress.idle = percentiles_of(idle);
-  summarise(*flight, task.configuration.rate, task.the_case.flight->realtime, measured.stress);
+  summarise(*flight, task.configuration.rate.unit, task.the_case.flight->realtime, measured.stress);
   measured.flight = *std::move(flight);
   return measured;
 }

@@ -71,7 +71,7 @@ std::optional<StressMeasurement> measurement_from(const StressTask& task, bool o
   if (!stress) return std::nullopt;
   StressMeasurement measured{*std::move(stress), {}};
   const auto most =
-      static_cast<std::size_t>(tick_count(task.the_case.duration, task.configuration.rate));
+      static_cast<std::size_t>(tick_count(task.the_case.duration, task.configuration.rate.unit));
   auto samples = read_some<Sample>(head.at("samples"), most, blobs);
   auto ticks = samples ? read_some<LiveTick>(head.at("ticks"), most, blobs) : std::nullopt;
   using Time = std::optional<Nanoseconds>;

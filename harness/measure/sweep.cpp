@@ -32,11 +32,11 @@ class Trial {
 
   bool holds(const RunConfiguration& configuration, Nanoseconds delay) {
     if (result_.verdict != Verdict::pass || error_) return false;
-    FlightPlan plan{configuration, case_timing(case_, configuration.rate)};
+    FlightPlan plan{configuration, flight_timing(case_, configuration.rate)};
     const PortSays& port = host_.says();
-    if (has_other_steps(port, case_, configuration.rate, plan.timing, result_)) return false;
+    if (has_other_steps(port, case_, configuration.rate.unit, plan.timing, result_)) return false;
     if (declines(port, result_)) return false;
-    for (LoopTick& tick : plan.timing) *tick.commanded += delay;
+    for (LoopTick& tick : plan.timing.unit) *tick.commanded += delay;
     plan.from_one_period_on = has_fixed_step(port, case_);
     const auto flown = host_.fly(plan);
     if (!flown) {
@@ -44,7 +44,7 @@ class Trial {
     } else if (flown->fault) {
       judge(*flown->fault, result_);
     } else {
-      return note(configuration.rate, delay, *flown);
+      return note(configuration.rate.unit, delay, *flown);
     }
     return false;
   }
@@ -58,7 +58,7 @@ class Trial {
     SweepTrial trial{rate.hertz(), 1e3 * in_seconds(delay), {}, !flown.divergence};
     if (!flown.divergence) {
       for (const Metric& metric : case_.flight->metrics) {
-        const double value = measured(metric, flown.trace);
+        const double value = measured(metric, flown);
         trial.holds = trial.holds && value >= metric.min && value <= metric.max;
         trial.values.push_back(value);
       }
@@ -106,6 +106,12 @@ double largest_delay(Holds&& holds) {
     good = next;
   }
   return good;
+}
+
+// The rate of the attitude unit does not change, but it is never the faster one.
+LoopRate with_unit_at(const Rate& unit, const LoopRate& usual) {
+  if (!usual.attitude_unit) return unit;
+  return {std::min(*usual.attitude_unit, unit), unit};
 }
 
 }  // namespace
@@ -157,7 +163,8 @@ Result<SweepResult> SweepJob::run(std::size_t task) {
   Trial trial(case_, *host_, found.result);
   if (task == 0) {
     found.lowest_rate_hz = lowest_rate([&](int hertz) {
-      return trial.holds({Rate::hz(hertz), plant_configuration_}, Nanoseconds(0));
+      return trial.holds({with_unit_at(Rate::hz(hertz), rates_.front()), plant_configuration_},
+                         Nanoseconds(0));
     });
   } else {
     found.largest_delay_ms =

@@ -37,12 +37,13 @@ struct Codec<SweepResult> {
   static Result<SweepResult> decode(const std::string& text);
 };
 
-// One vehicle on one plant. Task 0 searches for the lowest rate, task i for the largest delay at
-// rate i - 1. Both searches take steps and then bisect. The value next to the result does not hold;
-// values beyond that one are not tried.
+// One vehicle on one plant. Task 0 searches for the lowest rate (of the cascade, that of the rate
+// unit, with the attitude unit at its usual rate or at the same one), task i for the largest delay
+// at rate i - 1. Both searches take steps and then bisect. The value next to the result does not
+// hold; values beyond that one are not tried.
 class SweepJob final : public Job<SweepResult> {
  public:
-  SweepJob(Case the_case, PlantConfiguration plant_configuration, std::vector<Rate> rates,
+  SweepJob(Case the_case, PlantConfiguration plant_configuration, std::vector<LoopRate> rates,
            std::shared_ptr<const VehicleModel> vehicle_model, HostOptions options)
       : case_(std::move(the_case)),
         plant_configuration_(std::move(plant_configuration)),
@@ -59,7 +60,7 @@ class SweepJob final : public Job<SweepResult> {
  private:
   Case case_;
   PlantConfiguration plant_configuration_;
-  std::vector<Rate> rates_;
+  std::vector<LoopRate> rates_;
   std::shared_ptr<const VehicleModel> vehicle_model_;
   HostOptions options_;
   std::unique_ptr<PortHost> host_;

@@ -25,7 +25,7 @@ class Stopwatches {
     }
     VectorTimes times{result_for(the_case, configuration), {}, {}};
     if (declines(host_->says(), times.result)) return times;
-    const Trace inputs = stimulate(the_case, configuration.rate);
+    const Trace inputs = stimulate(the_case, configuration.rate.unit);
     for (int repeat = 0; repeat < options_.repeats; ++repeat) {
       const bool with_stack = options_.stack && repeat + 1 == options_.repeats;
       auto timed = host_->time_steps(the_case.profile, inputs, with_stack);
@@ -128,7 +128,7 @@ Result<void> write_slowest(const CorpusTimes& times, const std::vector<SelectedC
   const VectorTimes* slowest = times.with_slowest_step();
   const Case* the_case = slowest ? find_case(cases, slowest->result.case_id()) : nullptr;
   if (!the_case) return fail("no vector was timed, so there is no slowest step to write");
-  Trace trace = stimulate(*the_case, slowest->result.rate);
+  Trace trace = stimulate(*the_case, slowest->result.rate.unit);
   trace.keep_first(slowest->slowest_tick() + 1);
   const auto started = start_host(host);
   if (!started) return tl::unexpected(started.error());

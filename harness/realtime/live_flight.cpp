@@ -61,22 +61,22 @@ Result<LiveFlight> fly_live(const Case& the_case, const RunConfiguration& config
   auto plant = plant_for(the_case, configuration, vehicle_model);
   if (!plant) return tl::unexpected(plant.error());
   const Case scripted = bound_to_vehicle(the_case, vehicle_model.vehicle());
-  const Timeline timeline = timeline_of(scripted, configuration.rate);
+  const Rate& rate = configuration.rate.unit;
+  const Timeline timeline = timeline_of(scripted, rate);
 
   ProcessPrivileges process;
   Links links;
-  PlantTask plant_task(scripted, configuration.rate, vehicle_model.vehicle(), **plant);
-  UnitTask unit_task(scripted, configuration.rate, vehicle_model.vehicle(), unit,
-                     control_state_of(plant_task.state()));
+  PlantTask plant_task(scripted, rate, vehicle_model.vehicle(), **plant);
+  UnitTask unit_task(scripted, rate, vehicle_model.vehicle(), unit,
+                     Estimate{Nanoseconds(0), control_state_of(plant_task.state())});
   const Nanoseconds origin = Pacer::now_monotonic() + settle_in;
   Pacer unit_clock(origin, options.wait), plant_clock(origin, Wait{});
-  LiveUnit live_unit(scripted, configuration.rate, unit_task, unit_clock, links, samples);
-  LivePlantPlan plan{
-      physics_of(scripted, configuration.rate), timeline.duration, live_unit.deadlines(), {}, {}};
+  LiveUnit live_unit(scripted, rate, unit_task, unit_clock, links, samples);
+  LivePlantPlan plan{physics_of(scripted, rate), timeline.duration, live_unit.deadlines(), {}, {}};
   if (const auto& battery = scripted.flight->battery) {
     plan.battery_times = task_times(battery->timing, timeline);
   }
-  if (scripted.unit.on_estimate) plan.estimator = configuration.rate;
+  if (scripted.unit.on_estimate) plan.estimator = rate;
   LivePlant live_plant(plant_task, std::move(plan), plant_clock, links);
 
   std::vector<RealtimePrivilege> unit_privileges, plant_privileges;

@@ -24,9 +24,9 @@ LiveUnit::LiveUnit(const Case& the_case, const Rate& rate, UnitTask& task, Clock
       rate_(rate),
       on_estimate_(the_case.unit.on_estimate),
       deadlines_(tick_count(the_case.duration, rate)),
-      estimator_(the_case.flight->estimator),
-      limit_times_(task_times(the_case.flight->motor_limits, timeline_of(the_case, rate))),
-      limits_(line<MotorLimits>(the_case.flight->motor_limits, rate)),
+      estimator_(the_case, rate, rate),
+      saturation_times_(task_times(the_case.flight->saturation, timeline_of(the_case, rate))),
+      saturations_(line<Saturation>(the_case.flight->saturation, rate)),
       battery_scales_(
           line<float>(the_case.flight->battery.value_or(BatteryFlight{}).timing, rate)) {
   const auto most = static_cast<std::size_t>(deadlines_);
@@ -100,8 +100,8 @@ Nanoseconds LiveUnit::tick(LiveTick due) {
   due.begins = clock_.now();
   due.sampled = sampled_ ? latest_.time : Nanoseconds(-1);
   Arrivals arrivals;
-  if (sampled_) arrivals.estimate = Estimate{latest_.time, estimator_.sample(latest_.state)};
-  arrivals.limits = limits_at(due.begins);
+  if (sampled_) arrivals.estimate = estimator_.sample(latest_.time, latest_.state);
+  arrivals.saturation = saturation_at(due.begins);
   arrivals.battery_scale = battery_scales_.receive(due.begins);
   task_.prepare(ticks_, due.begins, arrivals);
 
@@ -110,8 +110,7 @@ Nanoseconds LiveUnit::tick(LiveTick due) {
   record_.fault = task_.step(ticks_);
   const Nanoseconds after = clock_.now(), cpu_after = thread_cpu_time();
   if (record_.fault) return after;
-  const float throttle = task_.sample().out.actuator_controls_0.control[3];
-  links_.commands.write({ticks_, after, task_.commands(), throttle, task_.is_armed()});
+  links_.commands.write({ticks_, after, task_.commands(), task_.throttle(), task_.is_armed()});
   due.finish = clock_.now();
   due.elapsed = after - before;
   due.cpu = cpu_after - cpu_before;
@@ -134,11 +133,12 @@ void LiveUnit::take_battery() {
   }
 }
 
-std::optional<MotorLimits> LiveUnit::limits_at(Nanoseconds now) {
-  for (; limits_done_ < limit_times_.size() && limit_times_[limits_done_] <= now; ++limits_done_) {
-    limits_.send(limit_times_[limits_done_], task_.limits());
+std::optional<Saturation> LiveUnit::saturation_at(Nanoseconds now) {
+  const std::vector<Nanoseconds>& times = saturation_times_;
+  for (; saturations_done_ < times.size() && times[saturations_done_] <= now; ++saturations_done_) {
+    saturations_.send(times[saturations_done_], task_.saturation());
   }
-  return limits_.receive(now);
+  return saturations_.receive(now);
 }
 
 void LiveUnit::write_down(const LiveTick& tick) {

@@ -69,7 +69,7 @@ class LiveUnit {
   void count_skipped(std::int64_t k, std::int64_t next);
   bool take_sample();
   void take_battery();
-  std::optional<MotorLimits> limits_at(Nanoseconds now);
+  std::optional<Saturation> saturation_at(Nanoseconds now);
   void write_down(const LiveTick& tick);
 
   UnitTask& task_;
@@ -78,12 +78,12 @@ class LiveUnit {
   Rate rate_;
   bool on_estimate_;
   std::int64_t deadlines_;
-  NoisyEstimator estimator_;
+  UnitEstimator estimator_;
   LiveState latest_;
   bool sampled_ = false;
-  std::vector<Nanoseconds> limit_times_;
-  std::size_t limits_done_ = 0;
-  DelayLine<MotorLimits> limits_;
+  std::vector<Nanoseconds> saturation_times_;
+  std::size_t saturations_done_ = 0;
+  DelayLine<Saturation> saturations_;
   DelayLine<float> battery_scales_;
   std::size_t ticks_ = 0, samples_max_;
   std::atomic<std::uint64_t> passed_{0}, missed_{0};

@@ -24,7 +24,7 @@ ordered_json totals(const RunResult& run) {
 
 ordered_json rates(const RunResult& run) {
   ordered_json out = ordered_json::array();
-  for (const Rate& rate : run.rates) out.push_back(rate.to_string());
+  for (const LoopRate& rate : run.rates) out.push_back(rate.to_string());
   return out;
 }
 

@@ -51,8 +51,8 @@ MatrixCell cell_of(const CaseResult& result) {
   return cell;
 }
 
-std::vector<Rate> rates_of(const RunResult& run) {
-  std::vector<Rate> rates = run.rates;
+std::vector<LoopRate> rates_of(const RunResult& run) {
+  std::vector<LoopRate> rates = run.rates;
   for (const CaseResult& result : run.results) rates.push_back(result.rate);
   std::sort(rates.begin(), rates.end());
   rates.erase(std::unique(rates.begin(), rates.end()), rates.end());

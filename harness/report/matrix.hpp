@@ -33,7 +33,7 @@ struct MatrixRow {
 };
 
 struct Matrix {
-  std::vector<Rate> rates;      // ascending
+  std::vector<LoopRate> rates;  // ascending
   std::vector<MatrixRow> rows;  // in the order of the results
 };
 

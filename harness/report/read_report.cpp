@@ -16,11 +16,11 @@ namespace {
 
 using nlohmann::json;
 
-Rate rate_from(JsonReader& reader, const std::string& text) {
-  const auto rate = Rate::parse(text);
+LoopRate rate_from(JsonReader& reader, const std::string& text) {
+  const auto rate = LoopRate::parse(text);
   if (rate) return *rate;
   reader.wrong(rate.error().message);
-  return Rate::hz(1);
+  return {};
 }
 
 void read_port(JsonReader reader, RunResult& run) {
@@ -31,7 +31,7 @@ void read_port(JsonReader reader, RunResult& run) {
   if (reader.has("fraction_bits")) {
     run.fraction_bits = static_cast<int>(reader.integer("fraction_bits"));
   }
-  if (reader.has("fixed_step")) run.fixed_step = rate_from(reader, reader.text("fixed_step"));
+  if (reader.has("fixed_step")) run.fixed_step = rate_from(reader, reader.text("fixed_step")).unit;
   if (!reader.has("not_recorded")) return;
   for (const std::string& name : reader.texts("not_recorded")) {
     const ChannelSet named = channels_named(name);

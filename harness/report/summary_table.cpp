@@ -36,7 +36,7 @@ Row labelled(std::string label, MatrixRow row) {
 Table table_of(const RunResult& run) {
   const Matrix matrix = matrix_of(run);
   Table table;
-  for (const Rate& rate : matrix.rates) table.header.push_back(rate.to_string());
+  for (const LoopRate& rate : matrix.rates) table.header.push_back(rate.to_string());
   table.header.push_back("total");
   const bool prefixed =
       std::any_of(matrix.rows.begin(), matrix.rows.end(),

@@ -31,9 +31,9 @@ std::vector<SweepRow> sweep_rows(const std::vector<SweepResult>& results) {
   return rows;
 }
 
-std::string render_sweep(const std::vector<SweepRow>& rows, const std::vector<Rate>& rates) {
+std::string render_sweep(const std::vector<SweepRow>& rows, const std::vector<LoopRate>& rates) {
   std::string out = fmt::format("{:<14}{:<8}{:>12}", "vehicle", "plant", "lowest rate");
-  for (const Rate& rate : rates) out += fmt::format("{:>14}", "at " + rate.to_string() + " Hz");
+  for (const LoopRate& rate : rates) out += fmt::format("{:>14}", "at " + rate.to_string() + " Hz");
   out += "\n";
   for (const SweepRow& row : rows) {
     out += fmt::format("{:<14}{:<8}{:>12}", row.plant_configuration.vehicle,
@@ -45,7 +45,7 @@ std::string render_sweep(const std::vector<SweepRow>& rows, const std::vector<Ra
   return out;
 }
 
-std::string sweep_csv(const std::vector<SweepRow>& rows, const std::vector<Rate>& rates) {
+std::string sweep_csv(const std::vector<SweepRow>& rows, const std::vector<LoopRate>& rates) {
   std::string out = "vehicle,plant,rate_hz,largest_delay_ms,lowest_rate_hz\n";
   for (const SweepRow& row : rows) {
     for (std::size_t i = 0; i < row.largest_delay_ms.size(); ++i) {

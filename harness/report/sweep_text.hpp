@@ -18,10 +18,10 @@ struct SweepRow {
 // Of the results of SweepJobs, in their order.
 std::vector<SweepRow> sweep_rows(const std::vector<SweepResult>& results);
 
-std::string render_sweep(const std::vector<SweepRow>& rows, const std::vector<Rate>& rates);
+std::string render_sweep(const std::vector<SweepRow>& rows, const std::vector<LoopRate>& rates);
 
 // "vehicle,plant,rate_hz,largest_delay_ms,lowest_rate_hz" and a row for each. A cell is
 // empty if no delay or rate is within the bounds.
-std::string sweep_csv(const std::vector<SweepRow>& rows, const std::vector<Rate>& rates);
+std::string sweep_csv(const std::vector<SweepRow>& rows, const std::vector<LoopRate>& rates);
 
 }  // namespace attest

@@ -2,18 +2,19 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "harness/core/time.hpp"
 
 namespace attest {
 
-// Since the start of the case. REQUIRES: sampled <= begins <= commanded.
+// A tick of a unit; times since the start of the case. REQUIRES: sampled <= begins <= commanded.
 struct LoopTick {
   Nanoseconds sampled{0};  // time of the plant's state that the unit receives
   Nanoseconds begins{0};   // the unit's step begins; its timestamp
-  // From this time on the motors follow the unit's outputs. Empty: they never do, because the
-  // command of the next tick arrives first.
+  // From this time on the motors follow the unit's outputs; of the attitude unit, the rate unit
+  // does. Empty: never, because those of the next tick arrive first.
   std::optional<Nanoseconds> commanded;
 
   friend bool operator==(const LoopTick&, const LoopTick&) = default;
@@ -21,5 +22,17 @@ struct LoopTick {
 
 // REQUIRES: from tick to tick, `begins` increases, and the other two do not decrease.
 using LoopTiming = std::vector<LoopTick>;
+
+// The times of a flight.
+struct FlightTiming {
+  FlightTiming() = default;
+  FlightTiming(LoopTiming of_unit)  // NOLINT(google-explicit-constructor)
+      : unit(std::move(of_unit)) {}
+
+  LoopTiming unit;           // that commands the motors
+  LoopTiming attitude_unit;  // of a flight of the cascade
+
+  friend bool operator==(const FlightTiming&, const FlightTiming&) = default;
+};
 
 }  // namespace attest

@@ -62,18 +62,20 @@ class Answering {
 Result<Answers> compare_answers(const Trace& flown, const std::string& profile,
                                 const Tolerances& tolerances, std::optional<int> fraction_bits) {
   const std::unique_ptr<Port> reference = open_builtin();
-  const std::unique_ptr<Unit> unit = reference->create(profile);
+  const Module module = module_of(flown.present);
+  const std::unique_ptr<Unit> unit = reference->create_unit(module, profile, "");
   if (!unit) return fail(fmt::format("the reference has no profile `{}`", profile));
-  UnitDriver law(*unit);
-  MarginMeter meter(profile);
+  UnitDriver law(*unit, module);
+  std::optional<MarginMeter> meter;
+  if (module == Module::mc_att_control) meter.emplace(profile);
   Answering answering(flown, tolerances);
   PendingChanges changes(flown.parameters);
   for (std::size_t tick = 0; tick < flown.samples.size(); ++tick) {
     const Sample& got = flown.samples[tick];
     const auto at_tick = changes.take_until(tick);
-    if (const auto decision = made_by_rounding(meter.step(at_tick, got.in), fraction_bits)) {
-      answering.decided_by_rounding(*decision, tick);
-    }
+    const auto decision =
+        meter ? made_by_rounding(meter->step(at_tick, got.in), fraction_bits) : std::nullopt;
+    if (decision) answering.decided_by_rounding(*decision, tick);
     Sample want = got;
     if (const auto fault = law.step(tick, at_tick, want)) {
       return fail(fmt::format("the reference, at tick {}: {}", tick, fault->what));

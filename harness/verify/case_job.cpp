@@ -30,7 +30,8 @@ Result<void> CaseJob::open() {
 
 Result<CaseResult> CaseJob::run(std::size_t task) {
   const RunConfiguration& configuration = configurations_[task];
-  if (!vehicle_model_) return evaluate_case(case_, configuration.rate, *golden_, *host_, judge_);
+  if (!vehicle_model_)
+    return evaluate_case(case_, configuration.rate.unit, *golden_, *host_, judge_);
   return evaluate_flight(case_, configuration, *vehicle_model_, *golden_, *host_,
                          judge_.save_traces);
 }

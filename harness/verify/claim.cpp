@@ -19,7 +19,7 @@ struct Tally {
 };
 
 struct Group {
-  std::map<Rate, Tally> rates;
+  std::map<LoopRate, Tally> rates;
   bool passes = false, fails = false;
   // Cases that the claim counts separately.
   std::size_t unsupported = 0, skipped = 0, expected_failures = 0;
@@ -74,7 +74,7 @@ bool was_judged(const Groups& groups) {
 // At the rates that were run, or at the one of a fixed step, where some groups have no case: these
 // are not whole.
 bool is_whole(const Group& group, const RunResult& run) {
-  const std::set<Rate> selected(run.rates.begin(), run.rates.end());
+  const std::set<LoopRate> selected(run.rates.begin(), run.rates.end());
   return group.passes && std::all_of(group.rates.begin(), group.rates.end(), [&](const auto& each) {
            const auto& [rate, tally] = each;
            if (run.fixed_step ? rate != *run.fixed_step : !selected.contains(rate)) return true;
@@ -102,7 +102,7 @@ void say(const Groups& groups, std::size_t Group::*count, const char* singular, 
 void say_what_was_not_run(const Groups& groups, const RunResult& run,
                           std::vector<std::string>& missing) {
   std::vector<std::string> names, rates;
-  std::map<Rate, std::size_t> run_at;
+  std::map<LoopRate, std::size_t> run_at;
   std::size_t left_out = 0;
   for (const auto& [name, group] : groups) {
     if (is_module(name)) continue;

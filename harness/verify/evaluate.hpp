@@ -50,7 +50,7 @@ Result<CaseResult> evaluate_flight(const Case& the_case, const RunConfiguration&
 Result<CaseResult> evaluate_timed_flight(const Case& the_case,
                                          const RunConfiguration& configuration,
                                          const VehicleModel& vehicle_model,
-                                         const LoopTiming& timing, PortHost& host,
+                                         const FlightTiming& timing, PortHost& host,
                                          const std::filesystem::path& saved_traces = {});
 
 // "the flight ended at 0.412 s (tick 103): the body rate is 81 rad/s, beyond 80". REQUIRES: a

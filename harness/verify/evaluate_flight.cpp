@@ -63,7 +63,7 @@ std::string off(const MetricResult& metric) {
                      name_of(metric.measure), metric.value, metric.reference, metric.tolerance);
 }
 
-void judge_metrics(const Case& the_case, const Trace& flown, const ReferenceFlight& reference,
+void judge_metrics(const Case& the_case, const Flown& flown, const ReferenceFlight& reference,
                    CaseResult& result, std::vector<std::string>& reasons) {
   for (const Metric& metric : the_case.flight->metrics) {
     const auto known = reference.metrics.find(metric.name);
@@ -73,7 +73,7 @@ void judge_metrics(const Case& the_case, const Trace& flown, const ReferenceFlig
                              metric.measure,
                              measured(metric, flown),
                              expected,
-                             tolerance_of(metric.measure, expected, result.rate),
+                             tolerance_of(metric.measure, expected, result.rate.unit),
                              metric.min,
                              metric.max};
     // A ratio has no unit, so the absolute part does not apply to it.
@@ -93,6 +93,17 @@ Comparison with_tightest(Comparison loop, const Comparison& answers) {
   return loop;
 }
 
+// Compares the outputs of all units with the reference's.
+Result<Comparison> compare_units(const Flown& flown, const std::string& profile,
+                                 const Tolerances& tolerances, std::optional<int> fraction_bits) {
+  auto answers = compare_answers(flown.trace, profile, tolerances, fraction_bits);
+  if (!answers) return tl::unexpected(answers.error());
+  if (!flown.attitude_trace || flown.attitude_trace->samples.empty()) return answers->comparison;
+  const auto attitude = compare_answers(*flown.attitude_trace, profile, tolerances, fraction_bits);
+  if (!attitude) return tl::unexpected(attitude.error());
+  return both(answers->comparison, attitude->comparison);
+}
+
 // Compares each output with the reference's, and the loop with the golden's rows up to the horizon.
 // NaN and infinity fail at every tick.
 Result<void> judge_ticks(const Case& the_case, const Flown& flown, const ReferenceFlight& reference,
@@ -107,18 +118,17 @@ Result<void> judge_ticks(const Case& the_case, const Flown& flown, const Referen
                                : reference.horizon_s;
   const Tolerances tolerances =
       tolerances_of(the_case, Level::numeric, fraction_bits, flown.trace.samples.size());
-  auto answers = compare_answers(flown.trace, the_case.profile, tolerances, fraction_bits);
-  if (!answers) return tl::unexpected(answers.error());
-  Comparison& comparison = answers->comparison;
-  if (comparison.agrees()) {
-    comparison =
-        with_tightest(compare_rows(flown.trace, reference.rows, horizon_s, tolerances), comparison);
+  auto comparison = compare_units(flown, the_case.profile, tolerances, fraction_bits);
+  if (!comparison) return tl::unexpected(comparison.error());
+  if (comparison->agrees()) {
+    comparison = with_tightest(compare_rows(flown.trace, reference.rows, horizon_s, tolerances),
+                               *comparison);
   }
   if (const auto non_finite = first_non_finite(flown.trace, reference.rows)) {
-    if (!comparison.first) comparison.first = non_finite;
-    comparison.got_non_finite = true;
+    if (!comparison->first) comparison->first = non_finite;
+    comparison->got_non_finite = true;
   }
-  judge(comparison, result);
+  judge(*comparison, result);
   return {};
 }
 
@@ -132,7 +142,7 @@ Result<void> judge_flight(const Case& the_case, const Flown& flown,
   if (flown.divergence) {
     reasons.push_back(how_it_ended(flown));
   } else {
-    judge_metrics(the_case, flown.trace, reference, result, reasons);
+    judge_metrics(the_case, flown, reference, result, reasons);
   }
   if (result.verdict == Verdict::pass && !reasons.empty()) result.verdict = Verdict::fail;
   result.reason = fmt::format("{}", fmt::join(reasons, "; "));
@@ -152,7 +162,7 @@ namespace {
 void save_flight(const std::filesystem::path& folder, const Trace& flown,
                  const Tolerances& tolerances, CaseResult& result) {
   if (!saves_traces(folder, result) || flown.samples.empty()) return;
-  const Subject subject{result.profile};
+  const Subject subject{result.profile, module_of(flown.present)};
   Trace want = flown;
   if (const auto fault = drive(*open_builtin(), subject, want)) {
     want.keep_first(fault->tick);
@@ -180,8 +190,10 @@ Result<CaseResult> evaluate_with(const Case& the_case, const FlightPlan& plan,
     judge(*flown->fault, result);
   }
   if (!judged) return tl::unexpected(judged.error());
-  save_flight(saved_traces, flown->trace,
-              tolerances_of(the_case, Level::numeric, bits, flown->trace.samples.size()), result);
+  const Tolerances tolerances =
+      tolerances_of(the_case, Level::numeric, bits, flown->trace.samples.size());
+  save_flight(saved_traces, flown->trace, tolerances, result);
+  if (flown->attitude_trace) save_flight(saved_traces, *flown->attitude_trace, tolerances, result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }
@@ -215,12 +227,12 @@ Result<CaseResult> evaluate_flight(const Case& the_case, const RunConfiguration&
                                    PortHost& host, const std::filesystem::path& saved_traces) {
   const auto reference = golden.read_flight(configuration, vehicle_model.vehicle());
   if (!reference) return tl::unexpected(reference.error());
-  const FlightPlan plan{configuration, case_timing(the_case, configuration.rate)};
+  const FlightPlan plan{configuration, flight_timing(the_case, configuration.rate)};
   if (!has_fixed_step(host.says(), the_case)) {
     return evaluate_with(the_case, plan, *reference, host, saved_traces);
   }
   CaseResult result = result_for(the_case, configuration);
-  if (has_other_steps(host.says(), the_case, configuration.rate, plan.timing, result))
+  if (has_other_steps(host.says(), the_case, configuration.rate.unit, plan.timing, result))
     return result;
   return evaluate_from_one_period_on(the_case, plan, vehicle_model, *reference, host, saved_traces);
 }
@@ -228,10 +240,11 @@ Result<CaseResult> evaluate_flight(const Case& the_case, const RunConfiguration&
 Result<CaseResult> evaluate_timed_flight(const Case& the_case,
                                          const RunConfiguration& configuration,
                                          const VehicleModel& vehicle_model,
-                                         const LoopTiming& timing, PortHost& host,
+                                         const FlightTiming& timing, PortHost& host,
                                          const std::filesystem::path& saved_traces) {
   CaseResult result = result_for(the_case, configuration);
-  if (has_other_steps(host.says(), the_case, configuration.rate, timing, result)) return result;
+  if (has_other_steps(host.says(), the_case, configuration.rate.unit, timing, result))
+    return result;
   const FlightPlan plan{configuration, timing, has_fixed_step(host.says(), the_case)};
   Case relaxed = plan.from_one_period_on ? the_case.from_one_period_on() : the_case;
   const auto reference = reference_flight(relaxed, configuration, vehicle_model, timing);

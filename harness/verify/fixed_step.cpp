@@ -49,9 +49,9 @@ bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rat
 }
 
 bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
-                     const LoopTiming& timing, CaseResult& result) {
+                     const FlightTiming& timing, CaseResult& result) {
   std::vector<Nanoseconds> begins;
-  for (const LoopTick& tick : timing) begins.push_back(tick.begins);
+  for (const LoopTick& tick : timing.unit) begins.push_back(tick.begins);
   return has_other_steps(port, the_case, rate, begins, result);
 }
 

@@ -27,7 +27,7 @@ Trace inputs_for(const PortSays& port, const Case& the_case, const Rate& rate);
 bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
                      CaseResult& result);
 bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
-                     const LoopTiming& timing, CaseResult& result);
+                     const FlightTiming& timing, CaseResult& result);
 
 // The same for a recorded trace, whose timestamps are fixed.
 bool has_other_steps(const PortSays& port, const Trace& recorded, CaseResult& result);

@@ -18,7 +18,7 @@ namespace {
 bool can_run(const PortSays& port, const Case& the_case, const RunConfiguration& configuration) {
   CaseResult ignored;
   return !the_case.flight && the_case.instances == Instances::one &&
-         !has_other_steps(port, the_case, configuration.rate, ignored);
+         !has_other_steps(port, the_case, configuration.rate.unit, ignored);
 }
 
 std::string id_of(const Case& the_case, const RunConfiguration& configuration) {
@@ -68,7 +68,7 @@ Result<std::size_t> write_recorded_vectors(const std::filesystem::path& folder, 
   for (const auto& [the_case, configurations] : cases) {
     for (const RunConfiguration& configuration : configurations) {
       if (!can_run(port, the_case, configuration)) continue;
-      const Trace inputs = inputs_for(port, the_case, configuration.rate);
+      const Trace inputs = inputs_for(port, the_case, configuration.rate.unit);
       const std::string id = id_of(the_case, configuration);
       if (auto written = write_vector(folder, format, the_case, id, inputs); !written) {
         return tl::unexpected(written.error());
@@ -104,7 +104,7 @@ Result<RecordedVectors> check_recorded_vectors(const std::filesystem::path& fold
       const auto file = find_output_file(folder, id);
       if (!file) return tl::unexpected(file.error());
       if (known == manifest->vectors.end() || !*file) continue;
-      if (known->second != sha256_of_inputs(inputs_for(port, the_case, configuration.rate))) {
+      if (known->second != sha256_of_inputs(inputs_for(port, the_case, configuration.rate.unit))) {
         return fail_at((folder / manifest_name).string(),
                        fmt::format("the inputs of {} are not those of this suite: another version "
                                    "of it wrote them. Write them again with `attest vectors`, and "

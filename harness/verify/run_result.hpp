@@ -34,12 +34,12 @@ struct RunResult {
   std::vector<ParameterChange> parameters;  // of --param, in place of the cases'
   ChannelSet not_recorded;                  // outputs that a recorded port does not have
   Level level = Level::numeric;
-  std::vector<Rate> rates;          // selected, ascending
+  std::vector<LoopRate> rates;      // selected, ascending
   std::string selection;            // the options that selected a part, except --shard
   bool all_configurations = false;  // of each selected case, all were selected
   Shard shard;                      // of the selected vectors, these were run
   // "profile/group" -> how many cases the suite has at each rate, selected or not.
-  std::map<std::string, std::map<Rate, std::size_t>> suite;
+  std::map<std::string, std::map<LoopRate, std::size_t>> suite;
   std::string suite_folder;  // as --suite gives it; empty: the suite was found
   std::string cases_version = "unversioned", golden_version = "unversioned";  // of the suite
   std::string suite_reference;     // the port whose outputs its goldens are; empty: attest's own

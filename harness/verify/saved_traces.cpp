@@ -34,22 +34,29 @@ Result<void> write_traces(const TraceFiles& files, const std::string& label, con
   return write_csv(files.tolerance, allowed, all_columns(allowed));
 }
 
+std::string label_of(const CaseResult& result, Module module) {
+  const std::string label = result.configuration().label();
+  const bool is_second = result.plant_configuration && module == Module::attitude_unit;
+  return is_second ? fmt::format("{}.{}", label, name_of(module)) : label;
+}
+
 }  // namespace
 
 bool saves_traces(const std::filesystem::path& folder, const CaseResult& result) {
   return !folder.empty() && fails_a_run(result.verdict);
 }
 
-TraceFiles trace_files(const std::filesystem::path& folder, const CaseResult& result) {
-  const std::filesystem::path stem = folder / result.case_id() / result.configuration().label();
+TraceFiles trace_files(const std::filesystem::path& folder, const CaseResult& result,
+                       Module module) {
+  const std::filesystem::path stem = folder / result.case_id() / label_of(result, module);
   const auto file = [&](const char* suffix) { return std::filesystem::path(stem) += suffix; };
   return {file(".got.csv"), file(".want.csv"), file(".tolerance.csv")};
 }
 
 void save_traces(const std::filesystem::path& folder, const Subject& subject,
                  const JudgedTraces& traces, CaseResult& result) {
-  const auto saved =
-      write_traces(trace_files(folder, result), result.configuration().label(), subject, traces);
+  const auto saved = write_traces(trace_files(folder, result, subject.module),
+                                  label_of(result, subject.module), subject, traces);
   if (saved) return;
   result.reason += fmt::format("{}its traces are not saved: {}", result.reason.empty() ? "" : "; ",
                                saved.error().to_string());

@@ -21,12 +21,14 @@ struct JudgedTraces {
   const Tolerances& tolerances;
 };
 
-// Their files, in the folder of the case. The stem is the label of the run configuration.
+// Their files, in the folder of the case. The stem is the label of the run configuration; of the
+// attitude unit in a flight, also its name.
 struct TraceFiles {
   std::filesystem::path got, want;
   std::filesystem::path tolerance;  // allowed |got - want| in place of each output, as in want
 };
-TraceFiles trace_files(const std::filesystem::path& folder, const CaseResult& result);
+TraceFiles trace_files(const std::filesystem::path& folder, const CaseResult& result,
+                       Module module);
 
 // Writes FOLDER/PROFILE/GROUP/NAME/CONFIGURATION.got.csv, .want.csv and .tolerance.csv, and the
 // provenance.toml with which `attest replay` reads them. If `got` has no tick, only .want.csv is

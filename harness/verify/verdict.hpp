@@ -54,7 +54,7 @@ struct CaseResult {
   std::string profile;  // "px4-v1.5.5"
   std::string group;    // "attitude"
   std::string name;     // "roll_30": with profile and group, the stem in cases/ and golden/
-  Rate rate = Rate::hz(1);
+  LoopRate rate;
   std::optional<PlantConfiguration> plant_configuration;  // of a flight
   Verdict verdict = Verdict::pass;
   std::string reason;     // one line; empty for a plain pass

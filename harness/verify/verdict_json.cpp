@@ -171,7 +171,7 @@ Result<CaseResult> case_result_from_json(const nlohmann::json& json) {
     out.verdict = *known;
   else
     reader.wrong(fmt::format("there is no verdict `{}`", verdict));
-  if (const auto rate = Rate::parse(reader.text("rate")))
+  if (const auto rate = LoopRate::parse(reader.text("rate")))
     out.rate = *rate;
   else
     reader.wrong(rate.error().message);

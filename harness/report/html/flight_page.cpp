@@ -73,7 +73,7 @@ std::string flight_page(const std::vector<SimulatedFlight>& flights, const PortS
     if (!reason.empty()) {
       page.notes.push_back({plant.empty() ? reason : fmt::format("{}: {}", plant, reason), true});
     }
-    if (!flight.flown.samples.empty()) flown.push_back({plant, &flight.flown});
+    if (!flight.flown.trace.samples.empty()) flown.push_back({plant, &flight.flown});
   }
   if (!flown.empty()) {
     page.groups = {flight_plots(flown)};

@@ -19,7 +19,7 @@ constexpr std::size_t most_frames = 2000;  // of the replay
 // The column of that name: a channel, or one of the plant.
 std::vector<float> column(const Trace& flown, std::string_view name) {
   std::vector<float> values;
-  if (const auto channel = find_channel(Module::mc_att_control, name)) {
+  if (const auto channel = find_channel(module_of(flown.present), name)) {
     for (const Sample& sample : flown.samples) {
       values.push_back(static_cast<float>(value_of(channels()[*channel], sample)));
     }
@@ -52,8 +52,17 @@ std::array<float, 3> euler_deg(float w, float x, float y, float z) {
 
 using Columns = std::vector<std::pair<std::string, std::vector<float>>>;
 
-Columns angles(const Trace& flown, const std::string& column_name, const std::string& of) {
-  const Quaternions q = quaternions(flown, column_name);
+// The attitude setpoint in force at each tick.
+Quaternions setpoints_of(const Flown& flown) {
+  Quaternions out;
+  const Trace* const attitude = flown.attitude_trace ? &*flown.attitude_trace : nullptr;
+  for (const auto& q_d : attitude_setpoints(flown.trace, attitude)) {
+    for (std::size_t i = 0; i < out.size(); ++i) out[i].push_back(q_d[i]);
+  }
+  return out;
+}
+
+Columns angles(const Quaternions& q, const std::string& of) {
   Columns columns = {{of + "roll", {}}, {of + "pitch", {}}, {of + "yaw", {}}};
   for (std::size_t tick = 0; tick < q[0].size(); ++tick) {
     const auto angles_deg = euler_deg(q[0][tick], q[1][tick], q[2][tick], q[3][tick]);
@@ -78,7 +87,7 @@ std::vector<double> seconds(const Trace& flown) {
 }
 
 // The signals of each flight; the setpoints that they should follow, of the first flight only.
-using ColumnsOf = std::function<Columns(const Trace&)>;
+using ColumnsOf = std::function<Columns(const Flown&)>;
 
 Plot plot_of(const std::vector<NamedFlight>& flights, Plot plot, const ColumnsOf& signals,
              const ColumnsOf& setpoints = {}) {
@@ -87,8 +96,9 @@ Plot plot_of(const std::vector<NamedFlight>& flights, Plot plot, const ColumnsOf
   const auto add = [&](const NamedFlight& flight, const Columns& columns, LinePattern pattern) {
     const std::string suffix = flight.name.empty() ? "" : " (" + flight.name + ")";
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      plot.series.push_back({columns[i].first + suffix, seconds(*flight.flown), columns[i].second,
-                             pattern, pattern == LinePattern::dotted ? dark : static_cast<int>(i)});
+      plot.series.push_back({columns[i].first + suffix, seconds(flight.flown->trace),
+                             columns[i].second, pattern,
+                             pattern == LinePattern::dotted ? dark : static_cast<int>(i)});
     }
   };
   for (const NamedFlight& flight : flights) {
@@ -100,11 +110,12 @@ Plot plot_of(const std::vector<NamedFlight>& flights, Plot plot, const ColumnsOf
 }
 
 ColumnsOf named(std::vector<std::string> names) {
-  return [names = std::move(names)](const Trace& flown) { return columns_of(flown, names); };
+  return [names = std::move(names)](const Flown& flown) { return columns_of(flown.trace, names); };
 }
 
 // The columns of the motors that this vehicle has.
-Columns motors(const Trace& flown) {
+Columns motors(const Flown& flight) {
+  const Trace& flown = flight.trace;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < std::tuple_size_v<decltype(PlantSample::motor)>; ++i) {
     const bool turns = std::any_of(flown.plant.begin(), flown.plant.end(),
@@ -122,12 +133,12 @@ std::vector<float> at(const std::vector<float>& values, const std::vector<std::s
 }
 
 ReplayVehicle replay_of(const NamedFlight& flight) {
-  const Trace& flown = *flight.flown;
+  const Trace& flown = flight.flown->trace;
   const std::size_t size = flown.samples.size(), frames = std::min(size, most_frames);
   std::vector<std::size_t> ticks;
   for (std::size_t i = 0; i < frames; ++i) ticks.push_back(i * size / frames);
   const Quaternions attitude = quaternions(flown, "plant/vehicle_attitude.q");
-  const Quaternions setpoint = quaternions(flown, "in/vehicle_attitude_setpoint.q_d");
+  const Quaternions setpoint = setpoints_of(*flight.flown);
   const std::vector<double> times = seconds(flown);
   ReplayVehicle vehicle;
   vehicle.name = flight.name;
@@ -139,32 +150,52 @@ ReplayVehicle replay_of(const NamedFlight& flight) {
   return vehicle;
 }
 
+// The names of what the law of a flight puts out.
+struct LawColumns {
+  std::vector<std::string> rates_setpoint, controls, integrals;
+  const char* saturation;  // title of its plot
+};
+
+LawColumns columns_of_law(Module module) {
+  if (module == Module::rate_unit) {
+    return {{"in/vehicle_rates_setpoint.roll", "in/vehicle_rates_setpoint.pitch",
+             "in/vehicle_rates_setpoint.yaw"},
+            {"out/vehicle_torque_setpoint.xyz[0]", "out/vehicle_torque_setpoint.xyz[1]",
+             "out/vehicle_torque_setpoint.xyz[2]", "out/vehicle_thrust_setpoint.xyz[2]"},
+            {"out/rate_ctrl_status.rollspeed_integ", "out/rate_ctrl_status.pitchspeed_integ",
+             "out/rate_ctrl_status.yawspeed_integ"},
+            "Saturation of the allocator"};
+  }
+  return {{"out/vehicle_rates_setpoint.roll", "out/vehicle_rates_setpoint.pitch",
+           "out/vehicle_rates_setpoint.yaw"},
+          {"out/actuator_controls_0.control[0]", "out/actuator_controls_0.control[1]",
+           "out/actuator_controls_0.control[2]", "out/actuator_controls_0.control[3]"},
+          {"out/mc_att_ctrl_status.roll_rate_integ", "out/mc_att_ctrl_status.pitch_rate_integ",
+           "out/mc_att_ctrl_status.yaw_rate_integ"},
+          "Saturation of the mixer"};
+}
+
 }  // namespace
 
 PlotGroup flight_plots(const std::vector<NamedFlight>& flights) {
-  const auto attitude = [](const Trace& flown) {
-    return angles(flown, "plant/vehicle_attitude.q", "");
+  const auto attitude = [](const Flown& flown) {
+    return angles(quaternions(flown.trace, "plant/vehicle_attitude.q"), "");
   };
-  const auto attitude_setpoint = [](const Trace& flown) {
-    return angles(flown, "in/vehicle_attitude_setpoint.q_d", "setpoint ");
+  const auto attitude_setpoint = [](const Flown& flown) {
+    return angles(setpoints_of(flown), "setpoint ");
   };
+  const LawColumns law = columns_of_law(module_of(flights.front().flown->trace.present));
   PlotGroup group{"", "time from the first tick [s]", {}};
   group.plots = {
       plot_of(flights, {"Attitude", "deg"}, attitude, attitude_setpoint),
       plot_of(flights, {"Body rates", "rad/s"},
               named({"plant/vehicle_attitude.rollspeed", "plant/vehicle_attitude.pitchspeed",
                      "plant/vehicle_attitude.yawspeed"}),
-              named({"out/vehicle_rates_setpoint.roll", "out/vehicle_rates_setpoint.pitch",
-                     "out/vehicle_rates_setpoint.yaw"})),
-      plot_of(flights, {"Controls"},
-              named({"out/actuator_controls_0.control[0]", "out/actuator_controls_0.control[1]",
-                     "out/actuator_controls_0.control[2]", "out/actuator_controls_0.control[3]"})),
-      plot_of(flights, {"Integrals"},
-              named({"out/mc_att_ctrl_status.roll_rate_integ",
-                     "out/mc_att_ctrl_status.pitch_rate_integ",
-                     "out/mc_att_ctrl_status.yaw_rate_integ"})),
+              named(law.rates_setpoint)),
+      plot_of(flights, {"Controls"}, named(law.controls)),
+      plot_of(flights, {"Integrals"}, named(law.integrals)),
       plot_of(flights, {"Motor commands"}, motors),
-      plot_of(flights, {"Saturation of the mixer"}, named({"plant/mixer.saturated"})),
+      plot_of(flights, {law.saturation}, named({"plant/mixer.saturated"})),
       plot_of(flights, {"Position", "m"},
               named({"plant/vehicle_local_position.x", "plant/vehicle_local_position.y",
                      "plant/vehicle_local_position.z"}))};

@@ -4,15 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "harness/loop/flight.hpp"
 #include "harness/report/html/plot_page.hpp"
-#include "harness/trace/trace.hpp"
 
 namespace attest {
 
-// REQUIRES: a flown trace with at least one tick.
+// REQUIRES: a flight with at least one tick of each unit.
 struct NamedFlight {
   std::string name;  // of the plant; may be empty if it is the only flight
-  const Trace* flown;
+  const Flown* flown;
 };
 
 // Attitude, body rates, controls, integrals, motors, saturation and position over the time since

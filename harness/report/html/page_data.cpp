@@ -115,7 +115,7 @@ void add_diagnosis(const std::optional<Diagnosis>& found, data& page) {
 // Names and values; a row without a value is left out.
 std::vector<std::pair<std::string, std::string>> facts_of(const RunResult& run) {
   std::vector<std::string> rates;
-  for (const Rate& rate : run.rates) rates.push_back(rate.to_string());
+  for (const LoopRate& rate : run.rates) rates.push_back(rate.to_string());
   return {{"attest", run.attest_version},
           {"date (UTC)", run.date},
           {"port", run.port},
@@ -173,7 +173,8 @@ data cell_to_data(const MatrixCell& cell, const std::string& group, const std::s
   return out;
 }
 
-data row_to_data(const MatrixRow& row, const std::string& group, const std::vector<Rate>& rates) {
+data row_to_data(const MatrixRow& row, const std::string& group,
+                 const std::vector<LoopRate>& rates) {
   data cells(data::type::list);
   for (std::size_t i = 0; i < rates.size(); ++i) {
     cells.push_back(cell_to_data(row.cells[i], group, rates[i].label()));
@@ -212,7 +213,7 @@ void add_matrices(const RunResult& run, data& page) {
         rows.push_back(row_to_data(total_of(matrix, profile), one_line(profile), matrix.rates));
         data out;
         set_text(out, "profile", one_line(profile));
-        out.set("rates", list_of(matrix.rates, [](const Rate& rate) {
+        out.set("rates", list_of(matrix.rates, [](const LoopRate& rate) {
                   return data("rate", text(rate.to_string()));
                 }));
         out.set("rows", rows);

@@ -106,12 +106,12 @@ std::vector<const CaseResult*> vectors_to_plot(const RunResult& run, std::size_t
     std::size_t round;     // how many rates of its group come before it
     std::size_t position;  // in the results
   };
-  std::map<std::pair<std::string, std::string>, std::vector<Rate>> seen;
+  std::map<std::pair<std::string, std::string>, std::vector<LoopRate>> seen;
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < run.results.size(); ++i) {
     const CaseResult& result = run.results[i];
     if (!fails_a_run(result.verdict) || !result.first) continue;
-    std::vector<Rate>& rates = seen[{result.profile, result.group}];
+    std::vector<LoopRate>& rates = seen[{result.profile, result.group}];
     if (std::find(rates.begin(), rates.end(), result.rate) != rates.end()) continue;
     candidates.push_back({rates.size(), i});
     rates.push_back(result.rate);
@@ -133,7 +133,8 @@ std::string plots_json(const RunResult& run, const std::filesystem::path& folder
   if (folder.empty()) return "{}";
   std::string out = "{";
   for (const CaseResult* result : vectors_to_plot(run)) {
-    const auto traces = read_traces(trace_files(folder, *result));
+    const auto traces =
+        read_traces(trace_files(folder, *result, channels()[result->first->channel].module));
     if (!traces || traces->got.samples.empty()) continue;
     const std::string entry = script_json(json(result->id())) + ":" +
                               script_json(vector_to_json(*traces, *result->first));

@@ -70,7 +70,7 @@ PageCell limit_cell(double value) {
 PageTable limits_table(const SweepRun& run, const std::vector<Line>& lines) {
   PageTable table{"Lowest loop rate, and largest delay of the motor commands",
                   {"vehicle and plant", "lowest rate [Hz]"}};
-  for (const Rate& rate : run.rates) {
+  for (const LoopRate& rate : run.rates) {
     table.header.push_back(fmt::format("delay [ms] at {} Hz", rate.to_string()));
   }
   for (const Line& line : lines) {

@@ -14,7 +14,7 @@ struct SweepRun {
   std::string port;  // as given
   PortSays says;
   Case the_case;
-  std::vector<Rate> rates;
+  std::vector<LoopRate> rates;
   std::vector<SweepResult> results;  // of SweepJobs, in their order
 };
 

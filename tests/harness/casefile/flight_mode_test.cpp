@@ -27,16 +27,16 @@ Trace with_mode(const std::string& lines) {
 
 TEST(FlightMode, IsFoundByItsName) {
   std::set<std::string_view> names;
-  for (const FlightMode& mode : flight_modes()) {
-    EXPECT_EQ(find_flight_mode(mode.name), &mode);
+  for (const FlightMode& mode : flight_modes(Module::mc_att_control)) {
+    EXPECT_EQ(find_flight_mode(Module::mc_att_control, mode.name), &mode);
     names.insert(mode.name);
   }
-  EXPECT_EQ(names.size(), flight_modes().size());
-  EXPECT_EQ(find_flight_mode("acro"), nullptr);
+  EXPECT_EQ(names.size(), flight_modes(Module::mc_att_control).size());
+  EXPECT_EQ(find_flight_mode(Module::mc_att_control, "acro"), nullptr);
 }
 
 TEST(FlightMode, SetsTheFlags) {
-  for (const FlightMode& mode : flight_modes()) {
+  for (const FlightMode& mode : flight_modes(Module::mc_att_control)) {
     const Trace trace = with_mode("flight_mode = \"" + std::string(mode.name) + "\"\n");
     const auto flags = flags_at(trace, 0);
     EXPECT_TRUE(std::equal(flags.begin(), flags.end(), mode.flags.begin())) << mode.name;
@@ -57,7 +57,7 @@ TEST(FlightMode, ChangesAtItsTimes) {
 }
 
 TEST(FlightMode, AVtolInTransitionDoesNotControlTheVelocityInAutoModes) {
-  for (const FlightMode& mode : flight_modes()) {
+  for (const FlightMode& mode : flight_modes(Module::mc_att_control)) {
     const std::string named = "flight_mode = \"" + std::string(mode.name) + "\"\n";
     const auto flags = flags_at(with_mode(named + "in_transition = 1\n"), 0);
     auto expected = mode.flags;

@@ -97,12 +97,12 @@ TEST_F(ParseFlight, TasksHaveTheirTiming) {
       "seed = 7\ndelay_s = 0.02\ndrop_ticks = [3]\n[flight.estimator]\ndelay_s = 0.004\ndrift = "
       "0.01\n"
       "rate_noise_rad_s = 0.1\nattitude_noise_deg = 0.2\nseed = 9\n");
-  EXPECT_EQ(flight.motor_limits.rate, Rate::hz(25));
-  EXPECT_EQ(flight.motor_limits.phase.amount, 0.01);
-  EXPECT_EQ(flight.motor_limits.jitter, 0.5);
-  EXPECT_EQ(flight.motor_limits.seed, 7u);
-  EXPECT_EQ(flight.motor_limits.delay.amount, 0.02);
-  EXPECT_THAT(flight.motor_limits.drop_ticks, ElementsAre(3));
+  EXPECT_EQ(flight.saturation.rate, Rate::hz(25));
+  EXPECT_EQ(flight.saturation.phase.amount, 0.01);
+  EXPECT_EQ(flight.saturation.jitter, 0.5);
+  EXPECT_EQ(flight.saturation.seed, 7u);
+  EXPECT_EQ(flight.saturation.delay.amount, 0.02);
+  EXPECT_THAT(flight.saturation.drop_ticks, ElementsAre(3));
   EXPECT_EQ(flight.actuator_delay.amount, 2);
   EXPECT_EQ(flight.estimator.delay.amount, 0.004);
   EXPECT_EQ(flight.estimator.rate_noise_rad_s, 0.1);

@@ -27,7 +27,7 @@ TEST(ParseCase, NamesItByItsPlace) {
 
 TEST(ParseCase, HasDefaults) {
   const Case parsed = case_of("");
-  EXPECT_EQ(parsed.rates, standard_rates());
+  EXPECT_THAT(parsed.rates, testing::ElementsAreArray(standard_rates()));
   EXPECT_FALSE(parsed.exact_only);
   EXPECT_EQ(parsed.unit.start.on(Rate::hz(250)), std::chrono::seconds(5));
   EXPECT_EQ(parsed.unit.jitter, 0);

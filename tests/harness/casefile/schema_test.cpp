@@ -84,8 +84,10 @@ TEST(Schema, NamesEveryTopicFieldAndFlightMode) {
     EXPECT_TRUE(is_named(name.substr(0, dot))) << name;
     EXPECT_TRUE(is_named(field.substr(0, field.find('[')))) << name;
   }
-  for (const FlightMode& mode : flight_modes()) {
-    EXPECT_TRUE(is_named(std::string(mode.name))) << mode.name;
+  for (const Module module : {Module::mc_att_control, Module::attitude_unit}) {
+    for (const FlightMode& mode : flight_modes(module)) {
+      EXPECT_TRUE(is_named(std::string(mode.name))) << mode.name;
+    }
   }
 }
 
@@ -109,11 +111,13 @@ TEST(Schema, NamesEveryStandardRate) {
 
 // Each flight mode has the flags of its row.
 TEST(Schema, FlightModesHaveTheirFlags) {
-  for (const FlightMode& mode : flight_modes()) {
-    std::string cells;
-    for (const std::uint8_t flag : mode.flags) cells += " " + std::to_string(flag) + " \\|";
-    const std::regex row("\\|[^|\n]*`" + std::string(mode.name) + "`[^|\n]*\\|" + cells);
-    EXPECT_TRUE(std::regex_search(schema(), row)) << mode.name;
+  for (const Module module : {Module::mc_att_control, Module::attitude_unit}) {
+    for (const FlightMode& mode : flight_modes(module)) {
+      std::string cells;
+      for (const std::uint8_t flag : mode.flags) cells += " " + std::to_string(flag) + " \\|";
+      const std::regex row("\\|[^|\n]*`" + std::string(mode.name) + "`[^|\n]*\\|" + cells);
+      EXPECT_TRUE(std::regex_search(schema(), row)) << mode.name;
+    }
   }
 }
 

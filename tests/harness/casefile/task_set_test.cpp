@@ -96,7 +96,7 @@ TEST(TaskSet, ATriggerIsTheUnitsAndInPlaceOfARate) {
               HasSubstr("5: `trigger` is given too"));
   EXPECT_THAT(error_of(std::string(unit) + "[task.estimator]\nexecution_us = 1\npriority = 1\n"
                                            "trigger = \"unit\"\n"),
-              HasSubstr("8: is for [task.unit] only"));
+              HasSubstr("8: is for [task.unit] and [task.attitude_unit]"));
   EXPECT_THAT(error_of("[task.unit]\nexecution_us = 76\npriority = 2\ntrigger = \"gps\"\n"),
               HasSubstr("4: must be \"estimator\""));
 }

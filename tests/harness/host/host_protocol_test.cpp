@@ -97,7 +97,7 @@ TEST(HostProtocol, TheHostOfAProgramAnnouncesItsEnd) {
 bool is_flown(json head, std::size_t ticks) {
   head.update({{"request", 5}, {"source", "x"}, {"parameters", json::array()}});
   Sent sent(head, {three_samples, three_of_plant});
-  return read_flown(sent.as_answer_to(5), ticks).has_value();
+  return read_flown(sent.as_answer_to(5), LoopTiming(ticks)).has_value();
 }
 
 // A flight with only its first ticks cannot be judged, unless the message gives the reason.

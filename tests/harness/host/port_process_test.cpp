@@ -79,7 +79,7 @@ TEST(PortProcess, FliesAsHere) {
   const Course course{&*hover, iris.get()};
   FlightPlan plan{{Rate::hz(50), PlantConfiguration{"iris", PlantKind::ode}},
                   case_timing(*hover, Rate::hz(50))};
-  plan.timing.resize(100);
+  plan.timing.unit.resize(100);
   const auto here = host_of("builtin", true, course)->fly(plan);
   const auto apart = host_of("builtin", false, course)->fly(plan);
   ASSERT_TRUE(here && apart);
@@ -184,7 +184,7 @@ TEST(PortProcess, AFlightOfAFixedStepBeginsOnePeriodAfterZero) {
   const auto iris = *VehicleModel::load(source / "models", "iris");
   FlightPlan plan{{Rate::hz(50), PlantConfiguration{"iris", PlantKind::ode}},
                   case_timing(*hover, Rate::hz(50))};
-  plan.timing.resize(3);
+  plan.timing.unit.resize(3);
   for (const bool from_one_period_on : {false, true}) {
     plan.from_one_period_on = from_one_period_on;
     const auto flown = host_of("builtin", false, {&*hover, iris.get()})->fly(plan);

@@ -29,60 +29,67 @@ class ActuatorsTest : public testing::Test {
     return out;
   }
 
+  void follow(const attest_outputs& out, bool armed) {
+    Sample sample;
+    sample.in.actuator_armed.armed = armed ? 1 : 0;
+    sample.out = out;
+    actuators_.follow(sample);
+  }
+
   const Vehicle vehicle_ = quad();
   Actuators actuators_{vehicle_};
 };
 
 TEST_F(ActuatorsTest, SpeedIsLinearInTheCommandAndTheSupply) {
-  actuators_.mix(controls(0, 0.5f), true);
+  follow(controls(0, 0.5f), true);
   EXPECT_THAT(actuators_.speeds(actuators_.commands(), 1, {}), ElementsAre(400, 400, 400, 400));
   EXPECT_THAT(actuators_.speeds(actuators_.commands(), 0.5, {}), ElementsAre(200, 200, 200, 200));
 }
 
 TEST_F(ActuatorsTest, TheFailedRotorIsAskedForNone) {
-  actuators_.mix(controls(0, 0.5f), true);
+  follow(controls(0, 0.5f), true);
   EXPECT_THAT(actuators_.speeds(actuators_.commands(), 1, 2), ElementsAre(400, 400, 0, 400));
 }
 
 TEST_F(ActuatorsTest, WithoutArmingAllStopAndFlagsStay) {
-  actuators_.mix(controls(0.5f, 1), true);
-  EXPECT_NE(actuators_.limits().upper_limit, 0);
-  actuators_.mix(controls(0, 0.5f), false);
+  follow(controls(0.5f, 1), true);
+  EXPECT_NE(actuators_.saturation().limits.upper_limit, 0);
+  follow(controls(0, 0.5f), false);
   EXPECT_THAT(actuators_.speeds(actuators_.commands(), 1, {}), Each(0));
-  EXPECT_NE(actuators_.limits().upper_limit, 0);
+  EXPECT_NE(actuators_.saturation().limits.upper_limit, 0);
 }
 
 TEST_F(ActuatorsTest, WhatIsNotPublishedIsNotMixed) {
-  actuators_.mix(controls(0, 0.5f), true);
+  follow(controls(0, 0.5f), true);
   attest_outputs silent = controls(0, 1);
   silent.actuator_controls_0.published = 0;
-  actuators_.mix(silent, true);
+  follow(silent, true);
   EXPECT_THAT(actuators_.speeds(actuators_.commands(), 1, {}), Each(400));
 }
 
 TEST_F(ActuatorsTest, ACommandThatIsNoNumberHasNoSpeeds) {
-  actuators_.mix(controls(0, std::nanf("")), true);
+  follow(controls(0, std::nanf("")), true);
   EXPECT_THAT(actuators_.speeds(actuators_.commands(), 1, {}), IsEmpty());
 }
 
 // The firmware sends the flags as bits of one mask.
 TEST_F(ActuatorsTest, FlagsAreBits) {
-  actuators_.mix(controls(0.5f, 1), true);
-  EXPECT_EQ(actuators_.limits().upper_limit, 2);
-  EXPECT_EQ(actuators_.limits().lower_limit, 0);
-  actuators_.mix(controls(0.9f, 0.1f), true);
-  EXPECT_EQ(actuators_.limits().lower_limit, 1);
+  follow(controls(0.5f, 1), true);
+  EXPECT_EQ(actuators_.saturation().limits.upper_limit, 2);
+  EXPECT_EQ(actuators_.saturation().limits.lower_limit, 0);
+  follow(controls(0.9f, 0.1f), true);
+  EXPECT_EQ(actuators_.saturation().limits.lower_limit, 1);
 }
 
 // Yaw alone would stop two rotors: only the yaw flag is set.
 TEST_F(ActuatorsTest, YawThatIsNotFittedHasAFlagOfItsOwn) {
   attest_outputs out = controls(0, 0.5f);
   out.actuator_controls_0.control[2] = 1;
-  actuators_.mix(out, true);
-  EXPECT_EQ(actuators_.limits().yaw, 4);
-  actuators_.mix(controls(0.5f, 1), true);  // roll beyond the upper limit, without yaw
-  EXPECT_EQ(actuators_.limits().upper_limit, 2);
-  EXPECT_EQ(actuators_.limits().yaw, 0);
+  follow(out, true);
+  EXPECT_EQ(actuators_.saturation().limits.yaw, 4);
+  follow(controls(0.5f, 1), true);  // roll beyond the upper limit, without yaw
+  EXPECT_EQ(actuators_.saturation().limits.upper_limit, 2);
+  EXPECT_EQ(actuators_.saturation().limits.yaw, 0);
 }
 
 }  // namespace

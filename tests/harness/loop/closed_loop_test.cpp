@@ -114,7 +114,7 @@ class ClosedLoopTest : public testing::Test {
     case_.duration = seconds(0.012);
     case_.topics = {armed(true)};
     case_.flight.emplace();
-    case_.flight->motor_limits.rate = Rate::hz(250);
+    case_.flight->saturation.rate = Rate::hz(250);
   }
 
   FlightEnd fly(Trace* trace = nullptr, const Rate& rate = Rate::hz(250)) {
@@ -153,7 +153,7 @@ TEST_F(ClosedLoopTest, AUnitThatTheEstimatorTriggersRunsWhenASampleArrives) {
   case_.unit.on_estimate = true;
   case_.flight->estimator.delay = seconds(0.001);
   case_.flight->estimator.drift = 0.25;
-  case_.flight->motor_limits.rate = Rate::hz(1);
+  case_.flight->saturation.rate = Rate::hz(1);
   fly();
   EXPECT_THAT(unit_.timestamps_sample, ElementsAre(0, 3200, 6400, 9600));
   std::erase_if(notes_,
@@ -167,7 +167,7 @@ TEST_F(ClosedLoopTest, AtOneInstantTheSensorComesBeforeTheUnitAndTheMotorsAfter)
   unit_.roll = 0.2f;
   case_.flight->wind_m_s[0] = Step{0, 3, seconds(0.0)};
   case_.flight->battery.emplace().timing.rate = Rate::hz(125);
-  case_.flight->motor_limits.rate = Rate::hz(125);
+  case_.flight->saturation.rate = Rate::hz(125);
   fly();
   EXPECT_THAT(notes_,
               ElementsAre("0 wind 3", "0 unit sees 0 limits 0 battery", StartsWith("0 hold"),
@@ -203,9 +203,9 @@ TEST_F(ClosedLoopTest, ADelayedCommandReachesTheMotorsLater) {
 TEST_F(ClosedLoopTest, MotorLimitsAreStale) {
   unit_.thrust = 1;
   unit_.roll = 0.2f;
-  case_.flight->motor_limits.rate = Rate::hz(250);
-  case_.flight->motor_limits.phase = seconds(0.002);
-  case_.flight->motor_limits.delay = seconds(0.004);
+  case_.flight->saturation.rate = Rate::hz(250);
+  case_.flight->saturation.phase = seconds(0.002);
+  case_.flight->saturation.delay = seconds(0.004);
   case_.duration = seconds(0.020);
   fly();
   Notes limits;
@@ -243,14 +243,14 @@ TEST_F(ClosedLoopTest, ATimingIsFlownAsItWas) {
   // own. The third sample is taken before the second tick begins.
   timing_ = LoopTiming{{ms(0), ms(1), ms(2)}, {ms(0), ms(6), {}}, {ms(5), ms(7), ms(9)}};
   case_.duration = seconds(0.020);
-  case_.flight->motor_limits.phase = seconds(1);
+  case_.flight->saturation.phase = seconds(1);
   fly();
   EXPECT_THAT(notes_, ElementsAre("1 unit sees 0", "2 hold 400", "6 unit sees 0", "7 unit sees 5"));
 }
 
 TEST_F(ClosedLoopTest, AnEstimatorOnItsOwnClockGivesItsLastSample) {
   case_.flight->estimator.drift = 1.0 / 3;  // every 3 ms; the unit runs every 4 ms
-  case_.flight->motor_limits.phase = seconds(1);
+  case_.flight->saturation.phase = seconds(1);
   case_.duration = seconds(0.016);
   fly();
   EXPECT_THAT(notes_, ElementsAre("0 unit sees 0", "0 hold 400", "4 unit sees 3", "4 hold 400",

@@ -19,9 +19,9 @@ TimingFile sample() {
           "0123",
           {Rate::hz(1000, 3), PlantConfiguration{"iris", PlantKind::ode}},
           0.25,
-          {{us(-1), us(10), us(1000)},
-           {us(0), us(3010), std::nullopt},
-           {us(2000), us(6001), us(7000)}}};
+          LoopTiming{{us(-1), us(10), us(1000)},
+                     {us(0), us(3010), std::nullopt},
+                     {us(2000), us(6001), us(7000)}}};
 }
 
 class TimingFileTest : public testing::Test {

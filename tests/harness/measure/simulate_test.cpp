@@ -61,8 +61,9 @@ class Simulate : public testing::Test {
     GivenHost host(answers_);
     auto flight = simulate_flight(case_, plan_, host);
     if (!flight) return tl::unexpected(flight.error());
-    if (flight->flown.samples.empty()) return flight->result;
-    if (auto done = write_trace(out_, flight->flown); !done) return tl::unexpected(done.error());
+    if (flight->flown.trace.samples.empty()) return flight->result;
+    if (auto done = write_trace(out_, flight->flown.trace); !done)
+      return tl::unexpected(done.error());
     return flight->result;
   }
 
@@ -157,7 +158,7 @@ TEST_F(Simulate, WhenThePortGoesWrongTheFileIsNotTouched) {
 }
 
 TEST_F(Simulate, ThePlanIsFlownAsItIs) {
-  plan_.timing.back().begins += us(70);
+  plan_.timing.unit.back().begins += us(70);
   ASSERT_TRUE(simulated());
   ASSERT_EQ(plans_.size(), 1u);
   EXPECT_EQ(plans_[0].configuration, plan_.configuration);
@@ -176,8 +177,8 @@ TEST_F(Simulate, APortWithAFixedStepFliesAtItsOwnTimesOnlyFromOnePeriodOn) {
   answers_.says.fixed_step = Rate::hz(500);
   EXPECT_EQ(simulated()->verdict, Verdict::unsupported);
   answers_.says.fixed_step = Rate::hz(250);
-  const LoopTiming in_time = plan_.timing;
-  plan_.timing.back().begins += us(70);
+  const FlightTiming in_time = plan_.timing;
+  plan_.timing.unit.back().begins += us(70);
   EXPECT_EQ(simulated()->verdict, Verdict::unsupported);
   EXPECT_TRUE(plans_.empty());
   plan_.timing = in_time;

@@ -50,7 +50,7 @@ int hertz_of(const FlightPlan& plan) {
 }
 
 Nanoseconds delay_of(const FlightPlan& plan) {
-  return *plan.timing.front().commanded - plan.timing.front().begins;
+  return *plan.timing.unit.front().commanded - plan.timing.unit.front().begins;
 }
 
 class Sweep : public testing::Test {
@@ -95,7 +95,7 @@ class Sweep : public testing::Test {
 
   Case case_ = test::hover_case(0.02);
   PlantConfiguration plant_configuration_{"iris", PlantKind::ode};
-  std::vector<Rate> rates_ = {Rate::hz(250), Rate::hz(500)};
+  std::vector<LoopRate> rates_ = {Rate::hz(250), Rate::hz(500)};
   PortSays says_;
   std::function<Result<Flown>(const FlightPlan&)> fly_;
   std::vector<FlightPlan> plans_;
@@ -157,8 +157,8 @@ TEST_F(Sweep, TheDelayIsOfTheMotorCommandsBeyondTheCasesOwn) {
   ASSERT_FALSE(plans_.empty());
   for (FlightPlan& plan : plans_) {
     const Nanoseconds added = delay_of(plan) - ms(3);
-    for (LoopTick& tick : plan.timing) *tick.commanded -= added;
-    EXPECT_EQ(plan.timing, case_timing(case_, Rate::hz(250)));
+    for (LoopTick& tick : plan.timing.unit) *tick.commanded -= added;
+    EXPECT_EQ(plan.timing.unit, case_timing(case_, Rate::hz(250)));
   }
 }
 
@@ -168,7 +168,7 @@ TEST_F(Sweep, TheLowestRateIsSearchedAtTheTimesOfTheCaseOnItsPlant) {
   EXPECT_EQ(run(0)->lowest_rate_hz, 400);
   ASSERT_FALSE(plans_.empty());
   for (const FlightPlan& plan : plans_) {
-    EXPECT_EQ(plan.timing, case_timing(case_, plan.configuration.rate));
+    EXPECT_EQ(plan.timing.unit, case_timing(case_, plan.configuration.rate.unit));
     EXPECT_EQ(plan.configuration.plant_configuration, plant_configuration_);
     EXPECT_FALSE(plan.from_one_period_on);
   }

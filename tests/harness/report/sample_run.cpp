@@ -9,7 +9,7 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-CaseResult result(Verdict verdict, const std::string& group, const std::string& name, Rate rate,
+CaseResult result(Verdict verdict, const std::string& group, const std::string& name, LoopRate rate,
                   const std::string& reason) {
   CaseResult out = passed(group, name, rate);
   out.verdict = verdict;
@@ -18,15 +18,16 @@ CaseResult result(Verdict verdict, const std::string& group, const std::string& 
   return out;
 }
 
-CaseResult failing(const std::string& group, const std::string& name, Rate rate, Deviation first,
-                   std::size_t deviating_ticks) {
+CaseResult failing(const std::string& group, const std::string& name, LoopRate rate,
+                   Deviation first, std::size_t deviating_ticks) {
   CaseResult out = result(Verdict::fail, group, name, rate, "");
   out.first = first;
   out.deviating_ticks = deviating_ticks;
   return out;
 }
 
-CaseResult died(Verdict verdict, const std::string& name, Rate rate, const std::string& reason) {
+CaseResult died(Verdict verdict, const std::string& name, LoopRate rate,
+                const std::string& reason) {
   CaseResult out = result(verdict, "robustness", name, rate, reason);
   out.ticks = 0;
   return out;
@@ -110,7 +111,7 @@ void add_flights(std::vector<CaseResult>& results) {
 
 }  // namespace
 
-CaseResult passed(const std::string& group, const std::string& name, Rate rate) {
+CaseResult passed(const std::string& group, const std::string& name, LoopRate rate) {
   CaseResult out;
   out.profile = "px4-v1.5.5";
   out.group = group;
@@ -174,7 +175,7 @@ RunResult passing_run() {
   run.level = Level::exact;
   run.rates = {Rate::hz(50), Rate::hz(250)};
   for (const char* name : {"pitch_5", "roll_30", "yaw_step"}) {
-    for (const Rate& rate : run.rates) {
+    for (const LoopRate& rate : run.rates) {
       run.results.push_back(passed("attitude", name, rate));
       ++run.suite["px4-v1.5.5/attitude"][rate];
     }

@@ -22,7 +22,7 @@ RunResult run_of(const std::vector<std::string>& groups) {
   run.port = "builtin";
   run.date = "2026-03-31";
   for (const std::string& group : groups) {
-    for (const Rate& rate : run.rates) {
+    for (const LoopRate& rate : run.rates) {
       run.suite["px4-v1.5.5/" + group][rate] = 1;
       run.results.push_back(passed(group, "a", rate));
     }

@@ -96,7 +96,7 @@ TEST(Summary, ShowsTheFirstFailingCaseOfEachGroup) {
   run.results.clear();
   for (int i = 0; i < 22; ++i) {
     for (const char* name : {"one", "two"}) {
-      for (const Rate& rate : run.rates) {
+      for (const LoopRate& rate : run.rates) {
         CaseResult result = passed(fmt::format("group_{:02}", i), name, rate);
         result.verdict = Verdict::timeout;
         run.results.push_back(result);

@@ -13,7 +13,8 @@ using testing::IsEmpty;
 
 const char* const the_profile = "px4-v1.5.5";
 
-CaseResult result_of(const std::string& group, Rate rate, Verdict verdict = Verdict::pass) {
+CaseResult result_of(const std::string& group, const LoopRate& rate,
+                     Verdict verdict = Verdict::pass) {
   CaseResult result;
   result.profile = the_profile;
   result.group = group;
@@ -29,7 +30,7 @@ RunResult complete_run(const std::vector<std::string>& groups) {
   run.suite_is_released = true;
   run.rates = {Rate::hz(100), Rate::hz(250)};
   for (const std::string& group : groups) {
-    for (const Rate& rate : run.rates) {
+    for (const LoopRate& rate : run.rates) {
       run.suite[the_profile + ("/" + group)][rate] = 1;
       run.results.push_back(result_of(group, rate));
     }

@@ -63,7 +63,8 @@ class EvaluateFlight : public testing::Test {
     case_.flight->metrics = {metric_};
     ChangedFlight host({&case_, iris_.get()}, change);
     host.says_.fraction_bits = bits;
-    auto result = evaluate_timed_flight(case_, at_50, *iris_, case_timing(case_, at_50.rate), host);
+    auto result =
+        evaluate_timed_flight(case_, at_50, *iris_, case_timing(case_, at_50.rate.unit), host);
     EXPECT_TRUE(result) << result.error().to_string();
     return result ? *std::move(result) : CaseResult{};
   }

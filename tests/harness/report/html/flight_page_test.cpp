@@ -17,8 +17,9 @@ using testing::HasSubstr;
 using testing::Not;
 
 // Two ticks, 4 ms apart. The vehicle turns from level to a roll of 90 deg, with three rotors.
-Trace two_ticks() {
-  Trace trace;
+Flown two_ticks() {
+  Flown flown;
+  Trace& trace = flown.trace;
   trace.present = channels_of(Module::mc_att_control);
   trace.samples.resize(2);
   trace.plant.resize(2);
@@ -28,12 +29,12 @@ Trace two_ticks() {
   trace.plant[0].q = {1, 0, 0, 0};
   trace.plant[1].q = {half, half, 0, 0};
   for (PlantSample& sample : trace.plant) sample.rotor_rad_s = {500, 500, 500};
-  return trace;
+  return flown;
 }
 
 // The plot of that title, of one flight, or of the same flight on two plants.
 Plot plot(const std::string& title, bool two_plants = false) {
-  const Trace flown = two_ticks();
+  const Flown flown = two_ticks();
   const auto flights = two_plants ? std::vector<NamedFlight>{{"mujoco", &flown}, {"ode", &flown}}
                                   : std::vector<NamedFlight>{{"", &flown}};
   for (const Plot& one : flight_plots(flights).plots) {
@@ -73,7 +74,7 @@ TEST(FlightPlots, TwoPlantsAreInOnePlotWithOneSetpoint) {
 }
 
 TEST(FlightPlots, TheReplayHasTheQuaternions) {
-  const Trace flown = two_ticks();
+  const Flown flown = two_ticks();
   const auto replay = replay_of({{"", &flown}});
   ASSERT_EQ(replay.size(), 1u);
   EXPECT_THAT(replay[0].times, ElementsAre(0, 0.004f));

@@ -1,0 +1,29 @@
+// The commands to the motors, and what the actuators could not realise.
+#pragma once
+
+#include <array>
+
+#include "controller/attest_unit.h"
+#include "harness/plant/vehicle.hpp"
+
+namespace attest {
+
+// One per rotor, from -1 (stopped) to 1 (full).
+using MotorCommands = std::array<float, rotors_max>;
+
+// Flags as the firmware sends them: bits of one mask, so any value but 0 is true.
+using MotorLimits = decltype(attest_inputs::multirotor_motor_limits);
+
+// Of the mixer's or the allocator's last run. The controller receives the limits, the rate unit the
+// torque.
+struct Saturation {
+  MotorLimits limits{};
+  std::array<float, 3> unallocated_torque{};
+  bool torque_setpoint_achieved = true;
+
+  bool any() const {
+    return (limits.lower_limit | limits.upper_limit | limits.yaw) != 0 || !torque_setpoint_achieved;
+  }
+};
+
+}  // namespace attest

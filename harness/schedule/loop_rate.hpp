@@ -1,0 +1,38 @@
+// The rates at which the units of a flight controller run.
+#pragma once
+
+#include <compare>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "harness/core/result.hpp"
+#include "harness/schedule/rate.hpp"
+
+namespace attest {
+
+// "1000": the rate of one unit. "250:1000": of a cascade, the attitude unit's and the rate unit's.
+struct LoopRate {
+  Rate unit = Rate::hz(1);  // of the unit that commands the motors
+  std::optional<Rate> attitude_unit = std::nullopt;
+
+  LoopRate() = default;
+  LoopRate(const Rate& of_unit) : unit(of_unit) {}  // NOLINT(google-explicit-constructor)
+  LoopRate(const Rate& of_attitude_unit, const Rate& of_rate_unit)
+      : unit(of_rate_unit), attitude_unit(of_attitude_unit) {}
+
+  // Errors: those of Rate::parse(); a rate unit slower than its attitude unit.
+  static Result<LoopRate> parse(std::string_view text);
+
+  double hertz() const { return unit.hertz(); }
+  double period_s() const { return unit.period_s(); }
+
+  std::string to_string() const;  // "1000" or "250:1000"
+  std::string label() const;      // for file names: "1000hz" or "250-1000hz"
+
+  // By the unit's rate, then by the attitude unit's.
+  friend auto operator<=>(const LoopRate&, const LoopRate&) = default;
+  friend bool operator==(const LoopRate&, const LoopRate&) = default;
+};
+
+}  // namespace attest
