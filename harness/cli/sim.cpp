@@ -22,6 +22,15 @@ namespace {
 
 constexpr std::string_view all_plants = "all";
 
+// The file of the attitude unit's trace, next to the rate unit's: "flown.attitude_unit.csv". Empty:
+// none is written; stdout is for one trace.
+std::string attitude_file(const std::string& out) {
+  if (out.empty() || out == "-") return {};
+  std::filesystem::path file = out;
+  const std::string extension = file.extension().string();
+  return file.replace_extension(".attitude_unit" + extension).string();
+}
+
 // The same flight on one plant or on several.
 struct Sim {
   Case the_case;
@@ -73,7 +82,7 @@ Result<Sim> prepare(const SimOptions& options, const Globals& globals) {
   if (!suite) return tl::unexpected(suite.error());
   if (options.out.empty() && options.html.empty()) return fail("needs --out or --html");
   const auto checked =
-      check_outputs({options.out, options.html},
+      check_outputs({options.out, attitude_file(options.out), options.html},
                     {options.host.port, {options.timing, options.case_name}}, *suite);
   if (!checked) return tl::unexpected(checked.error());
   if (!options.timing.empty()) return prepare_timed(options, *suite);
@@ -97,9 +106,13 @@ Result<std::vector<SimulatedFlight>> fly_all(const Sim& sim, const HostOptions& 
 
 Result<void> write(const std::vector<SimulatedFlight>& flights, const PortSays& port,
                    const SimOptions& options) {
-  const Trace& flown = flights.front().flown.trace;
-  if (!options.out.empty() && !flown.samples.empty()) {
-    if (auto written = write_trace(options.out, flown); !written) return written;
+  const Flown& flown = flights.front().flown;
+  if (!options.out.empty() && !flown.trace.samples.empty()) {
+    if (auto written = write_trace(options.out, flown.trace); !written) return written;
+    const std::string second = attitude_file(options.out);
+    if (flown.attitude_trace && !second.empty()) {
+      if (auto written = write_trace(second, *flown.attitude_trace); !written) return written;
+    }
   }
   if (options.html.empty()) return {};
   return write_file(options.html, flight_page(flights, port));

@@ -65,6 +65,11 @@ Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& su
   auto chosen =
       choose_flight(options.case_name, rates->front(), options.vehicle, options.plant, suite);
   if (!chosen) return tl::unexpected(chosen.error());
+  if (chosen->the_case.attitude_loop) {
+    return fail_at(chosen->the_case.file.string(),
+                   "is a flight of the cascade, which `attest stress` cannot fly in real time; "
+                   "`attest schedule` flies both units as their tasks are scheduled");
+  }
   const auto live = live_options(options);
   if (!live) return tl::unexpected(live.error());
   const auto load = parse_load_kind(options.load_kind);

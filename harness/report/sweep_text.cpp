@@ -33,12 +33,12 @@ std::vector<SweepRow> sweep_rows(const std::vector<SweepResult>& results) {
 
 std::string render_sweep(const std::vector<SweepRow>& rows, const std::vector<LoopRate>& rates) {
   std::string out = fmt::format("{:<14}{:<8}{:>12}", "vehicle", "plant", "lowest rate");
-  for (const LoopRate& rate : rates) out += fmt::format("{:>14}", "at " + rate.to_string() + " Hz");
+  for (const LoopRate& rate : rates) out += fmt::format("{:>17}", "at " + rate.to_string() + " Hz");
   out += "\n";
   for (const SweepRow& row : rows) {
     out += fmt::format("{:<14}{:<8}{:>12}", row.plant_configuration.vehicle,
                        name_of(row.plant_configuration.plant), cell(row.lowest_rate_hz, "Hz"));
-    for (const double delay : row.largest_delay_ms) out += fmt::format("{:>14}", cell(delay, "ms"));
+    for (const double delay : row.largest_delay_ms) out += fmt::format("{:>17}", cell(delay, "ms"));
     if (!row.failure.empty()) out += "  " + row.failure;
     out += "\n";
   }

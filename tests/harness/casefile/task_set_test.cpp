@@ -101,5 +101,21 @@ TEST(TaskSet, ATriggerIsTheUnitsAndInPlaceOfARate) {
               HasSubstr("4: must be \"estimator\""));
 }
 
+TEST(TaskSet, OfTheCascadeHasBothUnits) {
+  const std::string rate_unit = "[task.unit]\nrate_hz = 1000\nexecution_us = 1\npriority = 2\n";
+  const std::string attitude = "[task.attitude_unit]\nexecution_us = 1\npriority = 1\n";
+  EXPECT_THAT(error_of(rate_unit + attitude + "rate_hz = 2000\n"),
+              HasSubstr("is slower than [task.attitude_unit]"));
+  EXPECT_THAT(
+      error_of("[task.unit]\ntrigger = \"estimator\"\nexecution_us = 1\npriority = 2\n" + attitude +
+               "rate_hz = 250\n[task.estimator]\nrate_hz = 250\nexecution_us = 1\n"
+               "priority = 3\n"),
+      HasSubstr("the rate unit reads the gyro"));
+  EXPECT_EQ(error_of(rate_unit + attitude +
+                     "trigger = \"estimator\"\n[task.estimator]\nrate_hz = 250\n"
+                     "execution_us = 1\npriority = 3\n"),
+            "");
+}
+
 }  // namespace
 }  // namespace attest

@@ -218,5 +218,29 @@ TEST(Compare, TheRelativeToleranceIsOfTheSize) {
   }
 }
 
+TEST(Both, TheFirstIsTheEarlierAndTheWorstIsTheLarger) {
+  Comparison rate, attitude;
+  rate.ticks = 8;
+  rate.deviating_ticks = 2;
+  rate.first = Deviation{7, 1700, 0, 1, 2, 0, 0.5};
+  rate.worst = Deviation{7, 1700, 0, 1, 9, 0, 0.5};
+  rate.tightest = Headroom{3, 1, 0};
+  attitude.ticks = 2;
+  attitude.deviating_ticks = 1;
+  attitude.first = Deviation{1, 1600, 0, 1, 2, 0, 0.5};
+  attitude.worst = Deviation{1, 1600, 0, 1, 2, 0, 0.5};
+  attitude.tightest = Headroom{5, 0, 0};
+  for (const Comparison& all : {both(rate, attitude), both(attitude, rate)}) {
+    EXPECT_EQ(all.ticks, 10u);
+    EXPECT_EQ(all.deviating_ticks, 3u);
+    EXPECT_EQ(all.first->timestamp_us, 1600u);
+    EXPECT_EQ(all.worst->timestamp_us, 1700u);
+    EXPECT_EQ(all.tightest->ratio, 3);
+    EXPECT_FALSE(all.got_non_finite);
+  }
+  attitude.got_non_finite = true;
+  EXPECT_TRUE(both(rate, attitude).got_non_finite);
+}
+
 }  // namespace
 }  // namespace attest

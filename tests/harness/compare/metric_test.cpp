@@ -136,5 +136,49 @@ TEST(Metric, OfSomethingThatIsNoNumberIsNone) {
   EXPECT_TRUE(std::isnan(measured(metric(Measure::overshoot_deg), trace)));
 }
 
+// Of the cascade: 2 ms between the rate unit's ticks, 4 ms between the attitude unit's.
+TEST(AttitudeSetpoints, AreThoseOfTheAttitudeUnitsLastTick) {
+  Trace rate, attitude;
+  rate.present = channels_of(Module::rate_unit);
+  attitude.present = channels_of(Module::attitude_unit);
+  rate.samples.resize(4);
+  attitude.samples.resize(2);
+  for (std::size_t i = 0; i < 4; ++i) rate.samples[i].in.timestamp = 1000 + 2000 * i;
+  for (std::size_t i = 0; i < 2; ++i) {
+    Sample& sample = attitude.samples[i];
+    sample.in.timestamp = 2000 + 4000 * i;
+    sample.attitude_in.vehicle_attitude_setpoint.q_d[0] = static_cast<float>(i + 1);
+    sample.attitude_out.vehicle_attitude_setpoint.q_d[0] = static_cast<float>(i + 5);
+  }
+  auto& mode = attitude.samples[1].attitude_in.vehicle_control_mode;
+  const auto first = [&](std::size_t tick) { return attitude_setpoints(rate, &attitude)[tick][0]; };
+  EXPECT_EQ(first(0), 1);  // before the first
+  EXPECT_EQ(first(1), 1);
+  EXPECT_EQ(first(2), 1);
+  EXPECT_EQ(first(3), 2);
+  mode.flag_control_manual_enabled = 1;
+  mode.flag_control_attitude_enabled = 1;
+  EXPECT_EQ(first(3), 6);  // of the sticks
+  mode.flag_control_altitude_enabled = 1;
+  EXPECT_EQ(first(3), 2);
+}
+
+TEST(Metrics, OfTheCascadeReadTheRateUnit) {
+  Trace rate, attitude;
+  rate.present = channels_of(Module::rate_unit);
+  attitude.present = channels_of(Module::attitude_unit);
+  rate.samples.resize(1);
+  rate.plant.resize(1);
+  attitude.samples.resize(1);
+  Sample& sample = rate.samples[0];
+  sample.rate_in.vehicle_rates_setpoint.roll = 3;
+  sample.rate_out.vehicle_rates_setpoint.pitch = 5;
+  sample.rate_out.rate_ctrl_status.yawspeed_integ = -0.25f;
+  EXPECT_EQ(measured(metric(Measure::rms_rate_error_rad_s), rate, &attitude), 3);
+  sample.rate_in.vehicle_control_mode.flag_control_manual_enabled = 1;
+  EXPECT_EQ(measured(metric(Measure::rms_rate_error_rad_s), rate, &attitude), 5);  // acro
+  EXPECT_EQ(measured(metric(Measure::peak_integral), rate, &attitude), 0.25);
+}
+
 }  // namespace
 }  // namespace attest

@@ -100,6 +100,26 @@ bool is_flown(json head, std::size_t ticks) {
   return read_flown(sent.as_answer_to(5), LoopTiming(ticks)).has_value();
 }
 
+// Both traces of a flight of the cascade are there, and both are whole.
+TEST(HostProtocol, AFlightOfTheCascadeHasTwoTraces) {
+  FlightTiming timing = LoopTiming(3);
+  timing.attitude_unit.resize(3);
+  const auto read = [&](json head, const std::vector<std::string>& blobs) {
+    head.update({{"request", 5}, {"source", "x"}, {"parameters", json::array()}, {"ticks", 3}});
+    Sent sent(head, blobs);
+    return read_flown(sent.as_answer_to(5), timing);
+  };
+  const json attitude = {{"attitude_ticks", 3}, {"attitude_parameters", json::array()}};
+  const auto flown = read(attitude, {three_samples, three_of_plant, three_samples});
+  ASSERT_TRUE(flown && *flown);
+  EXPECT_EQ(module_of((*flown)->trace.present), Module::rate_unit);
+  ASSERT_TRUE((*flown)->attitude_trace);
+  EXPECT_EQ((*flown)->attitude_trace->samples.size(), 3u);
+  EXPECT_FALSE(read(attitude, {three_samples, three_of_plant}));
+  EXPECT_FALSE(read({{"attitude_ticks", 3}}, {three_samples, three_of_plant, three_samples}));
+  EXPECT_FALSE(read({}, {three_samples, three_of_plant}));
+}
+
 // A flight with only its first ticks cannot be judged, unless the message gives the reason.
 TEST(HostProtocol, AFlightThatEndsEarlySaysWhy) {
   EXPECT_TRUE(is_flown({{"ticks", 3}}, 3));

@@ -25,5 +25,14 @@ TEST(ScheduledTiming, ASampleIsOfTheEstimatorsLastFinishedJob) {
                           LoopTick{ms(0), ms(9), ms(10)}));
 }
 
+TEST(ScheduledTiming, OfTheCascadeTheSampleIsTheAttitudeUnits) {
+  const std::vector<TaskJob> rate = {{ms(0), ms(1), ms(2)}};
+  const std::vector<TaskJob> attitude = {{ms(4), ms(5), ms(6)}};
+  const std::vector<TaskJob> estimator = {{ms(2), ms(3), ms(5)}};
+  const FlightTiming timing = scheduled_cascade(rate, attitude, &estimator);
+  EXPECT_THAT(timing.unit, ElementsAre(LoopTick{ms(1), ms(1), ms(2)}));
+  EXPECT_THAT(timing.attitude_unit, ElementsAre(LoopTick{ms(3), ms(5), ms(6)}));
+}
+
 }  // namespace
 }  // namespace attest

@@ -91,6 +91,20 @@ TEST_F(TimingFileTest, TimesThatDoNotFitAreRefused) {
   }
 }
 
+TEST_F(TimingFileTest, OfTheCascadeHasTheTicksOfBothUnits) {
+  TimingFile timing = sample();
+  timing.configuration.rate = LoopRate(Rate::hz(250), Rate::hz(1000));
+  timing.ticks.attitude_unit = {{us(0), us(4), us(9)}};
+  ASSERT_TRUE(write_timing(timing, path()));
+  const auto read = read_timing(path());
+  ASSERT_TRUE(read) << read.error().to_string();
+  EXPECT_EQ(read->configuration, timing.configuration);
+  EXPECT_EQ(read->ticks, timing.ticks);
+  EXPECT_THAT(error_of(R"({"attest_timing":1,"case":"c","case_sha256":"0","rate":"250:1000",)"
+                       R"("vehicle":"iris","plant":"mujoco","duration_s":1,"ticks_ns":[[0,1,2]]})"),
+              HasSubstr("has two rates, but no `attitude_ticks_ns`"));
+}
+
 TEST(Timed, IsAsLongAsItWasWithTheMetricsThatBegin) {
   Case the_case;
   the_case.flight.emplace();

@@ -1,0 +1,143 @@
+# Flights of the cascade: the attitude unit and the rate unit together, each at its own rate.
+
+load common
+
+# rate_only NAME [SED]: builds ./NAME.so, the C starter of the cascade without its attitude unit,
+# with its rate unit changed by SED.
+rate_only() {
+  local from="$SOURCE/controller/starters/c_cascade"
+  mkdir -p "$1"
+  cp "$from"/*.c "$from"/*.h "$1/"
+  sed -i '/{ATTEST_EXTENSION_ATTITUDE_UNIT/d' "$1/port.c"
+  sed -i "${2:-}" "$1"/rate*.c
+  cc -O2 -std=c11 -ffp-contract=off -fPIC -shared -I"$SOURCE/controller" -o "$1.so" "$1"/*.c -lm
+}
+
+@test "a flight of the cascade is flown at a pair of rates, on both plants" {
+  run "$ATTEST" sim hover --rate 250:1000 --plant all --html h.html
+  [ "$status" -eq 0 ]
+  has "px4-v1.16.0/flight/hover@250-1000hz-iris-mujoco  3000 ticks"
+  has "px4-v1.16.0/flight/hover@250-1000hz-iris-ode  3000 ticks"
+  grep -q "vehicle_torque_setpoint" h.html
+  run "$ATTEST" sim hover --rate 250:8000 --plant ode --out flown.csv
+  [ "$status" -eq 0 ]
+  has "24000 ticks"
+}
+
+@test "sim writes a trace of each unit, and replay agrees with both to the bit" {
+  "$ATTEST" sim sticks --rate 100:400 --out flown.csv
+  head -1 flown.csv | grep -q "out/rate_ctrl_status.rollspeed_integ"
+  head -1 flown.attitude_unit.csv | grep -q "out/vehicle_attitude_setpoint.q_d"
+  run "$ATTEST" replay --profile px4-v1.16.0 --level exact flown.csv flown.attitude_unit.csv
+  [ "$status" -eq 0 ]
+}
+
+@test "a pair selects its vectors, and so does the rate of the rate unit" {
+  run "$ATTEST" run --filter 'px4-v1.16.0/flight/hover' --rate 250:1000
+  [ "$status" -eq 0 ]
+  has "PASS 10 of 10"
+  run "$ATTEST" run --filter 'px4-v1.16.0/flight/hover' --rate 400
+  has "PASS 4 of 4"
+  run "$ATTEST" run --filter 'px4-v1.16.0/flight/hover@50-250hz-iris-ode'
+  has "PASS 1 of 1"
+}
+
+@test "a name of both laws is that of the law that flies at the rate" {
+  run "$ATTEST" sim hover --rate 250 --out old.csv
+  [ "$status" -eq 0 ]
+  has "px4-v1.5.5/flight/hover@250hz-iris-mujoco"
+  run "$ATTEST" sim px4-v1.16.0/flight/hover --rate 1000 --out old.csv
+  [ "$status" -eq 2 ]
+  has "needs two rates: that of the attitude unit and that of the rate unit, as in 250:1000"
+  run "$ATTEST" sim px4-v1.5.5/flight/hover --rate 250:1000 --out old.csv
+  [ "$status" -eq 2 ]
+  has "is a flight of the controller, which has one rate, as in 1000"
+  run "$ATTEST" sim hover --rate 1000:250 --out old.csv
+  [ "$status" -eq 2 ]
+  has "the rate unit at 250 Hz is slower than the attitude unit at 1000 Hz"
+}
+
+@test "a wrong attitude unit is found in flight, with its traces" {
+  run "$ATTEST" run --filter 'px4-v1.16.0/flight/tilt_step_30@250-1000hz-iris-*' \
+    --port fault:cascade-error-is-angle --save-traces saved
+  [ "$status" -eq 1 ]
+  has "FAIL 2 failed"
+  has "look first at the attitude law"
+  run "$ATTEST" compare saved/px4-v1.16.0/flight/tilt_step_30/250-1000hz-iris-ode.attitude_unit.{got,want}.csv
+  [ "$status" -eq 1 ]
+  # The rate unit did right with the rates that it was given.
+  run "$ATTEST" compare saved/px4-v1.16.0/flight/tilt_step_30/250-1000hz-iris-ode.{got,want}.csv
+  [ "$status" -eq 0 ]
+}
+
+@test "a wrong rate unit is found in flight" {
+  run "$ATTEST" run --filter 'px4-v1.16.0/flight/tilt_step_30@250-1000hz-iris-*' \
+    --port fault:cascade-d-reversed
+  [ "$status" -eq 1 ]
+  has "FAIL 2 failed"
+  has "look first at the rate law"
+}
+
+@test "a port of the rate unit flies with the reference's attitude unit" {
+  rate_only right
+  run "$ATTEST" run --group flight --profile px4-v1.16.0 --rate 50:250 --plant ode --port lib:./right.so
+  [ "$status" -eq 0 ]
+  has "PASS 15 of 15"
+  rate_only wrong 's/err\[i\] \/ 6/err[i] \/ 7/; s/6\.98/7.98/'
+  run cmp -s right.so wrong.so
+  [ "$status" -eq 1 ]
+  run "$ATTEST" run --group flight --profile px4-v1.16.0 --rate 50:250 --plant ode --port lib:./wrong.so
+  [ "$status" -eq 1 ]
+  # It has no unit that flies the controller's cases.
+  run "$ATTEST" run --filter 'px4-v1.5.5/flight/hover@250hz-iris-ode' --port lib:./right.so
+  [ "$status" -eq 2 ]
+}
+
+@test "both units fly as their tasks are scheduled, and the times can be flown again" {
+  cat >tasks.toml <<'TASKS'
+[task.unit]
+rate_hz = 1000
+execution_us = 60
+priority = 30
+
+[task.attitude_unit]
+trigger = "estimator"
+execution_us = 90
+priority = 20
+
+[task.estimator]
+rate_hz = 250
+execution_us = [800, 2200]
+priority = 10
+TASKS
+  run "$ATTEST" schedule tasks.toml --case tilt_step_30 --record-timing timing.json
+  [ "$status" -eq 0 ]
+  has "attitude_unit"
+  has "px4-v1.16.0/flight/tilt_step_30"
+  run "$ATTEST" run --timing timing.json
+  [ "$status" -eq 0 ]
+  has "PASS 1 of 1"
+  run "$ATTEST" run --timing timing.json --port fault:cascade-error-is-angle
+  [ "$status" -eq 1 ]
+  run "$ATTEST" schedule tasks.toml --case px4-v1.5.5/flight/tilt_step_30
+  [ "$status" -eq 2 ]
+  has "has [task.attitude_unit], but px4-v1.5.5/flight/tilt_step_30 is a flight of the controller"
+  sed -i '/attitude_unit/,/^$/d' tasks.toml
+  run "$ATTEST" schedule tasks.toml --case px4-v1.16.0/flight/tilt_step_30
+  [ "$status" -eq 2 ]
+  has "needs [task.attitude_unit] too"
+}
+
+@test "the lowest rate of the rate unit and the largest delay are searched" {
+  run "$ATTEST" sweep-rate --case tilt_step_30 --rate 250:1000 --vehicle iris --plant ode
+  [ "$status" -eq 0 ]
+  has "at 250:1000 Hz"
+  has " Hz "
+  has " ms"
+}
+
+@test "stress says that it does not fly the cascade" {
+  run "$ATTEST" stress --case hover --rate 250:1000 --duration 0.2
+  [ "$status" -eq 2 ]
+  has "is a flight of the cascade"
+}
