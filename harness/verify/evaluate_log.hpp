@@ -16,12 +16,21 @@ struct LogResult {
   Trace got;  // the port's outputs; up to the fault, if there was one
 };
 
-// Gives the log's inputs to a fresh unit and compares its outputs with the logged ones. A rates
-// setpoint depends on one sample only, so it is judged in every log. Outputs that depend on earlier
-// steps are judged if the log has every step. NaN or infinity where the log has a number is judged
-// in every output (Verdict::non_finite). Parameters that the profile does not have are left out.
-// The verdict is never a statement of conformance: a log shows few situations.
-LogResult evaluate_log(const FlightLog& log, const std::string& profile, PortHost& host,
+// Gives the inputs of one unit of a log to a fresh instance and compares its outputs with the
+// logged ones.
+//
+// - An output that depends on one sample only (the attitude law's rates setpoint) is judged in
+//   every log; ticks of which the log does not have all that it depends on are left out.
+// - An output that depends on earlier steps is judged if the log has every step; of v1.14 to v1.16
+//   also if it has about every step.
+// - In a log without every step, an output is judged only if the reference's agrees with the log.
+//   Otherwise the log lacks samples, or another law flew, and no port can be judged by it.
+// - NaN or infinity where the log has a number is judged in every output (Verdict::non_finite).
+//
+// If no output is judged, the verdict is skip. Parameters that the unit does not have in this
+// profile are left out. The verdict is never a statement of conformance: a log shows few
+// situations.
+LogResult evaluate_log(const LoggedUnit& log, const std::string& profile, PortHost& host,
                        const LogLimits& limits);
 
 }  // namespace attest
