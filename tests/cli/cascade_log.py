@@ -129,7 +129,7 @@ timestamp_sample = -0.0005
 
 [vehicle_attitude_setpoint]
 q_d = {{ roll_deg = {signal(15, 0.5, 90)}, pitch_deg = {signal(12, 0.4)}, \
-yaw_deg = {{ signal = "ramp", from = 40, to = 600, end_s = 4 }} }}
+yaw_deg = {{ signal = "ramp", from = 40, to = 600, end_s = 4 }}, sign = -1 }}
 yaw_sp_move_rate = 0.3
 timestamp = -0.0001
 publish_at_s = {setpoints_s}
