@@ -62,7 +62,7 @@ $2 rate unit" ] || {
     judged pass pass
     has "vehicle_rates_setpoint: 900 of 900 logged samples paired with a vehicle_attitude"
     has "vehicle_attitude_setpoint: 200 of 200 logged samples"
-    has "vehicle_torque_setpoint: 4000 of 4000 logged samples paired with a vehicle_angular_velocity"
+    has "vehicle_torque_setpoint: 4000 of 4000 logged samples paired with a vehicle_angular_vel"
     has "99% up to 0, largest 0"
     has "the profile is px4-v1.16.0, because PX4 v1.16.0 wrote the log"
     has "PASS 2 of 2 traces and units agree"

@@ -36,7 +36,8 @@ class LogOfPx4 : public testing::Test {
           "bool flag_control_manual_enabled;bool flag_control_attitude_enabled;"
           "bool flag_control_rates_enabled;",
           "vehicle_status:uint64_t timestamp;uint64_t armed_time;uint8_t arming_state;"
-          "uint8_t vehicle_type;"}) {
+          "uint8_t vehicle_type;",
+          "vehicle_land_detected:uint64_t timestamp;bool landed;"}) {
       ASSERT_TRUE(writer_.define(topic));
       names_.emplace_back(topic, std::string_view(topic).find(':'));
     }
@@ -67,9 +68,9 @@ class LogOfPx4 : public testing::Test {
     add("vehicle_control_mode", time, true, manual, attitude, true);
   }
 
-  FlightLog read() {
+  FlightLog read(const std::vector<std::string>& assumed = {}) {
     EXPECT_TRUE(writer_.commit());
-    auto log = read_flight_log(path_);
+    auto log = read_flight_log(path_, assumed);
     EXPECT_TRUE(log) << log.error().message;
     return *std::move(log);
   }
@@ -254,15 +255,36 @@ TEST_F(LogOfPx4, AUnitOfWhichTheLogHasTooLittleIsNamed) {
   EXPECT_TRUE(log.units[1].trace.samples.empty());
 }
 
-TEST_F(LogOfPx4, SaysItsReleaseAndWhatIsAssumed) {
+TEST_F(LogOfPx4, SaysWhatIsAssumed) {
   add_setpoint(600, 0.5f);
   add_attitude(1000);
   add_rates(1100, 0);
   const FlightLog log = read();
-  EXPECT_FALSE(log.release);
   EXPECT_THAT(log.notes, Contains("assumed, because the log does not have it: armed, rotary_wing, "
                                   "attitude, flying (--assume)"));
-  EXPECT_FALSE(log.units[0].has_every_step);
+}
+
+TEST_F(LogOfPx4, IsNotCompleteIfTheModeIsAssumed) {
+  add_setpoint(600, 0.5f);
+  for (const std::uint64_t time : {1000U, 5000U, 9000U}) {
+    add_attitude(time);
+    add_rates(time + 100, 0);
+  }
+  EXPECT_FALSE(read({"attitude"}).units[0].has_every_step);
+}
+
+TEST_F(LogOfPx4, IsCompleteIfNothingIsMissing) {
+  add_mode(500, false, true);
+  add_setpoint(600, 0.5f);
+  for (const std::uint64_t time : {1000U, 5000U, 9000U}) {
+    add_attitude(time);
+    add_rates(time + 100, 0);
+  }
+  add("vehicle_status", 700, std::uint64_t{77}, std::uint8_t{2}, std::uint8_t{1});
+  add("vehicle_land_detected", 700, true);
+  const FlightLog log = read();
+  EXPECT_TRUE(log.units[0].has_every_step);
+  EXPECT_FALSE(log.units[0].begins_in_flight);
 }
 
 }  // namespace
