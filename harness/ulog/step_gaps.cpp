@@ -35,7 +35,8 @@ StepGaps step_gaps(std::span<const std::uint64_t> times_us) {
   std::nth_element(gaps.begin(), middle, gaps.end());
   found.median_us = static_cast<double>(*middle);
   for (const std::uint64_t gap : gaps) {
-    const double periods = std::round(static_cast<double>(gap) / found.median_us);
+    // Any time may be in a damaged log.
+    const double periods = std::min(std::round(static_cast<double>(gap) / found.median_us), 1e12);
     if (periods > 1) found.missing += static_cast<std::size_t>(periods) - 1;
     found.longest_us = std::max(found.longest_us, gap);
   }

@@ -340,7 +340,7 @@ CHECK
   grep -q "gyro sample every 20 ms" replay.html
   grep -q "Outputs of the rate unit" replay.html
   "$ATTEST" record px4-v1.16.0/rates/i_alone --rate 250 --out unit.csv
-  "$ATTEST" replay unit.csv --html trace.html --json trace.json
+  "$ATTEST" replay unit.csv --profile px4-v1.16.0 --html trace.html --json trace.json
   grep -q "out/vehicle_torque_setpoint.xyz\[0\]" trace.html
   grep -q '"kind": "trace"' trace.json
   run bash -c "'$ATTEST' replay '$FLIGHT' --json - 2>messages | '$PYTHON' -m json.tool >/dev/null"

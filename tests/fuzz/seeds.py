@@ -153,8 +153,9 @@ def cascade_log():
         "vehicle_angular_velocity": "uint64_t timestamp;uint64_t timestamp_sample;float[3] xyz;"
         "float[3] xyz_derivative;",
         "vehicle_torque_setpoint": "uint64_t timestamp;uint64_t timestamp_sample;float[3] xyz;",
-        "vehicle_control_mode": "uint64_t timestamp;bool flag_armed;bool flag_control_rates_enabled;"
-        "bool flag_control_manual_enabled;bool flag_control_attitude_enabled;",
+        "vehicle_control_mode": "uint64_t timestamp;bool flag_armed;"
+        "bool flag_control_rates_enabled;bool flag_control_manual_enabled;"
+        "bool flag_control_attitude_enabled;",
     }
     release = b"\x17uint32_t ver_sw_release" + struct.pack("<I", 0x011000FF)
     yield ulog_message("I", release)
@@ -163,7 +164,8 @@ def cascade_log():
     for number, name in enumerate(topics):
         yield ulog_message("A", struct.pack("<BH", 0, number) + name.encode())
     for time in (4000, 8000, 12000):
-        yield ulog_message("D", struct.pack("<HQ4B", 5, time - 50, 1, 1, time == 8000, 1))
+        mode = 1, 1, time == 8000, 1
+        yield ulog_message("D", struct.pack("<HQ4B", 5, time - 50, *mode))
         yield ulog_message("D", struct.pack("<HQ8f", 1, time - 40, 0, 1, 0, 0, 0, 0, 0, -0.5))
         yield ulog_message("D", struct.pack("<HQQ8fB", 0, time, time, *[1, 0, 0, 0] * 2, 3))
         yield ulog_message("D", struct.pack("<HQQ6f", 3, time, time, *6 * [0.1]))
