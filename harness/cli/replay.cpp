@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -48,22 +49,34 @@ Result<Recorded> recorded_in(const std::string& file, const ReplayOptions& optio
   return recorded;
 }
 
-// Each parameter is one of a unit of the log, or of several.
-Result<void> set_parameters(const ReplayOptions& options, FlightLog& log) {
+Result<void> check_parameters(const ReplayOptions& options, const FlightLog& log) {
   for (const std::string& parameter : options.parameters) {
     const auto change = parse_parameter(parameter);
     if (!change) return tl::unexpected(change.error());
-    bool is_set = false;
     std::string wrong;
-    for (LoggedUnit& unit : log.units) {
+    const auto has_it = [&](const LoggedUnit& unit) {
       const auto checked = check_parameter({log.profile, unit.module}, *change);
-      if (checked) override_parameter(*change, unit.trace);
       if (!checked && wrong.empty()) wrong = checked.error().message;
-      is_set = is_set || checked;
+      return checked.has_value();
+    };
+    if (std::none_of(log.units.begin(), log.units.end(), has_it)) {
+      return fail(fmt::format("--param {}: {}", parameter, wrong));
     }
-    if (!is_set) return fail(fmt::format("--param {}: {}", parameter, wrong));
   }
   return {};
+}
+
+// Those that the unit has. REQUIRES: checked.
+std::vector<ParameterChange> parameters_of(const ReplayOptions& options, const FlightLog& log,
+                                           const LoggedUnit& unit) {
+  std::vector<ParameterChange> changes;
+  for (const std::string& parameter : options.parameters) {
+    auto change = parse_parameter(parameter);
+    if (change && check_parameter({log.profile, unit.module}, *change)) {
+      changes.push_back(*std::move(change));
+    }
+  }
+  return changes;
 }
 
 // With the profile to replay it with.
@@ -71,7 +84,9 @@ Result<FlightLog> log_in(const std::string& file, const ReplayOptions& options) 
   if (!options.mixer.empty()) return fail_at(file, "is no mixer trace; leave --mixer out");
   auto log = read_log(file, options.assumed, options.profile);
   if (!log) return log;
-  if (auto set = set_parameters(options, *log); !set) return tl::unexpected(set.error());
+  if (auto checked = check_parameters(options, *log); !checked) {
+    return tl::unexpected(checked.error());
+  }
   print_notes(file, log->notes);
   return log;
 }
@@ -166,7 +181,11 @@ class Replay {
     const LoggedUnit& first = log->units.front();
     // A log of attest has the outputs of all steps, so it is a trace.
     if (log->is_of_attest && first.has_every_step) {
-      return judge_trace(first.trace, {log->profile, first.module});
+      Trace trace = first.trace;
+      for (const ParameterChange& change : parameters_of(options_, *log, first)) {
+        override_parameter(change, trace);
+      }
+      return judge_trace(trace, {log->profile, first.module});
     }
     are_logs_ = true;
     std::vector<LogResult> results;
@@ -180,8 +199,8 @@ class Replay {
   Result<void> judge_unit(const FlightLog& log, const LoggedUnit& unit,
                           std::vector<LogResult>& results) {
     if (auto started = start(); !started) return started;
-    const LogResult& found =
-        results.emplace_back(evaluate_log(unit, log.profile, *host_, options_.log_limits));
+    const LogResult& found = results.emplace_back(evaluate_log(
+        unit, log.profile, *host_, options_.log_limits, parameters_of(options_, log, unit)));
     count(found.result);
     entries_.push_back(json_of_unit(log, unit, found, options_.log_limits));
     if (found.result.verdict == Verdict::pass && globals_.quiet) return {};

@@ -66,17 +66,64 @@ TEST(EvaluateLog, ARightUnitAgreesAndAWrongOneDoesNot) {
   EXPECT_EQ(result_of(log, "fault:cascade-i-missing").result.verdict, Verdict::fail);
 }
 
-TEST(EvaluateLog, ALogWithEveryStepIsBelieved) {
+// What a controller of v1.5.5 logged.
+LoggedUnit logged_controller() {
+  LoggedUnit log;
+  log.step_topic = "control_state";
+  log.has_every_step = true;
+  log.trace.source = "flight.ulg";
+  log.trace.present = channels_of(Module::mc_att_control);
+  for (std::uint64_t tick = 0; tick < 100; ++tick) {
+    Sample sample;
+    sample.in.timestamp = 5000000 + 4000 * tick;
+    sample.in.updated = tick == 0 ? 0xffu : 0u;
+    sample.in.control_state.q[0] = 1;
+    sample.in.control_state.roll_rate = 0.01f * static_cast<float>(tick);
+    sample.in.vehicle_attitude_setpoint.q_d[0] = 1;
+    sample.in.vehicle_attitude_setpoint.thrust = 0.5f;
+    sample.in.vehicle_control_mode = {1, 0, 1, 1, 0, 0};
+    sample.in.actuator_armed.armed = 1;
+    sample.in.vehicle_status.is_rotary_wing = 1;
+    log.trace.samples.push_back(sample);
+  }
+  log.known.assign(log.trace.samples.size(), Known::all);
+  HostHere reference(open_builtin());
+  EXPECT_FALSE(reference.drive({"px4-v1.5.5"}, log.trace));
+  for (const char* topic :
+       {"vehicle_rates_setpoint", "actuator_controls_0", "mc_att_ctrl_status"}) {
+    log.outputs.push_back({topic, 100, 100});
+  }
+  return log;
+}
+
+TEST(EvaluateLog, ALogOfTheControllerWithEveryStepIsBelieved) {
+  LoggedUnit log = logged_controller();
+  HostHere host(open_builtin());
+  EXPECT_EQ(evaluate_log(log, "px4-v1.5.5", host, {}).result.verdict, Verdict::pass);
+  for (Sample& sample : log.trace.samples) sample.out.actuator_controls_0.control[0] += 0.1f;
+  EXPECT_EQ(evaluate_log(log, "px4-v1.5.5", host, {}).result.verdict, Verdict::fail);
+  log.has_every_step = false;
+  EXPECT_EQ(evaluate_log(log, "px4-v1.5.5", host, {}).result.verdict, Verdict::pass);
+}
+
+TEST(EvaluateLog, AParameterOfThePortIsNotThatOfTheFlight) {
   LoggedUnit log = logged_rate_unit();
-  add_integral(log);
-  const LogResult found = result_of(log);
-  EXPECT_EQ(found.result.verdict, Verdict::fail);
-  EXPECT_THAT(found.result.reason, HasSubstr("0.0% of vehicle_torque_setpoint are within"));
+  const auto verdict_with = [&](const ParameterChange& change) {
+    HostHere host(open_builtin());
+    return evaluate_log(log, law_of_log, host, {}, {change}).result.verdict;
+  };
+  const ParameterChange flown{0, "MC_ROLLRATE_P", 0.15f}, other{0, "MC_ROLLRATE_P", 0.2f};
+  log.trace.parameters = {flown};
+  EXPECT_EQ(verdict_with(flown), Verdict::pass);
+  EXPECT_EQ(verdict_with(other), Verdict::fail);
+  // The log does not say with which value the unit flew.
+  log.trace.parameters.clear();
+  EXPECT_EQ(verdict_with(flown), Verdict::pass);
+  EXPECT_EQ(verdict_with(other), Verdict::skip);
 }
 
 TEST(EvaluateLog, AnotherLogJudgesOnlyWhereTheReferenceAgreesWithIt) {
   LoggedUnit log = logged_rate_unit();
-  log.has_every_step = false;
   EXPECT_EQ(result_of(log).result.verdict, Verdict::pass);
   EXPECT_EQ(result_of(log, "fault:cascade-i-missing").result.verdict, Verdict::fail);
   add_integral(log);
