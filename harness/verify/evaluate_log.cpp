@@ -53,14 +53,15 @@ Trace with_parameters_of_log(const LoggedUnit& log, Trace got) {
   return got;
 }
 
-// `inputs` with the reference's outputs. Without them if the reference refuses the inputs: then no
-// deviation from the log is explained.
-Trace answered_by_reference(Trace inputs, const Subject& subject) {
+// Gives the inputs the reference's outputs. False, without outputs, if the reference refuses them,
+// for example because it does not have the profile: then no deviation from the log is explained.
+bool answer_by_reference(const Subject& subject, Trace& inputs) {
   HostHere reference(open_builtin());
-  if (const auto fault = reference.drive(subject, inputs)) {
+  const bool has_answered = !reference.drive(subject, inputs);
+  if (!has_answered) {
     for (Sample& sample : inputs.samples) sample.clear_outputs();
   }
-  return inputs;
+  return has_answered;
 }
 
 std::string why_it_fails(const TopicAgreement& topic, const LogLimits& limits) {
@@ -86,7 +87,8 @@ std::vector<bool> ticks_but(const LoggedUnit& log, Known most) {
 // What of a log can be compared with any port.
 class Comparable {
  public:
-  Comparable(const LoggedUnit& log, const Trace& reference, const LogLimits& limits)
+  // `reference`: its outputs; null if it does not know the law, so that every log is believed.
+  Comparable(const LoggedUnit& log, const Trace* reference, const LogLimits& limits)
       : log_(log), limits_(limits) {
     if (log.has_every_step) {
       leaves_out_ = ticks_but(log, Known::if_every_step);
@@ -119,8 +121,9 @@ class Comparable {
   }
 
  private:
-  void compare_reference(const Trace& reference) {
-    of_reference_ = agreement_with_log(reference, log_.trace, reference, limits_, leaves_out_);
+  void compare_reference(const Trace* reference) {
+    if (reference == nullptr) return;
+    of_reference_ = agreement_with_log(*reference, log_.trace, *reference, limits_, leaves_out_);
   }
 
   std::string why_unlike_reference(const TopicAgreement& topic) const {
@@ -185,16 +188,16 @@ LogResult evaluate_log(const LoggedUnit& log, const std::string& profile, PortHo
   }
   Trace as_flown = with_parameters_of_log(log, found.got);
   leave_out_parameters_of_others(subject, as_flown);
-  const Trace reference = answered_by_reference(std::move(as_flown), subject);
+  const bool has_reference = answer_by_reference(subject, as_flown);
   if (const auto fault = host.drive(subject, found.got)) {
     found.got.keep_first(fault->tick);
     judge(*fault, result);
     return found;
   }
   result.ticks = log.trace.samples.size();
-  const Comparable comparable(log, reference, limits);
+  const Comparable comparable(log, has_reference ? &as_flown : nullptr, limits);
   found.topics =
-      agreement_with_log(found.got, log.trace, reference, limits, comparable.leaves_out());
+      agreement_with_log(found.got, log.trace, as_flown, limits, comparable.leaves_out());
   for (TopicAgreement& topic : found.topics) topic.not_judged = comparable.why_not(topic);
   judge_topics(found.topics, limits, result);
   return found;

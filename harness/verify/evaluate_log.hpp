@@ -26,7 +26,7 @@ struct LogResult {
 // - In a log of v1.14 to v1.16, and in one of the controller without every step, an output is
 //   judged only if the reference's agrees with the log. Otherwise the log lacks samples (the logger
 //   also thins inputs such as control_allocator_status), or another law flew, and no port can be
-//   judged by it.
+//   judged by it. A log of a profile that attest does not have is believed.
 // - NaN or infinity where the log has a number is judged in every output (Verdict::non_finite).
 //
 // If no output is judged, the verdict is skip. `parameters` replace those of the log for the port;

@@ -140,6 +140,32 @@ TEST(EvaluateLog, AnotherLogJudgesOnlyWhereTheReferenceAgreesWithIt) {
   EXPECT_THAT(result_of(log).result.reason, HasSubstr("the log begins in flight"));
 }
 
+// A port that takes any name of a profile for its own.
+class OfAnyProfile final : public PortHost {
+ public:
+  const PortSays& says() const override { return host_.says(); }
+  std::optional<PortFault> drive(const Subject& subject, Trace& trace) override {
+    return host_.drive({law_of_log, subject.module}, trace);
+  }
+  Result<Flown> fly(const FlightPlan& plan) override { return host_.fly(plan); }
+  Result<StepTimes> time_steps(const std::string& wanted, const Trace& inputs,
+                               bool with_stack) override {
+    return host_.time_steps(wanted, inputs, with_stack);
+  }
+  bool supports(const std::string& /*wanted*/) override { return true; }
+
+ private:
+  HostHere host_{open_builtin()};
+};
+
+TEST(EvaluateLog, ALogOfAnotherLawIsBelieved) {
+  LoggedUnit log = logged_rate_unit();
+  OfAnyProfile host;
+  EXPECT_EQ(evaluate_log(log, "our-law", host, {}).result.verdict, Verdict::pass);
+  add_integral(log);
+  EXPECT_EQ(evaluate_log(log, "our-law", host, {}).result.verdict, Verdict::fail);
+}
+
 TEST(EvaluateLog, ASparseLogDoesNotJudge) {
   LoggedUnit log = logged_rate_unit();
   log.has_every_step = false;
