@@ -70,6 +70,18 @@ $2 rate unit" ] || {
   done
 }
 
+@test "logs of v1.14 and v1.15 agree with the law of their release" {
+  for profile in px4-v1.14.4 px4-v1.15.4; do
+    flight older.ulg --profile "$profile"
+    run "$ATTEST" replay older.ulg
+    [ "$status" -eq 0 ]
+    judged pass pass
+    has "the profile is $profile"
+    has "vehicle_attitude_setpoint: 200 of 200 logged samples"
+    lacks "not judged"
+  done
+}
+
 @test "a wrong attitude unit fails, and its rate unit passes" {
   for fault in m-not-canonical yaw-weight-ignored yaw-weight-twice yaw-ff-reversed thrust-up; do
     run "$ATTEST" replay "$FLIGHT" --port "fault:cascade-$fault"
