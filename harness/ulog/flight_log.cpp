@@ -70,8 +70,9 @@ std::vector<ModuleContents*> candidates(LogContents& log) {
   ModuleContents& attitude = log.of(Module::attitude_unit);
   ModuleContents& rate = log.of(Module::rate_unit);
   if (controller.steps().size() > 0) return {&controller};
-  if (log.is_of_attest() && attitude.steps().size() > 0) return {&attitude};
+  // The flight of a rate unit has vehicle_attitude, too: the true one.
   if (log.is_of_attest() && rate.steps().size() > 0) return {&rate};
+  if (log.is_of_attest() && attitude.steps().size() > 0) return {&attitude};
   return {&attitude, &rate};
 }
 

@@ -158,24 +158,26 @@ void add_topic(const LogTopic& from, const Trace& trace, Topics& topics) {
 }
 
 // A column of the plant as topic and field of a log. One without a topic is a topic with the field
-// `value`. What the unit receives of the vehicle is an estimate, so the true state is a topic of
-// its own where the unit has a topic of that name; PX4's simulators call it so, too.
-std::pair<std::string, std::string> plant_field(std::string_view path,
+// `value`. What a unit of v1.14 to v1.16 receives is an estimate at its own times, so the true
+// state is a topic of its own where the unit has a topic of that name; PX4's simulators call it so,
+// too.
+std::pair<std::string, std::string> plant_field(std::string_view path, Module module,
                                                 const std::vector<LogTopic>& layout) {
   const auto dot = path.find('.');
   std::string topic(path.substr(0, path.find_first_of(".[")));
   const bool is_known = std::any_of(layout.begin(), layout.end(),
                                     [&](const LogTopic& one) { return one.name == topic; });
-  if (is_known && topic.starts_with("vehicle_")) topic += "_groundtruth";
+  if (is_known && module != Module::mc_att_control) topic += "_groundtruth";
   if (dot != path.npos) return {topic, std::string(path.substr(dot + 1))};
   return {topic, fmt::format("value{}", path.substr(std::min(path.find('['), path.size())))};
 }
 
-// battery_status has a field of the unit's inputs and one of the plant: it is logged at each tick.
-void add_plant(const std::vector<LogTopic>& layout, Topics& topics) {
+// Of the old controller, battery_status has a field of the inputs and one of the plant: it is
+// logged at each tick.
+void add_plant(Module module, const std::vector<LogTopic>& layout, Topics& topics) {
   for (const PlantColumn& column : plant_columns()) {
     const std::string_view path = std::string_view(column.name).substr(plant_prefix.size());
-    const auto [name, field] = plant_field(path, layout);
+    const auto [name, field] = plant_field(path, module, layout);
     Topic& topic = topics.topic(name, 0);
     float_in(topic, field)
         .elements.push_back([&column](const Trace& trace, std::size_t tick, Bytes& bytes) {
@@ -188,7 +190,7 @@ void add_plant(const std::vector<LogTopic>& layout, Topics& topics) {
 Topics topics_of(const Trace& trace, const std::vector<LogTopic>& layout) {
   Topics topics;
   for (const LogTopic& topic : layout) add_topic(topic, trace, topics);
-  if (!trace.plant.empty()) add_plant(layout, topics);
+  if (!trace.plant.empty()) add_plant(module_of(trace.present), layout, topics);
   topics.complete_instances();
   return topics;
 }

@@ -94,6 +94,25 @@ TEST_P(UnitLog, ReadsBackToTheSameTrace) {
   }
 }
 
+TEST_P(UnitLog, OfAFlightReadsBack) {
+  Trace written = RandomTrace(GetParam()).trace();
+  written.plant.resize(written.samples.size(), PlantSample{});
+  for (PlantSample& plant : written.plant) plant.voltage_V = 12.5f;
+  ASSERT_TRUE(write_trace(path(), written));
+  const auto log = read_flight_log(path());
+  ASSERT_TRUE(log) << log.error().message;
+  EXPECT_EQ(log->units[0].module, GetParam());
+  if (GetParam() == Module::mc_att_control) return;  // battery_status is logged at each tick
+  const ChannelSet inputs = channels_of(GetParam(), "in/");
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    for (std::size_t tick = 0; inputs[i] && tick < written.samples.size(); ++tick) {
+      ASSERT_EQ(bits_of(channels()[i], log->units[0].trace.samples[tick]),
+                bits_of(channels()[i], written.samples[tick]))
+          << channels()[i].name << " at tick " << tick;
+    }
+  }
+}
+
 TEST_P(UnitLog, WithoutAnyOutputReadsBack) {
   Trace written = RandomTrace(GetParam()).trace();
   for (Sample& sample : written.samples) sample.clear_outputs();
