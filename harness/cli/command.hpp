@@ -99,7 +99,7 @@ struct ReplayOptions {
   std::vector<std::string> parameters;
   std::vector<std::string> assumed;  // of a flight log
   LogLimits log_limits;
-  std::string html;  // a file; empty: not wanted
+  std::string html, json;  // files; empty: not wanted
 };
 int replay_command(const ReplayOptions& options, const Globals& globals);
 

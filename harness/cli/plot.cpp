@@ -41,13 +41,25 @@ std::vector<std::string> names_in(const std::vector<TimedSignals>& sources) {
   return {names.begin(), names.end()};
 }
 
-// The values that the controller publishes; all signals if there are none.
-std::vector<std::string> names_by_default(const std::vector<std::string>& all) {
-  std::vector<std::string> outputs;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(outputs), [](const std::string& name) {
-    const auto channel = find_channel(Module::mc_att_control, "out/" + name);
-    return channel && channels()[*channel].type == ChannelType::f32;
+// Of the controller, or of the units of v1.14 to v1.16, whose outputs have other names.
+bool is_output(const std::string& name, bool is_of_controller) {
+  const auto all = modules();
+  return std::any_of(all.begin(), all.end(), [&](const ModuleInfo& info) {
+    const bool is_controller = info.module == Module::mc_att_control;
+    const auto channel = find_channel(info.module, "out/" + name);
+    return info.has_updated && is_controller == is_of_controller && channel &&
+           channels()[*channel].type == ChannelType::f32;
   });
+}
+
+// The values that the controller or its units publish; all signals if there are none.
+std::vector<std::string> names_by_default(const std::vector<std::string>& all) {
+  const bool is_of_controller = std::any_of(all.begin(), all.end(), [](const std::string& name) {
+    return name.starts_with("actuator_controls_0.") || name.starts_with("control_state.");
+  });
+  std::vector<std::string> outputs;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(outputs),
+               [&](const std::string& name) { return is_output(name, is_of_controller); });
   return outputs.empty() ? all : outputs;
 }
 

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -5,6 +7,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "harness/cli/command.hpp"
 #include "harness/cli/outputs.hpp"
@@ -15,6 +18,7 @@
 #include "harness/report/failure_text.hpp"
 #include "harness/report/html/signals_page.hpp"
 #include "harness/report/log_text.hpp"
+#include "harness/report/replay_json.hpp"
 #include "harness/report/text.hpp"
 #include "harness/trace/provenance.hpp"
 #include "harness/verify/evaluate.hpp"
@@ -45,59 +49,96 @@ Result<Recorded> recorded_in(const std::string& file, const ReplayOptions& optio
   return recorded;
 }
 
+Result<void> check_parameters(const ReplayOptions& options, const FlightLog& log) {
+  for (const std::string& parameter : options.parameters) {
+    const auto change = parse_parameter(parameter);
+    if (!change) return tl::unexpected(change.error());
+    std::string wrong;
+    const auto has_it = [&](const LoggedUnit& unit) {
+      const auto checked = check_parameter({log.profile, unit.module}, *change);
+      if (!checked && wrong.empty()) wrong = checked.error().message;
+      return checked.has_value();
+    };
+    if (std::none_of(log.units.begin(), log.units.end(), has_it)) {
+      return fail(fmt::format("--param {}: {}", parameter, wrong));
+    }
+  }
+  return {};
+}
+
+// Those that the unit has. REQUIRES: checked.
+std::vector<ParameterChange> parameters_of(const ReplayOptions& options, const FlightLog& log,
+                                           const LoggedUnit& unit) {
+  std::vector<ParameterChange> changes;
+  for (const std::string& parameter : options.parameters) {
+    auto change = parse_parameter(parameter);
+    if (change && check_parameter({log.profile, unit.module}, *change)) {
+      changes.push_back(*std::move(change));
+    }
+  }
+  return changes;
+}
+
 // With the profile to replay it with.
 Result<FlightLog> log_in(const std::string& file, const ReplayOptions& options) {
   if (!options.mixer.empty()) return fail_at(file, "is no mixer trace; leave --mixer out");
   auto log = read_log(file, options.assumed, options.profile);
   if (!log) return log;
-  if (auto set = set_parameters(options, {log->profile}, log->trace); !set) {
-    return tl::unexpected(set.error());
+  if (auto checked = check_parameters(options, *log); !checked) {
+    return tl::unexpected(checked.error());
   }
   print_notes(file, log->notes);
   return log;
 }
 
-Result<void> check_page(const ReplayOptions& options, const Globals& globals) {
-  if (options.html.empty()) return {};
-  if (options.files.size() > 1) return fail("--html shows one trace or log; name one");
+Result<void> check_reports(const ReplayOptions& options, const Globals& globals) {
+  if (options.html.empty() && options.json.empty()) return {};
+  if (!options.html.empty() && options.files.size() > 1) {
+    return fail("--html shows one trace or log; name one");
+  }
   Inputs inputs{options.host.port, options.files};
   for (const std::string& file : options.files) {
     const auto folder = std::filesystem::path(file).parent_path();
     inputs.files.push_back((folder / provenance_name).string());
   }
-  return check_outputs({options.html}, inputs, globals.suite);
+  return check_outputs({options.html, options.json}, inputs, globals.suite);
 }
 
-// One line per trace, more if it differs. `judged_by`: the level, or "log".
-void print_result(const CaseResult& result, std::string_view judged_by) {
-  fmt::print("{:<12}{}  {}", name_of(result.verdict), result.name, result.profile);
-  if (result.ticks > 0) fmt::print("  {} ticks, {}", result.ticks, judged_by);
+// One line per trace or unit, more if it differs. `judged_by`: the level, or "log".
+void print_result(const CaseResult& result, const std::string& title, std::string_view judged_by,
+                  std::FILE* out) {
+  fmt::print(out, "{:<12}{}  {}", name_of(result.verdict), title, result.profile);
+  if (result.ticks > 0) fmt::print(out, "  {} ticks, {}", result.ticks, judged_by);
   if (result.verdict == Verdict::pass && result.tightest) {
-    fmt::print(", tightest headroom {:.3g}x on {}", result.tightest->ratio,
+    fmt::print(out, ", tightest headroom {:.3g}x on {}", result.tightest->ratio,
                channels()[result.tightest->channel].name);
   }
-  fmt::print("\n");
+  fmt::print(out, "\n");
   if (result.verdict == Verdict::pass) return;
-  if (!result.reason.empty()) fmt::print("  {}\n", one_line(result.reason));
+  if (!result.reason.empty()) fmt::print(out, "  {}\n", one_line(result.reason));
 }
 
 class Replay {
  public:
   Replay(const ReplayOptions& options, const Globals& globals, Level level, std::string arithmetic)
-      : options_(options), globals_(globals), level_(level), arithmetic_(std::move(arithmetic)) {}
+      : options_(options),
+        globals_(globals),
+        level_(level),
+        arithmetic_(std::move(arithmetic)),
+        out_(options.json == "-" || options.html == "-" ? stderr : stdout) {}
 
   int run() {
     for (const std::string& file : options_.files) {
       auto done = replay(file);
       if (!done) return report_error(done.error());
     }
-    const std::size_t apart = options_.files.size() - passed_ - failed_;
-    if (!globals_.quiet || failed_ > 0) {
-      fmt::print("{} {} of {} {}{} ({}, {}{})\n", failed_ == 0 ? "PASS" : "FAIL", passed_,
-                 options_.files.size(), logs_ > 0 ? "traces and logs agree" : "traces conform",
-                 apart > 0 ? fmt::format(", {} not compared", apart) : "", options_.host.port,
-                 name_of(level_), arithmetic_);
+    if (!options_.json.empty()) {
+      const auto written = write_file(
+          options_.json,
+          replay_json(options_.host.port, name_of(level_), options_.log_limits, entries_));
+      if (!written) return report_error(written.error());
     }
+    conclude();
     if (failed_ > 0) return exit_failed;
     if (passed_ > 0) return exit_ok;
     return report_error({"no trace was compared: every trace was skipped or unsupported"});
@@ -105,10 +146,12 @@ class Replay {
 
  private:
   Result<void> replay(const std::string& file) {
-    // Before the recorded outputs are read: the port's process is a copy of this one.
-    if (auto started = ensure_host(host_, options_.host); !started) return started;
+    if (auto started = start(); !started) return started;
     return is_log(file) ? replay_log(file) : replay_trace(file);
   }
+
+  // Before the recorded outputs are read: the port's process is a copy of this one.
+  Result<void> start() { return ensure_host(host_, options_.host); }
 
   Result<void> replay_trace(const std::string& file) {
     const auto recorded = recorded_in(file, options_);
@@ -120,31 +163,49 @@ class Replay {
     Trace got;
     const CaseResult result = evaluate_trace(trace, subject, *host_, Tolerances(level_), &got);
     count(result);
+    entries_.push_back(json_of_trace(result, subject.module));
     if (auto written =
             write_page([&] { return trace_page(trace, got, result, options_.host.port); });
         !written) {
       return written;
     }
     if (result.verdict == Verdict::pass && globals_.quiet) return {};
-    print_result(result, name_of(level_));
-    if (result.verdict != Verdict::pass) fmt::print("{}", finding_text(result, level_));
+    print_result(result, result.name, name_of(level_), out_);
+    if (result.verdict != Verdict::pass) fmt::print(out_, "{}", finding_text(result, level_));
     return {};
   }
 
   Result<void> replay_log(const std::string& file) {
     const auto log = log_in(file, options_);
     if (!log) return tl::unexpected(log.error());
+    const LoggedUnit& first = log->units.front();
     // A log of attest has the outputs of all steps, so it is a trace.
-    if (log->is_of_attest && log->has_every_step) return judge_trace(log->trace, {log->profile});
-    ++logs_;
-    const LogResult found = evaluate_log(*log, log->profile, *host_, options_.log_limits);
+    if (log->is_of_attest && first.has_every_step) {
+      Trace trace = first.trace;
+      for (const ParameterChange& change : parameters_of(options_, *log, first)) {
+        override_parameter(change, trace);
+      }
+      return judge_trace(trace, {log->profile, first.module});
+    }
+    are_logs_ = true;
+    std::vector<LogResult> results;
+    for (const LoggedUnit& unit : log->units) {
+      if (auto judged = judge_unit(*log, unit, results); !judged) return judged;
+    }
+    return write_page(
+        [&] { return log_page(*log, results, options_.log_limits, options_.host.port); });
+  }
+
+  Result<void> judge_unit(const FlightLog& log, const LoggedUnit& unit,
+                          std::vector<LogResult>& results) {
+    if (auto started = start(); !started) return started;
+    const LogResult& found = results.emplace_back(evaluate_log(
+        unit, log.profile, *host_, options_.log_limits, parameters_of(options_, log, unit)));
     count(found.result);
-    const auto written =
-        write_page([&] { return log_page(*log, found, options_.log_limits, options_.host.port); });
-    if (!written) return written;
+    entries_.push_back(json_of_unit(log, unit, found, options_.log_limits));
     if (found.result.verdict == Verdict::pass && globals_.quiet) return {};
-    print_result(found.result, "log");
-    fmt::print("{}", log_text(*log, found, options_.log_limits));
+    print_result(found.result, title_of(unit), "log", out_);
+    fmt::print(out_, "{}", log_text(unit, found, options_.log_limits));
     return {};
   }
 
@@ -161,14 +222,28 @@ class Replay {
     failed_ += fails_a_run(result.verdict) ? 1 : 0;
   }
 
+  // A log of v1.14 to v1.16 counts as two, one for each unit.
+  void conclude() const {
+    if (globals_.quiet && failed_ == 0) return;
+    const std::size_t apart = entries_.size() - passed_ - failed_;
+    const char* const what = !are_logs_                                ? "traces conform"
+                             : entries_.size() > options_.files.size() ? "traces and units agree"
+                                                                       : "traces and logs agree";
+    fmt::print(out_, "{} {} of {} {}{} ({}, {}{})\n", failed_ == 0 ? "PASS" : "FAIL", passed_,
+               entries_.size(), what, apart > 0 ? fmt::format(", {} not compared", apart) : "",
+               options_.host.port, name_of(level_), arithmetic_);
+  }
+
   const ReplayOptions& options_;
   const Globals& globals_;
   Level level_;
   std::string arithmetic_;  // of the port, if it is not floating point
+  std::FILE* out_;
   std::unique_ptr<PortHost> host_;
   std::size_t passed_ = 0;
   std::size_t failed_ = 0;
-  std::size_t logs_ = 0;  // judged by their statistics; they say nothing about conformance
+  bool are_logs_ = false;  // judged by their statistics; they say nothing about conformance
+  std::vector<nlohmann::ordered_json> entries_;
 };
 
 }  // namespace
@@ -176,7 +251,8 @@ class Replay {
 int replay_command(const ReplayOptions& options, const Globals& globals) {
   const auto level = parse_level(options.level);
   if (!level) return report_error(level.error());
-  if (auto checked = check_page(options, globals); !checked) return report_error(checked.error());
+  if (auto checked = check_reports(options, globals); !checked)
+    return report_error(checked.error());
   const auto port = describe_port(options.host);
   if (!port) return report_error(port.error());
   std::string arithmetic;

@@ -26,10 +26,11 @@ class PlainFlagNames final : public CLI::Formatter {
   }
 };
 
-std::string assumed_by_default() {
-  std::vector<std::string_view> words;
-  for (const FlightAssumption& one : flight_assumptions()) {
-    if (one.by_default) words.push_back(one.word);
+// Attitude unit and rate unit together.
+std::string assumed_by_default_of_units() {
+  std::vector<std::string> words = assumption_words(Module::attitude_unit, true);
+  for (const std::string& word : assumption_words(Module::rate_unit, true)) {
+    if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
   }
   return fmt::format("{}", fmt::join(words, ","));
 }
@@ -131,13 +132,13 @@ void add_selection(CLI::App& command, SelectionOptions& options) {
 }
 
 void add_assumed(CLI::App& command, std::vector<std::string>& assumed) {
-  std::vector<std::string> words;
-  for (const FlightAssumption& one : flight_assumptions()) words.emplace_back(one.word);
   command
       .add_option("--assume", assumed,
                   fmt::format("What holds in a flight whose log does not have the topic, some of "
-                              "{}; default: {}",
-                              fmt::join(words, ", "), assumed_by_default()))
+                              "{}; default: {}; of v1.14 to v1.16: {}",
+                              fmt::join(assumption_words(), ", "),
+                              fmt::join(assumption_words(Module::mc_att_control, true), ","),
+                              assumed_by_default_of_units()))
       ->type_name("WORD,...")
       ->delimiter(',')
       ->allow_extra_args(false)

@@ -36,18 +36,22 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
                                          "Feed the inputs of recorded traces or flight logs to a "
                                          "port and compare its outputs with the recorded ones");
   command
-      ->add_option("files", options->files,
-                   "Traces (CSV) of a controller, a mixer or a battery estimate; logs of flights "
-                   "(.ulg): a logged output is compared if the log also has the control_state "
-                   "from which it was computed")
+      ->add_option(
+          "files", options->files,
+          "Traces (CSV) of a controller, a unit of it, a mixer or a battery estimate; logs "
+          "of flights (.ulg) of v1.3.4, v1.5.5 and v1.14 to v1.16: a logged output is "
+          "compared if the log also has the sample from which it was computed "
+          "(control_state, vehicle_attitude, vehicle_angular_velocity)")
       ->type_name("FILE")
       ->required();
   add_port(*command, options->host.port);
   command
       ->add_option(
           "--profile", options->profile,
-          "Version of the law; default: that of the provenance.toml next to the trace, else "
-          "px4-v1.5.5")
+          "Version of the law; default: that of the provenance.toml next to the trace, of a log "
+          "that "
+          "of the release of PX4 that wrote it, else px4-v1.5.5. A log of attitude unit and rate "
+          "unit that does not name its release needs this option")
       ->type_name("PROFILE");
   command->add_option("--param", options->parameters, "Set a parameter from the first step on")
       ->type_name("NAME=VALUE")
@@ -62,6 +66,9 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("TEXT");
   add_log_options(*command, *options);
   add_page(*command, options->html, "A page with plots of the outputs, of one trace or log");
+  command->add_option("--json", options->json, "Write the results, by trace and unit")
+      ->type_name("F.json")
+      ->group(option_group::reports);
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command, {{"attest replay TRACE.csv --port lib:./libmine.so",
                            "a trace recorded from the firmware, or written by `attest sim`"},

@@ -75,9 +75,16 @@ Result<fs::path> write_case_of_log(const VectorOptions& options, LogCase& made) 
   }
   const auto log = read_log(options.from_log, options.assumed, *profile);
   if (!log) return tl::unexpected(log.error());
+  const LoggedUnit& unit = log->units.front();
+  if (unit.module != Module::mc_att_control) {
+    return fail_at(options.from_log,
+                   fmt::format("is a log of the {}; --from-log makes cases of logs of the "
+                               "controller of v1.5.5 and v1.3.4",
+                               info_of(unit.module).title));
+  }
   const fs::path root = options.folder;
   if (auto known = check_profile(log->profile, root); !known) return tl::unexpected(known.error());
-  auto of_log = case_of_log(log->trace, log->profile,
+  auto of_log = case_of_log(unit.trace, log->profile,
                             {options.from_s, options.to_s.value_or(LogStretch().to_s)}, log->notes);
   if (!of_log) return tl::unexpected(of_log.error());
   made = *std::move(of_log);

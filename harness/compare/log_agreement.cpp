@@ -79,8 +79,14 @@ class Agreement {
     found_.topic = topic_.name;
   }
 
-  TopicAgreement found() && {
-    for (std::size_t tick = 0; tick < logged_.samples.size(); ++tick) add(tick);
+  TopicAgreement found(const std::vector<bool>& leaves_out) && {
+    for (std::size_t tick = 0; tick < logged_.samples.size(); ++tick) {
+      if (!topic_.is_in(logged_.samples[tick])) continue;
+      if (tick < leaves_out.size() && leaves_out[tick])
+        leave_out(tick);
+      else
+        add(tick);
+    }
     std::sort(deviations_.begin(), deviations_.end());
     found_.median = quantile(0.5);
     found_.p90 = quantile(0.9);
@@ -91,7 +97,6 @@ class Agreement {
 
  private:
   void add(std::size_t tick) {
-    if (!topic_.is_in(logged_.samples[tick])) return;
     ++found_.paired;
     if (!topic_.is_in(got_.samples[tick])) {
       ++found_.missing;
@@ -101,10 +106,7 @@ class Agreement {
     for (const std::size_t field : topic_.fields) {
       if (deviation_at(tick, field) > deviation_at(tick, worst)) worst = field;
     }
-    if (std::any_of(topic_.fields.begin(), topic_.fields.end(),
-                    [&](std::size_t field) { return is_no_number(tick, field); })) {
-      ++found_.non_finite;
-    }
+    if (has_no_number(tick)) ++found_.non_finite;
     const double largest = deviation_at(tick, worst);
     deviations_.push_back(largest);
     if (largest <= limits_.within)
@@ -119,6 +121,23 @@ class Agreement {
     const Channel& channel = channels()[field];
     return deviation(value_of(channel, got_.samples[tick]),
                      value_of(channel, logged_.samples[tick]));
+  }
+
+  // Whatever the log lacks, the port was given numbers if the reference has one.
+  void leave_out(std::size_t tick) {
+    ++found_.left_out;
+    const auto is_finite = [&](std::size_t field) {
+      return std::isfinite(value_of(channels()[field], reference_.samples[tick]));
+    };
+    if (topic_.is_in(got_.samples[tick]) && has_no_number(tick) &&
+        std::all_of(topic_.fields.begin(), topic_.fields.end(), is_finite)) {
+      ++found_.non_finite;
+    }
+  }
+
+  bool has_no_number(std::size_t tick) const {
+    return std::any_of(topic_.fields.begin(), topic_.fields.end(),
+                       [&](std::size_t field) { return is_no_number(tick, field); });
   }
 
   // Where the log has one.
@@ -175,10 +194,11 @@ bool TopicAgreement::agrees(const LogLimits& limits) const {
 }
 
 std::vector<TopicAgreement> agreement_with_log(const Trace& got, const Trace& logged,
-                                               const Trace& reference, const LogLimits& limits) {
+                                               const Trace& reference, const LogLimits& limits,
+                                               const std::vector<bool>& leaves_out) {
   std::vector<TopicAgreement> found;
   for (Topic& topic : topics_in(logged.present)) {
-    found.push_back(Agreement(std::move(topic), got, logged, reference, limits).found());
+    found.push_back(Agreement(std::move(topic), got, logged, reference, limits).found(leaves_out));
   }
   return found;
 }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -31,9 +32,10 @@ struct LoggedPair {
 // One topic. The deviation of a pair is the largest of its fields. NaN agrees with NaN only.
 struct TopicAgreement {
   std::string_view topic;
-  bool is_judged = true;    // false: only reported
-  std::size_t paired = 0;   // ticks with an output in the log
-  std::size_t missing = 0;  // of these: the port published nothing
+  std::string not_judged;    // why it is only reported; empty: it is judged
+  std::size_t left_out = 0;  // ticks with an output in the log, which cannot be computed from it
+  std::size_t paired = 0;    // the other ticks with an output in the log
+  std::size_t missing = 0;   // of these: the port published nothing
   // Of the pairs that both have: the port has NaN or infinity where the log has a number. One is
   // enough for the port not to agree.
   std::size_t non_finite = 0;
@@ -53,8 +55,10 @@ struct TopicAgreement {
 };
 
 // The topics that the log has, in the order of the channels. `reference`: the reference's outputs
-// for the inputs of the log. `got`, `logged` and `reference` have the same ticks.
+// for the inputs of the log. `got`, `logged` and `reference` have the same ticks. `leaves_out`: the
+// ticks to leave out, in every topic; empty: none.
 std::vector<TopicAgreement> agreement_with_log(const Trace& got, const Trace& logged,
-                                               const Trace& reference, const LogLimits& limits);
+                                               const Trace& reference, const LogLimits& limits,
+                                               const std::vector<bool>& leaves_out = {});
 
 }  // namespace attest

@@ -12,6 +12,7 @@
 #include "harness/trace/csv_rows.hpp"
 #include "harness/trace/plant_columns.hpp"
 #include "harness/ulog/flight_log.hpp"
+#include "harness/ulog/log_topics.hpp"
 #include "harness/ulog/reader.hpp"
 
 namespace attest {
@@ -129,11 +130,24 @@ Result<TimedSignals> signals_of_log(const std::filesystem::path& path) {
   return signals;
 }
 
-std::string name_in_log(std::string_view column) {
-  constexpr std::string_view external = "in/vehicle_rates_setpoint.";
-  if (column.starts_with(external)) {
-    return fmt::format("vehicle_rates_setpoint[1].{}", column.substr(external.size()));
+// The names of channels in a log that attest writes of such a trace.
+using NamesInLog = std::map<std::string_view, std::string>;
+
+NamesInLog names_in_log(const std::vector<std::string>& columns) {
+  const Module of_columns = module_with(columns);
+  const Module module = info_of(of_columns).has_updated ? of_columns : Module::mc_att_control;
+  NamesInLog found;
+  for (const LogTopic& topic : log_topics(module)) {
+    for (const LogField& field : topic.fields) {
+      found[channels()[field.channel].name] =
+          name_of_topic(topic.name, topic.multi_id) + "." + field.name;
+    }
   }
+  return found;
+}
+
+std::string name_in_log(std::string_view column, const NamesInLog& in_log) {
+  if (const auto known = in_log.find(column); known != in_log.end()) return known->second;
   const bool is_of_plant = column.starts_with(plant_prefix);
   for (const std::string_view prefix :
        {std::string_view("in/"), std::string_view("out/"), plant_prefix}) {
@@ -166,6 +180,7 @@ Result<TimedSignals> signals_of_csv(const std::filesystem::path& path) {
   TimedSignals signals{path.string(), {}, {}};
   std::vector<CsvColumn> columns;
   bool has_time = false;
+  const NamesInLog in_log = names_in_log(rows->header());
   for (const std::string& name : rows->header()) {
     if (name == "timestamp") {
       columns.push_back({CellType::u64, Row::time});
@@ -173,7 +188,7 @@ Result<TimedSignals> signals_of_csv(const std::filesystem::path& path) {
       continue;
     }
     columns.push_back({CellType::f32, Row::first + sizeof(float) * signals.all.size()});
-    signals.all.push_back({name_in_log(name), {}, {}});
+    signals.all.push_back({name_in_log(name, in_log), {}, {}});
   }
   if (!has_time) {
     return fail_at(path.string(), "no column timestamp; add the time of each row in microseconds",

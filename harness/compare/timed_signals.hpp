@@ -32,11 +32,11 @@ struct TimedSignals {
 //
 // A signal of a log is a number of a topic; a topic's further instances have their number in
 // brackets. Columns `in/...` and `out/...` of a trace have the name that the signal has in a log of
-// attest (trace_log.hpp): without this prefix, and `vehicle_rates_setpoint[1]` for the input of
-// this name. Left out, counted in `notes`: a sample whose time is not after the one before, or
-// after latest_us; a topic without a timestamp; of signals with the same name, all but the first.
-// Memory: all signals. Errors: the file cannot be read; a cell is no number; no column `timestamp`;
-// no signal.
+// attest (trace_log.hpp): without this prefix, and `vehicle_rates_setpoint[1]` for an input that
+// the module also publishes. Left out, counted in `notes`: a sample whose time is not after the one
+// before, or after latest_us; a topic without a timestamp; of signals with the same name, all but
+// the first. Memory: all signals. Errors: the file cannot be read; a cell is no number; no column
+// `timestamp`; no signal.
 Result<TimedSignals> read_timed_signals(const std::filesystem::path& path);
 
 }  // namespace attest

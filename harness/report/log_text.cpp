@@ -7,7 +7,7 @@
 namespace attest {
 namespace {
 
-double seconds_of(const FlightLog& log, std::size_t tick) {
+double seconds_of(const LoggedUnit& log, std::size_t tick) {
   const auto& samples = log.trace.samples;
   return static_cast<double>(samples[tick].in.timestamp - samples[0].in.timestamp) * 1e-6;
 }
@@ -33,7 +33,7 @@ std::string deviations_text(const TopicAgreement& topic, const LogLimits& limits
   return text;
 }
 
-std::string first_text(const FlightLog& log, const LoggedPair& pair) {
+std::string first_text(const LoggedUnit& log, const LoggedPair& pair) {
   const Channel& channel = channels()[pair.channel];
   return fmt::format(
       "    first of these at tick {}, {:.3f} s after the first, in {}\n"
@@ -42,14 +42,20 @@ std::string first_text(const FlightLog& log, const LoggedPair& pair) {
       value_text(channel, pair.got), value_text(channel, pair.logged));
 }
 
-std::string topic_text(const FlightLog& log, const TopicAgreement& topic,
-                       const LoggedOutput& logged, const LogLimits& limits) {
-  std::string text = fmt::format("  {}: {} of {} logged samples paired with a control_state\n",
-                                 topic.topic, logged.paired, logged.samples);
-  if (topic.paired == 0) return text;
-  text += deviations_text(topic, limits);
-  if (!topic.is_judged) {
-    text += "    not judged: it depends on earlier steps, and the log does not have every step\n";
+// `said`: the reason of the verdict, which is not repeated.
+std::string topic_text(const LoggedUnit& log, const TopicAgreement& topic,
+                       const LoggedOutput& logged, const LogLimits& limits,
+                       const std::string& said) {
+  std::string text = fmt::format("  {}: {} of {} logged samples paired with a {}\n", topic.topic,
+                                 logged.paired, logged.samples, log.step_topic);
+  if (topic.left_out > 0) {
+    text += fmt::format("    {} of them left out: the log does not have all that they depend on\n",
+                        topic.left_out);
+  }
+  if (topic.paired > 0) text += deviations_text(topic, limits);
+  if (!topic.not_judged.empty()) {
+    const bool is_said = topic.not_judged == said;
+    text += is_said ? "    not judged\n" : fmt::format("    not judged: {}\n", topic.not_judged);
   } else if (topic.first_unexplained) {
     text += first_text(log, *topic.first_unexplained);
   }
@@ -58,10 +64,15 @@ std::string topic_text(const FlightLog& log, const TopicAgreement& topic,
 
 }  // namespace
 
-std::string log_text(const FlightLog& log, const LogResult& result, const LogLimits& limits) {
+std::string title_of(const LoggedUnit& log) {
+  if (log.module == Module::mc_att_control) return log.trace.source;
+  return fmt::format("{}: {}", log.trace.source, info_of(log.module).title);
+}
+
+std::string log_text(const LoggedUnit& log, const LogResult& result, const LogLimits& limits) {
   std::string text;
   for (std::size_t i = 0; i < result.topics.size(); ++i) {
-    text += topic_text(log, result.topics[i], log.outputs[i], limits);
+    text += topic_text(log, result.topics[i], log.outputs[i], limits, result.result.reason);
   }
   return text;
 }

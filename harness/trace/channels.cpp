@@ -169,6 +169,11 @@ void set_value(const Channel& channel, Sample& sample, double value) {
   }
 }
 
+void set_integer(const Channel& channel, Sample& sample, std::uint64_t value) {
+  if (channel.type == ChannelType::u64) return store(sample, channel.offset, value);
+  store(sample, channel.offset, static_cast<std::uint8_t>(value));
+}
+
 float float_of(const Channel& channel, const Sample& sample) {
   return load<float>(sample, channel.offset);
 }

@@ -1,320 +1,252 @@
 #include "harness/ulog/flight_log.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
-#include <optional>
-#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "harness/core/printable.hpp"
-#include "harness/core/suggestion.hpp"
-#include "harness/ulog/log_series.hpp"
+#include "harness/ulog/own_topics.hpp"
+#include "harness/ulog/unit_log.hpp"
 
 namespace attest {
 namespace {
 
+using ulog::LogContents;
+using ulog::LogRules;
 using ulog::LogSeries;
+using ulog::ModuleContents;
 
-constexpr std::string_view control_state = "control_state";
+constexpr const char* fastest_rate = "IMU_GYRO_RATEMAX";  // Hz, of the rate unit
 
-constexpr std::string_view system_of_attest = "attest";  // as trace_log.cpp writes it
-
-constexpr FlightAssumption assumptions[] = {
-    {"armed", "in/actuator_armed.armed", true},
-    {"rotary_wing", "in/vehicle_status.is_rotary_wing", true},
-    {"vtol", "in/vehicle_status.is_vtol", false},
-    {"rates", "in/vehicle_control_mode.flag_control_rates_enabled", true},
-    {"attitude", "in/vehicle_control_mode.flag_control_attitude_enabled", true},
-    {"manual", "in/vehicle_control_mode.flag_control_manual_enabled", true},
-    {"auto", "in/vehicle_control_mode.flag_control_auto_enabled", false},
-    {"rattitude", "in/vehicle_control_mode.flag_control_rattitude_enabled", false},
-    {"velocity", "in/vehicle_control_mode.flag_control_velocity_enabled", false},
-};
-
-// The series of every topic that the controller reads or publishes.
-std::vector<LogSeries> series_of_controller() {
-  std::vector<LogSeries> all;
-  const auto table = channels();
-  const ChannelSet own = channels_of(Module::mc_att_control);
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    const Channel& channel = table[i];
-    if (!own[i] || channel.type == ChannelType::u64 || channel.type == ChannelType::bit) continue;
-    const std::string_view path = channel.name.substr(channel.name.find('/') + 1);
-    const std::string_view topic = path.substr(0, path.find('.'));
-    const std::string_view field = path.substr(topic.size() + 1);
-    if (field == "published") continue;
-    const bool is_output = channel.is_output();
-    const auto known = std::find_if(all.begin(), all.end(), [&](const LogSeries& series) {
-      return series.topic() == topic && series.is_output() == is_output;
-    });
-    LogSeries& series = known != all.end() ? *known : all.emplace_back(topic, is_output);
-    series.add_field(std::string(field), i);
-  }
-  return all;
+// What a log must have of a module, in addition to its steps and outputs.
+std::string setpoint_of(Module module) {
+  return module == Module::rate_unit ? "vehicle_rates_setpoint" : "vehicle_attitude_setpoint";
 }
 
-// Everything of the log that concerns the controller.
-struct Contents {
-  std::vector<LogSeries> series = series_of_controller();
-  std::vector<ParameterChange> parameters;  // by the number of control_state samples before
-  std::string system, firmware, source;
-  std::set<std::string> other_topics;
-  std::size_t dropouts = 0;
-  std::vector<std::string> damage;
-
-  LogSeries& inputs(std::string_view topic) { return find(topic, false); }
-  LogSeries& find(std::string_view topic, bool is_output) {
-    return *std::find_if(series.begin(), series.end(), [&](const LogSeries& one) {
-      return one.topic() == topic && one.is_output() == is_output;
-    });
-  }
-};
-
-std::string text_of(const ulog::KeyValue& value) {
-  const auto end = std::min(value.bytes.find('\0'), value.bytes.size());
-  return std::string(printable_part(value.bytes.substr(0, end)));
-}
-
-void read_value(const ulog::KeyValue& value, Contents& log) {
-  if (value.kind == 'P') {
-    const auto number = ulog::load_as<float>(value.type, value.bytes.data());
-    const std::size_t tick = log.inputs(control_state).size();
-    log.parameters.push_back({tick, std::string(value.name), number});
-  } else if (value.kind == 'I' && value.type == ulog::Type::character) {
-    if (value.name == "sys_name") log.system = text_of(value);
-    if (value.name == "ver_sw") log.firmware = text_of(value);
-    if (value.name == "attest_source") log.source = text_of(value);
+// The topics with values of outputs, to name in a message.
+std::string outputs_of(Module module) {
+  switch (module) {
+    case Module::attitude_unit:
+      return "vehicle_rates_setpoint";
+    case Module::rate_unit:
+      return "vehicle_torque_setpoint, vehicle_thrust_setpoint or rate_ctrl_status";
+    default:
+      return "vehicle_rates_setpoint or actuator_controls_0";
   }
 }
 
-void read_data(const ulog::Reader& reader, const ulog::Data& data, Contents& log) {
-  for (LogSeries& series : log.series) {
-    if (series.accepts(*data.subscription)) return series.add(reader, data);
-  }
-  log.other_topics.insert(data.subscription->topic);
+bool is_optional(std::string_view field) {
+  constexpr std::string_view optional[] = {"landing_gear", "disable_mc_yaw_control",
+                                           "timestamp_published", "timestamp_sample",
+                                           "quat_reset_counter"};
+  return field.starts_with("delta_q_reset") ||
+         std::find(std::begin(optional), std::end(optional), field) != std::end(optional);
 }
 
-Result<Contents> contents_of(const std::filesystem::path& path) {
-  auto reader = ulog::Reader::open(path);
-  if (!reader) return tl::unexpected(reader.error());
-  Contents log;
-  ulog::Message message;
-  while (true) {
-    const auto more = reader->next(message);
-    if (!more) return tl::unexpected(more.error());
-    if (!*more) break;
-    if (reader->is_appended()) continue;
-    if (const auto* data = std::get_if<ulog::Data>(&message)) read_data(*reader, *data, log);
-    if (const auto* value = std::get_if<ulog::KeyValue>(&message)) read_value(*value, log);
-    if (std::holds_alternative<ulog::Dropout>(message)) ++log.dropouts;
+// What the log lacks of a module; empty if it can be given to a port.
+std::string lacking(const ModuleContents& log, bool is_of_attest) {
+  const LogSeries& steps = log.steps();
+  if (steps.size() == 0) return fmt::format("no sample of the topic {}", steps.name());
+  if (is_of_attest) return "";
+  const LogSeries& setpoint = *log.input(setpoint_of(log.module()));
+  if (setpoint.size() == 0) return fmt::format("no sample of the topic {}", setpoint.name());
+  if (!log.has_outputs()) {
+    return fmt::format("no sample of {}, so there is nothing to compare a port with",
+                       outputs_of(log.module()));
   }
-  const ulog::Damage& damage = reader->damage();
-  for (const auto& finding : damage.first) {
-    log.damage.push_back(fmt::format("byte {}: {}", finding.offset, finding.message));
-  }
-  if (damage.total() > damage.first.size()) {
-    log.damage.push_back(fmt::format("and {} more", damage.total() - damage.first.size()));
-  }
-  return log;
-}
-
-Result<void> check_topics(const std::filesystem::path& path, Contents& log) {
-  if (log.inputs(control_state).size() == 0) {
-    const bool is_newer = log.other_topics.contains("vehicle_angular_velocity") ||
-                          log.other_topics.contains("vehicle_attitude");
-    return fail_at(
-        path.string(),
-        fmt::format(
-            "no sample of the topic control_state, which the controller of PX4 v1.5.5 and "
-            "v1.3.4 reads{}",
-            is_newer ? "; is the log of another version of PX4, or without this topic?" : ""));
-  }
-  if (log.inputs("vehicle_attitude_setpoint").size() == 0) {
-    return fail_at(path.string(), "no sample of the topic vehicle_attitude_setpoint");
-  }
-  const bool has_outputs =
-      std::any_of(log.series.begin(), log.series.end(), [](const LogSeries& series) {
-        return series.is_output() && series.size() > 0 && !series.logged_channels().empty();
-      });
-  if (!has_outputs) {
-    return fail_at(path.string(),
-                   "no sample of vehicle_rates_setpoint or actuator_controls_0, so "
-                   "there is nothing to compare a port with");
-  }
-  for (const char* topic : {"control_state", "vehicle_attitude_setpoint"}) {
-    for (const std::string& missing : log.inputs(topic).missing_fields()) {
-      if (missing == "landing_gear" || missing == "disable_mc_yaw_control") continue;
-      return fail_at(path.string(), fmt::format("the topic {} has no field {}; is the log of "
-                                                "another version of PX4?",
-                                                topic, missing));
+  for (const LogSeries* series : {&steps, &setpoint}) {
+    for (const LogField* missing : series->missing_fields()) {
+      if (is_optional(missing->name)) continue;
+      return fmt::format("the topic {} has no field {}; is the log of another version of PX4?",
+                         series->name(), missing->name);
     }
   }
-  return {};
+  return "";
 }
 
-// In a log of attest, a topic without samples was not published.
-Result<std::vector<FlightAssumption>> chosen(const std::vector<std::string>& words,
-                                             bool is_of_attest) {
-  std::vector<FlightAssumption> all;
-  std::vector<std::string> names;
-  for (const FlightAssumption& one : assumptions) names.emplace_back(one.word);
-  for (const std::string& word : words) {
-    const auto known = std::find(names.begin(), names.end(), word);
-    if (known == names.end()) {
-      return fail(fmt::format("--assume {}: unknown{}; write some of {}", word,
-                              suggestion(word, names), fmt::join(names, ", ")));
-    }
-    all.push_back(assumptions[known - names.begin()]);
+// The modules whose units the log may be of.
+std::vector<ModuleContents*> candidates(LogContents& log) {
+  ModuleContents& controller = log.of(Module::mc_att_control);
+  ModuleContents& attitude = log.of(Module::attitude_unit);
+  ModuleContents& rate = log.of(Module::rate_unit);
+  if (controller.steps().size() > 0) return {&controller};
+  // The flight of a rate unit has vehicle_attitude, too: the true one.
+  if (log.is_of_attest() && rate.steps().size() > 0) return {&rate};
+  if (log.is_of_attest() && attitude.steps().size() > 0) return {&attitude};
+  return {&attitude, &rate};
+}
+
+// Of a log that has too little for every unit.
+Error nothing_in(const std::filesystem::path& path, const std::vector<ModuleContents*>& modules,
+                 bool is_of_attest) {
+  if (modules.size() == 1) return {lacking(*modules.front(), is_of_attest), path.string()};
+  std::vector<std::string> reasons;
+  for (const ModuleContents* log : modules) {
+    reasons.push_back(
+        fmt::format("for the {}: {}", info_of(log->module()).title, lacking(*log, is_of_attest)));
   }
-  if (words.empty() && !is_of_attest) {
-    std::copy_if(std::begin(assumptions), std::end(assumptions), std::back_inserter(all),
-                 [](const FlightAssumption& one) { return one.by_default; });
-  }
-  return all;
+  return {fmt::format("has too little to replay: for the controller of PX4 v1.5.5 and v1.3.4: no "
+                      "sample of the topic control_state; {}",
+                      fmt::join(reasons, "; ")),
+          path.string()};
 }
 
-std::string_view topic_of(std::string_view channel) {
-  channel.remove_prefix(channel.find('/') + 1);
-  return channel.substr(0, channel.find('.'));
-}
-
-std::uint32_t updated_bit(std::string_view topic) {
-  const auto index = find_channel(Module::mc_att_control, fmt::format("in/updated.{}", topic));
-  return index ? channels()[*index].bit : 0;
-}
-
-// The sample before the first tick, with `updated` set for the topics that were assumed.
-Result<Sample> assumed_sample(const std::filesystem::path& path,
-                              const std::vector<std::string>& words, Contents& log,
-                              std::vector<std::string>& notes) {
-  const auto all = chosen(words, log.system == system_of_attest);
-  if (!all) return tl::unexpected(all.error());
-  Sample sample{};
-  std::vector<std::string_view> used;
-  for (const FlightAssumption& one : *all) {
-    const std::string_view topic = topic_of(one.channel);
-    if (log.inputs(topic).size() > 0) {
-      if (words.empty()) continue;
-      return fail_at(path.string(), fmt::format("has the topic {}, so --assume {} has no effect; "
-                                                "leave it out",
-                                                topic, one.word));
-    }
-    set_value(channels()[*find_channel(Module::mc_att_control, one.channel)], sample, 1);
-    sample.in.updated |= updated_bit(topic);
-    used.push_back(one.word);
-  }
-  if (!used.empty()) {
-    notes.push_back(fmt::format("assumed, because the log does not have it: {} (--assume)",
-                                fmt::join(used, ", ")));
+// The sample before the first step. Before a topic's first sample, the flags of v1.14 to v1.16 that
+// the units take to be true are true.
+Sample first_sample(const ModuleContents& log, LogRules rules) {
+  Sample sample;
+  if (rules != LogRules::cascade) return sample;
+  if (log.module() == Module::attitude_unit) {
+    sample.attitude_in.vehicle_status.is_rotary_wing = 1;
+    sample.attitude_in.vehicle_land_detected.landed = 1;
+    sample.attitude_in.vehicle_local_position.heading_good_for_control = 1;
+  } else {
+    sample.rate_in.vehicle_status.is_rotary_wing = 1;
+    sample.rate_in.vehicle_land_detected = {1, 1};
   }
   return sample;
 }
 
-// The ticks with their inputs.
-void fill_inputs(Contents& log, Sample sample, Trace& trace) {
-  const LogSeries& ticks = log.inputs(control_state);
-  for (std::size_t tick = 0; tick < ticks.size(); ++tick) {
-    for (LogSeries& series : log.series) {
-      if (series.is_output() || series.topic() == control_state) continue;
-      if (series.advance_to(ticks.time(tick), sample)) {
-        sample.in.updated |= updated_bit(series.topic());
-      }
-    }
-    ticks.copy(tick, sample);
-    sample.in.timestamp = ticks.time(tick);
-    trace.samples.push_back(sample);
-    sample.in.updated = 0;
+std::optional<double> fastest_hz(const ModuleContents& log) {
+  std::optional<double> found;
+  for (const ParameterChange& change : log.parameters) {
+    if (change.name == fastest_rate && change.value > 0) found = change.value;
   }
+  return log.module() == Module::rate_unit ? found : std::nullopt;
 }
 
-void fill_parameters(std::vector<ParameterChange> changes, Trace& trace) {
-  const std::size_t ticks = trace.samples.size();
-  std::erase_if(changes, [&](const ParameterChange& change) { return change.tick >= ticks; });
-  for (const ParameterChange& change : changes) {
-    if (change.tick > 0) {
-      trace.samples[change.tick].in.updated |= ATTEST_UPDATED_PARAMETER_UPDATE;
-    }
-  }
-  trace.parameters = std::move(changes);
-}
-
-// The tick that the output answers.
-std::optional<std::size_t> tick_of(const LogSeries& output, std::size_t row,
-                                   const LogSeries& ticks) {
-  const auto exact = output.sample_time(row);
-  const auto after = ticks.first_after(exact ? *exact : output.time(row));
-  if (after == 0) return std::nullopt;
-  if (exact && ticks.time(after - 1) != *exact) return std::nullopt;
-  return after - 1;
-}
-
-// Ticks that do not publish get the values of the tick before, as the ABI has it.
-void hold_unpublished(const LogSeries& output, const Channel& published, Trace& trace) {
-  for (std::size_t tick = 1; tick < trace.samples.size(); ++tick) {
-    Sample& sample = trace.samples[tick];
-    if (value_of(published, sample) != 0) continue;
-    for (const std::size_t index : output.channels()) {
-      const Channel& channel = channels()[index];
-      set_value(channel, sample, value_of(channel, trace.samples[tick - 1]));
-    }
-  }
-}
-
-LoggedOutput fill_outputs(const LogSeries& output, const LogSeries& ticks, Trace& trace) {
-  LoggedOutput logged{std::string(output.topic()), output.size(), 0};
-  const auto published =
-      find_channel(Module::mc_att_control, fmt::format("out/{}.published", output.topic()));
-  trace.present.set(*published);
-  for (const std::size_t channel : output.logged_channels()) trace.present.set(channel);
-  for (std::size_t row = 0; row < output.size(); ++row) {
-    const auto tick = tick_of(output, row, ticks);
-    if (!tick || value_of(channels()[*published], trace.samples[*tick]) != 0) continue;
-    output.copy(row, trace.samples[*tick]);
-    set_value(channels()[*published], trace.samples[*tick], 1);
-    ++logged.paired;
-  }
-  hold_unpublished(output, channels()[*published], trace);
-  return logged;
+void judge_steps(const ModuleContents& log, std::optional<double> rate_hz, LoggedUnit& unit) {
+  const StepGaps gaps = step_gaps(log.steps().times());
+  unit.not_judged = too_sparse(unit.module, gaps, rate_hz);
+  unit.begins_in_flight = ulog::is_in_flight(unit.module, unit.trace.samples.front());
+  unit.has_every_step = unit.has_every_step && unit.not_judged.empty() &&
+                        may_be_complete(unit.module, gaps, rate_hz) && !unit.begins_in_flight;
 }
 
 void add_missing(const LogSeries& series, std::vector<std::string>& notes) {
-  std::vector<std::string> missing = series.missing_fields();
+  std::vector<std::string> missing;
+  for (const LogField* field : series.missing_fields()) {
+    const std::string value = field->if_absent == 0 ? "" : fmt::format(" ({:g})", field->if_absent);
+    missing.push_back(series.name() + "." + field->name + value);
+  }
   if (missing.empty()) return;
-  for (std::string& field : missing) field.insert(0, series.topic() + ".");
   notes.push_back(fmt::format("not in the log, so {}: {}",
                               series.is_output() ? "not compared" : "0", fmt::join(missing, ", ")));
 }
 
-void add_notes(const Contents& log, std::vector<std::string>& notes) {
-  if (!log.system.empty()) {
-    notes.push_back(
-        fmt::format("logged by {}{}{}", log.system, log.firmware.empty() ? "" : " ", log.firmware));
-  }
-  for (const LogSeries& series : log.series) {
-    if (series.size() > 0) add_missing(series, notes);
+// A topic of several modules is noted once.
+void add_once(std::string note, std::vector<std::string>& notes) {
+  if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
+}
+
+void add_notes(const ModuleContents& log, std::vector<std::string>& notes) {
+  for (const LogSeries& series : log.series()) {
+    if (series.size() > 0) {
+      std::vector<std::string> missing;
+      add_missing(series, missing);
+      for (std::string& note : missing) add_once(std::move(note), notes);
+    }
     if (series.left_out() > 0) {
-      notes.push_back(
-          fmt::format("{} samples of {} left out, because their timestamps do not "
-                      "increase",
-                      series.left_out(), series.topic()));
+      add_once(fmt::format("{} samples of {} left out, because their timestamps do not increase",
+                           series.left_out(), series.name()),
+               notes);
     }
     if (series.without_time() > 0) {
-      notes.push_back(fmt::format("{} samples of {} left out, because the topic has no timestamp",
-                                  series.without_time(), series.topic()));
+      add_once(fmt::format("{} samples of {} left out, because the topic has no timestamp",
+                           series.without_time(), series.name()),
+               notes);
     }
   }
+}
+
+void add_origin(const LogContents& log, std::vector<std::string>& notes) {
+  if (log.system.empty()) return;
+  const std::string release = log.release ? " " + log.release->to_string() : "";
+  notes.push_back(fmt::format("logged by {}{}{}", log.system, release,
+                              log.firmware.empty() ? "" : " " + log.firmware));
+}
+
+void add_losses(const LogContents& log, std::vector<std::string>& notes) {
   if (log.dropouts > 0) {
     notes.push_back(fmt::format("the logger lost messages {} times", log.dropouts));
   }
   for (const std::string& damage : log.damage) notes.push_back("damaged: " + damage);
 }
 
-}  // namespace
+class LogReading {
+ public:
+  LogReading(const std::filesystem::path& path, LogContents& log,
+             const std::vector<std::string>& assumed)
+      : path_(path), log_(log), assumed_(assumed) {}
 
-std::span<const FlightAssumption> flight_assumptions() { return assumptions; }
+  Result<FlightLog> read() {
+    const auto modules = candidates(log_);
+    const auto is_lacking = [&](const ModuleContents* one) {
+      return !lacking(*one, log_.is_of_attest()).empty();
+    };
+    if (std::all_of(modules.begin(), modules.end(), is_lacking)) {
+      return tl::unexpected(nothing_in(path_, modules, log_.is_of_attest()));
+    }
+    const std::vector<const ModuleContents*> known(modules.begin(), modules.end());
+    if (auto checked = check_assumed(assumed_, known); !checked) {
+      return fail_at(path_.string(), checked.error().message);
+    }
+    flight_.is_of_attest = log_.is_of_attest();
+    flight_.release = log_.release;
+    flight_.profile = log_.source.substr(0, std::min(log_.source.find('/'), log_.source.size()));
+    add_origin(log_, flight_.notes);
+    for (ModuleContents* module : modules) add(*module);
+    note_assumed();
+    add_losses(log_, flight_.notes);
+    return std::move(flight_);
+  }
+
+ private:
+  void add(ModuleContents& log) {
+    LoggedUnit unit;
+    if (std::string missing = lacking(log, log_.is_of_attest()); !missing.empty()) {
+      unit.module = log.module();
+      unit.step_topic = log.steps().name();
+      unit.trace.present.set(0).set(*find_channel(log.module(), "in/updated.parameter_update"));
+      unit.not_judged = "the log has " + std::move(missing);
+    } else {
+      unit = made(log);
+    }
+    unit.trace.source = path_.string();
+    flight_.units.push_back(std::move(unit));
+  }
+
+  LoggedUnit made(ModuleContents& log) {
+    const LogRules rules = log_.is_of_attest()                      ? LogRules::attest
+                           : log.module() == Module::mc_att_control ? LogRules::controller
+                                                                    : LogRules::cascade;
+    add_notes(log, flight_.notes);
+    Sample first = first_sample(log, rules);
+    std::vector<std::string> used;
+    if (!assumed_.empty() || rules != LogRules::attest) used = assume(assumed_, log, first);
+    for (const std::string& word : used) add_once(word, used_);
+    const auto rate_hz = fastest_hz(log);
+    LoggedUnit unit = unit_of_log(log, first, rules);
+    if (log_.dropouts > 0 || !log_.damage.empty()) unit.has_every_step = false;
+    if (rules == LogRules::cascade && !used.empty()) unit.has_every_step = false;
+    if (rules == LogRules::cascade) judge_steps(log, rate_hz, unit);
+    return unit;
+  }
+
+  void note_assumed() {
+    if (used_.empty()) return;
+    flight_.notes.push_back(fmt::format("assumed, because the log does not have it: {} (--assume)",
+                                        fmt::join(used_, ", ")));
+  }
+
+  const std::filesystem::path& path_;
+  LogContents& log_;
+  const std::vector<std::string>& assumed_;
+  std::vector<std::string> used_;  // of the words
+  FlightLog flight_;
+};
+
+}  // namespace
 
 bool is_log(const std::filesystem::path& path) {
   return path.extension() == ".ulg" || path.extension() == ".ulog";
@@ -322,28 +254,9 @@ bool is_log(const std::filesystem::path& path) {
 
 Result<FlightLog> read_flight_log(const std::filesystem::path& path,
                                   const std::vector<std::string>& assumed) {
-  auto log = contents_of(path);
+  auto log = ulog::read_contents(path);
   if (!log) return tl::unexpected(log.error());
-  if (auto checked = check_topics(path, *log); !checked) return tl::unexpected(checked.error());
-  FlightLog flight;
-  flight.is_of_attest = log->system == system_of_attest;
-  flight.profile = log->source.substr(0, std::min(log->source.find('/'), log->source.size()));
-  add_notes(*log, flight.notes);
-  const auto first = assumed_sample(path, assumed, *log, flight.notes);
-  if (!first) return tl::unexpected(first.error());
-  flight.trace.source = path.string();
-  flight.trace.present = channels_of(Module::mc_att_control, "in/");
-  flight.trace.present.set(0);  // timestamp
-  fill_inputs(*log, *first, flight.trace);
-  fill_parameters(std::move(log->parameters), flight.trace);
-  flight.has_every_step = log->dropouts == 0 && log->damage.empty();
-  for (const LogSeries& series : log->series) {
-    if (series.left_out() + series.without_time() > 0) flight.has_every_step = false;
-    if (!series.is_output() || series.size() == 0 || series.logged_channels().empty()) continue;
-    flight.outputs.push_back(fill_outputs(series, log->inputs(control_state), flight.trace));
-    if (flight.outputs.back().paired < series.size()) flight.has_every_step = false;
-  }
-  return flight;
+  return LogReading(path, *log, assumed).read();
 }
 
 }  // namespace attest

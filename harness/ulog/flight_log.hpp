@@ -1,8 +1,9 @@
-// A log of a flight as a trace: what the controller was given, and what it answered.
+// A log of a flight as traces: what each unit was given, and what it answered.
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -10,52 +11,74 @@
 
 #include "harness/core/result.hpp"
 #include "harness/trace/trace.hpp"
+#include "harness/ulog/assumptions.hpp"
+#include "harness/ulog/log_contents.hpp"
+#include "harness/ulog/step_gaps.hpp"
 
 namespace attest {
-
-// What is assumed of a flight whose log has no sample of a topic. The words of --assume.
-struct FlightAssumption {
-  std::string_view word;     // "armed"
-  std::string_view channel;  // that is 1: "in/actuator_armed.armed"
-  bool by_default;
-};
-std::span<const FlightAssumption> flight_assumptions();
 
 // The samples of a topic of outputs.
 struct LoggedOutput {
   std::string topic;
-  std::size_t samples = 0;
-  std::size_t paired = 0;  // of these, with a tick
+  std::size_t samples = 0;  // of this unit
+  std::size_t paired = 0;   // of these, with a tick
+};
+
+// What the log has of that which the outputs of a tick depend on.
+enum class Known : std::uint8_t {
+  all,            // an output without memory can be computed from this tick
+  if_every_step,  // only from all steps: the attitude unit makes its setpoint of the sticks
+  nothing         // there was no setpoint in the log yet
+};
+
+struct LoggedUnit {
+  Module module = Module::mc_att_control;
+  std::string step_topic;  // "control_state"
+  // A tick for each sample of the step topic, at its timestamp. An input is the last sample logged
+  // before that time; in a log of attest, and of the controller of v1.5.5, also at that time. A
+  // tick has an output, with `published` 1, if the log has its answer. A tick without one has the
+  // values of the tick before. An output that the log's topic does not have is not in
+  // `trace.present`.
+  Trace trace;
+  std::vector<LoggedOutput> outputs;
+  std::vector<Known> known;  // of each tick
+  // The log has every step of the unit, from the ground on; of v1.14 to v1.16, also without
+  // assumptions. Otherwise outputs that depend on
+  // earlier steps (the integral, the derivative) cannot be computed from it.
+  bool has_every_step = false;
+  bool begins_in_flight = false;  // so the state of the unit at the first tick is not known
+  // Why the outputs that depend on earlier steps cannot be computed, not even about; empty if they
+  // can. Never empty for a unit of which the log has too little: then it has no ticks.
+  std::string not_judged;
 };
 
 struct FlightLog {
-  // A tick for each sample of control_state, at its timestamp. An input is the last sample logged
-  // at that time or before. A tick has an output, with `published` 1, if the log has the answer to
-  // its control_state. A tick without one has the values of the tick before.
-  // An output that the log's topic does not have is not in `trace.present`.
-  Trace trace;
-  std::vector<LoggedOutput> outputs;
-  // The log has every step of the controller. Otherwise outputs that depend on earlier steps (the
-  // integral, the derivative) cannot be computed from it.
-  bool has_every_step = false;
-  std::string profile;  // of the case, in a log of attest; else empty
-  bool is_of_attest =
-      false;  // attest wrote the log: at each step, all that the controller received
+  // One: the controller, or the unit of a log that attest wrote. Two: the attitude unit and the
+  // rate unit. At least one has ticks.
+  std::vector<LoggedUnit> units;
+  std::string profile;                   // of the case, in a log of attest; else empty
+  std::optional<ulog::Release> release;  // of the PX4 that wrote it, if the log says so
+  bool is_of_attest = false;  // attest wrote the log: at each step, all that the unit received
   // Of the log, assumptions and omissions: one line each.
   std::vector<std::string> notes;
 };
 
-// Reads a ULog. Its parameters are in the trace, those of other modules too.
+// Reads a ULog: of the controller, if it has the topic control_state, else of the units of v1.14 to
+// v1.16. Its parameters are in the traces, those of other modules too.
 //
-// An output is paired with the control_state whose timestamp is its `timestamp_sample`, where the
-// topic has this field. Otherwise it is the answer to the last control_state before it, and a
-// further output before the next control_state is not paired.
+// An output is paired with the step whose sample has its `timestamp_sample`, where the topic has
+// this field. Otherwise it is the answer to the last step before it, and a further output before
+// the next step is not paired. In a log of v1.14 to v1.16 this step must be at most 2 ms earlier,
+// because the log may lack the next one.
+//
+// In such a log, several modules publish the setpoints. A sample of vehicle_attitude_setpoint is an
+// output of the attitude unit if it made a setpoint of the sticks, and vehicle_rates_setpoint is an
+// output of the rate unit in acro mode. They are inputs otherwise. quat_reset_counter counts from
+// the first sample on, because a unit that starts there knows of no earlier reset.
 //
 // `assumed` are words of flight_assumptions(); empty: those by default, none in a log of attest.
-// They apply to topics without a sample in the log. Memory: the samples of the topics that the
-// controller reads or publishes. Errors: the file cannot be read or is no ULog; it has no sample of
-// control_state, of vehicle_attitude_setpoint or of any output, or lacks a field that the law
-// reads; an unknown word, or one for a topic that the log has.
+// They apply to topics without a sample in the log. Errors: the file cannot be read or is no ULog;
+// it has too little for any unit; an unknown word, or one for a topic that the log has.
 Result<FlightLog> read_flight_log(const std::filesystem::path& path,
                                   const std::vector<std::string>& assumed = {});
 

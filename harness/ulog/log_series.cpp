@@ -1,6 +1,7 @@
 #include "harness/ulog/log_series.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace attest::ulog {
@@ -25,29 +26,49 @@ T value_in(const Data& data, const Column& column) {
 }
 
 // A flag of any type as a byte that is true if the flag is.
-double flag_of(float value) {
+std::uint8_t flag_of(float value) {
   const bool is_byte = value >= 0 && value <= 255 && value == std::floor(value);
-  return is_byte ? value : 1;
+  return is_byte ? static_cast<std::uint8_t>(value) : 1;
+}
+
+bool is_integer(const LogField& field) {
+  return channels()[field.channel].type == ChannelType::u64;
 }
 
 }  // namespace
 
-LogSeries::LogSeries(std::string_view topic, bool is_output)
-    : topic_(topic),
-      is_output_(is_output),
-      multi_id_(!is_output && topic == "vehicle_rates_setpoint" ? 1 : 0) {}
-
-void LogSeries::add_field(std::string field, std::size_t channel) {
-  fields_.push_back(std::move(field));
-  channels_.push_back(channel);
+LogSeries::Place LogSeries::find_place(const Reader& reader, const Subscription& subscription,
+                                       const LogField& field) const {
+  const auto find_one = is_integer(field) ? find_time : find;
+  if (const auto column = find_one(reader, subscription, field.name)) return {column, {}};
+  if (is_integer(field) && field.is_time_of_topic()) {
+    return {find_time(reader, subscription, "timestamp"), {}};
+  }
+  if (!field.state) return {};
+  return {find(reader, subscription, field.state->field), field.state->if_true};
 }
 
 void LogSeries::locate(const Reader& reader, const Subscription& subscription) {
   located_ = subscription.index;
   time_ = find_time(reader, subscription, "timestamp");
   sample_time_ = find_time(reader, subscription, "timestamp_sample");
-  columns_.clear();
-  for (const std::string& field : fields_) columns_.push_back(find(reader, subscription, field));
+  places_.clear();
+  for (const LogField& field : topic_.fields) {
+    places_.push_back(find_place(reader, subscription, field));
+  }
+}
+
+std::uint64_t LogSeries::bits_of(const Data& data, std::size_t field) const {
+  const Place& place = places_[field];
+  const bool is_byte = channels()[topic_.fields[field].channel].type == ChannelType::u8;
+  if (!place.column) {
+    const float absent = topic_.fields[field].if_absent;
+    return is_byte ? flag_of(absent) : std::bit_cast<std::uint32_t>(absent);
+  }
+  if (is_integer(topic_.fields[field])) return value_in<std::uint64_t>(data, *place.column);
+  const auto value = value_in<float>(data, *place.column);
+  if (place.state) return value == static_cast<float>(*place.state) ? 1 : 0;
+  return is_byte ? flag_of(value) : std::bit_cast<std::uint32_t>(value);
 }
 
 void LogSeries::add(const Reader& reader, const Data& data) {
@@ -63,9 +84,7 @@ void LogSeries::add(const Reader& reader, const Data& data) {
   }
   times_.push_back(time);
   if (sample_time_) sample_times_.push_back(value_in<std::uint64_t>(data, *sample_time_));
-  for (const auto& column : columns_) {
-    values_.push_back(column ? value_in<float>(data, *column) : 0.0f);
-  }
+  for (std::size_t i = 0; i < places_.size(); ++i) values_.push_back(bits_of(data, i));
 }
 
 std::optional<std::uint64_t> LogSeries::sample_time(std::size_t row) const {
@@ -78,36 +97,33 @@ std::size_t LogSeries::first_after(std::uint64_t time) const {
                                   times_.begin());
 }
 
-std::vector<std::string> LogSeries::missing_fields() const {
-  std::vector<std::string> missing;
-  for (std::size_t i = 0; i < columns_.size(); ++i) {
-    if (!columns_[i]) missing.push_back(fields_[i]);
+std::vector<const LogField*> LogSeries::missing_fields() const {
+  std::vector<const LogField*> missing;
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    if (!places_[i].column) missing.push_back(&topic_.fields[i]);
   }
   return missing;
 }
 
 std::vector<std::size_t> LogSeries::logged_channels() const {
   std::vector<std::size_t> logged;
-  for (std::size_t i = 0; i < columns_.size(); ++i) {
-    if (columns_[i]) logged.push_back(channels_[i]);
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    if (places_[i].column) logged.push_back(topic_.fields[i].channel);
   }
   return logged;
 }
 
 void LogSeries::copy(std::size_t row, Sample& to) const {
-  for (std::size_t i = 0; i < channels_.size(); ++i) {
-    const Channel& channel = attest::channels()[channels_[i]];
-    const float value = values_[row * channels_.size() + i];
-    set_value(channel, to, channel.type == ChannelType::u8 ? flag_of(value) : value);
+  const std::size_t count = topic_.fields.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Channel& channel = channels()[topic_.fields[i].channel];
+    const std::uint64_t bits = values_[row * count + i];
+    if (channel.type == ChannelType::f32) {
+      set_value(channel, to, std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
+    } else {
+      set_integer(channel, to, bits);
+    }
   }
-}
-
-bool LogSeries::advance_to(std::uint64_t time, Sample& to) {
-  const std::size_t before = next_;
-  while (next_ < size() && times_[next_] <= time) ++next_;
-  if (next_ == before) return false;
-  copy(next_ - 1, to);
-  return true;
 }
 
 }  // namespace attest::ulog

@@ -3,30 +3,34 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "harness/trace/channels.hpp"
+#include "harness/ulog/log_topics.hpp"
 #include "harness/ulog/reader.hpp"
 
 namespace attest::ulog {
 
 class LogSeries {
  public:
-  // Of the topic's instance 0. An input vehicle_rates_setpoint is the instance 1, because the
-  // controller itself publishes the instance 0 (trace_log.hpp).
-  LogSeries(std::string_view topic, bool is_output);
+  explicit LogSeries(LogTopic topic) : topic_(std::move(topic)) {}
 
-  // `field`: "q[0]", the value of that channel.
-  void add_field(std::string field, std::size_t channel);
+  const LogTopic& topic() const { return topic_; }
+  const std::string& name() const { return topic_.name; }
+  bool is_output() const { return topic_.is_output; }
 
-  const std::string& topic() const { return topic_; }
-  bool is_output() const { return is_output_; }
-  const std::vector<std::size_t>& channels() const { return channels_; }
-
+  // Of the instance that the topic has in a log of attest.
   bool accepts(const Subscription& subscription) const {
-    return subscription.multi_id == multi_id_ && subscription.topic == topic_;
+    return subscription.multi_id == topic_.multi_id && subscription.topic == topic_.name;
   }
+  // The same as the topic's instance 0, where a log of PX4 has the samples of every publisher.
+  void accept_every_publisher() { topic_.multi_id = 0; }
+
+  // Finds the fields in the log, without samples yet. REQUIRES: accepts it.
+  void locate(const Reader& reader, const Subscription& subscription);
   // Leaves out a sample without a timestamp, or whose timestamp is not after the one before.
   // REQUIRES: accepts it.
   void add(const Reader& reader, const Data& data);
@@ -36,37 +40,41 @@ class LogSeries {
   // The same, because the topic has no timestamp. Not counted in left_out().
   std::size_t without_time() const { return without_time_; }
   std::uint64_t time(std::size_t row) const { return times_[row]; }  // us
-  // Of the control_state that an output answers; empty if the topic has no such field.
+  std::span<const std::uint64_t> times() const { return times_; }
+  // `timestamp_sample`, of the sample that an output answers; empty if the topic has no such field.
   std::optional<std::uint64_t> sample_time(std::size_t row) const;
+  std::span<const std::uint64_t> sample_times() const { return sample_times_; }
   // Index of the first sample after that time; size() if there is none.
   std::size_t first_after(std::uint64_t time) const;
 
-  // The fields that the log's topic does not have. REQUIRES: size() > 0.
-  std::vector<std::string> missing_fields() const;
-  // The channels of the fields that it has. REQUIRES: size() > 0.
+  // Whether the log has the topic, perhaps without samples.
+  bool is_located() const { return located_.has_value(); }
+  // The fields that the log's topic does not have. REQUIRES: is_located().
+  std::vector<const LogField*> missing_fields() const;
+  // The channels of the fields that it has. REQUIRES: is_located().
   std::vector<std::size_t> logged_channels() const;
 
-  // Writes the channels of a sample.
+  // Writes the channels of a sample. A field that the log does not have is `if_absent`.
   void copy(std::size_t row, Sample& to) const;
-  // Writes those of the last sample up to `time`, if it is newer than that of the call before.
-  // REQUIRES: times of calls do not decrease.
-  bool advance_to(std::uint64_t time, Sample& to);
 
  private:
-  void locate(const Reader& reader, const Subscription& subscription);
+  // Where a field is; `state`: the flag is true if the value is this.
+  struct Place {
+    std::optional<Column> column;
+    std::optional<std::uint8_t> state;
+  };
 
-  std::string topic_;
-  bool is_output_;
-  std::uint8_t multi_id_;
-  std::vector<std::string> fields_;
-  std::vector<std::size_t> channels_;   // of fields_
+  Place find_place(const Reader& reader, const Subscription& subscription,
+                   const LogField& field) const;
+  std::uint64_t bits_of(const Data& data, std::size_t field) const;
+
+  LogTopic topic_;
   std::optional<std::size_t> located_;  // subscription of the places below
   std::optional<Column> time_, sample_time_;
-  std::vector<std::optional<Column>> columns_;  // of fields_
+  std::vector<Place> places_;  // of the topic's fields
   std::vector<std::uint64_t> times_, sample_times_;
-  std::vector<float> values_;  // of a sample after the other
+  std::vector<std::uint64_t> values_;  // of a sample after the other: integers, bits of floats
   std::size_t left_out_ = 0, without_time_ = 0;
-  std::size_t next_ = 0;  // of advance_to
 };
 
 }  // namespace attest::ulog

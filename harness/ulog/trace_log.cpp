@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <functional>
-#include <map>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "harness/trace/csv.hpp"
 #include "harness/trace/plant_columns.hpp"
+#include "harness/ulog/log_topics.hpp"
 #include "harness/ulog/writer.hpp"
 
 namespace attest {
@@ -18,24 +20,24 @@ namespace {
 using Bytes = std::string;
 
 // The elements of a field, for one tick.
-struct LogField {
+struct Field {
   std::string name;
-  const char* type = "float";
+  const char* type;
   std::vector<std::function<void(const Trace&, std::size_t tick, Bytes&)>> elements;
 };
 
-struct LogTopic {
+struct Topic {
   std::string name;
   std::uint8_t multi_id = 0;
   std::function<bool(const Trace&, std::size_t tick)> is_new = [](const Trace&, std::size_t) {
     return true;
   };
-  std::vector<LogField> floats, bytes;  // in this order: fields have descending sizes
+  std::vector<Field> integers, floats, bytes;  // in this order: fields have descending sizes
 
   std::string definition() const {
     std::string text = name + ":uint64_t timestamp;";
-    for (const auto* fields : {&floats, &bytes}) {
-      for (const LogField& field : *fields) {
+    for (const auto* fields : {&integers, &floats, &bytes}) {
+      for (const Field& field : *fields) {
         const std::size_t count = field.elements.size();
         text += field.type + (count > 1 ? fmt::format("[{}]", count) : "") + " " + field.name + ";";
       }
@@ -47,8 +49,8 @@ struct LogTopic {
     Bytes data;
     const std::uint64_t timestamp = trace.samples[tick].in.timestamp;
     data.append(reinterpret_cast<const char*>(&timestamp), sizeof timestamp);
-    for (const auto* fields : {&floats, &bytes}) {
-      for (const LogField& field : *fields) {
+    for (const auto* fields : {&integers, &floats, &bytes}) {
+      for (const Field& field : *fields) {
         for (const auto& append : field.elements) append(trace, tick, data);
       }
     }
@@ -56,92 +58,150 @@ struct LogTopic {
   }
 };
 
-void append_float(float value, Bytes& bytes) {
+template <typename T>
+void append(T value, Bytes& bytes) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+// "q" of "q[0]".
+Field& field_in(std::vector<Field>& fields, std::string_view path, const char* type) {
+  const std::string name(path.substr(0, path.find('[')));
+  const auto known =
+      std::find_if(fields.begin(), fields.end(), [&](const Field& f) { return f.name == name; });
+  return known != fields.end() ? *known : fields.emplace_back(Field{name, type, {}});
+}
+
+Field& float_in(Topic& topic, std::string_view path) {
+  return field_in(topic.floats, path, "float");
 }
 
 // The topics by name and instance, in the order of their first column.
 class Topics {
  public:
-  // `column`: "vehicle_attitude.q[0]"; one without a topic is a topic with the field `value`.
-  LogField& field(const std::string& column, std::uint8_t multi_id, bool is_byte) {
-    std::string path = column.substr(0, column.find('['));
-    const std::size_t dot = path.find('.');
-    const std::string name = dot == std::string::npos ? "value" : path.substr(dot + 1);
-    auto& fields = is_byte ? topic(path.substr(0, dot), multi_id).bytes
-                           : topic(path.substr(0, dot), multi_id).floats;
-    const auto known =
-        std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.name == name; });
-    if (known != fields.end()) return *known;
-    return fields.emplace_back(LogField{name, is_byte ? "uint8_t" : "float", {}});
-  }
-
-  LogTopic& topic(const std::string& name, std::uint8_t multi_id) {
-    const auto known = std::find_if(topics_.begin(), topics_.end(), [&](const LogTopic& one) {
+  Topic& topic(const std::string& name, std::uint8_t multi_id) {
+    const auto known = std::find_if(topics_.begin(), topics_.end(), [&](const Topic& one) {
       return one.name == name && one.multi_id == multi_id;
     });
     if (known != topics_.end()) return *known;
-    LogTopic& added = topics_.emplace_back();
+    Topic& added = topics_.emplace_back();
     added.name = name;
     added.multi_id = multi_id;
     return added;
   }
 
-  const std::vector<LogTopic>& all() const { return topics_; }
+  const std::vector<Topic>& all() const { return topics_; }
+  // The instances of a topic share its definition, so each gets the fields of the other. A unit's
+  // own topic is published at the time of the step.
+  void complete_instances() {
+    for (Topic& topic : topics_) {
+      for (const Topic& other : topics_) {
+        if (other.name != topic.name || !topic.integers.empty()) continue;
+        for (const Field& missing : other.integers) add_time(topic, missing.name);
+      }
+    }
+  }
 
  private:
-  std::vector<LogTopic> topics_;
+  static void add_time(Topic& topic, const std::string& name) {
+    field_in(topic.integers, name, "uint64_t")
+        .elements.push_back([](const Trace& trace, std::size_t tick, Bytes& bytes) {
+          append(trace.samples[tick].in.timestamp, bytes);
+        });
+  }
+
+  std::vector<Topic> topics_;
 };
 
-// "vehicle_status" of "in/updated.vehicle_status", or of "out/vehicle_status.published".
-void set_freshness(const Channel& channel, const std::string& column, Topics& topics) {
-  const bool is_update = channel.type == ChannelType::bit;
-  const std::string name =
-      is_update ? column.substr(column.find('.') + 1) : column.substr(0, column.find('.'));
-  const std::uint8_t multi_id = is_update && name == "vehicle_rates_setpoint" ? 1 : 0;
-  if (name == "parameter_update") return;
-  topics.topic(name, multi_id).is_new = [&channel](const Trace& trace, std::size_t tick) {
-    return value_of(channel, trace.samples[tick]) != 0;
-  };
-}
-
-void add_channel(const Channel& channel, Topics& topics) {
-  const std::string column(channel.name.substr(channel.name.find('/') + 1));
-  if (channel.type == ChannelType::u64) return;
-  if (channel.type == ChannelType::bit || column.ends_with(".published")) {
-    return set_freshness(channel, column, topics);
-  }
-  const bool is_external = !channel.is_output() && column.starts_with("vehicle_rates_setpoint.");
-  const bool is_byte = channel.type == ChannelType::u8;
-  topics.field(column, is_external ? 1 : 0, is_byte)
-      .elements.push_back([&channel, is_byte](const Trace& trace, std::size_t tick, Bytes& bytes) {
-        const Sample& sample = trace.samples[tick];
-        if (!is_byte) return append_float(float_of(channel, sample), bytes);
-        bytes += static_cast<char>(static_cast<std::uint8_t>(value_of(channel, sample)));
+void add_state(const LogState& state, const Channel& channel, Topic& topic) {
+  field_in(topic.bytes, state.field, "uint8_t")
+      .elements.push_back([&state, &channel](const Trace& trace, std::size_t tick, Bytes& bytes) {
+        append(value_of(channel, trace.samples[tick]) != 0 ? state.if_true : state.if_false, bytes);
       });
 }
 
-// battery_status has a field of the unit's inputs and one of the plant: it is logged at each tick.
-void add_plant(Topics& topics) {
-  for (const PlantColumn& column : plant_columns()) {
-    const std::string name = column.name.substr(plant_prefix.size());
-    topics.field(name, 0, false)
-        .elements.push_back([&column](const Trace& trace, std::size_t tick, Bytes& bytes) {
-          append_float(column.value(trace.plant[tick]), bytes);
+void add_field(const LogField& from, Topic& topic) {
+  const Channel& channel = channels()[from.channel];
+  if (channel.type == ChannelType::u64) {
+    field_in(topic.integers, from.name, "uint64_t")
+        .elements.push_back([&channel](const Trace& trace, std::size_t tick, Bytes& bytes) {
+          append(integer_of(channel, trace.samples[tick]), bytes);
         });
-    topics.topic(name.substr(0, name.find_first_of(".[")), 0).is_new =
-        [](const Trace&, std::size_t) { return true; };
+  } else if (channel.type == ChannelType::u8) {
+    field_in(topic.bytes, from.name, "uint8_t")
+        .elements.push_back([&channel](const Trace& trace, std::size_t tick, Bytes& bytes) {
+          append(static_cast<std::uint8_t>(value_of(channel, trace.samples[tick])), bytes);
+        });
+    if (from.state) add_state(*from.state, channel, topic);
+  } else {
+    float_in(topic, from.name)
+        .elements.push_back([&channel](const Trace& trace, std::size_t tick, Bytes& bytes) {
+          append(float_of(channel, trace.samples[tick]), bytes);
+        });
   }
 }
 
-Topics topics_of(const Trace& trace) {
-  Topics topics;
-  const auto table = channels();
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    if (trace.present[i]) add_channel(table[i], topics);
+void add_topic(const LogTopic& from, const Trace& trace, Topics& topics) {
+  const bool has_flag = from.is_new && trace.present[*from.is_new];
+  const bool has_fields =
+      std::any_of(from.fields.begin(), from.fields.end(),
+                  [&](const LogField& field) { return trace.present[field.channel]; });
+  if (!has_flag && !has_fields) return;
+  Topic& topic = topics.topic(from.name, from.multi_id);
+  if (has_flag) {
+    topic.is_new = [&flag = channels()[*from.is_new]](const Trace& of, std::size_t tick) {
+      return value_of(flag, of.samples[tick]) != 0;
+    };
   }
-  if (!trace.plant.empty()) add_plant(topics);
+  for (const LogField& field : from.fields) {
+    if (trace.present[field.channel]) add_field(field, topic);
+  }
+}
+
+// A column of the plant as topic and field of a log. One without a topic is a topic with the field
+// `value`. What a unit of v1.14 to v1.16 receives is an estimate at its own times, so the true
+// state is a topic of its own where the unit has a topic of that name; PX4's simulators call it so,
+// too.
+std::pair<std::string, std::string> plant_field(std::string_view path, Module module,
+                                                const std::vector<LogTopic>& layout) {
+  const auto dot = path.find('.');
+  std::string topic(path.substr(0, path.find_first_of(".[")));
+  const bool is_known = std::any_of(layout.begin(), layout.end(),
+                                    [&](const LogTopic& one) { return one.name == topic; });
+  if (is_known && module != Module::mc_att_control) topic += "_groundtruth";
+  if (dot != path.npos) return {topic, std::string(path.substr(dot + 1))};
+  return {topic, fmt::format("value{}", path.substr(std::min(path.find('['), path.size())))};
+}
+
+// Of the old controller, battery_status has a field of the inputs and one of the plant: it is
+// logged at each tick.
+void add_plant(Module module, const std::vector<LogTopic>& layout, Topics& topics) {
+  for (const PlantColumn& column : plant_columns()) {
+    const std::string_view path = std::string_view(column.name).substr(plant_prefix.size());
+    const auto [name, field] = plant_field(path, module, layout);
+    Topic& topic = topics.topic(name, 0);
+    float_in(topic, field)
+        .elements.push_back([&column](const Trace& trace, std::size_t tick, Bytes& bytes) {
+          append(column.value(trace.plant[tick]), bytes);
+        });
+    topic.is_new = [](const Trace&, std::size_t) { return true; };
+  }
+}
+
+Topics topics_of(const Trace& trace, const std::vector<LogTopic>& layout) {
+  Topics topics;
+  for (const LogTopic& topic : layout) add_topic(topic, trace, topics);
+  if (!trace.plant.empty()) add_plant(module_of(trace.present), layout, topics);
+  topics.complete_instances();
   return topics;
+}
+
+Result<void> define_topics(const Topics& topics, ulog::Writer& writer) {
+  std::set<std::string> defined;
+  for (const Topic& topic : topics.all()) {
+    if (!defined.insert(topic.name).second) continue;
+    if (auto done = writer.define(topic.definition()); !done) return done;
+  }
+  return {};
 }
 
 Result<void> write_parameters(std::span<const ParameterChange> changes, ulog::Writer& writer) {
@@ -153,7 +213,7 @@ Result<void> write_parameters(std::span<const ParameterChange> changes, ulog::Wr
 
 Result<void> write_ticks(const Trace& trace, const Topics& topics, ulog::Writer& writer) {
   std::vector<std::uint16_t> ids;
-  for (const LogTopic& topic : topics.all()) {
+  for (const Topic& topic : topics.all()) {
     const auto id = writer.subscribe(topic.name, topic.multi_id);
     if (!id) return tl::unexpected(id.error());
     ids.push_back(*id);
@@ -163,7 +223,7 @@ Result<void> write_ticks(const Trace& trace, const Topics& topics, ulog::Writer&
   for (std::size_t tick = 0; tick < trace.samples.size(); ++tick) {
     if (auto set = write_parameters(changes.take_until(tick), writer); !set) return set;
     for (std::size_t i = 0; i < ids.size(); ++i) {
-      const LogTopic& topic = topics.all()[i];
+      const Topic& topic = topics.all()[i];
       if (!topic.is_new(trace, tick)) continue;
       if (auto written = writer.data(ids[i], topic.data(trace, tick)); !written) return written;
     }
@@ -172,13 +232,16 @@ Result<void> write_ticks(const Trace& trace, const Topics& topics, ulog::Writer&
 }
 
 Result<void> write_log(const std::filesystem::path& path, const Trace& trace) {
-  if (module_of(trace.present) != Module::mc_att_control) {
-    return fail_at(path.string(), "a ULog is for traces of the controller; write a .csv");
+  const Module module = module_of(trace.present);
+  if (!info_of(module).has_updated) {
+    return fail_at(path.string(),
+                   "a ULog is for traces of the controller or of a unit of it; write a .csv");
   }
   const std::uint64_t start = trace.samples.empty() ? 0 : trace.samples.front().in.timestamp;
   auto writer = ulog::Writer::open(path, start);
   if (!writer) return tl::unexpected(writer.error());
-  const Topics topics = topics_of(trace);
+  const std::vector<LogTopic> layout = log_topics(module);  // outlives the topics
+  const Topics topics = topics_of(trace, layout);
   if (auto set = writer->info("sys_name", "attest"); !set) return set;
   if (!trace.source.empty()) {
     if (auto set = writer->info("attest_source", trace.source); !set) return set;
@@ -186,10 +249,7 @@ Result<void> write_log(const std::filesystem::path& path, const Trace& trace) {
   if (auto set = write_parameters(PendingChanges(trace.parameters).take_until(0), *writer); !set) {
     return set;
   }
-  for (const LogTopic& topic : topics.all()) {
-    if (topic.multi_id > 0) continue;  // the same fields as those of instance 0
-    if (auto defined = writer->define(topic.definition()); !defined) return defined;
-  }
+  if (auto defined = define_topics(topics, *writer); !defined) return defined;
   if (auto written = write_ticks(trace, topics, *writer); !written) return written;
   return writer->commit();
 }

@@ -1,11 +1,13 @@
 #include "harness/verify/evaluate_log.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "harness/casefile/parse.hpp"
+#include "harness/golden/recorded.hpp"
 #include "harness/host/host_here.hpp"
 #include "harness/port/builtin.hpp"
 #include "harness/port/profiles.hpp"
@@ -15,27 +17,54 @@
 namespace attest {
 namespace {
 
+// Of controller and attitude unit. Depends on one sample only, unless the sticks make the setpoint
+// (Known::if_every_step).
 constexpr std::string_view memoryless = "vehicle_rates_setpoint";
 
-void leave_out_parameters_of_others(const std::string& profile, Trace& trace) {
-  const auto own = parameter_names(Module::mc_att_control, profile);
+bool has_memory(Module module, const TopicAgreement& topic) {
+  return module == Module::rate_unit || topic.topic != memoryless;
+}
+
+void leave_out_parameters_of_others(const Subject& subject, Trace& trace) {
+  const auto own = parameter_names(subject.module, subject.profile);
   std::erase_if(trace.parameters, [&](const ParameterChange& change) {
     return std::find(own.begin(), own.end(), change.name) == own.end();
   });
 }
 
-// `inputs` with the reference's outputs. Without them if the reference refuses the inputs: then no
-// deviation from the log is explained.
-Trace answered_by_reference(Trace inputs, const std::string& profile) {
+void set_parameters(const std::vector<ParameterChange>& parameters, Trace& trace) {
+  for (const ParameterChange& change : parameters) override_parameter(change, trace);
+}
+
+// `got` with the log's values of the parameters that the log has.
+Trace with_parameters_of_log(const LoggedUnit& log, Trace got) {
+  const auto& logged = log.trace.parameters;
+  const auto is_logged = [&](const ParameterChange& change) {
+    return std::any_of(logged.begin(), logged.end(),
+                       [&](const ParameterChange& one) { return one.name == change.name; });
+  };
+  std::vector<ParameterChange> parameters;
+  std::copy_if(got.parameters.begin(), got.parameters.end(), std::back_inserter(parameters),
+               [&](const ParameterChange& change) { return !is_logged(change); });
+  parameters.insert(parameters.end(), logged.begin(), logged.end());
+  std::stable_sort(parameters.begin(), parameters.end(),
+                   [](const auto& a, const auto& b) { return a.tick < b.tick; });
+  got.parameters = std::move(parameters);
+  return got;
+}
+
+// Gives the inputs the reference's outputs. False, without outputs, if the reference refuses them,
+// for example because it does not have the profile: then no deviation from the log is explained.
+bool answer_by_reference(const Subject& subject, Trace& inputs) {
   HostHere reference(open_builtin());
-  if (const auto fault = reference.drive({profile}, inputs)) {
+  const bool has_answered = !reference.drive(subject, inputs);
+  if (!has_answered) {
     for (Sample& sample : inputs.samples) sample.clear_outputs();
   }
-  return inputs;
+  return has_answered;
 }
 
 std::string why_it_fails(const TopicAgreement& topic, const LogLimits& limits) {
-  if (topic.paired == 0) return fmt::format("no sample of {} answers a control_state", topic.topic);
   if (topic.non_finite > 0) {
     return fmt::format("NaN or infinity in {} samples of {} where the log has numbers",
                        topic.non_finite, topic.topic);
@@ -49,40 +78,128 @@ std::string why_it_fails(const TopicAgreement& topic, const LogLimits& limits) {
                      100 * topic.part_unexplained(), topic.topic, 100 * limits.most_unexplained);
 }
 
+std::vector<bool> ticks_but(const LoggedUnit& log, Known most) {
+  std::vector<bool> leaves_out;
+  for (const Known known : log.known) leaves_out.push_back(known > most);
+  return leaves_out;
+}
+
+// What of a log can be compared with any port.
+class Comparable {
+ public:
+  // `reference`: its outputs; null if it does not know the law, so that every log is believed.
+  Comparable(const LoggedUnit& log, const Trace* reference, const LogLimits& limits)
+      : log_(log), limits_(limits) {
+    if (log.has_every_step) {
+      leaves_out_ = ticks_but(log, Known::if_every_step);
+      compare_reference(reference);
+      if (agrees_with_reference(memoryless)) return;
+    }
+    leaves_out_ = ticks_but(log, Known::all);
+    compare_reference(reference);
+  }
+
+  const std::vector<bool>& leaves_out() const { return leaves_out_; }
+
+  std::string why_not(const TopicAgreement& topic) const {
+    const bool needs_steps = has_memory(log_.module, topic);
+    if (needs_steps && !log_.not_judged.empty()) return log_.not_judged;
+    if (needs_steps && log_.module == Module::mc_att_control && !log_.has_every_step) {
+      return "it depends on earlier steps, and the log does not have every step";
+    }
+    if (topic.paired == 0) {
+      return fmt::format("no sample of it answers a {} of which the log has all that it needs",
+                         log_.step_topic);
+    }
+    if (log_.has_every_step && log_.module == Module::mc_att_control) return "";
+    // The topics of a rate unit are judged together: without its integral little is left of it.
+    for (const TopicAgreement& one : of_reference_) {
+      const bool concerns = one.topic == topic.topic || log_.module == Module::rate_unit;
+      if (concerns && one.paired > 0 && !one.agrees(limits_)) return why_unlike_reference(one);
+    }
+    return "";
+  }
+
+ private:
+  void compare_reference(const Trace* reference) {
+    if (reference == nullptr) return;
+    of_reference_ = agreement_with_log(*reference, log_.trace, *reference, limits_, leaves_out_);
+  }
+
+  std::string why_unlike_reference(const TopicAgreement& topic) const {
+    const char* const why =
+        log_.begins_in_flight
+            ? "the log begins in flight, where the integral, filters or headings are not known"
+            : "the log lacks samples that the unit had, what was assumed does not hold, or another "
+              "law flew";
+    return fmt::format("only {:.1f}% of the reference's {} are within {:g} of the log: {}",
+                       100 * topic.part_within(), topic.topic, limits_.within, why);
+  }
+
+  const TopicAgreement* find(std::string_view topic) const {
+    const auto found = std::find_if(of_reference_.begin(), of_reference_.end(),
+                                    [&](const TopicAgreement& one) { return one.topic == topic; });
+    return found == of_reference_.end() ? nullptr : &*found;
+  }
+
+  bool agrees_with_reference(std::string_view topic) const {
+    const TopicAgreement* const found = find(topic);
+    return found == nullptr || found->agrees(limits_);
+  }
+
+  const LoggedUnit& log_;
+  const LogLimits& limits_;
+  std::vector<bool> leaves_out_;
+  std::vector<TopicAgreement> of_reference_;
+};
+
+void judge_topics(const std::vector<TopicAgreement>& topics, const LogLimits& limits,
+                  CaseResult& result) {
+  for (const TopicAgreement& topic : topics) {
+    const bool is_non_finite = topic.non_finite > 0;  // wrong after any earlier steps
+    if (!is_non_finite && (!topic.not_judged.empty() || topic.agrees(limits))) continue;
+    if (result.verdict == Verdict::non_finite) continue;
+    if (result.reason.empty() || is_non_finite) result.reason = why_it_fails(topic, limits);
+    result.verdict = is_non_finite ? Verdict::non_finite : Verdict::fail;
+  }
+  const auto is_judged = [](const TopicAgreement& topic) { return topic.not_judged.empty(); };
+  if (result.verdict != Verdict::pass || std::any_of(topics.begin(), topics.end(), is_judged)) {
+    return;
+  }
+  result.verdict = Verdict::skip;
+  result.reason = topics.empty() ? "the log has no output of it" : topics.front().not_judged;
+}
+
 }  // namespace
 
-LogResult evaluate_log(const FlightLog& log, const std::string& profile, PortHost& host,
-                       const LogLimits& limits) {
+LogResult evaluate_log(const LoggedUnit& log, const std::string& profile, PortHost& host,
+                       const LogLimits& limits, const std::vector<ParameterChange>& parameters) {
   LogResult found{result_for(log.trace, profile), {}, log.trace};
   CaseResult& result = found.result;
-  leave_out_parameters_of_others(profile, found.got);
+  const Subject subject{profile, log.module};
+  set_parameters(parameters, found.got);
+  leave_out_parameters_of_others(subject, found.got);
   for (Sample& sample : found.got.samples) sample.clear_outputs();
   if (declines(host.says(), result)) return found;
-  const Trace reference = answered_by_reference(found.got, profile);
-  if (const auto fault = host.drive({profile}, found.got)) {
+  if (log.trace.samples.empty()) {
+    result.verdict = Verdict::skip;
+    result.reason = log.not_judged;
+    return found;
+  }
+  Trace as_flown = with_parameters_of_log(log, found.got);
+  leave_out_parameters_of_others(subject, as_flown);
+  const bool has_reference = answer_by_reference(subject, as_flown);
+  if (const auto fault = host.drive(subject, found.got)) {
     found.got.keep_first(fault->tick);
     judge(*fault, result);
     return found;
   }
   result.ticks = log.trace.samples.size();
-  found.topics = agreement_with_log(found.got, log.trace, reference, limits);
-  for (TopicAgreement& topic : found.topics) {
-    topic.is_judged = log.has_every_step || topic.topic == memoryless;
-    const bool is_non_finite = topic.non_finite > 0;  // wrong after any earlier steps
-    if (!is_non_finite && (!topic.is_judged || topic.agrees(limits))) continue;
-    if (result.verdict != Verdict::non_finite) {
-      result.verdict = is_non_finite ? Verdict::non_finite : Verdict::fail;
-      result.reason =
-          result.reason.empty() || is_non_finite ? why_it_fails(topic, limits) : result.reason;
-    }
-  }
-  const auto is_judged = [](const TopicAgreement& topic) { return topic.is_judged; };
-  if (std::none_of(found.topics.begin(), found.topics.end(), is_judged)) {
-    result.verdict = Verdict::skip;
-    result.reason =
-        "the log has no vehicle_rates_setpoint and not every step, so no output of it "
-        "can be computed";
-  }
+  const Comparable comparable(log, has_reference ? &as_flown : nullptr, limits);
+  found.topics =
+      agreement_with_log(found.got, log.trace, as_flown, limits, comparable.leaves_out());
+  for (TopicAgreement& topic : found.topics) topic.not_judged = comparable.why_not(topic);
+  judge_topics(found.topics, limits, result);
   return found;
 }
 

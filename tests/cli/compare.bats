@@ -156,3 +156,17 @@ load common
   has "no timestamp in common"
   has "1 rows left out, because their timestamps are beyond"
 }
+
+@test "a trace of a unit has the signals of its log" {
+  for vector in sticks/tilt_filter acro/sticks; do
+    "$ATTEST" record "px4-v1.16.0/$vector" --rate 250 --out unit.csv
+    "$ATTEST" record "px4-v1.16.0/$vector" --rate 250 --out unit.ulg
+    run "$ATTEST" compare unit.csv unit.ulg --level exact
+    [ "$status" -eq 0 ]
+    has "common signals agree"
+    lacks "left out"
+  done
+  run "$ATTEST" plot unit.ulg # of the rate unit in acro mode
+  [ "$status" -eq 0 ]
+  has "unit.html: 15 of"
+}

@@ -142,6 +142,37 @@ def flight_log():
         yield ulog_message("D", struct.pack("<HQQ8f", 3, time + 80, time, *8 * [0.1]))
 
 
+def cascade_log():
+    attitude = "uint64_t timestamp;uint64_t timestamp_sample;float[4] q;float[4] delta_q_reset;"
+    topics = {
+        "vehicle_attitude": attitude + "uint8_t quat_reset_counter;",
+        "vehicle_attitude_setpoint": "uint64_t timestamp;float yaw_sp_move_rate;float[4] q_d;"
+        "float[3] thrust_body;",
+        "vehicle_rates_setpoint": "uint64_t timestamp;float roll;float pitch;float yaw;"
+        "float[3] thrust_body;",
+        "vehicle_angular_velocity": "uint64_t timestamp;uint64_t timestamp_sample;float[3] xyz;"
+        "float[3] xyz_derivative;",
+        "vehicle_torque_setpoint": "uint64_t timestamp;uint64_t timestamp_sample;float[3] xyz;",
+        "vehicle_control_mode": "uint64_t timestamp;bool flag_armed;"
+        "bool flag_control_rates_enabled;bool flag_control_manual_enabled;"
+        "bool flag_control_attitude_enabled;",
+    }
+    release = b"\x17uint32_t ver_sw_release" + struct.pack("<I", 0x011000FF)
+    yield ulog_message("I", release)
+    for name, fields in topics.items():
+        yield ulog_message("F", f"{name}:{fields}".encode())
+    for number, name in enumerate(topics):
+        yield ulog_message("A", struct.pack("<BH", 0, number) + name.encode())
+    for time in (4000, 8000, 12000):
+        mode = 1, 1, time == 8000, 1
+        yield ulog_message("D", struct.pack("<HQ4B", 5, time - 50, *mode))
+        yield ulog_message("D", struct.pack("<HQ8f", 1, time - 40, 0, 1, 0, 0, 0, 0, 0, -0.5))
+        yield ulog_message("D", struct.pack("<HQQ8fB", 0, time, time, *[1, 0, 0, 0] * 2, 3))
+        yield ulog_message("D", struct.pack("<HQQ6f", 3, time, time, *6 * [0.1]))
+        yield ulog_message("D", struct.pack("<HQ6f", 2, time + 50, 0.1, 0, 0, 0, 0, -0.5))
+        yield ulog_message("D", struct.pack("<HQQ3f", 4, time + 60, time, 0.1, 0, 0))
+
+
 def ulog_seeds():
     key_value = b"\x0ffloat MC_ROLL_P" + struct.pack("<f", 6.5)
     inner = struct.pack("<ffI", 1, 2, 0)
@@ -169,6 +200,7 @@ def ulog_seeds():
     yield head + flags + b"".join(log) + bytes(9) + b"".join(log[6:])
     yield head + appended + b"".join(log) + b"".join(log[6:])
     yield head + flags + b"".join(flight_log())
+    yield head + flags + b"".join(cascade_log())
 
 
 def words_of(seeds):

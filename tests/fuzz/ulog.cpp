@@ -55,22 +55,31 @@ std::uint64_t sum_of_log(const std::filesystem::path& file, std::size_t size) {
   return sum;
 }
 
+void check_unit(const LoggedUnit& unit) {
+  if (!unit.not_judged.empty()) require_readable(unit.not_judged);
+  require(unit.known.size() == unit.trace.samples.size(), "each tick has what is known of it");
+  std::uint64_t last = 0;
+  for (const Sample& sample : unit.trace.samples) {
+    require(sample.in.timestamp > last || &sample == unit.trace.samples.data(),
+            "the times of steps increase");
+    last = sample.in.timestamp;
+  }
+  for (const LoggedOutput& output : unit.outputs) {
+    const auto flag = find_channel(unit.module, "out/" + output.topic + ".published");
+    std::size_t published = 0;
+    for (const Sample& sample : unit.trace.samples) {
+      published += value_of(channels()[*flag], sample) != 0 ? 1 : 0;
+    }
+    require(published == output.paired && output.paired <= output.samples,
+            "a step has an output if one is paired with it");
+  }
+}
+
 void check_flight(const std::filesystem::path& file) {
   const auto log = read_flight_log(file);
   if (!log) return require_readable(log.error(), file);
   for (const std::string& note : log->notes) require_readable(note);
-  std::size_t published = 0, paired = 0;
-  std::uint64_t last = 0;
-  for (const Sample& sample : log->trace.samples) {
-    require(sample.in.timestamp > last || &sample == log->trace.samples.data(),
-            "the times of steps increase");
-    last = sample.in.timestamp;
-    published += sample.out.vehicle_rates_setpoint.published;
-  }
-  for (const LoggedOutput& output : log->outputs) {
-    if (output.topic == "vehicle_rates_setpoint") paired = output.paired;
-  }
-  require(published == paired, "a step has an output if one is paired with it");
+  for (const LoggedUnit& unit : log->units) check_unit(unit);
 }
 
 }  // namespace

@@ -36,9 +36,12 @@ class SecondsOf {
 };
 
 std::string unit_of_signal(const std::string& name) {
-  for (const char* prefix : {"out/", "in/"}) {
-    if (const auto channel = find_channel(Module::mc_att_control, prefix + name)) {
-      return std::string(unit_of(channels()[*channel].quantity));
+  for (const ModuleInfo& info : modules()) {
+    if (!info.has_updated) continue;
+    for (const char* prefix : {"out/", "in/"}) {
+      if (const auto channel = find_channel(info.module, prefix + name)) {
+        return std::string(unit_of(channels()[*channel].quantity));
+      }
     }
   }
   return "";
@@ -133,15 +136,18 @@ Plot plot_of_output(std::size_t index, const Channel& published, const Trace& wa
   return plot;
 }
 
-// The outputs of the controller that `want` has.
-PlotGroup plots_of_outputs(const Trace& want, const Trace& got, const char* name_of_want) {
-  PlotGroup group{"Outputs", time_label, {}};
-  const ChannelSet outputs = channels_of(Module::mc_att_control, "out/") & want.present;
+// The outputs that `want` has, of topics with a flag `published`.
+PlotGroup plots_of_outputs(const Trace& want, const Trace& got, const char* name_of_want,
+                           std::string caption = "Outputs") {
+  PlotGroup group{std::move(caption), time_label, {}};
+  const Module module = module_of(want.present);
+  const ChannelSet outputs = channels_of(module, "out/") & want.present;
   for (std::size_t i = 0; i < channels().size(); ++i) {
     if (!outputs[i] || channels()[i].type != ChannelType::f32) continue;
     const std::string_view name = channels()[i].name;
-    const auto published = find_channel(
-        Module::mc_att_control, fmt::format("{}.published", name.substr(0, name.find('.'))));
+    const auto published =
+        find_channel(module, fmt::format("{}.published", name.substr(0, name.find('.'))));
+    if (!published) continue;
     group.plots.push_back(plot_of_output(i, channels()[*published], want, got, name_of_want));
   }
   return group;
@@ -160,7 +166,7 @@ std::vector<PageCell> row_of(const TopicAgreement& topic, const LoggedOutput& lo
     const double all = static_cast<double>(std::max<std::size_t>(topic.paired, 1));
     return fmt::format("{:.1f}%", 100 * static_cast<double>(count) / all);
   };
-  const PageCell verdict = topic.is_judged
+  const PageCell verdict = topic.not_judged.empty()
                                ? PageCell(topic.agrees(limits) ? "agrees" : "differs",
                                           topic.agrees(limits) ? Verdict::pass : Verdict::fail)
                                : PageCell("not judged");
@@ -174,6 +180,27 @@ std::vector<PageCell> row_of(const TopicAgreement& topic, const LoggedOutput& lo
           part(topic.within),
           part(topic.between_samples),
           part(topic.unexplained())};
+}
+
+PageTable table_of(const LoggedUnit& unit, const LogResult& result, const LogLimits& limits) {
+  PageTable table{fmt::format("How far the port is from the log: {}", info_of(unit.module).title),
+                  {"topic", "", "paired", "median", "90%", "99%", "largest", "within",
+                   "between samples", "not explained"}};
+  for (std::size_t i = 0; i < result.topics.size(); ++i) {
+    table.rows.push_back(row_of(result.topics[i], unit.outputs[i], limits));
+  }
+  return table;
+}
+
+// A failure, else what was judged, else that of the first unit.
+Verdict worst_of(const std::vector<LogResult>& results) {
+  Verdict worst = results.front().result.verdict;
+  for (const LogResult& one : results) {
+    const Verdict verdict = one.result.verdict;
+    if (fails_a_run(verdict)) return verdict;
+    if (verdict == Verdict::pass) worst = verdict;
+  }
+  return worst;
 }
 
 }  // namespace
@@ -237,26 +264,32 @@ std::string comparison_page(const SignalsComparison& comparison, const TimedSign
   return plot_page(page);
 }
 
-std::string log_page(const FlightLog& log, const LogResult& result, const LogLimits& limits,
-                     const std::string& port) {
+std::string log_page(const FlightLog& log, const std::vector<LogResult>& results,
+                     const LogLimits& limits, const std::string& port) {
   PlotPage page;
-  page.conclusion = {result.result.verdict, std::string(name_of(result.result.verdict)),
-                     log.trace.source,
-                     fmt::format("{}, {}, {} ticks", port, log.profile, log.trace.samples.size())};
-  if (!result.result.reason.empty()) page.notes.push_back({result.result.reason, true});
-  for (const std::string& note : log.notes) page.notes.push_back({note});
+  const Verdict verdict = worst_of(results);
+  std::vector<std::string> ticks;
   page.facts = {{"agreement", fmt::format("at least {:g}% of the samples within {:g}, at most "
                                           "{:g}% not explained",
                                           100 * limits.least_part_within, limits.within,
                                           100 * limits.most_unexplained)}};
-  PageTable table{"How far the port is from the log",
-                  {"topic", "", "paired", "median", "90%", "99%", "largest", "within",
-                   "between samples", "not explained"}};
-  for (std::size_t i = 0; i < result.topics.size(); ++i) {
-    table.rows.push_back(row_of(result.topics[i], log.outputs[i], limits));
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const LoggedUnit& unit = log.units[i];
+    const CaseResult& result = results[i].result;
+    const std::string title(info_of(unit.module).title);
+    ticks.push_back(fmt::format("{} ticks", unit.trace.samples.size()));
+    page.facts.push_back({title, std::string(name_of(result.verdict))});
+    if (!result.reason.empty()) {
+      page.notes.push_back({title + ": " + result.reason, fails_a_run(result.verdict)});
+    }
+    if (!results[i].topics.empty()) page.tables.push_back(table_of(unit, results[i], limits));
+    if (unit.trace.samples.empty()) continue;
+    page.groups.push_back(plots_of_outputs(unit.trace, results[i].got, "logged",
+                                           fmt::format("Outputs of the {}", title)));
   }
-  page.tables = {table};
-  page.groups = {plots_of_outputs(log.trace, result.got, "logged")};
+  page.conclusion = {verdict, std::string(name_of(verdict)), log.units.front().trace.source,
+                     fmt::format("{}, {}, {}", port, log.profile, fmt::join(ticks, " and "))};
+  for (const std::string& note : log.notes) page.notes.push_back({note});
   return plot_page(page);
 }
 

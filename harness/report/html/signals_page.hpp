@@ -21,11 +21,12 @@ inline constexpr std::size_t most_plotted_signals = 24;
 std::string comparison_page(const SignalsComparison& comparison, const TimedSignals& got,
                             const TimedSignals& want, std::int64_t shift_us);
 
-// A port against a log: the agreement of each topic, and got against logged for each output.
-std::string log_page(const FlightLog& log, const LogResult& result, const LogLimits& limits,
-                     const std::string& port);
+// A port against a log: for each unit, the agreement of each topic and got against logged for each
+// output. REQUIRES: a result for each unit.
+std::string log_page(const FlightLog& log, const std::vector<LogResult>& results,
+                     const LogLimits& limits, const std::string& port);
 
-// A port against a trace of the controller: the first and the worst deviation, and got against want
+// A port against a trace: the first and the worst deviation, and got against want
 // for each output.
 std::string trace_page(const Trace& want, const Trace& got, const CaseResult& result,
                        const std::string& port);

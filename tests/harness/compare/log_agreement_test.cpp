@@ -107,6 +107,21 @@ TEST(LogAgreement, ANumberIsNeverAnsweredByNanOrInfinity) {
             1u);
 }
 
+TEST(LogAgreement, ATickThatIsLeftOutMustStillHaveNumbers) {
+  const Rolls logged{1.0f, 2.0f, 3.0f};
+  const auto found = [&](const Rolls& got, const Rolls& reference) {
+    return agreement_with_log(trace_of(got), trace_of(logged), trace_of(reference), {},
+                              {false, true, false})
+        .at(0);
+  };
+  EXPECT_EQ(found({1.0f, 9.0f, 3.0f}, logged).left_out, 1u);
+  EXPECT_EQ(found({1.0f, 9.0f, 3.0f}, logged).paired, 2u);
+  EXPECT_TRUE(found({1.0f, 9.0f, 3.0f}, logged).agrees({}));
+  EXPECT_FALSE(found({1.0f, nan, 3.0f}, logged).agrees({}));
+  // The reference has no number either, for what the log has of the inputs.
+  EXPECT_TRUE(found({1.0f, nan, 3.0f}, {1.0f, nan, 3.0f}).agrees({}));
+}
+
 TEST(LogAgreement, AWrongSignIsNotExplained) {
   Rolls got, logged;
   for (int i = 0; i < 100; ++i) {

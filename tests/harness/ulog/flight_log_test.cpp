@@ -92,7 +92,7 @@ class FlightLogFile : public ulog::LogFile {
 
 std::vector<float> rolls(const FlightLog& log) {
   std::vector<float> found;
-  for (const Sample& sample : log.trace.samples) {
+  for (const Sample& sample : log.units[0].trace.samples) {
     if (sample.out.vehicle_rates_setpoint.published == 0) continue;
     found.push_back(sample.out.vehicle_rates_setpoint.roll);
   }
@@ -105,12 +105,12 @@ TEST_F(FlightLogFile, AStepIsAControlStateWithItsOutputs) {
   add_rates(5060, 0.75f);
   add_controls(5090, 5000, 0.875f);
   const FlightLog log = read();
-  ASSERT_EQ(log.trace.samples.size(), 2u);
-  EXPECT_EQ(log.trace.samples[1].in.timestamp, 5000u);
-  EXPECT_EQ(log.trace.samples[1].in.control_state.roll_rate, 0.125f);
-  EXPECT_EQ(log.trace.samples[1].out.actuator_controls_0.control[0], 0.875f);
+  ASSERT_EQ(log.units[0].trace.samples.size(), 2u);
+  EXPECT_EQ(log.units[0].trace.samples[1].in.timestamp, 5000u);
+  EXPECT_EQ(log.units[0].trace.samples[1].in.control_state.roll_rate, 0.125f);
+  EXPECT_EQ(log.units[0].trace.samples[1].out.actuator_controls_0.control[0], 0.875f);
   EXPECT_THAT(rolls(log), ElementsAre(0.25f, 0.75f));
-  EXPECT_TRUE(log.has_every_step);
+  EXPECT_TRUE(log.units[0].has_every_step);
 }
 
 TEST_F(FlightLogFile, AnOutputThatTheTopicLacksIsNotCompared) {
@@ -121,12 +121,13 @@ TEST_F(FlightLogFile, AnOutputThatTheTopicLacksIsNotCompared) {
   add("vehicle_rates_setpoint", 1050, 0.25f, 0.5f);
   add("actuator_controls_0", 1080, std::uint64_t{1000});
   const FlightLog log = read();
-  const ChannelSet outputs = channels_of(Module::mc_att_control, "out/") & log.trace.present;
+  const ChannelSet outputs =
+      channels_of(Module::mc_att_control, "out/") & log.units[0].trace.present;
   EXPECT_EQ(outputs.count(), 3u);
   EXPECT_TRUE(outputs[*find_channel(Module::mc_att_control, "out/vehicle_rates_setpoint.roll")]);
   EXPECT_FALSE(outputs[*find_channel(Module::mc_att_control, "out/vehicle_rates_setpoint.yaw")]);
-  ASSERT_EQ(log.outputs.size(), 1u);
-  EXPECT_EQ(log.outputs[0].topic, "vehicle_rates_setpoint");
+  ASSERT_EQ(log.units[0].outputs.size(), 1u);
+  EXPECT_EQ(log.units[0].outputs[0].topic, "vehicle_rates_setpoint");
   EXPECT_THAT(log.notes, Contains("not in the log, so not compared: vehicle_rates_setpoint.pitch, "
                                   "vehicle_rates_setpoint.yaw"));
 }
@@ -152,7 +153,7 @@ TEST_F(FlightLogFile, SamplesWithoutTimestampAreCounted) {
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_THAT(read->notes,
               Contains("2 samples of battery_status left out, because the topic has no timestamp"));
-  EXPECT_FALSE(read->has_every_step);
+  EXPECT_FALSE(read->units[0].has_every_step);
 }
 
 TEST_F(FlightLogFile, ASecondOutputBeforeTheNextStateAnswersASampleThatIsNotLogged) {
@@ -163,9 +164,9 @@ TEST_F(FlightLogFile, ASecondOutputBeforeTheNextStateAnswersASampleThatIsNotLogg
   add_controls(5090, 5000, 0);
   const FlightLog log = read();
   EXPECT_THAT(rolls(log), ElementsAre(0.25f, 0.75f));
-  EXPECT_EQ(log.outputs[0].samples, 3u);
-  EXPECT_EQ(log.outputs[0].paired, 2u);
-  EXPECT_FALSE(log.has_every_step);
+  EXPECT_EQ(log.units[0].outputs[0].samples, 3u);
+  EXPECT_EQ(log.units[0].outputs[0].paired, 2u);
+  EXPECT_FALSE(log.units[0].has_every_step);
 }
 
 TEST_F(FlightLogFile, ControlsAnswerTheStateOfTheirSampleTime) {
@@ -173,9 +174,9 @@ TEST_F(FlightLogFile, ControlsAnswerTheStateOfTheirSampleTime) {
   add_state(5000);
   add_controls(5010, 3000, 0.125f);  // the answer to a state that is not in the log
   const FlightLog log = read();
-  EXPECT_EQ(log.trace.samples[1].out.actuator_controls_0.published, 0);
-  EXPECT_EQ(log.trace.samples[1].out.actuator_controls_0.control[0], 0.5f);  // held
-  EXPECT_FALSE(log.has_every_step);
+  EXPECT_EQ(log.units[0].trace.samples[1].out.actuator_controls_0.published, 0);
+  EXPECT_EQ(log.units[0].trace.samples[1].out.actuator_controls_0.control[0], 0.5f);  // held
+  EXPECT_FALSE(log.units[0].has_every_step);
 }
 
 TEST_F(FlightLogFile, AnOutputBeforeTheFirstStateHasNoStep) {
@@ -194,10 +195,11 @@ TEST_F(FlightLogFile, AnInputHoldsFromItsTimeOn) {
   add_state(9000);
   const FlightLog log = read();
   const auto thrust = [&](std::size_t tick) {
-    return log.trace.samples[tick].in.vehicle_attitude_setpoint.thrust;
+    return log.units[0].trace.samples[tick].in.vehicle_attitude_setpoint.thrust;
   };
   const auto is_new = [&](std::size_t tick) {
-    return (log.trace.samples[tick].in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;
+    return (log.units[0].trace.samples[tick].in.updated &
+            ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;
   };
   EXPECT_EQ(thrust(1), 0.5f);
   EXPECT_EQ(thrust(2), 0.75f);
@@ -213,30 +215,34 @@ TEST_F(FlightLogFile, ParametersChangeAtTheNextStep) {
   ASSERT_TRUE(writer_.parameter("CBRK_RATE_CTRL", 140253));
   add_state(5000);
   const FlightLog log = read();
-  EXPECT_THAT(log.trace.parameters, ElementsAre(ParameterChange{0, "MC_ROLL_P", 6.5f},
-                                                ParameterChange{1, "MC_ROLL_P", 7.5f},
-                                                ParameterChange{1, "CBRK_RATE_CTRL", 140253.0f}));
-  EXPECT_EQ(log.trace.samples[0].in.updated & ATTEST_UPDATED_PARAMETER_UPDATE, 0u);
-  EXPECT_NE(log.trace.samples[1].in.updated & ATTEST_UPDATED_PARAMETER_UPDATE, 0u);
+  EXPECT_THAT(
+      log.units[0].trace.parameters,
+      ElementsAre(ParameterChange{0, "MC_ROLL_P", 6.5f}, ParameterChange{1, "MC_ROLL_P", 7.5f},
+                  ParameterChange{1, "CBRK_RATE_CTRL", 140253.0f}));
+  EXPECT_EQ(log.units[0].trace.samples[0].in.updated & ATTEST_UPDATED_PARAMETER_UPDATE, 0u);
+  EXPECT_NE(log.units[0].trace.samples[1].in.updated & ATTEST_UPDATED_PARAMETER_UPDATE, 0u);
 }
 
 TEST_F(FlightLogFile, TopicsThatTheLogDoesNotHaveAreAssumed) {
   start();
   const FlightLog stabilized = read();
-  EXPECT_EQ(stabilized.trace.samples[0].in.actuator_armed.armed, 1);
-  EXPECT_EQ(stabilized.trace.samples[0].in.vehicle_control_mode.flag_control_attitude_enabled, 1);
+  EXPECT_EQ(stabilized.units[0].trace.samples[0].in.actuator_armed.armed, 1);
+  EXPECT_EQ(
+      stabilized.units[0].trace.samples[0].in.vehicle_control_mode.flag_control_attitude_enabled,
+      1);
   EXPECT_THAT(stabilized.notes,
               Contains(HasSubstr("armed, rotary_wing, rates, attitude, manual (--assume)")));
   const FlightLog acro = read({"armed", "rates", "manual"});
-  EXPECT_EQ(acro.trace.samples[0].in.vehicle_control_mode.flag_control_attitude_enabled, 0);
-  EXPECT_EQ(acro.trace.samples[0].in.vehicle_control_mode.flag_control_manual_enabled, 1);
+  EXPECT_EQ(acro.units[0].trace.samples[0].in.vehicle_control_mode.flag_control_attitude_enabled,
+            0);
+  EXPECT_EQ(acro.units[0].trace.samples[0].in.vehicle_control_mode.flag_control_manual_enabled, 1);
   EXPECT_THAT(error({"atitude"}), HasSubstr("did you mean `attitude`"));
 }
 
 TEST_F(FlightLogFile, WhatTheLogHasIsNotAssumed) {
   start("actuator_armed:uint64_t timestamp;bool armed;");
   add("actuator_armed", 900, false);
-  EXPECT_EQ(read().trace.samples[0].in.actuator_armed.armed, 0);
+  EXPECT_EQ(read().units[0].trace.samples[0].in.actuator_armed.armed, 0);
   EXPECT_THAT(error({"armed"}), HasSubstr("has the topic actuator_armed"));
 }
 
@@ -247,7 +253,7 @@ TEST_F(FlightLogFile, NothingIsAssumedInALogOfAttest) {
   const FlightLog log = read();
   EXPECT_TRUE(log.is_of_attest);
   EXPECT_EQ(log.profile, "px4-v1.3.4");
-  EXPECT_EQ(log.trace.samples[0].in.actuator_armed.armed, 0);
+  EXPECT_EQ(log.units[0].trace.samples[0].in.actuator_armed.armed, 0);
 }
 
 TEST_F(FlightLogFile, LogsThatCannotBeReplayedAreExplained) {
@@ -256,10 +262,13 @@ TEST_F(FlightLogFile, LogsThatCannotBeReplayedAreExplained) {
   EXPECT_THAT(error(), HasSubstr("no sample of the topic control_state"));
 }
 
-TEST_F(FlightLogFile, ALogOfALaterReleaseIsRecognised) {
+TEST_F(FlightLogFile, WhatALogLacksForEachUnitIsNamed) {
   define({"vehicle_angular_velocity:uint64_t timestamp;float[3] xyz;"});
   add("vehicle_angular_velocity", 1000, 0.0f, 0.0f, 0.0f);
-  EXPECT_THAT(error(), HasSubstr("another version of PX4"));
+  EXPECT_THAT(error(), HasSubstr("for the controller of PX4 v1.5.5 and v1.3.4: no sample of the "
+                                 "topic control_state; for the attitude unit: no sample of the "
+                                 "topic vehicle_attitude; for the rate unit: no sample of the "
+                                 "topic vehicle_rates_setpoint"));
 }
 
 TEST_F(FlightLogFile, ALogWithoutOutputsHasNothingToCompare) {
@@ -283,9 +292,9 @@ TEST_F(FlightLogFile, TimestampsThatDoNotIncreaseAreLeftOutAndCounted) {
   add_state(900);
   add_state(5000);
   const FlightLog log = read();
-  EXPECT_EQ(log.trace.samples.size(), 2u);
+  EXPECT_EQ(log.units[0].trace.samples.size(), 2u);
   EXPECT_THAT(log.notes, Contains(HasSubstr("2 samples of control_state left out")));
-  EXPECT_FALSE(log.has_every_step);
+  EXPECT_FALSE(log.units[0].has_every_step);
 }
 
 TEST_F(FlightLogFile, LostMessagesMeanMissingSteps) {
@@ -293,7 +302,7 @@ TEST_F(FlightLogFile, LostMessagesMeanMissingSteps) {
   ASSERT_TRUE(writer_.dropout(20));
   add_state(5000);
   const FlightLog log = read();
-  EXPECT_FALSE(log.has_every_step);
+  EXPECT_FALSE(log.units[0].has_every_step);
   EXPECT_THAT(log.notes, Contains(HasSubstr("lost messages")));
 }
 
@@ -304,9 +313,9 @@ TEST_F(FlightLogFile, ADamagedLogIsReplayedUpToThere) {
   EXPECT_THAT(whole.notes, Not(Contains(HasSubstr("damaged"))));
   std::filesystem::resize_file(path(), std::filesystem::file_size(path()) - 3);
   const FlightLog log = read();
-  EXPECT_EQ(log.trace.samples.size(), 1u);
+  EXPECT_EQ(log.units[0].trace.samples.size(), 1u);
   EXPECT_THAT(log.notes, Contains(HasSubstr("damaged: byte ")));
-  EXPECT_FALSE(log.has_every_step);
+  EXPECT_FALSE(log.units[0].has_every_step);
 }
 
 }  // namespace

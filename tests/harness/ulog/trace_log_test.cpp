@@ -117,7 +117,7 @@ TEST_F(TraceLog, OtherNamesAreCsvAndOtherModulesAnError) {
   Trace mixer = flown();
   mixer.present = channels_of(Module::mixer);
   EXPECT_THAT(write_trace(path("m.ulg"), mixer).error().message,
-              HasSubstr("a ULog is for traces of the controller; write a .csv"));
+              HasSubstr("a ULog is for traces of the controller or of a unit of it"));
   EXPECT_FALSE(std::filesystem::exists(path("m.ulg")));
 }
 

@@ -1,0 +1,43 @@
+// The results of `attest replay` for machines:
+//
+//     {"schema": "attest-replay-1", "attest_version": "0.1.0", "port": "builtin", "level":
+//     "numeric",
+//      "log_limits": {"within": 1e-4, "least_part_within": 0.85, "most_unexplained": 0.02},
+//      "results": [
+//        {"file": "flight.ulg", "kind": "log", "module": "attitude_unit", "profile": "px4-v1.16.0",
+//         "verdict": "pass", "reason": "", "ticks": 1000, "has_every_step": false,
+//         "topics": [{"topic": "vehicle_rates_setpoint", "judged": true, "not_judged": "",
+//                     "agrees": true, "logged": 1000, "paired": 500, "left_out": 0, "within": 500,
+//                     "between_samples": 0, "unexplained": 0, "missing": 0, "non_finite": 0,
+//                     "median": 0, "p90": 0, "p99": 0, "largest": 0}],
+//         "notes": ["logged by PX4 v1.16.0"]}]}
+//
+// A log of v1.14 to v1.16 has an entry for each of its two units. A topic with a sample that is not
+// explained has the member "first_unexplained": tick, timestamp_us, channel, got, logged. An entry
+// of the kind "trace" has, in place of has_every_step, topics and notes, the members
+// deviating_ticks, first, worst and tightest of the report of a run (report.schema.json).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "harness/compare/log_agreement.hpp"
+#include "harness/trace/module.hpp"
+#include "harness/ulog/flight_log.hpp"
+#include "harness/verify/evaluate_log.hpp"
+#include "harness/verify/verdict.hpp"
+
+namespace attest {
+
+nlohmann::ordered_json json_of_trace(const CaseResult& result, Module module);
+// REQUIRES: the result is that of this unit of the log.
+nlohmann::ordered_json json_of_unit(const FlightLog& log, const LoggedUnit& unit,
+                                    const LogResult& result, const LogLimits& limits);
+
+// `results`: of the two functions above.
+std::string replay_json(const std::string& port, std::string_view level, const LogLimits& limits,
+                        const std::vector<nlohmann::ordered_json>& results);
+
+}  // namespace attest

@@ -1,0 +1,38 @@
+// What is assumed of a flight whose log has no sample of a topic.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/core/result.hpp"
+#include "harness/ulog/log_contents.hpp"
+
+namespace attest {
+
+// A word of --assume has a row for each channel that it sets.
+struct FlightAssumption {
+  std::string_view word;  // "armed"
+  Module module;
+  std::string_view channel;  // "in/actuator_armed.armed"
+  double value;
+  bool by_default;
+};
+std::span<const FlightAssumption> flight_assumptions();
+
+// The words, each once. `by_default`: those of this module that hold without --assume.
+std::vector<std::string> assumption_words();
+std::vector<std::string> assumption_words(Module module, bool by_default);
+
+// Sets in `sample`, that of before the first step, what holds for this module by these words, or by
+// default if there are none. `updated` is set for their topics. Topics with samples in the log are
+// left out. Returns the words that were used.
+std::vector<std::string> assume(const std::vector<std::string>& words,
+                                const ulog::ModuleContents& log, Sample& sample);
+
+// Errors: an unknown word; one that no module of the log has; one for topics that the log has.
+Result<void> check_assumed(const std::vector<std::string>& words,
+                           std::span<const ulog::ModuleContents* const> modules);
+
+}  // namespace attest

@@ -1,0 +1,63 @@
+// What a log has of the modules that attest can give it to, topic by topic.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/core/result.hpp"
+#include "harness/trace/trace.hpp"
+#include "harness/ulog/log_series.hpp"
+
+namespace attest::ulog {
+
+// Of PX4: 1, 14, 3 is v1.14.3.
+struct Release {
+  int major = 0, minor = 0, patch = 0;
+
+  std::string to_string() const;  // "v1.14.3"
+};
+
+class ModuleContents {
+ public:
+  explicit ModuleContents(Module module);
+
+  Module module() const { return module_; }
+  std::vector<LogSeries>& series() { return series_; }
+  const std::vector<LogSeries>& series() const { return series_; }
+  // Of the topic that triggers a step.
+  const LogSeries& steps() const { return *input(step_topic_); }
+  // Null if the module has no such topic.
+  const LogSeries* input(std::string_view topic) const { return find(topic, false); }
+  const LogSeries* output(std::string_view topic) const { return find(topic, true); }
+  // Samples of outputs, of fields that the log has.
+  bool has_outputs() const;
+
+  std::vector<ParameterChange> parameters;  // the tick is the number of steps logged before it
+
+ private:
+  const LogSeries* find(std::string_view topic, bool is_output) const;
+
+  Module module_;
+  std::string step_topic_;
+  std::vector<LogSeries> series_;
+};
+
+struct LogContents {
+  std::vector<ModuleContents> modules;   // those with a step topic
+  std::string system, firmware, source;  // sys_name, ver_sw, attest_source
+  std::optional<Release> release;        // ver_sw_release
+  std::size_t dropouts = 0;              // times that the logger lost messages
+  std::vector<std::string> damage;       // one line each
+
+  bool is_of_attest() const { return system == "attest"; }  // as trace_log.cpp writes it
+  ModuleContents& of(Module module);
+};
+
+// Errors: the file cannot be read or is no ULog. Memory: the samples of the modules' topics.
+Result<LogContents> read_contents(const std::filesystem::path& path);
+
+}  // namespace attest::ulog

@@ -1,0 +1,76 @@
+#include "harness/ulog/step_gaps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace attest {
+namespace {
+
+constexpr double us_per_s = 1e6, us_per_ms = 1e3;
+
+// The slowest rates of PX4: IMU_GYRO_RATEMAX is at least 100 Hz, and the laws limit dt to 20 ms.
+double slowest_hz(Module module) { return module == Module::rate_unit ? 100 : 50; }
+
+// A rate unit of 1 kHz may have samples 1.1 ms apart.
+constexpr double slack = 1.25;
+
+constexpr double most_missing = 0.01;
+
+}  // namespace
+
+double StepGaps::part_missing() const {
+  const std::size_t all = steps + missing;
+  return all == 0 ? 0 : static_cast<double>(missing) / static_cast<double>(all);
+}
+
+StepGaps step_gaps(std::span<const std::uint64_t> times_us) {
+  StepGaps found{times_us.size()};
+  std::vector<std::uint64_t> gaps;
+  for (std::size_t i = 1; i < times_us.size(); ++i) gaps.push_back(times_us[i] - times_us[i - 1]);
+  if (gaps.empty()) return found;
+  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+  std::nth_element(gaps.begin(), middle, gaps.end());
+  found.median_us = static_cast<double>(*middle);
+  for (const std::uint64_t gap : gaps) {
+    // Any time may be in a damaged log.
+    const double periods = std::min(std::round(static_cast<double>(gap) / found.median_us), 1e12);
+    if (periods > 1) found.missing += static_cast<std::size_t>(periods) - 1;
+    found.longest_us = std::max(found.longest_us, gap);
+  }
+  return found;
+}
+
+std::string too_sparse(Module module, const StepGaps& gaps, std::optional<double> fastest_hz) {
+  const bool is_rate_unit = module == Module::rate_unit;
+  const char* const sample = is_rate_unit ? "gyro sample" : "sample of the attitude";
+  const char* const memory = is_rate_unit ? "the integral and the yaw filter depend on every step"
+                                          : "filters and slew rates depend on every step";
+  const double median_ms = gaps.median_us / us_per_ms;
+  if (gaps.steps < 2) return fmt::format("the log has {} {}", gaps.steps, sample);
+  if (gaps.median_us > slack * us_per_s / slowest_hz(module)) {
+    const std::string rate = fastest_hz
+                                 ? fmt::format("at up to {:g} Hz (IMU_GYRO_RATEMAX)", *fastest_hz)
+                                 : fmt::format("at {:g} Hz or more", slowest_hz(module));
+    return fmt::format("the log has a {} every {:.3g} ms, and the loop runs {}; {}", sample,
+                       median_ms, rate, memory);
+  }
+  if (gaps.part_missing() <= most_missing) return "";
+  return fmt::format(
+      "the log lacks about {:.1f}% of the {}s: usually they are {:.3g} ms apart, at most {:.3g} "
+      "ms; {}",
+      100 * gaps.part_missing(), sample, median_ms,
+      static_cast<double>(gaps.longest_us) / us_per_ms, memory);
+}
+
+// A log that has every fourth sample of all topics has no gaps. So of a rate unit the rate must be
+// known.
+bool may_be_complete(Module module, const StepGaps& gaps, std::optional<double> fastest_hz) {
+  if (gaps.missing > 0) return false;
+  if (module != Module::rate_unit) return true;
+  return fastest_hz && gaps.median_us <= slack * us_per_s / *fastest_hz;
+}
+
+}  // namespace attest

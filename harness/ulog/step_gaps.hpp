@@ -1,0 +1,35 @@
+// Which steps of a unit a log lacks, as far as the times of its samples show.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "harness/trace/module.hpp"
+
+namespace attest {
+
+struct StepGaps {
+  std::size_t steps = 0;  // in the log
+  double median_us = 0;   // of the times between them; 0 with fewer than two steps
+  std::uint64_t longest_us = 0;
+  std::size_t missing = 0;  // about: how many times the median fits into the longer gaps
+
+  double part_missing() const;  // 0..1
+};
+
+// REQUIRES: increasing times.
+StepGaps step_gaps(std::span<const std::uint64_t> times_us);
+
+// Why outputs that depend on earlier steps cannot be computed from a log with these gaps; empty if
+// they can, about: at most 1% of the steps are missing, and the loop can be as slow as the log is.
+// `fastest_hz`: what the log's parameters say of the loop's rate.
+std::string too_sparse(Module module, const StepGaps& gaps, std::optional<double> fastest_hz);
+
+// Whether the log may have every step: none is missing, and a rate unit is about as fast as the
+// log's parameters allow.
+bool may_be_complete(Module module, const StepGaps& gaps, std::optional<double> fastest_hz);
+
+}  // namespace attest

@@ -1,0 +1,372 @@
+# Flight logs of PX4 v1.14 to v1.16, with attitude unit and rate unit.
+load common
+
+setup_file() {
+  export FLIGHT="$BATS_FILE_TMPDIR/flight.ulg" SPARSE="$BATS_FILE_TMPDIR/sparse.ulg"
+  flight "$FLIGHT"
+  flight "$SPARSE" --thin vehicle_angular_velocity=20 --thin vehicle_torque_setpoint=20 \
+    --thin vehicle_thrust_setpoint=20 --thin vehicle_attitude=2
+}
+
+# flight OUT [OPTION...]: of cascade_log.py.
+flight() {
+  "$PYTHON" "$SOURCE/tests/cli/cascade_log.py" "$@"
+}
+
+# verdicts: of the two units, in the output of the last `run`.
+verdicts() {
+  grep -oE "^[a-z-]+ +[^ ]+: (attitude|rate) unit" <<<"$output" | sed -E 's/ +[^ ]+: / /'
+}
+
+judged() {
+  [ "$(verdicts)" = "$1 attitude unit
+$2 rate unit" ] || {
+    echo "expected: $1 attitude unit, $2 rate unit"
+    echo "$output"
+    return 1
+  }
+}
+
+@test "a log that attest wrote of a unit agrees to the bit" {
+  for vector in sticks/tilt_filter@250 acro/sticks@1000 timing/sample_time_not_publication@250 \
+    timing/rate_sample_not_newer@1000 robustness/every_flag_is_a_byte@250 \
+    modes/own_replaces_external@250 rates/i_alone@4000 robustness/rate_gyro@8000; do
+    "$ATTEST" record "px4-v1.16.0/${vector%@*}" --rate "${vector#*@}" --out unit.ulg
+    run "$ATTEST" replay unit.ulg --level exact
+    [ "$status" -eq 0 ]
+    has "PASS 1 of 1 traces conform"
+  done
+  "$ATTEST" record px4-v1.14.4/sticks/tilt_filter --rate 250 --out unit.ulg
+  run "$ATTEST" replay unit.ulg --level exact
+  [ "$status" -eq 0 ]
+  has "px4-v1.14.4"
+  run "$ATTEST" replay unit.ulg --port fault:cascade-thrust-up
+  [ "$status" -eq 1 ]
+  has "first at tick"
+}
+
+@test "a log of attest has the topics and fields of PX4" {
+  "$ATTEST" record px4-v1.16.0/sticks/tilt_filter --rate 250 --out unit.ulg
+  grep -aq "vehicle_status:uint64_t timestamp;uint64_t armed_time;" unit.ulg
+  grep -aq "uint8_t arming_state;" unit.ulg
+  grep -aq "vehicle_rates_setpoint:uint64_t timestamp;float roll;" unit.ulg
+  "$ATTEST" record px4-v1.16.0/rates/d_alone --rate 1000 --out unit.ulg
+  grep -aq "vehicle_torque_setpoint:uint64_t timestamp;float\[3\] xyz;" unit.ulg
+  grep -aq "rate_ctrl_status:uint64_t timestamp;float rollspeed_integ;" unit.ulg
+}
+
+@test "both units of a flight at full rate agree with the reference and the starter" {
+  for port in builtin "lib:$(dirname "$STARTER")/../c_cascade/attest_starter_c_cascade.so"; do
+    run "$ATTEST" replay "$FLIGHT" --port "$port"
+    [ "$status" -eq 0 ]
+    judged pass pass
+    has "vehicle_rates_setpoint: 900 of 900 logged samples paired with a vehicle_attitude"
+    has "vehicle_attitude_setpoint: 200 of 200 logged samples"
+    has "vehicle_torque_setpoint: 4000 of 4000 logged samples paired with a vehicle_angular_vel"
+    has "99% up to 0, largest 0"
+    has "the profile is px4-v1.16.0, because PX4 v1.16.0 wrote the log"
+    has "PASS 2 of 2 traces and units agree"
+    lacks "not judged"
+  done
+}
+
+@test "logs of v1.14 and v1.15 agree with the law of their release" {
+  for profile in px4-v1.14.4 px4-v1.15.4; do
+    flight older.ulg --profile "$profile"
+    run "$ATTEST" replay older.ulg
+    [ "$status" -eq 0 ]
+    judged pass pass
+    has "the profile is $profile"
+    has "vehicle_attitude_setpoint: 200 of 200 logged samples"
+    lacks "not judged"
+  done
+}
+
+@test "a wrong attitude unit fails, and its rate unit passes" {
+  for fault in m-not-canonical yaw-weight-ignored yaw-weight-twice yaw-ff-reversed thrust-up; do
+    run "$ATTEST" replay "$FLIGHT" --port "fault:cascade-$fault"
+    [ "$status" -eq 1 ]
+    judged fail pass
+    has "FAIL 1 of 2 traces and units agree"
+  done
+}
+
+@test "a wrong rate unit fails, and its attitude unit passes" {
+  for fault in i-factor-of-200 d-reversed d-of-gyro k-not-on-i integral-on-the-ground \
+    saturation-freezes i-of-this-step; do
+    run "$ATTEST" replay "$FLIGHT" --port "fault:cascade-$fault"
+    [ "$status" -eq 1 ]
+    judged pass fail
+  done
+}
+
+@test "a log with a gyro sample every 20 ms judges the attitude unit alone" {
+  run "$ATTEST" replay "$SPARSE"
+  [ "$status" -eq 0 ]
+  judged pass skip
+  has "the log has a gyro sample every 20 ms, and the loop runs at up to 1000 Hz (IMU_GYRO_RATEMAX)"
+  has "the integral and the yaw filter depend on every step"
+  has "vehicle_rates_setpoint: 450 of 900 logged samples paired"
+  has "100 of them left out: the log does not have all that they depend on"
+  has "PASS 1 of 2 traces and units agree, 1 not compared"
+  run "$ATTEST" replay "$SPARSE" --port fault:cascade-m-not-canonical
+  [ "$status" -eq 1 ]
+  judged fail skip
+  run "$ATTEST" replay "$SPARSE" --port fault:cascade-d-reversed
+  [ "$status" -eq 0 ]
+  judged pass skip
+}
+
+@test "a log that lacks some gyro samples does not judge the rate unit" {
+  flight lost.ulg --lose vehicle_angular_velocity=20
+  run "$ATTEST" replay lost.ulg
+  [ "$status" -eq 0 ]
+  judged pass skip
+  has "the log lacks about 5.0% of the gyro samples: usually they are 1 ms apart, at most 2 ms"
+}
+
+@test "an evenly thinned log or one begun in flight does not accuse a correct rate unit" {
+  thin=()
+  for topic in angular_velocity torque_setpoint thrust_setpoint; do
+    thin+=(--thin "vehicle_$topic=4")
+  done
+  for rate in 0 1000; do
+    flight thin.ulg "${thin[@]}" --thin rate_ctrl_status=4 --rate-max "$rate"
+    run "$ATTEST" replay thin.ulg
+    [ "$status" -eq 0 ]
+    judged pass skip
+    has "the log lacks samples that the unit had, what was assumed does not hold, or another law"
+  done
+  flight late.ulg --from 1
+  run "$ATTEST" replay late.ulg
+  [ "$status" -eq 0 ]
+  judged pass skip
+  has "the log begins in flight, where the integral, filters or headings are not known"
+}
+
+@test "without vehicle_control_mode, what is assumed must hold" {
+  flight no_mode.ulg --without vehicle_control_mode
+  run "$ATTEST" replay no_mode.ulg
+  [ "$status" -eq 2 ]
+  judged skip skip
+  has "assumed, because the log does not have it: attitude, armed, rates (--assume)"
+  has "what was assumed does not hold"
+  has "no trace was compared"
+  run "$ATTEST" replay no_mode.ulg --assume atitude
+  [ "$status" -eq 2 ]
+  has 'did you mean `attitude`'
+  run "$ATTEST" replay "$FLIGHT" --assume attitude
+  [ "$status" -eq 2 ]
+  has "has the topic vehicle_control_mode, so --assume attitude has no effect"
+}
+
+# wild DEFINITION...: the port wild.so, the C starter of the cascade, changed as wild.c says.
+wild() {
+  local starter="$SOURCE/controller/starters/c_cascade"
+  cat >wild.c <<'WILD'
+#include <math.h>
+#include <string.h>
+#include "port.h"
+
+const attest_unit* right_unit_v1(void);
+
+static int attitude_step(void* self, const attest_attitude_inputs* in,
+                         attest_attitude_outputs* out) {
+  static int ticks;
+  const int result = attitude_unit_table.step(self, in, out);
+#ifdef WILD_RATES
+  if (++ticks % 25 == 0) out->vehicle_rates_setpoint.roll = WILD_RATES;
+#endif
+  (void)ticks;
+  return result;
+}
+
+static int rate_step(void* self, const attest_rate_inputs* in, attest_rate_outputs* out) {
+  static int ticks;
+  const int result = rate_unit_table.step(self, in, out);
+#ifdef WILD_TORQUE
+  if (++ticks % 25 == 0) out->vehicle_torque_setpoint.xyz[1] = WILD_TORQUE;
+#endif
+  (void)ticks;
+  return result;
+}
+
+static const void* extension(const char* id) {
+  static attest_attitude_unit attitude;
+  static attest_rate_unit rate;
+  attitude = attitude_unit_table;
+  rate = rate_unit_table;
+  attitude.step = attitude_step;
+  rate.step = rate_step;
+#ifndef NO_ATTITUDE_UNIT
+  if (strcmp(id, ATTEST_EXTENSION_ATTITUDE_UNIT) == 0) return &attitude;
+#endif
+#ifndef NO_RATE_UNIT
+  if (strcmp(id, ATTEST_EXTENSION_RATE_UNIT) == 0) return &rate;
+#endif
+  return NULL;
+}
+
+const attest_unit* attest_unit_v1(void) {
+  static attest_unit unit;
+  unit = *right_unit_v1();
+  unit.extension = extension;
+  return &unit;
+}
+WILD
+  cc -c -fPIC -O1 -Dattest_unit_v1=right_unit_v1 "-I$SOURCE/controller" "$starter/port.c" -o port.o
+  cc -shared -fPIC -O1 "$@" "-I$SOURCE/controller" "-I$starter" wild.c port.o \
+    "$starter"/{attitude_law,attitude_unit,rate_unit,sticks}.c -lm -o wild.so
+}
+
+@test "wild values at every 25th tick fail" {
+  wild
+  run "$ATTEST" replay "$FLIGHT" --port lib:./wild.so
+  [ "$status" -eq 0 ]
+  for log in "$FLIGHT" "$SPARSE"; do
+    for value in 100 -100; do
+      wild "-DWILD_RATES=($value)"
+      run "$ATTEST" replay "$log" --port lib:./wild.so
+      [ "$status" -eq 1 ]
+      has "of vehicle_rates_setpoint are not explained; at most 2% may be"
+    done
+    wild -DWILD_RATES=NAN
+    run "$ATTEST" replay "$log" --port lib:./wild.so
+    [ "$status" -eq 1 ]
+    has "non-finite"
+    has "samples of vehicle_rates_setpoint where the log has numbers"
+  done
+  wild "-DWILD_TORQUE=(-1)"
+  run "$ATTEST" replay "$FLIGHT" --port lib:./wild.so
+  [ "$status" -eq 1 ]
+  judged pass fail
+  has "4.0% of vehicle_torque_setpoint are not explained; at most 2% may be"
+}
+
+@test "NaN fails in a rate unit that is otherwise not judged" {
+  wild -DWILD_TORQUE=NAN
+  for log in "$FLIGHT" "$SPARSE"; do
+    run "$ATTEST" replay "$log" --port lib:./wild.so
+    [ "$status" -eq 1 ]
+    judged pass non-finite
+  done
+}
+
+@test "of a port with one unit, that one is judged" {
+  wild -DNO_RATE_UNIT
+  run "$ATTEST" replay "$FLIGHT" --port lib:./wild.so
+  [ "$status" -eq 0 ]
+  judged pass unsupported
+  has "the port has no rate unit (extension attest.rate_unit.v1)"
+  wild -DNO_ATTITUDE_UNIT
+  run "$ATTEST" replay "$FLIGHT" --port lib:./wild.so
+  [ "$status" -eq 0 ]
+  judged unsupported pass
+  run "$ATTEST" replay "$SPARSE" --port lib:./wild.so
+  [ "$status" -eq 2 ]
+  judged unsupported skip
+  has "no trace was compared"
+}
+
+@test "the law is that of the release that wrote the log, or of --profile" {
+  flight old.ulg --release 1.13.2
+  run "$ATTEST" replay old.ulg
+  [ "$status" -eq 2 ]
+  has "was written by PX4 v1.13.2, whose law attest does not have; name the law with --profile"
+  flight unknown.ulg --release 0
+  run "$ATTEST" replay unknown.ulg
+  [ "$status" -eq 2 ]
+  has "does not say which release of PX4 wrote it (ver_sw_release)"
+  run "$ATTEST" replay unknown.ulg --profile px4-v1.16.0
+  [ "$status" -eq 0 ]
+  judged pass pass
+  run "$ATTEST" replay unknown.ulg --profile px4-v1.15.4
+  [ "$status" -eq 0 ]
+  judged pass skip
+  has "or another law flew"
+  run "$ATTEST" replay unknown.ulg --profile px4-v1.5.5
+  [ "$status" -eq 2 ]
+  has "is of the attitude unit, which px4-v1.5.5 does not have"
+}
+
+@test "a log without the topics of a unit names what is missing" {
+  flight part.ulg --without vehicle_angular_velocity
+  run "$ATTEST" replay part.ulg
+  [ "$status" -eq 0 ]
+  judged pass skip
+  has "the log has no sample of the topic vehicle_angular_velocity"
+  flight part.ulg --without vehicle_attitude_setpoint
+  run "$ATTEST" replay part.ulg
+  [ "$status" -eq 0 ]
+  judged skip pass
+  has "the log has no sample of the topic vehicle_attitude_setpoint"
+  flight part.ulg --without vehicle_attitude --without vehicle_rates_setpoint
+  run "$ATTEST" replay part.ulg
+  [ "$status" -eq 2 ]
+  has "has too little to replay"
+  has "for the attitude unit: no sample of the topic vehicle_attitude"
+  has "for the rate unit: no sample of the topic vehicle_rates_setpoint"
+}
+
+@test "a damaged log is replayed as far as it goes" {
+  head -c 400000 "$FLIGHT" >cut.ulg
+  run "$ATTEST" replay cut.ulg
+  [ "$status" -eq 0 ]
+  judged pass pass
+  has "damaged: byte"
+  run "$ATTEST" replay cut.ulg --port fault:cascade-d-reversed
+  [ "$status" -eq 1 ]
+}
+
+@test "a parameter is set in the unit that has it" {
+  run "$ATTEST" replay "$FLIGHT" --param MC_ROLL_P=7 # the log has 6
+  [ "$status" -eq 1 ]
+  judged fail pass
+  run "$ATTEST" replay "$FLIGHT" --param MC_ROLLRATE_K=1.3
+  [ "$status" -eq 1 ]
+  judged pass fail
+  run "$ATTEST" replay "$FLIGHT" --param MC_ROL_P=7
+  [ "$status" -eq 2 ]
+  has 'did you mean `MC_ROLL_P`'
+}
+
+@test "JSON and page have a verdict on each unit, with the reason" {
+  run "$ATTEST" replay "$SPARSE" --port fault:cascade-yaw-weight-ignored --json replay.json \
+    --html replay.html
+  [ "$status" -eq 1 ]
+  "$PYTHON" - <<'CHECK'
+import json
+report = json.load(open("replay.json"))
+assert report["schema"] == "attest-replay-1", report
+attitude, rate = report["results"]
+assert [attitude["module"], attitude["verdict"]] == ["attitude_unit", "fail"], attitude
+assert [rate["module"], rate["verdict"]] == ["rate_unit", "skip"], rate
+assert "gyro sample every 20 ms" in rate["reason"], rate
+assert attitude["profile"] == "px4-v1.16.0" and attitude["ticks"] == 500, attitude
+rates, own = attitude["topics"]
+assert rates["topic"] == "vehicle_rates_setpoint" and rates["judged"] and not rates["agrees"]
+assert rates["logged"] == 900 and rates["paired"] == 450 and rates["left_out"] == 100, rates
+assert rates["first_unexplained"]["channel"].startswith("out/vehicle_rates_setpoint."), rates
+assert not rate["topics"][0]["judged"] and not rate["has_every_step"], rate
+CHECK
+  grep -q "How far the port is from the log: attitude unit" replay.html
+  grep -q "gyro sample every 20 ms" replay.html
+  grep -q "Outputs of the rate unit" replay.html
+  "$ATTEST" record px4-v1.16.0/rates/i_alone --rate 250 --out unit.csv
+  "$ATTEST" replay unit.csv --profile px4-v1.16.0 --html trace.html --json trace.json
+  grep -q "out/vehicle_torque_setpoint.xyz\[0\]" trace.html
+  grep -q '"kind": "trace"' trace.json
+  run bash -c "'$ATTEST' replay '$FLIGHT' --json - 2>messages | '$PYTHON' -m json.tool >/dev/null"
+  [ "$status" -eq 0 ]
+  grep -q "PASS 2 of 2" messages
+  run "$ATTEST" replay "$FLIGHT" --json "$FLIGHT"
+  [ "$status" -eq 2 ]
+  has "would be overwritten"
+}
+
+@test "a case is not made of a log of the units" {
+  run "$ATTEST" vectors ours --from-log "$FLIGHT"
+  [ "$status" -eq 2 ]
+  has "is a log of the attitude unit; --from-log makes cases of logs of the controller"
+  [ ! -e ours ]
+}

@@ -1,0 +1,202 @@
+// Which outputs of a log are judged, and by what.
+#include "harness/verify/evaluate_log.hpp"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+
+#include "harness/host/host_here.hpp"
+#include "harness/port/builtin.hpp"
+#include "harness/port/port.hpp"
+
+namespace attest {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* law_of_log = "px4-v1.16.0";
+
+// What a rate unit of 1 kHz logged in 0.4 s: the reference's outputs.
+LoggedUnit logged_rate_unit() {
+  LoggedUnit log;
+  log.module = Module::rate_unit;
+  log.step_topic = "vehicle_angular_velocity";
+  log.has_every_step = true;
+  log.trace.source = "flight.ulg";
+  log.trace.present = channels_of(Module::rate_unit);
+  for (std::uint64_t tick = 0; tick < 400; ++tick) {
+    Sample sample;
+    const float time_s = 1e-3f * static_cast<float>(tick);
+    sample.in.timestamp = 5000000 + 1000 * tick;
+    attest_rate_inputs& in = sample.rate_in;
+    in.vehicle_angular_velocity.timestamp_sample = sample.in.timestamp;
+    in.vehicle_angular_velocity.xyz[0] = std::sin(20 * time_s);
+    in.vehicle_rates_setpoint.roll = 0.5f;
+    in.vehicle_control_mode = {1, 0, 1, 1};
+    in.vehicle_status.is_rotary_wing = 1;
+    if (tick == 0) sample.in.updated = 0xff;
+    log.trace.samples.push_back(sample);
+  }
+  log.known.assign(log.trace.samples.size(), Known::all);
+  HostHere reference(open_builtin());
+  EXPECT_FALSE(reference.drive({law_of_log, Module::rate_unit}, log.trace));
+  for (const char* topic : {"vehicle_torque_setpoint", "vehicle_thrust_setpoint",
+                            "rate_ctrl_status", "vehicle_rates_setpoint"}) {
+    log.outputs.push_back({topic, 400, 400});
+  }
+  return log;
+}
+
+// The log lacks what was before its first sample.
+void add_integral(LoggedUnit& log) {
+  for (Sample& sample : log.trace.samples) {
+    sample.rate_out.rate_ctrl_status.rollspeed_integ += 0.1f;
+    sample.rate_out.vehicle_torque_setpoint.xyz[0] += 0.1f;
+  }
+}
+
+LogResult result_of(const LoggedUnit& log, const char* port = "builtin") {
+  HostHere host(*open_port(port));
+  return evaluate_log(log, law_of_log, host, {});
+}
+
+TEST(EvaluateLog, ARightUnitAgreesAndAWrongOneDoesNot) {
+  const LoggedUnit log = logged_rate_unit();
+  EXPECT_EQ(result_of(log).result.verdict, Verdict::pass);
+  EXPECT_EQ(result_of(log, "fault:cascade-i-missing").result.verdict, Verdict::fail);
+}
+
+// What a controller of v1.5.5 logged.
+LoggedUnit logged_controller() {
+  LoggedUnit log;
+  log.step_topic = "control_state";
+  log.has_every_step = true;
+  log.trace.source = "flight.ulg";
+  log.trace.present = channels_of(Module::mc_att_control);
+  for (std::uint64_t tick = 0; tick < 100; ++tick) {
+    Sample sample;
+    sample.in.timestamp = 5000000 + 4000 * tick;
+    sample.in.updated = tick == 0 ? 0xffu : 0u;
+    sample.in.control_state.q[0] = 1;
+    sample.in.control_state.roll_rate = 0.01f * static_cast<float>(tick);
+    sample.in.vehicle_attitude_setpoint.q_d[0] = 1;
+    sample.in.vehicle_attitude_setpoint.thrust = 0.5f;
+    sample.in.vehicle_control_mode = {1, 0, 1, 1, 0, 0};
+    sample.in.actuator_armed.armed = 1;
+    sample.in.vehicle_status.is_rotary_wing = 1;
+    log.trace.samples.push_back(sample);
+  }
+  log.known.assign(log.trace.samples.size(), Known::all);
+  HostHere reference(open_builtin());
+  EXPECT_FALSE(reference.drive({"px4-v1.5.5"}, log.trace));
+  for (const char* topic :
+       {"vehicle_rates_setpoint", "actuator_controls_0", "mc_att_ctrl_status"}) {
+    log.outputs.push_back({topic, 100, 100});
+  }
+  return log;
+}
+
+TEST(EvaluateLog, ALogOfTheControllerWithEveryStepIsBelieved) {
+  LoggedUnit log = logged_controller();
+  HostHere host(open_builtin());
+  EXPECT_EQ(evaluate_log(log, "px4-v1.5.5", host, {}).result.verdict, Verdict::pass);
+  for (Sample& sample : log.trace.samples) sample.out.actuator_controls_0.control[0] += 0.1f;
+  EXPECT_EQ(evaluate_log(log, "px4-v1.5.5", host, {}).result.verdict, Verdict::fail);
+  log.has_every_step = false;
+  EXPECT_EQ(evaluate_log(log, "px4-v1.5.5", host, {}).result.verdict, Verdict::pass);
+}
+
+TEST(EvaluateLog, AParameterOfThePortIsNotThatOfTheFlight) {
+  LoggedUnit log = logged_rate_unit();
+  const auto verdict_with = [&](const ParameterChange& change) {
+    HostHere host(open_builtin());
+    return evaluate_log(log, law_of_log, host, {}, {change}).result.verdict;
+  };
+  const ParameterChange flown{0, "MC_ROLLRATE_P", 0.15f}, other{0, "MC_ROLLRATE_P", 0.2f};
+  log.trace.parameters = {flown};
+  EXPECT_EQ(verdict_with(flown), Verdict::pass);
+  EXPECT_EQ(verdict_with(other), Verdict::fail);
+  // The log does not say with which value the unit flew.
+  log.trace.parameters.clear();
+  EXPECT_EQ(verdict_with(flown), Verdict::pass);
+  EXPECT_EQ(verdict_with(other), Verdict::skip);
+}
+
+TEST(EvaluateLog, AnotherLogJudgesOnlyWhereTheReferenceAgreesWithIt) {
+  LoggedUnit log = logged_rate_unit();
+  EXPECT_EQ(result_of(log).result.verdict, Verdict::pass);
+  EXPECT_EQ(result_of(log, "fault:cascade-i-missing").result.verdict, Verdict::fail);
+  add_integral(log);
+  const LogResult found = result_of(log);
+  EXPECT_EQ(found.result.verdict, Verdict::skip);
+  EXPECT_THAT(found.result.reason,
+              HasSubstr("only 0.0% of the reference's vehicle_torque_setpoint are within 0.0001 of "
+                        "the log: the log lacks samples"));
+  // Not even the thrust, which agrees.
+  EXPECT_EQ(found.topics[1].topic, "vehicle_thrust_setpoint");
+  EXPECT_TRUE(found.topics[1].agrees({}));
+  EXPECT_NE(found.topics[1].not_judged, "");
+  log.begins_in_flight = true;
+  EXPECT_THAT(result_of(log).result.reason, HasSubstr("the log begins in flight"));
+}
+
+// A port that takes any name of a profile for its own.
+class OfAnyProfile final : public PortHost {
+ public:
+  const PortSays& says() const override { return host_.says(); }
+  std::optional<PortFault> drive(const Subject& subject, Trace& trace) override {
+    return host_.drive({law_of_log, subject.module}, trace);
+  }
+  Result<Flown> fly(const FlightPlan& plan) override { return host_.fly(plan); }
+  Result<StepTimes> time_steps(const std::string& wanted, const Trace& inputs,
+                               bool with_stack) override {
+    return host_.time_steps(wanted, inputs, with_stack);
+  }
+  bool supports(const std::string& /*wanted*/) override { return true; }
+
+ private:
+  HostHere host_{open_builtin()};
+};
+
+TEST(EvaluateLog, ALogOfAnotherLawIsBelieved) {
+  LoggedUnit log = logged_rate_unit();
+  OfAnyProfile host;
+  EXPECT_EQ(evaluate_log(log, "our-law", host, {}).result.verdict, Verdict::pass);
+  add_integral(log);
+  EXPECT_EQ(evaluate_log(log, "our-law", host, {}).result.verdict, Verdict::fail);
+}
+
+TEST(EvaluateLog, ASparseLogDoesNotJudge) {
+  LoggedUnit log = logged_rate_unit();
+  log.has_every_step = false;
+  log.not_judged = "too sparse";
+  const LogResult found = result_of(log, "fault:cascade-i-missing");
+  EXPECT_EQ(found.result.verdict, Verdict::skip);
+  EXPECT_EQ(found.result.reason, "too sparse");
+  EXPECT_EQ(found.topics[0].not_judged, "too sparse");
+}
+
+TEST(EvaluateLog, TicksThatTheLogDoesNotExplainAreLeftOut) {
+  LoggedUnit log = logged_rate_unit();
+  for (std::size_t tick = 0; tick < 100; ++tick) {
+    log.known[tick] = Known::nothing;
+    log.trace.samples[tick].rate_out.vehicle_thrust_setpoint.xyz[2] = 0.5f;
+  }
+  const LogResult found = result_of(log);
+  EXPECT_EQ(found.result.verdict, Verdict::pass);
+  EXPECT_EQ(found.topics[1].left_out, 100u);
+  EXPECT_EQ(found.topics[1].paired, 300u);
+}
+
+TEST(EvaluateLog, AUnitThatTheLogDoesNotHaveIsSkipped) {
+  LoggedUnit log;
+  log.module = Module::rate_unit;
+  log.trace.source = "flight.ulg";
+  log.not_judged = "the log has no sample of the topic vehicle_angular_velocity";
+  const LogResult found = result_of(log);
+  EXPECT_EQ(found.result.verdict, Verdict::skip);
+  EXPECT_EQ(found.result.reason, log.not_judged);
+}
+
+}  // namespace
+}  // namespace attest
