@@ -182,6 +182,19 @@ Result<void> identify(const RunOptions& options, const SuiteFolder& suite, RunRe
   return {};
 }
 
+Result<ExpectedFailures> read_expected(const std::string& file, const SuiteFolder& suite) {
+  const auto cases = select_cases(suite.case_folders(), {});
+  if (!cases) return tl::unexpected(cases.error());
+  std::vector<std::string> vectors;
+  for (const auto& [the_case, configurations] : *cases) {
+    if (the_case.flight) continue;
+    for (const RunConfiguration& configuration : configurations) {
+      vectors.push_back(the_case.id_at(configuration));
+    }
+  }
+  return ExpectedFailures::read(file, vectors);
+}
+
 }  // namespace
 
 Result<std::string> sha256_of_port(const std::string& port) {
@@ -203,7 +216,7 @@ Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
   plan.host.stop = interrupted;
   plan.run.level = *level;
   if (!options.expected_failures.empty()) {
-    auto expected = ExpectedFailures::read(options.expected_failures);
+    auto expected = read_expected(options.expected_failures, suite);
     if (!expected) return tl::unexpected(expected.error());
     plan.expected = std::move(*expected);
   }
