@@ -12,10 +12,11 @@ namespace {
 
 void add_strictness(CLI::App& command, RunOptions& options) {
   command
-      .add_option("--level", options.level,
-                  "How strictly: `exact` (float32 bits), `numeric` (a tolerance for each channel) "
-                  "or `events` (the same events, at most one tick apart, and values that "
-                  "differ by at most about half their size plus a small floor); "
+      .add_option(
+          "--level", options.level,
+          "How strictly: `exact` (float32 bits), `numeric` (a tolerance for each channel) "
+          "or `events` (the same events, at most one tick apart, and values that "
+          "differ by at most about half their size plus a small floor); "
                   "flights are judged the same way at each level")
       ->type_name("LEVEL")
       ->capture_default_str()
@@ -92,8 +93,9 @@ void add_run_command(CLI::App& app, const Globals& globals, Action& action) {
       ->capture_default_str()
       ->group(option_group::selection);
   command
-      ->add_option("--rerun-failed", options->select.rerun_failed,
-                   "Only the vectors that failed in this report of --json")
+      ->add_option(
+          "--rerun-failed", options->select.rerun_failed,
+          "Only the vectors that failed in this report of --json")
       ->type_name("REPORT")
       ->group(option_group::selection);
   command

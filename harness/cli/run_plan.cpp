@@ -114,7 +114,7 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
         selected.configurations.size() == selected.the_case.configurations().size();
     for (const RunConfiguration& configuration : selected.configurations)
       rates.insert(configuration.rate);
-    plan.results += selected.configurations.size();
+    plan.run.selected += selected.configurations.size();
   }
   if (auto checked = check_recorded(*cases, plan); !checked) return checked;
   VehicleModels vehicle_models(suite.models());
@@ -137,7 +137,7 @@ Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, Run
   auto flight = find_timed_flight(options.timing, suite);
   if (!flight) return tl::unexpected(flight.error());
   if (auto asked = ask_port({flight->the_case.profile}, plan); !asked) return asked;
-  plan.results = 1;
+  plan.run.selected = 1;
   plan.run.timing = options.timing;
   plan.run.rates = {flight->timing.configuration.rate};
   plan.jobs.push_back(

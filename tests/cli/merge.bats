@@ -98,6 +98,30 @@ P
   has "fewer.json: the declaration of the port is"
 }
 
+@test "a report that contradicts itself is refused by its name" {
+  shards fault:tpa-missing 2
+  "$PYTHON" - <<'P'
+import json
+def write(file, **changed):
+    json.dump(dict(report, **changed), open(file, "w"))
+report = json.load(open("part1.json"))
+passing = [r for r in report["results"] if r["verdict"] != "fail"]
+write("fewer.json", results=passing)
+write("consistent.json", results=passing, totals=dict(report["totals"], fail=0))
+write("passing.json", results=[dict(r, verdict="pass") for r in report["results"]])
+P
+  for file in fewer passing; do
+    run "$ATTEST" merge $file.json part2.json --json merged.json
+    [ "$status" -eq 2 ]
+    has "$file.json: contradicts itself: its totals have"
+  done
+  run "$ATTEST" merge consistent.json part2.json --json merged.json
+  [ "$status" -eq 2 ]
+  has "consistent.json: contradicts itself:"
+  has "vectors were selected, but it has"
+  [ ! -e merged.json ]
+}
+
 @test "what failed in a report is run again" {
   run "$ATTEST" run "${selected[@]}" --port fault:tpa-missing --json all.json
   failed=$(grep -c '"verdict": "fail"' all.json)
