@@ -95,7 +95,8 @@ void add_run_command(CLI::App& app, const Globals& globals, Action& action) {
   command
       ->add_option(
           "--rerun-failed", options->select.rerun_failed,
-          "Only the vectors that failed in this report of --json")
+          "Only the vectors that failed in this report of --json; give its --level and --param "
+          "again")
       ->type_name("REPORT")
       ->group(option_group::selection);
   command

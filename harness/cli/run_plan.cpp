@@ -21,6 +21,7 @@
 #include "harness/port/port.hpp"
 #include "harness/port/profiles.hpp"
 #include "harness/process/child.hpp"
+#include "harness/report/read_report.hpp"
 #include "harness/report/text.hpp"
 #include "harness/verify/recorded_vectors.hpp"
 
@@ -79,6 +80,25 @@ Result<void> set_parameters(const RunOptions& options, const std::vector<Selecte
   return {};
 }
 
+// Of --rerun-failed. Errors: the report is of another level or of other parameters, with which
+// other vectors may fail.
+Result<void> check_rerun(const RunOptions& options, const RunResult& run) {
+  if (options.select.rerun_failed.empty()) return {};
+  const auto earlier = read_report(options.select.rerun_failed);
+  if (!earlier) return tl::unexpected(earlier.error());
+  const auto options_of = [](const RunResult& of) {
+    std::string text = fmt::format("--level {}", name_of(of.level));
+    for (const ParameterChange& change : of.parameters) {
+      text += fmt::format(" --param {}={}", change.name, change.value);
+    }
+    return text;
+  };
+  if (options_of(*earlier) == options_of(run)) return {};
+  return fail_at(options.select.rerun_failed,
+                 fmt::format("is of a run with {}, this one is with {}; give the same options",
+                             options_of(*earlier), options_of(run)));
+}
+
 // Leaves out the profiles of which the port has no module: a port of the controller of v1.5.5 is
 // not given the cases of the cascade, unless --profile selects them. Keeps all if none would
 // remain.
@@ -96,6 +116,7 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
   auto cases = options.select.cases_in(suite.case_folders());
   if (!cases) return tl::unexpected(cases.error());
   if (auto set = set_parameters(options, *cases, plan); !set) return set;
+  if (auto same = check_rerun(options, plan.run); !same) return same;
   if (!suite.reference().empty() || !plan.run.parameters.empty()) {
     std::erase_if(*cases, [](const SelectedCase& one) { return one.the_case.flight.has_value(); });
     if (cases->empty())

@@ -153,6 +153,19 @@ T
   has "is no report of \`attest run --json\`"
 }
 
+@test "what failed is run again at the same level and with the same parameters only" {
+  tpa=(--port fault:tpa-missing --profile px4-v1.5.5 --group tpa --rate 250 --no-diagnose)
+  run "$ATTEST" run "${tpa[@]}" --level exact --param MC_ROLLRATE_P=0.31 --json report.json
+  [ "$status" -eq 1 ]
+  for other in "" "--level exact" "--level exact --param MC_ROLLRATE_P=0.3"; do
+    run "$ATTEST" run "${tpa[@]}" --rerun-failed report.json $other
+    [ "$status" -eq 2 ]
+    has "report.json: is of a run with --level exact --param MC_ROLLRATE_P=0.31, this one is with"
+  done
+  run "$ATTEST" run "${tpa[@]}" --rerun-failed report.json --level exact --param MC_ROLLRATE_P=0.31
+  [ "$status" -eq 1 ]
+}
+
 @test "GitHub gets annotations and a job summary, GitLab a code quality report" {
   run env GITHUB_STEP_SUMMARY="$PWD/step.md" "$ATTEST" run "${selected[@]}" \
     --port fault:tpa-missing --github --code-quality quality.json

@@ -109,6 +109,10 @@ P
   run ours list
   [ "$status" -eq 2 ]
   has "ours/BASE: names \`../nowhere\`, which has no cases/ folder"
+  printf 'released\n../nowhere\n' >ours/BASE
+  run ours list
+  [ "$status" -eq 2 ]
+  has "ours/BASE:2:1: has a second line"
   echo ../ours >ours/BASE
   run ours list
   [ "$status" -eq 2 ]

@@ -125,6 +125,23 @@ CHECK
   has "is for a fixed step of 250 Hz; write these vectors to another folder"
 }
 
+@test "a damaged header and a link to nowhere are errors of the recording" {
+  filter=(--filter px4-v1.5.5/rates/p_alone@250hz)
+  "$ATTEST" vectors vectors "${filter[@]}" >/dev/null
+  answer
+  out=vectors/px4-v1.5.5/rates/p_alone/250hz.out.csv
+  sed '1s/,/,\x00/' $out >damaged
+  mv damaged $out
+  run "$ATTEST" run --port recorded:vectors "${filter[@]}"
+  [ "$status" -eq 1 ]
+  has "protocol: $out:1:"
+  has "a NUL byte in the name of a column"
+  ln -sf nowhere $out
+  run "$ATTEST" run --port recorded:vectors "${filter[@]}"
+  [ "$status" -eq 1 ]
+  has "protocol: $out: cannot open the file"
+}
+
 @test "a folder that cannot be judged is an error before anything runs" {
   filter=(--filter px4-v1.5.5/attitude/roll_pitch_and_yaw@250hz)
   refused() {
