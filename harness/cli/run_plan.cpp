@@ -63,9 +63,17 @@ Result<void> check_recorded(const std::vector<SelectedCase>& cases, const RunPla
   return {};
 }
 
-// Stores the parameters of --param. Errors: a parameter that no selected case can have.
+// Stores the parameters of --param. Errors: a parameter that no selected case can have; a port or a
+// suite whose outputs for other parameters than those of the cases are not known.
 Result<void> set_parameters(const RunOptions& options, const std::vector<SelectedCase>& cases,
                             RunPlan& plan) {
+  const auto folder = recorded_folder(options.host.port);
+  if (folder && !options.parameters.empty()) {
+    return fail(
+        fmt::format("--param: the outputs in {} were recorded with the parameters of the "
+                    "cases; leave --param out",
+                    *folder));
+  }
   for (const std::string& text : options.parameters) {
     const auto change = parse_parameter(text);
     if (!change) return tl::unexpected(change.error());

@@ -199,3 +199,12 @@ not_recorded() {
   [ "$status" -eq 0 ]
   has "${#flags[@]} outputs not recorded"
 }
+
+@test "recorded outputs are those of the parameters of the cases" {
+  filter=(--filter px4-v1.5.5/rates/p_alone@250hz)
+  "$ATTEST" vectors vectors "${filter[@]}" >/dev/null
+  answer
+  run "$ATTEST" run --port recorded:vectors "${filter[@]}" --param MC_ROLLRATE_P=0.2
+  [ "$status" -eq 2 ]
+  has "--param: the outputs in vectors were recorded with the parameters of the cases"
+}
