@@ -24,7 +24,8 @@ void add_strictness(CLI::App& command, RunOptions& options) {
   command
       .add_option("--param", options.parameters,
                   "Set a parameter from the first step on, in each open-loop case, for port and "
-                  "reference; without flights. Not for recorded ports")
+                  "reference; without flights. Not for recorded ports, nor for a suite whose "
+                  "reference is a port")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false)
       ->group(option_group::strictness);

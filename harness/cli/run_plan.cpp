@@ -65,14 +65,19 @@ Result<void> check_recorded(const std::vector<SelectedCase>& cases, const RunPla
 
 // Stores the parameters of --param. Errors: a parameter that no selected case can have; a port or a
 // suite whose outputs for other parameters than those of the cases are not known.
-Result<void> set_parameters(const RunOptions& options, const std::vector<SelectedCase>& cases,
-                            RunPlan& plan) {
+Result<void> set_parameters(const RunOptions& options, const SuiteFolder& suite,
+                            const std::vector<SelectedCase>& cases, RunPlan& plan) {
   const auto folder = recorded_folder(options.host.port);
   if (folder && !options.parameters.empty()) {
     return fail(
         fmt::format("--param: the outputs in {} were recorded with the parameters of the "
                     "cases; leave --param out",
                     *folder));
+  }
+  if (!suite.reference().empty() && !options.parameters.empty()) {
+    return fail(
+        "--param: only attest's own law can compute the expected outputs for other parameters, and "
+        "the reference of this suite is a port; leave --param out");
   }
   for (const std::string& text : options.parameters) {
     const auto change = parse_parameter(text);
@@ -123,7 +128,7 @@ void leave_out_other_laws(const RunPlan& plan, std::vector<SelectedCase>& cases)
 Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, RunPlan& plan) {
   auto cases = options.select.cases_in(suite.case_folders());
   if (!cases) return tl::unexpected(cases.error());
-  if (auto set = set_parameters(options, *cases, plan); !set) return set;
+  if (auto set = set_parameters(options, suite, *cases, plan); !set) return set;
   if (auto same = check_rerun(options, plan.run); !same) return same;
   if (!suite.reference().empty() || !plan.run.parameters.empty()) {
     std::erase_if(*cases, [](const SelectedCase& one) { return one.the_case.flight.has_value(); });
