@@ -16,8 +16,9 @@ void add_strictness(CLI::App& command, RunOptions& options) {
           "--level", options.level,
           "How strictly: `exact` (float32 bits), `numeric` (a tolerance for each channel) "
           "or `events` (the same events, at most one tick apart, and values that "
-          "differ by at most about half their size plus a small floor); "
-                  "flights are judged the same way at each level")
+          "differ by at most about half their size plus a small floor; not for the units of v1.14 "
+          "to v1.16, whose cases are then skipped); "
+          "flights are judged the same way at each level")
       ->type_name("LEVEL")
       ->capture_default_str()
       ->group(option_group::strictness);
