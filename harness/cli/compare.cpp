@@ -2,6 +2,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/cli/command.hpp"
 #include "harness/cli/outputs.hpp"
@@ -24,6 +25,13 @@ CaseResult as_result(const Comparison& comparison) {
   result.first = comparison.first;
   result.worst = comparison.worst;
   return result;
+}
+
+// Outputs that only the first trace has.
+std::string not_compared(const ChannelSet& outputs, const std::string& want) {
+  if (outputs.none()) return "";
+  return fmt::format("; not compared, because {} does not have them: {}", want,
+                     fmt::join(names_of(outputs), ", "));
 }
 
 Result<TimedSignals> signals_in(const std::string& file) {
@@ -115,18 +123,19 @@ int compare_command(const CompareOptions& options, const Globals& globals) {
   if (!compared) return report_error(compared.error());
   const Comparison& comparison = *compared;
   if (!comparison.agrees()) {
-    fmt::print("differ: {} (got), {} (want)\n", options.got, options.want);
+    fmt::print("differ: {} (got), {} (want){}\n", options.got, options.want,
+               not_compared(comparison.only_got, options.want));
     if (!comparison.mismatch.empty()) fmt::print("  {}\n", comparison.mismatch);
     fmt::print("{}", finding_text(as_result(comparison), *level));
     return exit_failed;
   }
-  if (!globals.quiet) {
+  if (!globals.quiet || comparison.only_got.any()) {
     fmt::print("agree: {} ticks, {}", comparison.ticks, name_of(*level));
     if (comparison.tightest) {
       fmt::print(", tightest headroom {:.3g}x on {} at tick {}", comparison.tightest->ratio,
                  channels()[comparison.tightest->channel].name, comparison.tightest->tick);
     }
-    fmt::print("\n");
+    fmt::print("{}\n", not_compared(comparison.only_got, options.want));
   }
   return exit_ok;
 }

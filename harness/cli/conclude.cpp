@@ -64,6 +64,11 @@ int exit_code(const RunResult& run) {
     case Conclusion::none:
       break;
   }
+  if (run.count(Verdict::xfail) > 0) {
+    return report_error(
+        {"no vector passed: every selected vector was an expected failure, skipped or "
+         "unsupported"});
+  }
   return report_error({"no vector was compared: every selected vector was skipped or unsupported"});
 }
 

@@ -30,8 +30,8 @@ struct Examined {
 };
 
 // `run` has all results. Prints errors on stderr, the summary on stdout, and writes the reports.
-// Returns the exit code: 0 requires that at least one vector was compared, because a port without
-// support for any does not conform.
+// Returns the exit code: 0 requires that at least one vector passed, because a port without support
+// for any does not conform.
 int conclude(const RunResult& run, const Examined& examined, const ReportOptions& options,
              std::vector<ReportFile> reports, std::chrono::steady_clock::time_point begin,
              const Globals& globals);

@@ -154,6 +154,7 @@ RunResult merged(std::vector<Part> parts) {
     std::move(part.errors.begin(), part.errors.end(), std::back_inserter(run.errors));
     run.rates.insert(run.rates.end(), part.rates.begin(), part.rates.end());
     run.date = std::max(run.date, part.date);
+    run.selected += part.selected;
     run.all_configurations = run.all_configurations && part.all_configurations;
     run.stopped_early = run.stopped_early || part.stopped_early;
   }

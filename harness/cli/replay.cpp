@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "harness/cli/command.hpp"
@@ -169,8 +170,14 @@ class Replay {
         !written) {
       return written;
     }
-    if (result.verdict == Verdict::pass && globals_.quiet) return {};
+    const Module module = module_of(trace.present);
+    const ChannelSet not_compared = channels_of(module, "out/") & ~trace.present;
+    if (result.verdict == Verdict::pass && globals_.quiet && not_compared.none()) return {};
     print_result(result, result.name, name_of(level_), out_);
+    if (not_compared.any()) {
+      fmt::print(out_, "  not compared, because the trace does not have them: {}\n",
+                 fmt::join(names_of(not_compared), ", "));
+    }
     if (result.verdict != Verdict::pass) fmt::print(out_, "{}", finding_text(result, level_));
     return {};
   }

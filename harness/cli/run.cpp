@@ -28,7 +28,7 @@ Result<void> check_paths(const RunOptions& options, const SuiteFolder& suite) {
 
 // Runs all vectors. False: interrupted, and the results are not complete.
 bool run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
-  Progress progress(plan.results, Progress::on_stderr(globals.quiet));
+  Progress progress(plan.run.selected, Progress::on_stderr(globals.quiet));
   JobOptions<CaseResult> jobs;
   jobs.processes = options.jobs;
   jobs.in_process = options.host.in_process;

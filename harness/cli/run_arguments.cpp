@@ -12,18 +12,21 @@ namespace {
 
 void add_strictness(CLI::App& command, RunOptions& options) {
   command
-      .add_option("--level", options.level,
-                  "How strictly: `exact` (float32 bits), `numeric` (a tolerance for each channel) "
-                  "or `events` (the same events, at most one tick apart, and values that "
-                  "differ by at most about half their size plus a small floor); "
-                  "flights are judged the same way at each level")
+      .add_option(
+          "--level", options.level,
+          "How strictly: `exact` (float32 bits), `numeric` (a tolerance for each channel) "
+          "or `events` (the same events, at most one tick apart, and values that "
+          "differ by at most about half their size plus a small floor; not for the units of v1.14 "
+          "to v1.16, whose cases are then skipped); "
+          "flights are judged the same way at each level")
       ->type_name("LEVEL")
       ->capture_default_str()
       ->group(option_group::strictness);
   command
       .add_option("--param", options.parameters,
                   "Set a parameter from the first step on, in each open-loop case, for port and "
-                  "reference; without flights")
+                  "reference; without flights. Not for recorded ports, nor for a suite whose "
+                  "reference is a port")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false)
       ->group(option_group::strictness);
@@ -92,8 +95,10 @@ void add_run_command(CLI::App& app, const Globals& globals, Action& action) {
       ->capture_default_str()
       ->group(option_group::selection);
   command
-      ->add_option("--rerun-failed", options->select.rerun_failed,
-                   "Only the vectors that failed in this report of --json")
+      ->add_option(
+          "--rerun-failed", options->select.rerun_failed,
+          "Only the vectors that failed in this report of --json; give its --level and --param "
+          "again")
       ->type_name("REPORT")
       ->group(option_group::selection);
   command

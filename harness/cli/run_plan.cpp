@@ -21,6 +21,7 @@
 #include "harness/port/port.hpp"
 #include "harness/port/profiles.hpp"
 #include "harness/process/child.hpp"
+#include "harness/report/read_report.hpp"
 #include "harness/report/text.hpp"
 #include "harness/verify/recorded_vectors.hpp"
 
@@ -62,9 +63,22 @@ Result<void> check_recorded(const std::vector<SelectedCase>& cases, const RunPla
   return {};
 }
 
-// Stores the parameters of --param. Errors: a parameter that no selected case can have.
-Result<void> set_parameters(const RunOptions& options, const std::vector<SelectedCase>& cases,
-                            RunPlan& plan) {
+// Stores the parameters of --param. Errors: a parameter that no selected case can have; a port or a
+// suite whose outputs for other parameters than those of the cases are not known.
+Result<void> set_parameters(const RunOptions& options, const SuiteFolder& suite,
+                            const std::vector<SelectedCase>& cases, RunPlan& plan) {
+  const auto folder = recorded_folder(options.host.port);
+  if (folder && !options.parameters.empty()) {
+    return fail(
+        fmt::format("--param: the outputs in {} were recorded with the parameters of the "
+                    "cases; leave --param out",
+                    *folder));
+  }
+  if (!suite.reference().empty() && !options.parameters.empty()) {
+    return fail(
+        "--param: only attest's own law can compute the expected outputs for other parameters, and "
+        "the reference of this suite is a port; leave --param out");
+  }
   for (const std::string& text : options.parameters) {
     const auto change = parse_parameter(text);
     if (!change) return tl::unexpected(change.error());
@@ -77,6 +91,25 @@ Result<void> set_parameters(const RunOptions& options, const std::vector<Selecte
     plan.run.parameters.push_back(*change);
   }
   return {};
+}
+
+// Of --rerun-failed. Errors: the report is of another level or of other parameters, with which
+// other vectors may fail.
+Result<void> check_rerun(const RunOptions& options, const RunResult& run) {
+  if (options.select.rerun_failed.empty()) return {};
+  const auto earlier = read_report(options.select.rerun_failed);
+  if (!earlier) return tl::unexpected(earlier.error());
+  const auto options_of = [](const RunResult& of) {
+    std::string text = fmt::format("--level {}", name_of(of.level));
+    for (const ParameterChange& change : of.parameters) {
+      text += fmt::format(" --param {}={}", change.name, change.value);
+    }
+    return text;
+  };
+  if (options_of(*earlier) == options_of(run)) return {};
+  return fail_at(options.select.rerun_failed,
+                 fmt::format("is of a run with {}, this one is with {}; give the same options",
+                             options_of(*earlier), options_of(run)));
 }
 
 // Leaves out the profiles of which the port has no module: a port of the controller of v1.5.5 is
@@ -95,7 +128,8 @@ void leave_out_other_laws(const RunPlan& plan, std::vector<SelectedCase>& cases)
 Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, RunPlan& plan) {
   auto cases = options.select.cases_in(suite.case_folders());
   if (!cases) return tl::unexpected(cases.error());
-  if (auto set = set_parameters(options, *cases, plan); !set) return set;
+  if (auto set = set_parameters(options, suite, *cases, plan); !set) return set;
+  if (auto same = check_rerun(options, plan.run); !same) return same;
   if (!suite.reference().empty() || !plan.run.parameters.empty()) {
     std::erase_if(*cases, [](const SelectedCase& one) { return one.the_case.flight.has_value(); });
     if (cases->empty())
@@ -114,7 +148,7 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
         selected.configurations.size() == selected.the_case.configurations().size();
     for (const RunConfiguration& configuration : selected.configurations)
       rates.insert(configuration.rate);
-    plan.results += selected.configurations.size();
+    plan.run.selected += selected.configurations.size();
   }
   if (auto checked = check_recorded(*cases, plan); !checked) return checked;
   VehicleModels vehicle_models(suite.models());
@@ -137,7 +171,7 @@ Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, Run
   auto flight = find_timed_flight(options.timing, suite);
   if (!flight) return tl::unexpected(flight.error());
   if (auto asked = ask_port({flight->the_case.profile}, plan); !asked) return asked;
-  plan.results = 1;
+  plan.run.selected = 1;
   plan.run.timing = options.timing;
   plan.run.rates = {flight->timing.configuration.rate};
   plan.jobs.push_back(
@@ -182,6 +216,19 @@ Result<void> identify(const RunOptions& options, const SuiteFolder& suite, RunRe
   return {};
 }
 
+Result<ExpectedFailures> read_expected(const std::string& file, const SuiteFolder& suite) {
+  const auto cases = select_cases(suite.case_folders(), {});
+  if (!cases) return tl::unexpected(cases.error());
+  std::vector<std::string> vectors;
+  for (const auto& [the_case, configurations] : *cases) {
+    if (the_case.flight) continue;
+    for (const RunConfiguration& configuration : configurations) {
+      vectors.push_back(the_case.id_at(configuration));
+    }
+  }
+  return ExpectedFailures::read(file, vectors);
+}
+
 }  // namespace
 
 Result<std::string> sha256_of_port(const std::string& port) {
@@ -203,7 +250,7 @@ Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
   plan.host.stop = interrupted;
   plan.run.level = *level;
   if (!options.expected_failures.empty()) {
-    auto expected = ExpectedFailures::read(options.expected_failures);
+    auto expected = read_expected(options.expected_failures, suite);
     if (!expected) return tl::unexpected(expected.error());
     plan.expected = std::move(*expected);
   }

@@ -21,7 +21,6 @@ struct RunPlan {
   std::vector<SelectedCase> cases;
   HostOptions host;
   Jobs<CaseResult> jobs;
-  std::size_t results = 0;
 };
 
 // Asks the port for its declarations, and prints notes about it. Errors: wrong options; the port

@@ -29,8 +29,10 @@ Result<fs::path> base_of(const fs::path& folder) {
   const fs::path file = folder / base_file;
   const auto text = read_file(file);
   if (!text) return tl::unexpected(text.error());
-  std::string line;
-  std::getline(std::istringstream(*text), line);
+  const std::string line = text->substr(0, text->find('\n'));
+  if (text->find_first_not_of("\r\n", line.size()) != std::string::npos) {
+    return fail_at(file.string(), "has a second line; it names one suite, in one line", 2, 1);
+  }
   const auto base = line == "released" ? data_folder() : folder / line;
   if (line.empty() || !base || !has_cases(*base)) {
     return fail_at(file.string(), fmt::format("names `{}`, which has no cases/ folder; write "

@@ -115,7 +115,11 @@ void add_compare(CLI::App& app, const Globals& globals, Action& action) {
                    "tick by tick, in their outputs; with a log, all signals at equal times")
       ->type_name("A")
       ->required();
-  command->add_option("want", options->want, "The trace or log to judge it by")
+  command
+      ->add_option(
+          "want", options->want,
+          "The trace or log to judge it by; outputs that it does not have are named and not "
+          "compared")
       ->type_name("B")
       ->required();
   command->add_option("--level", options->level, "`exact`, `numeric` or `events`")

@@ -47,7 +47,10 @@ std::string unknown_option(const CLI::App& app, int argc, char** argv) {
 std::string wrong_value(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands()) {
     for (const CLI::Option* option : command->get_options()) {
-      const bool is_number = option->get_type_name().starts_with("FLOAT");
+      // CLI11 adds the range of a number to the name of its type: "X:NONNEGATIVE". A range has no
+      // effect on NaN.
+      const std::string type = option->get_type_name();
+      const bool is_number = type.starts_with("FLOAT") || type.find(':') != std::string::npos;
       for (const std::string& text : option->results()) {
         if (text.empty()) return option->get_name() + ": is empty; is a variable not set?";
         if (is_number && !std::isfinite(std::strtod(text.c_str(), nullptr))) {

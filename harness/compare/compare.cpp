@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/compare/events.hpp"
 #include "harness/compare/gross.hpp"
@@ -70,15 +71,17 @@ TickComparer::TickComparer(const ChannelSet& got, const ChannelSet& want,
                            const Tolerances& tolerances)
     : level_(tolerances.level()), allowed_(tolerances, module_of(want)) {
   const auto table = channels();
+  std::vector<std::string_view> missing;
   for (std::size_t i = 0; i < table.size(); ++i) {
-    if (!table[i].is_output() || !want[i]) continue;
-    if (got[i]) {
-      chosen_.push_back(i);
-    } else if (not_recorded_.empty()) {
-      not_recorded_ = fmt::format("{} was not recorded", table[i].name);
-    }
+    if (!table[i].is_output()) continue;
+    if (got[i] && want[i]) chosen_.push_back(i);
+    if (!got[i] && want[i]) missing.push_back(table[i].name);
+    result_.only_got[i] = got[i] && !want[i];
   }
-  if (chosen_.empty() && not_recorded_.empty()) {
+  if (!missing.empty()) {
+    not_recorded_ = fmt::format("{} {} not recorded", fmt::join(missing, ", "),
+                                missing.size() == 1 ? "was" : "were");
+  } else if (chosen_.empty()) {
     not_recorded_ = "nothing to compare: no out/ channels";
   }
 }

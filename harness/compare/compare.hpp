@@ -49,6 +49,7 @@ struct Comparison {
   std::optional<Headroom> tightest;  // numeric level, among the values within tolerance
   std::string mismatch;              // why the traces cannot be compared; empty if they can
   std::string event;                 // at the events level: the difference at the first deviation
+  ChannelSet only_got;               // outputs that only `got` has: they are not compared
   bool got_non_finite = false;       // at any tick, a NaN or Inf where the golden is finite
 
   bool agrees() const { return !first && mismatch.empty(); }
@@ -84,7 +85,7 @@ class TickComparer {
 
   Level level_;
   std::vector<std::size_t> chosen_;  // channels that both have and that are compared
-  // The message if an output of `want` is missing in `got`, or `want` has no output; else empty.
+  // The message if outputs of `want` are missing in `got`, or `want` has no output; else empty.
   std::string not_recorded_;
   std::size_t tick_ = 0;  // the next
   AllowedDeviation allowed_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <set>
 
 #include <fmt/format.h>
@@ -128,8 +129,11 @@ Result<ParameterChange> parse_parameter(const std::string& text) {
   const char* const end = text.data() + text.size();
   float value = 0;
   const auto [rest, error] = std::from_chars(std::min(text.data() + equals + 1, end), end, value);
-  if (equals == text.size() || error != std::errc{} || rest != end) {
-    return fail(fmt::format("--param {}: write NAME=VALUE, such as MC_ROLL_P=6.5", text));
+  if (equals == text.size() || error != std::errc{} || rest != end || !std::isfinite(value)) {
+    return fail(
+        fmt::format("--param {}: write NAME=VALUE with a finite number, such as "
+                    "MC_ROLL_P=6.5",
+                    text));
   }
   return ParameterChange{0, text.substr(0, equals), value};
 }

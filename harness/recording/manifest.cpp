@@ -159,8 +159,10 @@ Result<std::optional<OutputFile>> find_output_file(const std::filesystem::path& 
   std::optional<OutputFile> found;
   for (const TableFormat format : table_formats) {
     const auto path = folder / fmt::format("{}.out.{}", stem_of(vector_id), name_of(format));
+    // A symbolic link is a file of outputs even if its target is missing: reading it is an error.
     std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) continue;
+    const auto status = std::filesystem::symlink_status(path, ignored);
+    if (!std::filesystem::exists(status)) continue;
     if (found) {
       return fail_at(found->path.string(),
                      fmt::format("there is also {}; remove one of them", path.string()));

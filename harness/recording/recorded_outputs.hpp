@@ -12,11 +12,11 @@
 namespace attest {
 
 // Replaces the outputs of `trace` by those of the table, row by row. Columns may be in any order,
-// and their names are compared as identifiers (identifier_of()), with or without `out/`. A
-// `published` that is not recorded is 1. Errors, each with what to do: no output at all, a missing
-// or repeated one; fewer or more rows than ticks; times that are not those of the ticks, because
-// rows are missing or in another order, or because of another unit; a value that the type of its
-// channel cannot have. REQUIRES: the table has a column.
+// and their names are compared as identifiers (identifier_of()), with or without `out/`. Columns of
+// outputs that the manifest lists as not recorded are not read; a `published` among them is 1.
+// Errors, each with what to do: a missing or repeated output; fewer or more rows than ticks; times
+// that are not those of the ticks, because rows are missing or in another order, or because of
+// another unit; a value that the type of its channel cannot have. REQUIRES: the table has a column.
 Result<void> set_recorded_outputs(const Table& table, const Manifest& manifest,
                                   const std::string& file, Trace& trace);
 

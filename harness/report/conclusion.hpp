@@ -9,9 +9,9 @@
 namespace attest {
 
 enum class Conclusion {
-  pass,  // no vector failed, no error occurred, and at least one vector was compared
+  pass,  // no vector failed, no error occurred, and at least one vector passed
   fail,
-  none  // as pass, but no vector was compared
+  none  // as pass, but no vector passed: skipped, unsupported or expected failures
 };
 
 Conclusion conclusion_of(const RunResult& run);

@@ -62,6 +62,7 @@ ordered_json selection(const RunResult& run) {
     parameters.push_back({{"name", change.name}, {"value", json_of(change.value)}});
   }
   ordered_json out = {{"options", run.selection},
+                      {"vectors", run.selected},
                       {"whole_cases", run.all_configurations},
                       {"parameters", parameters}};
   if (run.shard.count > 1) out["shard"] = run.shard.to_string();

@@ -60,6 +60,7 @@ void read_limits(JsonReader reader, RunResult& run) {
 
 void read_selection(JsonReader reader, RunResult& run) {
   run.selection = reader.text("options");
+  run.selected = reader.count("vectors");
   run.all_configurations = reader.flag("whole_cases");
   if (reader.has("timing")) run.timing = reader.text("timing");
   if (reader.has("shard")) {
@@ -89,6 +90,25 @@ void read_results(JsonReader& reader, RunResult& run) {
   }
 }
 
+// Errors: totals that are not those of the results, or another number of results than vectors that
+// were selected.
+void check_numbers(JsonReader reader, JsonReader totals, const RunResult& run) {
+  for (int i = 0; i < verdict_count; ++i) {
+    const auto verdict = static_cast<Verdict>(i);
+    const std::string name(name_of(verdict));
+    const std::size_t total = totals.count(name.c_str());
+    if (total == run.count(verdict)) continue;
+    reader.wrong(fmt::format("contradicts itself: its totals have {} {}, its results {}", total,
+                             name, run.count(verdict)));
+  }
+  const std::size_t results = run.results.size();
+  const bool may_lack_results = run.stopped_early || !run.errors.empty();
+  if (results > run.selected || (results < run.selected && !may_lack_results)) {
+    reader.wrong(fmt::format("contradicts itself: {} vectors were selected, but it has {} results",
+                             run.selected, results));
+  }
+}
+
 }  // namespace
 
 Result<RunResult> read_report(const std::string& path) {
@@ -114,6 +134,7 @@ Result<RunResult> read_report(const std::string& path) {
   read_limits(reader.object("limits"), run);
   read_selection(reader.object("selection"), run);
   read_results(reader, run);
+  if (error.empty()) check_numbers(reader, reader.object("totals"), run);
   if (!error.empty()) return fail_at(path, error);
   return run;
 }

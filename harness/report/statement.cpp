@@ -133,7 +133,7 @@ Statement statement_of(const RunResult& run) {
   if (!fails && (!run.errors.empty() || run.stopped_early)) {
     return {{"none: the run is not complete"}, ""};
   }
-  if (claims.empty()) return {{"none: no vector passed"}, ""};
+  if (!fails && run.count(Verdict::pass) == 0) return {{"none: no vector passed"}, ""};
   Statement statement{{}, subject_of(run)};
   for (const Claim& claim : claims) statement.claims.push_back(text_of(claim, run));
   return statement;

@@ -70,6 +70,9 @@ Result<void> CsvRows::read_header(Unnamed unnamed) {
     if (name.empty() && unnamed == Unnamed::refused) {
       return fail_at_place(name, "a column without a name; name it or remove the comma");
     }
+    if (name.find('\0') != std::string_view::npos) {
+      return fail_at_place(name, "a NUL byte in the name of a column; the file is damaged");
+    }
     if (!names.insert(name).second) {
       return fail_at_place(name,
                            fmt::format("repeated column {}; remove one", in_backquotes(name)));

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <fnmatch.h>
 
 #include "harness/core/toml.hpp"
@@ -13,39 +14,70 @@
 namespace attest {
 namespace {
 
-bool matches(const std::string& pattern, const CaseResult& result) {
-  const auto matches_name = [&](const std::string& name) {
-    return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
+// The vector's id, or the id without the configuration.
+bool matches(const std::string& pattern, const std::string& vector) {
+  const std::string of_case = vector.substr(0, vector.rfind('@'));
+  return ::fnmatch(pattern.c_str(), vector.c_str(), 0) == 0 ||
+         ::fnmatch(pattern.c_str(), of_case.c_str(), 0) == 0;
+}
+
+// The profile whose vectors all match, and that would match in any other group too: the pattern
+// would excuse every mistake of a port, including later ones. Empty for other patterns. A group
+// that the suite does not have stands for the others, because a suite may have a single group.
+std::string wholly_excused(const std::string& pattern, const std::vector<std::string>& suite) {
+  const auto matches_other_group = [&](const std::string& profile) {
+    const std::string id = profile + "/another_group/another_case";
+    return matches(pattern, id + "@50hz") && matches(pattern, id + "@250hz");
   };
-  return matches_name(result.id()) || matches_name(result.case_id());
-}
-
-// A pattern that matches a case of any group and name would excuse every mistake of a port,
-// including later ones.
-bool excuses_everything(const std::string& pattern) {
-  constexpr const char* of_no_group = "\x01/\x01";
-  const auto profiles = known_profile_names();
-  return std::any_of(profiles.begin(), profiles.end(), [&](const std::string& profile) {
-    const std::string id = fmt::format("{}/{}", profile, of_no_group);
-    return ::fnmatch(pattern.c_str(), id.c_str(), 0) == 0 ||
-           ::fnmatch(pattern.c_str(), (id + "@\x01").c_str(), 0) == 0;
-  });
-}
-
-void expect(const ExpectedFailure& entry, CaseResult& result) {
-  if (result.verdict == Verdict::pass) {
-    result.verdict = Verdict::xpass;
-    result.reason = "expected to fail: " + entry.reason;
-  } else if (fails_a_run(result.verdict)) {
-    result.reason =
-        fmt::format("{}{}{}", entry.reason, result.reason.empty() ? "" : "; ", result.reason);
-    result.verdict = Verdict::xfail;
+  std::map<std::string, bool> all_match;
+  for (const std::string& profile : known_profile_names()) {
+    all_match[profile] = matches_other_group(profile);
   }
+  for (const std::string& vector : suite) {
+    const std::string profile = vector.substr(0, vector.find('/'));
+    const auto [match, is_new] = all_match.try_emplace(profile, true);
+    if (is_new) match->second = matches_other_group(profile);
+    match->second = match->second && matches(pattern, vector);
+  }
+  const auto found = std::ranges::find_if(all_match, [](const auto& one) { return one.second; });
+  return found == all_match.end() ? "" : found->first;
+}
+
+// Those of "crash, timeout: reason". For a reason without verdicts, those that a difference from
+// the golden has.
+std::vector<Verdict> excused_by(std::string_view reason) {
+  const std::vector<Verdict> differences{Verdict::fail, Verdict::non_finite};
+  std::vector<Verdict> excused;
+  while (true) {
+    const std::size_t end = reason.find_first_of(",:");
+    const auto verdict = parse_verdict(reason.substr(0, end));
+    if (end == std::string_view::npos || !verdict) return differences;
+    if (!fails_a_run(*verdict) || *verdict == Verdict::xpass) return differences;
+    excused.push_back(*verdict);
+    if (reason[end] == ':') return excused;
+    reason.remove_prefix(end + 1);
+    reason.remove_prefix(std::min(reason.find_first_not_of(' '), reason.size()));
+  }
+}
+
+std::string names_of(const std::vector<Verdict>& verdicts) {
+  std::vector<std::string_view> names;
+  for (const Verdict verdict : verdicts) names.push_back(name_of(verdict));
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string with_reason_of(const CaseResult& result, const std::string& text) {
+  return fmt::format("{}{}{}", text, result.reason.empty() ? "" : "; ", result.reason);
 }
 
 }  // namespace
 
-Result<ExpectedFailures> ExpectedFailures::read(const std::filesystem::path& file) {
+bool ExpectedFailure::excuses(Verdict verdict) const {
+  return std::ranges::find(excused, verdict) != excused.end();
+}
+
+Result<ExpectedFailures> ExpectedFailures::read(const std::filesystem::path& file,
+                                                const std::vector<std::string>& suite) {
   auto toml = TomlFile::read(file);
   if (!toml) return tl::unexpected(toml.error());
   ExpectedFailures expected;
@@ -54,37 +86,55 @@ Result<ExpectedFailures> ExpectedFailures::read(const std::filesystem::path& fil
   for (const std::string& pattern : table.keys()) {
     const std::string reason = table.text(pattern);
     if (reason.empty()) table.error(pattern, "needs a reason");
-    if (excuses_everything(pattern)) {
-      table.error(pattern, fmt::format("`{}` would excuse every case of a profile; name a group or "
-                                       "a case",
-                                       pattern));
+    if (const auto profile = wholly_excused(pattern, suite); !profile.empty()) {
+      table.error(pattern, fmt::format("`{}` would excuse every case of {}; name a group or a case",
+                                       pattern, profile));
     }
-    expected.entries_.push_back({pattern, reason});
+    expected.entries_.push_back({pattern, reason, excused_by(reason)});
   }
   if (auto done = toml->finish(); !done) return tl::unexpected(done.error());
   return expected;
 }
 
 bool ExpectedFailures::expects(const CaseResult& result) const {
-  return std::any_of(entries_.begin(), entries_.end(),
-                     [&](const ExpectedFailure& entry) { return matches(entry.pattern, result); });
+  return std::ranges::any_of(entries_, [&](const ExpectedFailure& entry) {
+    return entry.excuses(result.verdict) && matches(entry.pattern, result.id());
+  });
+}
+
+// Marks the entries that match in `used`.
+void ExpectedFailures::expect(CaseResult& result, std::vector<bool>& used) const {
+  const ExpectedFailure* entry = nullptr;  // the first that excuses the verdict, else the first
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (!matches(entries_[i].pattern, result.id())) continue;
+    used[i] = true;
+    const bool is_better =
+        entry != nullptr && !entry->excuses(result.verdict) && entries_[i].excuses(result.verdict);
+    if (entry == nullptr || is_better) entry = &entries_[i];
+  }
+  if (entry == nullptr) return;
+  if (result.verdict == Verdict::pass) {
+    result.verdict = Verdict::xpass;
+    result.reason = "expected to fail: " + entry->reason;
+  } else if (entry->excuses(result.verdict)) {
+    result.verdict = Verdict::xfail;
+    result.reason = with_reason_of(result, entry->reason);
+  } else if (fails_a_run(result.verdict)) {
+    result.reason =
+        with_reason_of(result, fmt::format("the list of expected failures excuses {} here, not {}",
+                                           names_of(entry->excused), name_of(result.verdict)));
+  }
 }
 
 void ExpectedFailures::apply(bool complete, RunResult& run) const {
-  for (const ExpectedFailure& entry : entries_) {
-    bool found = false;
-    for (CaseResult& result : run.results) {
-      if (!matches(entry.pattern, result)) continue;
-      found = true;
-      const bool judged = result.verdict == Verdict::xfail || result.verdict == Verdict::xpass;
-      if (!judged) expect(entry, result);
-    }
-    if (!found && complete) {
-      run.errors.push_back({fmt::format("`{}` is no case that was run; case ids never change "
-                                        "meaning, so remove it or correct it",
-                                        entry.pattern),
-                            file_.string()});
-    }
+  std::vector<bool> used(entries_.size(), false);
+  for (CaseResult& result : run.results) expect(result, used);
+  for (std::size_t i = 0; complete && i < entries_.size(); ++i) {
+    if (used[i]) continue;
+    run.errors.push_back({fmt::format("`{}` is no case that was run; case ids never change "
+                                      "meaning, so remove it or correct it",
+                                      entries_[i].pattern),
+                          file_.string()});
   }
 }
 
@@ -101,17 +151,21 @@ std::string expected_failures_of(const RunResult& run) {
     if (fails || result.verdict == Verdict::xfail) count.failed.push_back(&result);
   }
   TomlWriter toml;
-  const auto reason = [](const CaseResult& result) {
-    return fmt::format("{}: say why this is accepted, and until when", name_of(result.verdict));
+  const auto reason = [](const std::vector<const CaseResult*>& failed) {
+    std::vector<Verdict> verdicts;
+    for (const CaseResult* result : failed) verdicts.push_back(result->verdict);
+    std::ranges::sort(verdicts);
+    verdicts.erase(std::unique(verdicts.begin(), verdicts.end()), verdicts.end());
+    return fmt::format("{}: say why this is accepted, and until when", names_of(verdicts));
   };
   for (const auto& [id, count] : cases) {
     if (count.failed.empty()) continue;
     if (run.all_configurations && run.shard.count == 1 && count.failed.size() == count.all) {
-      toml.set("expected", id + "@*", reason(*count.failed.front()));
+      toml.set("expected", id + "@*", reason(count.failed));
       continue;
     }
     for (const CaseResult* result : count.failed) {
-      toml.set("expected", result->id(), reason(*result));
+      toml.set("expected", result->id(), reason({result}));
     }
   }
   return toml.to_string();

@@ -7,6 +7,7 @@
 
 #include "harness/compare/misrecording.hpp"
 #include "harness/recording/recorded_outputs.hpp"
+#include "harness/trace/output_topics.hpp"
 
 namespace attest {
 
@@ -78,6 +79,18 @@ void fill_in(const ChannelSet& not_recorded, const Trace& want, Trace& answered)
     }
   }
   keep_unpublished(answered);
+}
+
+bool leaves_values_to_judge(const ChannelSet& not_recorded, const Trace& want) {
+  const Module module = module_of(want.present);
+  ChannelSet values = channels_of(module, "out/") & ~not_recorded;
+  for (const OutputTopic& topic : output_topics(module)) {
+    values.reset(topic.published);
+    const auto publishes = [&](const Sample& sample) { return is_published(topic, sample); };
+    if (!not_recorded[topic.published] || std::ranges::any_of(want.samples, publishes)) continue;
+    values &= ~channels_of(module, fmt::format("out/{}.", topic.name));
+  }
+  return values.any();
 }
 
 void explain_recording(const Trace& answered, const Trace& want, CaseResult& result) {

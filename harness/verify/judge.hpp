@@ -34,6 +34,11 @@ void leave_out_from(std::size_t tick, const Trace& want, Trace& answered);
 // the values of a topic at ticks where it is then not published.
 void fill_in(const ChannelSet& not_recorded, const Trace& want, Trace& answered);
 
+// Whether a recording without the outputs `not_recorded` leaves a value to compare with `want`: a
+// recorded output other than a `published`. If the `published` of its topic is not recorded, `want`
+// must publish that topic at a tick.
+bool leaves_values_to_judge(const ChannelSet& not_recorded, const Trace& want);
+
 // Adds to the reason what mistake in the recording looks like this (misrecording.hpp).
 void explain_recording(const Trace& answered, const Trace& want, CaseResult& result);
 

@@ -38,6 +38,7 @@ struct RunResult {
   std::string selection;            // the options that selected a part, except --shard
   bool all_configurations = false;  // of each selected case, all were selected
   Shard shard;                      // of the selected vectors, these were run
+  std::size_t selected = 0;         // vectors of that shard
   // "profile/group" -> how many cases the suite has at each rate, selected or not.
   std::map<std::string, std::map<LoopRate, std::size_t>> suite;
   std::string suite_folder;  // as --suite gives it; empty: the suite was found

@@ -170,3 +170,31 @@ load common
   [ "$status" -eq 0 ]
   has "unit.html: 15 of"
 }
+
+# without FILE NAME: the trace FILE without its column NAME, on stdout.
+without() {
+  awk -F, -v OFS=, -v name="$2" '
+    NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i }
+    { line = ""; for (i = 1; i <= NF; ++i) if (i != c) line = line (line == "" ? "" : OFS) $i
+      print line }' "$1"
+}
+
+@test "an output that one of two traces lacks is named" {
+  "$ATTEST" record px4-v1.5.5/rates/p_alone --rate 250 --out whole.csv
+  without whole.csv out/actuator_controls_0.control[0] >less.csv
+  run "$ATTEST" compare whole.csv less.csv
+  [ "$status" -eq 0 ]
+  has "; not compared, because less.csv does not have them: out/actuator_controls_0.control[0]"
+  run "$ATTEST" -q compare whole.csv less.csv
+  [ "$status" -eq 0 ]
+  has "not compared, because less.csv does not have them"
+  without less.csv out/actuator_controls_0.control[1] >least.csv
+  run "$ATTEST" compare least.csv whole.csv
+  [ "$status" -eq 1 ]
+  has "out/actuator_controls_0.control[0], out/actuator_controls_0.control[1] were not recorded"
+  run "$ATTEST" -q replay least.csv
+  [ "$status" -eq 0 ]
+  has "  not compared, because the trace does not have them: out/actuator_controls_0.control[0], o"
+  run "$ATTEST" -q replay whole.csv
+  lacks "not compared"
+}

@@ -45,3 +45,32 @@ T
   [ "$status" -eq 1 ]
   has "stopped early"
 }
+
+@test "a run in which every failure is excused and no vector passed has no conclusion" {
+  cat >known.toml <<'T'
+[expected]
+"px4-v1.5.5/rates/p_alone" = "not ported"
+T
+  run "$ATTEST" run --filter px4-v1.5.5/rates/p_alone@250hz --port "lib:$PORTS/port_silent.so" \
+    --expected-failures known.toml
+  [ "$status" -eq 2 ]
+  has "NONE 0 of 1 vector conform, 1 xfail"
+  has "conformance: none: no vector passed"
+  has "no vector passed: every selected vector was an expected failure, skipped or unsupported"
+}
+
+@test "an entry for a failure does not excuse a crash; one for a crash does" {
+  selected=(--filter px4-v1.5.5/rates/p_alone@250hz --filter px4-v1.5.5/rates/d_alone@250hz)
+  run "$ATTEST" run "${selected[@]}" --port "lib:$PORTS/port_silent.so" --write-expected known.toml
+  grep -q "p_alone@250hz' = 'fail: say why" known.toml
+  run "$ATTEST" run "${selected[@]}" --port "lib:$PORTS/port_crash.so" \
+    --expected-failures known.toml
+  [ "$status" -eq 1 ]
+  has "the list of expected failures excuses fail here, not crash"
+  for pattern in '*hz' 'px4-v1.5.5/[a-z]*'; do
+    printf '[expected]\n"%s" = "x"\n' "$pattern" >all.toml
+    run "$ATTEST" run "${selected[@]}" --expected-failures all.toml
+    [ "$status" -eq 2 ]
+    has "all.toml:2:1: \`$pattern\` would excuse every case of px4-"
+  done
+}

@@ -30,3 +30,23 @@ open_loop=(--group anti_windup --group modes --group arming --group attitude --g
   run "$ATTEST" run --level events --group mixer --group battery_status
   [ "$status" -eq 0 ]
 }
+
+@test "the units of the cascade have no level events: no case is judged, and no claim is made" {
+  cascade=(--level events --profile px4-v1.16.0 --group rates --rate 250)
+  run "$ATTEST" run "${cascade[@]}"
+  [ "$status" -eq 2 ]
+  has "NONE 0 of"
+  has "skip: the level events is not defined for the units of v1.14 to v1.16; use --level numeric"
+  has "conformance: none"
+  run "$ATTEST" run --level events --group rates --rate 250
+  [ "$status" -eq 0 ]
+  has "px4-v1.5.5, events"
+  lacks "px4-v1.16.0, events"
+  "$ATTEST" record px4-v1.16.0/rates/p_alone --rate 250 --out trace.csv
+  run "$ATTEST" replay trace.csv --profile px4-v1.16.0 --level events
+  [ "$status" -eq 2 ]
+  has "no trace was compared"
+  run "$ATTEST" compare trace.csv trace.csv --level events
+  [ "$status" -eq 1 ]
+  has "these outputs define no events"
+}

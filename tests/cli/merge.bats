@@ -98,6 +98,30 @@ P
   has "fewer.json: the declaration of the port is"
 }
 
+@test "a report that contradicts itself is refused by its name" {
+  shards fault:tpa-missing 2
+  "$PYTHON" - <<'P'
+import json
+def write(file, **changed):
+    json.dump(dict(report, **changed), open(file, "w"))
+report = json.load(open("part1.json"))
+passing = [r for r in report["results"] if r["verdict"] != "fail"]
+write("fewer.json", results=passing)
+write("consistent.json", results=passing, totals=dict(report["totals"], fail=0))
+write("passing.json", results=[dict(r, verdict="pass") for r in report["results"]])
+P
+  for file in fewer passing; do
+    run "$ATTEST" merge $file.json part2.json --json merged.json
+    [ "$status" -eq 2 ]
+    has "$file.json: contradicts itself: its totals have"
+  done
+  run "$ATTEST" merge consistent.json part2.json --json merged.json
+  [ "$status" -eq 2 ]
+  has "consistent.json: contradicts itself:"
+  has "vectors were selected, but it has"
+  [ ! -e merged.json ]
+}
+
 @test "what failed in a report is run again" {
   run "$ATTEST" run "${selected[@]}" --port fault:tpa-missing --json all.json
   failed=$(grep -c '"verdict": "fail"' all.json)
@@ -127,6 +151,19 @@ T
   run "$ATTEST" run --rerun-failed "$SOURCE/README.md"
   [ "$status" -eq 2 ]
   has "is no report of \`attest run --json\`"
+}
+
+@test "what failed is run again at the same level and with the same parameters only" {
+  tpa=(--port fault:tpa-missing --profile px4-v1.5.5 --group tpa --rate 250 --no-diagnose)
+  run "$ATTEST" run "${tpa[@]}" --level exact --param MC_ROLLRATE_P=0.31 --json report.json
+  [ "$status" -eq 1 ]
+  for other in "" "--level exact" "--level exact --param MC_ROLLRATE_P=0.3"; do
+    run "$ATTEST" run "${tpa[@]}" --rerun-failed report.json $other
+    [ "$status" -eq 2 ]
+    has "report.json: is of a run with --level exact --param MC_ROLLRATE_P=0.31, this one is with"
+  done
+  run "$ATTEST" run "${tpa[@]}" --rerun-failed report.json --level exact --param MC_ROLLRATE_P=0.31
+  [ "$status" -eq 1 ]
 }
 
 @test "GitHub gets annotations and a job summary, GitLab a code quality report" {

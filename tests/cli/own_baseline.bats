@@ -35,6 +35,15 @@ ours() { "$ATTEST" --suite ours "$@"; }
   has "the expected outputs at other times or with other parameters are not known"
 }
 
+@test "a suite whose reference is a port has no outputs for other parameters" {
+  own_suite
+  ours bless --port "lib:$STARTER" --profile px4-v1.5.5 --yes --reason "our law" >/dev/null
+  run ours run --port "lib:$STARTER" --profile px4-v1.5.5 --rate 250 --param MC_ROLLRATE_P=0.2
+  [ "$status" -eq 2 ]
+  has "--param: only attest's own law can compute the expected outputs for other parameters"
+  lacks "FAIL"
+}
+
 @test "a suite has one reference, and goldens of attest's own law stay as they are" {
   own_suite
   run ours bless --yes --reason "attest's" --profile px4-v1.5.5
@@ -109,6 +118,10 @@ P
   run ours list
   [ "$status" -eq 2 ]
   has "ours/BASE: names \`../nowhere\`, which has no cases/ folder"
+  printf 'released\n../nowhere\n' >ours/BASE
+  run ours list
+  [ "$status" -eq 2 ]
+  has "ours/BASE:2:1: has a second line"
   echo ../ours >ours/BASE
   run ours list
   [ "$status" -eq 2 ]

@@ -125,6 +125,23 @@ CHECK
   has "is for a fixed step of 250 Hz; write these vectors to another folder"
 }
 
+@test "a damaged header and a link to nowhere are errors of the recording" {
+  filter=(--filter px4-v1.5.5/rates/p_alone@250hz)
+  "$ATTEST" vectors vectors "${filter[@]}" >/dev/null
+  answer
+  out=vectors/px4-v1.5.5/rates/p_alone/250hz.out.csv
+  sed '1s/,/,\x00/' $out >damaged
+  mv damaged $out
+  run "$ATTEST" run --port recorded:vectors "${filter[@]}"
+  [ "$status" -eq 1 ]
+  has "protocol: $out:1:"
+  has "a NUL byte in the name of a column"
+  ln -sf nowhere $out
+  run "$ATTEST" run --port recorded:vectors "${filter[@]}"
+  [ "$status" -eq 1 ]
+  has "protocol: $out: cannot open the file"
+}
+
 @test "a folder that cannot be judged is an error before anything runs" {
   filter=(--filter px4-v1.5.5/attitude/roll_pitch_and_yaw@250hz)
   refused() {
@@ -148,4 +165,46 @@ CHECK
   run "$ATTEST" time --port recorded:vectors
   [ "$status" -eq 2 ]
   has "this command must call the port"
+}
+
+# not_recorded NAME...: the outputs that the manifest lists.
+not_recorded() {
+  local list
+  list=$(printf "'%s', " "$@")
+  sed -i "s#^not_recorded = .*#not_recorded = [${list%, }]#" vectors/manifest.toml
+}
+
+@test "a recording without a value is not judged, and a column that is not recorded is not read" {
+  filter=(--filter px4-v1.5.5/rates/p_alone@250hz)
+  "$ATTEST" vectors vectors "${filter[@]}" >/dev/null
+  answer
+  out=vectors/px4-v1.5.5/rates/p_alone/250hz.out.csv
+  mapfile -t all < <(head -n 1 $out | tr -d '\r' | tr , '\n' | grep ^out/)
+  mapfile -t flags < <(printf '%s\n' "${all[@]}" | grep published)
+  mapfile -t values < <(printf '%s\n' "${all[@]}" | grep -v published)
+  for listed in all values; do
+    declare -n names=$listed
+    not_recorded "${names[@]}"
+    run "$ATTEST" run --port recorded:vectors "${filter[@]}"
+    [ "$status" -eq 2 ]
+    has "NONE 0 of 1 vector conform, 1 skip"
+    has "no value is recorded: the manifest lists every output under not_recorded"
+  done
+
+  not_recorded "${flags[@]}"
+  column=$(head -n 1 $out | tr , '\n' | grep -n published | head -n 1 | cut -d: -f1)
+  awk -F, -v OFS=, -v column="$column" 'NR > 1 { $column = 0 } 1' $out >unpublished
+  mv unpublished $out
+  run "$ATTEST" run --port recorded:vectors "${filter[@]}"
+  [ "$status" -eq 0 ]
+  has "${#flags[@]} outputs not recorded"
+}
+
+@test "recorded outputs are those of the parameters of the cases" {
+  filter=(--filter px4-v1.5.5/rates/p_alone@250hz)
+  "$ATTEST" vectors vectors "${filter[@]}" >/dev/null
+  answer
+  run "$ATTEST" run --port recorded:vectors "${filter[@]}" --param MC_ROLLRATE_P=0.2
+  [ "$status" -eq 2 ]
+  has "--param: the outputs in vectors were recorded with the parameters of the cases"
 }

@@ -195,6 +195,18 @@ quick=(--group battery --group rates --rate 100,250,8000)
   run "$ATTEST" run --group rates --timeout nan
   [ "$status" -eq 2 ]
   has "--timeout: nan is not a finite number"
+  for options in "compare a b --tolerance" "replay a --within" "replay a --at-least" \
+    "vectors d --from-log a --from" "stress --p99-latency"; do
+    run "$ATTEST" $options nan
+    [ "$status" -eq 2 ]
+    has "nan is not a finite number"
+  done
+  run "$ATTEST" compare a b --tolerance inf
+  [ "$status" -eq 2 ]
+  has "--tolerance: Value inf not in range"
+  run "$ATTEST" run --rate 250 --group rates --param MC_ROLLRATE_P=nan
+  [ "$status" -eq 2 ]
+  has "with a finite number"
 }
 
 @test "two reports in one file are refused" {

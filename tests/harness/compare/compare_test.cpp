@@ -159,6 +159,19 @@ TEST(Compare, WhatTheOtherDidNotRecordIsAMismatch) {
   got.present.reset(channel(roll));
   EXPECT_THAT(compare(got, want, Tolerances()).mismatch,
               HasSubstr("out/vehicle_rates_setpoint.roll was not recorded"));
+  got.present.reset(channel("out/vehicle_rates_setpoint.yaw"));
+  EXPECT_EQ(compare(got, want, Tolerances()).mismatch,
+            "out/vehicle_rates_setpoint.roll, out/vehicle_rates_setpoint.yaw were not recorded");
+}
+
+TEST(Compare, WhatOnlyTheJudgedTraceHasIsNamed) {
+  const Trace got = sample_trace(1);
+  Trace want = got;
+  EXPECT_TRUE(compare(got, want, Tolerances()).only_got.none());
+  want.present.reset(channel(roll));
+  const Comparison comparison = compare(got, want, Tolerances());
+  EXPECT_TRUE(comparison.agrees());
+  EXPECT_EQ(comparison.only_got, ChannelSet().set(channel(roll)));
 }
 
 TEST(Compare, HeadroomIsOfTheValueNearestToItsTolerance) {

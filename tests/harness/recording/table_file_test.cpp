@@ -148,6 +148,20 @@ TEST_F(TableFile, ADamagedMatFileIsAnErrorOrLacksVariables) {
   EXPECT_THAT(error("b.mat", TableFormat::mat, "timestamp,x\n"), HasSubstr("is no MAT file"));
 }
 
+TEST_F(TableFile, AMatFileThatEndsInsideAVariableIsCutOff) {
+  ASSERT_TRUE(write_inputs(path("a.mat"), TableFormat::mat, two_ticks()));
+  const std::string whole = read_file(path("a.mat")).value();
+  const std::size_t columns = read_table(path("a.mat"), TableFormat::mat, {})->size();
+  ASSERT_EQ(error("b.mat", TableFormat::mat, whole), "no error");
+  for (std::size_t missing = 1; missing < 300; ++missing) {
+    const auto table = read("b.mat", TableFormat::mat, whole.substr(0, whole.size() - missing));
+    // A file that ends between two variables has fewer columns.
+    const std::string error = table ? "" : table.error().to_string();
+    EXPECT_TRUE(table ? table->size() < columns : error.find("is cut off") != std::string::npos)
+        << missing << " bytes are missing; " << error;
+  }
+}
+
 TEST_F(TableFile, ACsvTableMayHaveRowNumbersWithoutAName) {
   const auto table = read("a.csv", TableFormat::csv, ",x,y\n0,1.5,+2e3\n1,nan,-inf\n");
   ASSERT_TRUE(table) << table.error().to_string();

@@ -76,5 +76,23 @@ TEST_F(ReadReport, AMalformedMemberIsNamed) {
   EXPECT_THAT(with("\"tick\": ", "\"tick\": -"), HasSubstr("`tick` is not a count"));
 }
 
+TEST_F(ReadReport, NumbersThatContradictTheResultsAreErrors) {
+  const auto with = [&](const RunResult& run, const std::string& from, const std::string& to) {
+    std::string text = json_report(run);
+    return error_of(text.replace(text.find(from), from.size(), to));
+  };
+  EXPECT_THAT(with(sample_run(), "\"fail\": 7", "\"fail\": 6"),
+              HasSubstr("report.json: contradicts itself: its totals have 6 fail, its results 7"));
+  EXPECT_THAT(with(sample_run(), "\"verdict\": \"fail\"", "\"verdict\": \"pass\""),
+              HasSubstr("its totals have 3 pass, its results 4"));
+  EXPECT_THAT(with(sample_run(), "\"vectors\": 21", "\"vectors\": 19"),
+              HasSubstr("19 vectors were selected, but it has 20 results"));
+  EXPECT_THAT(with(passing_run(), "\"vectors\": 6", "\"vectors\": 7"),
+              HasSubstr("contradicts itself: 7 vectors were selected, but it has 6 results"));
+  RunResult stopped = passing_run();
+  stopped.stopped_early = true;
+  EXPECT_EQ(with(stopped, "\"vectors\": 6", "\"vectors\": 7"), "");
+}
+
 }  // namespace
 }  // namespace attest

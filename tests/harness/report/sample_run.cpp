@@ -159,6 +159,7 @@ RunResult sample_run() {
   add_mixed(run.results);
   add_robustness(run.results);
   add_flights(run.results);
+  run.selected = run.results.size() + 1;  // one has an error instead
   run.errors = {Error{"row 4 has 21 columns, expected 22",
                       "golden/px4-v1.5.5/mixed/take_off/250hz.csv", 4, 0},
                 Error{"cannot fork: <out of memory>", "", 0, 0}};
@@ -180,6 +181,7 @@ RunResult passing_run() {
       ++run.suite["px4-v1.5.5/attitude"][rate];
     }
   }
+  run.selected = run.results.size();
   run.suite_sha256 = std::string(64, 'a');
   run.suite_is_released = true;
   run.date = "2026-03-31";

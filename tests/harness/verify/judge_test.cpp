@@ -31,6 +31,21 @@ TEST(LeaveOutFrom, TheTicksBeforeAreAsTheyWereAnswered) {
   EXPECT_EQ(rates, (std::vector<float>{-1, -2, 3, 4}));
 }
 
+TEST(LeavesValuesToJudge, AFlagAloneIsNoValueAndATopicThatIsNeverPublishedHasNone) {
+  Trace want = counting(4);
+  want.present = channels_of(Module::mc_att_control);
+  const ChannelSet outputs = channels_of(Module::mc_att_control, "out/");
+  const ChannelSet rates = channels_of(Module::mc_att_control, "out/vehicle_rates_setpoint.");
+  const ChannelSet flag = channels_named("out/vehicle_rates_setpoint.published");
+  EXPECT_TRUE(leaves_values_to_judge({}, want));
+  EXPECT_FALSE(leaves_values_to_judge(outputs, want));
+  EXPECT_FALSE(leaves_values_to_judge(outputs & ~flag, want));
+  EXPECT_TRUE(leaves_values_to_judge(outputs & ~rates, want));
+  EXPECT_FALSE(leaves_values_to_judge((outputs & ~rates) | flag, want));
+  want.samples[2].out.vehicle_rates_setpoint.published = 1;
+  EXPECT_TRUE(leaves_values_to_judge((outputs & ~rates) | flag, want));
+}
+
 TEST(TolerancesOf, TheLsbOfAPortIsAllowedInAdditionToTheToleranceOfTheCase) {
   const Case strict =
       case_of("[tolerance]\nwhy = \"x\"\nvehicle_rates_setpoint = { absolute = 1e-9 }\n");
