@@ -4,9 +4,10 @@
     check.py --attest PATH [--only NAME]... [--every N] [--jobs N]
 
 A style is a folder here with a right port (c_starter, c_cascade: starters of the repository) and
-patches, each a porting mistake. Every patch is applied to a copy of its port, compiled, and run through the
-suite, flights last. The text at the head of a patch says what the mistake is. A line `Passes: why`
-there marks a mistake that no case detects yet. It is an error if a case detects a marked mistake.
+patches, each a porting mistake. Every patch is applied to a copy of its port, compiled, and run
+through the suite, flights last. The text at the head of a patch says what the mistake is. A line
+`Passes: why` there marks a mistake that no case detects yet. It is an error if a case detects a
+marked mistake.
 
 Prints a table. Exits 1 if an unmarked mistake passes, a marked one fails, or a right port fails; 2
 if a patch does not apply or its port does not compile.
