@@ -150,11 +150,30 @@ PortFault lacks_module(const Port& port, const Subject& subject) {
           fmt::format("the port has no {} (extension {})", info.title, info.extension)};
 }
 
-PortFault makes_none(const Subject& subject) {
+// Whether the port makes another unit of the subject's profile. Then it supports the profile, but
+// not the subject's module.
+bool makes_another(Port& port, const Subject& subject) {
+  const ProfileInfo* const profile = find_profile(subject.profile);
+  if (!profile) return false;
+  const auto all = modules();
+  return std::any_of(all.begin(), all.end(), [&](const ModuleInfo& info) {
+    const bool may_have = contains(profile->modules & port.modules(), info.module);
+    return may_have && info.has_updated && info.module != subject.module &&
+           port.create_unit(info.module, subject.profile, "") != nullptr;
+  });
+}
+
+PortFault makes_none(Port& port, const Subject& subject) {
+  using enum PortFault::Kind;
   if (subject.module == Module::mixer) {
     return {
-        PortFault::Kind::unsupported, 0,
+        unsupported, 0,
         fmt::format("the port makes no mixer `{}` of profile {}", subject.mixer, subject.profile)};
+  }
+  if (makes_another(port, subject)) {
+    return {unsupported, 0,
+            fmt::format("the port makes no {} of profile {}", info_of(subject.module).title,
+                        subject.profile)};
   }
   return no_profile(subject);
 }
@@ -179,7 +198,7 @@ std::optional<PortFault> drive(Port& port, const Subject& subject, Trace& trace)
     return port.create_unit(subject.module, subject.profile, subject.mixer);
   };
   auto unit = create();
-  if (!unit) return makes_none(subject);
+  if (!unit) return makes_none(port, subject);
   if (subject.instances == Instances::one) return drive(*unit, trace, subject.module);
   return drive_in_company(std::move(unit), create, subject, trace);
 }
