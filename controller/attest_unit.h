@@ -147,9 +147,9 @@ typedef struct attest_inputs {
 
 /* ---- outputs ---------------------------------------------------------------------------------
  *
- * `published` is 1 in a step that publishes the topic, else 0. With 0 the other fields keep the
- * values last published. The host passes the same struct to every step, zeroed before the first. So
- * a unit only has to write the topics that it publishes, and every `published`.
+ * `published` is 0, or, as a flag above, any other value in a step that publishes the topic. With 0
+ * the other fields keep what was last published. The host passes the same struct to every step,
+ * zeroed before the first. So a unit only has to write the topics it publishes, and `published`.
  *
  * Topics: a unit publishes vehicle_rates_setpoint and actuator_controls_0 only after its first
  * sample of vehicle_status, which selects the topics for the life of the instance. If is_vtol is
