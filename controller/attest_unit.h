@@ -147,9 +147,9 @@ typedef struct attest_inputs {
 
 /* ---- outputs ---------------------------------------------------------------------------------
  *
- * `published` is 1 in a step that publishes the topic, else 0. With 0 the other fields keep the
- * values last published. The host passes the same struct to every step, zeroed before the first. So
- * a unit only has to write the topics that it publishes, and every `published`.
+ * `published` is 0, or, as a flag above, any other value in a step that publishes the topic. With 0
+ * the other fields keep what was last published. The host passes the same struct to every step,
+ * zeroed before the first. So a unit only has to write the topics it publishes, and `published`.
  *
  * Topics: a unit publishes vehicle_rates_setpoint and actuator_controls_0 only after its first
  * sample of vehicle_status, which selects the topics for the life of the instance. If is_vtol is
@@ -241,7 +241,9 @@ typedef struct attest_unit {
  * given the cases at that rate whose ticks are all one period apart. Other cases are counted as
  * unsupported, and every report names the fixed step. The cases begin one period after zero, so
  * that the first dt is the period too. (For other ports they begin at 5 s, and the first dt is the
- * longest, 20 ms.) The port computes with the law's dt: its period, clamped to 2 .. 20 ms. */
+ * longest, 20 ms.) The port computes with the law's dt: its period, clamped to the law's limits
+ * (2 .. 20 ms in px4-v1.5.5). It holds for the units of attest_cascade.h, too: their samples are
+ * then taken at the time of their steps. */
 #define ATTEST_EXTENSION_FIXED_STEP "attest.fixed_step"
 
 /* Extension: const attest_timestamp_sample*, for a port that needs the time at which the sample in

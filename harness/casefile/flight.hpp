@@ -36,6 +36,7 @@ struct FlightStart {
   Quaternion attitude{1, 0, 0, 0};  // body FRD to world NED
   Vector3 rate_rad_s{};             // of the body
   double height_m = 0;              // above z = 0, the height of the floor
+  bool on_floor = false;            // in place of a height: the feet touch the floor
   bool rotors_stopped = false;      // else they turn at hover speed
 };
 

@@ -217,6 +217,9 @@ void parse_duration(const TomlTable& root, Case& parsed) {
   const Span& duration = parsed.duration;
   const std::string key = span_key(root, "duration");
   if (key.empty()) return;
+  if (parsed.attitude_loop && duration.in == Span::In::ticks) {
+    root.error(key, "the two units have different ticks: give `duration_s`");
+  }
   if (!(duration.amount >= 1e-6)) root.error(key, "must be positive");
   if (duration.in == Span::In::ticks && duration.amount != std::floor(duration.amount)) {
     root.error(key, "must be a whole number");

@@ -1,6 +1,8 @@
 #include "harness/casefile/parse_cascade.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <string>
 
 #include <fmt/format.h>
@@ -20,9 +22,12 @@ std::optional<EstimatorReset> parse_reset(const TomlTable& flight) {
   if (!estimator.has(key)) return std::nullopt;
   const TomlTable table = estimator.table(key);
   const auto [by, keys] = angle_keys(table);
-  return EstimatorReset{parse_span(table, "at"),
-                        attitude_from(by, {table.number(keys[0], 0), table.number(keys[1], 0),
-                                           table.number(keys[2], 0)})};
+  std::array<double, 3> angles_deg{};
+  for (std::size_t i = 0; i < angles_deg.size(); ++i) {
+    angles_deg[i] = table.number(keys[i], 0);
+    if (!std::isfinite(angles_deg[i])) table.error(keys[i], "must be finite");
+  }
+  return EstimatorReset{parse_span(table, "at"), attitude_from(by, angles_deg)};
 }
 
 // [flight] floor: the plant knows whether the vehicle has landed.

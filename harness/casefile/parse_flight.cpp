@@ -108,6 +108,13 @@ FlightStart parse_start(const TomlTable& flight) {
       by, {table.number(keys[0], 0), table.number(keys[1], 0), table.number(keys[2], 0)});
   start.rate_rad_s = parse_vector(table, "rate_rad_s");
   start.height_m = table.number("height_m", 0);
+  start.on_floor = table.boolean("on_floor", false);
+  if (start.on_floor && table.has("height_m")) {
+    table.error("height_m", "`on_floor` is given too; keep one");
+  }
+  if (start.on_floor && !flight.boolean("floor", false)) {
+    table.error("on_floor", "needs `floor = true` in [flight]");
+  }
   start.rotors_stopped = table.boolean("rotors_stopped", false);
   return start;
 }

@@ -60,8 +60,10 @@ void check_task(const TomlTable& flight, const std::string& key, const TaskTimin
                                 timeline.rate.to_string()));
 }
 
-void check_flight(const TomlTable& flight, const Flight& parsed, const Timeline& timeline) {
-  check_task(flight, "motor_limits", parsed.saturation, timeline);
+void check_flight(const TomlTable& flight, const Case& the_case, const Timeline& timeline) {
+  const Flight& parsed = *the_case.flight;
+  check_task(flight, the_case.attitude_loop ? "allocator_status" : "motor_limits",
+             parsed.saturation, timeline);
   if (parsed.battery) check_task(flight, "battery", parsed.battery->timing, timeline);
   const auto check = [&](const char* key, const std::array<Signal, 3>& signals) {
     const bool too_far = std::any_of(signals.begin(), signals.end(), [&](const Signal& signal) {
@@ -90,7 +92,7 @@ void check_limits(const TomlTable& root, const Case& parsed) {
       complain_of_walk(root.table("parameters"), parameter.name);
     }
   }
-  if (parsed.flight) check_flight(root.table("flight"), *parsed.flight, timeline);
+  if (parsed.flight) check_flight(root.table("flight"), parsed, timeline);
 }
 
 }  // namespace attest

@@ -53,8 +53,8 @@ std::vector<LoopRate> parse_loop_rates(const TomlTable& table, const char* key, 
       table.error(key, rate.error().message);
     } else if (is_cascade && !rate->attitude_unit) {
       table.error(key, fmt::format("`{}` is one rate; a flight of the cascade needs that of the "
-                                   "attitude unit too, as in \"250:{}\"",
-                                   text, text));
+                                   "attitude unit too, as in \"250:1000\"",
+                                   text));
     } else {
       rates.push_back(*rate);
     }

@@ -15,7 +15,9 @@ namespace {
 // each rate. Of the cascade's the slowest and the fastest are kept: what differs between its
 // profiles does not depend on the rate. REQUIRES: `rates` ascend.
 std::vector<LoopRate> distinct_time_steps(const std::vector<LoopRate>& rates) {
-  if (rates.size() > 2 && rates.front().attitude_unit) return {rates.front(), rates.back()};
+  if (!rates.empty() && rates.front().attitude_unit) {
+    return rates.size() < 2 ? rates : std::vector{rates.front(), rates.back()};
+  }
   std::vector<LoopRate> distinct;
   for (const LoopRate& rate : rates) {
     if (!(Rate::hz(500) < rate.unit) || rate == rates.back()) distinct.push_back(rate);

@@ -128,6 +128,12 @@ Result<TaskSet> read_task_set(const std::filesystem::path& path) {
   set.attitude_unit = find_task(set.tasks, "attitude_unit");
   for (const std::string& name : tasks.keys()) parse_trigger(tasks.table(name), name, set);
   if (auto done = file->finish(); !done) return tl::unexpected(done.error());
+  if (set.attitude_unit && set.estimator && !set.tasks[*set.attitude_unit].released_by) {
+    return fail_at(path.string(),
+                   "[task.attitude_unit] needs `trigger = \"estimator\"`: it is stepped once for "
+                   "each sample of [task.estimator]",
+                   root.line("task"));
+  }
   if (set.attitude_unit && set.tasks[set.unit].rate < set.tasks[*set.attitude_unit].rate) {
     return fail_at(path.string(), "[task.unit], the rate unit, is slower than [task.attitude_unit]",
                    root.line("task"));

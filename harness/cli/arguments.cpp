@@ -60,7 +60,7 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
       ->add_option("--out", options->out,
                    "The flown trace: CSV, or a ULog of PX4 if the name ends with .ulg; `-` is "
                    "stdout, as CSV. Of the cascade F has the rate unit, and a second file next "
-                   "to it, named F.attitude_unit, has the attitude unit")
+                   "to it has the attitude unit: flown.csv and flown.attitude_unit.csv")
       ->type_name("F");
   add_page(*command, options->html, "A page with plots of the flight and a replay of the attitude");
   add_timeout(*command, options->host.timeout_s);

@@ -32,11 +32,11 @@ struct Globals {
 // Prints "attest: error: <file:line: message>" on stderr, and returns the exit code for it.
 int report_error(const Error& error);
 
-// --filter, --exclude, --group, --profile, --rate, --vehicle, --plant, --shard and --rerun-failed,
-// as text until they are used.
 // Errors: those of LoopRate::parse().
 Result<std::vector<LoopRate>> parse_rates(const std::vector<std::string>& texts);
 
+// --filter, --exclude, --group, --profile, --rate, --vehicle, --plant, --shard and --rerun-failed,
+// as text until they are used.
 struct SelectionOptions {
   std::vector<std::string> filters, excludes, groups, profiles, rates, vehicles, plants;
   std::string shard = "1/1";

@@ -61,6 +61,9 @@ Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder
   SchedulePlan plan;
   plan.scheduled = {the_case.id(), the_case.sha256, configuration, in_seconds(duration),
                     timing_of(*set, *jobs)};
+  if (set->attitude_unit && plan.scheduled.ticks.attitude_unit.empty()) {
+    return fail_at(options.tasks, "[task.attitude_unit] has no job within the flight");
+  }
   TimingFile in_time = plan.scheduled;
   in_time.ticks = flight_timing(the_case, configuration.rate);
   for (const TimingFile& timing : {in_time, plan.scheduled}) {

@@ -199,7 +199,7 @@ std::optional<Driven> read_driven(const Arrived& arrived, std::size_t ticks) {
   });
 }
 
-std::optional<Result<Flown>> read_flown(const Arrived& arrived, const FlightTiming& timing) {
+std::optional<Result<Flown>> read_flown(const Arrived& arrived, const FlightPlan& plan) {
   using Answer = std::optional<Result<Flown>>;
   return read_answer(arrived, [&](const json& head) -> Answer {
     if (head.contains("error")) return error_in(head);
@@ -207,7 +207,8 @@ std::optional<Result<Flown>> read_flown(const Arrived& arrived, const FlightTimi
     flown.fault = fault_from(head, arrived.of_program);
     flown.divergence = divergence_from(head);
     const bool ends_early = flown.fault || flown.divergence;
-    const bool is_cascade = !timing.attitude_unit.empty();
+    const FlightTiming& timing = plan.timing;
+    const bool is_cascade = plan.configuration.rate.attitude_unit.has_value();
     const auto count_of = [&](const char* key, const LoopTiming& ticks) {
       const auto count = head.at(key).get<std::size_t>();
       const bool is_sane = count == ticks.size() || (count < ticks.size() && ends_early);

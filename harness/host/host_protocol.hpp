@@ -54,7 +54,7 @@ struct Driven {
   std::optional<PortFault> fault;
 };
 std::optional<Driven> read_driven(const Arrived& arrived, std::size_t ticks);
-std::optional<Result<Flown>> read_flown(const Arrived& arrived, const FlightTiming& timing);
+std::optional<Result<Flown>> read_flown(const Arrived& arrived, const FlightPlan& plan);
 std::optional<Result<StepTimes>> read_times(const Arrived& arrived, std::size_t ticks);
 std::optional<bool> read_supports(const Arrived& arrived);
 // The fault of a port that answers nothing else.

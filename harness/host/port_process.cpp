@@ -91,7 +91,7 @@ class PortProcess final : public PortHost {
   Result<Flown> fly(const FlightPlan& plan) override {
     const std::vector<Blob> times{blob_of(plan.timing.unit), blob_of(plan.timing.attitude_unit)};
     auto flown = ask(fly_request(plan), times,
-                     [&](const Arrived& arrived) { return read_flown(arrived, plan.timing); });
+                     [&](const Arrived& arrived) { return read_flown(arrived, plan); });
     if (flown) {
       if (*flown) (*flown)->fault = with_words((*flown)->fault);
       return *std::move(flown);

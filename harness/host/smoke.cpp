@@ -49,7 +49,9 @@ class Smoke {
     const Rate rate = host_->says().fixed_step.value_or(Rate::hz(250));
     inputs_ = shaken_vehicle(subject_.module, rate, smoke_steps);
     alone_ = inputs_;
-    if (!steps() || !outputs() || !repeatable()) return false;
+    if (!steps()) return false;
+    if (!unsupported_.empty()) return true;
+    if (!outputs() || !repeatable()) return false;
     // All of them, although one is bad.
     const bool parameters_are_good = parameters(), instances_are_good = instances();
     const bool takes_nan = nan();
@@ -70,16 +72,18 @@ class Smoke {
     Subject subject = subject_;
     subject.instances = instances;
     const auto fault = host_->drive(subject, trace);
-    is_unsupported_ = fault && fault->kind == PortFault::Kind::unsupported;
-    return fault && !is_unsupported_ ? fault->what : "";
+    const bool is_unsupported = fault && fault->kind == PortFault::Kind::unsupported;
+    unsupported_ = is_unsupported ? fault->what : "";
+    return fault && !is_unsupported ? fault->what : "";
   }
 
   bool steps() {
-    return find("steps", fmt::format("{} of {}", smoke_steps, name_), fault_with(alone_));
+    const std::string wrong = fault_with(alone_);
+    const std::string what = fmt::format("{} of {}", smoke_steps, name_);
+    return find("steps", unsupported_.empty() ? what : "unsupported: " + unsupported_, wrong);
   }
 
   bool outputs() {
-    if (is_unsupported_) return true;
     const std::vector<std::string> topics = expected_topics(subject_.module);
     std::string wrong;
     for (const std::string& topic : topics) {
@@ -106,7 +110,6 @@ class Smoke {
   }
 
   bool repeatable() {
-    if (is_unsupported_) return true;
     host_ = nullptr;
     Trace again = inputs_;
     std::string wrong = fault_with(again);
@@ -120,7 +123,7 @@ class Smoke {
     known.parameters = {{0, name, 0.5f}};
     unknown.parameters = {{0, "MC_NO_SUCH_NAME", 1}};
     const std::string wrong = fault_with(known);
-    const bool takes_any = wrong.empty() && fault_with(unknown).empty() && !is_unsupported_;
+    const bool takes_any = wrong.empty() && fault_with(unknown).empty() && unsupported_.empty();
     const std::string finding =
         takes_any ? "but so is MC_NO_SUCH_NAME: return ATTEST_INVALID, so that a misspelled name "
                     "is noticed"
@@ -133,10 +136,10 @@ class Smoke {
     for (const Instances company : {Instances::again, Instances::together}) {
       Trace trace = inputs_;
       wrong = fault_with(trace, company);
-      if (wrong.empty() && !is_unsupported_) wrong = difference(trace, alone_, subject_.module);
+      if (wrong.empty() && unsupported_.empty()) wrong = difference(trace, alone_, subject_.module);
       if (!wrong.empty()) break;
       if (company == Instances::together)
-        what += is_unsupported_ ? "; one at a time" : ", and together with one";
+        what += !unsupported_.empty() ? "; one at a time" : ", and together with one";
     }
     return find("instances", "a unit gives the same bits " + what, wrong);
   }
@@ -152,7 +155,7 @@ class Smoke {
   const std::function<void(const SmokeFinding&)>& report_;
   std::unique_ptr<PortHost> host_;
   Trace inputs_, alone_;
-  bool is_unsupported_ = false;  // the trace before
+  std::string unsupported_;  // why the port does not support the trace before; empty if it does
 };
 
 }  // namespace

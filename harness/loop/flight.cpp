@@ -19,7 +19,8 @@ Result<void> check_rate(const Case& the_case, const LoopRate& rate) {
   const std::string file = the_case.file.string();
   if (the_case.attitude_loop && !rate.attitude_unit) {
     return fail_at(file, fmt::format("is a flight of the cascade, which needs two rates: that of "
-                                     "the attitude unit and that of the rate unit, as in 250:{}",
+                                     "the attitude unit and that of the rate unit, as in 250:1000, "
+                                     "not {}",
                                      rate.to_string()));
   }
   if (!the_case.attitude_loop && rate.attitude_unit) {
@@ -103,15 +104,18 @@ Result<std::unique_ptr<Plant>> plant_for(const Case& the_case,
 std::optional<PortUnits> units_for(const Case& the_case, Port& port, Port& other) {
   std::vector<Module> modules{the_case.module};
   if (the_case.attitude_loop) modules.push_back(Module::attitude_unit);
-  const auto has = [&](Module module) { return contains(port.modules(), module); };
-  if (std::none_of(modules.begin(), modules.end(), has)) return std::nullopt;
   PortUnits units;
+  bool makes_one = false;
   for (const Module module : modules) {
     auto& unit = module == the_case.module ? units.unit : units.attitude_unit;
-    unit = (has(module) ? port : other).create_unit(module, the_case.profile, "");
+    if (contains(port.modules(), module)) {
+      unit = port.create_unit(module, the_case.profile, "");
+    }
+    makes_one = makes_one || unit;
+    if (!unit) unit = other.create_unit(module, the_case.profile, "");
     if (!unit) return std::nullopt;
   }
-  return units;
+  return makes_one ? std::optional(std::move(units)) : std::nullopt;
 }
 
 Result<Flown> fly(const Case& the_case, const RunConfiguration& configuration,

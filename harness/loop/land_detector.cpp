@@ -19,7 +19,20 @@ double down(const Quaternion& q, const Vector3& v) {
          (1 - 2 * (q.x * q.x + q.y * q.y)) * v[2];
 }
 
+double foot_below_m(const VehicleRotor& rotor, double arm_m) {
+  return rotor.position_m[2] + foot_below_hub_of_arm * arm_m;
+}
+
 }  // namespace
+
+double height_on_floor_m(const Vehicle& vehicle) {
+  const double arm_m = vehicle.arm_m();
+  double lowest = 0;
+  for (const VehicleRotor& rotor : vehicle.rotors) {
+    lowest = std::max(lowest, foot_below_m(rotor, arm_m));
+  }
+  return lowest + foot_radius_of_arm * arm_m;
+}
 
 LandDetector::LandDetector(const Vehicle& vehicle, bool floor)
     : floor_(floor),
@@ -28,7 +41,7 @@ LandDetector::LandDetector(const Vehicle& vehicle, bool floor)
       thrust_limit_(thrust_limit_of_hover * vehicle.hover_thrust()) {
   for (const VehicleRotor& rotor : vehicle.rotors) {
     feet_m_.push_back({foot_of_hub * rotor.position_m[0], foot_of_hub * rotor.position_m[1],
-                       rotor.position_m[2] + foot_below_hub_of_arm * vehicle.arm_m()});
+                       foot_below_m(rotor, vehicle.arm_m())});
   }
 }
 

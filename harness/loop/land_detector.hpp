@@ -29,6 +29,9 @@ struct LandDetected {
   friend bool operator==(const LandDetected&, const LandDetected&) = default;
 };
 
+// The height of the centre of mass above the floor when the level vehicle's feet touch it.
+double height_on_floor_m(const Vehicle& vehicle);
+
 class LandDetector {
  public:
   static constexpr Nanoseconds maybe_landed_after{250'000'000};

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <memory>
 #include <span>
-#include <tuple>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "harness/loop/other_instance.hpp"
 #include "harness/port/profiles.hpp"
 
 namespace attest {
@@ -49,75 +50,53 @@ class Drive {
   std::size_t tick_ = 0;
 };
 
-// Parameters of the module that a trace may leave at their default.
-std::vector<std::string> some_gains(Module module) {
-  switch (module) {
-    case Module::mc_att_control:
-      return {"MC_PITCH_P", "MC_YAW_P", "MC_ROLLRATE_P", "MC_PITCHRATE_D"};
-    case Module::attitude_unit:
-      return {"MC_PITCH_P", "MC_YAW_P"};
-    case Module::rate_unit:
-      return {"MC_ROLLRATE_P", "MC_PITCHRATE_D"};
-    case Module::mixer:
-    case Module::battery_status:
-      break;
-  }
-  return {};
-}
+// The other instance, with its own inputs. Its outputs are not judged.
+class Other {
+ public:
+  Other(Unit& unit, const Subject& subject, const Trace& judged)
+      : unit_(unit),
+        defaults_(other_defaults(judged, subject.module, subject.profile)),
+        trace_(other_inputs(judged, subject.module, subject.profile)),
+        drive_(unit, subject.module, trace_) {}
 
-// Other gains from the first step on: those of the trace, and some that it leaves at their default.
-void change_gains(Trace& trace, Module module) {
-  constexpr float factor = 0.75f;
-  if (!info_of(module).has_updated) return;
-  for (ParameterChange& change : trace.parameters) {
-    const bool is_gain =
-        change.name.starts_with("MC_") && !is_integer_parameter(module, change.name);
-    if (is_gain) change.value *= factor;
+  // The first step begins with set_parameter(), after the judged instance has read its parameters.
+  std::optional<PortFault> step() {
+    if (auto fault = set_defaults()) return fault;
+    return drive_.step();
   }
-  for (const std::string& name : some_gains(module)) {
-    const auto is_it = [&](const ParameterChange& change) { return change.name == name; };
-    if (std::any_of(trace.parameters.begin(), trace.parameters.end(), is_it)) continue;
-    trace.parameters.insert(trace.parameters.begin(), {0, name, 1.0f});
-  }
-}
 
-double mirrored(const Channel& channel, double value) {
-  switch (channel.quantity) {
-    case Quantity::rate:
-    case Quantity::angular_acceleration:
-      return -value;
-    case Quantity::quaternion:
-      return channel.name.ends_with("[0]") ? value : -value;
-    case Quantity::control:
-      return 1 - value;
-    case Quantity::voltage:
-      return 0.9 * value;
-    default:
-      return channel.name.ends_with(".flag_armed") ? 1 - value : value;
+  // All steps. After a fault, the judged trace has no outputs.
+  std::optional<PortFault> run() {
+    auto fault = set_defaults();
+    while (!fault && !drive_.is_over()) fault = drive_.advance();
+    if (fault) fault->tick = 0;
+    return fault;
   }
-}
 
-// Other inputs at the same times, and other gains, so that the states of two instances differ in
-// everything.
-Trace mirrored(Trace trace, Module module) {
-  change_gains(trace, module);
-  const ChannelSet inputs = channels_of(module, "in/");
-  for (std::size_t i = 0; i < channels().size(); ++i) {
-    const Channel& channel = channels()[i];
-    if (!inputs[i] || channel.type == ChannelType::u64) continue;
-    for (Sample& sample : trace.samples) {
-      set_value(channel, sample, mirrored(channel, value_of(channel, sample)));
+ private:
+  std::optional<PortFault> set_defaults() {
+    try {
+      for (const ParameterChange& change : std::exchange(defaults_, {})) {
+        (void)unit_.set_parameter(change.name, change.value);  // may be refused
+      }
+    } catch (const PortBroke& broke) {
+      return fault_of(broke);
     }
+    return std::nullopt;
   }
-  return trace;
-}
 
-std::optional<PortFault> drive_alternately(Unit& judged, Trace& trace, Unit& other, Trace& of_other,
-                                           Module module) {
-  Drive drive(judged, module, trace), along(other, module, of_other);
-  while (!drive.is_over()) {
-    if (auto fault = along.step()) return fault;
-    if (auto fault = drive.step()) return fault;
+  Unit& unit_;
+  std::vector<ParameterChange> defaults_;
+  Trace trace_;
+  Drive drive_;
+};
+
+// The other instance makes each step after the judged one. So it also takes its first step, with
+// its parameters and topics, after the judged one has taken its own.
+std::optional<PortFault> drive_alternately(Drive judged, Other& other) {
+  while (!judged.is_over()) {
+    if (auto fault = judged.step()) return fault;
+    if (auto fault = other.step()) return fault;
   }
   return std::nullopt;
 }
@@ -137,28 +116,23 @@ PortFault makes_no_other() {
 template <typename Create>
 std::optional<PortFault> drive_in_company(std::unique_ptr<Unit> first, Create create,
                                           const Subject& subject, Trace& trace) {
-  const auto& [instances, module] = std::tie(subject.instances, subject.module);
-  Trace of_first = mirrored(trace, module);
-  // After a fault of the first instance, the judged trace has no outputs.
-  const auto drive_first = [&] {
-    auto fault = drive(*first, of_first, subject.module);
-    if (fault) fault->tick = 0;
-    return fault;
-  };
-  if (instances == Instances::again) {
-    if (auto fault = drive_first()) return fault;
+  Other other(*first, subject, trace);
+  if (subject.instances == Instances::again) {
+    if (auto fault = other.run()) return fault;
     first.reset();
   }
   const std::unique_ptr<Unit> judged = create();
-  if (!judged) return instances == Instances::again ? makes_no_other() : makes_only_one();
-  if (instances == Instances::together) {
-    return drive_alternately(*judged, trace, *first, of_first, module);
+  if (!judged) {
+    return subject.instances == Instances::again ? makes_no_other() : makes_only_one();
   }
-  if (instances == Instances::crossed) {
-    if (auto fault = drive_first()) return fault;
+  if (subject.instances == Instances::together) {
+    return drive_alternately(Drive(*judged, subject.module, trace), other);
+  }
+  if (subject.instances == Instances::crossed) {
+    if (auto fault = other.run()) return fault;
     first.reset();
   }
-  return drive(*judged, trace, module);
+  return drive(*judged, trace, subject.module);
 }
 
 PortFault no_profile(const Subject& subject) {
@@ -176,11 +150,30 @@ PortFault lacks_module(const Port& port, const Subject& subject) {
           fmt::format("the port has no {} (extension {})", info.title, info.extension)};
 }
 
-PortFault makes_none(const Subject& subject) {
+// Whether the port makes another unit of the subject's profile. Then it supports the profile, but
+// not the subject's module.
+bool makes_another(Port& port, const Subject& subject) {
+  const ProfileInfo* const profile = find_profile(subject.profile);
+  if (!profile) return false;
+  const auto all = modules();
+  return std::any_of(all.begin(), all.end(), [&](const ModuleInfo& info) {
+    const bool may_have = contains(profile->modules & port.modules(), info.module);
+    return may_have && info.has_updated && info.module != subject.module &&
+           port.create_unit(info.module, subject.profile, "") != nullptr;
+  });
+}
+
+PortFault makes_none(Port& port, const Subject& subject) {
+  using enum PortFault::Kind;
   if (subject.module == Module::mixer) {
     return {
-        PortFault::Kind::unsupported, 0,
+        unsupported, 0,
         fmt::format("the port makes no mixer `{}` of profile {}", subject.mixer, subject.profile)};
+  }
+  if (makes_another(port, subject)) {
+    return {unsupported, 0,
+            fmt::format("the port makes no {} of profile {}", info_of(subject.module).title,
+                        subject.profile)};
   }
   return no_profile(subject);
 }
@@ -205,7 +198,7 @@ std::optional<PortFault> drive(Port& port, const Subject& subject, Trace& trace)
     return port.create_unit(subject.module, subject.profile, subject.mixer);
   };
   auto unit = create();
-  if (!unit) return makes_none(subject);
+  if (!unit) return makes_none(port, subject);
   if (subject.instances == Instances::one) return drive(*unit, trace, subject.module);
   return drive_in_company(std::move(unit), create, subject, trace);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "harness/casefile/stimulus.hpp"
+#include "harness/loop/land_detector.hpp"
 
 namespace attest {
 namespace {
@@ -10,7 +11,7 @@ namespace {
 // A vehicle without velocity, in the attitude and at the body rate of the start.
 PlantState start_of(const FlightStart& start, const Vehicle& vehicle) {
   PlantState state;
-  state.position_m[2] = -start.height_m;
+  state.position_m[2] = -(start.on_floor ? height_on_floor_m(vehicle) : start.height_m);
   state.attitude = start.attitude;
   state.rate_rad_s = start.rate_rad_s;
   const double speed = start.rotors_stopped ? 0 : vehicle.hover_rotor_rad_s();

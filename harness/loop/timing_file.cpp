@@ -16,8 +16,9 @@ using nlohmann::json;
 
 constexpr int format = 1;
 
-// Enough for the three times of each tick of an hour at 8 kHz.
 constexpr const char* attitude_ticks = "attitude_ticks_ns";
+
+// Enough for the three times of each tick of both units, in an hour at 8 kHz.
 constexpr std::uintmax_t most_bytes = std::uintmax_t{2} << 30;
 
 // Ten times the longest duration, so that sums of times fit into 64 bits.
@@ -115,6 +116,10 @@ Result<TimingFile> read_timing(const std::filesystem::path& path) {
                     std::move(times)};
   const bool sane = timing.duration_s > 0 && timing.duration_s <= 1e6;
   if (!sane) return fail_at(file, "`duration_s` must be positive, up to 1e6");
+  const auto& attitude = timing.ticks.attitude_unit;
+  if (!attitude.empty() && in_seconds(attitude.back().begins) >= timing.duration_s) {
+    return fail_at(file, fmt::format("`{}` has ticks after `duration_s`", attitude_ticks));
+  }
   return timing;
 }
 

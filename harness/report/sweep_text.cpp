@@ -49,8 +49,8 @@ std::string sweep_csv(const std::vector<SweepRow>& rows, const std::vector<LoopR
   std::string out = "vehicle,plant,rate_hz,largest_delay_ms,lowest_rate_hz\n";
   for (const SweepRow& row : rows) {
     for (std::size_t i = 0; i < row.largest_delay_ms.size(); ++i) {
-      out += fmt::format("{},{},{:g},{},{}\n", row.plant_configuration.vehicle,
-                         name_of(row.plant_configuration.plant), rates[i].hertz(),
+      out += fmt::format("{},{},{},{},{}\n", row.plant_configuration.vehicle,
+                         name_of(row.plant_configuration.plant), rates[i].to_string(),
                          csv_cell(row.largest_delay_ms[i]), csv_cell(row.lowest_rate_hz));
     }
   }

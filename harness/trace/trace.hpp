@@ -54,10 +54,10 @@ struct PlantSample {
   std::array<float, 3> velocity_m_s;  // of the centre of mass
   std::array<float, 4> q;             // body to world
   std::array<float, 3> rate_rad_s;    // of the body
-  std::array<float, 8> motor;         // commands of the mixer, -1 stopped .. 1 full
+  std::array<float, 8> motor;         // commands of mixer or allocator, -1 stopped .. 1 full
   std::array<float, 8> rotor_rad_s;   // speeds
   float voltage_V;                    // of the battery; 0 without one
-  std::uint8_t saturated;             // 1: the mixer was in saturation at this tick
+  std::uint8_t saturated;             // 1: mixer or allocator was in saturation at this tick
 };
 
 // The channels that a trace file must have in addition to timestamp.

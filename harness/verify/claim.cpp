@@ -32,9 +32,14 @@ struct Group {
 
 using Groups = std::map<std::string, Group>;
 
+bool has_step(const LoopRate& rate, const Rate& step) {
+  return rate.unit == step && rate.attitude_unit.value_or(step) == step;
+}
+
 // A port with a fixed step runs at that rate only, and the claim names its step.
 bool is_of_another_step(const CaseResult& result, const RunResult& run) {
-  return run.fixed_step && result.rate != *run.fixed_step && result.verdict == Verdict::unsupported;
+  return run.fixed_step && !has_step(result.rate, *run.fixed_step) &&
+         result.verdict == Verdict::unsupported;
 }
 
 void add(const CaseResult& result, const RunResult& run, Group& group) {
@@ -77,7 +82,9 @@ bool is_whole(const Group& group, const RunResult& run) {
   const std::set<LoopRate> selected(run.rates.begin(), run.rates.end());
   return group.passes && std::all_of(group.rates.begin(), group.rates.end(), [&](const auto& each) {
            const auto& [rate, tally] = each;
-           if (run.fixed_step ? rate != *run.fixed_step : !selected.contains(rate)) return true;
+           if (run.fixed_step ? !has_step(rate, *run.fixed_step) : !selected.contains(rate)) {
+             return true;
+           }
            return tally.good >= std::max(tally.in_suite, tally.run);
          });
 }

@@ -208,9 +208,7 @@ CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHos
     if (got != nullptr) *got = recorded;
     return result;
   }
-  if (subject.module == Module::mc_att_control && has_other_steps(host.says(), recorded, result)) {
-    return result;
-  }
+  if (has_other_steps(host.says(), recorded, subject.module, result)) return result;
   Trace answered = recorded;
   for (Sample& sample : answered.samples) sample.clear_outputs();
   const bool numeric_for_events =

@@ -17,17 +17,47 @@ bool is_unsupported(const Rate& step, const std::string& what, CaseResult& resul
   return true;
 }
 
+bool has_clock(Module module) { return info_of(module).has_updated; }
+
+// When the sample was taken that the law computes its dt from.
+std::uint64_t sampled_us(const Sample& sample, Module module) {
+  if (module == Module::attitude_unit) return sample.attitude_in.vehicle_attitude.timestamp_sample;
+  if (module == Module::rate_unit) return sample.rate_in.vehicle_angular_velocity.timestamp_sample;
+  return sample.in.timestamp;
+}
+
+// Whether each step, and the sample of each step, is one period after the one before.
+bool is_at_steps(const Trace& trace, const Rate& step, Module module) {
+  for (std::size_t k = 0; k < trace.samples.size(); ++k) {
+    const std::uint64_t due_us = timestamp_us(step.tick(static_cast<std::int64_t>(k) + 1));
+    const Sample& sample = trace.samples[k];
+    if (sample.in.timestamp != due_us || sampled_us(sample, module) != due_us) return false;
+  }
+  return true;
+}
+
+bool is_periodic(const std::vector<Nanoseconds>& begins, const Rate& step) {
+  for (std::size_t k = 0; k < begins.size(); ++k) {
+    if (begins[k] != step.tick(static_cast<std::int64_t>(k))) return false;
+  }
+  return true;
+}
+
+std::vector<Nanoseconds> begins_of(const LoopTiming& timing) {
+  std::vector<Nanoseconds> begins;
+  for (const LoopTick& tick : timing) begins.push_back(tick.begins);
+  return begins;
+}
+
 bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
                      const std::vector<Nanoseconds>& begins, CaseResult& result) {
-  if (!has_fixed_step(port, the_case)) return false;
   const Rate step = *port.fixed_step;
   if (rate != step) return is_unsupported(step, "runs at another rate", result);
   const UnitTiming usual;
   const bool starts_as_usual =
       the_case.unit.start.amount == usual.start.amount && the_case.unit.start.in == usual.start.in;
   if (!starts_as_usual) return is_unsupported(step, "has a start_s of its own", result);
-  for (std::size_t k = 0; k < begins.size(); ++k) {
-    if (begins[k] == rate.tick(static_cast<std::int64_t>(k))) continue;
+  if (!is_periodic(begins, step)) {
     return is_unsupported(step, "has late or missing ticks", result);
   }
   return false;
@@ -36,7 +66,7 @@ bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rat
 }  // namespace
 
 bool has_fixed_step(const PortSays& port, const Case& the_case) {
-  return the_case.module == Module::mc_att_control && port.fixed_step.has_value();
+  return has_clock(the_case.module) && port.fixed_step.has_value();
 }
 
 Trace inputs_for(const PortSays& port, const Case& the_case, const Rate& rate) {
@@ -45,26 +75,29 @@ Trace inputs_for(const PortSays& port, const Case& the_case, const Rate& rate) {
 
 bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
                      CaseResult& result) {
-  return has_other_steps(port, the_case, rate, unit_ticks(the_case, rate), result);
+  if (!has_fixed_step(port, the_case)) return false;
+  if (has_other_steps(port, the_case, rate, unit_ticks(the_case, rate), result)) return true;
+  if (is_at_steps(inputs_for(port, the_case, rate), rate, the_case.module)) return false;
+  return is_unsupported(rate, "has samples that were taken at other times", result);
 }
 
 bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
                      const FlightTiming& timing, CaseResult& result) {
-  std::vector<Nanoseconds> begins;
-  for (const LoopTick& tick : timing.unit) begins.push_back(tick.begins);
-  return has_other_steps(port, the_case, rate, begins, result);
+  if (!has_fixed_step(port, the_case)) return false;
+  const bool is_of_cascade = !timing.attitude_unit.empty();
+  const Rate step = *port.fixed_step;
+  if (is_of_cascade && (rate != step || !is_periodic(begins_of(timing.attitude_unit), step))) {
+    return is_unsupported(step, "does not run both units at each of these steps", result);
+  }
+  return has_other_steps(port, the_case, rate, begins_of(timing.unit), result);
 }
 
-bool has_other_steps(const PortSays& port, const Trace& recorded, CaseResult& result) {
+bool has_other_steps(const PortSays& port, const Trace& recorded, Module module,
+                     CaseResult& result) {
   const auto step = port.fixed_step;
-  if (!step) return false;
-  for (std::size_t k = 0; k < recorded.samples.size(); ++k) {
-    const Nanoseconds due = step->tick(static_cast<std::int64_t>(k) + 1);
-    if (recorded.samples[k].in.timestamp == timestamp_us(due)) continue;
-    return is_unsupported(*step, "was not recorded at its steps from one period after zero on",
-                          result);
-  }
-  return false;
+  if (!step || !has_clock(module) || is_at_steps(recorded, *step, module)) return false;
+  return is_unsupported(*step, "was not recorded at its steps from one period after zero on",
+                        result);
 }
 
 }  // namespace attest

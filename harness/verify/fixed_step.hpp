@@ -5,6 +5,9 @@
 // instead, so it cannot agree. For such a port the cases begin one period after zero, so that each
 // dt is the period. A golden has the outputs for its own timestamps. The expected outputs therefore
 // come from the reference, after a check that the reference agrees with the golden.
+//
+// The units of the cascade compute dt from the times of their samples, so these must be one period
+// apart too. A time of a topic that would be before zero, such as that of arming, becomes zero.
 #pragma once
 
 #include "harness/casefile/case.hpp"
@@ -22,14 +25,16 @@ bool has_fixed_step(const PortSays& port, const Case& the_case);
 Trace inputs_for(const PortSays& port, const Case& the_case, const Rate& rate);
 
 // Whether the port has a fixed step that the case does not keep: another rate, ticks that are not
-// exactly periodic, or a `start_s` of the case's own. If so, the verdict becomes unsupported, with
-// the reason.
+// exactly periodic, samples taken at other times, or a `start_s` of the case's own. In a flight of
+// the cascade both units must keep the step. If not, the verdict becomes unsupported, with the
+// reason.
 bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
                      CaseResult& result);
 bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
                      const FlightTiming& timing, CaseResult& result);
 
 // The same for a recorded trace, whose timestamps are fixed.
-bool has_other_steps(const PortSays& port, const Trace& recorded, CaseResult& result);
+bool has_other_steps(const PortSays& port, const Trace& recorded, Module module,
+                     CaseResult& result);
 
 }  // namespace attest

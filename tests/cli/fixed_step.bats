@@ -69,3 +69,29 @@ CHANGE
   run "$ATTEST" replay --port "$(right)" "$SOURCE/golden/recorded/px4-v1.5.5/fuzz_250hz.csv"
   has "was not recorded at its steps"
 }
+
+@test "both units of the cascade keep a fixed step" {
+  run "$ATTEST" run --port "lib:$PORTS/port_fixed_step_cascade.so" --profile px4-v1.16.0 \
+    --group timing --group sticks --group rates --group instances
+  [ "$status" -eq 0 ]
+  has "the port has a fixed step of 250 Hz, and this has late or missing ticks"
+  has "the port has a fixed step of 250 Hz, and this has samples that were taken at other times"
+  has "the port has a fixed step of 250 Hz, and this has a start_s of its own"
+  has "partial: px4-v1.16.0, numeric, fixed step of 250 Hz, groups instances, rates"
+  run "$ATTEST" run --port "lib:$PORTS/port_fixed_step_cascade.so" --filter '*/hover@*-iris-ode' \
+    --profile px4-v1.16.0
+  has "the port has a fixed step of 250 Hz, and this does not run both units at each of these steps"
+}
+
+@test "a fixed step does not hide a gain of the rate unit that is off" {
+  run "$ATTEST" run --group rates --rate 250 --port "lib:$PORTS/port_fixed_step_cascade_gain_off.so"
+  [ "$status" -eq 1 ]
+  has "out/vehicle_torque_setpoint.xyz[0]"
+}
+
+@test "vectors for a fixed step of the cascade begin one period after zero" {
+  "$ATTEST" vectors vectors --fixed-step 250 --group rates --profile px4-v1.16.0 >/dev/null
+  [ -z "$(find vectors -name '*.csv' ! -name 250hz.csv)" ]
+  run cut -d , -f 1 vectors/px4-v1.16.0/rates/p_alone/250hz.csv
+  [ "${lines[1]} ${lines[2]}" = "4000 8000" ]
+}

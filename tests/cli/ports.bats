@@ -213,3 +213,17 @@ TASKS
   "$ATTEST" run --group nope 2>/dev/full || status=$?
   [ "$status" -eq 2 ]
 }
+
+@test "a port may make one of the two units of a profile" {
+  port="lib:$PORTS/port_other_profiles.so"
+  run "$ATTEST" run --port "$port" --group rates --group attitude --rate 250
+  [ "$status" -eq 0 ]
+  has "unsupported: the port makes no rate unit of profile px4-v1.16.0"
+  lacks "protocol"
+  run "$ATTEST" run --port "$port" --filter 'px4-v1.16.0/flight/hover@250-1000hz-iris-ode'
+  [ "$status" -eq 0 ]
+  run "$ATTEST" smoke --port "$port"
+  [ "$status" -eq 0 ]
+  has "unsupported: the port makes no rate unit of profile px4-v1.16.0"
+  lacks "BAD"
+}

@@ -77,8 +77,8 @@ TEST_F(Company, AgainDestroysTheOtherBeforeTheJudgedIsMade) {
 
 TEST_F(Company, TogetherStepsThemAlternately) {
   EXPECT_FALSE(drive_with(Instances::together));
-  EXPECT_THAT(port_.calls, ElementsAre("create 1", "create 2", "step 1 -1", "step 2 1", "step 1 -1",
-                                       "step 2 1", "destroy 2", "destroy 1"));
+  EXPECT_THAT(port_.calls, ElementsAre("create 1", "create 2", "step 2 1", "step 1 -1", "step 2 1",
+                                       "step 1 -1", "destroy 2", "destroy 1"));
 }
 
 TEST_F(Company, CrossedDestroysTheFirstWhileTheJudgedLives) {
@@ -92,46 +92,72 @@ class RatePort final : public Port {
  public:
   class Noting final : public UnitOf<attest_rate_inputs, attest_rate_outputs> {
    public:
-    explicit Noting(std::vector<std::string>& notes) : notes_(notes) {}
+    Noting(std::vector<std::string>& notes, const std::string& refuses)
+        : notes_(notes), refuses_(refuses) {}
     int set_parameter(const std::string& name, float value) override {
       notes_.push_back(fmt::format("{}={}", name, value));
-      return ATTEST_OK;
+      return name == refuses_ ? ATTEST_INVALID : ATTEST_OK;
     }
     int step(const attest_rate_inputs& in, attest_rate_outputs&) override {
-      notes_.push_back(fmt::format("{} {} {}", in.vehicle_angular_velocity.timestamp_sample,
-                                   in.vehicle_angular_velocity.xyz[1],
-                                   in.vehicle_control_mode.flag_armed));
+      notes_.push_back(fmt::format(
+          "{} {} {} updated {:x}", in.vehicle_angular_velocity.timestamp_sample,
+          in.vehicle_angular_velocity.xyz[1], in.vehicle_control_mode.flag_armed, in.updated));
       return ATTEST_OK;
     }
 
    private:
     std::vector<std::string>& notes_;
+    std::string refuses_;
   };
 
   std::string name() const override { return "rate"; }
   std::string version() const override { return "1"; }
   ModuleSet modules() const override { return only(Module::rate_unit); }
   std::unique_ptr<Unit> create_unit(Module, const std::string&, const std::string&) override {
-    return std::make_unique<Noting>(notes);
+    return std::make_unique<Noting>(notes, refuses);
   }
 
+  std::string refuses;  // the name of a parameter
   std::vector<std::string> notes;
 };
 
-TEST(CompanyOfAUnit, HasOtherInputsAndGainsAtTheSameTimes) {
-  RatePort port;
+class CompanyOfAUnit : public testing::Test {
+ protected:
+  // The notes of the other instance; those of the judged one follow them.
+  std::vector<std::string> notes_of(Trace trace, const std::string& profile = "px4-v1.16.0") {
+    Subject subject{.profile = profile, .module = Module::rate_unit};
+    subject.instances = Instances::again;
+    EXPECT_FALSE(drive(port_, subject, trace));
+    return port_.notes;
+  }
+
+  RatePort port_;
+};
+
+TEST_F(CompanyOfAUnit, HasOtherInputsAndParameters) {
   Trace trace = trace_of(1);
   trace.parameters = {{0, "MC_YAWRATE_P", 0.5f}, {0, "MC_BAT_SCALE_EN", 1}};
   auto& in = trace.samples[0].rate_in;
   in.vehicle_angular_velocity.timestamp_sample = 7;
   in.vehicle_angular_velocity.xyz[1] = 3;
   in.vehicle_control_mode.flag_armed = 1;
-  Subject subject{.profile = "px4-v1.16.0", .module = Module::rate_unit};
-  subject.instances = Instances::again;
-  EXPECT_FALSE(drive(port, subject, trace));
-  EXPECT_THAT(port.notes, ElementsAre("MC_PITCHRATE_D=1", "MC_ROLLRATE_P=1", "MC_YAWRATE_P=0.375",
-                                      "MC_BAT_SCALE_EN=1", "7 -3 0", "MC_YAWRATE_P=0.5",
-                                      "MC_BAT_SCALE_EN=1", "7 3 1"));
+  const std::vector<std::string> notes = notes_of(trace);
+  EXPECT_THAT(notes, testing::IsSupersetOf({"MC_PITCHRATE_D=0.00225", "MC_YAWRATE_D=0.25"}));
+  ASSERT_GE(notes.size(), 6);
+  EXPECT_THAT(std::vector(notes.end() - 6, notes.end()),
+              ElementsAre("MC_YAWRATE_P=0.375", "MC_BAT_SCALE_EN=0", "1007 -3 0 updated 17f",
+                          "MC_YAWRATE_P=0.5", "MC_BAT_SCALE_EN=1", "7 3 1 updated 0"));
+}
+
+TEST_F(CompanyOfAUnit, HasOtherFlagsAtEverySecondTick) {
+  EXPECT_THAT(notes_of(trace_of(3), "own"),
+              ElementsAre("1000 -0 1 updated 17f", "1000 -0 0 updated 17f", "1000 -0 1 updated 17f",
+                          "0 0 0 updated 0", "0 0 0 updated 0", "0 0 0 updated 0"));
+}
+
+TEST_F(CompanyOfAUnit, MayLackAParameterThatTheTraceDoesNotSet) {
+  port_.refuses = "MC_YAWRATE_D";
+  EXPECT_THAT(notes_of(trace_of(1)), testing::Contains("MC_YAWRATE_D=0.25"));
 }
 
 TEST_F(Company, APortThatMakesOneInstanceDoesNotSupportTwo) {

@@ -100,6 +100,11 @@ TEST_F(TimingFileTest, OfTheCascadeHasTheTicksOfBothUnits) {
   ASSERT_TRUE(read) << read.error().to_string();
   EXPECT_EQ(read->configuration, timing.configuration);
   EXPECT_EQ(read->ticks, timing.ticks);
+  timing.ticks.attitude_unit = {{us(0), us(250000), us(250000)}};
+  ASSERT_TRUE(write_timing(timing, path()));
+  const auto too_late = read_timing(path());
+  ASSERT_FALSE(too_late);
+  EXPECT_THAT(too_late.error().message, HasSubstr("has ticks after `duration_s`"));
   EXPECT_THAT(error_of(R"({"attest_timing":1,"case":"c","case_sha256":"0","rate":"250:1000",)"
                        R"("vehicle":"iris","plant":"mujoco","duration_s":1,"ticks_ns":[[0,1,2]]})"),
               HasSubstr("has two rates, but no `attitude_ticks_ns`"));

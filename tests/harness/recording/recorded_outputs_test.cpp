@@ -77,7 +77,7 @@ TEST(RecordedOutputs, AreThoseOfTheTableInAnyOrder) {
 
 TEST(RecordedOutputs, ATopicThatIsNotPublishedKeepsItsValues) {
   Table table = complete();
-  column(table, "out/vehicle_rates_setpoint.published").values = {0, 1, 0, 0, 1};
+  column(table, "out/vehicle_rates_setpoint.published").values = {0, 255, 0, 0, 1};
   Trace trace = inputs();
   ASSERT_TRUE(set_recorded_outputs(table, {}, "x.out.csv", trace));
   std::vector<float> got;

@@ -246,7 +246,7 @@ TEST_F(CsvErrors, BrokenProvenance) {
 
 TEST_F(CsvErrors, BinaryFiles) {
   EXPECT_EQ(error_of(std::string("ULog\x01\x12\x35\0\0\n", 10)),
-            "a.csv:1:1: unknown column `ULog\\x01\\x125\\x00\\x00`");
+            "a.csv:1:1: a NUL byte in the name of a column; the file is damaged");
   EXPECT_EQ(error_of(std::string(1000000, '\0')),
             "a.csv:1: line is longer than any trace's; is this a CSV trace?");
   std::string text = Sheet::recorded().text();

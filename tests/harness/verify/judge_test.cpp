@@ -62,10 +62,24 @@ TEST(HasOtherSteps, ARecordingOfAFixedStepBeginsOnePeriodAfterZero) {
   port.fixed_step = Rate::hz(250);
   CaseResult result;
   Trace recorded = counting(3);
-  EXPECT_FALSE(has_other_steps(port, recorded, result));
+  EXPECT_FALSE(has_other_steps(port, recorded, Module::mc_att_control, result));
   for (Sample& sample : recorded.samples) sample.in.timestamp -= 4000;
-  EXPECT_TRUE(has_other_steps(port, recorded, result));
+  EXPECT_TRUE(has_other_steps(port, recorded, Module::mc_att_control, result));
   EXPECT_EQ(result.verdict, Verdict::unsupported);
+}
+
+TEST(HasOtherSteps, SamplesOfARateUnitAreTakenAtItsSteps) {
+  PortSays port;
+  port.fixed_step = Rate::hz(250);
+  CaseResult result;
+  Trace recorded = counting(3);
+  for (Sample& sample : recorded.samples) {
+    sample.rate_in.vehicle_angular_velocity.timestamp_sample = sample.rate_in.timestamp;
+  }
+  EXPECT_FALSE(has_other_steps(port, recorded, Module::rate_unit, result));
+  recorded.samples[2].rate_in.vehicle_angular_velocity.timestamp_sample -= 1;
+  EXPECT_TRUE(has_other_steps(port, recorded, Module::rate_unit, result));
+  EXPECT_FALSE(has_other_steps(port, recorded, Module::mixer, result));
 }
 
 }  // namespace

@@ -3,10 +3,11 @@
 
     check.py --attest PATH [--only NAME]... [--every N] [--jobs N]
 
-A style is a folder here with a right port (c_starter: the starter of the repository) and patches,
-each a porting mistake. Every patch is applied to a copy of its port, compiled, and run through the
-suite, flights last. The text at the head of a patch says what the mistake is. A line `Passes: why`
-there marks a mistake that no case detects yet. It is an error if a case detects a marked mistake.
+A style is a folder here with a right port (c_starter, c_cascade: starters of the repository) and
+patches, each a porting mistake. Every patch is applied to a copy of its port, compiled, and run
+through the suite, flights last. The text at the head of a patch says what the mistake is. A line
+`Passes: why` there marks a mistake that no case detects yet. It is an error if a case detects a
+marked mistake.
 
 Prints a table. Exits 1 if an unmarked mistake passes, a marked one fails, or a right port fails; 2
 if a patch does not apply or its port does not compile.
@@ -31,13 +32,15 @@ from patches import Broken, Patch, apply, execute, patches  # noqa: E402
 CONTROLLER = HERE.parents[2] / "controller"
 STYLES = {
     "c_starter": CONTROLLER / "starters" / "c",
+    "c_cascade": CONTROLLER / "starters" / "c_cascade",
     "cpp_style": HERE / "cpp_style",
     "simulink_style": HERE / "simulink_style",
 }
 SOURCES = (".c", ".cpp", ".h", ".hpp")
 # Flights take most of the time and show few mistakes that the other groups do not.
 FLIGHTS = ("flight", "flight_timing")
-FLIGHT_RATES = "333"
+FLIGHT_RATES = {"c_cascade": "250:1000"}
+OTHER_FLIGHT_RATES = "333"
 # Mistakes give wrong numbers, never slow steps: the limit allows for a busy machine.
 TIMEOUT_S = 300
 COMPILES_AT_ONCE = threading.Semaphore(2)
@@ -140,7 +143,7 @@ def judge(attest: pathlib.Path, all_groups: list[str], candidate: Candidate) -> 
             library = build(candidate, pathlib.Path(name))
             caught_by = first_failure(attest, library, selection(flights=False))
             if not caught_by and not candidate.passes:
-                rates = ["--rate", FLIGHT_RATES]
+                rates = ["--rate", FLIGHT_RATES.get(candidate.style, OTHER_FLIGHT_RATES)]
                 caught_by = first_failure(attest, library, selection(flights=True) + rates)
     except Broken as error:
         return Judged(candidate, None, str(error))
