@@ -218,8 +218,8 @@ TopicStimulus baseline_topic(Module module, std::string_view name, std::uint32_t
                           table[i].type != ChannelType::bit && topic_of(table[i].name) == name;
     if (!is_field) continue;
     const auto of_hover = is_flight ? baseline_of_hover(table[i]) : std::nullopt;
-    const double value = of_hover.value_or(is_flight ? baseline_in_flight(table[i])
-                                                     : baseline(table[i]));
+    const double value =
+        of_hover.value_or(is_flight ? baseline_in_flight(table[i]) : baseline(table[i]));
     topic.fields.push_back({i, Constant{value}, of_hover.has_value()});
   }
   return topic;

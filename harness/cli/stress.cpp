@@ -65,11 +65,6 @@ Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& su
   auto chosen =
       choose_flight(options.case_name, rates->front(), options.vehicle, options.plant, suite);
   if (!chosen) return tl::unexpected(chosen.error());
-  if (chosen->the_case.attitude_loop) {
-    return fail_at(chosen->the_case.file.string(),
-                   "is a flight of the cascade, which `attest stress` cannot fly in real time; "
-                   "`attest schedule` flies both units as their tasks are scheduled");
-  }
   const auto live = live_options(options);
   if (!live) return tl::unexpected(live.error());
   const auto load = parse_load_kind(options.load_kind);
@@ -86,6 +81,9 @@ Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& su
   StressPlan plan;
   plan.load = *load;
   plan.port = std::move(*port);
+  for (const LoopRate& rate : *rates) {
+    if (auto sane = check_rate(the_case, rate); !sane) return tl::unexpected(sane.error());
+  }
   for (const LoopRate& rate : *rates) {
     plan.tasks.push_back({the_case, RunConfiguration{rate, chosen->plant_configuration},
                           chosen->vehicle_model, plan.port, *live,
@@ -159,16 +157,21 @@ Result<void> run_all(const StressPlan& plan, const StressOptions& options, const
     if (interrupted()) break;
     const auto progress = [&](const StressProgress& now) { line.show(task, now); };
     const auto judge = options.cyclictest ? idle_by_cyclictest(task) : std::nullopt;
-    auto stress = run_stress(task, options.host.port, interrupted, progress);
-    if (!stress) return tl::unexpected(stress.error());
-    stress->cyclictest = judge;
+    auto results = run_stress(task, options.host.port, interrupted, progress);
+    if (!results) return tl::unexpected(results.error());
     line.erase();
     if (run.results.empty() && !globals.quiet)
-      fmt::print("{}{}", render_privileges(stress->privileges), exchange_note(run.port));
-    const bool shown = !globals.quiet || stress->result.verdict != Verdict::pass;
-    if (shown) fmt::print("{}", render_stress(*stress, style));
+      fmt::print("{}{}", render_privileges(results->front().privileges), exchange_note(run.port));
+    for (StressResult& stress : *results) {
+      stress.cyclictest = judge;
+      const bool shown = !globals.quiet || stress.result.verdict != Verdict::pass;
+      if (shown) fmt::print("{}", render_stress(stress, style));
+      run.results.push_back(std::move(stress));
+    }
     std::fflush(stdout);
-    run.results.push_back(std::move(*stress));
+  }
+  if (const auto note = note_on_units(run); !note.empty() && !globals.quiet) {
+    fmt::print("note: {}\n", note);
   }
   run.interrupted = interrupted();
   return {};

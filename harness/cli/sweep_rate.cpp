@@ -51,6 +51,9 @@ Result<SweepPlan> make_plan(const SweepOptions& options, const SuiteFolder& suit
   plan.rates = *std::move(rates);
   auto the_case = find_flight(options.case_name, plan.rates.front(), suite);
   if (!the_case) return tl::unexpected(the_case.error());
+  for (const LoopRate& rate : plan.rates) {
+    if (auto sane = check_rate(*the_case, rate); !sane) return tl::unexpected(sane.error());
+  }
   const auto plant_configurations = plant_configurations_of(*the_case, options);
   if (!plant_configurations) return tl::unexpected(plant_configurations.error());
   const auto port = describe_port(options.host);

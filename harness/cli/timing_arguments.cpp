@@ -106,6 +106,8 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
                {{"attest stress --port lib:./libmine.so", "at 250 Hz to 8 kHz, 10 s each"},
                 {"attest stress --port lib:./libmine.so --rate 1000 --load 2 --load-kind cache",
                  "while two processes fill the caches"},
+                {"attest stress --case hover --rate 250:1000",
+                 "the attitude unit at 250 Hz and the rate unit at 1 kHz, with a result each"},
                 {"attest stress --rate 500 --duration 5 --record-timing t.json",
                  "keep the times, to fly them again with `attest run --timing t.json`"}});
   command->callback([options, &globals, &action] {

@@ -26,10 +26,19 @@ enum class Call : std::uint32_t {
 
 }  // namespace
 
-struct PortCalls::Now {
+struct RunningCall {
   std::atomic<Call> call{Call::none};
   std::atomic<std::uint64_t> tick{0};  // of the instance whose step() runs
+};
+
+struct PortCalls::Now {
+  // In a live flight of the cascade, the attitude unit has a thread of its own.
+  RunningCall running, of_attitude_unit;
   std::atomic<std::uint64_t> count{0};
+
+  RunningCall& of(Module module) {
+    return module == Module::attitude_unit ? of_attitude_unit : running;
+  }
 };
 // Shared by two processes.
 static_assert(std::atomic<Call>::is_always_lock_free);
@@ -39,53 +48,77 @@ namespace {
 
 using Now = PortCalls::Now;
 
-// Notes a call for as long as it exists. Only one process writes.
+// Notes a call for as long as it exists.
 class Noted {
  public:
-  Noted(Now& now, Call call) : now_(now) {
-    now_.call.store(call, std::memory_order_relaxed);
-    now_.count.store(now_.count.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  Noted(Now& now, Module module, Call call) : running_(now.of(module)) {
+    running_.call.store(call, std::memory_order_relaxed);
+    now.count.fetch_add(1, std::memory_order_relaxed);
   }
-  ~Noted() { now_.call.store(Call::none, std::memory_order_relaxed); }
+  ~Noted() { running_.call.store(Call::none, std::memory_order_relaxed); }
   Noted(const Noted&) = delete;
   Noted& operator=(const Noted&) = delete;
 
  private:
-  Now& now_;
+  RunningCall& running_;
 };
+
+// " in step() at tick 17"; empty if no call runs.
+std::string text_of(const RunningCall& running) {
+  const std::uint64_t tick = running.tick.load(std::memory_order_relaxed);
+  switch (running.call.load(std::memory_order_relaxed)) {
+    case Call::create:
+      return " in create()";
+    case Call::set_parameter:
+      return " in set_parameter()";
+    case Call::set_timestamp_sample:
+      return " in set_timestamp_sample()";
+    case Call::step:
+      return fmt::format(" in step() at tick {}", tick);
+    case Call::batch:
+      return fmt::format(" in the batch of steps from tick {} on", tick);
+    case Call::destroy:
+      return " in destroy()";
+    case Call::none:
+      break;
+  }
+  return "";
+}
 
 class NotedUnit final : public Unit {
  public:
-  NotedUnit(std::unique_ptr<Unit> unit, Now& now) : unit_(std::move(unit)), now_(now) {}
+  NotedUnit(std::unique_ptr<Unit> unit, Module module, Now& now)
+      : unit_(std::move(unit)), module_(module), now_(now) {}
   ~NotedUnit() override {
-    const Noted noted(now_, Call::destroy);
+    const Noted noted(now_, module_, Call::destroy);
     unit_.reset();
   }
 
   int set_parameter(const std::string& name, float value) override {
-    const Noted noted(now_, Call::set_parameter);
+    const Noted noted(now_, module_, Call::set_parameter);
     return unit_->set_parameter(name, value);
   }
   int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
-    const Noted noted(now_, Call::set_timestamp_sample);
+    const Noted noted(now_, module_, Call::set_timestamp_sample);
     return unit_->set_timestamp_sample(timestamp_sample_us);
   }
   int step_structs(const void* in, void* out) override {
-    now_.tick.store(tick_++, std::memory_order_relaxed);
-    const Noted noted(now_, Call::step);
+    now_.of(module_).tick.store(tick_++, std::memory_order_relaxed);
+    const Noted noted(now_, module_, Call::step);
     return unit_->step_structs(in, out);
   }
   std::size_t max_batch() const override { return unit_->max_batch(); }
   Batched batch(std::span<Sample> samples,
                 std::span<const std::uint64_t> timestamp_samples_us) override {
-    now_.tick.store(tick_, std::memory_order_relaxed);
+    now_.of(module_).tick.store(tick_, std::memory_order_relaxed);
     tick_ += samples.size();
-    const Noted noted(now_, Call::batch);
+    const Noted noted(now_, module_, Call::batch);
     return unit_->batch(samples, timestamp_samples_us);
   }
 
  private:
   std::unique_ptr<Unit> unit_;
+  Module module_;
   Now& now_;
   std::uint64_t tick_ = 0;
 };
@@ -104,9 +137,9 @@ class NotedPort final : public Port {
   ModuleSet modules() const override { return port_.modules(); }
   std::unique_ptr<Unit> create_unit(Module module, const std::string& profile,
                                     const std::string& definition) override {
-    const Noted noted(now_, Call::create);
+    const Noted noted(now_, module, Call::create);
     auto unit = port_.create_unit(module, profile, definition);
-    return unit ? std::make_unique<NotedUnit>(std::move(unit), now_) : nullptr;
+    return unit ? std::make_unique<NotedUnit>(std::move(unit), module, now_) : nullptr;
   }
 
  private:
@@ -129,24 +162,11 @@ Result<PortCalls> PortCalls::make() {
 void PortCalls::Unmap::operator()(Now* now) const { ::munmap(now, sizeof(Now)); }
 
 std::string PortCalls::current() const {
-  switch (now_->call.load(std::memory_order_relaxed)) {
-    case Call::create:
-      return " in create()";
-    case Call::set_parameter:
-      return " in set_parameter()";
-    case Call::set_timestamp_sample:
-      return " in set_timestamp_sample()";
-    case Call::step:
-      return fmt::format(" in step() at tick {}", now_->tick.load(std::memory_order_relaxed));
-    case Call::batch:
-      return fmt::format(" in the batch of steps from tick {} on",
-                         now_->tick.load(std::memory_order_relaxed));
-    case Call::destroy:
-      return " in destroy()";
-    case Call::none:
-      break;
-  }
-  return "";
+  const std::string one = text_of(now_->running), attitude = text_of(now_->of_attitude_unit);
+  if (attitude.empty()) return one;
+  const std::string of_attitude =
+      fmt::format("{} of the {}", attitude, info_of(Module::attitude_unit).title);
+  return one.empty() ? of_attitude : one + " or" + of_attitude;
 }
 
 std::uint64_t PortCalls::count() const { return now_->count.load(std::memory_order_relaxed); }
@@ -156,7 +176,7 @@ std::unique_ptr<Port> PortCalls::noted(Port& port) const {
 }
 
 std::unique_ptr<Unit> PortCalls::noted(std::unique_ptr<Unit> unit) const {
-  return std::make_unique<NotedUnit>(std::move(unit), *now_);
+  return std::make_unique<NotedUnit>(std::move(unit), Module::mc_att_control, *now_);
 }
 
 }  // namespace attest

@@ -65,6 +65,8 @@ FlightTiming flight_timing(const Case& the_case, const LoopRate& rate) {
   return timing;
 }
 
+TaskTiming land_detection() { return task_at(Rate::hz(50)); }
+
 std::vector<Nanoseconds> task_times(const TaskTiming& timing, const Timeline& timeline) {
   TickSchedule schedule;
   schedule.rate = timing.rate;

@@ -25,6 +25,9 @@ LoopTiming case_timing(const Case& the_case, const Rate& rate);
 // The times of all units of a flight.
 FlightTiming flight_timing(const Case& the_case, const LoopRate& rate);
 
+// The firmware's land detector runs at 50 Hz.
+TaskTiming land_detection();
+
 // The times at which a task other than the unit's runs.
 std::vector<Nanoseconds> task_times(const TaskTiming& timing, const Timeline& timeline);
 

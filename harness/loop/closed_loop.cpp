@@ -23,9 +23,6 @@ enum Task : std::size_t {
   actuators
 };
 
-// The firmware's land detector runs at 50 Hz.
-TaskTiming land_detection() { return task_at(Rate::hz(50)); }
-
 std::size_t first_sampled_in(const LoopTiming& timing) {
   const auto is_sampled = [](const LoopTick& tick) { return tick.sampled >= Nanoseconds(0); };
   return static_cast<std::size_t>(std::find_if(timing.begin(), timing.end(), is_sampled) -

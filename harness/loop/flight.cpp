@@ -15,21 +15,6 @@ namespace {
 // by less than the float32 of the unit's inputs (models/README.md).
 const Rate slowest_physics = Rate::hz(1000);
 
-Result<void> check_rate(const Case& the_case, const LoopRate& rate) {
-  const std::string file = the_case.file.string();
-  if (the_case.attitude_loop && !rate.attitude_unit) {
-    return fail_at(file, fmt::format("is a flight of the cascade, which needs two rates: that of "
-                                     "the attitude unit and that of the rate unit, as in 250:1000, "
-                                     "not {}",
-                                     rate.to_string()));
-  }
-  if (!the_case.attitude_loop && rate.attitude_unit) {
-    return fail_at(file, fmt::format("is a flight of the controller, which has one rate, as in {}",
-                                     rate.unit.to_string()));
-  }
-  return {};
-}
-
 Result<void> check(const Case& the_case, const RunConfiguration& configuration,
                    const Vehicle& vehicle) {
   const Flight& flight = *the_case.flight;
@@ -68,6 +53,21 @@ void add_hover_thrust(const Vehicle& vehicle, Case& the_case) {
 }
 
 }  // namespace
+
+Result<void> check_rate(const Case& the_case, const LoopRate& rate) {
+  const std::string file = the_case.file.string();
+  if (the_case.attitude_loop && !rate.attitude_unit) {
+    return fail_at(file, fmt::format("is a flight of the cascade, which needs two rates: that of "
+                                     "the attitude unit and that of the rate unit, as in 250:1000, "
+                                     "not {}",
+                                     rate.to_string()));
+  }
+  if (!the_case.attitude_loop && rate.attitude_unit) {
+    return fail_at(file, fmt::format("is a flight of the controller, which has one rate, as in {}",
+                                     rate.unit.to_string()));
+  }
+  return {};
+}
 
 Rate physics_of(const Case& the_case, const Rate& loop) {
   return the_case.flight->physics.value_or(std::max(slowest_physics, loop));

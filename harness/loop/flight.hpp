@@ -32,6 +32,9 @@ inline double measured(const Metric& metric, const Flown& flown) {
 // Thrusts in units of hover thrust are scaled by the vehicle's hover thrust.
 Case bound_to_vehicle(const Case& the_case, const Vehicle& vehicle);
 
+// Errors, with the case's file: one rate for a flight of the cascade, or a pair for the controller.
+Result<void> check_rate(const Case& the_case, const LoopRate& rate);
+
 // How often MuJoCo steps. REQUIRES: a flight.
 Rate physics_of(const Case& the_case, const Rate& loop);
 

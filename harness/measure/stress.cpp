@@ -4,8 +4,10 @@
 
 #include <fmt/format.h>
 
+#include "harness/loop/flight.hpp"
 #include "harness/loop/timing_file.hpp"
 #include "harness/measure/stress_judge.hpp"
+#include "harness/port/builtin.hpp"
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/judge.hpp"
 
@@ -20,9 +22,8 @@ Nanoseconds nanoseconds(double microseconds) {
 
 }  // namespace
 
-void summarise(const LiveFlight& flight, const Rate& rate, const RealtimeBudget& budget,
-               StressResult& stress) {
-  const LiveUnitRecord& unit = flight.unit;
+void summarise(const LiveFlight& flight, const LiveUnitRecord& unit, const Rate& rate,
+               const RealtimeBudget& budget, StressResult& stress) {
   stress.latency = percentiles_of(unit.latency);
   stress.execution = percentiles_of(unit.execution);
   stress.response = percentiles_of(unit.response);
@@ -60,22 +61,37 @@ double StressResult::per_million(std::uint64_t count) const {
   return deadlines == 0 ? 0 : 1e6 * static_cast<double>(count) / static_cast<double>(deadlines);
 }
 
+const Rate& StressResult::unit_rate() const {
+  return module == Module::attitude_unit ? *result.rate.attitude_unit : result.rate.unit;
+}
+
 Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
                                        const std::function<bool()>& stop,
                                        const std::function<void(const StressProgress&)>& progress) {
   StressMeasurement measured;
-  const auto unit = port.create(task.the_case.profile);
-  if (!unit) return measured;
+  const bool is_cascade = task.the_case.attitude_loop.has_value();
+  // The modules decide which units are judged, so they must be those that were declared before.
+  if (is_cascade && port.modules() != task.port.modules) return measured;
+  const auto reference = open_builtin();
+  const auto units = units_for(task.the_case, port, *reference);
+  if (!units) return measured;
   progress({{}, true});
-  const Histogram idle =
-      idle_latency(task.configuration.rate.unit, task.idle_duration, task.live, stop);
-  auto flight = fly_live(task.the_case, task.configuration, *task.vehicle_model, *unit, task.live,
-                         checked_ticks, stop, [&](const LiveProgress& live) {
-                           progress({live, false});
-                         });
+  const LoopRate& rate = task.configuration.rate;
+  const Histogram idle = idle_latency(rate.unit, task.idle_duration, task.live, stop);
+  auto flight =
+      fly_live(task.the_case, task.configuration, *task.vehicle_model, units->for_flight(),
+               task.live, checked_ticks, stop, [&](const LiveProgress& live) {
+                 progress({live, false});
+               });
   if (!flight) return tl::unexpected(flight.error());
+  const RealtimeBudget& budget = task.the_case.flight->realtime;
+  summarise(*flight, flight->unit, rate.unit, budget, measured.stress);
   measured.stress.idle = percentiles_of(idle);
-  summarise(*flight, task.configuration.rate.unit, task.the_case.flight->realtime, measured.stress);
+  if (const auto& attitude_unit = flight->attitude_unit) {
+    StressResult& stress = measured.attitude_unit.emplace();
+    summarise(*flight, *attitude_unit, *rate.attitude_unit, budget, stress);
+    stress.idle = measured.stress.idle;
+  }
   measured.flight = *std::move(flight);
   return measured;
 }
@@ -86,12 +102,16 @@ TimelineLimits limits_of(const RealtimeBudget& budget) {
   return limits;
 }
 
-Result<StressResult> judge_live(const StressTask& task, StressMeasurement measurement) {
-  StressResult& stress = measurement.stress;
-  stress.result = result_for(task.the_case, task.configuration);
+Result<StressResults> judge_live(const StressTask& task, StressMeasurement measurement) {
+  const auto fresh = [&](StressResult stress) {
+    stress.result = result_for(task.the_case, task.configuration);
+    return stress;
+  };
+  StressResults results;
   if (!measurement.flight) {
-    judge(no_unit_of(task.the_case.profile, task.port), stress.result);
-    return std::move(stress);
+    results.push_back(fresh(std::move(measurement.stress)));
+    judge(no_unit_of(task.the_case.profile, task.port), results.front().result);
+    return results;
   }
   LiveFlight& flight = *measurement.flight;
   if (!task.record_timing.empty()) {
@@ -101,22 +121,16 @@ Result<StressResult> judge_live(const StressTask& task, StressMeasurement measur
       return tl::unexpected(written.error());
     }
   }
-  CaseResult& result = stress.result;
-  result.ticks = stress.ticks;
-  result.elapsed_s = in_seconds(stress.wall);
-  stress.timeline = timeline_of(flight.unit.ticks, limits_of(task.the_case.flight->realtime));
-  if (flight.unit.fault) {
-    judge(*flight.unit.fault, result);
-    return std::move(stress);
-  }
-  if (task.port.fixed_step) {
-    add_skip(result, "outputs not judged: a fixed step does not follow the times of a real clock");
-  } else {
-    judge_outputs(task.the_case, flight.unit, task.port.fraction_bits, result);
-  }
-  judge_flight_end(task, flight, result);
-  judge_timing(task.the_case.flight->realtime, stress);
-  return std::move(stress);
+  const auto add = [&](StressResult& stress, Module module) {
+    const bool is_cascade = task.the_case.attitude_loop.has_value();
+    if (is_cascade && !contains(task.port.modules, module)) return;
+    results.push_back(fresh(std::move(stress)));
+    results.back().module = is_cascade ? std::optional(module) : std::nullopt;
+    judge_unit(task, module, flight, results.size() == 1, results.back());
+  };
+  add(measurement.stress, task.the_case.module);
+  if (measurement.attitude_unit) add(*measurement.attitude_unit, Module::attitude_unit);
+  return results;
 }
 
 }  // namespace attest

@@ -33,6 +33,8 @@ Percentiles percentiles_of(const Histogram& histogram);
 struct StressResult {
   // Verdict; ticks, first and tightest are of the outputs, compared with the reference's.
   CaseResult result;
+  // The unit, in a flight of the cascade. Empty: the controller, or a flight without measurements.
+  std::optional<Module> module;
   Percentiles idle;  // wake-up latency of an idle thread: the machine's own part
   Percentiles latency, execution, response, age;  // as in LiveUnitRecord
   Percentiles plant;                              // wake-up latency of the plant
@@ -50,7 +52,12 @@ struct StressResult {
   std::optional<Cyclictest> cyclictest;
 
   double per_million(std::uint64_t count) const;  // of the deadlines
+  const Rate& unit_rate() const;                  // of the module
 };
+
+// In a flight of the cascade one for each unit of the port, that of the rate unit first. A unit
+// that the port does not have is the reference's, and is not judged.
+using StressResults = std::vector<StressResult>;
 
 // One rate of a stress run.
 struct StressTask {
@@ -75,32 +82,33 @@ struct StressProgress {
 // The measurements, without a verdict, and the further input of a judge: of `flight` the outputs,
 // the ticks, and how it ended.
 struct StressMeasurement {
-  StressResult stress;
-  std::optional<LiveFlight> flight;  // empty: the port makes no unit of that profile
+  StressResult stress;                        // of the unit that commands the motors
+  std::optional<StressResult> attitude_unit;  // of a flight of the cascade
+  std::optional<LiveFlight> flight;           // empty: the port makes no unit of that profile
 };
 
 // Flies the task in a child process, and judges it in this one; a port that crashes or hangs gets a
 // verdict. `stop` ends it early with the measurements so far. Errors: the port cannot be opened;
 // the case cannot be flown in real time.
-Result<StressResult> run_stress(const StressTask& task, const std::string& port,
-                                const std::function<bool()>& stop,
-                                const std::function<void(const StressProgress&)>& progress);
+Result<StressResults> run_stress(const StressTask& task, const std::string& port,
+                                 const std::function<bool()>& stop,
+                                 const std::function<void(const StressProgress&)>& progress);
 
-// In the port's process. REQUIRES: the port does not decline the task (run_stress checks its
-// declarations).
+// In the port's process. The idle machine is measured at the rate of the unit that commands the
+// motors. REQUIRES: the port does not decline the task (run_stress checks its declarations).
 Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
                                        const std::function<bool()>& stop,
                                        const std::function<void(const StressProgress&)>& progress);
 
-// Fills `stress` from the histograms and counters of a flight, except the verdict, the idle
-// machine's latency, and cyclictest.
-void summarise(const LiveFlight& flight, const Rate& rate, const RealtimeBudget& budget,
-               StressResult& stress);
+// Fills `stress` from the histograms and counters of a unit of the flight, except the verdict, the
+// idle machine's latency, and cyclictest. `rate` is that of the unit.
+void summarise(const LiveFlight& flight, const LiveUnitRecord& unit, const Rate& rate,
+               const RealtimeBudget& budget, StressResult& stress);
 
 // The limits of `budget` for the timeline.
 TimelineLimits limits_of(const RealtimeBudget& budget);
 
 // Also writes the timing of the flight if the task has a file for it. Errors: it cannot be written.
-Result<StressResult> judge_live(const StressTask& task, StressMeasurement measurement);
+Result<StressResults> judge_live(const StressTask& task, StressMeasurement measurement);
 
 }  // namespace attest

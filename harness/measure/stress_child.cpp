@@ -1,8 +1,10 @@
 // The child process of a stress run, and the parent that listens to it.
 //
 //     {"progress": {"time_ns": ..., "deadlines": ..., "missed": ..., "idle": false}}
-//     {"stress": {...}, "fault", "divergence", "parameters"}     inputs, outputs, ticks, times at
-//                                                                which the motors followed
+//     {"units": [{"stress": {...}, "fault", "parameters"}],      of each unit: inputs, outputs,
+//      "divergence"}                                             ticks, times at which its outputs
+//                                                                were followed
+//                                                                (LoopTick::commanded)
 //     {"refused": true}                                          the port made no unit
 //     {"error": {...}}
 //
@@ -13,6 +15,7 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <functional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -38,20 +41,33 @@ constexpr auto report_every = std::chrono::seconds(1);
 std::atomic<bool> asked_to_stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // written by a signal handler
 
+using Times = std::vector<std::optional<Nanoseconds>>;
+
 void send_measured(const StressMeasurement& measured, MessageSocket& parent) {
   if (!measured.flight) {
     parent.send(text_of({{"refused", true}}));
     return;
   }
-  json head = {{"stress", to_json(measured.stress)}};
-  const auto& [unit, plant, privileges, wall] = *measured.flight;
-  head["ticks"] = unit.ticks.size();
-  head["samples"] = unit.samples.size();
-  head["commanded"] = plant.commanded.size();
-  head["parameters"] = changes_json(unit.changes);
-  set_end(unit.fault, plant.divergence, head);
-  parent.send(text_of(head),
-              {blob_of(unit.samples), blob_of(unit.ticks), blob_of(plant.commanded)});
+  const LiveFlight& flight = *measured.flight;
+  json head = {{"units", json::array()}};
+  std::vector<Blob> blobs;
+  const auto add = [&](const StressResult& stress, const LiveUnitRecord& unit,
+                       const Times& commanded) {
+    json of_unit = {{"stress", to_json(stress)},
+                    {"ticks", unit.ticks.size()},
+                    {"samples", unit.samples.size()},
+                    {"commanded", commanded.size()},
+                    {"parameters", changes_json(unit.changes)}};
+    set_end(unit.fault, std::nullopt, of_unit);
+    head["units"].push_back(std::move(of_unit));
+    blobs.insert(blobs.end(), {blob_of(unit.samples), blob_of(unit.ticks), blob_of(commanded)});
+  };
+  add(measured.stress, flight.unit, flight.plant.commanded);
+  if (flight.attitude_unit) {
+    add(*measured.attitude_unit, *flight.attitude_unit, flight.unit.setpoints_received);
+  }
+  set_end(std::nullopt, flight.plant.divergence, head);
+  parent.send(text_of(head), blobs);
 }
 
 // The next blob, of `count` objects, if these are at most `most`.
@@ -61,36 +77,76 @@ std::optional<std::vector<T>> read_some(const json& count, std::size_t most, Blo
   return wanted <= most ? blobs.read<T>(wanted) : std::nullopt;
 }
 
+struct MeasuredUnit {
+  StressResult stress;
+  LiveUnitRecord record;
+  Times commanded;
+  std::size_t most = 0;  // ticks
+
+  bool is_whole() const { return record.ticks.size() + stress.misses.skipped >= most; }
+};
+
+// Empty: as for measurement_from(). Throws json::exception, too.
+std::optional<MeasuredUnit> unit_from(const json& head, std::size_t most, bool of_program,
+                                      BlobReader& blobs) {
+  auto stress = stress_from_json(head.at("stress"));
+  if (!stress) return std::nullopt;
+  auto samples = read_some<Sample>(head.at("samples"), most, blobs);
+  auto ticks = samples ? read_some<LiveTick>(head.at("ticks"), most, blobs) : std::nullopt;
+  using Time = Times::value_type;
+  auto commanded = ticks ? read_some<Time>(head.at("commanded"), most, blobs) : std::nullopt;
+  const bool fits = commanded && commanded->size() >= ticks->size() &&
+                    ticks->size() == stress->ticks &&
+                    samples->size() == std::min(ticks->size(), checked_ticks);
+  if (!fits) return std::nullopt;
+  MeasuredUnit unit;
+  unit.stress = *std::move(stress);
+  unit.commanded = *std::move(commanded);
+  unit.most = most;
+  unit.record.samples = *std::move(samples);
+  unit.record.ticks = *std::move(ticks);
+  unit.record.changes = changes_from(head.at("parameters"));
+  unit.record.fault = fault_from(head, of_program);
+  return unit;
+}
+
 // Empty: not a message of a stress run's child. A flight may be shorter than its case only after a
 // request to stop, a fault or a divergence, or with a unit that the estimator triggers. Throws
 // json::exception, too.
 std::optional<StressMeasurement> measurement_from(const StressTask& task, bool of_program,
                                                   bool was_asked_to_stop, const json& head,
                                                   BlobReader& blobs) {
-  auto stress = stress_from_json(head.at("stress"));
-  if (!stress) return std::nullopt;
-  StressMeasurement measured{*std::move(stress), {}};
-  const auto most =
-      static_cast<std::size_t>(tick_count(task.the_case.duration, task.configuration.rate.unit));
-  auto samples = read_some<Sample>(head.at("samples"), most, blobs);
-  auto ticks = samples ? read_some<LiveTick>(head.at("ticks"), most, blobs) : std::nullopt;
-  using Time = std::optional<Nanoseconds>;
-  auto commanded = ticks ? read_some<Time>(head.at("commanded"), most, blobs) : std::nullopt;
-  const bool is_whole = commanded && blobs.left() == 0 && commanded->size() >= ticks->size() &&
-                        ticks->size() == measured.stress.ticks &&
-                        samples->size() == std::min(ticks->size(), checked_ticks);
-  if (!is_whole) return std::nullopt;
+  const LoopRate& rate = task.configuration.rate;
+  std::vector<Rate> rates{rate.unit};
+  if (task.the_case.attitude_loop) rates.push_back(*rate.attitude_unit);
+  const json& heads = head.at("units");
+  if (!heads.is_array() || heads.size() != rates.size()) return std::nullopt;
+  std::vector<MeasuredUnit> units;
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    const auto most = static_cast<std::size_t>(tick_count(task.the_case.duration, rates[i]));
+    auto unit = unit_from(heads[i], most, of_program, blobs);
+    if (!unit) return std::nullopt;
+    units.push_back(*std::move(unit));
+  }
+  if (blobs.left() != 0) return std::nullopt;
+  StressMeasurement measured;
   LiveFlight& flight = measured.flight.emplace();
-  flight.unit.samples = *std::move(samples);
-  flight.unit.ticks = *std::move(ticks);
-  flight.plant.commanded = *std::move(commanded);
-  flight.unit.changes = changes_from(head.at("parameters"));
-  flight.unit.fault = fault_from(head, of_program);
   flight.plant.divergence = divergence_from(head);
-  const bool may_be_short = was_asked_to_stop || flight.unit.fault || flight.plant.divergence ||
-                            task.the_case.unit.on_estimate;
-  const std::size_t releases = flight.unit.ticks.size() + measured.stress.misses.skipped;
-  if (releases < most && !may_be_short) return std::nullopt;
+  const bool has_fault = std::any_of(units.begin(), units.end(), [](const MeasuredUnit& unit) {
+    return unit.record.fault.has_value();
+  });
+  const bool may_be_short =
+      was_asked_to_stop || has_fault || flight.plant.divergence || task.the_case.unit.on_estimate;
+  const bool is_whole =
+      std::all_of(units.begin(), units.end(), std::mem_fn(&MeasuredUnit::is_whole));
+  if (!is_whole && !may_be_short) return std::nullopt;
+  measured.stress = std::move(units.front().stress);
+  flight.unit = std::move(units.front().record);
+  flight.plant.commanded = std::move(units.front().commanded);
+  if (units.size() == 1) return measured;
+  measured.attitude_unit = std::move(units.back().stress);
+  flight.attitude_unit = std::move(units.back().record);
+  flight.unit.setpoints_received = std::move(units.back().commanded);
   return measured;
 }
 
@@ -124,24 +180,26 @@ void work(const StressTask& task, const std::string& specification, const PortCa
 }
 
 // The result if the port's declarations before the run exclude the task.
-std::optional<StressResult> declined(const StressTask& task) {
+std::optional<StressResults> declined(const StressTask& task) {
   StressResult stress;
   stress.result = result_for(task.the_case, task.configuration);
   const auto& step = task.port.fixed_step;
-  if (step && *step != task.configuration.rate) {
+  const LoopRate& rate = task.configuration.rate;
+  if (step && (*step != rate.unit || *step != rate.attitude_unit.value_or(rate.unit))) {
     stress.result.verdict = Verdict::unsupported;
     stress.result.reason = fmt::format("the port has a fixed step of {} Hz", step->to_string());
-    return stress;
+    return StressResults{stress};
   }
-  return declines(task.port, stress.result) ? std::optional(stress) : std::nullopt;
+  if (!declines(task.port, stress.result)) return std::nullopt;
+  return StressResults{stress};
 }
 
-StressResult gone_wrong(const StressTask& task, Verdict verdict, std::string reason) {
+StressResults gone_wrong(const StressTask& task, Verdict verdict, std::string reason) {
   StressResult stress;
   stress.result = result_for(task.the_case, task.configuration);
   stress.result.verdict = verdict;
   stress.result.reason = std::move(reason);
-  return stress;
+  return {stress};
 }
 
 // Listens until the child has sent its result, has died, or hangs.
@@ -151,7 +209,7 @@ class Listener {
            const std::function<void(const StressProgress&)>& progress)
       : task_(task), of_program_(of_program), calls_(calls), child_(child), progress_(progress) {}
 
-  Result<StressResult> listen(const std::function<bool()>& stop) {
+  Result<StressResults> listen(const std::function<bool()>& stop) {
     Patience patience;
     patience.given_up = [&] {
       if (!is_stopping_ && stop()) {
@@ -169,7 +227,7 @@ class Listener {
 
  private:
   // The result when no answer came, or an invalid one.
-  StressResult end_of(Received::Kind why) {
+  StressResults end_of(Received::Kind why) {
     if (why == Received::Kind::ended) {
       const std::string how = child_.end(), words = child_.last_words();
       return gone_wrong(
@@ -183,7 +241,7 @@ class Listener {
     return forged();
   }
 
-  StressResult forged() {
+  StressResults forged() {
     child_.kill();
     return gone_wrong(task_, Verdict::protocol,
                       "the port wrote on the socket on which its process answers");
@@ -210,18 +268,18 @@ class Listener {
   }
 
   // Empty: it is not the last message. The port shares the process, so no message is trusted.
-  std::optional<Result<StressResult>> answer_of(const Received& received,
-                                                const Patience& patience) {
+  std::optional<Result<StressResults>> answer_of(const Received& received,
+                                                 const Patience& patience) {
     heard_ = Clock::now();
     const json head = json::parse(received.head, nullptr, false);
     if (!head.is_object()) return forged();
     if (head.contains("error")) {
       auto error = error_from_json(head["error"]);
-      return Result<StressResult>(tl::unexpected(error ? *error : error.error()));
+      return Result<StressResults>(tl::unexpected(error ? *error : error.error()));
     }
     try {
       if (head.contains("refused")) return judge_live(task_, {});
-      if (head.contains("stress")) {
+      if (head.contains("units")) {
         auto kind = Received::Kind::no_message;
         BlobReader blobs(received.blobs, [&](void* place, std::size_t size) {
           const auto came = child_.receive_blob(place, size, patience);
@@ -265,9 +323,9 @@ class Listener {
 
 }  // namespace
 
-Result<StressResult> run_stress(const StressTask& task, const std::string& port,
-                                const std::function<bool()>& stop,
-                                const std::function<void(const StressProgress&)>& progress) {
+Result<StressResults> run_stress(const StressTask& task, const std::string& port,
+                                 const std::function<bool()>& stop,
+                                 const std::function<void(const StressProgress&)>& progress) {
   if (auto unsupported = declined(task)) return *std::move(unsupported);
   const auto calls = PortCalls::make();
   if (!calls) return tl::unexpected(calls.error());

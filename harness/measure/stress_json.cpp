@@ -146,6 +146,7 @@ StressResult read(const json& in) {
     stress.privileges.push_back({right.at("name"), right.at("got"), right.at("why")});
   }
   stress.slow = slow_from_json(in.at("slow_steps"));
+  if (in.contains("module")) stress.module = module_named(in["module"].get<std::string>());
   return stress;
 }
 
@@ -153,6 +154,7 @@ StressResult read(const json& in) {
 
 json to_json(const StressResult& stress) {
   json out = {{"result", to_json(stress.result)}, {"slow_steps", slow_to_json(stress.slow)}};
+  if (stress.module) out["module"] = name_of(*stress.module);
   numbers_of(stress, Put{out});
   out["deadline_misses"] = stress.misses.total();
   spreads_of(stress, [&](const char* key, const Percentiles& spread) {

@@ -87,10 +87,10 @@ void judge_machine(const RealtimeBudget& budget, StressResult& stress) {
 
 void add_skip(CaseResult& result, const std::string& reason) { add(result, Verdict::skip, reason); }
 
-void judge_outputs(const Case& the_case, LiveUnitRecord& unit, std::optional<int> fraction_bits,
-                   CaseResult& result) {
+void judge_outputs(const Case& the_case, Module module, LiveUnitRecord& unit,
+                   std::optional<int> fraction_bits, CaseResult& result) {
   Trace got;
-  got.present = channels_of(Module::mc_att_control);
+  got.present = channels_of(module);
   got.samples = std::move(unit.samples);
   got.parameters = std::move(unit.changes);
   if (got.samples.empty()) return add_skip(result, "outputs not judged: no step finished");
@@ -127,10 +127,10 @@ void judge_flight_end(const StressTask& task, const LiveFlight& flight, CaseResu
   Case to_the_end = task.the_case;
   to_the_end.duration = {in_seconds(lost->at), Span::In::seconds};
   const auto reference_port = open_builtin();
-  const auto reference = reference_port->create(task.the_case.profile);
+  const auto reference = units_for(to_the_end, *reference_port, *reference_port);
   if (!reference) return add_skip(result, how);
-  const auto again =
-      fly(to_the_end, task.configuration, *task.vehicle_model, *reference, flight.timing());
+  const auto again = fly(to_the_end, task.configuration, *task.vehicle_model,
+                         reference->for_flight(), flight.timing());
   if (!again) return add_skip(result, how + "; " + again.error().to_string());
   if (again->divergence) return add_skip(result, how + "; the reference loses the vehicle too");
   add(result, Verdict::fail, how + "; the reference does not lose the vehicle at the same times");
@@ -148,6 +148,31 @@ void judge_timing(const RealtimeBudget& budget, StressResult& stress) {
                          stress.plant_late_steps, stress.plant_steps));
   }
   judge_machine(budget, stress);
+}
+
+void judge_unit(const StressTask& task, Module module, LiveFlight& flight, bool of_end,
+                StressResult& stress) {
+  CaseResult& result = stress.result;
+  LiveUnitRecord* unit = &flight.unit;
+  const LiveUnitRecord* other = flight.attitude_unit ? &*flight.attitude_unit : nullptr;
+  if (module == Module::attitude_unit) {
+    unit = &*flight.attitude_unit;
+    other = &flight.unit;
+  }
+  result.ticks = stress.ticks;
+  result.elapsed_s = in_seconds(stress.wall);
+  stress.timeline = timeline_of(unit->ticks, limits_of(task.the_case.flight->realtime));
+  if (unit->fault) return judge(*unit->fault, result);
+  if (task.port.fixed_step) {
+    add_skip(result, "outputs not judged: a fixed step does not follow the times of a real clock");
+  } else {
+    judge_outputs(task.the_case, module, *unit, task.port.fraction_bits, result);
+  }
+  if (other != nullptr && other->fault) {
+    add_skip(result, "the flight ended at a fault of the other unit: " + other->fault->what);
+  }
+  if (of_end) judge_flight_end(task, flight, result);
+  judge_timing(task.the_case.flight->realtime, stress);
 }
 
 }  // namespace attest

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -32,6 +33,9 @@ struct ProgramStep {
 
 // A program that has answered the handshake. Every function throws PortBroke when the program has
 // ended, or when its answer breaks the rules. After that no more requests are made of it.
+//
+// A program answers one request at a time. Units that are stepped on two threads lock `mutex()` for
+// a request and its answer. No other function locks it.
 class Conversation {
  public:
   // Errors: it cannot be started, it ended, its answer to the handshake is not valid.
@@ -42,6 +46,7 @@ class Conversation {
 
   const Hello& hello() const { return hello_; }
   bool is_over() const { return is_over_; }
+  std::mutex& mutex() { return mutex_; }
 
   // destroy() for a destructor: what it throws is kept for throw_late().
   void destroy_quietly(std::uint32_t unit) noexcept;
@@ -74,6 +79,7 @@ class Conversation {
   std::uint32_t sequence_ = 0;
   std::optional<PortBroke> late_;
   bool is_over_ = false;
+  std::mutex mutex_;
 };
 
 std::unique_ptr<Conversation> binary_conversation(PipedProgram program, Hello hello);

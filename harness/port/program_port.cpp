@@ -26,6 +26,7 @@ class ProgramUnit final : public Unit {
   ProgramUnit& operator=(const ProgramUnit&) = delete;
 
   int set_parameter(const std::string& name, float value) override {
+    const std::lock_guard lock(talk_->mutex());
     return talk_->set_parameter(number_, name, value);
   }
 
@@ -39,7 +40,7 @@ class ProgramUnit final : public Unit {
     std::memcpy(info_.in.in(sample), in, info_.in.size);
     std::memcpy(info_.out.in(sample), out, info_.out.size);
     const Sample before = sample;
-    const int result = talk_->step(number_, info_.module, step_);
+    const int result = answer_to_step();
     if (result != ATTEST_OK) return result;
     keep_unpublished(info_.module, before, sample);
     std::memcpy(out, info_.out.in(sample), info_.out.size);
@@ -65,6 +66,11 @@ class ProgramUnit final : public Unit {
   }
 
  private:
+  int answer_to_step() {
+    const std::lock_guard lock(talk_->mutex());
+    return talk_->step(number_, info_.module, step_);
+  }
+
   Talk talk_;
   std::uint32_t number_;
   const ModuleInfo& info_;

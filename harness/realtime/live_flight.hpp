@@ -1,4 +1,7 @@
-// A unit flies a plant in real time, one thread each.
+// One or two units fly a plant in real time, one thread each.
+//
+// The priorities are those of the firmware: the rate unit's is above the attitude unit's. Both run
+// on the unit's CPU. The plant's priority is the lowest, in case it has the same CPU.
 #pragma once
 
 #include <functional>
@@ -7,6 +10,7 @@
 
 #include "harness/casefile/case.hpp"
 #include "harness/core/result.hpp"
+#include "harness/loop/closed_loop.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/port/port.hpp"
 #include "harness/realtime/live_plant.hpp"
@@ -19,36 +23,38 @@ namespace attest {
 
 // Where and how the threads run.
 struct LiveOptions {
-  int unit_cpu = 0, plant_cpu = 0;  // if equal: one-CPU mode, the unit has priority
+  int unit_cpu = 0, plant_cpu = 0;  // if equal: one-CPU mode, the units have priority
   bool fifo = true;
   Wait wait;
 };
 
 struct LiveProgress {
   Nanoseconds time{0};
-  std::uint64_t deadlines = 0, missed = 0;  // passed so far
+  std::uint64_t deadlines = 0, missed = 0;  // of all units, passed so far
 };
 
 struct LiveFlight {
-  LiveUnitRecord unit;
+  LiveUnitRecord unit;  // that commands the motors
   LivePlantRecord plant;
-  // All of the process and of the unit's thread; of the plant's thread, only those that were
+  std::optional<LiveUnitRecord> attitude_unit;  // of a flight of the cascade
+  // All of the process and of the unit's thread; of the other threads, only those that were
   // refused.
   std::vector<RealtimePrivilege> privileges;
   Nanoseconds wall{0};  // duration of the flight
 
   // The times of the flight, with which a simulated flight can repeat it.
-  LoopTiming timing() const;
+  FlightTiming timing() const;
 };
 
-// Flies the case for its whole duration, or until `stop` is true. The case's timing of the unit is
-// not used: ticks are late by the clock only. A unit that the estimator triggers waits for the
-// plant's thread, which publishes a sample at each tick of the rate. Keeps the samples of the first
-// `samples` ticks. `progress` is called every tenth of a second. The plant's thread samples the
-// battery, with the command that the motors follow. REQUIRES: a flight; a fresh unit. Errors: those
-// of fly().
+// Flies the case for its whole duration, or until `stop` is true. The case's timing of the units is
+// not used: ticks are late by the clock only. Of the cascade, AttitudeLoop::delay is kept. A unit
+// that the estimator triggers waits for the plant's thread, which publishes a sample at each tick
+// of the rate. Keeps the samples of the first `samples` ticks of each unit. `progress` is called
+// every tenth of a second. The plant's thread samples the battery and runs the land detector, with
+// the command that the motors follow. REQUIRES: a flight; fresh units, one or both as the case
+// says. Errors: those of fly().
 Result<LiveFlight> fly_live(const Case& the_case, const RunConfiguration& configuration,
-                            const VehicleModel& vehicle_model, Unit& unit,
+                            const VehicleModel& vehicle_model, FlightUnits units,
                             const LiveOptions& options, std::size_t samples,
                             const std::function<bool()>& stop,
                             const std::function<void(const LiveProgress&)>& progress);

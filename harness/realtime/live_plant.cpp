@@ -16,7 +16,7 @@ LivePlant::LivePlant(PlantTask& task, LivePlantPlan plan, Clock& clock, Links& l
     : task_(task), plan_(std::move(plan)), clock_(clock), links_(links) {
   record_.commanded.resize(plan_.ticks);
   record_.divergence = advance(Nanoseconds(0));
-  links_.states.write({Nanoseconds(0), task_.state(), Nanoseconds(0)});
+  write_state(Nanoseconds(0), Nanoseconds(0));
 }
 
 void LivePlant::run() {
@@ -50,7 +50,7 @@ void LivePlant::run() {
 // A unit that waits for the estimator is woken when its sample is in the state; only once when
 // several samples came due.
 void LivePlant::publish(Nanoseconds now) {
-  links_.states.write({now, task_.state(), clock_.now()});
+  write_state(now, clock_.now());
   if (!plan_.estimator) return;
   const std::int64_t due = plan_.estimator->ticks_in(now + Nanoseconds(1));
   if (due == estimates_) return;
@@ -58,12 +58,19 @@ void LivePlant::publish(Nanoseconds now) {
   links_.published.release();
 }
 
+// A buffer that no unit reads does no harm.
+void LivePlant::write_state(Nanoseconds now, Nanoseconds published) {
+  links_.unit.states.write({now, task_.state(), published});
+  links_.attitude_unit.states.write({now, task_.state(), published});
+}
+
 std::optional<Divergence> LivePlant::advance(Nanoseconds to) {
   const auto& disturbances = task_.disturbance_times();
   while (true) {
     const Nanoseconds disturbance = next_of(disturbances, disturbed_);
     const Nanoseconds battery = next_of(plan_.battery_times, batteries_);
-    const Nanoseconds next = std::min(disturbance, battery);
+    const Nanoseconds landing = next_of(plan_.landing_times, landings_);
+    const Nanoseconds next = std::min({disturbance, battery, landing});
     if (next > to) break;
     if (auto lost = task_.advance(next)) return lost;
     // Events at the same instant happen in the order of closed_loop.hpp.
@@ -72,6 +79,7 @@ std::optional<Divergence> LivePlant::advance(Nanoseconds to) {
       if (auto lost = task_.disturb(next)) return lost;
     }
     if (battery == next) sample_battery(next);
+    if (landing == next) detect_landing(next);
   }
   return task_.advance(to);
 }
@@ -79,6 +87,13 @@ std::optional<Divergence> LivePlant::advance(Nanoseconds to) {
 void LivePlant::sample_battery(Nanoseconds now) {
   ++batteries_;
   links_.batteries.write({now, task_.battery_scale(now, throttle_, armed_)});
+}
+
+void LivePlant::detect_landing(Nanoseconds now) {
+  ++landings_;
+  const LandDetected landed = plan_.land_detector->sample(now, task_.state(), throttle_, armed_);
+  links_.unit.landed.write(landed);
+  links_.attitude_unit.landed.write(landed);
 }
 
 // A late step may find a command that was made after its time. It must not follow this command yet,

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "harness/loop/land_detector.hpp"
 #include "harness/loop/plant_task.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/realtime/histogram.hpp"
@@ -32,6 +33,9 @@ struct LivePlantPlan {
   std::size_t ticks = 0;                   // of the unit, at most
   std::vector<Nanoseconds> battery_times;  // of the battery's samples; empty: no battery
   std::optional<Rate> estimator;           // whose samples trigger the unit
+  // Of a flight of the cascade with a floor, and the times of its samples.
+  std::optional<LandDetector> land_detector;
+  std::vector<Nanoseconds> landing_times;
 };
 
 class LivePlant {
@@ -49,6 +53,8 @@ class LivePlant {
  private:
   std::optional<Divergence> advance(Nanoseconds to);
   void sample_battery(Nanoseconds now);
+  void detect_landing(Nanoseconds now);
+  void write_state(Nanoseconds now, Nanoseconds published);
   void publish(Nanoseconds now);
   std::optional<Divergence> take_commands(Nanoseconds now);
   std::optional<Divergence> command(Nanoseconds now, const LiveCommand& command);
@@ -59,6 +65,7 @@ class LivePlant {
   Links& links_;
   std::size_t disturbed_ = 0;
   std::size_t batteries_ = 0;   // samples taken
+  std::size_t landings_ = 0;    // of the land detector
   std::int64_t estimates_ = 0;  // samples published
   float throttle_ = 0;          // of the command that the motors follow
   bool armed_ = false;

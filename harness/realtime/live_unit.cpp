@@ -1,6 +1,7 @@
 #include "harness/realtime/live_unit.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/loop/case_timing.hpp"
@@ -14,25 +15,46 @@ DelayLine<T> line(const TaskTiming& timing, const Rate& rate) {
   return {delay, static_cast<std::size_t>(timing.rate.ticks_in(delay)) + 2};
 }
 
+bool is_attitude(const UnitTask& task) { return task.module() == Module::attitude_unit; }
+
+const Rate& own_rate(const UnitTask& task, const LoopRate& rate) {
+  return is_attitude(task) ? *rate.attitude_unit : rate.unit;
+}
+
+DelayLine<LiveRatesSetpoint> rates_setpoints(const Case& the_case, const LoopRate& rate) {
+  if (!the_case.attitude_loop) return {Nanoseconds(0), 0};
+  const Nanoseconds delay = the_case.attitude_loop->delay.on(rate.unit);
+  // After a late tick of the attitude unit the next one follows at once, so that more setpoints
+  // are made within the delay than it has periods.
+  return {delay, static_cast<std::size_t>(2 * rate.attitude_unit->ticks_in(delay)) + 2};
+}
+
 }  // namespace
 
-LiveUnit::LiveUnit(const Case& the_case, const Rate& rate, UnitTask& task, Clock& clock,
+LiveUnit::LiveUnit(const Case& the_case, const LoopRate& rate, UnitTask& task, Clock& clock,
                    Links& links, std::size_t samples)
     : task_(task),
       clock_(clock),
       links_(links),
-      rate_(rate),
+      own_(is_attitude(task) ? links.attitude_unit : links.unit),
+      commands_motors_(!is_attitude(task)),
+      rate_(own_rate(task, rate)),
       on_estimate_(the_case.unit.on_estimate),
-      deadlines_(tick_count(the_case.duration, rate)),
-      estimator_(the_case, rate, rate),
-      saturation_times_(task_times(the_case.flight->saturation, timeline_of(the_case, rate))),
-      saturations_(line<Saturation>(the_case.flight->saturation, rate)),
+      deadlines_(tick_count(the_case.duration, rate_)),
+      estimator_(the_case, rate_, rate.unit),
+      saturation_times_(task_times(the_case.flight->saturation, timeline_of(the_case, rate.unit))),
+      saturations_(line<Saturation>(the_case.flight->saturation, rate.unit)),
       battery_scales_(
-          line<float>(the_case.flight->battery.value_or(BatteryFlight{}).timing, rate)) {
+          line<float>(the_case.flight->battery.value_or(BatteryFlight{}).timing, rate.unit)),
+      rates_setpoints_(rates_setpoints(the_case, rate)) {
   const auto most = static_cast<std::size_t>(deadlines_);
   samples_max_ = std::min(samples, most);
   record_.ticks.resize(most);
   record_.samples.resize(samples_max_);
+  if (the_case.attitude_loop && commands_motors_) {
+    const auto ticks = tick_count(the_case.duration, *rate.attitude_unit);
+    record_.setpoints_received.resize(static_cast<std::size_t>(ticks));
+  }
 }
 
 void LiveUnit::run() {
@@ -43,7 +65,8 @@ void LiveUnit::run() {
     run_on_releases();
   }
   record_.usage = thread_usage() - warm_;
-  links_.stop.store(true, std::memory_order_relaxed);
+  const bool is_last = links_.flying.fetch_sub(1, std::memory_order_relaxed) == 1;
+  if (is_last || record_.fault) links_.stop.store(true, std::memory_order_relaxed);
   record_.ticks.resize(ticks_);
   record_.samples.resize(std::min(ticks_, samples_max_));
 }
@@ -95,22 +118,18 @@ void LiveUnit::count_skipped(std::int64_t k, std::int64_t next) {
 }
 
 Nanoseconds LiveUnit::tick(LiveTick due) {
-  take_battery();
-  // Read after the samples, so that no sample is later than the tick.
+  take_messages();
+  // Read after the messages, so that no message is later than the tick.
   due.begins = clock_.now();
   due.sampled = sampled_ ? latest_.time : Nanoseconds(-1);
-  Arrivals arrivals;
-  if (sampled_) arrivals.estimate = estimator_.sample(latest_.time, latest_.state);
-  arrivals.saturation = saturation_at(due.begins);
-  arrivals.battery_scale = battery_scales_.receive(due.begins);
-  task_.prepare(ticks_, due.begins, arrivals);
+  task_.prepare(ticks_, due.begins, arrivals_at(due.begins));
 
   const std::int64_t yields_before = thread_yields();
   const Nanoseconds cpu_before = thread_cpu_time(), before = clock_.now();
   record_.fault = task_.step(ticks_);
   const Nanoseconds after = clock_.now(), cpu_after = thread_cpu_time();
   if (record_.fault) return after;
-  links_.commands.write({ticks_, after, task_.commands(), task_.throttle(), task_.is_armed()});
+  send(after);
   due.finish = clock_.now();
   due.elapsed = after - before;
   due.cpu = cpu_after - cpu_before;
@@ -119,17 +138,44 @@ Nanoseconds LiveUnit::tick(LiveTick due) {
   return due.finish;
 }
 
+Arrivals LiveUnit::arrivals_at(Nanoseconds now) {
+  Arrivals arrivals;
+  if (sampled_) arrivals.estimate = estimator_.sample(latest_.time, latest_.state);
+  arrivals.landed = std::exchange(landed_, std::nullopt);
+  if (!commands_motors_) return arrivals;
+  arrivals.saturation = saturation_at(now);
+  arrivals.battery_scale = battery_scales_.receive(now);
+  if (const auto setpoint = rates_setpoints_.receive(now)) {
+    arrivals.rates_setpoint = setpoint->value;
+    record_.setpoints_received[setpoint->tick] = now;
+  }
+  return arrivals;
+}
+
+void LiveUnit::send(Nanoseconds made) {
+  if (commands_motors_) {
+    links_.commands.write({ticks_, made, task_.commands(), task_.throttle(), task_.is_armed()});
+  } else if (const auto setpoint = task_.rates_setpoint()) {
+    links_.rates_setpoints.write({ticks_, made, *setpoint});
+  }
+}
+
 bool LiveUnit::take_sample() {
-  const LiveState* state = links_.states.read();
+  const LiveState* state = own_.states.read();
   if (state == nullptr) return false;
   latest_ = *state;
   return sampled_ = true;
 }
 
-// An overtaken sample is lost, same as in a topic of queue length 1.
-void LiveUnit::take_battery() {
+// A buffer has one reader.
+void LiveUnit::take_messages() {
+  if (const LandDetected* landed = own_.landed.read()) landed_ = *landed;
+  if (!commands_motors_) return;
   if (const LiveBattery* battery = links_.batteries.read()) {
     battery_scales_.send(battery->time, battery->scale);
+  }
+  if (const LiveRatesSetpoint* setpoint = links_.rates_setpoints.read()) {
+    rates_setpoints_.send(setpoint->made, *setpoint);
   }
 }
 

@@ -1,4 +1,8 @@
-// The unit's task on a clock: it waits for its releases, and records each tick.
+// A unit's task on a clock: it waits for its releases, and records each tick.
+//
+// The controller and the rate unit command the motors. The attitude unit sends the rates setpoint
+// to the rate unit, which receives it at its first tick that begins AttitudeLoop::delay after it
+// was made, or later. An overtaken message is lost, same as in a topic of queue length 1.
 #pragma once
 
 #include <atomic>
@@ -15,6 +19,7 @@
 #include "harness/realtime/usage.hpp"
 #include "harness/schedule/clock.hpp"
 #include "harness/schedule/delay_line.hpp"
+#include "harness/schedule/loop_rate.hpp"
 
 namespace attest {
 
@@ -30,6 +35,9 @@ struct LiveUnitRecord {
   std::vector<LiveTick> ticks;
   std::vector<Sample> samples;  // of the first ticks
   std::vector<ParameterChange> changes;
+  // Of the rate unit: for each tick of the attitude unit, when the tick of the rate unit began that
+  // received its setpoint. Empty if no tick received it.
+  std::vector<std::optional<Nanoseconds>> setpoints_received;
   std::optional<PortFault> fault;
 };
 
@@ -42,12 +50,13 @@ class LiveUnit {
  public:
   // Records all ticks, and the samples of the first `samples`. The constructor allocates that
   // memory and touches every page, so that recording them in run() causes no page fault. Parameter
-  // changes have no reserved memory: a tick that records some may allocate. REQUIRES: a flight; all
-  // outlive this.
-  LiveUnit(const Case& the_case, const Rate& rate, UnitTask& task, Clock& clock, Links& links,
+  // changes have no reserved memory: a tick that records some may allocate. `the_case` is what a
+  // flight scripts for the task's module (Case::of_module). REQUIRES: a flight; all outlive this.
+  LiveUnit(const Case& the_case, const LoopRate& rate, UnitTask& task, Clock& clock, Links& links,
            std::size_t samples);
 
-  // Runs until the end of the case, Links::stop, or a fault of the port. Call once.
+  // Runs until the end of the case, Links::stop, or a fault of the port, which stops all threads.
+  // Call once.
   void run();
 
   // For other threads, while it runs.
@@ -68,13 +77,17 @@ class LiveUnit {
   // Counts the releases after k and before `next`, which is the next that is used.
   void count_skipped(std::int64_t k, std::int64_t next);
   bool take_sample();
-  void take_battery();
+  void take_messages();
+  Arrivals arrivals_at(Nanoseconds now);
+  void send(Nanoseconds made);
   std::optional<Saturation> saturation_at(Nanoseconds now);
   void write_down(const LiveTick& tick);
 
   UnitTask& task_;
   Clock& clock_;
   Links& links_;
+  UnitLinks& own_;
+  bool commands_motors_;
   Rate rate_;
   bool on_estimate_;
   std::int64_t deadlines_;
@@ -85,6 +98,8 @@ class LiveUnit {
   std::size_t saturations_done_ = 0;
   DelayLine<Saturation> saturations_;
   DelayLine<float> battery_scales_;
+  DelayLine<LiveRatesSetpoint> rates_setpoints_;
+  std::optional<LandDetected> landed_;
   std::size_t ticks_ = 0, samples_max_;
   std::atomic<std::uint64_t> passed_{0}, missed_{0};
   Usage warm_;

@@ -68,12 +68,19 @@ std::string indented_distance(const Deviation& deviation, Level level) {
   return text.empty() ? text : fmt::format("    {}\n", text);
 }
 
+// In a flight both units of the cascade have ticks, and outputs of the same name.
+std::string of_unit(const Channel& channel) {
+  const bool is_of_cascade =
+      channel.module == Module::attitude_unit || channel.module == Module::rate_unit;
+  return is_of_cascade ? fmt::format(", {}", info_of(channel.module).title) : "";
+}
+
 std::string first_deviation(const Deviation& deviation, Level level) {
   const Channel& channel = channels()[deviation.channel];
   return fmt::format(
       "  first at tick {}, timestamp {} us, in {}\n{}{}"
       "  look first at the {}: all before it agrees up to this tick\n",
-      deviation.tick, deviation.timestamp_us, channel_with_unit(channel),
+      deviation.tick, deviation.timestamp_us, channel_with_unit(channel) + of_unit(channel),
       values(channel, deviation), indented_distance(deviation, level), name_of(channel.stage));
 }
 

@@ -79,6 +79,29 @@ std::string slow_steps(const SlowTicks& slow) {
   return out;
 }
 
+std::string_view title_of(const StressResult& stress) { return info_of(*stress.module).title; }
+
+// The result of the rate unit is the first of a flight.
+bool is_of_same_flight(const StressResult& before, const StressResult& next) {
+  return before.module == Module::rate_unit && next.module == Module::attitude_unit &&
+         before.result.rate == next.result.rate;
+}
+
+int gravity(Verdict verdict) { return fails_a_run(verdict) ? 2 : verdict == Verdict::pass ? 0 : 1; }
+
+std::string reason_of(const StressResult& stress) {
+  const std::string& reason = stress.result.reason;
+  return stress.module && !reason.empty() ? fmt::format("{}: {}", title_of(stress), reason)
+                                          : reason;
+}
+
+// The result of the flight, in which `all` has that of the units before.
+void add_unit(const StressResult& unit, CaseResult& all) {
+  const std::string before = all.reason, reason = reason_of(unit);
+  if (gravity(unit.result.verdict) > gravity(all.verdict)) all = unit.result;
+  all.reason = fmt::format("{}{}{}", before, before.empty() || reason.empty() ? "" : "; ", reason);
+}
+
 std::string outputs(const CaseResult& result) {
   if (result.deviating_ticks == 0 && !result.first) {
     return result.tightest ? fmt::format(
@@ -102,7 +125,8 @@ std::string human_time(Nanoseconds time) {
 
 std::string render_stress(const StressResult& stress, TerminalStyle style) {
   const CaseResult& result = stress.result;
-  std::string out = painted(one_line(result.id()), Colour::bold, style) + "\n";
+  const std::string of_unit = stress.module ? fmt::format(", {}", title_of(stress)) : "";
+  std::string out = painted(one_line(result.id()) + of_unit, Colour::bold, style) + "\n";
   if (stress.ticks > 0) {
     out += fmt::format("  {:<22}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "", "median", "p90", "p99",
                        "p99.9", "max");
@@ -137,10 +161,9 @@ std::string render_privileges(const std::vector<RealtimePrivilege>& privileges) 
 
 std::vector<std::string> rates_not_judged(const StressRun& run) {
   std::vector<std::string> rates;
-  for (const StressResult& stress : run.results) {
-    const Verdict verdict = stress.result.verdict;
-    const bool is_judged = verdict == Verdict::pass || fails_a_run(verdict);
-    if (!is_judged) rates.push_back(stress.result.rate.to_string());
+  for (const CaseResult& result : run_of(run).results) {
+    const bool is_judged = result.verdict == Verdict::pass || fails_a_run(result.verdict);
+    if (!is_judged) rates.push_back(result.rate.to_string());
   }
   return rates;
 }
@@ -161,13 +184,31 @@ std::string render_stress_end(const StressRun& run, TerminalStyle style) {
   std::string word(verdict);
   for (char& letter : word) letter = static_cast<char>(std::toupper(letter));
   std::string out = painted(word, colour, style);
-  out += fmt::format(" {} of {} hold in real time (load: {})", run_of(run).count(Verdict::pass),
-                     counted(run.results.size(), "rate"), run.load);
+  const RunResult all = run_of(run);
+  out += fmt::format(" {} of {} hold in real time (load: {})", all.count(Verdict::pass),
+                     counted(all.results.size(), "rate"), run.load);
   if (const auto rates = rates_not_judged(run); !rates.empty()) {
     out += fmt::format("; not judged: {} Hz", fmt::join(rates, " Hz, "));
   }
   if (run.interrupted) out += "; interrupted";
   return out + "\n";
+}
+
+std::string rate_of(const StressResult& stress) {
+  const std::string rate = stress.result.rate.to_string();
+  return stress.module ? fmt::format("{}, {}", rate, title_of(stress)) : rate;
+}
+
+std::string note_on_units(const StressRun& run) {
+  for (const StressResult& stress : run.results) {
+    if (!stress.module) continue;
+    const Module other =
+        *stress.module == Module::rate_unit ? Module::attitude_unit : Module::rate_unit;
+    if (contains(run.description.modules, other)) return "";
+    return fmt::format("the {} is that of the reference, because the port has none: not judged",
+                       info_of(other).title);
+  }
+  return "";
 }
 
 RunResult run_of(const StressRun& run) {
@@ -180,8 +221,14 @@ RunResult run_of(const StressRun& run) {
   all.fraction_bits = run.description.fraction_bits;
   all.fixed_step = run.description.fixed_step;
   all.command = "stress";
-  for (const StressResult& stress : run.results) {
+  for (std::size_t i = 0; i < run.results.size(); ++i) {
+    const StressResult& stress = run.results[i];
+    if (i > 0 && is_of_same_flight(run.results[i - 1], stress)) {
+      add_unit(stress, all.results.back());
+      continue;
+    }
     all.results.push_back(stress.result);
+    all.results.back().reason = reason_of(stress);
     all.rates.push_back(stress.result.rate);
   }
   all.stopped_early = run.interrupted;

@@ -1,4 +1,4 @@
-// A stress run as text: a block per rate, with the idle machine for comparison.
+// A stress run as text: a block per rate and unit, with the idle machine for comparison.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ struct StressRun {
   std::string load;             // "none"
   LiveOptions live;
   RealtimeBudget budget;
-  std::vector<StressResult> results;
+  StressResults results;  // of all rates; those of one rate follow each other
   bool interrupted = false;
 };
 
@@ -35,7 +35,14 @@ std::string render_stress(const StressResult& stress, TerminalStyle style);
 std::string render_privileges(const std::vector<RealtimePrivilege>& privileges);
 std::string render_stress_end(const StressRun& run, TerminalStyle style);
 
-// The same run for the common reports: JUnit uses it.
+// "1000", or "250:1000, attitude unit".
+std::string rate_of(const StressResult& stress);
+
+// Which unit of the cascade was the reference's, because the port has one of the two. Empty: none.
+std::string note_on_units(const StressRun& run);
+
+// The same run for the common reports, with one result for each rate: JUnit uses it. Of the units
+// of the cascade the result is that of the unit with the gravest verdict, with the reasons of all.
 RunResult run_of(const StressRun& run);
 
 // As stress.schema.json describes it.

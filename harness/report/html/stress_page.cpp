@@ -19,13 +19,20 @@ std::string time_cell(const std::optional<Nanoseconds>& time) {
   return time ? fmt::format("{:.4g}", microseconds(*time)) : "-";
 }
 
+// "1000 Hz", or "250:1000 Hz, attitude unit".
+std::string heading_of(const StressResult& stress) {
+  const std::string rate = stress.result.rate.to_string();
+  return stress.module ? fmt::format("{} Hz, {}", rate, info_of(*stress.module).title)
+                       : rate + " Hz";
+}
+
 std::vector<PageCell> rate_row(const StressResult& stress) {
   const CaseResult& result = stress.result;
   const DeadlineMisses& misses = stress.misses;
   if (stress.ticks == 0) {
-    return {result.rate.to_string(), {std::string(name_of(result.verdict)), result.verdict}};
+    return {rate_of(stress), {std::string(name_of(result.verdict)), result.verdict}};
   }
-  return {result.rate.to_string(),
+  return {rate_of(stress),
           {std::string(name_of(result.verdict)), result.verdict},
           time_cell(stress.idle.p99),
           time_cell(stress.idle.max),
@@ -52,9 +59,8 @@ PageTable rates_table(const StressRun& run) {
 }
 
 PageTable worst_table(const StressResult& stress) {
-  PageTable table{
-      fmt::format("{} Hz: longest responses; times in us", stress.result.rate.to_string()),
-      {"tick", "released at [s]", "latency", "execution", "response", "skipped"}};
+  PageTable table{fmt::format("{}: longest responses; times in us", heading_of(stress)),
+                  {"tick", "released at [s]", "latency", "execution", "response", "skipped"}};
   for (const auto& [number, tick] : stress.timeline.worst) {
     table.rows.push_back({fmt::to_string(number), fmt::format("{:.4f}", in_seconds(tick.release)),
                           time_cell(tick.latency()), time_cell(tick.execution()),
@@ -64,7 +70,7 @@ PageTable worst_table(const StressResult& stress) {
 }
 
 PlotMark period_mark(const StressResult& stress) {
-  return {1e6 / stress.result.rate.hertz(), "period"};
+  return {1e6 / stress.unit_rate().hertz(), "period"};
 }
 
 PlotGroup distributions(const StressRun& run, const StressResult& stress) {
@@ -75,9 +81,7 @@ PlotGroup distributions(const StressRun& run, const StressResult& stress) {
   std::vector<PlotMark> execution = {period_mark(stress)};
   if (run.budget.execution_us) execution.push_back({*run.budget.execution_us, "budget"});
   PlotGroup group{
-      fmt::format("{} Hz: {}", stress.result.rate.to_string(), name_of(stress.result.verdict)),
-      "time [us]",
-      {}};
+      fmt::format("{}: {}", heading_of(stress), name_of(stress.result.verdict)), "time [us]", {}};
   group.plots = {
       histogram_plot("Wake-up latency",
                      {{"idle machine", stress.idle.buckets}, {"in flight", stress.latency.buckets}},
@@ -133,7 +137,7 @@ PlotGroup timeline(const StressRun& run, const StressResult& stress) {
   times.series = {longest(stress, "wake-up latency", &TimelinePart::latency),
                   longest(stress, "execution time", &TimelinePart::execution),
                   longest(stress, "response time", &TimelinePart::response),
-                  level(stress, "period", 1e6 / stress.result.rate.hertz())};
+                  level(stress, "period", 1e6 / stress.unit_rate().hertz())};
   if (run.budget.execution_us) {
     times.series.push_back(level(stress, "budget of the execution time", *run.budget.execution_us));
   }
@@ -193,16 +197,19 @@ std::string stress_page(const StressRun& run) {
   page.conclusion = {verdict_for_page(run), std::string(verdict_of(run)),
                      fmt::format("{} {} in real time", all.port_name, all.port_version),
                      fmt::format("{} of {} hold (load: {}){}", all.count(Verdict::pass),
-                                 counted(run.results.size(), "rate"), run.load,
+                                 counted(all.results.size(), "rate"), run.load,
                                  run.interrupted ? "; interrupted" : "")};
   page.facts = facts_of(run);
   page.tables = {rates_table(run)};
+  if (const std::string note = note_on_units(run); !note.empty()) {
+    page.notes.push_back({note, false});
+  }
   for (const StressResult& stress : run.results) {
     const CaseResult& result = stress.result;
     if (!result.reason.empty()) {
-      page.notes.push_back({fmt::format("{} Hz: {}: {}", result.rate.to_string(),
-                                        name_of(result.verdict), result.reason),
-                            fails_a_run(result.verdict)});
+      page.notes.push_back(
+          {fmt::format("{}: {}: {}", heading_of(stress), name_of(result.verdict), result.reason),
+           fails_a_run(result.verdict)});
     }
     if (stress.ticks == 0) continue;
     page.groups.push_back(distributions(run, stress));

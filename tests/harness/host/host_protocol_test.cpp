@@ -107,8 +107,7 @@ TEST(HostProtocol, AFlightOfTheCascadeHasTwoTraces) {
   const auto read = [&](json head, const std::vector<std::string>& blobs) {
     head.update({{"request", 5}, {"source", "x"}, {"parameters", json::array()}, {"ticks", 3}});
     Sent sent(head, blobs);
-    return read_flown(sent.as_answer_to(5),
-                      {{LoopRate(Rate::hz(250), Rate::hz(250)), {}}, timing});
+    return read_flown(sent.as_answer_to(5), {{LoopRate(Rate::hz(250), Rate::hz(250)), {}}, timing});
   };
   const json attitude = {{"attitude_ticks", 3}, {"attitude_parameters", json::array()}};
   const auto flown = read(attitude, {three_samples, three_of_plant, three_samples});

@@ -86,6 +86,27 @@ TEST(PortCalls, EachInstanceCountsItsOwnTicks) {
   EXPECT_EQ(seen, " in step() at tick 0");
 }
 
+// In a live flight of the cascade.
+TEST(PortCalls, TwoUnitsMayRunAtTheSameTime) {
+  const auto calls = PortCalls::make();
+  ASSERT_TRUE(calls);
+  std::string seen;
+  const std::function<void()> look = [&] { seen = calls->current(); };
+  CallingPort of_attitude(look);
+  const auto attitude_port = calls->noted(of_attitude);
+  const auto attitude = attitude_port->create_unit(Module::attitude_unit, "", "");
+  attest_outputs out{};
+  attitude->step(attest_inputs{}, out);
+  EXPECT_EQ(seen, " in step() at tick 0 of the attitude unit");
+  const std::function<void()> step_the_other = [&] { attitude->step(attest_inputs{}, out); };
+  CallingPort of_rate(step_the_other);
+  const auto rate_port = calls->noted(of_rate);
+  const auto rate = rate_port->create_unit(Module::rate_unit, "", "");
+  rate->step(attest_inputs{}, out);
+  EXPECT_EQ(seen, " in step() at tick 0 or in step() at tick 2 of the attitude unit");
+  EXPECT_EQ(calls->current(), "");
+}
+
 // Has other values than the defaults of Port, and no module.
 class DeclaringPort final : public Port {
  public:

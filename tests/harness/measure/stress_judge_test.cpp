@@ -41,7 +41,7 @@ class StressJudge : public testing::Test {
 
   CaseResult outputs() {
     CaseResult result;
-    judge_outputs(task_.the_case, flight_.unit, std::nullopt, result);
+    judge_outputs(task_.the_case, Module::mc_att_control, flight_.unit, std::nullopt, result);
     return result;
   }
 

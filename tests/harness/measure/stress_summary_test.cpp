@@ -20,7 +20,7 @@ LiveTick step_that_took(Nanoseconds elapsed, Nanoseconds cpu, bool waited = fals
 
 StressResult summary_of(const LiveFlight& flight, const RealtimeBudget& budget) {
   StressResult stress;
-  summarise(flight, Rate::hz(1000), budget, stress);
+  summarise(flight, flight.unit, Rate::hz(1000), budget, stress);
   return stress;
 }
 

@@ -34,9 +34,15 @@ StressTask hover_task() {
   return task;
 }
 
+Result<StressResult> only(Result<StressResults> results) {
+  if (!results) return tl::unexpected(results.error());
+  EXPECT_EQ(results->size(), 1u);
+  return results->front();
+}
+
 Result<StressResult> stressed(const std::string& port, const StressTask& task = hover_task()) {
-  return run_stress(
-      task, port, [] { return false; }, [](const StressProgress&) {});
+  return only(run_stress(
+      task, port, [] { return false; }, [](const StressProgress&) {}));
 }
 
 TEST(Stress, ARightPortIsJudgedByItsOutputsToo) {
@@ -146,7 +152,7 @@ TEST(JudgeLive, AVerdictOfTheMeasurementIsNotBelieved) {
   StressMeasurement measured;
   measured.stress.result.verdict = Verdict::pass;
   measured.stress.result.name = "another";
-  const auto stress = judge_live(hover_task(), std::move(measured));
+  const auto stress = only(judge_live(hover_task(), std::move(measured)));
   ASSERT_TRUE(stress) << stress.error().to_string();
   EXPECT_EQ(stress->result.verdict, Verdict::skip);
   EXPECT_EQ(stress->result.name, "hover");
@@ -157,7 +163,7 @@ TEST(JudgeLive, OutputsAndTimingAreJudgedTogether) {
   task.the_case.flight->realtime = {500, 100, 50};
   StressMeasurement measured = measured_flight();
   measured.stress.overruns = 1;
-  const auto stress = judge_live(task, std::move(measured));
+  const auto stress = only(judge_live(task, std::move(measured)));
   ASSERT_TRUE(stress) << stress.error().to_string();
   EXPECT_EQ(stress->result.verdict, Verdict::fail);
   EXPECT_THAT(stress->result.reason,
@@ -172,7 +178,7 @@ TEST(JudgeLive, AFaultOfThePortIsTheVerdict) {
   measured.flight->unit.fault =
       PortFault{PortFault::Kind::protocol, 3, "it wrote beyond its struct"};
   measured.stress.overruns = 1;
-  const auto stress = judge_live(hover_task(), std::move(measured));
+  const auto stress = only(judge_live(hover_task(), std::move(measured)));
   ASSERT_TRUE(stress) << stress.error().to_string();
   EXPECT_EQ(stress->result.verdict, Verdict::protocol);
   EXPECT_EQ(stress->result.reason, "it wrote beyond its struct");

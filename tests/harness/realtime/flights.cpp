@@ -19,6 +19,19 @@ Case hover_case(double duration_s) {
   return hover;
 }
 
+Case cascade_case(double duration_s) {
+  Case hover;
+  hover.file = "cases/px4-v1.16.0/flight/hover.toml";
+  hover.profile = "px4-v1.16.0";
+  hover.group = "flight";
+  hover.name = "hover";
+  hover.module = Module::rate_unit;
+  hover.duration = {duration_s, Span::In::seconds};
+  hover.flight.emplace();
+  hover.attitude_loop.emplace();
+  return hover;
+}
+
 Vehicle quad_vehicle() {
   Vehicle vehicle;
   vehicle.mass_kg = 1;

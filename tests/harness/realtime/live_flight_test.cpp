@@ -1,4 +1,4 @@
-// Two threads on the real clock. Their lateness depends on the machine, so the tests assert only
+// Threads on the real clock. Their lateness depends on the machine, so the tests assert only
 // facts that hold for any lateness.
 #include "harness/realtime/live_flight.hpp"
 
@@ -31,14 +31,37 @@ Case tilt_case(double duration_s) {
   return tilt;
 }
 
+const RunConfiguration of_cascade{LoopRate(Rate::hz(250), Rate::hz(1000)),
+                                  PlantConfiguration{"iris", PlantKind::mujoco}};
+
+Case cascade_case(const char* name, double duration_s) {
+  Case the_case = *parse_case(source / "cases/px4-v1.16.0/flight" / name);
+  the_case.duration = {duration_s, Span::In::seconds};
+  return the_case;
+}
+
+PortUnits units_of(const Case& the_case) {
+  const auto port = open_builtin();
+  return *units_for(the_case, *port, *port);
+}
+
 LiveFlight flown(const Case& the_case, const std::function<bool()>& stop) {
   const auto iris = *VehicleModel::load(source / "models", "iris");
-  const auto port = open_builtin();
-  const auto unit = port->create("px4-v1.5.5");
-  auto flight = fly_live(the_case, configuration, *iris, *unit, options(), 1000, stop,
-                         [](const LiveProgress&) {});
+  auto flight =
+      fly_live(the_case, the_case.attitude_loop ? of_cascade : configuration, *iris,
+               units_of(the_case).for_flight(), options(), 1000, stop, [](const LiveProgress&) {});
   if (!flight) throw std::runtime_error(flight.error().to_string());
   return std::move(*flight);
+}
+
+void expect_ordered(const LoopTiming& timing) {
+  for (std::size_t i = 0; i < timing.size(); ++i) {
+    EXPECT_LE(timing[i].sampled, timing[i].begins);
+    EXPECT_LE(timing[i].begins, timing[i].commanded.value_or(timing[i].begins));
+    if (i == 0) continue;
+    EXPECT_LE(timing[i - 1].sampled, timing[i].sampled);
+    EXPECT_LT(timing[i - 1].begins, timing[i].begins);
+  }
 }
 
 TEST(LiveFlight, EveryReleaseIsUsedOrSkipped) {
@@ -54,14 +77,8 @@ TEST(LiveFlight, EveryReleaseIsUsedOrSkipped) {
 TEST(LiveFlight, ItsTimesCanBeFlownAgain) {
   const Case the_case = tilt_case(0.4);
   const LiveFlight live = flown(the_case, [] { return false; });
-  const LoopTiming timing = live.timing();
-  for (std::size_t i = 0; i < timing.size(); ++i) {
-    EXPECT_LE(timing[i].sampled, timing[i].begins);
-    EXPECT_LE(timing[i].begins, timing[i].commanded.value_or(timing[i].begins));
-    if (i == 0) continue;
-    EXPECT_LE(timing[i - 1].sampled, timing[i].sampled);
-    EXPECT_LT(timing[i - 1].begins, timing[i].begins);
-  }
+  const FlightTiming timing = live.timing();
+  expect_ordered(timing.unit);
   const auto iris = *VehicleModel::load(source / "models", "iris");
   const auto unit = open_builtin()->create("px4-v1.5.5");
   const Flown again = *fly(the_case, configuration, *iris, *unit, timing);
@@ -74,6 +91,54 @@ TEST(LiveFlight, ItsTimesCanBeFlownAgain) {
     ASSERT_EQ(then.timestamp, now.timestamp);
     ASSERT_NEAR(then.control_state.roll_rate, now.control_state.roll_rate, 1e-4) << i;
     ASSERT_EQ(then.multirotor_motor_limits.upper_limit, now.multirotor_motor_limits.upper_limit);
+  }
+}
+
+TEST(LiveFlight, EveryReleaseOfBothUnitsIsUsedOrSkipped) {
+  const LiveFlight flight = flown(cascade_case("hover.toml", 0.4), [] { return false; });
+  EXPECT_FALSE(flight.unit.fault);
+  EXPECT_FALSE(flight.attitude_unit->fault);
+  EXPECT_FALSE(flight.plant.divergence);
+  EXPECT_EQ(flight.unit.ticks.size() + flight.unit.skipped, 400u);
+  EXPECT_EQ(flight.attitude_unit->ticks.size() + flight.attitude_unit->skipped, 100u);
+}
+
+// In flight, and from the floor.
+TEST(LiveFlight, TheTimesOfTheCascadeCanBeFlownAgain) {
+  for (const char* name : {"tilt_step_30.toml", "takeoff.toml"}) {
+    const Case the_case = cascade_case(name, 0.4);
+    const LiveFlight live = flown(the_case, [] { return false; });
+    const FlightTiming timing = live.timing();
+    expect_ordered(timing.unit);
+    expect_ordered(timing.attitude_unit);
+    const auto iris = *VehicleModel::load(source / "models", "iris");
+    const PortUnits units = units_of(the_case);
+    const Flown again = *fly(the_case, of_cascade, *iris, units.for_flight(), timing);
+    ASSERT_EQ(again.trace.samples.size(), live.unit.samples.size());
+    for (std::size_t i = 0; i < again.trace.samples.size(); ++i) {
+      const attest_rate_inputs& then = live.unit.samples[i].rate_in;
+      const attest_rate_inputs& now = again.trace.samples[i].rate_in;
+      ASSERT_EQ(then.timestamp, now.timestamp);
+      ASSERT_EQ(then.updated & ATTEST_RATE_UPDATED_VEHICLE_RATES_SETPOINT,
+                now.updated & ATTEST_RATE_UPDATED_VEHICLE_RATES_SETPOINT)
+          << name << " " << i;
+      ASSERT_NEAR(then.vehicle_rates_setpoint.pitch, now.vehicle_rates_setpoint.pitch, 1e-3) << i;
+      ASSERT_NEAR(then.vehicle_angular_velocity.xyz[1], now.vehicle_angular_velocity.xyz[1], 1e-4);
+      ASSERT_NEAR(live.unit.samples[i].rate_out.vehicle_torque_setpoint.xyz[1],
+                  again.trace.samples[i].rate_out.vehicle_torque_setpoint.xyz[1], 1e-3)
+          << name << " " << i;
+    }
+    const std::vector<Sample>& attitude = again.attitude_trace->samples;
+    ASSERT_EQ(attitude.size(), live.attitude_unit->samples.size());
+    for (std::size_t i = 0; i < attitude.size(); ++i) {
+      const Sample& then = live.attitude_unit->samples[i];
+      ASSERT_EQ(then.attitude_in.timestamp, attitude[i].attitude_in.timestamp);
+      ASSERT_NEAR(then.attitude_in.vehicle_attitude.q[2],
+                  attitude[i].attitude_in.vehicle_attitude.q[2], 1e-4);
+      ASSERT_NEAR(then.attitude_out.vehicle_rates_setpoint.pitch,
+                  attitude[i].attitude_out.vehicle_rates_setpoint.pitch, 1e-3)
+          << name << " " << i;
+    }
   }
 }
 

@@ -23,6 +23,8 @@ class StillPlant final : public Plant {
   std::optional<Divergence> advance(Nanoseconds) override { return std::nullopt; }
   const PlantState& state() const override { return state_; }
 
+  void below_the_floor() { state_.position_m = {0, 0, 1}; }
+
  private:
   PlantState state_;
 };
@@ -31,13 +33,15 @@ class StillPlant final : public Plant {
 class LivePlantTest : public testing::Test {
  protected:
   LivePlantRecord run() {
-    LivePlantPlan plan{Rate::hz(1000), ms(8), 4, {}, estimator_};
+    LivePlantPlan plan{Rate::hz(1000), ms(8), 4, {}, estimator_, {}, landing_times_};
+    plan.land_detector.emplace(vehicle_, true);
     LivePlant live(task_, std::move(plan), clock_, links_);
     live.run();
     return live.take_record();
   }
 
   std::optional<Rate> estimator_;
+  std::vector<Nanoseconds> landing_times_;
   Vehicle vehicle_ = test::quad_vehicle();
   Case case_ = test::hover_case(0.008);
   StillPlant plant_;
@@ -75,6 +79,33 @@ TEST_F(LivePlantTest, ASampleOfTheEstimatorIsPublishedWithTheStateOfItsTime) {
   clock_.before_waiting = [&](Nanoseconds) { look(); };
   run();
   EXPECT_THAT(published, ElementsAre(ms(0), ms(2), ms(4), ms(6)));
+}
+
+TEST_F(LivePlantTest, BothUnitsReceiveItsState) {
+  run();
+  for (UnitLinks* unit : {&links_.unit, &links_.attitude_unit}) {
+    const LiveState* state = unit->states.read();
+    ASSERT_NE(state, nullptr);
+    EXPECT_EQ(state->time, ms(8));
+  }
+}
+
+// It starts at rest on the floor, and the command of 2 ms lifts it off.
+TEST_F(LivePlantTest, TheLandDetectorHasTimesOfItsOwn) {
+  landing_times_ = {ms(0), ms(4)};
+  plant_.below_the_floor();
+  std::vector<bool> landed;
+  clock_.before_waiting = [&](Nanoseconds due) {
+    if (due == ms(1)) links_.commands.write({0, us(500), {}, 0.9f, true});
+    const LandDetected* of_unit = links_.unit.landed.read();
+    const LandDetected* of_attitude_unit = links_.attitude_unit.landed.read();
+    ASSERT_EQ(of_unit == nullptr, of_attitude_unit == nullptr);
+    if (of_unit == nullptr) return;
+    EXPECT_EQ(*of_unit, *of_attitude_unit);
+    landed.push_back(of_unit->landed);
+  };
+  run();
+  EXPECT_THAT(landed, ElementsAre(true, false));
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ class LiveUnitTest : public testing::Test {
 
   // The estimator's sample of that time arrives.
   void publish(Nanoseconds time) {
-    links_.states.write({time, {}, clock_.now()});
+    links_.unit.states.write({time, {}, clock_.now()});
     links_.published.release();
   }
 
@@ -149,9 +149,9 @@ TEST_F(LiveUnitTest, TimestampsAreWhenItReallyRan) {
 }
 
 TEST_F(LiveUnitTest, TheSampleIsTheLastThatThereIs) {
-  links_.states.write({us(0), {}});
+  links_.unit.states.write({us(0), {}});
   unit_.takes = [&](std::size_t step) {
-    if (step == 1) links_.states.write({us(900), {}});
+    if (step == 1) links_.unit.states.write({us(900), {}});
     return us(10);
   };
   const LiveUnitRecord record = run();
@@ -196,6 +196,21 @@ TEST_F(LiveUnitTest, OfSeveralEstimatesThatCameOnlyTheNewestIsUsed) {
   EXPECT_EQ(record.ticks[1].sampled, us(3000));
   EXPECT_EQ(record.ticks[1].skipped, 4u);  // that never came
   EXPECT_EQ(record.skipped, 6u);
+}
+
+TEST_F(LiveUnitTest, TheLastUnitThatEndsStopsTheFlight) {
+  links_.flying = 2;
+  run();
+  EXPECT_FALSE(links_.stop);
+  run();
+  EXPECT_TRUE(links_.stop);
+}
+
+TEST_F(LiveUnitTest, AFaultStopsTheFlightOfTheOtherUnitToo) {
+  links_.flying = 2;
+  unit_.result = ATTEST_FAILED;
+  run();
+  EXPECT_TRUE(links_.stop);
 }
 
 TEST_F(LiveUnitTest, EndsWhenAPortGoesWrong) {

@@ -89,6 +89,52 @@ TEST(StressText, ARateThatIsNotJudgedIsNoPassOfTheWhole) {
   EXPECT_EQ(verdict_of(run), "none");
 }
 
+// Of the cascade: a rate has a result for each unit.
+StressRun cascade_run() {
+  StressRun run;
+  run.load = "none";
+  run.description.modules = only(Module::rate_unit) | only(Module::attitude_unit);
+  for (const Module module : {Module::rate_unit, Module::attitude_unit}) {
+    run.results.push_back(result(Rate::hz(1000), Verdict::pass));
+    run.results.back().result.rate = LoopRate(Rate::hz(250), Rate::hz(1000));
+    run.results.back().module = module;
+  }
+  return run;
+}
+
+TEST(StressText, ARateOfTheCascadeHoldsIfBothUnitsDo) {
+  StressRun run = cascade_run();
+  EXPECT_THAT(render_stress(run.results[1], {}),
+              HasSubstr("hover@250-1000hz-iris-mujoco, attitude unit\n"));
+  EXPECT_EQ(render_stress_end(run, {}), "PASS 1 of 1 rate hold in real time (load: none)\n");
+  run.results[1].result.verdict = Verdict::skip;
+  run.results[1].result.reason = "the machine's";
+  EXPECT_EQ(verdict_of(run), "none");
+  EXPECT_THAT(rates_not_judged(run), ElementsAre("250:1000"));
+  run.results[0].result.verdict = Verdict::fail;
+  run.results[0].result.reason = "9 overruns";
+  const RunResult all = run_of(run);
+  ASSERT_EQ(all.results.size(), 1u);
+  EXPECT_EQ(all.results[0].verdict, Verdict::fail);
+  EXPECT_EQ(all.results[0].reason, "rate unit: 9 overruns; attitude unit: the machine's");
+  run.results.push_back(run.results[0]);  // another flight at that rate
+  EXPECT_EQ(run_of(run).results.size(), 2u);
+}
+
+TEST(StressText, NamesTheUnitThatIsTheReferences) {
+  StressRun run = cascade_run();
+  EXPECT_EQ(note_on_units(run), "");
+  run.description.modules = only(Module::rate_unit);
+  run.results.pop_back();
+  EXPECT_THAT(note_on_units(run), HasSubstr("the attitude unit is that of the reference"));
+  EXPECT_EQ(note_on_units(mixed_run()), "");
+}
+
+TEST(StressJson, NamesTheUnitOfTheCascadeOnly) {
+  EXPECT_THAT(stress_json(cascade_run()), HasSubstr("\"module\": \"attitude_unit\""));
+  EXPECT_THAT(stress_json(mixed_run()), Not(HasSubstr("\"module\"")));
+}
+
 TEST(StressJson, IsTheReviewedOne) {
   EXPECT_TRUE(is_baseline("stress.json", stress_json(mixed_run())));
 }

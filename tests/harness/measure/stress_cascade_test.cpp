@@ -1,0 +1,153 @@
+// Live flights of the cascade: which units are judged, and by what.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/casefile/parse.hpp"
+#include "harness/host/port_process.hpp"
+#include "harness/loop/timing_file.hpp"
+#include "harness/measure/stress.hpp"
+#include "tests/harness/core/temporary_directory.hpp"
+#include "tests/harness/times.hpp"
+
+namespace attest {
+namespace {
+
+using testing::HasSubstr;
+
+const std::filesystem::path source = ATTEST_SOURCE_DIR;
+
+ModuleSet both_units() { return only(Module::attitude_unit) | only(Module::rate_unit); }
+
+StressTask cascade_task(const char* name = "hover.toml") {
+  StressTask task;
+  task.the_case = *parse_case(source / "cases/px4-v1.16.0/flight" / name);
+  task.the_case.duration = {0.5, Span::In::seconds};
+  // Budgets that hold on any machine: verdicts on timing are tested in stress_judge_test.
+  task.the_case.flight->realtime = {1e6, 1e9, std::nullopt};
+  task.configuration = {LoopRate(Rate::hz(100), Rate::hz(500)),
+                        PlantConfiguration{"iris", PlantKind::mujoco}};
+  task.vehicle_model = *VehicleModel::load(source / "models", "iris");
+  task.live.fifo = false;
+  task.live.unit_cpu = task.live.plant_cpu = usable_cpus().front();
+  task.idle_duration = std::chrono::milliseconds(20);
+  task.port.modules = both_units();
+  return task;
+}
+
+StressResults stressed(const std::string& port, StressTask task) {
+  task.port = *describe_port(HostOptions{port}, {task.the_case.profile});
+  auto results = run_stress(
+      task, port, [] { return false; }, [](const StressProgress&) {});
+  if (!results) throw std::runtime_error(results.error().to_string());
+  return *std::move(results);
+}
+
+TEST(StressCascade, BothUnitsHaveAResult) {
+  const StressResults results = stressed("builtin", cascade_task());
+  ASSERT_EQ(results.size(), 2u);
+  EXPECT_EQ(results[0].module, Module::rate_unit);
+  EXPECT_EQ(results[0].deadlines, 250u);
+  EXPECT_EQ(results[1].module, Module::attitude_unit);
+  EXPECT_EQ(results[1].deadlines, 50u);
+  EXPECT_EQ(results[1].unit_rate(), Rate::hz(100));
+  for (const StressResult& stress : results) {
+    EXPECT_FALSE(fails_a_run(stress.result.verdict)) << stress.result.reason;
+    EXPECT_EQ(stress.result.ticks, stress.ticks);
+    EXPECT_EQ(stress.result.deviating_ticks, 0u);
+    EXPECT_FALSE(stress.result.first);
+  }
+}
+
+TEST(StressCascade, AWrongAttitudeUnitFails) {
+  const StressResults results =
+      stressed("fault:cascade-error-is-angle", cascade_task("tilt_step_30.toml"));
+  ASSERT_EQ(results.size(), 2u);
+  EXPECT_EQ(results[1].result.verdict, Verdict::fail);
+  EXPECT_FALSE(fails_a_run(results[0].result.verdict)) << results[0].result.reason;
+}
+
+TEST(StressCascade, AWrongRateUnitFails) {
+  const StressResults results =
+      stressed("fault:cascade-d-reversed", cascade_task("tilt_step_30.toml"));
+  ASSERT_EQ(results.size(), 2u);
+  EXPECT_EQ(results[0].result.verdict, Verdict::fail);
+  EXPECT_FALSE(fails_a_run(results[1].result.verdict)) << results[1].result.reason;
+}
+
+// A port could leave out a unit, and fly with that of the reference.
+TEST(StressCascade, APortWhoseModulesChangeBreaksTheRules) {
+  StressTask task = cascade_task();
+  task.port.modules = only(Module::rate_unit);
+  task.port.profiles = {"px4-v1.16.0"};
+  const auto results = run_stress(
+      task, "builtin", [] { return false; }, [](const StressProgress&) {});
+  ASSERT_TRUE(results) << results.error().to_string();
+  ASSERT_EQ(results->size(), 1u);
+  EXPECT_EQ(results->front().result.verdict, Verdict::protocol);
+}
+
+// Without a step, so the outputs cannot be judged.
+StressMeasurement measured_flight() {
+  StressMeasurement measured;
+  measured.flight.emplace().attitude_unit.emplace();
+  measured.attitude_unit.emplace();
+  return measured;
+}
+
+TEST(JudgeLiveCascade, AUnitOfTheReferenceIsNotJudged) {
+  StressTask task = cascade_task();
+  for (const Module module : {Module::rate_unit, Module::attitude_unit}) {
+    task.port.modules = only(module);
+    StressMeasurement measured = measured_flight();
+    measured.flight->plant.divergence = Divergence{ms(100), "it fell"};
+    const auto results = judge_live(task, std::move(measured));
+    ASSERT_TRUE(results) << results.error().to_string();
+    ASSERT_EQ(results->size(), 1u);
+    EXPECT_EQ(results->front().module, module);
+    EXPECT_THAT(results->front().result.reason, HasSubstr("the flight ended at 0.100 s"));
+  }
+}
+
+TEST(JudgeLiveCascade, TheEndOfTheFlightCountsOnceForTheRateUnit) {
+  StressMeasurement measured = measured_flight();
+  measured.flight->plant.divergence = Divergence{ms(100), "it fell"};
+  const auto results = judge_live(cascade_task(), std::move(measured));
+  ASSERT_EQ(results->size(), 2u);
+  EXPECT_THAT(results->at(0).result.reason, HasSubstr("the flight ended at 0.100 s"));
+  EXPECT_THAT(results->at(1).result.reason, testing::Not(HasSubstr("the flight ended")));
+}
+
+TEST(JudgeLiveCascade, AFaultOfOneUnitEndsTheFlightOfTheOther) {
+  StressMeasurement measured = measured_flight();
+  measured.flight->attitude_unit->fault =
+      PortFault{PortFault::Kind::protocol, 3, "it wrote beyond its struct"};
+  const auto results = judge_live(cascade_task(), std::move(measured));
+  ASSERT_EQ(results->size(), 2u);
+  EXPECT_EQ(results->at(0).result.verdict, Verdict::skip);
+  EXPECT_THAT(results->at(0).result.reason,
+              HasSubstr("ended at a fault of the other unit: it wrote beyond"));
+  EXPECT_EQ(results->at(1).result.verdict, Verdict::protocol);
+}
+
+TEST(JudgeLiveCascade, TheTimesOfBothUnitsAreWritten) {
+  const TemporaryDirectory directory;
+  StressTask task = cascade_task();
+  task.record_timing = directory.path() / "timing.json";
+  StressMeasurement measured = measured_flight();
+  LiveTick tick;
+  tick.sampled = us(1);
+  tick.begins = us(2);
+  measured.flight->unit.ticks = {tick};
+  measured.flight->plant.commanded = {us(4)};
+  measured.flight->attitude_unit->ticks = {tick};
+  measured.flight->unit.setpoints_received = {us(3)};
+  ASSERT_TRUE(judge_live(task, std::move(measured)));
+  const auto read = read_timing(task.record_timing);
+  ASSERT_TRUE(read) << read.error().to_string();
+  EXPECT_EQ(read->configuration, task.configuration);
+  EXPECT_EQ(read->ticks.unit, (LoopTiming{{us(1), us(2), us(4)}}));
+  EXPECT_EQ(read->ticks.attitude_unit, (LoopTiming{{us(1), us(2), us(3)}}));
+}
+
+}  // namespace
+}  // namespace attest
