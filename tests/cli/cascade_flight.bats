@@ -84,7 +84,7 @@ rate_only() {
   run "$ATTEST" run --group flight --profile px4-v1.16.0 --rate 50:250 --plant ode \
     --port lib:./right.so
   [ "$status" -eq 0 ]
-  has "PASS 15 of 15"
+  has "PASS 16 of 16"
   rate_only wrong 's/err\[i\] \/ 6/err[i] \/ 7/; s/6\.98/7.98/'
   run cmp -s right.so wrong.so
   [ "$status" -eq 1 ]
