@@ -5,9 +5,12 @@
 //     process -> {"request": 0, "says": {...}}              once, when the port is loaded
 //     judge   -> {"do": "drive", "subject": ..., ...}       samples, with inputs only
 //     process -> {"request": 1, "fault": {...}}             the same samples with outputs
-//     judge   -> {"do": "fly", "rate": "250", ...}          LoopTicks
+//     judge   -> {"do": "fly", "rate": "250", ...}          LoopTicks of the unit, those of the
+//                                                           attitude unit (none: no cascade)
 //     process -> {"request": 2, "fault", "divergence", "parameters"}
-//                                                           samples, their sources, plant samples
+//                                                           samples, plant samples
+//                of the cascade also "attitude_ticks", "attitude_parameters"
+//                                                           and the attitude unit's samples
 //     judge   -> {"do": "time", "profile": ..., ...}        samples, with inputs only
 //     process -> {"request": 3, "fault", "clock_ns"}        nanoseconds of each step, stack bytes
 //     judge   -> {"do": "supports", "profile": ...}
