@@ -135,7 +135,6 @@ TEST(CascadeFaults, AreDetectableInProfilesOfTheCascadeOnly) {
   }
 }
 
-// More than rounding.
 // All, but with a sanitizer every 16th: walks of all take minutes there, and it looks for other
 // mistakes.
 std::vector<const Fault*> walked_faults() {
@@ -150,6 +149,7 @@ std::vector<const Fault*> walked_faults() {
   return walked;
 }
 
+// More than rounding.
 TEST(CascadeFaults, EachIsToldFromTheLawInItsProfiles) {
   constexpr float tolerance = 1e-5f;
   for (const Fault* fault : walked_faults()) {
