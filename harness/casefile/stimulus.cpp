@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <optional>
 #include <tuple>
@@ -11,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "controller/actuation/mixer.hpp"
+#include "harness/core/same_bits.hpp"
 #include "harness/schedule/ticks.hpp"
 
 namespace attest {
@@ -18,10 +18,6 @@ namespace {
 
 bool is_whole_ticks(const Span& span) {
   return span.in == Span::In::ticks && span.amount == std::floor(span.amount);
-}
-
-bool same(float a, float b) {
-  return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
 }
 
 // One topic on a timeline: publishes into a sample.
@@ -199,7 +195,7 @@ class ParameterPublisher {
     if (tick == 0) sample.in.updated |= ATTEST_UPDATED_PARAMETER_UPDATE;
     for (Entry& entry : entries_) {
       const auto value = static_cast<float>(entry.sampler.at(now));
-      if (entry.last && same(*entry.last, value)) continue;
+      if (entry.last && same_bits(*entry.last, value)) continue;
       entry.last = value;
       changes.push_back({tick, entry.name, value});
       sample.in.updated |= ATTEST_UPDATED_PARAMETER_UPDATE;

@@ -13,6 +13,7 @@
 
 #include "harness/compare/events.hpp"
 #include "harness/compare/gross.hpp"
+#include "harness/core/same_bits.hpp"
 
 namespace attest {
 namespace {
@@ -27,12 +28,6 @@ std::int64_t ordinal(float value) {
 std::int64_t ulp_distance(float a, float b) {
   if (std::isnan(a) || std::isnan(b)) return 0;
   return std::abs(ordinal(a) - ordinal(b));
-}
-
-// Compares bits; every NaN equals every NaN.
-bool same_bits(float a, float b) {
-  if (std::isnan(a) || std::isnan(b)) return std::isnan(a) && std::isnan(b);
-  return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
 }
 
 bool truth(std::uint8_t flag) { return flag != 0; }
@@ -261,8 +256,7 @@ bool same_inputs(const Sample& a, const Sample& b, Module module) {
   return std::all_of(table.begin(), table.end(), [&](const Channel& channel) {
     const bool is_timestamp = &channel == &table.front();
     if (channel.is_output() || (channel.module != module && !is_timestamp)) return true;
-    return channel.type == ChannelType::f32 ? same_bits(float_of(channel, a), float_of(channel, b))
-                                            : value_of(channel, a) == value_of(channel, b);
+    return same_bits(channel, a, b);
   });
 }
 

@@ -230,7 +230,7 @@ void ClosedLoop::attitude_tick(const EventQueue::Event& event) {
   }
   ++end_.attitude_ticks;
   const auto arrives = attitude.timing[event.index].commanded;
-  const auto setpoint = attitude.task.rates_setpoint();
+  const auto setpoint = rates_setpoint_of(attitude.task.sample().attitude_out);
   if (arrives && setpoint) rates_setpoints_.send_for(*arrives, *setpoint);
   if (traces_.attitude_unit) append(attitude.task, *traces_.attitude_unit);
 }

@@ -4,6 +4,13 @@
 
 namespace attest {
 
+std::optional<RatesSetpoint> rates_setpoint_of(const attest_attitude_outputs& outputs) {
+  const auto& out = outputs.vehicle_rates_setpoint;
+  if (out.published == 0) return std::nullopt;
+  return RatesSetpoint{
+      out.roll, out.pitch, out.yaw, {out.thrust_body[0], out.thrust_body[1], out.thrust_body[2]}};
+}
+
 UnitTask::UnitTask(const Case& the_case, const Rate& rate, const Vehicle& vehicle, Unit& unit,
                    const Estimate& start)
     : module_(the_case.module),
@@ -98,13 +105,6 @@ std::optional<PortFault> UnitTask::step(std::size_t tick) {
 float UnitTask::throttle() const {
   return module_ == Module::rate_unit ? -sample_.rate_out.vehicle_thrust_setpoint.xyz[2]
                                       : sample_.out.actuator_controls_0.control[3];
-}
-
-std::optional<RatesSetpoint> UnitTask::rates_setpoint() const {
-  const auto& out = sample_.attitude_out.vehicle_rates_setpoint;
-  if (module_ != Module::attitude_unit || out.published == 0) return std::nullopt;
-  return RatesSetpoint{
-      out.roll, out.pitch, out.yaw, {out.thrust_body[0], out.thrust_body[1], out.thrust_body[2]}};
 }
 
 }  // namespace attest

@@ -23,6 +23,9 @@ namespace attest {
 // What the attitude unit sends to the rate unit.
 using RatesSetpoint = decltype(attest_rate_inputs::vehicle_rates_setpoint);
 
+// Empty: it published none at this tick.
+std::optional<RatesSetpoint> rates_setpoint_of(const attest_attitude_outputs& outputs);
+
 // The messages that have arrived since the last tick.
 struct Arrivals {
   std::optional<Estimate> estimate;
@@ -56,8 +59,7 @@ class UnitTask {
   const MotorCommands& commands() const { return actuators_.commands(); }
   const Saturation& saturation() const { return actuators_.saturation(); }
   bool is_armed() const { return attest::is_armed(module_, sample_); }
-  float throttle() const;                               // the collective thrust, 0..1 upwards
-  std::optional<RatesSetpoint> rates_setpoint() const;  // if the attitude unit published one
+  float throttle() const;  // the collective thrust, 0..1 upwards
 
  private:
   void take(const Arrivals& arrivals, attest_inputs& in);

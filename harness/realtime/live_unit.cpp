@@ -155,7 +155,7 @@ Arrivals LiveUnit::arrivals_at(Nanoseconds now) {
 void LiveUnit::send(Nanoseconds made) {
   if (commands_motors_) {
     links_.commands.write({ticks_, made, task_.commands(), task_.throttle(), task_.is_armed()});
-  } else if (const auto setpoint = task_.rates_setpoint()) {
+  } else if (const auto setpoint = rates_setpoint_of(task_.sample().attitude_out)) {
     links_.rates_setpoints.write({ticks_, made, *setpoint});
   }
 }

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <vector>
 
+#include "harness/core/same_bits.hpp"
 #include "harness/trace/channel_table.hpp"
 
 namespace attest {
@@ -176,6 +177,11 @@ void set_integer(const Channel& channel, Sample& sample, std::uint64_t value) {
 
 float float_of(const Channel& channel, const Sample& sample) {
   return load<float>(sample, channel.offset);
+}
+
+bool same_bits(const Channel& channel, const Sample& a, const Sample& b) {
+  if (channel.type != ChannelType::f32) return value_of(channel, a) == value_of(channel, b);
+  return same_bits(float_of(channel, a), float_of(channel, b));
 }
 
 std::uint64_t integer_of(const Channel& channel, const Sample& sample) {

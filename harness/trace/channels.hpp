@@ -104,6 +104,8 @@ std::string_view name_of(Stage stage);        // "attitude law"
 
 // Reads a member as double: exact for f32, u8 and bit; for u64 up to 2^53 (285 years of us).
 double value_of(const Channel& channel, const Sample& sample);
+// Compares bits; every NaN equals every NaN.
+bool same_bits(const Channel& channel, const Sample& a, const Sample& b);
 // REQUIRES: 0 <= value < 2^53 for u64, an integer 0..255 for u8; any value for f32 and bit.
 void set_value(const Channel& channel, Sample& sample, double value);
 float float_of(const Channel& channel, const Sample& sample);            // REQUIRES: type f32

@@ -16,6 +16,7 @@
 #include "harness/verify/answers.hpp"
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/fixed_step.hpp"
+#include "harness/verify/flight_contradiction.hpp"
 #include "harness/verify/judge.hpp"
 #include "harness/verify/saved_traces.hpp"
 #include "harness/verify/stopwatch.hpp"
@@ -170,24 +171,35 @@ void save_flight(const std::filesystem::path& folder, const Trace& flown,
   save_traces(folder, subject, {flown, want, tolerances}, result);
 }
 
+// The fault of a flight, or a fault of kind protocol if its traces cannot be those of the flight.
+std::optional<PortFault> fault_of(const Course& course, const FlightPlan& plan,
+                                  const Flown& flown) {
+  const std::string contradiction = flight_contradiction(course, plan, flown);
+  if (contradiction.empty()) return flown.fault;
+  return PortFault{PortFault::Kind::protocol, 0,
+                   fmt::format("{}: the port changed memory that is not its own", contradiction)};
+}
+
 // A fresh unit flies at those times, and is compared with the reference.
-Result<CaseResult> evaluate_with(const Case& the_case, const FlightPlan& plan,
+Result<CaseResult> evaluate_with(const Course& course, const FlightPlan& plan,
                                  const ReferenceFlight& reference, PortHost& host,
                                  const std::filesystem::path& saved_traces) {
   const Stopwatch stopwatch;
+  const Case& the_case = *course.the_case;
   CaseResult result = result_for(the_case, plan.configuration);
   if (declines(host.says(), result)) return result;
   const auto flown = host.fly(plan);
   if (!flown) return tl::unexpected(flown.error());
   const auto bits = host.says().fraction_bits;
+  const auto fault = fault_of(course, plan, *flown);
   Result<void> judged;
-  if (!flown->fault) {
+  if (!fault) {
     judged = judge_flight(the_case, *flown, reference, bits, result);
-  } else if (leaves_ticks_to_judge(*flown->fault)) {
+  } else if (leaves_ticks_to_judge(*fault)) {
     judged = judge_ticks(the_case, *flown, reference, bits, result);
-    judge_after(*flown->fault, result);
+    judge_after(*fault, result);
   } else {
-    judge(*flown->fault, result);
+    judge(*fault, result);
   }
   if (!judged) return tl::unexpected(judged.error());
   const Tolerances tolerances =
@@ -200,12 +212,12 @@ Result<CaseResult> evaluate_with(const Case& the_case, const FlightPlan& plan,
 
 // For a port with a fixed step (fixed_step.hpp): compared with the reference from one period after
 // zero on. Errors: the reference does not agree with the golden.
-Result<CaseResult> evaluate_from_one_period_on(const Case& the_case, FlightPlan plan,
-                                               const VehicleModel& vehicle_model,
+Result<CaseResult> evaluate_from_one_period_on(const Course& course, FlightPlan plan,
                                                const ReferenceFlight& golden, PortHost& host,
                                                const std::filesystem::path& saved_traces) {
-  HostHere builtin(open_builtin(), {}, {&the_case, &vehicle_model});
-  const auto checked = evaluate_with(the_case, plan, golden, builtin, {});
+  const Case& the_case = *course.the_case;
+  HostHere builtin(open_builtin(), {}, course);
+  const auto checked = evaluate_with(course, plan, golden, builtin, {});
   if (!checked) return tl::unexpected(checked.error());
   if (checked->verdict != Verdict::pass) {
     return fail_at(the_case.file.string(),
@@ -214,10 +226,11 @@ Result<CaseResult> evaluate_from_one_period_on(const Case& the_case, FlightPlan 
                                plan.configuration.label(), checked->reason));
   }
   const Case begun = the_case.from_one_period_on();
-  const auto reference = reference_flight(begun, plan.configuration, vehicle_model, plan.timing);
+  const auto reference =
+      reference_flight(begun, plan.configuration, *course.vehicle_model, plan.timing);
   if (!reference) return tl::unexpected(reference.error());
   plan.from_one_period_on = true;
-  return evaluate_with(begun, plan, *reference, host, saved_traces);
+  return evaluate_with({&begun, course.vehicle_model}, plan, *reference, host, saved_traces);
 }
 
 }  // namespace
@@ -227,14 +240,15 @@ Result<CaseResult> evaluate_flight(const Case& the_case, const RunConfiguration&
                                    PortHost& host, const std::filesystem::path& saved_traces) {
   const auto reference = golden.read_flight(configuration, vehicle_model.vehicle());
   if (!reference) return tl::unexpected(reference.error());
+  const Course course{&the_case, &vehicle_model};
   const FlightPlan plan{configuration, flight_timing(the_case, configuration.rate)};
   if (!has_fixed_step(host.says(), the_case)) {
-    return evaluate_with(the_case, plan, *reference, host, saved_traces);
+    return evaluate_with(course, plan, *reference, host, saved_traces);
   }
   CaseResult result = result_for(the_case, configuration);
   if (has_other_steps(host.says(), the_case, configuration.rate.unit, plan.timing, result))
     return result;
-  return evaluate_from_one_period_on(the_case, plan, vehicle_model, *reference, host, saved_traces);
+  return evaluate_from_one_period_on(course, plan, *reference, host, saved_traces);
 }
 
 Result<CaseResult> evaluate_timed_flight(const Case& the_case,
@@ -254,7 +268,7 @@ Result<CaseResult> evaluate_timed_flight(const Case& the_case,
     if (value < metric.min) metric.min = -std::numeric_limits<double>::infinity();
     if (value > metric.max) metric.max = std::numeric_limits<double>::infinity();
   }
-  return evaluate_with(relaxed, plan, *reference, host, saved_traces);
+  return evaluate_with({&relaxed, &vehicle_model}, plan, *reference, host, saved_traces);
 }
 
 }  // namespace attest

@@ -1,14 +1,13 @@
 #include "harness/report/html/plots.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <cstdint>
 #include <map>
 #include <optional>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
+#include "harness/core/same_bits.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/html/base64.hpp"
 #include "harness/report/html/curves.hpp"
@@ -38,10 +37,6 @@ std::optional<Traces> read_traces(const TraceFiles& files) {
     traces.allowed = *std::move(allowed);
   }
   return traces;
-}
-
-bool same_bits(float a, float b) {
-  return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) || (a != a && b != b);
 }
 
 bool has(const Deviation& first, const Trace& got) {

@@ -139,6 +139,12 @@ TEST_F(EvaluateFlight, APortInFixedPointIsHeldToTheGoldenFrom30BitsOn) {
   EXPECT_EQ(result_of(other_rate, 29).verdict, Verdict::pass);
 }
 
+TEST_F(EvaluateFlight, ATraceOfAnotherFlightIsAFaultOfThePort) {
+  const CaseResult result = result_of([](Trace& flown) { ++flown.samples[95].in.timestamp; });
+  EXPECT_EQ(result.verdict, Verdict::protocol);
+  EXPECT_THAT(result.reason, HasSubstr("timestamp at tick 95"));
+}
+
 // Beyond the horizon, where the golden's rows do not apply: for a port with 22 bits that is every
 // tick.
 TEST_F(EvaluateFlight, AWrongAnswerIsFoundAtAnyTick) {
