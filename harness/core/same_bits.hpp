@@ -1,3 +1,4 @@
+// Whether two floats are the same number.
 #pragma once
 
 #include <bit>
