@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -254,13 +255,24 @@ std::string painted(std::string_view text, Colour colour, TerminalStyle style) {
   return fmt::format("\x1b[{}m{}\x1b[0m", codes[static_cast<std::size_t>(colour)], text);
 }
 
+namespace {
+
+// A line, or a line for each profile.
+std::string conformance(const RunResult& run) {
+  const auto [claims, subject] = statement_of(run);
+  if (claims.size() == 1) return fmt::format("conformance: {}\n", conformance_statement(run));
+  return fmt::format("conformance:\n  {}\n  {}\n", fmt::join(claims, "\n  "), subject);
+}
+
+}  // namespace
+
 std::string render_summary(const RunResult& run, double wall_s, TerminalStyle style,
                            const std::optional<Diagnosis>& diagnosis, Failures shown) {
   const std::string verdict = verdict_line(run, wall_s, style);
   std::string out = header(run) + verdict;
   if (diagnosis) out += diagnosis_text(*diagnosis);
   if (const std::string stages = first_stages(run); !stages.empty()) out += stages + "\n";
-  out += fmt::format("conformance: {}\n\n", conformance_statement(run));
+  out += conformance(run) + "\n";
   out += errors(run, style);
   if (const std::string table = render_table(run, style); !table.empty()) out += table + "\n";
   out += failures(run, style, shown);

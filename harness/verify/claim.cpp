@@ -104,6 +104,14 @@ void say(const Groups& groups, std::size_t Group::*count, const char* singular, 
       fmt::format("{} {} ({})", all, all == 1 ? singular : plural, fmt::join(names, ", ")));
 }
 
+// "100, 250 Hz"; of more than a line can hold, the number: "19 groups".
+std::string few_or_counted(const std::vector<std::string>& names, std::string_view unit,
+                           std::string_view noun) {
+  constexpr std::size_t few = 4;
+  if (names.size() > few) return fmt::format("{} {}", names.size(), noun);
+  return fmt::format("{}{}", fmt::join(names, ", "), unit);
+}
+
 // Adds the mandatory groups and the rates without any vector run, and the number of vectors not
 // run.
 void say_what_was_not_run(const Groups& groups, const RunResult& run,
@@ -126,8 +134,8 @@ void say_what_was_not_run(const Groups& groups, const RunResult& run,
   if (const std::string part = run.selection_text(); !part.empty()) {
     missing.push_back("only " + part);
   }
-  if (!names.empty()) missing.push_back(fmt::format("no vector of {}", fmt::join(names, ", ")));
-  if (!rates.empty()) missing.push_back(fmt::format("no vector at {} Hz", fmt::join(rates, ", ")));
+  if (!names.empty()) missing.push_back("no vector of " + few_or_counted(names, "", "groups"));
+  if (!rates.empty()) missing.push_back("no vector at " + few_or_counted(rates, " Hz", "rates"));
   missing.push_back(
       fmt::format("{} not run", left_out == 1 ? "1 vector" : fmt::format("{} vectors", left_out)));
 }

@@ -47,6 +47,18 @@ TEST(Summary, TheLastLineIsTheConformanceStatement) {
                                      "the rest was not run\n"));
 }
 
+TEST(Summary, TheClaimForEachProfileHasALine) {
+  RunResult run = passing_run();
+  EXPECT_THAT(summary(run), HasSubstr("\nconformance: conformant: px4-v1.5.5, exact, 2 rates"));
+  run.results[0].profile = "px4-v1.3.4";
+  EXPECT_THAT(summary(run),
+              HasSubstr("\nconformance:\n"
+                        "  conformant: px4-v1.3.4, exact, 2 rates, all groups\n"
+                        "  partial: px4-v1.5.5, exact, 2 rates, parts of attitude (missing: 1 "
+                        "vector not run)\n"
+                        "  cases "));
+}
+
 TEST(Summary, AnErrorIsNoPass) {
   RunResult run = passing_run();
   run.errors.push_back(Error{"cannot read", "golden/a.csv", 3, 0});

@@ -161,6 +161,12 @@ TEST(Claim, ARunThatEndedEarlyOrHadErrorsHasNoStanding) {
   EXPECT_THAT(claims_of(RunResult{}), IsEmpty());
 }
 
+TEST(Claim, ManyGroupsAreCounted) {
+  RunResult run = complete_run({"attitude", "modes", "rates", "tailsitter", "timing", "tpa"});
+  std::erase_if(run.results, [](const CaseResult& result) { return result.group != "tpa"; });
+  EXPECT_THAT(only_claim(run).missing, ElementsAre("no vector of 5 groups", "10 vectors not run"));
+}
+
 TEST(Claim, RecordedTimesAreNotTheCases) {
   RunResult run = complete_run({"flight"});
   run.timing = "late.json";
