@@ -81,8 +81,7 @@ ATTEST_INLINE Quaternion<Scalar> inverse(const Quaternion<Scalar>& q) {
   return {q[0] / n, -q[1] / n, -q[2] / n, -q[3] / n};
 }
 
-// Of q and -q, which are the same rotation, the one whose first component that is not 0 is
-// positive.
+// q or -q, which are the same rotation: the first component that is not 0 becomes positive.
 template <typename Scalar>
 ATTEST_INLINE Quaternion<Scalar> canonical(const Quaternion<Scalar>& q) {
   using std::abs;
@@ -105,7 +104,7 @@ ATTEST_INLINE Vector3<Scalar> cross(const Vector3<Scalar>& a, const Vector3<Scal
   return {a[1] * b[2] - a[2] * b[1], (-a[0]) * b[2] + a[2] * b[0], a[0] * b[1] - a[1] * b[0]};
 }
 
-// The coordinate axis that is farthest from the direction of v. The last one wins a tie.
+// The coordinate axis that is farthest from the direction of v. At a tie, the last axis is used.
 template <typename Scalar>
 ATTEST_INLINE Vector3<Scalar> farthest_axis(const Vector3<Scalar>& v) {
   using std::abs;
@@ -114,8 +113,8 @@ ATTEST_INLINE Vector3<Scalar> farthest_axis(const Vector3<Scalar>& v) {
   return {Scalar(axis == 0 ? 1 : 0), Scalar(axis == 1 ? 1 : 0), Scalar(axis == 2 ? 1 : 0)};
 }
 
-// The shortest rotation that turns the direction of a into that of b. Opposite directions have
-// many: this one turns about an axis that is square to a.
+// The shortest rotation that turns the direction of a into that of b. Opposite directions have many
+// such rotations: the result turns about an axis perpendicular to a.
 template <typename Scalar>
 ATTEST_INLINE Quaternion<Scalar> shortest_rotation(const Vector3<Scalar>& a,
                                                    const Vector3<Scalar>& b) {
@@ -171,7 +170,7 @@ Scalar heading(const Quaternion<Scalar>& q, const ProfileTraits& law) {
   using std::atan2;
   const Scalar two = 2;
   const Scalar R20 = two * (q[1] * q[3] - q[0] * q[2]);
-  // asin(0.99) is 0.14 rad short of a pole, and asin is expensive. A NaN is near, too.
+  // asin(0.99) is 0.14 rad short of a pole, and asin is expensive. NaN also takes this branch.
   constexpr float surely_far = 0.99f;
   if (!(abs(R20) < Scalar(surely_far))) {
     const Scalar R12 = two * (q[2] * q[3] - q[0] * q[1]);
