@@ -46,13 +46,13 @@ struct AttitudeStages {
   // The attitude after the tilt alone is corrected.
   ATTEST_INLINE static Q tilted(const Q& tilt, const Q& q_WB) { return product(tilt, q_WB); }
 
-  // The yaw that remains then. Without the canonical form, the two signs of a quaternion would give
-  // two different targets.
+  // The yaw error that remains after the tilt is corrected. Without the canonical form, the two
+  // signs of a quaternion would give two different targets.
   ATTEST_INLINE static Q remaining_yaw(const Q& tilted, const Q& q_WD) {
     return canonical(product(inverse(tilted), q_WD));
   }
 
-  // Rounding may leave the domain of acos and asin.
+  // Limits the component, because rounding may leave the domain of acos and asin.
   ATTEST_INLINE static Scalar in_domain(Scalar component) {
     return clamp(component, Scalar(-1), Scalar(1));
   }
@@ -68,7 +68,7 @@ struct AttitudeStages {
 
   ATTEST_INLINE static Q target(const Q& tilted, const Q& yaw) { return product(tilted, yaw); }
 
-  // In body axes, by the shorter way.
+  // The shorter rotation from the attitude to the target, in body axes.
   ATTEST_INLINE static Q error(const Q& q_WB, const Q& target) {
     return canonical(product(inverse(q_WB), target));
   }

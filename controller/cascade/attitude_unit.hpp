@@ -56,7 +56,7 @@ struct AttitudeStepStages {
     return attitude_unit_gains<Scalar>(parameters);
   }
 
-  // 0.2 .. 20 ms. The difference is rounded before it is scaled.
+  // dt [s], limited to 0.2 .. 20 ms. The difference is rounded before it is scaled.
   ATTEST_INLINE static Scalar step_time(std::uint64_t sample_us, std::uint64_t last_us) {
     return clamp(Scalar(sample_us - last_us) * Scalar(1e-6f), Scalar(0.0002f), Scalar(0.02f));
   }
@@ -106,7 +106,7 @@ struct AttitudeStepStages {
     return attitude_us > last_setpoint_us;
   }
 
-  // Autotune excites the vehicle in these states. Its rates are added after the limit.
+  // Autotune excites the vehicle in these states. Its rates are added after the rate limit.
   ATTEST_INLINE static Vector3<Scalar> autotuned(const Vector3<Scalar>& rates, const Topics& topics,
                                                  std::uint64_t now_us) {
     const auto& autotune = topics.autotune;

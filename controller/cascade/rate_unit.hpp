@@ -47,7 +47,7 @@ struct RateStepStages {
     return rate_unit_gains<Scalar>(parameters);
   }
 
-  // 0.125 .. 20 ms. The difference is rounded before it is scaled.
+  // dt [s], limited to 0.125 .. 20 ms. The difference is rounded before it is scaled.
   ATTEST_INLINE static Scalar step_time(std::uint64_t sample_us, std::uint64_t last_us) {
     return clamp(Scalar(sample_us - last_us) * Scalar(1e-6f), Scalar(0.000125f), Scalar(0.02f));
   }

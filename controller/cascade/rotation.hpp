@@ -52,21 +52,21 @@ ATTEST_INLINE Scalar squared_norm(const Quaternion<Scalar>& q) {
   return Scalar(0) + q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
 }
 
-// By component. Eigen's q * factor takes all four as one vector, which makes components that were
-// just computed pass through memory: a step of the attitude unit was measured a tenth slower.
+// Computed by component: Eigen's q * factor takes all four as one vector, so components that were
+// just computed pass through memory. With it a step of the attitude unit was a tenth slower.
 template <typename Scalar>
 ATTEST_INLINE Quaternion<Scalar> scaled(const Quaternion<Scalar>& q, Scalar factor) {
   return {q[0] * factor, q[1] * factor, q[2] * factor, q[3] * factor};
 }
 
-// Of norm 1. A zero has no direction and gives NaN.
+// The quaternion scaled to norm 1. A zero quaternion gives NaN.
 template <typename Scalar>
 ATTEST_INLINE Quaternion<Scalar> unit(const Quaternion<Scalar>& q) {
   using std::sqrt;
   return scaled(q, Scalar(1) / sqrt(squared_norm(q)));
 }
 
-// q p: first p, then q. All sixteen products count, also those with a factor that is 0.
+// q p: first p, then q. All sixteen products are computed, also those with a factor that is 0.
 template <typename Scalar>
 ATTEST_INLINE Quaternion<Scalar> product(const Quaternion<Scalar>& q, const Quaternion<Scalar>& p) {
   return {q[0] * p[0] - q[1] * p[1] - q[2] * p[2] - q[3] * p[3],
@@ -162,8 +162,8 @@ int pole_at(Scalar R20) {
   return abs(pitch + Scalar(half_pi)) < Scalar(near_pole) ? -1 : 0;
 }
 
-// The yaw angle [rad] of the order yaw, pitch, roll. Near the poles, where yaw and roll are about
-// the same axis, all of it counts as yaw.
+// The yaw angle [rad] of the order yaw, pitch, roll. Near the poles yaw and roll are about the same
+// axis, and the whole angle counts as yaw.
 template <typename Scalar>
 Scalar heading(const Quaternion<Scalar>& q, const ProfileTraits& law) {
   using std::abs;

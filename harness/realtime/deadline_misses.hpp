@@ -24,8 +24,8 @@
 // All other misses are the machine's.
 //
 // A skipped release is a miss too: its deadline passes before a step can start. It is counted with
-// the step that ran meanwhile. The same two conditions hold, with the deadline of the release
-// and the finish of that step.
+// the step that ran meanwhile. The same two conditions apply, with the deadline of the release and
+// the finish of that step.
 //
 // Limitation: the execution time is the CPU time in the kernel's accounting. Cold caches,
 // interrupts and, on a virtual machine without steal accounting, time of the hypervisor count as

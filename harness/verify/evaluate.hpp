@@ -29,7 +29,7 @@ struct JudgeOptions {
 CaseResult result_for(const Case& the_case, const RunConfiguration& configuration);
 CaseResult result_for(const Trace& recorded, const std::string& profile);
 
-// Makes the case's inputs at that rate anew, gives them to a fresh unit, and compares the outputs
+// Generates the case's inputs at that rate, gives them to a fresh unit, and compares the outputs
 // with the golden. Errors are those of the environment: a golden that is missing or stale.
 // `saved_traces` below is the folder of save_traces(); empty: not saved.
 Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const Golden& golden,
@@ -45,8 +45,8 @@ Result<CaseResult> evaluate_flight(const Case& the_case, const RunConfiguration&
                                    PortHost& host, const std::filesystem::path& saved_traces = {});
 
 // The same at recorded times. These have no golden: the reference flies at the same times for
-// comparison. A bound of the case's metrics that the reference misses at these times is not
-// applied. Errors: the flight cannot be set up; the reference loses the vehicle at these times.
+// comparison. A bound that the reference violates at these times is not applied. Errors: the flight
+// cannot be set up; the reference loses the vehicle at these times.
 Result<CaseResult> evaluate_timed_flight(const Case& the_case,
                                          const RunConfiguration& configuration,
                                          const VehicleModel& vehicle_model,
