@@ -1,4 +1,5 @@
-// The battery estimate: battery_status.scale, the factor on the controls as a battery discharges.
+// The battery estimate: battery_status.scale, a factor on the controls that compensates for the
+// discharge.
 //
 // The estimate of PX4 v1.5.5 systemlib Battery. The cell voltage, corrected for the drop under
 // load, gives a measured charge. Its low-pass is the remaining charge, which gives the voltage of

@@ -1,8 +1,8 @@
 // The attitude law (section 2): from an attitude and its setpoint to a setpoint of body rates.
 //
-// Tilt and yaw are separated. The tilt is corrected by the shortest rotation of the thrust axis,
-// and of the yaw error that remains only a share is corrected with it (MC_YAW_WEIGHT), because yaw
-// is slow. The rates are proportional to the quaternion error of that reduced target.
+// Tilt and yaw are separated. The tilt is corrected by the shortest rotation of the thrust axis. Of
+// the remaining yaw error only a share (MC_YAW_WEIGHT) is corrected, because yaw is slow. The rates
+// are proportional to the quaternion error of that reduced target.
 //
 // Frames: W world NED, B body FRD, D desired body. q_WB maps body into world. Rates [rad/s]. The
 // state is the setpoint. No clock, no allocation; one thread at a time.
@@ -23,10 +23,10 @@ struct AttitudeStages {
   using Vector = Vector3<Scalar>;
   using Q = Quaternion<Scalar>;
 
-  // The setpoint is normalised here, and the attitude nowhere.
+  // The setpoint is normalised. The attitude is not normalised anywhere.
   ATTEST_INLINE static Q setpoint(const Q& given) { return unit(given); }
 
-  // After a reset of the estimator, which turned the world by `delta`.
+  // The setpoint after a reset of the estimator by the rotation `delta`.
   ATTEST_INLINE static Q adapted(const Q& delta, const Q& q_WD) {
     return unit(product(delta, q_WD));
   }
@@ -46,13 +46,13 @@ struct AttitudeStages {
   // The attitude after the tilt alone is corrected.
   ATTEST_INLINE static Q tilted(const Q& tilt, const Q& q_WB) { return product(tilt, q_WB); }
 
-  // The yaw that remains then. Without the canonical form, the two signs of a quaternion would give
-  // two different targets.
+  // The yaw error that remains after the tilt is corrected. Without the canonical form, the two
+  // signs of a quaternion would give two different targets.
   ATTEST_INLINE static Q remaining_yaw(const Q& tilted, const Q& q_WD) {
     return canonical(product(inverse(tilted), q_WD));
   }
 
-  // Rounding may leave the domain of acos and asin.
+  // Limits the component, because rounding may leave the domain of acos and asin.
   ATTEST_INLINE static Scalar in_domain(Scalar component) {
     return clamp(component, Scalar(-1), Scalar(1));
   }
@@ -68,7 +68,7 @@ struct AttitudeStages {
 
   ATTEST_INLINE static Q target(const Q& tilted, const Q& yaw) { return product(tilted, yaw); }
 
-  // In body axes, by the shorter way.
+  // The shorter rotation from the attitude to the target, in body axes.
   ATTEST_INLINE static Q error(const Q& q_WB, const Q& target) {
     return canonical(product(inverse(q_WB), target));
   }
@@ -78,14 +78,14 @@ struct AttitudeStages {
     return twice.cwiseProduct(gains.proportional_1_s);
   }
 
-  // The commanded yaw rate is about the world's z axis. One that is not finite is no command.
+  // The commanded yaw rate is about the world's z axis. A yaw rate that is not finite is ignored.
   ATTEST_INLINE static Vector feed_forward(const Vector& rates, const Q& q_WB, Scalar yaw_rate) {
     if (!is_finite(yaw_rate)) return rates;
     const Vector z_W_B = z_axis(inverse(q_WB));
     return rates + z_W_B * yaw_rate;
   }
 
-  // Comes after the feed-forward.
+  // The limit includes the feed-forward.
   ATTEST_INLINE static Vector limit(const Vector& rates, const AttitudeGains<Scalar>& gains) {
     const Vector& max = gains.rate_max_rad_s;
     return {clamp(rates[0], -max[0], max[0]), clamp(rates[1], -max[1], max[1]),

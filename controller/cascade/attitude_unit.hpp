@@ -25,7 +25,7 @@
 
 namespace attest::cascade {
 
-// The latched copies of the topics that are latched in every step, and the newest autotune sample.
+// Copies of the topics that every step latches, and the newest autotune sample.
 struct AttitudeTopics {
   decltype(attest_attitude_inputs::manual_control_setpoint) manual{};
   decltype(attest_attitude_inputs::vehicle_control_mode) mode{};
@@ -49,14 +49,14 @@ struct AttitudeStepStages {
   using Topics = AttitudeTopics;
   using Status = decltype(Topics::status);
 
-  // A fault may follow another profile in one point.
+  // A stage, so that a fault can take one trait from another profile.
   static ProfileTraits traits(Profile profile) { return traits_of(profile); }
 
   static AttitudeUnitGains<Scalar> gains(const Parameters& parameters) {
     return attitude_unit_gains<Scalar>(parameters);
   }
 
-  // 0.2 .. 20 ms. The difference is rounded before it is scaled.
+  // dt [s], limited to 0.2 .. 20 ms. The difference is rounded before it is scaled.
   ATTEST_INLINE static Scalar step_time(std::uint64_t sample_us, std::uint64_t last_us) {
     return clamp(Scalar(sample_us - last_us) * Scalar(1e-6f), Scalar(0.0002f), Scalar(0.02f));
   }
@@ -83,7 +83,7 @@ struct AttitudeStepStages {
     return topics.mode.flag_control_attitude_enabled != 0 && (hovers || tailsitter);
   }
 
-  // In stabilized mode.
+  // Whether the mode is stabilized.
   ATTEST_INLINE static bool follows_sticks(const Topics& topics) {
     const auto& mode = topics.mode;
     return mode.flag_control_manual_enabled != 0 && mode.flag_control_altitude_enabled == 0 &&
@@ -106,7 +106,7 @@ struct AttitudeStepStages {
     return attitude_us > last_setpoint_us;
   }
 
-  // Autotune excites the vehicle in these states. Its rates are added after the limit.
+  // Autotune excites the vehicle in these states. Its rates are added after the rate limit.
   ATTEST_INLINE static Vector3<Scalar> autotuned(const Vector3<Scalar>& rates, const Topics& topics,
                                                  std::uint64_t now_us) {
     const auto& autotune = topics.autotune;
@@ -130,7 +130,7 @@ struct AttitudeStepStages {
     return is_finite(estimate) ? slewed(before, Scalar(0.05f), dt_s, estimate) : before;
   }
 
-  // Until v1.15.4: the next step in stabilized mode starts from the heading.
+  // Up to v1.15.4: whether the next step in stabilized mode takes the heading as its yaw setpoint.
   ATTEST_INLINE static bool restarts_yaw(bool followed_sticks, const Topics& topics) {
     return !followed_sticks || topics.position.heading_good_for_control == 0 ||
            (topics.status.is_vtol != 0 && topics.status.in_transition_mode != 0);

@@ -20,7 +20,7 @@
 
 namespace attest::cascade {
 
-// The latched copies of the topics that are latched in every step.
+// Copies of the topics that every step latches.
 struct RateTopics {
   decltype(attest_rate_inputs::vehicle_control_mode) mode{};
   decltype(attest_rate_inputs::vehicle_land_detected) land{.maybe_landed = 1, .landed = 1};
@@ -40,14 +40,14 @@ struct RateStepStages {
   using Vector = Vector3<Scalar>;
   using Sticks = decltype(attest_rate_inputs::manual_control_setpoint);
 
-  // A fault may follow another profile in one point.
+  // A stage, so that a fault can take one trait from another profile.
   static ProfileTraits traits(Profile profile) { return traits_of(profile); }
 
   static RateUnitGains<Scalar> gains(const Parameters& parameters) {
     return rate_unit_gains<Scalar>(parameters);
   }
 
-  // 0.125 .. 20 ms. The difference is rounded before it is scaled.
+  // dt [s], limited to 0.125 .. 20 ms. The difference is rounded before it is scaled.
   ATTEST_INLINE static Scalar step_time(std::uint64_t sample_us, std::uint64_t last_us) {
     return clamp(Scalar(sample_us - last_us) * Scalar(1e-6f), Scalar(0.000125f), Scalar(0.02f));
   }
@@ -57,7 +57,7 @@ struct RateStepStages {
            topics.mode.flag_control_attitude_enabled == 0;
   }
 
-  // Sticks are rates, and thrust is the throttle, not clamped.
+  // The sticks set the rates, and the throttle sets the thrust, which is not clamped.
   static RatesSetpoint<Scalar> acro(const Sticks& sticks, const AcroGains<Scalar>& gains) {
     const Vector stick(Scalar(sticks.roll), -Scalar(sticks.pitch), Scalar(sticks.yaw));
     Vector curve;
@@ -79,7 +79,7 @@ struct RateStepStages {
     return is_finite(rate_sp) ? rate_sp : rate;
   }
 
-  // The integral starts from 0, in every step.
+  // While this is true, every step resets the integral to 0.
   ATTEST_INLINE static bool resets_integral(const RateTopics& topics) {
     return topics.mode.flag_armed == 0 || !topics.is_rotary_wing;
   }
@@ -91,18 +91,19 @@ struct RateStepStages {
     return filter.update(gains.yaw_torque_tau_s, dt_s, torque, law);
   }
 
-  // The guard of the torque. Thrust has none.
+  // A torque that is not finite becomes 0. Thrust is not guarded.
   ATTEST_INLINE static Scalar guarded(Scalar torque) {
     return is_finite(torque) ? torque : Scalar(0);
   }
 
-  // The scale after a battery sample: the old one stays while none is connected.
+  // The scale after a battery sample. The old scale stays if no battery is connected or the scale
+  // is not positive.
   ATTEST_INLINE static Scalar battery_scale(
       Scalar before, const decltype(attest_rate_inputs::battery_status)& sample) {
     return sample.connected != 0 && sample.scale > 0.0f ? Scalar(sample.scale) : before;
   }
 
-  // Clamped only when it is scaled.
+  // A control is clamped here only, so without battery scaling it is not clamped.
   ATTEST_INLINE static Scalar scaled(Scalar control, Scalar battery_scale) {
     return clamp(control * battery_scale, Scalar(-1), Scalar(1));
   }

@@ -52,21 +52,21 @@ ATTEST_INLINE Scalar squared_norm(const Quaternion<Scalar>& q) {
   return Scalar(0) + q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
 }
 
-// By component. Eigen's q * factor takes all four as one vector, which makes components that were
-// just computed pass through memory: a step of the attitude unit was measured a tenth slower.
+// Computed by component: Eigen's q * factor takes all four as one vector, so components that were
+// just computed pass through memory. With it a step of the attitude unit was a tenth slower.
 template <typename Scalar>
 ATTEST_INLINE Quaternion<Scalar> scaled(const Quaternion<Scalar>& q, Scalar factor) {
   return {q[0] * factor, q[1] * factor, q[2] * factor, q[3] * factor};
 }
 
-// Of norm 1. A zero has no direction and gives NaN.
+// The quaternion scaled to norm 1. A zero quaternion gives NaN.
 template <typename Scalar>
 ATTEST_INLINE Quaternion<Scalar> unit(const Quaternion<Scalar>& q) {
   using std::sqrt;
   return scaled(q, Scalar(1) / sqrt(squared_norm(q)));
 }
 
-// q p: first p, then q. All sixteen products count, also those with a factor that is 0.
+// q p: first p, then q. All sixteen products are computed, also those with a factor that is 0.
 template <typename Scalar>
 ATTEST_INLINE Quaternion<Scalar> product(const Quaternion<Scalar>& q, const Quaternion<Scalar>& p) {
   return {q[0] * p[0] - q[1] * p[1] - q[2] * p[2] - q[3] * p[3],
@@ -81,8 +81,7 @@ ATTEST_INLINE Quaternion<Scalar> inverse(const Quaternion<Scalar>& q) {
   return {q[0] / n, -q[1] / n, -q[2] / n, -q[3] / n};
 }
 
-// Of q and -q, which are the same rotation, the one whose first component that is not 0 is
-// positive.
+// q or -q, which are the same rotation: the first component that is not 0 becomes positive.
 template <typename Scalar>
 ATTEST_INLINE Quaternion<Scalar> canonical(const Quaternion<Scalar>& q) {
   using std::abs;
@@ -105,7 +104,7 @@ ATTEST_INLINE Vector3<Scalar> cross(const Vector3<Scalar>& a, const Vector3<Scal
   return {a[1] * b[2] - a[2] * b[1], (-a[0]) * b[2] + a[2] * b[0], a[0] * b[1] - a[1] * b[0]};
 }
 
-// The coordinate axis that is farthest from the direction of v. The last one wins a tie.
+// The coordinate axis that is farthest from the direction of v. At a tie, the last axis is used.
 template <typename Scalar>
 ATTEST_INLINE Vector3<Scalar> farthest_axis(const Vector3<Scalar>& v) {
   using std::abs;
@@ -114,8 +113,8 @@ ATTEST_INLINE Vector3<Scalar> farthest_axis(const Vector3<Scalar>& v) {
   return {Scalar(axis == 0 ? 1 : 0), Scalar(axis == 1 ? 1 : 0), Scalar(axis == 2 ? 1 : 0)};
 }
 
-// The shortest rotation that turns the direction of a into that of b. Opposite directions have
-// many: this one turns about an axis that is square to a.
+// The shortest rotation that turns the direction of a into that of b. Opposite directions have many
+// such rotations: the result turns about an axis perpendicular to a.
 template <typename Scalar>
 ATTEST_INLINE Quaternion<Scalar> shortest_rotation(const Vector3<Scalar>& a,
                                                    const Vector3<Scalar>& b) {
@@ -163,15 +162,15 @@ int pole_at(Scalar R20) {
   return abs(pitch + Scalar(half_pi)) < Scalar(near_pole) ? -1 : 0;
 }
 
-// The yaw angle [rad] of the order yaw, pitch, roll. Near the poles, where yaw and roll are about
-// the same axis, all of it counts as yaw.
+// The yaw angle [rad] of the order yaw, pitch, roll. Near the poles yaw and roll are about the same
+// axis, and the whole angle counts as yaw.
 template <typename Scalar>
 Scalar heading(const Quaternion<Scalar>& q, const ProfileTraits& law) {
   using std::abs;
   using std::atan2;
   const Scalar two = 2;
   const Scalar R20 = two * (q[1] * q[3] - q[0] * q[2]);
-  // asin(0.99) is 0.14 rad short of a pole, and asin is expensive. A NaN is near, too.
+  // asin(0.99) is 0.14 rad short of a pole, and asin is expensive. NaN also takes this branch.
   constexpr float surely_far = 0.99f;
   if (!(abs(R20) < Scalar(surely_far))) {
     const Scalar R12 = two * (q[2] * q[3] - q[0] * q[1]);

@@ -91,7 +91,7 @@ struct AttitudeStages {
     return q_BD.w() >= Scalar(0) ? Vector(imaginary * Scalar(2)) : Vector(-imaginary * Scalar(2));
   }
 
-  // A tilt error beyond 90 deg.
+  // Whether the tilt error is beyond 90 deg.
   ATTEST_INLINE static bool is_upset(Scalar tilt_cosine) { return tilt_cosine < Scalar(0); }
 
   // The share of the direct rotation grows from 0 at 90 deg of tilt error.

@@ -156,7 +156,7 @@ void parse_tolerances(const TomlTable& root, Case& parsed) {
                          std::isfinite(tolerance.absolute) && std::isfinite(tolerance.relative);
     if (!is_sane) values.error("absolute", "tolerances must be finite and not negative");
     if (!Tolerances().set(name, tolerance)) {
-      table.error(name, fmt::format("`{}` is no output topic or channel; `attest list --channels` "
+      table.error(name, fmt::format("`{}` is no output topic or signal; `attest list --channels` "
                                     "shows them all",
                                     name));
     }

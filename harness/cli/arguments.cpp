@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* description =
     "Judges whether a port of the PX4 multicopter attitude controller conforms to the\n"
-    "reference at every loop rate. Reports the first divergence: its tick, signal and stage of the "
+    "reference at every loop rate. Reports the first deviation: its tick, signal and stage of the "
     "law.\n";
 
 constexpr const char* footer =
@@ -44,8 +44,8 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("CASE");
   command
       ->add_option("--rate", options->rate,
-                   "Loop rate [Hz], also one that the case does not list; for a flight of the "
-                   "cascade that of both units, as 250:1000")
+                   "Loop rate [Hz], also one that the case does not list; for v1.14 to v1.16 those "
+                   "of both units, such as 250:1000")
       ->type_name("HZ");
   command
       ->add_option("--timing", options->timing,
@@ -57,10 +57,11 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
       "`mujoco` or `ode`; default: the case's first; `all`: the same flight on each, for --html");
   add_port(*command, options->host.port);
   command
-      ->add_option("--out", options->out,
-                   "The flown trace: CSV, or a ULog of PX4 if the name ends with .ulg; `-` is "
-                   "stdout, as CSV. Of the cascade F has the rate unit, and a second file next "
-                   "to it has the attitude unit: flown.csv and flown.attitude_unit.csv")
+      ->add_option(
+          "--out", options->out,
+          "The flown trace: CSV, or a ULog of PX4 if the name ends with .ulg; `-` is stdout, as "
+          "CSV. For v1.14 to v1.16 F has the trace of the rate unit, and a second file has that of "
+          "the attitude unit: flown.csv and flown.attitude_unit.csv")
       ->type_name("F");
   add_page(*command, options->html, "A page with plots of the flight and a replay of the attitude");
   add_timeout(*command, options->host.timeout_s);
@@ -109,7 +110,8 @@ void add_smoke(CLI::App& app, const Globals& globals, Action& action) {
 void add_new_port(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<NewPortOptions>();
   CLI::App* command = app.add_subcommand(
-      "new-port", "Make a folder with a complete port, to be changed into yours, and its CI jobs");
+      "new-port",
+      "Make a folder with a complete port, which you change into yours, and with CI jobs for it");
   command->add_option("folder", options->folder, "The new folder")->type_name("DIR")->required();
   command
       ->add_option("--lang", options->language,
@@ -184,7 +186,7 @@ int run_command_line(int argc, char** argv) {
   Globals globals;
   app.add_option("--suite", globals.suite, "Folder with cases/, golden/ and models/")
       ->type_name("DIR");
-  app.add_flag("-q,--quiet", globals.quiet, "No progress and no summary, only what went wrong");
+  app.add_flag("-q,--quiet", globals.quiet, "No progress and no summary, only failures and errors");
 
   Action action;
   add_run_command(app, globals, action);

@@ -92,7 +92,7 @@ std::string_view type_name(ChannelType type) {
 }
 
 void list_channels() {
-  fmt::print("{:<58}{:<9}{:<8}{:<16}{}\n", "channel", "type", "unit", "module", "written by");
+  fmt::print("{:<58}{:<9}{:<8}{:<16}{}\n", "signal", "type", "unit", "module", "written by");
   for (const Channel& channel : channels()) {
     const bool is_of_all = &channel == &channels().front();
     fmt::print("{:<58}{:<9}{:<8}{:<16}{}\n", channel.name, type_name(channel.type),

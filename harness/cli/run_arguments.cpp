@@ -14,7 +14,7 @@ void add_strictness(CLI::App& command, RunOptions& options) {
   command
       .add_option(
           "--level", options.level,
-          "How strictly: `exact` (float32 bits), `numeric` (a tolerance for each channel) "
+          "How strictly: `exact` (float32 bits), `numeric` (a tolerance for each signal) "
           "or `events` (the same events, at most one tick apart, and values that "
           "differ by at most about half their size plus a small floor; not for the units of v1.14 "
           "to v1.16, whose cases are then skipped); "
@@ -23,10 +23,10 @@ void add_strictness(CLI::App& command, RunOptions& options) {
       ->capture_default_str()
       ->group(option_group::strictness);
   command
-      .add_option("--param", options.parameters,
-                  "Set a parameter from the first step on, in each open-loop case, for port and "
-                  "reference; without flights. Not for recorded ports, nor for a suite whose "
-                  "reference is a port")
+      .add_option(
+          "--param", options.parameters,
+          "Set a parameter of port and reference from the first step on, in each open-loop case. "
+          "Flights are not run. Not for recorded ports, nor for a suite whose reference is a port")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false)
       ->group(option_group::strictness);
@@ -95,10 +95,9 @@ void add_run_command(CLI::App& app, const Globals& globals, Action& action) {
       ->capture_default_str()
       ->group(option_group::selection);
   command
-      ->add_option(
-          "--rerun-failed", options->select.rerun_failed,
-          "Only the vectors that failed in this report of --json; give its --level and --param "
-          "again")
+      ->add_option("--rerun-failed", options->select.rerun_failed,
+                   "Only the vectors that failed in this JSON report; give the same --level and "
+                   "--param as in that run")
       ->type_name("REPORT")
       ->group(option_group::selection);
   command
@@ -137,9 +136,9 @@ void add_merge_command(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("REPORT")
       ->required();
   command
-      ->add_option("--port", options->port,
-                   "Where the port is now, because the diagnosis runs it again; default: the port "
-                   "that the reports name")
+      ->add_option(
+          "--port", options->port,
+          "The port, which the diagnosis runs again; default: the port that the reports name")
       ->type_name("PORT");
   add_jobs(*command, options->jobs, "Number of worker processes for the diagnosis");
   add_timeout(*command, options->timeout_s);

@@ -70,10 +70,9 @@ void add_port(CLI::App& command, std::string& port, Ports accepted) {
 
 void add_timeout(CLI::App& command, double& timeout_s) {
   command
-      .add_option(
-          "--timeout", timeout_s,
-          "Limit for each answer of the port [s]: of a library for a whole trace, of a program for "
-          "each step or batch; a port that gives no answer in time has the verdict `timeout`")
+      .add_option("--timeout", timeout_s,
+                  "Limit for each answer of the port [s]. A library answers a whole trace, a "
+                  "program each step or batch; without an answer in time the verdict is `timeout`")
       ->check(CLI::Range(0.1, 86400.0))
       ->capture_default_str()
       ->group(option_group::execution);
@@ -120,12 +119,13 @@ void add_selection(CLI::App& command, SelectionOptions& options) {
       "PROFILE/GROUP/NAME@RATEhz. The id of a flight is PROFILE/GROUP/NAME@RATEhz-VEHICLE-PLANT. "
       "PROFILE/ and the part from @ on are optional",
       "GLOB");
-  add("--exclude", options.excludes, "Without the vectors whose id matches this shell pattern",
+  add("--exclude", options.excludes, "Leave out the vectors whose id matches this shell pattern",
       "GLOB");
   add("--group", options.groups, "Only this group of cases", "GROUP");
   add("--profile", options.profiles, "Only this version of the law", "PROFILE");
   add_rates(command, options.rates,
-            "Only these loop rates [Hz], separated by commas; 250:1000 is a pair of the cascade")
+            "Only these loop rates [Hz], separated by commas; v1.14 to v1.16 have pairs, such as "
+            "250:1000")
       ->group(option_group::selection);
   add("--vehicle", options.vehicles, "Only flights of this vehicle", "VEHICLE");
   add("--plant", options.plants, "Only flights on this plant: `mujoco` or `ode`", "PLANT");
@@ -134,8 +134,8 @@ void add_selection(CLI::App& command, SelectionOptions& options) {
 void add_assumed(CLI::App& command, std::vector<std::string>& assumed) {
   command
       .add_option("--assume", assumed,
-                  fmt::format("What holds in a flight whose log does not have the topic, some of "
-                              "{}; default: {}; of v1.14 to v1.16: {}",
+                  fmt::format("What was true in the flight, for topics that the log lacks: some of "
+                              "{}; default: {}; for v1.14 to v1.16: {}",
                               fmt::join(assumption_words(), ", "),
                               fmt::join(assumption_words(Module::mc_att_control, true), ","),
                               assumed_by_default_of_units()))

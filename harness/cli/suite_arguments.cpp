@@ -24,14 +24,15 @@ void add_faults(CLI::App& app, const Globals& globals, Action& action) {
   command->add_flag("--list", options->list, "List the catalogue; run nothing");
   CLI::Option* const bits =
       command
-          ->add_option("--fraction-bits", options->fraction_bits,
-                       "Use the tolerances of a port in fixed point with so many fraction bits")
+          ->add_option(
+              "--fraction-bits", options->fraction_bits,
+              "Use the tolerances of a port in fixed point with this number of fraction bits")
           ->check(CLI::Range(20, 32));
   command
       ->add_flag("--diagnose", options->diagnose,
                  "Measure the diagnosis instead: is each fault recognised?")
       ->excludes(bits, ids);
-  add_jobs(*command, options->jobs, "Faults at a time");
+  add_jobs(*command, options->jobs, "Number of faults that run at the same time");
   add_examples(*command, {{"attest faults", "which faults the whole suite catches"},
                           {"attest faults --list --profile px4-v1.3.4",
                            "the catalogue of one version of the law"}});
@@ -48,7 +49,8 @@ void add_list(CLI::App& app, const Globals& globals, Action& action) {
   command->add_flag("--groups", options->groups,
                     "Only the groups, with their numbers of cases and vectors");
   command->add_flag("--parameters", options->parameters, "The parameters of the law");
-  command->add_flag("--channels", options->channels, "The signals: trace columns and ABI members");
+  command->add_flag("--channels", options->channels,
+                    "The signals, which are the columns of traces, with type, unit and module");
   command->add_flag("--flight-modes", options->modes, "Flight modes and the flags they set");
   command->add_flag("--vehicles", options->vehicles, "The vehicles, with mass, rotors, arm, ...");
   add_examples(*command,
@@ -64,9 +66,10 @@ void add_list(CLI::App& app, const Globals& globals, Action& action) {
 void add_from_log(CLI::App& command, VectorOptions& options) {
   CLI::Option* const log =
       command
-          .add_option("--from-log", options.from_log,
-                      "Write instead a case with the inputs of this flight (.ulg) to a suite of "
-                      "your own, DIR/cases/PROFILE/from_log. `attest bless` makes its golden")
+          .add_option(
+              "--from-log", options.from_log,
+              "Instead, make a case with the inputs of this flight (.ulg) in a suite of your own, "
+              "DIR/cases/PROFILE/from_log. `attest bless` makes the golden of the case")
           ->type_name("FLIGHT.ulg")
           ->group(option_group::logs);
   const auto add_time = [&](const char* name, auto& value, const char* what) {
@@ -94,13 +97,14 @@ void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
       "--port recorded:DIR` judges its outputs");
   CLI::Option* const folder =
       command
-          ->add_option("folder", options->folder,
-                       "Where: DIR/PROFILE/GROUP/NAME/RATEhz.csv, with DIR/manifest.toml")
+          ->add_option(
+              "folder", options->folder,
+              "The folder for the files: DIR/PROFILE/GROUP/NAME/RATEhz.csv and DIR/manifest.toml")
           ->type_name("DIR");
-  CLI::Option* const lint = command->add_flag(
-      "--lint", options->lint,
-      "Write nothing; report numeric vectors that are too near to a decision of the law, "
-      "where correct controllers may differ");
+  CLI::Option* const lint =
+      command->add_flag("--lint", options->lint,
+                        "Write no files; report numeric vectors that are too near to a threshold "
+                        "of the law, where correct controllers may take different branches");
   lint->excludes(folder);
   command->add_option("--format", options->format, "`csv`, `mat` (MATLAB) or `npy` (numpy)")
       ->type_name("FORMAT")
@@ -140,7 +144,9 @@ void add_bless(CLI::App& app, const Globals& globals, Action& action) {
       "Make new golden traces from the reference, after showing the changes; one process at a time "
       "(golden/.bless.lock)");
   add_selection(*command, options->select);
-  command->add_option("--reason", options->reason, "Why, for provenance.toml (required)")
+  command
+      ->add_option("--reason", options->reason,
+                   "Reason of the change, stored in provenance.toml (required)")
       ->type_name("TEXT");
   command->add_flag("--yes", options->yes, "Do not ask");
   command

@@ -89,7 +89,7 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
                                          "execution time, response time, misses");
   add_port(*command, options->host.port);
   add_rates(*command, options->rates,
-            "Loop rates [Hz], separated by commas; of the cascade pairs such as 250:1000")
+            "Loop rates [Hz], separated by commas; for v1.14 to v1.16 pairs such as 250:1000")
       ->default_str("250,500,1000,2000,4000,8000");
   command->add_option("--duration", options->duration_s, "Duration of the flight at each rate [s]")
       ->check(CLI::Range(0.1, 3600.0))
@@ -125,8 +125,8 @@ void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("CASE")
       ->capture_default_str();
   add_rates(*command, options->rates,
-            "Loop rates at which to find the largest delay [Hz]; of the cascade pairs such "
-            "as 250:1000")
+            "Loop rates at which to find the largest delay [Hz]; for v1.14 to v1.16 pairs such as "
+            "250:1000")
       ->default_str("50,100,250,500,1000");
   command->add_option("--vehicle", options->vehicles, "Only this vehicle")
       ->type_name("VEHICLE")
@@ -140,7 +140,7 @@ void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("F.csv")
       ->group(option_group::reports);
   add_timeout(*command, options->host.timeout_s);
-  add_jobs(*command, options->jobs, "Vehicles at a time");
+  add_jobs(*command, options->jobs, "Number of vehicles that fly at the same time");
   add_examples(*command,
                {{"attest sweep-rate --port lib:./libmine.so --vehicle iris",
                  "the lowest rate and the largest delay with which the Iris flies within bounds"}});
@@ -151,9 +151,10 @@ void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
 
 void add_schedule(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<ScheduleOptions>();
-  CLI::App* command = app.add_subcommand("schedule",
-                                         "How other tasks delay the loop: response times with "
-                                         "fixed priorities on one or two CPUs, and a flight");
+  CLI::App* command =
+      app.add_subcommand("schedule",
+                         "Simulate how other tasks delay the loop: response times with fixed "
+                         "priorities on one or two CPUs, and a flight with these delays");
   command->add_option("tasks", options->tasks, "The tasks (TOML): [task.unit] and the others")
       ->type_name("TASKS.toml")
       ->required();

@@ -16,7 +16,7 @@ void add_log_options(CLI::App& command, ReplayOptions& options) {
   command
       .add_option(
           "--within", options.log_limits.within,
-          "Largest deviation from a log that counts as agreement, in the unit of the signal")
+          "Largest difference from a log that counts as agreement, in the unit of the signal")
       ->type_name("X")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber)
@@ -115,10 +115,9 @@ void add_compare(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("A")
       ->required();
   command
-      ->add_option(
-          "want", options->want,
-          "The trace or log to judge it by; outputs that it does not have are named and not "
-          "compared")
+      ->add_option("want", options->want,
+                   "The trace or log with the expected values; outputs that it lacks are named and "
+                   "not compared")
       ->type_name("B")
       ->required();
   command->add_option("--level", options->level, "`exact`, `numeric` or `events`")
@@ -129,15 +128,15 @@ void add_compare(CLI::App& app, const Globals& globals, Action& action) {
                     "origin with a column timestamp [us]");
   command
       ->add_option("--tolerance", options->others,
-                   "By time: allowed difference of signals other than the controller's outputs, "
-                   "which have that of the level")
+                   "By time: allowed difference of signals other than the controller's outputs. "
+                   "The outputs have the tolerances of the level")
       ->type_name("X")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command
       ->add_option("--shift", options->shift,
-                   "By time: compare A moved earlier by this time [us], or by the estimated one: "
-                   "`auto`")
+                   "By time: before the comparison, move A earlier by this time [us]; `auto`: by "
+                   "the estimated lag")
       ->type_name("US")
       ->capture_default_str();
   add_page(*command, options->html, "By time: a page with plots of the signals that differ");

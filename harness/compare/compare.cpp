@@ -77,7 +77,7 @@ TickComparer::TickComparer(const ChannelSet& got, const ChannelSet& want,
     not_recorded_ = fmt::format("{} {} not recorded", fmt::join(missing, ", "),
                                 missing.size() == 1 ? "was" : "were");
   } else if (chosen_.empty()) {
-    not_recorded_ = "nothing to compare: no out/ channels";
+    not_recorded_ = "nothing to compare: no out/ signals";
   }
 }
 

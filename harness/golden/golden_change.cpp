@@ -97,7 +97,7 @@ class Changes {
   std::string to_string(std::size_t of) const {
     std::string out;
     if (traces_ > 0) {
-      out = fmt::format("{} of {} traces, {} ticks, {} channels; at most by {:.3g} in {}", traces_,
+      out = fmt::format("{} of {} traces, {} ticks, {} signals; at most by {:.3g} in {}", traces_,
                         of, total_.ticks, total_.channels.count(), total_.max_deviation,
                         channels()[total_.max_channel].name);
     }

@@ -46,7 +46,7 @@ struct FlightEnd {
   std::optional<Divergence> divergence;
 };
 
-// The units that fly. `attitude_unit` is null but in a flight of the cascade.
+// The units that fly. `attitude_unit` is null except in a flight of the cascade.
 struct FlightUnits {
   FlightUnits(Unit& of_motors, Unit* attitude = nullptr)  // NOLINT(google-explicit-constructor)
       : unit(of_motors), attitude_unit(attitude) {}
@@ -54,7 +54,7 @@ struct FlightUnits {
   Unit* attitude_unit;
 };
 
-// What a flight records: a trace for each unit. A null one is not recorded.
+// What a flight records: a trace for each unit. A trace whose pointer is null is not recorded.
 struct FlightTraces {
   FlightTraces(Trace* of_motors = nullptr, Trace* attitude = nullptr)  // NOLINT
       : unit(of_motors), attitude_unit(attitude) {}

@@ -12,8 +12,8 @@ namespace {
 // Columns of the mix.
 constexpr Eigen::Index roll_column = 0, pitch_column = 1, yaw_column = 2, thrust_column = 3;
 
-// Of full thrust: by at most this, thrust is lowered in favour of yaw. The mixer has the same
-// limit.
+// The most by which thrust is lowered to make room for yaw, as a part of full thrust. The mixer has
+// the same limit.
 constexpr double thrust_for_yaw = 0.15;
 
 // Torque about x, y, z and upward thrust of each rotor at full speed, in any common unit. A rotor
@@ -55,7 +55,7 @@ double size_of(const Mix& mix, Eigen::Index axis) {
   return std::sqrt(squares / (entries / 2));
 }
 
-// By how much each column of the mix is too large. Not 0, because each vehicle of read_vehicle can
+// The divisor of each column of the mix. Not 0, because each vehicle that read_vehicle accepts can
 // turn about all axes.
 std::array<double, 4> scales_of(const Mix& mix) {
   const double roll_pitch = std::max(size_of(mix, roll_column), size_of(mix, pitch_column));

@@ -1,5 +1,5 @@
-// From torque and thrust setpoints of the cascade to motor commands, as a control allocator does it
-// that knows the places of the rotors. models/README.md has the equations and their reasons.
+// Computes motor commands from the torque and thrust setpoints of the cascade and the positions of
+// the rotors. models/README.md has the equations and their reasons.
 //
 // Body FRD. Torque and thrust are in the normalised unit of the cascade: thrust 1 is every rotor at
 // full speed. A rotor's thrust and torque are taken as linear in its speed, same as in the mixer.
@@ -14,10 +14,10 @@
 
 namespace attest {
 
-// What the rotors give for one setpoint.
+// The result for one setpoint.
 struct Allocation {
   MotorCommands commands{};                   // -1 where the vehicle has no rotor
-  std::array<float, 3> unallocated_torque{};  // the setpoint less what the commands give
+  std::array<float, 3> unallocated_torque{};  // the setpoint minus the torque of the commands
   bool torque_setpoint_achieved = true;       // unallocated_torque is 0 about all axes
 };
 

@@ -1,6 +1,6 @@
 // Which deadlines a flight missed, and which of the misses the port's execution time explains.
 //
-// The rule. The ticks are the record of one timeline. Two more are computed from it, with the same
+// The rule. The recorded ticks are one timeline. Two more are computed from it, with the same
 // releases and the same steps:
 //
 //     delay_i = (start_i - max(release_i, finish_(i-1))) + (finish_i - start_i - execution_i)
@@ -11,7 +11,7 @@
 // delay_i is the delay by the machine: from the time at which the step could start to its start,
 // preemption within the step, and attest's own work around it. A delay postpones the finish of its
 // tick, and so also the later ticks that wait for that finish. `usual` is the median of the delays,
-// and at most a tenth of the period. A miss is the port's if both hold:
+// limited to a tenth of the period. A miss is the port's if both hold:
 //
 //  1. In the machine's timeline the deadline is kept. A miss that also happens to a port whose
 //     steps take no time is the machine's.
@@ -24,11 +24,12 @@
 // All other misses are the machine's.
 //
 // A skipped release is a miss too: its deadline passes before a step can start. It is counted with
-// the step that ran meanwhile. The same two conditions hold, with the deadline of the release
-// and the finish of that step.
+// the step that ran meanwhile. The same two conditions apply, with the deadline of the release and
+// the finish of that step.
 //
-// Limit: the CPU time is that of the kernel's accounting. Cold caches, interrupts and, on a virtual
-// machine without steal accounting, time of the hypervisor count as execution time.
+// Limitation: the execution time is the CPU time in the kernel's accounting. Cold caches,
+// interrupts and, on a virtual machine without steal accounting, time of the hypervisor count as
+// execution time.
 #pragma once
 
 #include <cstdint>

@@ -37,8 +37,8 @@ struct LiveFlight {
   LiveUnitRecord unit;  // that commands the motors
   LivePlantRecord plant;
   std::optional<LiveUnitRecord> attitude_unit;  // of a flight of the cascade
-  // All of the process and of the unit's thread; of the other threads, only those that were
-  // refused.
+  // All privileges of the process and of the unit's thread, and those that were refused to the
+  // other threads.
   std::vector<RealtimePrivilege> privileges;
   Nanoseconds wall{0};  // duration of the flight
 
@@ -46,13 +46,13 @@ struct LiveFlight {
   FlightTiming timing() const;
 };
 
-// Flies the case for its whole duration, or until `stop` is true. The case's timing of the units is
-// not used: ticks are late by the clock only. Of the cascade, AttitudeLoop::delay is kept. A unit
-// that the estimator triggers waits for the plant's thread, which publishes a sample at each tick
-// of the rate. Keeps the samples of the first `samples` ticks of each unit. `progress` is called
-// every tenth of a second. The plant's thread samples the battery and runs the land detector, with
-// the command that the motors follow. REQUIRES: a flight; fresh units, one or both as the case
-// says. Errors: those of fly().
+// Flies the case for its whole duration, or until `stop` is true. The case's times of the units'
+// ticks are not used: the real clock alone makes ticks late. AttitudeLoop::delay of the cascade is
+// used. A unit that the estimator triggers waits for the plant's thread, which publishes a sample
+// at each tick of the rate. Keeps the samples of the first `samples` ticks of each unit. `progress`
+// is called every tenth of a second. The plant's thread samples the battery and runs the land
+// detector, with the command that the motors follow. REQUIRES: a flight; fresh units, one or both
+// as the case says. Errors: those of fly().
 Result<LiveFlight> fly_live(const Case& the_case, const RunConfiguration& configuration,
                             const VehicleModel& vehicle_model, FlightUnits units,
                             const LiveOptions& options, std::size_t samples,

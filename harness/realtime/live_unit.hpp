@@ -1,8 +1,9 @@
 // A unit's task on a clock: it waits for its releases, and records each tick.
 //
 // The controller and the rate unit command the motors. The attitude unit sends the rates setpoint
-// to the rate unit, which receives it at its first tick that begins AttitudeLoop::delay after it
-// was made, or later. An overtaken message is lost, same as in a topic of queue length 1.
+// to the rate unit. The rate unit receives it at its first tick that begins at least
+// AttitudeLoop::delay later. If a newer message arrives before that tick, the older one is lost,
+// same as in a topic of queue length 1.
 #pragma once
 
 #include <atomic>
@@ -35,8 +36,8 @@ struct LiveUnitRecord {
   std::vector<LiveTick> ticks;
   std::vector<Sample> samples;  // of the first ticks
   std::vector<ParameterChange> changes;
-  // Of the rate unit: for each tick of the attitude unit, when the tick of the rate unit began that
-  // received its setpoint. Empty if no tick received it.
+  // For each tick of the attitude unit: the start of the tick of the rate unit that received its
+  // setpoint. Empty if no tick received it.
   std::vector<std::optional<Nanoseconds>> setpoints_received;
   std::optional<PortFault> fault;
 };
@@ -44,8 +45,8 @@ struct LiveUnitRecord {
 // One release per period. If releases come during a step, the next tick starts as soon as that step
 // ends. It uses the last of these releases; the others are skipped.
 //
-// A unit that the estimator triggers waits for a sample instead. Its release is the publication,
-// and of several that came while a step ran only the newest is used, the others are skipped.
+// A unit that the estimator triggers waits for a sample instead. Its release is the publication. If
+// several samples come during a step, the newest is used and the others are skipped.
 class LiveUnit {
  public:
   // Records all ticks, and the samples of the first `samples`. The constructor allocates that

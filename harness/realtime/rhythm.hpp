@@ -1,7 +1,7 @@
-// Whether events among ticks come in a rhythm: one every so many ticks, throughout the run.
+// Detects a rhythm of events: one event at a constant interval of ticks, throughout the run.
 //
-// A rhythm is claimed only if a null hypothesis is rejected, because among some dozens of events at
-// random ticks several are always equally far apart.
+// A rhythm is claimed only if a null hypothesis is rejected, because some dozens of events at
+// random ticks always include several at equal distances.
 //
 // Null hypothesis. The ticks are cut into blocks of `every` ticks. The number of events of each
 // block is given. Their places within the block are random, independently of other blocks. So
@@ -11,10 +11,10 @@
 //
 // Statistic. The number K of blocks that have an event at their tick `first`. Under the null
 // hypothesis a block with b events has one there with probability b / every, so K is a sum of
-// independent Bernoulli variables. For k of at least its mean plus one, P(K >= k) is at most that
-// of the binomial distribution with the same mean and a trial for each block with events. Source:
-// Hoeffding, "On the distribution of the number of successes in independent trials", Ann. Math.
-// Stat. 27 (1956).
+// independent Bernoulli variables. If k is at least the mean of K plus one, P(K >= k) is at most
+// that of the binomial distribution with the same mean and one trial for each block with events.
+// Source: Hoeffding, "On the distribution of the number of successes in independent trials", Ann.
+// Math. Stat. 27 (1956).
 //
 // Claim. A rhythm is claimed if all of these hold:
 // - There are at least five blocks.

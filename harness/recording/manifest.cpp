@@ -19,7 +19,7 @@ constexpr const char* heading =
     "#\n"
     "# Write the outputs for PROFILE/GROUP/NAME/RATE.csv next to it, as RATE.out.csv, "
     "RATE.out.mat\n"
-    "# or RATE.out.npy: a column for each output channel (`attest list --channels`), a row for "
+    "# or RATE.out.npy: a column for each output signal (`attest list --channels`), a row for "
     "each\n"
     "# row of the inputs. A column `timestamp` is checked if there is one. Then:\n"
     "#\n"
@@ -32,7 +32,7 @@ constexpr const char* heading =
     "#     [outputs]  time: the unit of `timestamp`, \"s\", \"ms\" or \"us\"; column_order of an "
     "NPY\n"
     "#                file without names; not_recorded: outputs that you do not have\n"
-    "#     [columns]  your name = \"its channel\", for columns that have other names\n"
+    "#     [columns]  your name = \"its signal\", for columns that have other names\n"
     "\n";
 
 std::vector<std::string> texts(const TomlTable& table, std::string_view key) {
@@ -48,7 +48,7 @@ ChannelSet outputs_named(const std::string& name, const TomlTable& table, std::s
   for (const std::string_view known : names_of(ChannelSet().set())) {
     if (known.starts_with("out/")) names.emplace_back(known);
   }
-  table.error(key, fmt::format("no output channel `{}`{}; `attest list --channels` shows all", name,
+  table.error(key, fmt::format("no output signal `{}`{}; `attest list --channels` shows all", name,
                                suggestion(name, names)));
   return {};
 }

@@ -21,8 +21,8 @@ std::string_view name_of(Conclusion conclusion);  // "PASS"
 // is " in 1.2 s", or empty.
 std::string conclusion_text(const RunResult& run, std::string_view duration = {});
 
-// "first stage to differ: attitude law in 18, mixer in 2": the number of first divergences in each
-// stage. Empty without a divergence.
+// "first stage to differ: attitude law in 18, mixer in 2": the number of first deviations in each
+// stage. Empty without a deviation.
 std::string first_stages(const RunResult& run);
 
 }  // namespace attest

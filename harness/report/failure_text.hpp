@@ -1,5 +1,5 @@
 // The text about a failing result, shared by the terminal and JUnit. A CI log may be all that its
-// reader has. So it has the error, the first divergence, the stage of the law to look at, and the
+// reader has. So it has the error, the first deviation, the stage of the law to look at, and the
 // command that runs this vector again.
 #pragma once
 
@@ -16,12 +16,12 @@ std::string failure_headline(const CaseResult& result);
 // level for the command to reproduce it.
 std::string failure_text(const CaseResult& result, const RunResult& run);
 
-// The first divergence and the number of deviating ticks, without id and commands: for traces
+// The first deviation and the number of deviating ticks, without id and commands: for traces
 // outside the suite. Empty when only the verdict is known.
 std::string finding_text(const CaseResult& result, Level level);
 
 // "tick 412, in out/...: off by 0.3, 1500 times the tolerance". Empty if it is the first
-// divergence, or unknown.
+// deviation, or unknown.
 std::string worst_text(const CaseResult& result);
 
 // "at most 1.2", "at least 0", "0 to 3".

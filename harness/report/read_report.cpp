@@ -36,7 +36,7 @@ void read_port(JsonReader reader, RunResult& run) {
   for (const std::string& name : reader.texts("not_recorded")) {
     const ChannelSet named = channels_named(name);
     run.not_recorded |= named;
-    if (named.none()) reader.wrong(fmt::format("there is no channel `{}`", name));
+    if (named.none()) reader.wrong(fmt::format("there is no signal `{}`", name));
   }
 }
 

@@ -34,7 +34,7 @@ std::string complaint_about(std::string_view name, double value) {
   if (!index && !parameter_of(name)) {
     const auto all = names_of(ChannelSet().set());
     const std::vector<std::string> names(all.begin(), all.end());
-    return fmt::format("unknown channel `{}`{}", name, suggestion(name, names));
+    return fmt::format("unknown signal `{}`{}", name, suggestion(name, names));
   }
   switch (index ? channels()[*index].type : ChannelType::f32) {
     case ChannelType::u64:

@@ -1,4 +1,4 @@
-// A log of a flight as traces: what each unit was given, and what it answered.
+// Reads the log of a flight as traces: the inputs and the outputs of each unit.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ struct LoggedOutput {
   std::size_t paired = 0;   // of these, with a tick
 };
 
-// What the log has of that which the outputs of a tick depend on.
+// Whether the log has the inputs on which the outputs of a tick depend.
 enum class Known : std::uint8_t {
   all,            // an output without memory can be computed from this tick
   if_every_step,  // only from all steps: the attitude unit makes its setpoint of the sticks
@@ -35,20 +35,20 @@ struct LoggedUnit {
   Module module = Module::mc_att_control;
   std::string step_topic;  // "control_state"
   // A tick for each sample of the step topic, at its timestamp. An input is the last sample logged
-  // before that time; in a log of attest, and of the controller of v1.5.5, also at that time. A
-  // tick has an output, with `published` 1, if the log has its answer. A tick without one has the
-  // values of the tick before. An output that the log's topic does not have is not in
-  // `trace.present`.
+  // before that time; in a log of attest, and of the controller of v1.5.5, also at that time. If
+  // the log has an output of the tick, its `published` is 1. Otherwise the tick repeats the output
+  // of the tick before. A field that the log's topic does not have is not in `trace.present`.
   Trace trace;
   std::vector<LoggedOutput> outputs;
   std::vector<Known> known;  // of each tick
-  // The log has every step of the unit, from the ground on; of v1.14 to v1.16, also without
-  // assumptions. Otherwise outputs that depend on
-  // earlier steps (the integral, the derivative) cannot be computed from it.
+  // The log has every step of the unit and begins on the ground. For v1.14 to v1.16, no input was
+  // assumed, too. Otherwise outputs that depend on earlier steps (the integral, the derivative)
+  // cannot be computed from the log.
   bool has_every_step = false;
   bool begins_in_flight = false;  // so the state of the unit at the first tick is not known
-  // Why the outputs that depend on earlier steps cannot be computed, not even about; empty if they
-  // can. Never empty for a unit of which the log has too little: then it has no ticks.
+  // Why the outputs that depend on earlier steps cannot be computed, even approximately. Empty if
+  // they can. If the log has too little for the unit, this is not empty, and the trace has no
+  // ticks.
   std::string not_judged;
 };
 
@@ -67,9 +67,9 @@ struct FlightLog {
 // v1.16. Its parameters are in the traces, those of other modules too.
 //
 // An output is paired with the step whose sample has its `timestamp_sample`, where the topic has
-// this field. Otherwise it is the answer to the last step before it, and a further output before
-// the next step is not paired. In a log of v1.14 to v1.16 this step must be at most 2 ms earlier,
-// because the log may lack the next one.
+// this field. Otherwise it is paired with the last step before it. A second output before the next
+// step is not paired. In a log of v1.14 to v1.16 this step must be at most 2 ms earlier, because
+// the log may lack the next one.
 //
 // In such a log, several modules publish the setpoints. A sample of vehicle_attitude_setpoint is an
 // output of the attitude unit if it made a setpoint of the sticks, and vehicle_rates_setpoint is an
@@ -82,7 +82,7 @@ struct FlightLog {
 Result<FlightLog> read_flight_log(const std::filesystem::path& path,
                                   const std::vector<std::string>& assumed = {});
 
-// By its name.
+// Whether the name is that of a log.
 bool is_log(const std::filesystem::path& path);
 
 }  // namespace attest

@@ -73,19 +73,18 @@ struct Format {
   // Finds a number by its path, the first of that name: "roll", "q[0]", "a.b[2]". Errors: no such
   // field; an array without an index, or with one past its end. REQUIRES: measured.
   Result<Field> locate(std::string_view path) const;
-  // The name of the first leaf that another one has before it; empty if all differ. REQUIRES:
-  // measured.
+  // The first name that an earlier leaf has too; empty if all names differ. REQUIRES: measured.
   std::string repeated_leaf() const;
 };
 
 class Formats {
  public:
   static constexpr std::uint32_t most_bytes = 0xffff - 2;  // a u16 counts them and the msg_id
-  static constexpr std::size_t most_leaves = 4096;         // no topic of PX4 has a tenth of them
+  static constexpr std::size_t most_leaves = 4096;         // no topic of PX4 has a tenth as many
   static constexpr int most_depth = 16;
 
   // Adds "name:type field;...", which may be repeated. Errors: it does not have this form; the name
-  // has another definition, which stays.
+  // already has another definition, which is kept.
   Result<const Format*> add(std::string_view definition);
   // Computes leaves and sizes, once. The pointer stays valid. Errors: this or a nested format is
   // missing; nested too deeply, or in itself; more than most_bytes or most_leaves.

@@ -10,9 +10,9 @@
 //       if (data && roll->is_in(*data)) use(roll->of(*data));
 //     }
 //
-// Damage is counted, and what is intact is read. A message with a wrong body is skipped by its
-// length if a message seems to follow there. Otherwise reading goes on after the next sync message;
-// without one, the rest of the file is not read.
+// The reader counts damage and reads all intact messages. A message with a wrong body is skipped by
+// its length if another message seems to follow. Otherwise reading continues after the next sync
+// message. If there is none, the rest of the file is not read.
 #pragma once
 
 #include <array>
@@ -38,9 +38,9 @@ struct Subscription {
 };
 
 // Messages. Their views are valid until the reader's next call, their pointers as long as the
-// reader.
+// reader exists.
 
-// D: values of a topic, from Format::least_bytes to Format::bytes of them.
+// D: the values of a topic, in Format::least_bytes to Format::bytes bytes.
 struct Data {
   const Subscription* subscription;
   std::string_view bytes;
@@ -51,7 +51,7 @@ struct Defined {
   const Format* format;
 };
 
-// A and R: from here on there may be data of the subscription, or no more.
+// A: data of the subscription may follow. R: no more data of it follow.
 struct Subscribed {
   const Subscription* subscription;
   bool has_ended;
@@ -126,8 +126,9 @@ struct Header {
 
 class Reader {
  public:
-  // Also reads all before the first data, so that find() works at once; next() gives it again.
-  // Errors: unreadable, not a ULog, another version, incompatible flags that attest does not know.
+  // Also reads the messages before the first data, so that find() works at once. next() returns
+  // these messages again. Errors: unreadable, not a ULog, another version, incompatible flags that
+  // attest does not know.
   static Result<Reader> open(const std::filesystem::path& path);
 
   const Header& header() const { return header_; }
@@ -144,7 +145,7 @@ class Reader {
   std::uint64_t offset() const { return offset_; }
   bool is_appended() const { return section_ > 0; }
 
-  // So far. Messages of an unknown type are skipped, and are no damage.
+  // The damage found so far. Messages of an unknown type are skipped and do not count as damage.
   const Damage& damage() const { return damage_; }
   std::uint64_t unknown_messages() const { return unknown_messages_; }
 
@@ -155,7 +156,7 @@ class Reader {
   // The bytes of the file from `offset` on: `count` or more, at most 1 MiB; fewer only before end_.
   std::string_view bytes_at(std::uint64_t offset, std::size_t count);
   void fill_buffer(std::uint64_t offset);
-  // Give the message and return true, or count what is wrong with it.
+  // Each sets `message` and returns true, or counts the damage and returns false.
   bool accept(char type, std::string_view body, Message& message);
   bool accept_data(std::string_view body, Message& message);
   bool accept_value(char type, std::string_view body, Message& message);

@@ -19,9 +19,9 @@
 
 namespace attest::ulog {
 
-// Errors of all functions: the file cannot be written, so commit() fails, too; or, without effect
-// on the file: a message beyond 65535 bytes, a name with other characters than letters, digits and
-// _ (for topics also - and /).
+// Errors of all functions: the file cannot be written; then commit() fails, too. Two more errors
+// have no effect on the file: a message beyond 65535 bytes, and a name with characters other than
+// letters, digits and _ (for topics also - and /).
 class Writer {
  public:
   // `start_us`: since the start of the system.

@@ -29,9 +29,9 @@ struct JudgeOptions {
 CaseResult result_for(const Case& the_case, const RunConfiguration& configuration);
 CaseResult result_for(const Trace& recorded, const std::string& profile);
 
-// Makes the case's inputs at that rate anew, gives them to a fresh unit, and compares the outputs
+// Generates the case's inputs at that rate, gives them to a fresh unit, and compares the outputs
 // with the golden. Errors are those of the environment: a golden that is missing or stale.
-// `saved_traces`, here and below: the folder of save_traces(); empty: not saved.
+// `saved_traces` below is the folder of save_traces(); empty: not saved.
 Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const Golden& golden,
                                  PortHost& host, const JudgeOptions& options);
 
@@ -45,8 +45,8 @@ Result<CaseResult> evaluate_flight(const Case& the_case, const RunConfiguration&
                                    PortHost& host, const std::filesystem::path& saved_traces = {});
 
 // The same at recorded times. These have no golden: the reference flies at the same times for
-// comparison. A bound of the case's metrics that the reference misses at these times is not
-// applied. Errors: the flight cannot be set up; the reference loses the vehicle at these times.
+// comparison. A bound that the reference violates at these times is not applied. Errors: the flight
+// cannot be set up; the reference loses the vehicle at these times.
 Result<CaseResult> evaluate_timed_flight(const Case& the_case,
                                          const RunConfiguration& configuration,
                                          const VehicleModel& vehicle_model,
@@ -58,8 +58,8 @@ Result<CaseResult> evaluate_timed_flight(const Case& the_case,
 std::string how_it_ended(const Flown& flown);
 
 // Gives the recorded inputs to a fresh instance of that module of the port, and compares the
-// outputs with the recorded ones. `got`: becomes the trace with the port's outputs, unless null; up
-// to the fault, if there was one.
+// outputs with the recorded ones. `got`, unless null, becomes the trace with the port's outputs, up
+// to the fault if there was one.
 CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHost& host,
                           const Tolerances& tolerances, Trace* got = nullptr);
 

@@ -24,7 +24,7 @@ struct Limits {
 // The results are in the order of the cases, for any number of jobs.
 struct RunResult {
   std::string attest_version;
-  std::string command = "run";  // of attest, that made it: run or stress
+  std::string command = "run";  // the command of attest that made it: run or stress
   std::string timing;           // the file that was replayed; empty: the cases' own times
   std::string port;             // as given: "lib:./libmine.so"
   std::string port_name;        // declared by the port
@@ -37,7 +37,7 @@ struct RunResult {
   std::vector<LoopRate> rates;      // selected, ascending
   std::string selection;            // the options that selected a part, except --shard
   bool all_configurations = false;  // of each selected case, all were selected
-  Shard shard;                      // of the selected vectors, these were run
+  Shard shard;                      // the part of the selected vectors that was run
   std::size_t selected = 0;         // vectors of that shard
   // "profile/group" -> how many cases the suite has at each rate, selected or not.
   std::map<std::string, std::map<LoopRate, std::size_t>> suite;

@@ -13,7 +13,8 @@
 
 namespace attest {
 
-// Only pass counts as conformant. unsupported, skip and xfail do not fail a run; all others do.
+// Only pass counts as conformant. pass, unsupported, skip and xfail do not fail a run; all others
+// do.
 enum class Verdict {
   pass,
   fail,         // an output differs, or the port reported a failure
@@ -29,7 +30,7 @@ enum class Verdict {
 
 inline constexpr int verdict_count = 10;
 
-// The reason of the one skip that a conformant run may have.
+// The reason of the only kind of skip that a conformant run may have.
 inline constexpr std::string_view exact_level_only =
     "on a threshold of the law: compared at the exact level only";
 
@@ -62,7 +63,7 @@ struct CaseResult {
   std::size_t deviating_ticks = 0;
   std::optional<Deviation> first, worst;
   std::optional<Headroom> tightest;
-  std::vector<MetricResult> metrics;  // of a flight without fault and divergence
+  std::vector<MetricResult> metrics;  // of a flight without fault and early end
   double elapsed_s = 0;  // of wall time, for JUnit only: everything else is deterministic
 
   std::string case_id() const { return profile + "/" + group + "/" + name; }

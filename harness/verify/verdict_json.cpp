@@ -61,7 +61,7 @@ std::size_t channel_from(JsonReader& reader, const char* key) {
   } else if (named.any()) {
     return named._Find_first();
   }
-  reader.wrong(fmt::format("there is no channel `{}`", name));
+  reader.wrong(fmt::format("there is no signal `{}`", name));
   return 0;
 }
 

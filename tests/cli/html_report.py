@@ -76,7 +76,7 @@ class FailingPort(Page):
             self.assertEqual(row["verdict"], result["verdict"])
             self.assertEqual(int(row["ticks"]), result["ticks"])
             self.check_headroom(row, result)
-            self.check_divergence(row, result)
+            self.check_deviation(row, result)
 
     def check_headroom(self, row: dict, result: dict):
         tightest = result.get("tightest")
@@ -85,7 +85,7 @@ class FailingPort(Page):
             self.assertAlmostEqual(float(row["headroom"]) / tightest["ratio"], 1, places=5)
             self.assertEqual(row["tightest"], tightest["channel"])
 
-    def check_divergence(self, row: dict, result: dict):
+    def check_deviation(self, row: dict, result: dict):
         first = result.get("first")
         self.assertEqual(bool(row.get("tick")), first is not None)
         if first is None:

@@ -38,7 +38,7 @@
       list.append(element('dt', {}, name), element('dd', {}, ...value));
     if (row.reason) add('reason', row.reason);
     if (row.signal) {
-      add('first divergence', `tick ${row.tick}, timestamp ${row.time} us`);
+      add('first deviation', `tick ${row.tick}, timestamp ${row.time} us`);
       add('signal', element('strong', {className: 'value'}, row.signal));
       add('port', element('span', {className: 'value'}, row.got));
       add('expected', element('span', {className: 'value'}, row.want));

@@ -38,7 +38,7 @@ void add_conclusion(const RunResult& run, data& page) {
            }));
 }
 
-// The failures without a divergence (a crash, a metric of a flight), counted by reason.
+// The failures without a deviation (a crash, a metric of a flight), counted by reason.
 struct Reason {
   Verdict verdict;
   std::string text;

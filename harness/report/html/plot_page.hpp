@@ -87,7 +87,7 @@ enum class PlotShape {
   points,  // a symbol for each series
 };
 
-// A vertical line: the first divergence, a budget.
+// A vertical line: the first deviation, a budget.
 struct PlotMark {
   double x = 0;
   std::string text;

@@ -14,7 +14,7 @@ inline constexpr std::size_t most_plotted_vectors = 100;
 
 // The failing vectors that the page plots: of each group, the first failing vector at each rate.
 // If these are more than `most`, every group has its first rates. A vector without a first
-// divergence (a crash, a metric of a flight) is left out. In the order of the results.
+// deviation (a crash, a metric of a flight) is left out. In the order of the results.
 std::vector<const CaseResult*> vectors_to_plot(const RunResult& run,
                                                std::size_t most = most_plotted_vectors);
 
@@ -30,7 +30,7 @@ std::vector<const CaseResult*> vectors_to_plot(const RunResult& run,
 //
 // The last five are base64 of float32; time is in seconds from the first tick. `allowed` is a
 // number if it is constant, and absent if the level has no tolerances. `repeated` is false if the
-// traces do not have the first divergence of the result: then the port gave other outputs when it
+// traces do not have the first deviation of the result: then the port gave other outputs when it
 // ran again for its traces. `hidden` counts further deviating signals.
 std::string plots_json(const RunResult& run, const std::filesystem::path& folder,
                        std::size_t most_bytes);

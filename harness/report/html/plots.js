@@ -29,7 +29,7 @@
 
   const isFlag = (curves) => [...curves.got, ...curves.want].every((v) => v === 0 || v === 1);
 
-  // The line at the first divergence, and crosses where the port's value is not finite.
+  // The line at the first deviation, and crosses where the port's value is not finite.
   const marks = (curves, marked) => (context, area, plot) => {
     if (marked !== null) {
       const x = Math.round(plot.toDomXCoord(marked)) + 0.5;
@@ -203,7 +203,7 @@
     return element(
       'p',
       {className: 'tools'},
-      element('button', {type: 'button', onclick: near}, 'Zoom to the first divergence'),
+      element('button', {type: 'button', onclick: near}, 'Zoom to the first deviation'),
       element('button', {type: 'button', onclick: () => zoomTo(null)}, 'Whole trace'),
       element(
         'span',

@@ -193,7 +193,7 @@ TEST(CaseErrors, Tolerances) {
   EXPECT_THAT(errors_of("[tolerance]\nvehicle_rates_setpoint = { absolute = 1 }\n"),
               HasSubstr("6:2: missing key `why`"));
   EXPECT_THAT(errors_of(head + "vehicle_rate_setpoint = { absolute = 1 }\n"),
-              HasSubstr("8:1: `vehicle_rate_setpoint` is no output topic or channel"));
+              HasSubstr("8:1: `vehicle_rate_setpoint` is no output topic or signal"));
   EXPECT_THAT(errors_of(head + "vehicle_rates_setpoint = { relative = 1 }\n"),
               HasSubstr("missing key `absolute`"));
   for (const char* value : {"-1", "nan", "inf"}) {

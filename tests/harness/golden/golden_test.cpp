@@ -301,7 +301,7 @@ TEST_F(GoldenOfAFlight, ReportsWhatBlessingWouldChange) {
   MadeGolden other = made;
   other.traces[0].trace.samples[3].out.vehicle_rates_setpoint.roll += 1;
   EXPECT_THAT(change_of_golden(a_case(), other, root()),
-              HasSubstr("1 of 2 traces, 1 ticks, 1 channels; at most by 1 in"));
+              HasSubstr("1 of 2 traces, 1 ticks, 1 signals; at most by 1 in"));
   other = made;
   other.traces[1].horizon_s = 0.3;
   EXPECT_THAT(change_of_golden(a_case(), other, root()), HasSubstr("horizons or metrics did"));

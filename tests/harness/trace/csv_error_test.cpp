@@ -240,7 +240,7 @@ TEST_F(CsvErrors, ColumnThatIsAlsoAConstant) {
 TEST_F(CsvErrors, BrokenProvenance) {
   directory_.write("provenance.toml", "[constants]\n'in/battery_status.skale' = 1\n");
   EXPECT_EQ(error_of(Sheet::recorded().text()),
-            "provenance.toml:2:1: unknown channel `in/battery_status.skale`; did you mean "
+            "provenance.toml:2:1: unknown signal `in/battery_status.skale`; did you mean "
             "`in/battery_status.scale`?");
 }
 

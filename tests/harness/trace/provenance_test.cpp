@@ -93,7 +93,7 @@ TEST_F(ProvenanceFile, NamesWhatIsWrongWithAConstant) {
                      "'in/parameter.' = 2\n"
                      "'in/parameter.P' = 'x'\n"),
             "2:1: `timestamp` cannot be a constant; record it as a column\n"
-            "3:1: unknown channel `in/battery_status.skale`; did you mean "
+            "3:1: unknown signal `in/battery_status.skale`; did you mean "
             "`in/battery_status.scale`?\n"
             "4:1: 1e+39 is too large for `in/battery_status.scale`, a 32-bit float\n"
             "5:1: 256 is not a flag for `in/actuator_armed.armed`; write an integer from 0 to 255\n"
@@ -102,7 +102,7 @@ TEST_F(ProvenanceFile, NamesWhatIsWrongWithAConstant) {
             "7:1: nan is not a flag for `in/vehicle_status.is_rotary_wing`; write an integer from "
             "0 to 255\n"
             "8:1: 2 is not a bit for `in/updated.battery_status`; write 0 or 1\n"
-            "9:1: unknown channel `in/parameter.`\n"
+            "9:1: unknown signal `in/parameter.`\n"
             "10:1: `in/parameter.P` must be a number, found text");
 }
 

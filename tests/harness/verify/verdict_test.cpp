@@ -245,7 +245,7 @@ TEST(VerdictJson, NothingIsTakenOnTrust) {
   EXPECT_THAT(complaint(with_member("/vehicle", "iris")), HasSubstr("`plant` is missing"));
   EXPECT_THAT(complaint(with_member("/metrics", json::array({3}))), HasSubstr("not an object"));
   EXPECT_THAT(complaint(with_member("/first", "x")), HasSubstr("not an object"));
-  EXPECT_THAT(complaint(with_member("/first/channel", "out/x")), HasSubstr("channel `out/x`"));
+  EXPECT_THAT(complaint(with_member("/first/channel", "out/x")), HasSubstr("signal `out/x`"));
   EXPECT_THAT(complaint(with_member("/first/ulp", 0.5)), HasSubstr("`ulp` is not an integer"));
   EXPECT_THAT(complaint(with_member("/first/got_bits", "0xzzzzzzzz")), HasSubstr("8 hex digits"));
   EXPECT_THAT(complaint(with_member("/first/got_bits", "0x1")), HasSubstr("8 hex digits"));

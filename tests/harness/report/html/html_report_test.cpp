@@ -90,7 +90,7 @@ TEST(HtmlReport, CountsFailuresWithoutADivergenceByReason) {
       *std::find_if(run.results.begin(), run.results.end(),
                     [](const CaseResult& result) { return result.verdict == Verdict::timeout; }));
   EXPECT_THAT(page_of(run), HasSubstr("2 timeout</b>: no answer within 10 s"));
-  EXPECT_THAT(page_of(passing_run()), Not(HasSubstr("Failures without a divergence")));
+  EXPECT_THAT(page_of(passing_run()), Not(HasSubstr("Failures without a deviation")));
 }
 
 TEST(HtmlReport, IsTheSameForTheSameRun) {

@@ -38,7 +38,7 @@ TEST(VectorsToPlot, AreTheFirstFailureOfEachGroupAndRate) {
                  failed("attitude", "c", 250), failed("attitude", "c", 500),
                  failed("tpa", "d", 500)};
   run.results.push_back(failed("mixer", "e", 250));
-  run.results.back().first.reset();  // a crash has no divergence
+  run.results.back().first.reset();  // a crash has no deviation
   EXPECT_THAT(ids(vectors_to_plot(run)),
               ElementsAre("px4-v1.5.5/attitude/b@250hz", "px4-v1.5.5/attitude/c@500hz",
                           "px4-v1.5.5/tpa/d@500hz"));
