@@ -1,4 +1,4 @@
-// The attitude law (section 2): from an attitude and its setpoint to a setpoint of body rates.
+// The attitude law: from an attitude and its setpoint to a setpoint of body rates.
 //
 // Tilt and yaw are separated. The tilt is corrected by the shortest rotation of the thrust axis. Of
 // the remaining yaw error only a share (MC_YAW_WEIGHT) is corrected, because yaw is slow. The rates

@@ -1,4 +1,4 @@
-// The attitude unit (section 3): one step for each vehicle_attitude sample.
+// The attitude unit: one step for each vehicle_attitude sample.
 //
 //     parameters, hover thrust estimate, dt of the samples
 //     v1.14.4: attitude setpoint, reset of the estimator

@@ -10,7 +10,6 @@
 
 namespace attest::cascade {
 
-// Section 2.
 template <typename Scalar>
 struct AttitudeGains {
   Vector3<Scalar> proportional_1_s;  // rate setpoint for each radian of error
@@ -20,7 +19,6 @@ struct AttitudeGains {
 
 enum class ThrottleCurve { through_hover_estimate, straight, through_hover_parameter };
 
-// Section 4.
 template <typename Scalar>
 struct StickGains {
   Scalar tilt_max_rad;
@@ -43,7 +41,6 @@ struct AttitudeUnitGains {
   Scalar spoolup_us;
 };
 
-// Section 5.
 template <typename Scalar>
 struct RateGains {
   Vector3<Scalar> proportional;
@@ -53,7 +50,6 @@ struct RateGains {
   Vector3<Scalar> integral_max;
 };
 
-// Section 6.
 template <typename Scalar>
 struct AcroGains {
   Vector3<Scalar> rate_max_rad_s;

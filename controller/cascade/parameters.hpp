@@ -1,7 +1,7 @@
 // The parameters of the cascade: a table for each unit with names, defaults, bounds, units and
 // meanings, and the raw values.
 //
-// Names, defaults and bounds are those of PX4 v1.14.4, v1.15.4 and v1.16.0 (section 6). Angles and
+// Names, defaults and bounds are those of PX4 v1.14.4, v1.15.4 and v1.16.0. Angles and
 // angular rates of parameters are in degrees; everything computed from them is in radians
 // (gains.hpp). The law accepts any value: the bounds are those of the ground station.
 //

@@ -35,7 +35,6 @@ struct ProfileTraits {
 
 // A new profile needs its traits here: the compiler warns if it has none.
 constexpr ProfileTraits traits_of(Profile profile) {
-  // Section 7.
   constexpr ProfileTraits v1_15_4{.name = "px4-v1.15.4",
                                   .filters_yaw_torque = false,
                                   .follows_hover_estimate = false,
@@ -47,7 +46,7 @@ constexpr ProfileTraits traits_of(Profile profile) {
                                   .weighs_low_pass = false};
   ProfileTraits traits = v1_15_4;
   switch (profile) {
-    case Profile::px4_v1_16_0:  // sections 1 to 6
+    case Profile::px4_v1_16_0:
       traits.name = "px4-v1.16.0";
       traits.filters_yaw_torque = true;
       traits.follows_hover_estimate = true;
@@ -55,7 +54,7 @@ constexpr ProfileTraits traits_of(Profile profile) {
       return traits;
     case Profile::px4_v1_15_4:
       return traits;
-    case Profile::px4_v1_14_4:  // section 8
+    case Profile::px4_v1_14_4:
       traits.name = "px4-v1.14.4";
       traits.spools_up = false;
       traits.latches_in_every_step = true;

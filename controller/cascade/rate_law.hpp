@@ -1,4 +1,4 @@
-// The rate law (section 5): from body rates and their setpoint to dimensionless torques.
+// The rate law: from body rates and their setpoint to dimensionless torques.
 //
 // P, I and D with a feed-forward of the setpoint. D acts on the angular acceleration, which the
 // host filters. The integral grows less with more error, keeps away from saturated actuators, and
@@ -40,7 +40,6 @@ struct RateStages {
   using Vector = Vector3<Scalar>;
   using Allocation = decltype(attest_rate_inputs::control_allocator_status);
 
-  // Section 6.6.
   ATTEST_INLINE static Saturation saturation(const Allocation& status) {
     Saturation flags;
     if (status.torque_setpoint_achieved != 0) return flags;

@@ -1,4 +1,4 @@
-// The rate unit (section 6): one step for each vehicle_angular_velocity sample.
+// The rate unit: one step for each vehicle_angular_velocity sample.
 //
 //     parameters, dt of the samples, latch the topics that were updated
 //     acro: a new stick sample publishes a rates setpoint

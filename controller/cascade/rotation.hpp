@@ -1,4 +1,4 @@
-// Vectors and rotations, with the expressions of the law (section 1).
+// Vectors and rotations, with the expressions of the law.
 //
 // Quaternions are Hamilton, {w, x, y, z}, and rotate body FRD into world NED. No function but
 // unit() normalises. The result of the law for a quaternion of another norm is defined by exactly

@@ -1,4 +1,4 @@
-// The scalar functions of the law (section 1): angles, limits, filters and stick curves.
+// The scalar functions of the law: angles, limits, filters and stick curves.
 //
 // Each is one expression, in the order of the law, on which the last bit depends. Scalar is float
 // in the law; another type computes the same expressions with the same binary32 constants. NaN is

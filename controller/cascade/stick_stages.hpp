@@ -1,4 +1,4 @@
-// The stages of the stabilized mode (section 4): what each stick means.
+// The stages of the stabilized mode: what each stick means.
 //
 // Sticks [-1..1], angles [rad], yaw rates [rad/s] about the world's z axis, thrust [0..1]. Pure
 // functions of their arguments; any thread.
@@ -12,7 +12,7 @@
 
 namespace attest::cascade {
 
-// The thrust limits that follow landing and arming, and the hover thrust (section 3.8).
+// The thrust limits that follow landing and arming, and the hover thrust.
 template <typename Scalar>
 struct ThrustLimits {
   Scalar min = Scalar(0);
@@ -20,7 +20,7 @@ struct ThrustLimits {
   Scalar hover = Scalar(0);
 };
 
-// The slow drift of the heading, measured against a heading of the gyros alone (section 4.2). While
+// The slow drift of the heading, measured against a heading of the gyros alone. While
 // the estimator converges to a new heading, the vehicle must not follow it.
 template <typename Scalar>
 struct YawCorrection {

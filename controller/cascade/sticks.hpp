@@ -1,4 +1,4 @@
-// The stabilized mode (section 4): an attitude setpoint of the sticks.
+// The stabilized mode: an attitude setpoint of the sticks.
 //
 // Roll and pitch stick are a tilt, the yaw stick is a yaw rate about the world's z axis, throttle
 // is thrust. With a centred yaw stick v1.16.0 holds the heading; older profiles integrate the rate.
@@ -46,13 +46,13 @@ class Sticks {
   // A step in stabilized mode. The setpoint has no timestamp yet. REQUIRES: set_gains() was called.
   AttitudeSetpoint<Scalar> update(const StickInput<Scalar>& in);
 
-  // A step in another mode. `runs`: the unit controls the attitude in this step (section 3.6).
+  // A step in another mode. `runs`: the unit controls the attitude in this step.
   void release(const Quaternion<Scalar>& q_WB, Scalar unaided_heading, bool runs);
 
-  // The estimator was reset by the rotation `delta` (section 3.7).
+  // The estimator was reset by the rotation `delta`.
   void reset_heading(const Quaternion<Scalar>& delta);
 
-  // Until v1.15.4: whether the next step starts from the heading (section 7).
+  // Until v1.15.4: whether the next step starts from the heading.
   void set_restart(bool restart) { restart_ = restart; }
 
  private:

@@ -58,7 +58,7 @@ RC_GTEST_PROP(CascadeAttitudeLaw, LimitsHoldAfterTheFeedForward, ()) {
   for (int i = 0; i < 3; ++i) RC_ASSERT(std::abs(rates[i]) <= max[i]);
 }
 
-// The error bound of section 2, up to a tilt of 179 deg and a remaining yaw of 179 deg.
+// Up to a tilt of 179 deg and a remaining yaw of 179 deg.
 RC_GTEST_PROP(CascadeAttitudeLaw, AgreesWithDoubleAwayFromHalfTurns, ()) {
   const test::Quaterniond q = *test::any_attitude();
   const test::Quaterniond tilt =

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
- * attitude.h - the attitude unit: attitude to body rates. Sections 2 to 4 of the law.
+ * attitude.h - the attitude unit: attitude to body rates.
  *
- *     attitude_unit.c  the table of functions, the parameters, and one step (section 3)
- *     attitude_law.c   attitude error to rates, without topics or time (section 2)
- *     sticks.c         stabilized mode: sticks to an attitude setpoint (section 4)
+ *     attitude_unit.c  the table of functions, the parameters, and one step
+ *     attitude_law.c   attitude error to rates, without topics or time
+ *     sticks.c         stabilized mode: sticks to an attitude setpoint
  *
  * World is NED, body is FRD, rates are [rad/s] about body x, y, z. Everything is binary32 and is
  * evaluated as written: compile with -ffp-contract=off and without -ffast-math.
@@ -117,7 +117,7 @@ static inline float attitude_heading(const attitude_unit* u, quat q) {
 
 /* ---- sticks ----------------------------------------------------------------------------------*/
 
-/* Parameters were read (sections 3.1 and 4). */
+/* Parameters were read. */
 void sticks_read_parameters(attitude_unit* u);
 
 /* The setpoint of the sticks for attitude q. Its timestamp is left 0. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
- * The attitude law, section 2: thrust axis first, then yaw.
+ * The attitude law: thrust axis first, then yaw.
  *
  * After D. Brescianini, M. Hehn, R. D'Andrea, "Nonlinear Quadrocopter Attitude Control" (2013).
  */

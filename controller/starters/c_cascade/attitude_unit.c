@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The attitude unit: its parameters, and one step. Section 3 of the law. */
+/* The attitude unit: its parameters, and one step. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -50,7 +50,6 @@ static void receive_setpoint(attitude_unit* u, const attest_attitude_inputs* in)
   u->sample_pending = true;
 }
 
-/* Section 3.2. */
 static void latch_hover_estimate(attitude_unit* u, const attest_attitude_inputs* in) {
   if (!u->profile->hover_estimate) return;
   if (!(in->updated & ATTEST_ATTITUDE_UPDATED_HOVER_THRUST_ESTIMATE)) return;
@@ -69,7 +68,7 @@ static void latch_vehicle_status(attitude_unit* u, const attest_attitude_inputs*
   u->spooled_up = in->vehicle_status.armed && armed_for > u->parameters.spoolup_time * 1e6f;
 }
 
-/* The topics of section 3.4. Every step latches them, so that none of them can be pending. */
+/* Topics that every step latches, so that none of them can be pending. */
 static void latch_topics(attitude_unit* u, const attest_attitude_inputs* in) {
   if (in->updated & ATTEST_ATTITUDE_UPDATED_MANUAL_CONTROL_SETPOINT) {
     u->roll = in->manual_control_setpoint.roll;
@@ -102,7 +101,7 @@ static void use_sample(attitude_unit* u) {
   u->setpoint_time = u->sample.timestamp;
 }
 
-/* Section 3.7: the newest setpoint, then a reset of the estimator. */
+/* The newest setpoint, then a reset of the estimator. */
 static void follow_setpoint(attitude_unit* u, const attest_attitude_inputs* in) {
   if (u->sample_pending) {
     u->sample_pending = false;
@@ -117,12 +116,12 @@ static void follow_setpoint(attitude_unit* u, const attest_attitude_inputs* in) 
   }
 }
 
-/* Section 4.9. The unit sees its own publication: it takes the place of a sample from outside. */
+/* The unit sees its own publication: it takes the place of a sample from outside. */
 static void publish_setpoint(attitude_unit* u, const attitude_setpoint* sp,
                              attest_attitude_outputs* out) {
   u->sample = *sp;
   u->sample_pending = true;
-  if (u->profile->setpoint_first) use_sample(u); /* section 8 */
+  if (u->profile->setpoint_first) use_sample(u);
 
   const float q_d[4] = {sp->q_d.w, sp->q_d.x, sp->q_d.y, sp->q_d.z};
   memcpy(out->vehicle_attitude_setpoint.q_d, q_d, sizeof q_d);

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
  * port.h - the parts that both units share: the profiles, as data, and tables of parameters.
- *
- * Sections in comments are those of the law of px4-v1.16.0. Section 7 lists the differences of
- * px4-v1.15.4, section 8 those of px4-v1.14.4.
  */
 #ifndef ATTEST_STARTER_PORT_H
 #define ATTEST_STARTER_PORT_H

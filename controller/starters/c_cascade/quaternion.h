@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
- * quaternion.h - vectors and quaternions of the attitude unit (section 1 of the law).
+ * quaternion.h - vectors and quaternions of the attitude unit.
  *
  * Quaternions are Hamilton, scalar first, body FRD to world NED. They may have any norm: only
  * quat_unit() normalises. The order of every sum, and products with a factor of 0, are part of the

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The rate unit: body rates to torque. Sections 5 and 6 of the law. */
+/* The rate unit: body rates to torque. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -99,7 +99,7 @@ static void read_parameters(rate_unit* u) {
       p->yaw_torque_cutoff > FLT_EPSILON ? 1.0f / (6.28318548f * p->yaw_torque_cutoff) : 0.0f;
 }
 
-/* ---- the rate law (section 5) ----------------------------------------------------------------*/
+/* ---- the rate law ----------------------------------------------------------------------------*/
 
 /* The next value of one integral. */
 static float integrate(const rate_unit* u, int axis, float err, float dt) {
@@ -127,7 +127,7 @@ static void rate_law(rate_unit* u, const float rates[3], const float accel[3], f
   }
 }
 
-/* ---- one step (section 6) --------------------------------------------------------------------*/
+/* ---- one step --------------------------------------------------------------------------------*/
 
 /* Removes `bit` from the pending samples. Returns whether it was set. */
 static bool take(rate_unit* u, uint32_t bit) {
@@ -136,7 +136,7 @@ static bool take(rate_unit* u, uint32_t bit) {
   return was_pending;
 }
 
-/* Parameters, and the topics that every step latches (sections 6.1 and 6.2). */
+/* Parameters, and the topics that every step latches. */
 static void latch_topics(rate_unit* u, const attest_rate_inputs* in) {
   u->pending |= in->updated;
   if (in->updated & ATTEST_RATE_UPDATED_VEHICLE_RATES_SETPOINT) {
@@ -164,7 +164,7 @@ static void latch_topics(rate_unit* u, const attest_rate_inputs* in) {
   }
 }
 
-/* Sets the setpoint from new sticks (section 6.3). Without new sticks it stays. */
+/* Sets the setpoint from new sticks. Without new sticks it stays. */
 static void acro(rate_unit* u, const attest_rate_inputs* in, attest_rate_outputs* out) {
   if (!take(u, ATTEST_RATE_UPDATED_MANUAL_CONTROL_SETPOINT)) return;
   const parameters* p = &u->parameters;
@@ -192,7 +192,7 @@ static void acro(rate_unit* u, const attest_rate_inputs* in, attest_rate_outputs
   u->pending |= ATTEST_RATE_UPDATED_VEHICLE_RATES_SETPOINT;
 }
 
-/* An axis without a finite setpoint holds the rate measured now (section 6.3). */
+/* An axis without a finite setpoint holds the rate measured now. */
 static void follow_setpoint(rate_unit* u, const float rates[3]) {
   if (!take(u, ATTEST_RATE_UPDATED_VEHICLE_RATES_SETPOINT)) return;
   u->setpoint = u->sample;
@@ -201,7 +201,7 @@ static void follow_setpoint(rate_unit* u, const float rates[3]) {
   }
 }
 
-/* Section 6.6. Positive unallocated torque: the motors cannot give more positive torque. */
+/* Positive unallocated torque: the motors cannot give more positive torque. */
 static void latch_saturation(rate_unit* u, const attest_rate_inputs* in) {
   if (!take(u, ATTEST_RATE_UPDATED_CONTROL_ALLOCATOR_STATUS)) return;
   const bool achieved = in->control_allocator_status.torque_setpoint_achieved != 0;
@@ -212,7 +212,7 @@ static void latch_saturation(rate_unit* u, const attest_rate_inputs* in) {
   }
 }
 
-/* Section 6.10. A low battery gives less thrust for the same command; the scale makes up for it.
+/* A low battery gives less thrust for the same command; the scale makes up for it.
  * While this is switched off, samples of the battery stay pending. */
 static void compensate_battery(rate_unit* u, const attest_rate_inputs* in, float thrust[3],
                                float torque[3]) {
@@ -235,7 +235,7 @@ static void publish_integral(const rate_unit* u, attest_rate_outputs* out) {
   out->rate_ctrl_status.published = 1;
 }
 
-/* Sections 6.5 to 6.11: the steps of a unit that controls rates. */
+/* The steps of a unit that controls rates. */
 static void control_rates(rate_unit* u, const attest_rate_inputs* in, float dt,
                           attest_rate_outputs* out) {
   if (!u->armed || !u->rotary_wing) memset(u->integral, 0, sizeof u->integral);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
  * scalar.h - the functions of one number that both units share: limits, angles, filters and stick
- * curves (section 1 of the law).
+ * curves.
  *
  * Every comparison is written so that a NaN takes the branch that the law gives it. fminf and fmaxf
  * would drop a NaN, so they are not used. Filters keep their state in the instance.

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Stabilized mode, section 4 of the law: sticks to an attitude setpoint. */
+/* Stabilized mode: sticks to an attitude setpoint. */
 #include "attitude.h"
 
 static const vec3 world_z = {0.0f, 0.0f, 1.0f};
@@ -11,7 +11,7 @@ static bool lacks_yaw_authority(const attitude_unit* u) {
 
 /* ---- yaw -------------------------------------------------------------------------------------*/
 
-/* Section 4.2. While the estimate of the heading converges, it changes although the vehicle does
+/* While the estimate of the heading converges, it changes although the vehicle does
  * not turn. The unaided heading comes from the gyros alone and shows this. The result [rad] is the
  * change since the estimate was last steady. The yaw setpoint moves by it. */
 static float yaw_correction(attitude_unit* u, float heading, float dt) {
@@ -29,7 +29,7 @@ static float yaw_correction(attitude_unit* u, float heading, float dt) {
   return wrap(error - s->yaw_ref);
 }
 
-/* Sections 4.1 to 4.4: a centred stick locks the heading. Returns the yaw of the setpoint. */
+/* A centred stick locks the heading. Returns the yaw of the setpoint. */
 static float lock_yaw(attitude_unit* u, float heading, float dt, float* yaw_rate) {
   const attitude_parameters* p = &u->parameters;
   stick_state* s = &u->sticks;
@@ -51,7 +51,7 @@ static float lock_yaw(attitude_unit* u, float heading, float dt, float* yaw_rate
   return isfinite(s->yaw_sp) ? s->yaw_sp : heading;
 }
 
-/* Section 7, before v1.16: the setpoint is the integral of the stick. */
+/* Before v1.16: the setpoint is the integral of the stick. */
 static float integrate_yaw(attitude_unit* u, float heading, float dt, float* yaw_rate) {
   stick_state* s = &u->sticks;
   *yaw_rate = u->yaw * u->stick_yaw_max;
@@ -73,7 +73,7 @@ static float filter_tilt(const attitude_unit* u, lowpass* f, float dt, float x) 
   return f->state;
 }
 
-/* Section 4.5. The rotation about a horizontal axis that the roll and pitch sticks ask for. */
+/* The rotation about a horizontal axis that the roll and pitch sticks ask for. */
 static quat stick_tilt(attitude_unit* u, float dt) {
   const float limit = u->stick_tilt_max;
   const float roll = filter_tilt(u, &u->sticks.roll, dt, u->roll * limit);
@@ -84,7 +84,7 @@ static quat stick_tilt(attitude_unit* u, float dt) {
   return quat_of_rotation_vector(v);
 }
 
-/* Section 4.6, VTOL. The yaw error may be large, because the wind turns the vehicle. The sticks act
+/* VTOL. The yaw error may be large, because the wind turns the vehicle. The sticks act
  * about the present heading. So the tilt is turned by the yaw error, because the law applies it
  * about the yaw of the setpoint. */
 static quat tilt_for_yaw_error(quat tilt, quat yaw, quat q) {
@@ -93,9 +93,9 @@ static quat tilt_for_yaw_error(quat tilt, quat yaw, quat q) {
   return quat_between(world_z, quat_z_axis(quat_multiply(yaw_error, tilt)));
 }
 
-/* ---- throttle (section 4.8) ------------------------------------------------------------------*/
+/* ---- throttle --------------------------------------------------------------------------------*/
 
-/* Section 8, v1.14.4: limits that do not slew. */
+/* v1.14.4: limits that do not slew. */
 static float fixed_throttle(const attitude_parameters* p, float stick) {
   const float s = (stick + 1.0f) * 0.5f;
   if (p->throttle_curve == 1.0f) return line(s, 0.0f, 1.0f, p->throttle_min, p->throttle_max);
@@ -106,7 +106,7 @@ static float fixed_throttle(const attitude_parameters* p, float stick) {
                : line(s, 0.0f, 0.5f, p->throttle_min, p->throttle_hover);
 }
 
-/* Section 4.8, since v1.15. */
+/* Since v1.15: limits that slew after arming and landing. */
 static float slewed_throttle(const attitude_unit* u, float stick) {
   const attitude_parameters* p = &u->parameters;
   const stick_state* s = &u->sticks;
@@ -122,7 +122,7 @@ static float slewed_throttle(const attitude_unit* u, float stick) {
   return min(thrust, s->throttle_max);
 }
 
-/* ---- interface ------------------------------------------------------------------------------*/
+/* ---- interface -------------------------------------------------------------------------------*/
 
 void sticks_read_parameters(attitude_unit* u) {
   u->stick_tilt_max = rad(u->parameters.tilt_max);
@@ -143,7 +143,6 @@ attitude_setpoint sticks_setpoint(attitude_unit* u, quat q, float dt) {
   return sp;
 }
 
-/* Section 3.6. */
 void sticks_release(attitude_unit* u, quat q, bool run) {
   stick_state* s = &u->sticks;
   if (run || u->profile->yaw_lock) {
@@ -157,7 +156,6 @@ void sticks_release(attitude_unit* u, quat q, bool run) {
   }
 }
 
-/* Section 3.7. */
 void sticks_adapt(attitude_unit* u, float turn) {
   stick_state* s = &u->sticks;
   if (isfinite(s->yaw_sp)) s->yaw_sp = wrap(s->yaw_sp + turn);
@@ -165,7 +163,6 @@ void sticks_adapt(attitude_unit* u, float turn) {
   s->yaw_ref = wrap(s->yaw_ref + turn);
 }
 
-/* Sections 3.8 and 7. */
 void sticks_finish(attitude_unit* u, bool used, float dt) {
   stick_state* s = &u->sticks;
   s->throttle_min = slew(s->throttle_min, 0.05f, dt, u->landed ? 0.0f : u->parameters.throttle_min);
