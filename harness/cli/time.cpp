@@ -20,17 +20,17 @@
 namespace attest::cli {
 namespace {
 
-// The open-loop cases of the controller. The steps of a flight cannot be repeated without flying it
-// again, and their inputs add no new kind of step.
+// The open-loop cases of units. The steps of a flight cannot be repeated without flying it again,
+// and their inputs add no new kind of step.
 Result<std::vector<SelectedCase>> open_loop_cases(const TimeCommandOptions& options,
                                                   const SuiteFolder& suite) {
   auto cases = options.select.cases_in(suite.case_folders());
   if (!cases) return cases;
   std::erase_if(*cases, [](const SelectedCase& one) {
-    return one.the_case.flight || one.the_case.module != Module::mc_att_control;
+    return one.the_case.flight || !info_of(one.the_case.module).has_updated;
   });
   if (cases->empty())
-    return fail("no open-loop case of the controller is selected, and only these can be timed");
+    return fail("no open-loop case of a unit is selected, and only these can be timed");
   return cases;
 }
 
@@ -104,10 +104,16 @@ Result<void> write_reports(const TimeCommandOptions& options, const TimeRun& run
   return options.html.empty() ? Result<void>() : write_file(options.html, time_page(run));
 }
 
-int report(const TimeRun& run, const Globals& globals) {
+int report(const TimeCommandOptions& options, const TimeRun& run, bool quiet) {
   const bool over = run.times.steps.over_limit() > run.allowed;
   const bool failed = over || is_wrong(run);
-  if (!globals.quiet || failed) fmt::print("{}{}", render_times(run), exchange_note(run.port));
+  if (quiet && !failed) return exit_ok;
+  fmt::print("{}{}", render_times(run), exchange_note(run.port));
+  const std::string worst = options.measure.worst.string();
+  if (!worst.empty()) {
+    fmt::print("the slowest step again: attest replay {} --profile {}\n", worst,
+               run.times.with_slowest_step()->result.profile);
+  }
   return failed ? exit_failed : exit_ok;
 }
 
@@ -145,7 +151,7 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
   if (const auto written = write_reports(options, run); !written) {
     return report_error(written.error());
   }
-  return report(run, globals);
+  return report(options, run, globals.quiet);
 }
 
 }  // namespace attest::cli
