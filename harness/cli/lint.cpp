@@ -18,17 +18,19 @@ void print_refused(const VectorMargin& vector) {
 }
 
 void print_nearest(const SuiteMargins& margins) {
-  fmt::print("{:<20} {:>9} {:>9}  {}\n", "decision", "nearest", "bound", "where");
+  fmt::print("{:<21} {:>9} {:>9}  {}\n", "decision", "nearest", "bound", "where");
   for (const auto& [the_case, configuration, decision, margin] : margins.nearest) {
     if (the_case == nullptr) continue;
-    fmt::print("{:<20} {:>9.2g} {:>9.2g}  {}@{} at tick {}\n", name_of(decision), margin.distance,
+    fmt::print("{:<21} {:>9.2g} {:>9.2g}  {}@{} at tick {}\n", name_of(decision), margin.distance,
                least_margin(decision), the_case->id(), configuration.label(), margin.tick);
   }
   fmt::print("{} numeric vectors, {} too near to a decision", margins.vectors,
              margins.too_near.size());
   if (margins.not_measured == 0) return fmt::print("\n");
-  fmt::print("; {} of other modules, whose distance to decisions is not measured\n",
-             margins.not_measured);
+  fmt::print(
+      "; {} of battery estimates and unknown profiles, which have no decisions that attest "
+      "knows\n",
+      margins.not_measured);
 }
 
 }  // namespace

@@ -20,17 +20,17 @@
 namespace attest::cli {
 namespace {
 
-// The open-loop cases of the controller. The steps of a flight cannot be repeated without flying it
-// again, and their inputs add no new kind of step.
+// The open-loop cases of units. The steps of a flight cannot be repeated without flying it again,
+// and their inputs add no new kind of step.
 Result<std::vector<SelectedCase>> open_loop_cases(const TimeCommandOptions& options,
                                                   const SuiteFolder& suite) {
   auto cases = options.select.cases_in(suite.case_folders());
   if (!cases) return cases;
   std::erase_if(*cases, [](const SelectedCase& one) {
-    return one.the_case.flight || one.the_case.module != Module::mc_att_control;
+    return one.the_case.flight || !info_of(one.the_case.module).has_updated;
   });
   if (cases->empty())
-    return fail("no open-loop case of the controller is selected, and only these can be timed");
+    return fail("no open-loop case of a unit is selected, and only these can be timed");
   return cases;
 }
 
@@ -42,10 +42,79 @@ std::vector<std::uint64_t> counted(const TimeCommandOptions& options, const Suit
                                    const std::string& id) {
   std::error_code ignored;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", ignored);
-  return instructions_of_calls(
+  auto counts = instructions_of_calls(
       {self.string(), "--suite", suite.root.string(), "--quiet", "time", "--port",
        options.host.port, "--filter", id, "--repeat", "1", "--no-stack", "--in-process"},
       counted_step_symbol, {options.host.timeout_s * counting_is_slower_by, interrupted});
+  if (counts.empty() && !interrupted()) {
+    fmt::print(stderr, "attest: no instructions were counted: valgrind is missing, or failed\n");
+  }
+  return counts;
+}
+
+Result<void> check(const TimeCommandOptions& options, const SuiteFolder& suite) {
+  if (options.instructions && is_program(options.host.port)) {
+    return fail(
+        "--instructions counts those of a library: a program has a process of its own; run "
+        "valgrind on the program itself");
+  }
+  return check_outputs({options.html, options.json, options.measure.worst}, {options.host.port, {}},
+                       suite);
+}
+
+// Those of the command, for a port that Ctrl-C stops.
+Result<HostOptions> host_for(const TimeCommandOptions& options) {
+  const auto port = describe_port(options.host);
+  if (!port) return tl::unexpected(port.error());
+  HostOptions host = options.host;
+  host.stop = interrupted;
+  host.hangs = port->hangs;
+  return host;
+}
+
+Result<CorpusTimes> timed(const TimeCommandOptions& options, const HostOptions& host,
+                          const std::vector<SelectedCase>& cases, bool quiet) {
+  std::size_t vectors = 0;
+  for (const SelectedCase& selected : cases) vectors += selected.configurations.size();
+  Progress progress(vectors, Progress::on_stderr(quiet));
+  TimeOptions measure = options.measure;
+  measure.stack = measure.stack && !is_program(host.port);  // it is in another process
+  auto times =
+      time_corpus(cases, measure, host, [&](const CaseResult& result) { progress.add(result); });
+  progress.finish();
+  return times;
+}
+
+bool is_wrong(const TimeRun& run) {
+  const auto& vectors = run.times.vectors;
+  return std::any_of(vectors.begin(), vectors.end(),
+                     [](const VectorTimes& vector) { return fails_a_run(vector.result.verdict); });
+}
+
+int report_untimed(const TimeRun& run) {
+  if (is_wrong(run)) {
+    fmt::print("{}", what_went_wrong(run));
+    return exit_failed;
+  }
+  return report_error({"no vector was timed: every selected vector was skipped or unsupported"});
+}
+
+Result<void> write_reports(const TimeCommandOptions& options, const TimeRun& run) {
+  if (auto written = write_file(options.json, time_json(run)); !written) return written;
+  return options.html.empty() ? Result<void>() : write_file(options.html, time_page(run));
+}
+
+int report(const TimeCommandOptions& options, const TimeRun& run, bool quiet) {
+  const bool over = run.times.steps.over_limit() > run.allowed;
+  const bool failed = over || is_wrong(run);
+  if (quiet && !failed) return exit_ok;
+  fmt::print("{}{}", render_times(run), exchange_note(run.port));
+  const std::string worst = options.measure.worst.string();
+  if (!worst.empty()) {
+    fmt::print("the slowest step again: attest replay {} --profile {}\n", worst,
+               run.times.with_slowest_step()->result.profile);
+  }
+  return failed ? exit_failed : exit_ok;
 }
 
 }  // namespace
@@ -53,31 +122,14 @@ std::vector<std::uint64_t> counted(const TimeCommandOptions& options, const Suit
 int time_command(const TimeCommandOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
-  const auto checked = check_outputs({options.html, options.json, options.measure.worst},
-                                     {options.host.port, {}}, *suite);
-  if (!checked) return report_error(checked.error());
-  if (options.instructions && is_program(options.host.port)) {
-    return report_error(
-        {"--instructions counts those of a library: a program has a process of its "
-         "own; run valgrind on the program itself"});
-  }
-  auto cases = open_loop_cases(options, *suite);
+  if (const auto checked = check(options, *suite); !checked) return report_error(checked.error());
+  const auto cases = open_loop_cases(options, *suite);
   if (!cases) return report_error(cases.error());
-  const auto port = describe_port(options.host);
-  if (!port) return report_error(port.error());
+  const auto host = host_for(options);
+  if (!host) return report_error(host.error());
 
   note_interrupts();
-  std::size_t vectors = 0;
-  for (const SelectedCase& selected : *cases) vectors += selected.configurations.size();
-  Progress progress(vectors, Progress::on_stderr(globals.quiet));
-  HostOptions host = options.host;
-  host.stop = interrupted;
-  host.hangs = port->hangs;
-  TimeOptions measure = options.measure;
-  measure.stack = measure.stack && !is_program(host.port);  // it is in another process
-  auto times =
-      time_corpus(*cases, measure, host, [&](const CaseResult& result) { progress.add(result); });
-  progress.finish();
+  auto times = timed(options, *host, *cases, globals.quiet);
   if (interrupted()) return exit_interrupted;
   if (!times) return report_error(times.error());
   TimeRun run{options.host.port,
@@ -86,37 +138,20 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
               *std::move(times),
               {},
               static_cast<std::uint64_t>(options.allowed)};
-  const auto& timed = run.times.vectors;
-  const bool wrong = std::any_of(timed.begin(), timed.end(),
-                                 [](const auto& one) { return fails_a_run(one.result.verdict); });
-  const VectorTimes* slowest = run.times.with_slowest_step();
-  if (!slowest) {
-    if (wrong) {
-      fmt::print("{}", what_went_wrong(run));
-      return exit_failed;
-    }
-    return report_error({"no vector was timed: every selected vector was skipped or unsupported"});
-  }
+  const VectorTimes* const slowest = run.times.with_slowest_step();
+  if (!slowest) return report_untimed(run);
   if (!options.measure.worst.empty()) {
-    const auto written = write_slowest(run.times, *cases, host, options.measure.worst);
+    const auto written = write_slowest(run.times, *cases, *host, options.measure.worst);
     if (!written) return report_error(written.error());
   }
   if (options.instructions) {
     run.instructions = counted(options, *suite, slowest->result.id());
-    if (run.instructions.empty()) {
-      fmt::print(stderr, "attest: no instructions were counted: valgrind is missing, or failed\n");
-    }
+    if (interrupted()) return exit_interrupted;
   }
-  if (auto written = write_file(options.json, time_json(run)); !written)
+  if (const auto written = write_reports(options, run); !written) {
     return report_error(written.error());
-  if (!options.html.empty()) {
-    if (auto written = write_file(options.html, time_page(run)); !written)
-      return report_error(written.error());
   }
-  const bool over = run.times.steps.over_limit() > run.allowed;
-  const bool failed = over || wrong;
-  if (!globals.quiet || failed) fmt::print("{}{}", render_times(run), exchange_note(run.port));
-  return failed ? exit_failed : exit_ok;
+  return report(options, run, globals.quiet);
 }
 
 }  // namespace attest::cli

@@ -49,8 +49,8 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
       ->add_option(
           "--profile", options->profile,
           "Version of the law. Default for a trace: that of the provenance.toml next to it, else "
-          "px4-v1.5.5; for a log: the release of PX4 that wrote it. A log of attitude unit and "
-          "rate unit that does not name its release needs this option")
+          "the newest that has its unit; for a log: the release of PX4 that wrote it. A log of "
+          "attitude unit and rate unit that does not name its release needs this option")
       ->type_name("PROFILE");
   command->add_option("--param", options->parameters, "Set a parameter from the first step on")
       ->type_name("NAME=VALUE")

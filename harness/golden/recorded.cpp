@@ -52,6 +52,15 @@ bool is_one_of(const std::string& name, const std::vector<std::string>& names) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+// The newest profile that has the module.
+std::string newest_profile_of(Module module) {
+  const auto all = known_profiles();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const ProfileInfo& profile) {
+    return contains(profile.modules, module);
+  });
+  return std::string(found == all.end() ? default_profile : found->name);
+}
+
 // A trace of one version of the law may have been written with the columns of another.
 void leave_out_foreign_parameters(Recorded& recorded) {
   const Subject& subject = recorded.subject;
@@ -156,7 +165,7 @@ Result<Recorded> read_recorded(const std::filesystem::path& file, const std::str
   subject.module = module_of(recorded.trace.present);
   note_ignored_columns(recorded);
   if (subject.profile.empty()) subject.profile = provenance.profile;
-  if (subject.profile.empty()) subject.profile = default_profile;
+  if (subject.profile.empty()) subject.profile = newest_profile_of(subject.module);
   if (auto checked = check_parameters(recorded); !checked) {
     return tl::unexpected(checked.error());
   }

@@ -11,17 +11,13 @@ bool stands_on(const EitherBranch& branches, Decision decision) {
          (branches.shorter_rotation && decision == Decision::shorter_rotation);
 }
 
-// The margins of the cascade are not measured, and a battery estimate has no decision.
-bool has_margins(Module module) {
-  return module == Module::mc_att_control || module == Module::mixer;
-}
-
 void add(const Case& the_case, const RunConfiguration& configuration, SuiteMargins& all) {
-  if (!has_margins(the_case.module)) {
+  const auto meter = margin_meter(subject_of(the_case));
+  if (!meter) {
     ++all.not_measured;
     return;
   }
-  const Margins found = margins(stimulate(the_case, configuration.rate.unit), subject_of(the_case));
+  const Margins found = margins(stimulate(the_case, configuration.rate.unit), *meter);
   ++all.vectors;
   for (std::size_t i = 0; i < decision_count; ++i) {
     const auto decision = static_cast<Decision>(i);

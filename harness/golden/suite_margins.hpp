@@ -20,7 +20,7 @@ struct VectorMargin {
 
 struct SuiteMargins {
   std::size_t vectors = 0;
-  std::size_t not_measured = 0;                        // numeric vectors of modules without margins
+  std::size_t not_measured = 0;                        // numeric vectors without a MarginMeter
   std::array<VectorMargin, decision_count> nearest{};  // by decision
   std::vector<VectorMargin> too_near;                  // in the order of the cases
 };

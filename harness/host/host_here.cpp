@@ -48,7 +48,7 @@ Result<Flown> HostHere::fly(const FlightPlan& plan) {
   });
 }
 
-Result<StepTimes> HostHere::time_steps(const std::string& profile, const Trace& inputs,
+Result<StepTimes> HostHere::time_steps(const Subject& subject, const Trace& inputs,
                                        bool with_stack) {
   if (!clock_) clock_ = time_of_clock();
   StepTimes times;
@@ -56,32 +56,32 @@ Result<StepTimes> HostHere::time_steps(const std::string& profile, const Trace& 
   times.steps.reserve(inputs.samples.size());
   Trace trace = inputs;
   times.fault = ports_.run([&]() -> std::optional<PortFault> {
-    const auto unit = port_->create(profile);
-    if (!unit) return held(no_unit_of(profile, says_), profile);
+    const auto unit = make_unit(*port_, subject);
+    if (!unit) return held(unit.error(), subject.profile);
     // The note is outside of what is timed.
-    std::unique_ptr<Unit> timed = std::make_unique<TimedUnit>(*unit, *clock_, times.steps);
+    std::unique_ptr<Unit> timed = std::make_unique<TimedUnit>(**unit, *clock_, times.steps);
     if (calls_) timed = calls_->noted(std::move(timed));
-    return held(attest::drive(*timed, trace), profile);
+    return held(attest::drive(*timed, trace, subject.module), subject.profile);
   });
   if (!with_stack || times.fault) return times;
-  if (auto measured = measure_stack(profile, std::move(trace), times); !measured) {
+  if (auto measured = measure_stack(subject, std::move(trace), times); !measured) {
     return tl::unexpected(measured.error());
   }
   return times;
 }
 
-Result<void> HostHere::measure_stack(const std::string& profile, Trace trace, StepTimes& times) {
+Result<void> HostHere::measure_stack(const Subject& subject, Trace trace, StepTimes& times) {
   if (!stack_) {
     auto made = PaintedStack::make();
     if (!made) return tl::unexpected(made.error());
     stack_.emplace(*std::move(made));
   }
   times.fault = ports_.run([&]() -> std::optional<PortFault> {
-    const auto unit = port_->create(profile);
-    if (!unit) return held(no_unit_of(profile, says_), profile);
+    const auto unit = make_unit(*port_, subject);
+    if (!unit) return held(unit.error(), subject.profile);
     stack_->repaint();
-    UnitOnStack on_stack(*unit, *stack_);
-    return held(attest::drive(on_stack, trace), profile);
+    UnitOnStack on_stack(**unit, *stack_);
+    return held(attest::drive(on_stack, trace, subject.module), subject.profile);
   });
   if (!times.fault) times.stack_bytes = stack_->used();
   return {};

@@ -22,7 +22,7 @@ class HostHere final : public PortHost {
   const PortSays& says() const override { return says_; }
   std::optional<PortFault> drive(const Subject& subject, Trace& trace) override;
   Result<Flown> fly(const FlightPlan& plan) override;
-  Result<StepTimes> time_steps(const std::string& profile, const Trace& inputs,
+  Result<StepTimes> time_steps(const Subject& subject, const Trace& inputs,
                                bool with_stack) override;
   bool supports(const std::string& profile) override;
 
@@ -30,7 +30,7 @@ class HostHere final : public PortHost {
   // The fault of a request, or a fault of kind protocol if the port's declarations have changed.
   std::optional<PortFault> held(std::optional<PortFault> fault, const std::string& profile) const;
   Port& driven() { return noted_ ? *noted_ : *port_; }
-  Result<void> measure_stack(const std::string& profile, Trace trace, StepTimes& times);
+  Result<void> measure_stack(const Subject& subject, Trace trace, StepTimes& times);
 
   std::unique_ptr<Port> port_;
   const PortCalls* calls_;

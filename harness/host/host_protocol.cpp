@@ -108,8 +108,8 @@ class Answerer {
 
   bool time(const json& head) {
     const Trace trace = trace_from(head, question_.blobs);
-    const auto times = host_.time_steps(head.at("profile").get<std::string>(), trace,
-                                        head.at("stack").get<bool>());
+    const auto times =
+        host_.time_steps(subject_from(head.at("subject")), trace, head.at("stack").get<bool>());
     if (!times) return refuse(times.error(), question_.request, judge_);
     json answer = {{"clock_ns", times->clock.count()}, {"steps", times->steps.size()}};
     if (times->stack_bytes) answer["stack"] = *times->stack_bytes;
@@ -179,9 +179,9 @@ std::string fly_request(const FlightPlan& plan) {
                   {"from_one_period_on", plan.from_one_period_on}});
 }
 
-std::string time_request(const std::string& profile, const Trace& inputs, bool with_stack) {
+std::string time_request(const Subject& subject, const Trace& inputs, bool with_stack) {
   return text_of({{"do", "time"},
-                  {"profile", profile},
+                  {"subject", to_json(subject)},
                   {"stack", with_stack},
                   {"ticks", inputs.samples.size()},
                   {"parameters", changes_json(inputs.parameters)}});

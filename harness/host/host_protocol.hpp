@@ -39,7 +39,7 @@ namespace attest {
 // Of the judge: the heads of its requests.
 std::string drive_request(const Subject& subject, const Trace& trace);
 std::string fly_request(const FlightPlan& plan);
-std::string time_request(const std::string& profile, const Trace& inputs, bool with_stack);
+std::string time_request(const Subject& subject, const Trace& inputs, bool with_stack);
 std::string supports_request(const std::string& profile);
 
 // A message that has arrived, and the number of the request that it must answer.

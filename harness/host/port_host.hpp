@@ -51,8 +51,9 @@ class PortHost {
   // Same as fly() of flight.hpp, with a fresh unit. REQUIRES: the host was started with a course.
   virtual Result<Flown> fly(const FlightPlan& plan) = 0;
 
-  // Same as drive(), for a unit of `profile`, without its outputs. Errors: no memory for the stack.
-  virtual Result<StepTimes> time_steps(const std::string& profile, const Trace& inputs,
+  // Same as drive(), without the outputs and without another instance. Errors: no memory for the
+  // stack.
+  virtual Result<StepTimes> time_steps(const Subject& subject, const Trace& inputs,
                                        bool with_stack) = 0;
 
   // Whether the port makes a unit of that profile; also false after a fault of the port.

@@ -101,10 +101,10 @@ class PortProcess final : public PortHost {
     return none;
   }
 
-  Result<StepTimes> time_steps(const std::string& profile, const Trace& inputs,
+  Result<StepTimes> time_steps(const Subject& subject, const Trace& inputs,
                                bool with_stack) override {
     auto times =
-        ask(time_request(profile, inputs, with_stack), {blob_of(inputs.samples)},
+        ask(time_request(subject, inputs, with_stack), {blob_of(inputs.samples)},
             [&](const Arrived& arrived) { return read_times(arrived, inputs.samples.size()); });
     if (times) {
       if (*times) (*times)->fault = with_words((*times)->fault);

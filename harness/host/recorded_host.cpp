@@ -68,7 +68,7 @@ class RecordedHost final : public PortHost {
     return none;
   }
 
-  Result<StepTimes> time_steps(const std::string&, const Trace&, bool) override {
+  Result<StepTimes> time_steps(const Subject&, const Trace&, bool) override {
     StepTimes none;
     none.fault = unanswered("a recorded port cannot be timed");
     return none;

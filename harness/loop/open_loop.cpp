@@ -192,15 +192,23 @@ Subject subject_of(const Case& the_case) {
   return {the_case.profile, the_case.module, the_case.mixer, the_case.instances};
 }
 
+tl::expected<std::unique_ptr<Unit>, PortFault> make_unit(Port& port, const Subject& subject) {
+  if (!contains(port.modules(), subject.module)) {
+    return tl::unexpected(lacks_module(port, subject));
+  }
+  auto unit = port.create_unit(subject.module, subject.profile, subject.mixer);
+  if (!unit) return tl::unexpected(makes_none(port, subject));
+  return unit;
+}
+
 std::optional<PortFault> drive(Port& port, const Subject& subject, Trace& trace) {
-  if (!contains(port.modules(), subject.module)) return lacks_module(port, subject);
+  auto unit = make_unit(port, subject);
+  if (!unit) return unit.error();
+  if (subject.instances == Instances::one) return drive(**unit, trace, subject.module);
   const auto create = [&] {
     return port.create_unit(subject.module, subject.profile, subject.mixer);
   };
-  auto unit = create();
-  if (!unit) return makes_none(port, subject);
-  if (subject.instances == Instances::one) return drive(*unit, trace, subject.module);
-  return drive_in_company(std::move(unit), create, subject, trace);
+  return drive_in_company(*std::move(unit), create, subject, trace);
 }
 
 }  // namespace attest

@@ -1,6 +1,7 @@
 // One trace in, one trace out: a unit is given the inputs of a trace and its outputs are recorded.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -24,6 +25,9 @@ struct Subject {
 };
 
 Subject subject_of(const Case& the_case);
+
+// A fresh unit of the subject's module, or why the port makes none. The port must outlive it.
+tl::expected<std::unique_ptr<Unit>, PortFault> make_unit(Port& port, const Subject& subject);
 
 // Steps a fresh instance of the subject's module through the trace. `Instances` says which other
 // instance of the port exists before it or at the same time. A port that cannot make a second

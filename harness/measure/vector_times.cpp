@@ -23,16 +23,16 @@ class Stopwatches {
     if (auto started = ensure_host(host_, host_options_); !started) {
       return tl::unexpected(started.error());
     }
-    VectorTimes times{result_for(the_case, configuration), {}, {}};
+    VectorTimes times{result_for(the_case, configuration), {}, {}, the_case.module};
     if (declines(host_->says(), times.result)) return times;
     const Trace inputs = stimulate(the_case, configuration.rate.unit);
     for (int repeat = 0; repeat < options_.repeats; ++repeat) {
       const bool with_stack = options_.stack && repeat + 1 == options_.repeats;
-      auto timed = host_->time_steps(the_case.profile, inputs, with_stack);
+      auto timed = host_->time_steps(subject_of(the_case), inputs, with_stack);
       if (!timed) return tl::unexpected(timed.error());
       if (timed->fault) {
         judge(*timed->fault, times.result);
-        return VectorTimes{std::move(times.result), {}, {}};
+        return VectorTimes{std::move(times.result), {}, {}, the_case.module};
       }
       clock_ = timed->clock;
       keep_quickest(std::move(timed->steps), times.steps);
@@ -104,6 +104,16 @@ const VectorTimes* CorpusTimes::with_most_stack() const {
   return found;
 }
 
+std::map<Module, Histogram> CorpusTimes::by_module() const {
+  std::map<Module, Histogram> modules;
+  for (const VectorTimes& vector : vectors) {
+    if (!vector.is_timed()) continue;
+    Histogram& steps_of_module = modules[vector.module];
+    for (const Nanoseconds step : vector.steps) steps_of_module.add(step);
+  }
+  return modules;
+}
+
 Result<CorpusTimes> time_corpus(const std::vector<SelectedCase>& cases, const TimeOptions& options,
                                 const HostOptions& host,
                                 const std::function<void(const CaseResult&)>& on_result) {
@@ -132,8 +142,10 @@ Result<void> write_slowest(const CorpusTimes& times, const std::vector<SelectedC
   trace.keep_first(slowest->slowest_tick() + 1);
   const auto started = start_host(host);
   if (!started) return tl::unexpected(started.error());
-  if (const auto fault = (*started)->drive({the_case->profile}, trace)) return fail(fault->what);
-  trace.present = channels_of(Module::mc_att_control);
+  Subject subject = subject_of(*the_case);
+  subject.instances = Instances::one;  // as it was timed
+  if (const auto fault = (*started)->drive(subject, trace)) return fail(fault->what);
+  trace.present = channels_of(the_case->module);
   return write_csv(file, trace, all_columns(trace));
 }
 

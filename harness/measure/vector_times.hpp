@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct VectorTimes {
   CaseResult result;                       // a verdict other than pass: there are no times
   std::vector<Nanoseconds> steps;          // the quickest time of each
   std::optional<std::size_t> stack_bytes;  // the most that a step used
+  Module module = Module::mc_att_control;  // of which it is a step
 
   bool is_timed() const { return !steps.empty(); }
   // REQUIRES: is_timed().
@@ -42,12 +44,15 @@ struct CorpusTimes {
   // Null: no vector was timed.
   const VectorTimes* with_slowest_step() const;
   const VectorTimes* with_most_stack() const;  // also null where no stack was measured
+
+  // The steps of each module that was timed.
+  std::map<Module, Histogram> by_module() const;
 };
 
 // Times every vector of the cases, one after the other so that they do not disturb each other. They
 // share one process of the port; after a crash a new one is started. Ends early when `host.stop`
 // returns true. Errors: the port cannot be opened, no memory for its stack. REQUIRES: open-loop
-// cases of the controller.
+// cases of units.
 Result<CorpusTimes> time_corpus(const std::vector<SelectedCase>& cases, const TimeOptions& options,
                                 const HostOptions& host,
                                 const std::function<void(const CaseResult&)>& on_result);

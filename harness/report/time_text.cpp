@@ -57,7 +57,9 @@ std::string instructions(std::vector<std::uint64_t> calls) {
 using nlohmann::ordered_json;
 
 ordered_json json_of(const VectorTimes& vector) {
-  ordered_json out = {{"id", vector.result.id()}, {"verdict", name_of(vector.result.verdict)}};
+  ordered_json out = {{"id", vector.result.id()},
+                      {"module", name_of(vector.module)},
+                      {"verdict", name_of(vector.result.verdict)}};
   if (!vector.is_timed()) return out;
   out["max_ns"] = vector.slowest().count();
   out["median_ns"] = vector.median().count();
@@ -67,20 +69,48 @@ ordered_json json_of(const VectorTimes& vector) {
   return out;
 }
 
+ordered_json json_of(const Histogram& steps) {
+  return {{"max_ns", steps.max().count()},
+          {"median_ns", steps.percentile(0.5).count()},
+          {"min_ns", steps.min().count()},
+          {"p90_ns", steps.percentile(0.9).count()},
+          {"p99_ns", steps.percentile(0.99).count()},
+          {"p99_9_ns", steps.percentile(0.999).count()},
+          {"steps", steps.count()}};
+}
+
 ordered_json json_of(const CorpusTimes& times) {
-  const Histogram& steps = times.steps;
-  ordered_json out = {{"clock_ns", times.clock.count()},
-                      {"max_ns", steps.max().count()},
-                      {"median_ns", steps.percentile(0.5).count()},
-                      {"min_ns", steps.min().count()},
-                      {"over_budget", steps.over_limit()},
-                      {"p90_ns", steps.percentile(0.9).count()},
-                      {"p99_ns", steps.percentile(0.99).count()},
-                      {"p99_9_ns", steps.percentile(0.999).count()}};
+  ordered_json out = json_of(times.steps);
+  out["clock_ns"] = times.clock.count();
+  out["over_budget"] = times.steps.over_limit();
   if (const auto* most = times.with_most_stack()) out["stack_bytes"] = *most->stack_bytes;
-  out["steps"] = steps.count();
   out["worst_tick"] = times.with_slowest_step()->slowest_tick();
   return out;
+}
+
+ordered_json modules_json(const CorpusTimes& times) {
+  ordered_json out = ordered_json::object();
+  for (const auto& [module, steps] : times.by_module()) {
+    out[std::string(name_of(module))] = json_of(steps);
+  }
+  return out;
+}
+
+// A row for each module, because their steps are of different tasks.
+std::string table(const CorpusTimes& times) {
+  constexpr int title_width = 15;
+  std::string out = fmt::format("{:<{}}", "", title_width);
+  for (const char* const figure : {"min", "median", "p90", "p99", "p99.9", "max"}) {
+    out += fmt::format("{:>10}", figure);
+  }
+  for (const auto& [module, steps] : times.by_module()) {
+    out += fmt::format("\n  {:<{}}", info_of(module).title, title_width - 2);
+    for (const Nanoseconds time : {steps.min(), steps.percentile(0.5), steps.percentile(0.9),
+                                   steps.percentile(0.99), steps.percentile(0.999), steps.max()}) {
+      out += fmt::format("{:>10}", human_time(time));
+    }
+  }
+  return out + "\n";
 }
 
 }  // namespace
@@ -116,13 +146,8 @@ std::string render_times(const TimeRun& run) {
       "subtracted\n",
       one_line(run.port), steps.count(), counted(timed(times).size(), "vector"),
       counted(static_cast<std::size_t>(run.repeats), "run"), human_time(times.clock));
-  out += fmt::format("  {:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n  ", "min", "median", "p90", "p99",
-                     "p99.9", "max");
-  for (const Nanoseconds time : {steps.min(), steps.percentile(0.5), steps.percentile(0.9),
-                                 steps.percentile(0.99), steps.percentile(0.999), steps.max()}) {
-    out += fmt::format("{:>10}", human_time(time));
-  }
-  out += "\nslowest steps:\n" + slowest(times) + stack(times) + instructions(run.instructions);
+  out += table(times);
+  out += "slowest steps:\n" + slowest(times) + stack(times) + instructions(run.instructions);
   out += what_went_wrong(run);
   if (run.budget_us) {
     out += fmt::format("{} of {} steps took longer than {:g} us\n", steps.over_limit(),
@@ -138,6 +163,7 @@ std::string time_json(const TimeRun& run) {
                       {"repeats", run.repeats},
                       {"budget_us", nullptr},
                       {"all", json_of(run.times)},
+                      {"modules", modules_json(run.times)},
                       {"slowest", run.times.with_slowest_step()->result.id()},
                       {"instructions", run.instructions},
                       {"vectors", ordered_json::array()}};

@@ -27,7 +27,8 @@ std::string render_times(const TimeRun& run);
 std::string what_went_wrong(const TimeRun& run);
 
 // {"schema": "attest-time-1", "attest_version": ..., "port": ..., "repeats": 5, "budget_us": null,
-//  "all": {figures}, "slowest": id, "instructions": [...], "vectors": [{"id": ..., figures}, ...]}
+//  "all": {figures}, "modules": {"rate_unit": {figures}}, "slowest": id, "instructions": [...],
+//  "vectors": [{"id": ..., "module": "rate_unit", figures}, ...]}
 std::string time_json(const TimeRun& run);
 
 }  // namespace attest

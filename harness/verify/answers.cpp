@@ -66,15 +66,14 @@ Result<Answers> compare_answers(const Trace& flown, const std::string& profile,
   const std::unique_ptr<Unit> unit = reference->create_unit(module, profile, "");
   if (!unit) return fail(fmt::format("the reference has no profile `{}`", profile));
   UnitDriver law(*unit, module);
-  std::optional<MarginMeter> meter;
-  if (module == Module::mc_att_control) meter.emplace(profile);
+  const auto meter = margin_meter({profile, module});
   Answering answering(flown, tolerances);
   PendingChanges changes(flown.parameters);
   for (std::size_t tick = 0; tick < flown.samples.size(); ++tick) {
     const Sample& got = flown.samples[tick];
     const auto at_tick = changes.take_until(tick);
     const auto decision =
-        meter ? made_by_rounding(meter->step(at_tick, got.in), fraction_bits) : std::nullopt;
+        meter ? made_by_rounding(meter->step(at_tick, got), fraction_bits) : std::nullopt;
     if (decision) answering.decided_by_rounding(*decision, tick);
     Sample want = got;
     if (const auto fault = law.step(tick, at_tick, want)) {

@@ -29,9 +29,8 @@ struct Answers {
 
 // A unit of the reference, from its power-on state on, gets the inputs of `flown`, and each tick is
 // compared. A NaN or infinity where the reference has a number is never undecided. `fraction_bits`:
-// of a port in fixed point, which rounds more. No tick of the cascade's units is undecided: their
-// margins are not measured. REQUIRES: a whole trace of a unit, with at least one tick. Errors: the
-// reference does not have the profile, or fails.
+// of a port in fixed point, which rounds more. REQUIRES: a whole trace of a unit, with at least one
+// tick. Errors: the reference does not have the profile, or fails.
 Result<Answers> compare_answers(const Trace& flown, const std::string& profile,
                                 const Tolerances& tolerances,
                                 std::optional<int> fraction_bits = {});

@@ -2,17 +2,6 @@
 
 load common
 
-# rate_only NAME [SED]: builds ./NAME.so, the C starter of the cascade without its attitude unit,
-# with its rate unit changed by SED.
-rate_only() {
-  local from="$SOURCE/controller/starters/c_cascade"
-  mkdir -p "$1"
-  cp "$from"/*.c "$from"/*.h "$1/"
-  sed -i '/{ATTEST_EXTENSION_ATTITUDE_UNIT/d' "$1/port.c"
-  sed -i "${2:-}" "$1"/rate*.c
-  cc -O2 -std=c11 -ffp-contract=off -fPIC -shared -I"$SOURCE/controller" -o "$1.so" "$1"/*.c -lm
-}
-
 @test "a flight of the cascade is flown at a pair of rates, on both plants" {
   run "$ATTEST" sim hover --rate 250:1000 --plant all --html h.html
   [ "$status" -eq 0 ]

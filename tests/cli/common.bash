@@ -48,6 +48,17 @@ lacks() {
   }
 }
 
+# rate_only NAME [SED]: builds ./NAME.so, the C starter of the cascade without its attitude unit,
+# with its rate unit changed by SED.
+rate_only() {
+  local from="$SOURCE/controller/starters/c_cascade"
+  mkdir -p "$1"
+  cp "$from"/*.c "$from"/*.h "$1/"
+  sed -i '/{ATTEST_EXTENSION_ATTITUDE_UNIT/d' "$1/port.c"
+  sed -i "${2:-}" "$1"/rate*.c
+  cc -O2 -std=c11 -ffp-contract=off -fPIC -shared -I"$SOURCE/controller" -o "$1.so" "$1"/*.c -lm
+}
+
 # fake PROGRAM: the script on stdin replaces it, in the folder ./fakes.
 fake() {
   mkdir -p fakes

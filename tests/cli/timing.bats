@@ -98,7 +98,8 @@ CHECK
   [ "$status" -eq 0 ]
   has "steps of"
   has "slowest steps:"
-  run "$ATTEST" replay w.csv --level exact
+  [[ $output =~ attest\ replay\ (w.csv\ --profile\ px4-v[0-9.]+) ]]
+  run "$ATTEST" replay ${BASH_REMATCH[1]} --level exact
   [ "$status" -eq 0 ]
   python3 - <<'CHECK'
 import json
@@ -108,6 +109,55 @@ assert report["slowest"] in {vector["id"] for vector in report["vectors"]}
 assert report["all"]["steps"] == sum(vector["steps"] for vector in report["vectors"])
 assert report["all"]["min_ns"] <= report["all"]["median_ns"] <= report["all"]["max_ns"]
 CHECK
+}
+
+@test "the units of the cascade are timed, with a row for each" {
+  run "$ATTEST" time --profile px4-v1.16.0 --group timing --rate 250 --json t.json --html t.html
+  [ "$status" -eq 0 ]
+  has "  attitude unit"
+  has "  rate unit"
+  lacks "  controller"
+  grep -q "Step times of the attitude unit by loop rate" t.html
+  grep -q "Step times of the rate unit by loop rate" t.html
+  grep -q "px4-v1.16.0/timing, rate unit" t.html
+  python3 - <<'CHECK'
+import json
+report = json.load(open("t.json"))
+assert set(report["modules"]) == {"attitude_unit", "rate_unit"}, report["modules"]
+for module, figures in report["modules"].items():
+    timed = [vector for vector in report["vectors"] if vector["module"] == module]
+    assert figures["steps"] == sum(vector["steps"] for vector in timed) > 0
+    assert figures["max_ns"] == max(vector["max_ns"] for vector in timed)
+    assert min(vector["stack_bytes"] for vector in timed) > 0
+CHECK
+}
+
+@test "the slowest input of a unit can be replayed" {
+  for group in attitude rates; do
+    run "$ATTEST" time --profile px4-v1.16.0 --group $group --rate 250 --no-stack --worst w.csv
+    [ "$status" -eq 0 ]
+    run "$ATTEST" replay w.csv --level exact # --profile: the newest that has the unit
+    [ "$status" -eq 0 ]
+    has "w.csv  px4-v1.16.0"
+  done
+}
+
+@test "of a port with one unit, the vectors of the other one are not timed" {
+  rate_only right
+  run "$ATTEST" time --port lib:./right.so --profile px4-v1.16.0 --group timing --rate 250 \
+    --json t.json
+  [ "$status" -eq 0 ]
+  has "  rate unit"
+  lacks "  attitude unit"
+  python3 - <<'CHECK'
+import json
+vectors = json.load(open("t.json"))["vectors"]
+verdicts = {(vector["module"], vector["verdict"]) for vector in vectors}
+assert verdicts == {("attitude_unit", "unsupported"), ("rate_unit", "pass")}, verdicts
+CHECK
+  run "$ATTEST" time --port lib:./right.so --profile px4-v1.16.0 --group attitude --rate 250
+  [ "$status" -eq 2 ]
+  has "no vector was timed"
 }
 
 @test "a budget fails on the count of steps over it" {
@@ -124,7 +174,7 @@ CHECK
 @test "flights are not timed" {
   run "$ATTEST" time --group flight
   [ "$status" -eq 2 ]
-  has "no open-loop case of the controller is selected"
+  has "no open-loop case of a unit is selected"
 }
 
 @test "the stack that a step uses is measured" {
@@ -151,14 +201,16 @@ CHECK
   command -v valgrind || skip "no valgrind"
   nm "$ATTEST" | grep -q __asan_init && skip "valgrind and sanitizers do not go together"
   # One vector, because with several it depends on chance which of them is the slowest.
-  local vector='px4-v1.5.5/large_angle/exactly_inverted@250hz'
-  "$ATTEST" time --filter "$vector" --instructions --json one.json
-  "$ATTEST" time --filter "$vector" --instructions --json two.json
-  python3 - <<'CHECK'
+  for vector in 'px4-v1.5.5/large_angle/exactly_inverted@250hz' \
+    'px4-v1.16.0/attitude/roll_30@250hz' 'px4-v1.16.0/rates/d_alone@250hz'; do
+    "$ATTEST" time --filter "$vector" --instructions --json one.json
+    "$ATTEST" time --filter "$vector" --instructions --json two.json
+    python3 - <<'CHECK'
 import json
 one, two = (json.load(open(name))["instructions"] for name in ("one.json", "two.json"))
 assert one == two and len(one) > 10 and min(one) > 100, (one, two)
 CHECK
+  done
 }
 
 @test "a port that crashes on one input: the others are timed, and the crash is named" {

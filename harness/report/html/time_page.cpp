@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t slowest_listed = 20;
 
-// The steps of all vectors of a group at a rate [Hz].
+// The steps of all vectors of a group and module at a rate [Hz].
 using GroupsByRate = std::map<std::string, std::map<double, Histogram>>;
 
 GroupsByRate groups_of(const CorpusTimes& times) {
@@ -26,7 +26,11 @@ GroupsByRate groups_of(const CorpusTimes& times) {
   for (const VectorTimes& vector : times.vectors) {
     if (!vector.is_timed()) continue;
     const CaseResult& result = vector.result;
-    Histogram& steps = groups[result.profile + "/" + result.group][result.rate.hertz()];
+    const std::string_view of_module =
+        vector.module == Module::mc_att_control ? "" : info_of(vector.module).title;
+    const std::string group = fmt::format("{}/{}{}{}", result.profile, result.group,
+                                          of_module.empty() ? "" : ", ", of_module);
+    Histogram& steps = groups[group][result.rate.hertz()];
     for (const Nanoseconds time : vector.steps) steps.add(time);
   }
   return groups;
@@ -92,15 +96,19 @@ std::vector<PlotMark> budget_mark(const TimeRun& run) {
 }
 
 PlotGroup distribution(const TimeRun& run) {
+  std::vector<NamedHistogram> modules;
+  for (const auto& [module, steps] : run.times.by_module()) {
+    modules.push_back({fmt::format("steps of the {}", info_of(module).title), steps.buckets()});
+  }
   PlotGroup group{"All steps", "step time [us]", {}};
-  group.plots = {
-      histogram_plot("Step times", {{"steps", run.times.steps.buckets()}}, budget_mark(run))};
+  group.plots = {histogram_plot("Step times", modules, budget_mark(run))};
   return group;
 }
 
-PlotGroup by_rate(const TimeRun& run) {
+Plot by_rate(const TimeRun& run, Module module) {
   std::map<double, Histogram> steps;
   for (const VectorTimes& vector : run.times.vectors) {
+    if (vector.module != module) continue;
     for (const Nanoseconds time : vector.steps) steps[vector.result.rate.hertz()].add(time);
   }
   PlotSeries slowest{"slowest step", {}, {}}, p99{"p99", {}, {}}, median{"median", {}, {}};
@@ -117,11 +125,20 @@ PlotGroup by_rate(const TimeRun& run) {
     add(rate_hz, microseconds(all.percentile(0.5)), median);
     if (run.budget_us) add(rate_hz, *run.budget_us, budget);
   }
-  Plot plot{"Step times by loop rate", "us", "of all groups"};
+  Plot plot{fmt::format("Step times of the {} by loop rate", info_of(module).title), "us",
+            "of all groups"};
   plot.logarithmic_x = plot.logarithmic_y = true;
   plot.series = {slowest, p99, median, budget};
   std::erase_if(plot.series, [](const PlotSeries& series) { return series.x.empty(); });
-  return {"", "loop rate [Hz]", {plot}};
+  return plot;
+}
+
+PlotGroup by_rate(const TimeRun& run) {
+  PlotGroup group{"", "loop rate [Hz]", {}};
+  for (const auto& [module, steps] : run.times.by_module()) {
+    group.plots.push_back(by_rate(run, module));
+  }
+  return group;
 }
 
 }  // namespace

@@ -3,13 +3,15 @@
 #include <fstream>
 #include <stdexcept>
 
+#include <fmt/format.h>
+
 namespace attest {
 
 namespace fs = std::filesystem;
 
-fs::path CaseFiles::write(std::string_view group, std::string_view name,
-                          std::string_view text) const {
-  const fs::path place = folder() / "px4-v1.5.5" / group;
+fs::path CaseFiles::write(std::string_view group, std::string_view name, std::string_view text,
+                          std::string_view profile) const {
+  const fs::path place = folder() / profile / group;
   fs::create_directories(place);
   const fs::path file = place / (std::string(name) + ".toml");
   std::ofstream(file, std::ios::binary) << text;
@@ -34,6 +36,17 @@ Result<Case> CaseFiles::parse(std::string_view text) const {
 
 Case case_of(std::string_view body) {
   auto parsed = CaseFiles().parse(CaseFiles::with(body));
+  if (!parsed) throw std::invalid_argument(parsed.error().to_string());
+  return *std::move(parsed);
+}
+
+Case unit_case_of(Module module, std::string_view profile, std::string_view body) {
+  const std::string text = fmt::format(
+      "schema = 1\nprofiles = [\"{}\"]\ngroup = \"tests\"\nmodule = \"{}\"\nwhy = \"a test\"\n"
+      "duration_ticks = 10\n{}",
+      profile, name_of(module), body);
+  const CaseFiles files;
+  auto parsed = parse_case(files.write("tests", "the_case", text, profile));
   if (!parsed) throw std::invalid_argument(parsed.error().to_string());
   return *std::move(parsed);
 }

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "harness/casefile/parse.hpp"
+#include "harness/trace/module.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
 
 namespace attest {
@@ -14,9 +15,9 @@ class CaseFiles {
  public:
   std::filesystem::path folder() const { return directory_.path() / "cases"; }
 
-  // Writes cases/px4-v1.5.5/<group>/<name>.toml: `text` as it is.
-  std::filesystem::path write(std::string_view group, std::string_view name,
-                              std::string_view text) const;
+  // Writes cases/<profile>/<group>/<name>.toml: `text` as it is.
+  std::filesystem::path write(std::string_view group, std::string_view name, std::string_view text,
+                              std::string_view profile = "px4-v1.5.5") const;
 
   // Makes models/<name>.toml, so that cases find a vehicle of this name; it cannot be loaded.
   void name_vehicle(std::string_view name) const;
@@ -33,6 +34,8 @@ class CaseFiles {
 
 // REQUIRES: with(body) is a valid case.
 Case case_of(std::string_view body);
+// The same for a unit of a profile.
+Case unit_case_of(Module module, std::string_view profile, std::string_view body);
 
 // The errors that with(body) gives, without the file's name: "6:1: unknown key ...", one a line;
 // empty when it is valid.

@@ -10,9 +10,12 @@
 namespace attest {
 namespace {
 
-Margins margins_of(const std::string& body) {
-  return margins(stimulate(case_of(body), Rate::hz(250)), Subject{"px4-v1.5.5"});
+Margins margins_of(const Case& the_case) {
+  const auto meter = margin_meter(subject_of(the_case));
+  return margins(stimulate(the_case, Rate::hz(250)), *meter);
 }
+
+Margins margins_of(const std::string& body) { return margins_of(case_of(body)); }
 
 TEST(Margins, LevelFlightIsFarFromMost) {
   const Margins found = margins_of("");
@@ -34,9 +37,8 @@ TEST(Margins, TheThrustGate) {
 
 Margins mixer_margins_of(const std::string& controls) {
   const std::string definition = "R: 4x 10000 10000 10000 0";
-  const Case the_case =
-      case_of("[mixer]\ndefinition = \"" + definition + "\"\n[actuator_controls_0]\n" + controls);
-  return margins(stimulate(the_case, Rate::hz(250)), subject_of(the_case));
+  return margins_of(
+      case_of("[mixer]\ndefinition = \"" + definition + "\"\n[actuator_controls_0]\n" + controls));
 }
 
 TEST(Margins, OfAMixerWithinItsLimits) {

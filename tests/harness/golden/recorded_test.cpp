@@ -6,8 +6,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "harness/casefile/stimulus.hpp"
 #include "harness/trace/csv.hpp"
 #include "harness/trace/trace_file.hpp"
+#include "tests/harness/casefile/case_files.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
 
 namespace attest {
@@ -23,6 +25,20 @@ TEST(Recorded, AControllersTraceIsOfTheProfileThatItsProvenanceNames) {
   ASSERT_TRUE(read) << read.error().to_string();
   EXPECT_EQ(read->subject.module, Module::mc_att_control);
   EXPECT_EQ(read->subject.profile, "px4-v1.3.4");
+}
+
+TEST(Recorded, WithoutProvenanceTheProfileIsTheNewestThatHasTheUnit) {
+  const TemporaryDirectory folder;
+  for (const Module module : {Module::attitude_unit, Module::rate_unit}) {
+    Trace trace = stimulate(unit_case_of(module, "px4-v1.14.4", ""), Rate::hz(250));
+    trace.present = channels_of(module);
+    const auto file = folder.path() / "trace.csv";
+    ASSERT_TRUE(write_csv(file, trace, all_columns(trace)));
+    const auto read = read_recorded(file);
+    ASSERT_TRUE(read) << read.error().to_string();
+    EXPECT_EQ(read->subject.module, module);
+    EXPECT_EQ(read->subject.profile, "px4-v1.16.0");
+  }
 }
 
 TEST(Recorded, ColumnsThatAttestDoesNotHaveAreIgnoredWithANote) {

@@ -92,11 +92,28 @@ TEST(PortProcess, FliesAsHere) {
 }
 
 TEST(PortProcess, TimesEachStep) {
-  const auto times = host_of("builtin")->time_steps("px4-v1.5.5", pitching(), true);
+  const auto times = host_of("builtin")->time_steps({"px4-v1.5.5"}, pitching(), true);
   ASSERT_TRUE(times) << times.error().to_string();
   EXPECT_EQ(times->steps.size(), pitching().samples.size());
   EXPECT_GT(*std::max_element(times->steps.begin(), times->steps.end()), Nanoseconds(0));
   EXPECT_GT(times->stack_bytes.value_or(0), 0u);
+}
+
+TEST(PortProcess, TimesEachStepOfAUnitOfTheCascade) {
+  Trace level;
+  level.samples.resize(20);
+  for (std::size_t i = 0; i < level.samples.size(); ++i) {
+    level.samples[i].in.timestamp = 5'000'000 + 1000 * i;
+  }
+  const Subject rate_unit{"px4-v1.16.0", Module::rate_unit};
+  const auto times = host_of("builtin")->time_steps(rate_unit, level, true);
+  ASSERT_TRUE(times) << times.error().to_string();
+  EXPECT_FALSE(times->fault);
+  EXPECT_EQ(times->steps.size(), 20u);
+  EXPECT_GT(times->stack_bytes.value_or(0), 0u);
+  const auto lacking = host_of("silent")->time_steps(rate_unit, level, false);
+  ASSERT_TRUE(lacking && lacking->fault);
+  EXPECT_EQ(lacking->fault->kind, Kind::profile);
 }
 
 TEST(PortProcess, ItsDeathIsTheFaultOfTheRequestAndOfAllThatFollow) {

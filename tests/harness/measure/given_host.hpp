@@ -17,7 +17,7 @@ class GivenHost final : public PortHost {
     PortSays says;
     std::function<std::optional<PortFault>(const Subject&, Trace&)> drive;
     std::function<Result<Flown>(const FlightPlan&)> fly;
-    std::function<Result<StepTimes>(const std::string&, const Trace&, bool)> time_steps;
+    std::function<Result<StepTimes>(const Subject&, const Trace&, bool)> time_steps;
     std::function<bool()> is_spent = [] { return false; };
   };
 
@@ -28,9 +28,9 @@ class GivenHost final : public PortHost {
     return answers_.drive(subject, trace);
   }
   Result<Flown> fly(const FlightPlan& plan) override { return answers_.fly(plan); }
-  Result<StepTimes> time_steps(const std::string& profile, const Trace& inputs,
+  Result<StepTimes> time_steps(const Subject& subject, const Trace& inputs,
                                bool with_stack) override {
-    return answers_.time_steps(profile, inputs, with_stack);
+    return answers_.time_steps(subject, inputs, with_stack);
   }
   bool supports(const std::string&) override { return true; }
   bool is_spent() const override { return answers_.is_spent(); }

@@ -49,7 +49,7 @@ VectorTimes with_stack_of(std::optional<std::size_t> bytes) { return {{}, {}, by
 
 // A request to the host.
 struct Question {
-  std::string profile;
+  Subject subject;
   std::vector<std::uint64_t> timestamps;
   bool with_stack = false;
 };
@@ -70,8 +70,8 @@ class TimeCorpus : public testing::Test {
     GivenHost::Answers answers;
     answers.says = says_;
     answers.is_spent = [this] { return is_spent_; };
-    answers.time_steps = [this](const std::string& profile, const Trace& inputs, bool with_stack) {
-      Question question{profile, {}, with_stack};
+    answers.time_steps = [this](const Subject& subject, const Trace& inputs, bool with_stack) {
+      Question question{subject, {}, with_stack};
       for (const Sample& sample : inputs.samples) {
         question.timestamps.push_back(sample.in.timestamp);
       }
@@ -130,12 +130,27 @@ TEST_F(TimeCorpus, EachVectorHasItsOwnInputsAndTimes) {
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_THAT(times->vectors[i].steps, ElementsAre(us(static_cast<std::int64_t>(i) + 1)));
     EXPECT_EQ(results_[i].id(), times->vectors[i].result.id());
-    EXPECT_EQ(questions_[i].profile, "px4-v1.5.5");
+    EXPECT_EQ(questions_[i].subject.profile, "px4-v1.5.5");
     EXPECT_EQ(questions_[i].timestamps.size(), 10u);
     EXPECT_EQ(questions_[i].timestamps[1], i == 1 ? 5'004'000u : 5'010'000u);
   }
   EXPECT_EQ(times->steps.count(), 3u);
   EXPECT_EQ(hosts_, 1);
+}
+
+TEST_F(TimeCorpus, TheStepsOfEachModuleAreCountedApart) {
+  SelectedCase rate = open_loop("rate");
+  rate.the_case = unit_case_of(Module::rate_unit, "px4-v1.16.0", "");
+  answers_ = {steps({us(1), us(2)}), steps({us(3)})};
+  const auto times = timed({open_loop("level"), rate});
+  ASSERT_TRUE(times) << times.error().to_string();
+  EXPECT_EQ(questions_[1].subject.module, Module::rate_unit);
+  EXPECT_EQ(questions_[1].subject.profile, "px4-v1.16.0");
+  const auto modules = times->by_module();
+  ASSERT_EQ(modules.size(), 2u);
+  EXPECT_EQ(modules.at(Module::mc_att_control).max(), us(2));
+  EXPECT_EQ(modules.at(Module::rate_unit).count(), 1u);
+  EXPECT_EQ(modules.at(Module::rate_unit).max(), us(3));
 }
 
 TEST_F(TimeCorpus, TheStackIsMeasuredOnceAVector) {

@@ -95,6 +95,16 @@ TEST_F(WriteSlowest, WritesWhatThePortAnswers) {
   EXPECT_NE(trace.samples[3].out.actuator_controls_0.control[1], 0);
 }
 
+TEST_F(WriteSlowest, WritesTheChannelsOfItsUnit) {
+  const SelectedCase rate{unit_case_of(Module::rate_unit, "px4-v1.16.0", ""), {}};
+  cases_ = {rate};
+  times_.vectors = {timed(rate, Rate::hz(250), {us(1), us(2)})};
+  const Trace trace = written();
+  EXPECT_TRUE(trace.present == channels_of(Module::rate_unit));
+  ASSERT_EQ(trace.samples.size(), 2u);
+  EXPECT_NE(trace.samples[1].rate_out.vehicle_torque_setpoint.published, 0);
+}
+
 TEST_F(WriteSlowest, NothingThatWasTimedIsAnError) {
   times_.vectors = {VectorTimes{}};
   EXPECT_FALSE(write());

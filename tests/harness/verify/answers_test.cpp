@@ -118,6 +118,24 @@ TEST(Answers, FewerBitsDecideByRoundingFurtherFromADecision) {
   EXPECT_TRUE(answers_of(trace, 22).undecided);
 }
 
+// A setpoint at half a turn of yaw: rounding decides which way the vehicle turns.
+TEST(Answers, RoundingDecidesInTheUnitsOfTheCascade) {
+  const Case half_turn =
+      unit_case_of(Module::attitude_unit, "px4-v1.16.0",
+                   "[vehicle_attitude_setpoint]\nq_d = { yaw_deg = { signal = "
+                   "\"samples\", times_ticks = [0, 6], values = [30, 180] } }\n");
+  Trace trace = stimulate(half_turn, Rate::hz(250));
+  ASSERT_FALSE(drive(*open_builtin(), subject_of(half_turn), trace));
+  trace.present = channels_of(Module::attitude_unit);
+  trace.samples[7].attitude_out.vehicle_rates_setpoint.yaw *= -1;
+  const auto answers = compare_answers(trace, "px4-v1.16.0", Tolerances());
+  ASSERT_TRUE(answers && answers->undecided);
+  EXPECT_EQ(answers->undecided->decision, Decision::yaw_wrap);
+  EXPECT_EQ(answers->undecided->tick, 6u);
+  trace.samples[5].attitude_out.vehicle_rates_setpoint.yaw *= -1;
+  EXPECT_FALSE(compare_answers(trace, "px4-v1.16.0", Tolerances())->undecided);
+}
+
 TEST(Answers, TheReferenceMustHaveTheProfile) {
   EXPECT_FALSE(compare_answers(flown(), "px4-v9.9.9", Tolerances()));
 }

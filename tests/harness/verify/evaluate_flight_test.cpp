@@ -35,7 +35,7 @@ class ChangedFlight final : public PortHost {
     return flown;
   }
   std::optional<PortFault> drive(const Subject&, Trace&) override { return std::nullopt; }
-  Result<StepTimes> time_steps(const std::string&, const Trace&, bool) override {
+  Result<StepTimes> time_steps(const Subject&, const Trace&, bool) override {
     return fail("no times");
   }
   bool supports(const std::string&) override { return true; }

@@ -148,7 +148,7 @@ class OfAnyProfile final : public PortHost {
     return host_.drive({law_of_log, subject.module}, trace);
   }
   Result<Flown> fly(const FlightPlan& plan) override { return host_.fly(plan); }
-  Result<StepTimes> time_steps(const std::string& wanted, const Trace& inputs,
+  Result<StepTimes> time_steps(const Subject& wanted, const Trace& inputs,
                                bool with_stack) override {
     return host_.time_steps(wanted, inputs, with_stack);
   }

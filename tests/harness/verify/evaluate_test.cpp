@@ -95,7 +95,7 @@ class Reciting final : public PortHost {
     return std::nullopt;
   }
   Result<Flown> fly(const FlightPlan&) override { return fail("no flights"); }
-  Result<StepTimes> time_steps(const std::string&, const Trace&, bool) override {
+  Result<StepTimes> time_steps(const Subject&, const Trace&, bool) override {
     return fail("no times");
   }
   bool supports(const std::string&) override { return true; }

@@ -1,0 +1,149 @@
+// The attitude unit with stages that record how near its decisions are.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "controller/cascade/attitude_unit_definition.hpp"
+#include "harness/golden/margin_meters.hpp"
+
+namespace attest {
+namespace {
+
+using Q = cascade::Quaternion<double>;
+using TraitsOfLaw = cascade::ProfileTraits;
+
+// The angle [rad] between an axis and straight down, from where the shortest rotation to it is
+// arbitrary.
+double from_opposite(const reference::Vector3<double>& axis) {
+  return std::numbers::pi - std::atan2(std::hypot(axis[0], axis[1]), axis[2]);
+}
+
+// The distance [rad] of an angle from +-pi.
+double from_half_turn(double angle) { return std::abs(std::numbers::pi - std::abs(angle)); }
+
+struct NotingAttitudeLaw : cascade::AttitudeStages<double> {
+  using Law = cascade::AttitudeStages<double>;
+  MarginNotes* notes;
+
+  // Opposite thrust directions are not tilted at all, so the axis matters only elsewhere.
+  bool is_opposite(const Q& tilt) const {
+    constexpr double almost_one = 0.999989986f;
+    const bool opposite = Law::is_opposite(tilt);
+    const double largest = std::max(std::abs(tilt[1]), std::abs(tilt[2]));
+    notes->note(Decision::opposite_thrust, std::abs(largest - almost_one));
+    if (!opposite) notes->note(Decision::tilt_axis, 2 * std::abs(std::asin(tilt[0])));
+    return opposite;
+  }
+  Q weighted_yaw(double w, double z, double weight) const {
+    // With less weight than this, a whole turn of yaw is within tolerance.
+    constexpr double some = 1e-6;
+    if (weight > some) notes->note(Decision::yaw_wrap, 2 * std::abs(std::asin(w)));
+    return Law::weighted_yaw(w, z, weight);
+  }
+  Q error(const Q& q_WB, const Q& target) const {
+    const Q q = cascade::product(cascade::inverse(q_WB), target);
+    notes->note(Decision::shorter_rotation, std::abs(q[0]) / q.norm());
+    return Law::error(q_WB, target);
+  }
+};
+
+struct NotingSticks : cascade::StickStages<double> {
+  using Law = cascade::StickStages<double>;
+  MarginNotes* notes;
+
+  double heading(const Q& q, const TraitsOfLaw& law) const {
+    const double pitch = std::asin(2 * (q[0] * q[2] - q[1] * q[3]));
+    constexpr double near_pole = 0.001f;
+    const double from_pole = std::numbers::pi / 2 - std::abs(pitch);
+    notes->note(Decision::heading_pole, std::abs(from_pole - near_pole));
+    return Law::heading(q, law);
+  }
+  bool is_lowest_throttle(double throttle, const Gains& gains) const {
+    if (!gains.yaws_at_lowest_throttle) {
+      notes->note(Decision::lowest_throttle, std::abs(throttle - double(-0.9f)));
+    }
+    return Law::is_lowest_throttle(throttle, gains);
+  }
+  bool correct_yaw(cascade::YawCorrection<double>& state, double heading, double unaided,
+                   double dt_s, const TraitsOfLaw& law) const {
+    const double error = cascade::wrap(heading - unaided);
+    const double change = cascade::wrap(error - state.error.state);
+    constexpr double converged_rad = 0.0174532924f;
+    if (std::isfinite(unaided)) {
+      notes->note(Decision::heading_wrap, from_half_turn(error));
+      notes->note(Decision::convergence, std::abs(std::abs(change) - converged_rad));
+    }
+    return Law::correct_yaw(state, heading, unaided, dt_s, law);
+  }
+  double locked_yaw(double yaw_sp, double rate, double heading, double old_correction,
+                    double correction) const {
+    // A rate of exactly 0 is the same in every port.
+    if (rate != 0) {
+      notes->note(Decision::yaw_lock, std::abs(std::abs(rate) / double(cascade::epsilon) - 1));
+    }
+    return Law::locked_yaw(yaw_sp, rate, heading, old_correction, correction);
+  }
+  double turned(double angle, double turn) const {
+    const double sum = Law::turned(angle, turn);
+    notes->note(Decision::heading_wrap, from_half_turn(sum));
+    return sum;
+  }
+  Q tilt_for_yaw_error(const Q& tilt, const Q& desired_yaw, const Q& q_WB) const {
+    const reference::Vector3<double> up(0, 0, 1), z = cascade::z_axis(q_WB);
+    const Q yaw = cascade::product(cascade::inverse(cascade::shortest_rotation(up, z)), q_WB);
+    const Q to_desired = cascade::product(cascade::inverse(desired_yaw), yaw);
+    notes->note(Decision::tilt_axis, from_opposite(z));
+    notes->note(Decision::tilt_axis,
+                from_opposite(cascade::z_axis(cascade::product(to_desired, tilt))));
+    return Law::tilt_for_yaw_error(tilt, desired_yaw, q_WB);
+  }
+  // The quaternion of a yaw at +-pi has another sign on the other side.
+  Q desired_attitude(const Q& yaw, const Q& tilt) const {
+    notes->note(Decision::heading_wrap, 2 * std::abs(std::asin(yaw[0])));
+    return Law::desired_attitude(yaw, tilt);
+  }
+};
+
+struct NotingAttitudeStep : cascade::AttitudeStepStages<double> {
+  using Law = cascade::AttitudeStepStages<double>;
+  MarginNotes* notes;
+
+  cascade::AttitudeUnitGains<double> gains(const cascade::Parameters& parameters) const {
+    const auto gains = Law::gains(parameters);
+    const double weight = gains.attitude.yaw_weight;
+    // A weight of exactly 0 is the same in every port.
+    if (weight != 0) notes->note(Decision::yaw_weight, std::abs(weight - double(1e-4f)));
+    return gains;
+  }
+  bool is_spooled(std::uint64_t now_us, const Status& status, double spoolup_us) const {
+    const double armed_us = double(now_us - status.armed_time);
+    // The time since arming is whole microseconds, so a limit of exactly 0 is the same in every
+    // port.
+    if (status.armed != 0 && spoolup_us != 0) {
+      notes->note(Decision::spool_up, std::abs(armed_us - spoolup_us) * 1e-6);
+    }
+    return Law::is_spooled(now_us, status, spoolup_us);
+  }
+};
+
+struct NotingAttitudeUnit {
+  NotingAttitudeStep step;
+  NotingSticks sticks;
+  NotingAttitudeLaw attitude;
+
+  explicit NotingAttitudeUnit(MarginNotes* notes)
+      : step{{}, notes}, sticks{{}, notes}, attitude{{}, notes} {}
+};
+
+using AttitudeUnitMeter =
+    UnitMeter<cascade::AttitudeUnit<double, NotingAttitudeUnit>, NotingAttitudeUnit,
+              attest_attitude_inputs, attest_attitude_outputs>;
+
+}  // namespace
+
+std::unique_ptr<MarginMeter> attitude_unit_meter(const std::string& profile) {
+  const auto known = cascade::profile_from_name(profile);
+  return known ? std::make_unique<AttitudeUnitMeter>(*known, &Sample::attitude_in) : nullptr;
+}
+
+}  // namespace attest

@@ -1,0 +1,158 @@
+// The controller of v1.5.5 and v1.3.4 with stages that record how near its decisions are.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "controller/reference/mc_att_control_definition.hpp"
+#include "harness/golden/margin_meters.hpp"
+
+namespace attest {
+namespace {
+
+using reference::AttitudeGains;
+using reference::Matrix3;
+using reference::Quaternion;
+using reference::Topics;
+using Vector3d = reference::Vector3<double>;
+using Matrix3d = Matrix3<double>;
+using Tilt = reference::TiltError<double>;
+
+struct NotingStep : reference::StepStages<double> {
+  MarginNotes* notes;
+
+  bool sticks_beyond(const decltype(Topics::manual)& manual, double threshold) const {
+    const double x = std::abs(double(manual.x)), y = std::abs(double(manual.y));
+    // One stick beyond the threshold is enough, so the larger decides.
+    notes->note(Decision::rattitude, std::abs(std::max(x, y) - threshold));
+    return reference::StepStages<double>::sticks_beyond(manual, threshold);
+  }
+  float battery_factor(const Topics& topics, const reference::Gains<double>& gains,
+                       reference::Profile profile) const {
+    const double scale = std::abs(double(topics.battery_scale));
+    // A scale of exactly 0 means no scaling in every port.
+    if (gains.battery_scaling && scale != 0) notes->note(Decision::battery_scale, scale);
+    return reference::StepStages<double>::battery_factor(topics, gains, profile);
+  }
+};
+
+struct NotingAttitude : reference::AttitudeStages<double> {
+  using Law = reference::AttitudeStages<double>;
+  MarginNotes* notes;
+
+  Tilt tilt_error(const Matrix3d& R_WB, const Matrix3d& R_WD) const {
+    const Tilt tilt = Law::tilt_error(R_WB, R_WD);
+    if (tilt.sine > 0) {
+      notes->note(Decision::tilt_axis, std::numbers::pi - std::atan2(tilt.sine, tilt.cosine));
+    } else if (tilt.cosine < 0) {
+      notes->note(Decision::tilt_axis, 0);
+    }
+    return tilt;
+  }
+  double yaw_error(const Vector3d& nose, const Matrix3d& R_WD, double weight) const {
+    const double error = Law::yaw_error(nose, R_WD, weight);
+    // With less weight than this, a whole turn of yaw is within tolerance.
+    constexpr double some = 1e-6;
+    if (weight > some) {
+      notes->note(Decision::yaw_wrap, std::numbers::pi - std::abs(error / weight));
+    }
+    return error;
+  }
+  Vector3d direct_error(const Matrix3d& R_WB, const Matrix3d& R_WD) const {
+    const auto q = reference::quaternion_of(reference::ordered::transpose_product(R_WB, R_WD));
+    notes->note(Decision::shorter_rotation, std::abs(q.w()));
+    return Law::direct_error(R_WB, R_WD);
+  }
+};
+
+// The distance of `value` from the ends of (-bound, bound): negative when it is outside.
+double inside(double value, double bound) { return bound - std::abs(value); }
+
+struct NotingRate : reference::RateStages<double> {
+  using Law = reference::RateStages<double>;
+  MarginNotes* notes;
+
+  bool may_integrate(double thrust_sp, const reference::MotorLimits& limits) const {
+    if (!limits.lower && !limits.upper) {
+      notes->note(Decision::thrust_gate, std::abs(thrust_sp - double(reference::takeoff_thrust)));
+    }
+    return Law::may_integrate(thrust_sp, limits);
+  }
+  double integrate_axis(double integral, double control, double thrust_sp, double growth,
+                        bool frozen) const {
+    // A step of the integral below this is far within its tolerance, so its gates do not matter.
+    constexpr double negligible = 2e-6;
+    if (!frozen && std::abs(growth) > negligible) {
+      const double bound = double(reference::integral_limit);
+      const std::array gates = {inside(control, thrust_sp), inside(integral + growth, bound),
+                                inside(control, bound)};
+      // If all gates are open, the nearest to closing decides. Otherwise all closed gates have to
+      // open, and the farthest from opening decides.
+      const double least = *std::min_element(gates.begin(), gates.end());
+      notes->note(Decision::integrator_gate, std::abs(least));
+    }
+    return Law::integrate_axis(integral, control, thrust_sp, growth, frozen);
+  }
+};
+
+struct NotingRecovery : reference::RecoveryStages<double> {
+  using Law = reference::RecoveryStages<double>;
+  MarginNotes* notes;
+
+  bool latch(bool recovering, double tilt_rad) const {
+    const double threshold = reference::radians(recovering ? 5.0 : 30.0);
+    notes->note(Decision::recovery_latch, std::abs(tilt_rad - threshold));
+    return Law::latch(recovering, tilt_rad);
+  }
+  Vector3d quaternion_rates(const Quaternion<double>& q_WB, const Quaternion<double>& q_WD,
+                            const AttitudeGains<double>& gains) const {
+    const Quaternion<double> q = reference::product(reference::conjugate(q_WD), q_WB);
+    notes->note(Decision::recovery_rotation, std::abs(q.w()));
+    return Law::quaternion_rates(q_WB, q_WD, gains);
+  }
+};
+
+struct NotingController {
+  NotingStep step;
+  NotingAttitude attitude;
+  NotingRate rate;
+  NotingRecovery recovery;
+
+  explicit NotingController(MarginNotes* notes)
+      : step{{}, notes}, attitude{{}, notes}, rate{{}, notes}, recovery{{}, notes} {}
+};
+
+void note_norm(const float (&q)[4], MarginNotes& notes) {
+  double squared = 0;
+  for (const float component : q) squared += double(component) * double(component);
+  // All ports treat zeros and non-finite values the same way.
+  if (squared == 0 || !std::isfinite(squared)) return;
+  notes.note(Decision::quaternion_norm, std::abs(std::sqrt(squared) - 1));
+}
+
+using LawMeter = UnitMeter<reference::McAttControl<double, NotingController>, NotingController,
+                           attest_inputs, attest_outputs>;
+
+class ControllerMeter final : public LawMeter {
+ public:
+  explicit ControllerMeter(reference::Profile profile) : LawMeter(profile, &Sample::in) {}
+
+ private:
+  void measure(std::span<const ParameterChange> changes, const Sample& sample) override {
+    const attest_inputs& in = sample.in;
+    note_norm(in.control_state.q, notes_);
+    if ((in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0) {
+      note_norm(in.vehicle_attitude_setpoint.q_d, notes_);
+    }
+    LawMeter::measure(changes, sample);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<MarginMeter> controller_meter(const std::string& profile) {
+  const auto known = reference::profile_from_name(profile);
+  return known ? std::make_unique<ControllerMeter>(*known) : nullptr;
+}
+
+}  // namespace attest

@@ -1,0 +1,88 @@
+// The decisions of the laws, and how near a vector comes to them. Two correct ports differ in their
+// last bits. Where a decision depends on these bits, a numeric comparison would fail one of the
+// two.
+//
+// Clamps and blends are not decisions where they pass from one branch to the other without a jump:
+// both branches give the same output there. Examples are dt, the limits of rates and integrals, the
+// deadzone, the hover thrust at a centred throttle, and the tilt error at 90 deg of v1.5.5. Flags
+// and comparisons of times in whole microseconds are no decisions either, because every port gets
+// the same integers.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+namespace attest {
+
+enum class Decision {
+  // Of the controller of v1.5.5 and v1.3.4; those with * of the cascade, too.
+  quaternion_norm,  // | |q| - 1 |: here a small distance is safe, and a large one not
+  thrust_gate,      // thrust > 0.2
+  // |u| < thrust, -0.3 < n < 0.3, -0.3 < u < 0.3 (u: control, n: next integral). If all hold, the
+  // distance is that of the nearest to failing, otherwise that of the farthest from holding.
+  integrator_gate,
+  rattitude,          // a stick against MC_RATT_TH
+  shorter_rotation,   // * q_e.w >= 0, beyond 90 deg; of the cascade at any angle
+  yaw_wrap,           // * the yaw error at +-pi
+  tilt_axis,          // * the tilt error at 180 deg, where its axis is arbitrary
+  battery_scale,      // * scale > 0
+  recovery_latch,     // the tailsitter's 30 and 5 deg
+  recovery_rotation,  // its q_e.w > 0
+  // Of the mixer.
+  mixer_limit,   // a rotor's share of roll, pitch and thrust against 0 and 1
+  mixer_branch,  // one end of 0..1 exceeded: its excess against the room at the other end
+  mixer_yaw,     // yaw against the rotors' limits, where its flag is set
+  // Of the attitude unit.
+  opposite_thrust,  // x or y of the tilt rotation against 1 - 1e-5
+  yaw_weight,       // MC_YAW_WEIGHT > 1e-4
+  spool_up,         // time since arming > COM_SPOOLUP_TIME [s]
+  lowest_throttle,  // throttle < -0.9
+  heading_pole,     // pitch against 0.001 rad from +-90 deg
+  heading_wrap,     // at +-pi: the yaw of the sticks' setpoint, the error of the heading
+  convergence,      // the change of that error against 1 deg
+  yaw_lock,         // |yaw rate| > FLT_EPSILON, as a ratio
+  // Of the rate unit.
+  saturation_flag,  // |unallocated torque| > FLT_EPSILON, as a ratio
+  yaw_cutoff,       // MC_YAW_TQ_CUTOFF > FLT_EPSILON, as a ratio
+  overflow,         // torque and next integral against the largest float, as a ratio
+};
+inline constexpr auto decision_count = static_cast<std::size_t>(Decision::overflow) + 1;
+
+std::string_view name_of(Decision decision);  // "integrator gate"
+
+// The least distance that a numeric vector may have; for the norm, the largest. It is several times
+// the difference between correct builds in that quantity. Measured over 10 s of open loop: 8e-7 on
+// controls, 5e-7 on integrals (compare/tolerance.hpp), some 1e-6 rad on angles.
+double least_margin(Decision decision);
+
+// The same for a port in fixed point, if `fraction_bits` is given: at least `decision_lsb` of its
+// LSBs, the measured difference of its controls. Tolerances::control_lsb is the allowed difference.
+inline constexpr double decision_lsb = 750;
+double least_margin(Decision decision, std::optional<int> fraction_bits);
+
+struct Margin {
+  double distance = std::numeric_limits<double>::infinity();  // infinite: never measured
+  std::size_t tick = 0;
+};
+
+// Whether `one` is nearer to the decision than `other`: the smaller distance; of the norm, the
+// larger. False if `one` was never measured.
+bool is_nearer(Decision decision, const Margin& one, const Margin& other);
+
+// The nearest of each decision.
+struct Margins {
+  std::array<Margin, decision_count> of{};
+
+  const Margin& operator[](Decision decision) const {
+    return of[static_cast<std::size_t>(decision)];
+  }
+  bool is_safe(Decision decision) const;
+
+  // Keeps `distance` if it is the nearest of its decision. One that is NaN never counts.
+  void note(Decision decision, double distance, std::size_t tick);
+};
+
+}  // namespace attest

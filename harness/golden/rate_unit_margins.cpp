@@ -1,0 +1,81 @@
+// The rate unit with stages that record how near its decisions are.
+#include <cmath>
+#include <limits>
+
+#include "controller/cascade/rate_unit_definition.hpp"
+#include "harness/golden/margin_meters.hpp"
+
+namespace attest {
+namespace {
+
+// The distance of |value| from the threshold FLT_EPSILON, as a ratio.
+double from_epsilon(double value) {
+  return std::abs(std::abs(value) / double(cascade::epsilon) - 1);
+}
+
+// A value beyond the largest float is finite in double only.
+void note_overflow(double value, MarginNotes& notes) {
+  constexpr double largest = std::numeric_limits<float>::max();
+  notes.note(Decision::overflow, std::abs(std::abs(value) / largest - 1));
+}
+
+struct NotingRateLaw : cascade::RateStages<double> {
+  using Law = cascade::RateStages<double>;
+  MarginNotes* notes;
+
+  cascade::Saturation saturation(const Allocation& status) const {
+    for (const float torque : status.unallocated_torque) {
+      // Exactly 0 is the same in every port.
+      if (status.torque_setpoint_achieved == 0 && torque != 0) {
+        notes->note(Decision::saturation_flag, from_epsilon(torque));
+      }
+    }
+    return Law::saturation(status);
+  }
+  double limited(double next, double before, double max) const {
+    note_overflow(next, *notes);
+    return Law::limited(next, before, max);
+  }
+};
+
+struct NotingRateStep : cascade::RateStepStages<double> {
+  using Law = cascade::RateStepStages<double>;
+  MarginNotes* notes;
+
+  cascade::RateUnitGains<double> gains(const cascade::Parameters& parameters) const {
+    const double cutoff_Hz = parameters.mc_yaw_tq_cutoff;
+    if (cutoff_Hz > 0) notes->note(Decision::yaw_cutoff, from_epsilon(cutoff_Hz));
+    return Law::gains(parameters);
+  }
+  double guarded(double torque) const {
+    note_overflow(torque, *notes);
+    return Law::guarded(torque);
+  }
+  double battery_scale(double before,
+                       const decltype(attest_rate_inputs::battery_status)& sample) const {
+    // A scale of exactly 0 means no scaling in every port.
+    if (sample.connected != 0 && sample.scale != 0) {
+      notes->note(Decision::battery_scale, std::abs(double(sample.scale)));
+    }
+    return Law::battery_scale(before, sample);
+  }
+};
+
+struct NotingRateUnit {
+  NotingRateStep step;
+  NotingRateLaw rate;
+
+  explicit NotingRateUnit(MarginNotes* notes) : step{{}, notes}, rate{{}, notes} {}
+};
+
+using RateUnitMeter = UnitMeter<cascade::RateUnit<double, NotingRateUnit>, NotingRateUnit,
+                                attest_rate_inputs, attest_rate_outputs>;
+
+}  // namespace
+
+std::unique_ptr<MarginMeter> rate_unit_meter(const std::string& profile) {
+  const auto known = cascade::profile_from_name(profile);
+  return known ? std::make_unique<RateUnitMeter>(*known, &Sample::rate_in) : nullptr;
+}
+
+}  // namespace attest
