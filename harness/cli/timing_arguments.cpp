@@ -223,7 +223,9 @@ void add_time(CLI::App& app, const Globals& globals, Action& action) {
   add_examples(*command, {{"attest time --port lib:./libmine.so --worst slowest.csv",
                            "the slowest step of all vectors, written for `attest replay`"},
                           {"attest time --port lib:./libmine.so --budget 20 --rate 250",
-                           "fail if a step takes more than 20 us"}});
+                           "fail if a step takes more than 20 us"},
+                          {"attest time --port lib:./libmine.so --profile px4-v1.16.0",
+                           "the attitude unit and the rate unit, in a row each"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return time_command(*options, globals); };
   });

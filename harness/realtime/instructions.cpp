@@ -1,23 +1,57 @@
 #include "harness/realtime/instructions.hpp"
 
+#include <array>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
+#include <sstream>
+#include <string_view>
 
 #include <fmt/format.h>
-
-#include "harness/core/temporary_folder.hpp"
+#include <sys/mman.h>
+#include <unistd.h>
 
 namespace attest {
 namespace {
 
-// The last line of callgrind's output, except empty ones, is "totals: 812".
-std::optional<std::uint64_t> total_of(const std::filesystem::path& dump) {
-  std::ifstream file(dump);
-  for (std::string line; std::getline(file, line);) {
-    if (line.starts_with("totals: ")) return std::strtoull(line.c_str() + 8, nullptr, 10);
+// A file without a name, to which another program can write by a path of /proc. Nothing is left of
+// it when this process ends, however it ends.
+class NamelessFile {
+ public:
+  NamelessFile() : descriptor_(::memfd_create("attest-callgrind", MFD_CLOEXEC)) {}
+  NamelessFile(const NamelessFile&) = delete;
+  NamelessFile& operator=(const NamelessFile&) = delete;
+  ~NamelessFile() {
+    if (is_open()) ::close(descriptor_);
   }
-  return std::nullopt;
+
+  bool is_open() const { return descriptor_ >= 0; }
+  std::string path() const { return fmt::format("/proc/{}/fd/{}", ::getpid(), descriptor_); }
+  std::string text() const {
+    std::string all;
+    std::array<char, 1 << 16> part;
+    for (;;) {
+      const auto offset = static_cast<::off_t>(all.size());
+      const ::ssize_t size = ::pread(descriptor_, part.data(), part.size(), offset);
+      if (size <= 0) return all;
+      all.append(part.data(), static_cast<std::size_t>(size));
+    }
+  }
+
+ private:
+  int descriptor_;  // -1: it could not be made
+};
+
+// Each part of callgrind's output has a line such as "totals: 812". The last part has what was
+// counted after the last call: nothing.
+std::vector<std::uint64_t> totals_in(const std::string& dumps) {
+  constexpr std::string_view key = "totals: ";
+  std::vector<std::uint64_t> totals;
+  std::istringstream lines(dumps);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with(key)) continue;
+    totals.push_back(std::strtoull(line.c_str() + key.size(), nullptr, 10));
+  }
+  if (!totals.empty()) totals.pop_back();
+  return totals;
 }
 
 }  // namespace
@@ -25,24 +59,21 @@ std::optional<std::uint64_t> total_of(const std::filesystem::path& dump) {
 std::vector<std::uint64_t> instructions_of_calls(const std::vector<std::string>& command,
                                                  const std::string& symbol,
                                                  const ProgramLimits& limits) {
-  const auto folder = TemporaryFolder::make("callgrind");
-  if (!is_installed("valgrind") || !folder) return {};
-  const std::string dumps = (folder->path() / "dump").string();
-  // A dump after each call: dump.1, dump.2, ... and the rest, which is empty, as dump.
+  const NamelessFile dumps;
+  if (!is_installed("valgrind") || !dumps.is_open()) return {};
+  // A dump after each call, all in one file. Without vgdb, because its pipes stay in the folder for
+  // temporary files when valgrind is killed.
   std::vector<std::string> counted = {"valgrind",
+                                      "--vgdb=no",
                                       "--tool=callgrind",
                                       "--collect-atstart=no",
                                       "--toggle-collect=" + symbol,
                                       "--dump-after=" + symbol,
-                                      "--callgrind-out-file=" + dumps};
+                                      "--combine-dumps=yes",
+                                      "--callgrind-out-file=" + dumps.path()};
   counted.insert(counted.end(), command.begin(), command.end());
   if (!output_of(counted, limits)) return {};
-  std::vector<std::uint64_t> calls;
-  for (int number = 1;; ++number) {
-    const auto total = total_of(fmt::format("{}.{}", dumps, number));
-    if (!total) return calls;
-    calls.push_back(*total);
-  }
+  return totals_in(dumps.text());
 }
 
 }  // namespace attest

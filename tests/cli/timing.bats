@@ -201,15 +201,39 @@ CHECK
   command -v valgrind || skip "no valgrind"
   nm "$ATTEST" | grep -q __asan_init && skip "valgrind and sanitizers do not go together"
   # One vector, because with several it depends on chance which of them is the slowest.
-  for vector in 'px4-v1.5.5/large_angle/exactly_inverted@250hz' \
-    'px4-v1.16.0/attitude/roll_30@250hz' 'px4-v1.16.0/rates/d_alone@250hz'; do
-    "$ATTEST" time --filter "$vector" --instructions --json one.json
-    "$ATTEST" time --filter "$vector" --instructions --json two.json
-    python3 - <<'CHECK'
+  local vector='px4-v1.5.5/large_angle/exactly_inverted@250hz'
+  "$ATTEST" time --filter "$vector" --instructions --json one.json
+  "$ATTEST" time --filter "$vector" --instructions --json two.json
+  "$ATTEST" time --filter px4-v1.16.0/attitude/roll_30@250hz --instructions --json attitude.json
+  "$ATTEST" time --filter px4-v1.16.0/rates/d_alone@250hz --instructions --json rates.json
+  python3 - <<'CHECK'
 import json
-one, two = (json.load(open(name))["instructions"] for name in ("one.json", "two.json"))
+names = ("one", "two", "attitude", "rates")
+one, two, attitude, rates = (json.load(open(f"{name}.json"))["instructions"] for name in names)
 assert one == two and len(one) > 10 and min(one) > 100, (one, two)
+assert len(attitude) == 40 and min(attitude) > 100, attitude
+assert len(rates) == 32 and min(rates) > 100, rates
 CHECK
+}
+
+@test "counting instructions leaves no file behind, also when it is killed" {
+  command -v valgrind || skip "no valgrind"
+  nm "$ATTEST" | grep -q __asan_init && skip "valgrind and sanitizers do not go together"
+  mkdir tmp
+  for signal in INT KILL; do
+    TMPDIR="$PWD/tmp" "$ATTEST" time --filter px4-v1.16.0/modes/long_run_5000@250hz \
+      --repeat 1 --no-stack --instructions >said &
+    local attest=$!
+    for _ in $(seq 300); do
+      pgrep -P $attest -f callgrind >/dev/null && break
+      sleep 0.1
+    done
+    pgrep -P $attest -f callgrind
+    sleep 2 # valgrind has started
+    kill -$signal $attest
+    wait $attest && false
+    [ ! -s said ]
+    [ -z "$(ls -A tmp)" ]
   done
 }
 
