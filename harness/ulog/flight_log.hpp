@@ -24,11 +24,11 @@ struct LoggedOutput {
   std::size_t paired = 0;   // of these, with a tick
 };
 
-// What the log has of that which the outputs of a tick depend on.
+// Whether the log shows the setpoint that the unit follows at a tick.
 enum class Known : std::uint8_t {
-  all,            // an output without memory can be computed from this tick
-  if_every_step,  // only from all steps: the attitude unit makes its setpoint of the sticks
-  nothing         // there was no setpoint in the log yet
+  all,            // yes
+  if_every_step,  // if it has every step: filters of the attitude unit make it from the sticks
+  nothing         // no: it has no setpoint up to this tick
 };
 
 struct LoggedUnit {
@@ -43,12 +43,12 @@ struct LoggedUnit {
   std::vector<LoggedOutput> outputs;
   std::vector<Known> known;  // of each tick
   // The log has every step of the unit, from the ground on; of v1.14 to v1.16, also without
-  // assumptions. Otherwise outputs that depend on
-  // earlier steps (the integral, the derivative) cannot be computed from it.
+  // assumptions. If it has not, the outputs that depend on earlier steps (the integral, the
+  // derivative) cannot be computed exactly.
   bool has_every_step = false;
   bool begins_in_flight = false;  // so the state of the unit at the first tick is not known
-  // Why the outputs that depend on earlier steps cannot be computed, not even about; empty if they
-  // can. Never empty for a unit of which the log has too little: then it has no ticks.
+  // Why the outputs that depend on earlier steps cannot even be computed approximately; empty if
+  // they can. Never empty for a unit without ticks, for which the log has too little.
   std::string not_judged;
 };
 
@@ -76,7 +76,7 @@ struct FlightLog {
 // output of the rate unit in acro mode. They are inputs otherwise. quat_reset_counter counts from
 // the first sample on, because a unit that starts there knows of no earlier reset.
 //
-// `assumed` are words of flight_assumptions(); empty: those by default, none in a log of attest.
+// `assumed` are some of assumption_words(); empty: those by default, none in a log of attest.
 // They apply to topics without a sample in the log. Errors: the file cannot be read or is no ULog;
 // it has too little for any unit; an unknown word, or one for a topic that the log has.
 Result<FlightLog> read_flight_log(const std::filesystem::path& path,
