@@ -3,6 +3,7 @@
 #include <chrono>
 #include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -20,46 +21,54 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int physics_hz = 1000;
-
 struct Flying {
-  Case the_case = *parse_case(ATTEST_SOURCE_DIR "/cases/px4-v1.5.5/flight/tilt_step_30.toml");
+  Case the_case;
+  RunConfiguration configuration;
   std::shared_ptr<const VehicleModel> iris =
       *VehicleModel::load(ATTEST_SOURCE_DIR "/models", "iris");
   std::unique_ptr<Port> port = *open_port("builtin");
 
-  RunConfiguration configuration(int hertz) const {
-    return {Rate::hz(hertz), PlantConfiguration{"iris", PlantKind::mujoco}};
-  }
+  // The same step of the pitch, of the controller or of the cascade.
+  explicit Flying(const LoopRate& rate)
+      : the_case(*parse_case(std::string(ATTEST_SOURCE_DIR "/cases/") +
+                             (rate.attitude_unit ? "px4-v1.16.0" : "px4-v1.5.5") +
+                             "/flight/tilt_step_30.toml")),
+        configuration{rate, PlantConfiguration{"iris", PlantKind::mujoco}} {}
+
+  PortUnits units() const { return *units_for(the_case, *port, *port); }
+  FlightTiming timing() const { return flight_timing(the_case, configuration.rate); }
 };
 
-const Flying& flying() {
-  static const Flying all;
-  return all;
+// Kept, so that later turns start fast.
+const Flying& flying(const LoopRate& rate) {
+  static std::map<LoopRate, Flying> all;
+  return all.try_emplace(rate, rate).first->second;
 }
 
-void flight(benchmark::State& state, int hertz, bool keep_trace) {
-  const Flying& f = flying();
+LoopRate cascade_rate() { return {Rate::hz(250), Rate::hz(1000)}; }
+
+void flight(benchmark::State& state, const LoopRate& rate, bool keep_trace) {
+  const Flying& f = flying(rate);
   const Case scripted = bound_to_vehicle(f.the_case, f.iris->vehicle());
+  const std::size_t ticks = f.timing().unit.size();
   for (auto _ : state) {
-    const auto plant = *plant_for(f.the_case, f.configuration(hertz), *f.iris);
-    const auto unit = f.port->create("px4-v1.5.5");
-    ClosedLoop loop(scripted, Rate::hz(hertz), case_timing(scripted, Rate::hz(hertz)),
-                    f.iris->vehicle(), *plant, *unit);
-    Trace trace;
-    trace.samples.reserve(static_cast<std::size_t>(3 * hertz));
-    trace.plant.reserve(static_cast<std::size_t>(3 * hertz));
+    const auto plant = *plant_for(f.the_case, f.configuration, *f.iris);
+    const PortUnits units = f.units();
+    ClosedLoop loop(scripted, rate, f.timing(), f.iris->vehicle(), *plant, units.for_flight());
+    Trace trace, attitude_trace;
+    for (Trace* const one : {&trace, &attitude_trace}) one->samples.reserve(ticks);
+    trace.plant.reserve(ticks);
     const auto begin = Clock::now();
-    benchmark::DoNotOptimize(loop.run(keep_trace ? &trace : nullptr));
+    benchmark::DoNotOptimize(
+        loop.run(keep_trace ? FlightTraces{&trace, &attitude_trace} : FlightTraces{}));
     state.SetIterationTime(std::chrono::duration<double>(Clock::now() - begin).count());
   }
 }
 
-// The commanded rotor speeds [rad/s], four a tick.
-std::vector<double> commands(int hertz) {
-  const Flying& f = flying();
-  const auto unit = f.port->create("px4-v1.5.5");
-  const auto flown = *fly(f.the_case, f.configuration(hertz), *f.iris, *unit);
+// The commanded rotor speeds [rad/s], four for each tick of the unit that commands the motors.
+std::vector<double> commands(const Flying& f) {
+  const PortUnits units = f.units();
+  const auto flown = *fly(f.the_case, f.configuration, *f.iris, units.for_flight());
   std::vector<double> all;
   for (const PlantSample& sample : flown.trace.plant) {
     for (std::size_t i = 0; i < 4; ++i) {
@@ -70,20 +79,22 @@ std::vector<double> commands(int hertz) {
   return all;
 }
 
-void bare_steps(benchmark::State& state, int hertz) {
-  static std::map<int, std::vector<double>> flown;  // kept, so that later turns start fast
-  if (!flown.contains(hertz)) flown[hertz] = commands(hertz);  // installs MuJoCo's callbacks too
-  const std::vector<double>& all = flown[hertz];
+void bare_steps(benchmark::State& state, const LoopRate& rate) {
+  static std::map<LoopRate, std::vector<double>> flown;  // kept, so that later turns start fast
+  const Flying& f = flying(rate);
+  if (!flown.contains(rate)) flown[rate] = commands(f);  // installs MuJoCo's callbacks too
+  const std::vector<double>& all = flown[rate];
+  const auto steps = static_cast<int>(physics_of(f.the_case, rate.unit).hertz() / rate.hertz());
   mjModel* model = mj_loadXML(ATTEST_SOURCE_DIR "/models/iris.xml", nullptr, nullptr, 0);
   mjData* data = mj_makeData(model);
   for (auto _ : state) {
     mj_resetData(model, data);
-    mju_copy(data->userdata, flying().iris->vehicle().drag_kg_s.data(), 3);
-    for (int i = 0; i < 4; ++i) data->act[i] = flying().iris->vehicle().hover_rotor_rad_s();
+    mju_copy(data->userdata, f.iris->vehicle().drag_kg_s.data(), 3);
+    for (int i = 0; i < 4; ++i) data->act[i] = f.iris->vehicle().hover_rotor_rad_s();
     const auto begin = Clock::now();
     for (std::size_t tick = 0; tick + 4 < all.size(); tick += 4) {
       mju_copy(data->ctrl, all.data() + tick, 4);
-      for (int i = 0; i < physics_hz / hertz; ++i) mj_step(model, data);
+      for (int i = 0; i < steps; ++i) mj_step(model, data);
     }
     state.SetIterationTime(std::chrono::duration<double>(Clock::now() - begin).count());
   }
@@ -93,7 +104,7 @@ void bare_steps(benchmark::State& state, int hertz) {
 
 // The preparation of a flight after the vehicle was loaded.
 void set_up(benchmark::State& state) {
-  const Flying& f = flying();
+  const Flying& f = flying(Rate::hz(250));
   for (auto _ : state) {
     const auto plant = *f.iris->make_plant(PlantKind::mujoco, {});
     plant->reset({});
@@ -114,11 +125,13 @@ void bare_set_up(benchmark::State& state) {
   mj_deleteModel(model);
 }
 
-BENCHMARK_CAPTURE(flight, at_250, 250, false)->Name("flight/250hz")->UseManualTime();
-BENCHMARK_CAPTURE(flight, traced, 250, true)->Name("flight/250hz_trace")->UseManualTime();
-BENCHMARK_CAPTURE(bare_steps, at_250, 250)->Name("mj_step/250hz")->UseManualTime();
-BENCHMARK_CAPTURE(flight, at_1000, 1000, false)->Name("flight/1000hz")->UseManualTime();
-BENCHMARK_CAPTURE(bare_steps, at_1000, 1000)->Name("mj_step/1000hz")->UseManualTime();
+BENCHMARK_CAPTURE(flight, at_250, Rate::hz(250), false)->Name("flight/250hz")->UseManualTime();
+BENCHMARK_CAPTURE(flight, traced, Rate::hz(250), true)->Name("flight/250hz_trace")->UseManualTime();
+BENCHMARK_CAPTURE(bare_steps, at_250, Rate::hz(250))->Name("mj_step/250hz")->UseManualTime();
+BENCHMARK_CAPTURE(flight, at_1000, Rate::hz(1000), false)->Name("flight/1000hz")->UseManualTime();
+BENCHMARK_CAPTURE(bare_steps, at_1000, Rate::hz(1000))->Name("mj_step/1000hz")->UseManualTime();
+BENCHMARK_CAPTURE(flight, cascade, cascade_rate(), false)->Name("flight/cascade")->UseManualTime();
+BENCHMARK_CAPTURE(bare_steps, cascade, cascade_rate())->Name("mj_step/cascade")->UseManualTime();
 BENCHMARK(set_up)->Name("plant/set_up");
 BENCHMARK(bare_set_up)->Name("mujoco/set_up");
 

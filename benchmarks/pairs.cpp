@@ -114,6 +114,8 @@ const std::vector<Pair>& pairs() {
        "at most 1.08x the bare steps"},
       {"flight, 1 kHz, MuJoCo at 1 kHz", "flight/1000hz", "mj_step/1000hz", 1.25,
        "at most 1.25x the bare steps"},
+      {"flight of the cascade, 250 Hz and 1 kHz, MuJoCo at 1 kHz", "flight/cascade",
+       "mj_step/cascade", 1.25, "at most 1.25x the bare steps"},
       {"ode plant, 1 s at 1 kHz", "ode/plant", "ode/erkstep", 1.10, "at most 1.10x bare ERKStep"},
       {"plant made and reset", "plant/set_up", "mujoco/set_up", 0,
        "within 100 us of MuJoCo's own time", 100e-6},

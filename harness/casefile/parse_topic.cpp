@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -100,7 +101,45 @@ std::optional<Signal> parse_in_transition(const TomlTable& table) {
   return signal;
 }
 
-// `flight_mode = "ACRO"`, or `{ times_ticks = [0, 20], modes = ["ACRO", "POSCTL"] }`.
+struct ModeSequence {
+  std::vector<Span> times;
+  std::vector<const FlightMode*> modes;  // each from its time on
+
+  // The signal of a value that each mode has.
+  template <typename ValueOf>
+  Signal signal_of(const ValueOf& value_of) const {
+    if (modes.size() == 1) return Constant{static_cast<double>(value_of(*modes[0]))};
+    Samples samples{times, {}, false};
+    for (const FlightMode* mode : modes) samples.values.push_back(value_of(*mode));
+    return samples;
+  }
+};
+
+// `"ACRO"`, or `{ times_ticks = [0, 20], modes = ["ACRO", "POSCTL"] }`. Empty after an error.
+std::optional<ModeSequence> parse_modes(const TomlTable& table, const char* key, Module module) {
+  ModeSequence sequence{{Span{}}, {}};
+  std::vector<std::string> names;
+  if (table.kind(key) == TomlKind::table) {
+    const TomlTable given = table.table(key);
+    sequence.times = parse_spans(given, "times");
+    names = given.texts("modes");
+  } else {
+    names = {table.text(key)};
+  }
+  if (names.size() != sequence.times.size() || names.empty()) {
+    table.error(key, "needs one mode a time, at least one");
+    return std::nullopt;
+  }
+  for (const std::string& name : names) {
+    sequence.modes.push_back(find_flight_mode(module, name));
+    if (sequence.modes.back()) continue;
+    table.error(
+        key, fmt::format("unknown flight mode `{}`{}", name, suggestion(name, mode_names(module))));
+    return std::nullopt;
+  }
+  return sequence;
+}
+
 void parse_flight_mode(const TomlTable& table, Module module, TopicStimulus& topic) {
   constexpr const char* key = "flight_mode";
   if (!table.has(key)) {
@@ -108,31 +147,8 @@ void parse_flight_mode(const TomlTable& table, Module module, TopicStimulus& top
       table.error("in_transition", "needs a `flight_mode` in the same table");
     return;
   }
-  std::vector<Span> times{Span{}};
-  std::vector<std::string> names;
-  if (table.kind(key) == TomlKind::table) {
-    const TomlTable sequence = table.table(key);
-    times = parse_spans(sequence, "times");
-    names = sequence.texts("modes");
-  } else {
-    names = {table.text(key)};
-  }
-  if (names.size() != times.size() || names.empty()) {
-    return table.error(key, "needs one mode a time, at least one");
-  }
-  std::vector<const FlightMode*> modes;
-  for (const std::string& name : names) {
-    modes.push_back(find_flight_mode(module, name));
-    if (modes.back()) continue;
-    return table.error(
-        key, fmt::format("unknown flight mode `{}`{}", name, suggestion(name, mode_names(module))));
-  }
-  const auto signal_of = [&](auto&& value) -> Signal {
-    if (modes.size() == 1) return Constant{static_cast<double>(value(*modes[0]))};
-    Samples samples{times, {}, false};
-    for (const FlightMode* mode : modes) samples.values.push_back(value(*mode));
-    return samples;
-  };
+  const auto sequence = parse_modes(table, key, module);
+  if (!sequence) return;
   const bool has_transition = module == Module::mc_att_control;
   const auto transition = has_transition ? parse_in_transition(table) : std::nullopt;
   const auto& flags = flag_names(module);
@@ -141,9 +157,9 @@ void parse_flight_mode(const TomlTable& table, Module module, TopicStimulus& top
         std::find(flags.begin(), flags.end(), field_of(channels()[field.channel].name));
     if (found == flags.end()) continue;  // flag_armed
     const auto flag = static_cast<std::size_t>(found - flags.begin());
-    field.signal = signal_of([&](const FlightMode& mode) { return mode.flags[flag]; });
+    field.signal = sequence->signal_of([&](const FlightMode& mode) { return mode.flags[flag]; });
     if (!transition) continue;
-    field.replacement = {*transition, signal_of([&](const FlightMode& mode) {
+    field.replacement = {*transition, sequence->signal_of([&](const FlightMode& mode) {
                            return mode.flags_in_transition()[flag];
                          })};
   }

@@ -1,6 +1,7 @@
 #include "harness/cli/arguments.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -21,9 +22,10 @@ namespace attest::cli {
 namespace {
 
 constexpr const char* description =
-    "Judges whether a port of the PX4 multicopter attitude controller conforms to the\n"
-    "reference at every loop rate. Reports the first deviation: its tick, signal and stage of the "
-    "law.\n";
+    "Judges whether a port of PX4's multicopter attitude and rate control conforms to the\n"
+    "reference at every loop rate: of the controller of v1.5.5 and v1.3.4, or of the attitude unit "
+    "and the rate unit of v1.14 to v1.16. Reports the first deviation: its tick, signal and stage "
+    "of the law.\n";
 
 constexpr const char* footer =
     "\nFirst steps (`attest help COMMAND` has more):\n"
@@ -32,6 +34,8 @@ constexpr const char* footer =
     "  attest run --port lib:./libmine.so --level exact --filter 'attitude/*@250hz'\n"
     "  attest replay TRACE.csv --port lib:./libmine.so\n"
     "  attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv\n"
+    "  attest sim hover --rate 250:1000               both units of v1.14 to v1.16, at 250 Hz and\n"
+    "                                                 1 kHz\n"
     "  attest stress --port lib:./libmine.so          in real time, at 250 Hz to 8 kHz\n"
     "\n"
     "Exit codes: 0 no failure, 1 a failure, 2 wrong usage or environment.\n";
@@ -174,21 +178,7 @@ void add_help(CLI::App& app, Action& action) {
       [options, &app, &action] { action = [=, &app] { return show_help(app, *options); }; });
 }
 
-}  // namespace
-
-int run_command_line(int argc, char** argv) {
-  CLI::App app(description, "attest");
-  use_plain_flag_names(app);
-  app.set_version_flag("--version", fmt::format("attest {}", version));
-  app.require_subcommand(1);
-  app.fallthrough();
-
-  Globals globals;
-  app.add_option("--suite", globals.suite, "Folder with cases/, golden/ and models/")
-      ->type_name("DIR");
-  app.add_flag("-q,--quiet", globals.quiet, "No progress and no summary, only failures and errors");
-
-  Action action;
+void add_commands(CLI::App& app, const Globals& globals, Action& action) {
   add_run_command(app, globals, action);
   add_merge_command(app, globals, action);
   add_sim(app, globals, action);
@@ -200,7 +190,10 @@ int run_command_line(int argc, char** argv) {
   add_smoke(app, globals, action);
   add_help(app, action);
   app.footer(footer);  // last: commands copy the footer that exists when they are added
+}
 
+// The exit code, if the command line is wrong or asks for help or the version only.
+std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   const std::string word = argc > 1 ? argv[1] : "";
   if (!word.empty() && !word.starts_with('-')) {
     const std::string wrong = unknown_command(app, word);
@@ -220,7 +213,25 @@ int run_command_line(int argc, char** argv) {
     return exit_usage;
   }
   if (const std::string wrong = wrong_value(app); !wrong.empty()) return report_error({wrong});
-  return action();
+  return std::nullopt;
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+  CLI::App app(description, "attest");
+  use_plain_flag_names(app);
+  app.set_version_flag("--version", fmt::format("attest {}", version));
+  app.require_subcommand(1);
+  app.fallthrough();
+  Globals globals;
+  app.add_option("--suite", globals.suite, "Folder with cases/, golden/ and models/")
+      ->type_name("DIR");
+  app.add_flag("-q,--quiet", globals.quiet, "No progress and no summary, only failures and errors");
+  Action action;
+  add_commands(app, globals, action);
+  const auto ended = parse(app, argc, argv);
+  return ended ? *ended : action();
 }
 
 }  // namespace attest::cli

@@ -116,6 +116,39 @@ void print_left_out(const PendingGoldens& pending) {
   }
 }
 
+// How the goldens are made: by attest's reference, which is checked first, or by a port.
+Result<BlessingOptions> blessing_of(const BlessOptions& options,
+                                    const std::vector<SelectedCase>& cases,
+                                    const SuiteFolder& suite) {
+  BlessingOptions blessing{suite.golden(), suite.models(), {options.reason}};
+  if (options.port.empty()) {
+    if (auto checked = check_reference(suite); !checked) return tl::unexpected(checked.error());
+    if (auto noted = note_uncovered(cases, suite); !noted) return tl::unexpected(noted.error());
+  } else {
+    blessing.port = options.host;
+    blessing.port->port = options.port;
+    auto description = description_of(*blessing.port);
+    if (!description) return tl::unexpected(description.error());
+    blessing.making.reference = *std::move(description);
+  }
+  blessing.on_change = [](const std::string& line) { fmt::print("{}\n", line); };
+  blessing.stop = interrupted;
+  return blessing;
+}
+
+// `port`: description of the port that made them; empty: attest's reference did.
+Result<void> replace_goldens(std::vector<NewGolden>& goldens, const std::string& port,
+                             const SuiteFolder& suite) {
+  if (!port.empty()) {
+    if (auto named = write_file(suite.reference_file(), port + "\n"); !named) return named;
+  }
+  for (NewGolden& golden : goldens) {
+    if (auto placed = golden.put_in_place(); !placed) return placed;
+  }
+  fmt::print("blessed {}\n", goldens.size());
+  return {};
+}
+
 Result<int> bless_selected(const BlessOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return tl::unexpected(suite.error());
@@ -127,20 +160,9 @@ Result<int> bless_selected(const BlessOptions& options, const Globals& globals) 
   note_interrupts();
   const auto lock = GoldenLock::take(suite->golden());
   if (!lock) return tl::unexpected(lock.error());
-  BlessingOptions blessing{suite->golden(), suite->models(), {options.reason}};
-  if (options.port.empty()) {
-    if (auto checked = check_reference(*suite); !checked) return tl::unexpected(checked.error());
-    if (auto noted = note_uncovered(*cases, *suite); !noted) return tl::unexpected(noted.error());
-  } else {
-    blessing.port = options.host;
-    blessing.port->port = options.port;
-    auto description = description_of(*blessing.port);
-    if (!description) return tl::unexpected(description.error());
-    blessing.making.reference = *std::move(description);
-  }
-  blessing.on_change = [](const std::string& line) { fmt::print("{}\n", line); };
-  blessing.stop = interrupted;
-  auto pending = write_new_goldens(*cases, blessing);
+  const auto blessing = blessing_of(options, *cases, *suite);
+  if (!blessing) return tl::unexpected(blessing.error());
+  auto pending = write_new_goldens(*cases, *blessing);
   if (auto go_on = check_not_interrupted(); !go_on) return tl::unexpected(go_on.error());
   if (!pending) return tl::unexpected(pending.error());
 
@@ -153,14 +175,9 @@ Result<int> bless_selected(const BlessOptions& options, const Globals& globals) 
     fmt::print("no golden was changed\n");
     return exit_failed;
   }
-  if (!options.port.empty()) {
-    auto named = write_file(suite->reference_file(), blessing.making.reference + "\n");
-    if (!named) return tl::unexpected(named.error());
-  }
-  for (NewGolden& golden : pending->goldens) {
-    if (auto placed = golden.put_in_place(); !placed) return tl::unexpected(placed.error());
-  }
-  fmt::print("blessed {}\n", pending->goldens.size());
+  const std::string port = options.port.empty() ? "" : blessing->making.reference;
+  const auto replaced = replace_goldens(pending->goldens, port, *suite);
+  if (!replaced) return tl::unexpected(replaced.error());
   return exit_ok;
 }
 

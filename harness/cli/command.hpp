@@ -204,7 +204,7 @@ struct VectorOptions {
   std::string from_log;
   double from_s = 0;
   std::optional<double> to_s;        // empty: to the end
-  std::vector<std::string> assumed;  // words of flight_assumptions()
+  std::vector<std::string> assumed;  // assumption_words()
 };
 int vectors_command(const VectorOptions& options, const Globals& globals);
 int vectors_from_log_command(const VectorOptions& options, const Globals& globals);

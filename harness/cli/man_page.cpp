@@ -144,7 +144,8 @@ std::string man_page_of(const CLI::App& command) {
 std::string man_page(const CLI::App& app) {
   std::string text = header("attest");
   text +=
-      ".SH NAME\nattest \\- conformance suite for ports of a multicopter attitude controller\n"
+      ".SH NAME\nattest \\- conformance suite for ports of PX4 multicopter attitude and rate "
+      "control\n"
       ".SH SYNOPSIS\n\\fBattest\\fR [\\fIOPTIONS\\fR] \\fICOMMAND\\fR ...\n";
   text += fmt::format(".SH DESCRIPTION\n{}.\n", roff(trimmed(app.get_description())));
   text += ".SH COMMANDS\n";

@@ -37,8 +37,6 @@ struct SchedulePlan {
   std::vector<std::vector<TaskJob>> jobs;
   Jobs<CaseResult> flights;  // in time, and as scheduled
   TimingFile scheduled;
-
-  const std::vector<TaskJob>& unit() const { return jobs[set.unit]; }
 };
 
 Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder& suite) {
@@ -87,7 +85,7 @@ int schedule_command(const ScheduleOptions& options, const Globals& globals) {
   if (!plan) return report_error(plan.error());
   if (!globals.quiet) {
     fmt::print("{}\n{}\n", render_tasks(plan->set, plan->jobs),
-               render_delays(plan->unit(), plan->scheduled.ticks.unit));
+               render_delays(plan->set, plan->jobs, plan->scheduled.ticks));
   }
   if (!options.record_timing.empty()) {
     if (auto written = write_timing(plan->scheduled, options.record_timing); !written) {

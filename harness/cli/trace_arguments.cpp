@@ -30,6 +30,29 @@ void add_log_options(CLI::App& command, ReplayOptions& options) {
       ->group(option_group::logs);
 }
 
+// Under which law the port is judged.
+void add_law_options(CLI::App& command, ReplayOptions& options) {
+  command
+      .add_option(
+          "--profile", options.profile,
+          "Version of the law. Default for a trace: that of the provenance.toml next to it, else "
+          "the newest that has its unit; for a log: the release of PX4 that wrote it. A log of "
+          "attitude unit and "
+          "rate unit that does not name its release needs this option")
+      ->type_name("PROFILE");
+  command.add_option("--param", options.parameters, "Set a parameter from the first step on")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  command.add_option("--level", options.level, "`exact`, `numeric` or `events`")
+      ->type_name("LEVEL")
+      ->capture_default_str();
+  command
+      .add_option("--mixer", options.mixer,
+                  "Definition of the mixer of a mixer trace; default: that of the provenance.toml "
+                  "next to the trace, else the geometry in the file name (`4x.csv`)")
+      ->type_name("TEXT");
+}
+
 void add_replay(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<ReplayOptions>();
   CLI::App* command = app.add_subcommand("replay",
@@ -45,24 +68,7 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("FILE")
       ->required();
   add_port(*command, options->host.port);
-  command
-      ->add_option(
-          "--profile", options->profile,
-          "Version of the law. Default for a trace: that of the provenance.toml next to it, else "
-          "the newest that has its unit; for a log: the release of PX4 that wrote it. A log of "
-          "attitude unit and rate unit that does not name its release needs this option")
-      ->type_name("PROFILE");
-  command->add_option("--param", options->parameters, "Set a parameter from the first step on")
-      ->type_name("NAME=VALUE")
-      ->allow_extra_args(false);
-  command->add_option("--level", options->level, "`exact`, `numeric` or `events`")
-      ->type_name("LEVEL")
-      ->capture_default_str();
-  command
-      ->add_option("--mixer", options->mixer,
-                   "Definition of the mixer of a mixer trace; default: that of the provenance.toml "
-                   "next to the trace, else the geometry in the file name (`4x.csv`)")
-      ->type_name("TEXT");
+  add_law_options(*command, *options);
   add_log_options(*command, *options);
   add_page(*command, options->html, "A page with plots of the outputs, of one trace or log");
   command->add_option("--json", options->json, "Write the results, by trace and unit")

@@ -1,6 +1,7 @@
 #include "harness/realtime/live_flight.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <thread>
 #include <utility>
 
@@ -52,22 +53,6 @@ LoopTiming timing_of(const LiveUnitRecord& unit,
   return timing;
 }
 
-// A unit with its clock; its thread runs it.
-struct FlyingUnit {
-  FlyingUnit(const Case& the_case, const LoopRate& rate, const Vehicle& vehicle, Unit& port,
-             const PlantState& start, Pacer own_clock, Links& links, std::size_t samples)
-      : scripted(the_case),
-        task(scripted, rate.unit, vehicle, port, Estimate{Nanoseconds(0), control_state_of(start)}),
-        clock(own_clock),
-        live(scripted, rate, task, clock, links, samples) {}
-
-  Case scripted;
-  UnitTask task;
-  Pacer clock;
-  LiveUnit live;
-  std::vector<RealtimePrivilege> privileges;
-};
-
 LivePlantPlan plan_of(const Case& scripted, const Rate& rate, const Vehicle& vehicle,
                       std::size_t ticks) {
   const Timeline timeline = timeline_of(scripted, rate);
@@ -83,9 +68,127 @@ LivePlantPlan plan_of(const Case& scripted, const Rate& rate, const Vehicle& veh
   return plan;
 }
 
+// What each unit of a flight is made from.
+struct UnitSetting {
+  const Case& scripted;  // of the whole flight
+  const LoopRate& rate;
+  const Vehicle& vehicle;
+  PlantState start;
+  Pacer clock;
+  std::size_t samples;
+};
+
+// A unit with its clock; its thread runs it.
+struct FlyingUnit {
+  FlyingUnit(Module module, Unit& port, const UnitSetting& setting, Links& links)
+      : scripted(setting.scripted.of_module(module)),
+        task(scripted, setting.rate.unit, setting.vehicle, port,
+             Estimate{Nanoseconds(0), control_state_of(setting.start)}),
+        clock(setting.clock),
+        live(scripted, setting.rate, task, clock, links, setting.samples) {}
+
+  Case scripted;
+  UnitTask task;
+  Pacer clock;
+  LiveUnit live;
+  std::vector<RealtimePrivilege> privileges;  // of its thread
+};
+
+// All that flies, ready for its threads. Not moved: the parts refer to each other.
+struct Flyers {
+  // REQUIRES: same as fly_live(); `scripted` is bound to the vehicle. All outlive this.
+  Flyers(const Case& scripted, const LoopRate& rate, const Vehicle& vehicle, Plant& flown,
+         FlightUnits units, const LiveOptions& options, std::size_t samples)
+      : plant_task(scripted, rate.unit, vehicle, flown),
+        origin(Pacer::now_monotonic() + settle_in),
+        setting{scripted, rate, vehicle, plant_task.state(), {origin, options.wait}, samples},
+        unit(scripted.module, units.unit, setting, links),
+        attitude_unit(scripted.attitude_loop
+                          ? std::make_unique<FlyingUnit>(Module::attitude_unit,
+                                                         *units.attitude_unit, setting, links)
+                          : nullptr),
+        plant_clock(origin, Wait{}),
+        plant(plant_task, plan_of(scripted, rate.unit, vehicle, unit.live.deadlines()), plant_clock,
+              links) {
+    links.flying = attitude_unit ? 2 : 1;
+  }
+
+  Links links;
+  PlantTask plant_task;
+  Nanoseconds origin;  // time 0 of all clocks
+  UnitSetting setting;
+  FlyingUnit unit;  // that commands the motors
+  std::unique_ptr<FlyingUnit> attitude_unit;
+  Pacer plant_clock;
+  LivePlant plant;
+  std::vector<RealtimePrivilege> plant_privileges;  // of its thread
+};
+
+std::thread start(FlyingUnit& unit, const LiveOptions& options, int priority) {
+  return std::thread([&unit, wish = unit_wish(options, priority)] {
+    run_claimed(wish, unit.privileges, [&unit] { unit.live.run(); });
+  });
+}
+
+// The plant's thread, and one for each unit.
+std::vector<std::thread> start(Flyers& flyers, const LiveOptions& options) {
+  std::vector<std::thread> threads;
+  threads.emplace_back([&flyers, wish = plant_wish(options)] {
+    run_claimed(wish, flyers.plant_privileges, [&flyers] { flyers.plant.run(); });
+  });
+  threads.push_back(start(flyers.unit, options, unit_priority));
+  if (flyers.attitude_unit) {
+    threads.push_back(start(*flyers.attitude_unit, options, attitude_unit_priority));
+  }
+  return threads;
+}
+
+LiveProgress progress_at(Nanoseconds now, const Flyers& flyers) {
+  const LiveUnit& unit = flyers.unit.live;
+  LiveProgress progress{now, unit.releases_passed(), unit.missed()};
+  if (flyers.attitude_unit) {
+    progress.deadlines += flyers.attitude_unit->live.releases_passed();
+    progress.missed += flyers.attitude_unit->live.missed();
+  }
+  return progress;
+}
+
+// Until the flight ends, by itself or by `stop`.
+void watch(Flyers& flyers, const std::function<bool()>& stop,
+           const std::function<void(const LiveProgress&)>& progress) {
+  Pacer here(flyers.origin, Wait{});
+  here.wait_until(Nanoseconds(0));
+  while (!flyers.links.stop.load()) {
+    if (stop()) flyers.links.stop.store(true);
+    progress(progress_at(here.now(), flyers));
+    std::this_thread::sleep_for(progress_every);
+  }
+}
+
 void add_refused(const std::vector<RealtimePrivilege>& from, std::vector<RealtimePrivilege>& to) {
   std::copy_if(from.begin(), from.end(), std::back_inserter(to),
                [](const RealtimePrivilege& right) { return !right.got; });
+}
+
+// Same as LiveFlight::privileges.
+std::vector<RealtimePrivilege> privileges_of(const ProcessPrivileges& process,
+                                             const Flyers& flyers) {
+  std::vector<RealtimePrivilege> all = process.privileges();
+  all.insert(all.end(), flyers.unit.privileges.begin(), flyers.unit.privileges.end());
+  if (flyers.attitude_unit) add_refused(flyers.attitude_unit->privileges, all);
+  add_refused(flyers.plant_privileges, all);
+  return all;
+}
+
+// After the threads have ended.
+LiveFlight flight_of(Flyers& flyers, const ProcessPrivileges& process) {
+  LiveFlight flight;
+  flight.unit = flyers.unit.live.take_record();
+  flight.plant = flyers.plant.take_record();
+  if (flyers.attitude_unit) flight.attitude_unit = flyers.attitude_unit->live.take_record();
+  flight.privileges = privileges_of(process, flyers);
+  if (!flight.unit.ticks.empty()) flight.wall = flight.unit.ticks.back().begins;
+  return flight;
 }
 
 }  // namespace
@@ -105,58 +208,12 @@ Result<LiveFlight> fly_live(const Case& the_case, const RunConfiguration& config
   if (!plant) return tl::unexpected(plant.error());
   const Vehicle& vehicle = vehicle_model.vehicle();
   const Case scripted = bound_to_vehicle(the_case, vehicle);
-  const LoopRate& rate = configuration.rate;
-
-  ProcessPrivileges process;
-  Links links;
-  PlantTask plant_task(scripted, rate.unit, vehicle, **plant);
-  const Nanoseconds origin = Pacer::now_monotonic() + settle_in;
-  const Pacer unit_clock(origin, options.wait);
-  FlyingUnit unit(scripted.of_module(scripted.module), rate, vehicle, units.unit,
-                  plant_task.state(), unit_clock, links, samples);
-  std::optional<FlyingUnit> attitude;
-  if (scripted.attitude_loop) {
-    attitude.emplace(scripted.of_module(Module::attitude_unit), rate, vehicle, *units.attitude_unit,
-                     plant_task.state(), unit_clock, links, samples);
-    links.flying = 2;
-  }
-  Pacer plant_clock(origin, Wait{});
-  LivePlant live_plant(plant_task, plan_of(scripted, rate.unit, vehicle, unit.live.deadlines()),
-                       plant_clock, links);
-
-  std::vector<RealtimePrivilege> plant_privileges;
-  std::vector<std::thread> threads;
-  const auto start = [&](FlyingUnit& flying, int priority) {
-    threads.emplace_back([&flying, &options, priority] {
-      run_claimed(unit_wish(options, priority), flying.privileges, [&] { flying.live.run(); });
-    });
-  };
-  threads.emplace_back(
-      [&] { run_claimed(plant_wish(options), plant_privileges, [&] { live_plant.run(); }); });
-  start(unit, unit_priority);
-  if (attitude) start(*attitude, attitude_unit_priority);
-  Pacer here(origin, Wait{});
-  here.wait_until(Nanoseconds(0));
-  while (!links.stop.load()) {
-    if (stop()) links.stop.store(true);
-    LiveProgress now{here.now(), unit.live.releases_passed(), unit.live.missed()};
-    if (attitude) {
-      now.deadlines += attitude->live.releases_passed();
-      now.missed += attitude->live.missed();
-    }
-    progress(now);
-    std::this_thread::sleep_for(progress_every);
-  }
+  const ProcessPrivileges process;
+  Flyers flyers(scripted, configuration.rate, vehicle, **plant, units, options, samples);
+  std::vector<std::thread> threads = start(flyers, options);
+  watch(flyers, stop, progress);
   for (std::thread& thread : threads) thread.join();
-
-  LiveFlight flight{
-      unit.live.take_record(), live_plant.take_record(), {}, process.privileges(), {}};
-  if (attitude) flight.attitude_unit = attitude->live.take_record();
-  if (!flight.unit.ticks.empty()) flight.wall = flight.unit.ticks.back().begins;
-  flight.privileges.insert(flight.privileges.end(), unit.privileges.begin(), unit.privileges.end());
-  if (attitude) add_refused(attitude->privileges, flight.privileges);
-  add_refused(plant_privileges, flight.privileges);
-  return flight;
+  return flight_of(flyers, process);
 }
 
 Histogram idle_latency(const Rate& rate, Nanoseconds duration, const LiveOptions& options,

@@ -1,7 +1,6 @@
 #include "harness/recording/mat_file.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -15,6 +14,7 @@
 
 #include "harness/core/dynamic_library.hpp"
 #include "harness/core/file.hpp"
+#include "harness/recording/mat_layout.hpp"
 
 namespace attest {
 namespace {
@@ -143,36 +143,6 @@ Variable variable_of(const Column& column, const Matio& matio) {
   return Variable(nullptr, Close{&matio});
 }
 
-std::uint32_t integer_at(const char* bytes, std::size_t size, bool is_big_endian) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < size; ++i) {
-    const std::size_t place = is_big_endian ? size - 1 - i : i;
-    value |= std::uint32_t{static_cast<unsigned char>(bytes[i])} << (8 * place);
-  }
-  return value;
-}
-
-// Whether a file of MATLAB's format 5 ends inside a variable: libmatio reads zeros in place of the
-// values that are missing. After a header of 128 bytes, each variable has its type and the size of
-// its content before it ("MAT-File Format", MathWorks). False for other formats.
-bool is_cut_off(int file) {
-  constexpr std::size_t header_size = 128, version_at = 124, byte_order_at = 126;
-  constexpr std::size_t tag_size = 8, size_at = 4;
-  constexpr std::uint32_t version_5 = 0x0100;
-  std::array<char, header_size> header;
-  const off_t end = ::lseek(file, 0, SEEK_END);
-  if (::pread(file, header.data(), header.size(), 0) != ssize_t{header_size}) return false;
-  const bool is_big_endian = header[byte_order_at] == 'M';
-  if (integer_at(&header[version_at], 2, is_big_endian) != version_5) return false;
-  off_t at = header_size;
-  while (at < end) {
-    std::array<char, tag_size> tag;
-    if (::pread(file, tag.data(), tag.size(), at) != ssize_t{tag_size}) return true;
-    at += static_cast<off_t>(tag_size + integer_at(&tag[size_at], 4, is_big_endian));
-  }
-  return at > end;
-}
-
 bool write_all(const std::string& path, const Table& table, const Matio& matio) {
   // The header is fixed: libmatio would write the time of day.
   const MatFile mat(
@@ -191,13 +161,7 @@ bool write_all(const std::string& path, const Table& table, const Matio& matio) 
 }  // namespace
 
 Result<Table> read_mat(const std::filesystem::path& path) {
-  const auto opened = open_regular_file(path);
-  if (!opened) return tl::unexpected(opened.error());
-  const bool ends_in_a_variable = is_cut_off(*opened);
-  ::close(*opened);
-  if (ends_in_a_variable) {
-    return fail_at(path.string(), "is cut off: the last variable is not complete");
-  }
+  if (auto checked = check_mat_layout(path); !checked) return tl::unexpected(checked.error());
   const auto& matio = loaded_matio();
   if (!matio) return tl::unexpected(matio.error());
   const Close close{&*matio};

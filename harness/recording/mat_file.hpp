@@ -8,7 +8,8 @@
 
 namespace attest {
 
-// Variables that are no vectors of numbers are left out. Errors: no MAT file; an incomplete one.
+// Variables that are no vectors of numbers are left out. Errors: no MAT file; those of
+// check_mat_layout().
 // Threads: one at a time.
 Result<Table> read_mat(const std::filesystem::path& path);
 

@@ -29,11 +29,11 @@ std::map<std::string, std::size_t> channels_by_identifier(Module module) {
 }
 
 // The channel of each column of the table; empty for a column that is ignored.
-std::vector<std::optional<std::size_t>> channels_of_columns(const Table& table,
-                                                            const Manifest& manifest,
-                                                            Module module) {
+using ColumnChannels = std::vector<std::optional<std::size_t>>;
+
+ColumnChannels channels_of_columns(const Table& table, const Manifest& manifest, Module module) {
   const auto known = channels_by_identifier(module);
-  std::vector<std::optional<std::size_t>> found;
+  ColumnChannels found;
   for (const Column& column : table) {
     const auto renamed = manifest.columns.find(column.name);
     const std::string name =
@@ -151,8 +151,7 @@ class Times {
   double allowed_us_ = 0;
 };
 
-std::string wrong_rows(const Table& table,
-                       const std::vector<std::optional<std::size_t>>& channel_of,
+std::string wrong_rows(const Table& table, const ColumnChannels& channel_of,
                        const Manifest& manifest, const Trace& trace) {
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (channel_of[i] == timestamp_channel) {
@@ -201,6 +200,47 @@ bool is_value_of(const Channel& channel, double value) {
 
 bool is_published_flag(const Channel& channel) { return channel.name.ends_with(".published"); }
 
+// The channels of all columns.
+Result<ChannelSet> present_in(const Table& table, const ColumnChannels& channel_of,
+                              const std::string& file) {
+  ChannelSet present;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (!channel_of[i]) continue;
+    if (present[*channel_of[i]]) {
+      return fail_at(file, fmt::format("two columns are {}; `{}` is the second",
+                                       channels()[*channel_of[i]].name, table[i].name));
+    }
+    present.set(*channel_of[i]);
+  }
+  return present;
+}
+
+// No outputs, but the flags that the manifest lists as not recorded are 1.
+void clear_outputs(const Manifest& manifest, Trace& trace) {
+  const Module module = module_of(trace.present);
+  for (Sample& sample : trace.samples) {
+    sample.clear_outputs();
+    for (std::size_t i = 0; i < channels().size(); ++i) {
+      const Channel& channel = channels()[i];
+      if (channel.module != module || !manifest.not_recorded[i]) continue;
+      if (is_published_flag(channel)) set_value(channel, sample, 1);
+    }
+  }
+}
+
+Result<void> set_outputs(const Column& column, const Channel& channel, const std::string& file,
+                         Trace& trace) {
+  for (std::size_t tick = 0; tick < trace.samples.size(); ++tick) {
+    const double value = column.values[tick];
+    if (!is_value_of(channel, value)) {
+      return fail_at(file, fmt::format("tick {}: {} is no flag for {}; write 0 or 1", tick, value,
+                                       channel.name));
+    }
+    set_value(channel, trace.samples[tick], value);
+  }
+  return {};
+}
+
 }  // namespace
 
 void keep_unpublished(Trace& trace) {
@@ -227,43 +267,19 @@ std::vector<std::string> ignored_columns(const Table& table, const Manifest& man
 Result<void> set_recorded_outputs(const Table& table, const Manifest& manifest,
                                   const std::string& file, Trace& trace) {
   if (table.front().values.empty()) return fail_at(file, "has no rows");
-  const Module module = module_of(trace.present);
-  const auto channel_of = channels_of_columns(table, manifest, module);
-  ChannelSet present;
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    if (!channel_of[i]) continue;
-    if (present[*channel_of[i]]) {
-      return fail_at(file, fmt::format("two columns are {}; `{}` is the second",
-                                       channels()[*channel_of[i]].name, table[i].name));
-    }
-    present.set(*channel_of[i]);
-  }
-  for (std::string complaint : {missing_outputs(table, present, manifest, trace),
+  const auto channel_of = channels_of_columns(table, manifest, module_of(trace.present));
+  const auto present = present_in(table, channel_of, file);
+  if (!present) return tl::unexpected(present.error());
+  for (std::string complaint : {missing_outputs(table, *present, manifest, trace),
                                 wrong_rows(table, channel_of, manifest, trace)}) {
     if (!complaint.empty()) return fail_at(file, std::move(complaint));
   }
-  for (Sample& sample : trace.samples) {
-    sample.clear_outputs();
-    for (std::size_t i = 0; i < channels().size(); ++i) {
-      const Channel& channel = channels()[i];
-      if (channel.module != module || !manifest.not_recorded[i]) continue;
-      if (is_published_flag(channel)) {
-        set_value(channel, sample, 1);
-      }
-    }
-  }
+  clear_outputs(manifest, trace);
   for (std::size_t i = 0; i < table.size(); ++i) {
-    if (!channel_of[i] || !channels()[*channel_of[i]].is_output()) continue;
-    if (manifest.not_recorded[*channel_of[i]]) continue;
+    if (!channel_of[i] || manifest.not_recorded[*channel_of[i]]) continue;
     const Channel& channel = channels()[*channel_of[i]];
-    for (std::size_t tick = 0; tick < trace.samples.size(); ++tick) {
-      const double value = table[i].values[tick];
-      if (!is_value_of(channel, value)) {
-        return fail_at(file, fmt::format("tick {}: {} is no flag for {}; write 0 or 1", tick, value,
-                                         channel.name));
-      }
-      set_value(channel, trace.samples[tick], value);
-    }
+    if (!channel.is_output()) continue;
+    if (auto set = set_outputs(table[i], channel, file, trace); !set) return set;
   }
   keep_unpublished(trace);
   return {};

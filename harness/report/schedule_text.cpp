@@ -20,6 +20,22 @@ std::string spread(std::string_view name, std::vector<Nanoseconds> times) {
                      human_time(times[times.size() / 2]), human_time(times.back()));
 }
 
+// `result`: what follows from a job, "command".
+std::string delays(std::string_view unit, std::string_view result, const std::vector<TaskJob>& jobs,
+                   const LoopTiming& timing) {
+  std::vector<Nanoseconds> begins, results, ages;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    begins.push_back(jobs[i].start - jobs[i].release);
+    results.push_back(jobs[i].finish - jobs[i].release);
+    if (timing[i].sampled >= Nanoseconds(0)) ages.push_back(jobs[i].finish - timing[i].sampled);
+  }
+  return fmt::format("{:<34}{:>10}{:>10}{:>10}\n", fmt::format("delays of the {}", unit), "least",
+                     "median", "most") +
+         spread("start after the release", begins) +
+         spread(fmt::format("{} after the release", result), results) +
+         spread(fmt::format("sample age at the {}", result), ages);
+}
+
 }  // namespace
 
 std::string render_tasks(const TaskSet& set, const std::vector<std::vector<TaskJob>>& jobs) {
@@ -40,16 +56,11 @@ std::string render_tasks(const TaskSet& set, const std::vector<std::vector<TaskJ
   return out;
 }
 
-std::string render_delays(const std::vector<TaskJob>& unit, const LoopTiming& timing) {
-  std::vector<Nanoseconds> begins, commands, ages;
-  for (std::size_t i = 0; i < unit.size(); ++i) {
-    begins.push_back(unit[i].start - unit[i].release);
-    commands.push_back(unit[i].finish - unit[i].release);
-    if (timing[i].sampled >= Nanoseconds(0)) ages.push_back(unit[i].finish - timing[i].sampled);
-  }
-  return fmt::format("delays of the loop{:>26}{:>10}{:>10}\n", "least", "median", "most") +
-         spread("start after the release", begins) + spread("command after the release", commands) +
-         spread("sample age at the command", ages);
+std::string render_delays(const TaskSet& set, const std::vector<std::vector<TaskJob>>& jobs,
+                          const FlightTiming& timing) {
+  if (!set.attitude_unit) return delays("loop", "command", jobs[set.unit], timing.unit);
+  return delays("rate unit", "command", jobs[set.unit], timing.unit) +
+         delays("attitude unit", "setpoint", jobs[*set.attitude_unit], timing.attitude_unit);
 }
 
 std::string render_flights(const CaseResult& in_time, const CaseResult& scheduled) {

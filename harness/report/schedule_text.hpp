@@ -1,4 +1,4 @@
-// A schedule as text: each task's response times, and the delays of the loop.
+// A schedule as text: each task's response times, and the delays of each unit.
 #pragma once
 
 #include <string>
@@ -13,8 +13,10 @@ namespace attest {
 // marked.
 std::string render_tasks(const TaskSet& set, const std::vector<std::vector<TaskJob>>& jobs);
 
-// The delays of starts and commands after the release, and the sample ages at the commands.
-std::string render_delays(const std::vector<TaskJob>& unit, const LoopTiming& timing);
+// Of each unit: the delays after the release, until its start and until its command (its setpoint,
+// of the attitude unit), and the age of the sample at that time.
+std::string render_delays(const TaskSet& set, const std::vector<std::vector<TaskJob>>& jobs,
+                          const FlightTiming& timing);
 
 // The metrics of a flight with that timing, compared with the same flight with every tick in time.
 std::string render_flights(const CaseResult& in_time, const CaseResult& scheduled);

@@ -110,7 +110,7 @@ bool same_bits(const Channel& channel, const Sample& a, const Sample& b);
 void set_value(const Channel& channel, Sample& sample, double value);
 float float_of(const Channel& channel, const Sample& sample);            // REQUIRES: type f32
 std::uint64_t integer_of(const Channel& channel, const Sample& sample);  // REQUIRES: type u64
-// The same as set_value() for every integer. REQUIRES: type u64, or u8 and at most 255.
+// Stores every u64 exactly. REQUIRES: type u64; or type u8, and `value` at most 255.
 void set_integer(const Channel& channel, Sample& sample, std::uint64_t value);
 
 }  // namespace attest

@@ -10,43 +10,61 @@
 namespace attest {
 namespace {
 
-// A table of attitude_unit and rate_unit has the setpoints come from outside, as in a mission: then
-// they do not depend on earlier steps.
-constexpr FlightAssumption assumptions[] = {
-#define MODULE mc_att_control
-#define ROW(word, channel, value, by_default) \
-  { word, Module::MODULE, "in/" channel, value, by_default }
-    ROW("armed", "actuator_armed.armed", 1, true),
-    ROW("rotary_wing", "vehicle_status.is_rotary_wing", 1, true),
-    ROW("vtol", "vehicle_status.is_vtol", 1, false),
-    ROW("rates", "vehicle_control_mode.flag_control_rates_enabled", 1, true),
-    ROW("attitude", "vehicle_control_mode.flag_control_attitude_enabled", 1, true),
-    ROW("manual", "vehicle_control_mode.flag_control_manual_enabled", 1, true),
-    ROW("auto", "vehicle_control_mode.flag_control_auto_enabled", 1, false),
-    ROW("rattitude", "vehicle_control_mode.flag_control_rattitude_enabled", 1, false),
-    ROW("velocity", "vehicle_control_mode.flag_control_velocity_enabled", 1, false),
-#undef MODULE
-#define MODULE attitude_unit
-    ROW("armed", "vehicle_status.armed", 1, true),
-    ROW("rotary_wing", "vehicle_status.is_rotary_wing", 1, true),
-    ROW("vtol", "vehicle_status.is_vtol", 1, false),
-    ROW("attitude", "vehicle_control_mode.flag_control_attitude_enabled", 1, true),
-    ROW("manual", "vehicle_control_mode.flag_control_manual_enabled", 1, false),
-    ROW("altitude", "vehicle_control_mode.flag_control_altitude_enabled", 1, false),
-    ROW("velocity", "vehicle_control_mode.flag_control_velocity_enabled", 1, false),
-    ROW("position", "vehicle_control_mode.flag_control_position_enabled", 1, false),
-    ROW("flying", "vehicle_land_detected.landed", 0, true),
-#undef MODULE
-#define MODULE rate_unit
-    ROW("armed", "vehicle_control_mode.flag_armed", 1, true),
-    ROW("rotary_wing", "vehicle_status.is_rotary_wing", 1, true),
-    ROW("rates", "vehicle_control_mode.flag_control_rates_enabled", 1, true),
-    ROW("attitude", "vehicle_control_mode.flag_control_attitude_enabled", 1, true),
-    ROW("manual", "vehicle_control_mode.flag_control_manual_enabled", 1, false),
-    ROW("flying", "vehicle_land_detected.landed", 0, true),
-#undef MODULE
-#undef ROW
+struct Assumption {
+  std::string_view word;  // "armed"
+  std::string_view channel;
+  double value;
+  bool by_default;
 };
+
+constexpr Assumption of_controller[] = {
+    {"armed", "in/actuator_armed.armed", 1, true},
+    {"rotary_wing", "in/vehicle_status.is_rotary_wing", 1, true},
+    {"vtol", "in/vehicle_status.is_vtol", 1, false},
+    {"rates", "in/vehicle_control_mode.flag_control_rates_enabled", 1, true},
+    {"attitude", "in/vehicle_control_mode.flag_control_attitude_enabled", 1, true},
+    {"manual", "in/vehicle_control_mode.flag_control_manual_enabled", 1, true},
+    {"auto", "in/vehicle_control_mode.flag_control_auto_enabled", 1, false},
+    {"rattitude", "in/vehicle_control_mode.flag_control_rattitude_enabled", 1, false},
+    {"velocity", "in/vehicle_control_mode.flag_control_velocity_enabled", 1, false},
+};
+
+// By default the setpoints of both units come from outside, as in a mission: then they do not
+// depend on earlier steps.
+constexpr Assumption of_attitude_unit[] = {
+    {"armed", "in/vehicle_status.armed", 1, true},
+    {"rotary_wing", "in/vehicle_status.is_rotary_wing", 1, true},
+    {"vtol", "in/vehicle_status.is_vtol", 1, false},
+    {"attitude", "in/vehicle_control_mode.flag_control_attitude_enabled", 1, true},
+    {"manual", "in/vehicle_control_mode.flag_control_manual_enabled", 1, false},
+    {"altitude", "in/vehicle_control_mode.flag_control_altitude_enabled", 1, false},
+    {"velocity", "in/vehicle_control_mode.flag_control_velocity_enabled", 1, false},
+    {"position", "in/vehicle_control_mode.flag_control_position_enabled", 1, false},
+    {"flying", "in/vehicle_land_detected.landed", 0, true},
+};
+
+constexpr Assumption of_rate_unit[] = {
+    {"armed", "in/vehicle_control_mode.flag_armed", 1, true},
+    {"rotary_wing", "in/vehicle_status.is_rotary_wing", 1, true},
+    {"rates", "in/vehicle_control_mode.flag_control_rates_enabled", 1, true},
+    {"attitude", "in/vehicle_control_mode.flag_control_attitude_enabled", 1, true},
+    {"manual", "in/vehicle_control_mode.flag_control_manual_enabled", 1, false},
+    {"flying", "in/vehicle_land_detected.landed", 0, true},
+};
+
+constexpr struct {
+  Module module;
+  std::span<const Assumption> rows;
+} tables[] = {{Module::mc_att_control, of_controller},
+              {Module::attitude_unit, of_attitude_unit},
+              {Module::rate_unit, of_rate_unit}};
+
+std::span<const Assumption> assumptions(Module module) {
+  for (const auto& table : tables) {
+    if (table.module == module) return table.rows;
+  }
+  return {};
+}
 
 void add_once(std::string_view word, std::vector<std::string>& words) {
   if (std::find(words.begin(), words.end(), word) == words.end()) words.emplace_back(word);
@@ -61,7 +79,7 @@ bool has(const std::vector<std::string>& words, std::string_view word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-bool is_logged(const FlightAssumption& one, const ulog::ModuleContents& log) {
+bool is_logged(const Assumption& one, const ulog::ModuleContents& log) {
   return log.input(topic_of(one.channel))->size() > 0;
 }
 
@@ -71,18 +89,18 @@ std::uint32_t updated_bit(Module module, std::string_view topic) {
 
 }  // namespace
 
-std::span<const FlightAssumption> flight_assumptions() { return assumptions; }
-
 std::vector<std::string> assumption_words() {
   std::vector<std::string> words;
-  for (const FlightAssumption& one : assumptions) add_once(one.word, words);
+  for (const auto& table : tables) {
+    for (const Assumption& one : table.rows) add_once(one.word, words);
+  }
   return words;
 }
 
 std::vector<std::string> assumption_words(Module module, bool by_default) {
   std::vector<std::string> words;
-  for (const FlightAssumption& one : assumptions) {
-    if (one.module == module && (one.by_default || !by_default)) add_once(one.word, words);
+  for (const Assumption& one : assumptions(module)) {
+    if (one.by_default || !by_default) add_once(one.word, words);
   }
   return words;
 }
@@ -90,11 +108,11 @@ std::vector<std::string> assumption_words(Module module, bool by_default) {
 std::vector<std::string> assume(const std::vector<std::string>& words,
                                 const ulog::ModuleContents& log, Sample& sample) {
   std::vector<std::string> used;
-  for (const FlightAssumption& one : assumptions) {
+  for (const Assumption& one : assumptions(log.module())) {
     const bool holds = words.empty() ? one.by_default : has(words, one.word);
-    if (one.module != log.module() || !holds || is_logged(one, log)) continue;
-    set_value(channels()[*find_channel(one.module, one.channel)], sample, one.value);
-    sample.in.updated |= updated_bit(one.module, topic_of(one.channel));
+    if (!holds || is_logged(one, log)) continue;
+    set_value(channels()[*find_channel(log.module(), one.channel)], sample, one.value);
+    sample.in.updated |= updated_bit(log.module(), topic_of(one.channel));
     add_once(one.word, used);
   }
   return used;
@@ -114,8 +132,8 @@ Result<void> check_assumed(const std::vector<std::string>& words,
     std::string_view logged;
     bool has_effect = false;
     for (const ulog::ModuleContents* log : modules) {
-      for (const FlightAssumption& one : assumptions) {
-        if (one.module != log->module() || one.word != word) continue;
+      for (const Assumption& one : assumptions(log->module())) {
+        if (one.word != word) continue;
         if (is_logged(one, *log)) logged = topic_of(one.channel);
         has_effect = has_effect || !is_logged(one, *log);
       }

@@ -3,7 +3,6 @@
 
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "harness/core/result.hpp"
@@ -11,17 +10,7 @@
 
 namespace attest {
 
-// A word of --assume has a row for each channel that it sets.
-struct FlightAssumption {
-  std::string_view word;  // "armed"
-  Module module;
-  std::string_view channel;  // "in/actuator_armed.armed"
-  double value;
-  bool by_default;
-};
-std::span<const FlightAssumption> flight_assumptions();
-
-// The words, each once. `by_default`: those of this module that hold without --assume.
+// The words of --assume, each once. `by_default`: those of this module that hold without --assume.
 std::vector<std::string> assumption_words();
 std::vector<std::string> assumption_words(Module module, bool by_default);
 

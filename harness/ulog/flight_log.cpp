@@ -76,7 +76,7 @@ std::vector<ModuleContents*> candidates(LogContents& log) {
   return {&attitude, &rate};
 }
 
-// Of a log that has too little for every unit.
+// The error for a log from which no unit can be replayed.
 Error nothing_in(const std::filesystem::path& path, const std::vector<ModuleContents*>& modules,
                  bool is_of_attest) {
   if (modules.size() == 1) return {lacking(*modules.front(), is_of_attest), path.string()};

@@ -24,11 +24,11 @@ struct LoggedOutput {
   std::size_t paired = 0;   // of these, with a tick
 };
 
-// Whether the log has the inputs on which the outputs of a tick depend.
+// Whether the log shows the setpoint that the unit follows at a tick.
 enum class Known : std::uint8_t {
-  all,            // an output without memory can be computed from this tick
-  if_every_step,  // only from all steps: the attitude unit makes its setpoint of the sticks
-  nothing         // there was no setpoint in the log yet
+  all,            // yes
+  if_every_step,  // if it has every step: filters of the attitude unit make it from the sticks
+  nothing         // no: it has no setpoint up to this tick
 };
 
 struct LoggedUnit {
@@ -76,7 +76,7 @@ struct FlightLog {
 // output of the rate unit in acro mode. They are inputs otherwise. quat_reset_counter counts from
 // the first sample on, because a unit that starts there knows of no earlier reset.
 //
-// `assumed` are words of flight_assumptions(); empty: those by default, none in a log of attest.
+// `assumed` are some of assumption_words(); empty: those by default, none in a log of attest.
 // They apply to topics without a sample in the log. Errors: the file cannot be read or is no ULog;
 // it has too little for any unit; an unknown word, or one for a topic that the log has.
 Result<FlightLog> read_flight_log(const std::filesystem::path& path,

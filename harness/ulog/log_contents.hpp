@@ -1,4 +1,4 @@
-// What a log has of the modules that attest can give it to, topic by topic.
+// The samples of a log, for each module that can be replayed and each of its topics.
 #pragma once
 
 #include <cstdint>

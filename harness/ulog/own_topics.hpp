@@ -8,8 +8,8 @@
 
 namespace attest::ulog {
 
-// Whether the unit publishes the topic in a step with these inputs. True for a topic that no other
-// module publishes, and for every topic of the controller of v1.5.5.
+// Whether the unit itself publishes the topic in a step with these inputs. Always true for a topic
+// that only this unit publishes, and for every topic of the controller of v1.5.5.
 bool publishes(Module module, std::string_view topic, const Sample& sample);
 
 // Whether the attitude unit makes its setpoint of the sticks: stabilized mode. It has filters.

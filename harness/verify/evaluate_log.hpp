@@ -19,14 +19,15 @@ struct LogResult {
 // Gives the inputs of one unit of a log to a fresh instance and compares its outputs with the
 // logged ones.
 //
-// - An output that depends on one sample only (the attitude law's rates setpoint) is judged in
-//   every log; ticks of which the log does not have all that it depends on are left out.
-// - An output that depends on earlier steps is judged if the log has every step; of v1.14 to v1.16
-//   also if it has about every step.
-// - In a log of v1.14 to v1.16, and in one of the controller without every step, an output is
-//   judged only if the reference's agrees with the log. Otherwise the log lacks samples (the logger
-//   also thins inputs such as control_allocator_status), or another law flew, and no port can be
-//   judged by it. A log of a profile that attest does not have is believed.
+// - The attitude law's rates setpoint depends on one sample only. It is judged in every log, except
+//   at ticks for which the log lacks an input.
+// - All other outputs depend on earlier steps. They are judged if the log has every step; in a log
+//   of v1.14 to v1.16 also if it has nearly every step.
+// - In a log of v1.14 to v1.16, and in one of the controller that lacks steps, the reference must
+//   also agree with the log; otherwise the output is not judged. The log then lacks samples (the
+//   logger also thins inputs such as control_allocator_status), or another law flew.
+// - If attest does not have the profile, no reference checks the log: its outputs are taken as
+// right.
 // - NaN or infinity where the log has a number is judged in every output (Verdict::non_finite).
 //
 // If no output is judged, the verdict is skip. `parameters` replace those of the log for the port;

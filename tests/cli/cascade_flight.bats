@@ -105,6 +105,10 @@ TASKS
   run "$ATTEST" schedule tasks.toml --case tilt_step_30 --record-timing timing.json
   [ "$status" -eq 0 ]
   has "attitude_unit"
+  [[ $output =~ delays\ of\ the\ rate\ unit.*delays\ of\ the\ attitude\ unit ]]
+  [[ $output =~ sample\ age\ at\ the\ command\ +60\ us\ +60\ us\ +60\ us ]]
+  [[ $output =~ setpoint\ after\ the\ release\ +90\ us\ +90\ us\ +90\ us ]]
+  [[ $output =~ sample\ age\ at\ the\ setpoint\ +890\ us\ +2\.41\ ms\ +2\.41\ ms ]]
   has "px4-v1.16.0/flight/tilt_step_30"
   run "$ATTEST" run --timing timing.json
   [ "$status" -eq 0 ]

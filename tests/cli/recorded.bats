@@ -125,6 +125,51 @@ CHECK
   has "is for a fixed step of 250 Hz; write these vectors to another folder"
 }
 
+# as_mat CSV MISSING: writes the table as a MAT file next to it, as MATLAB does. The last variable
+# has MISSING values less than its dimensions say.
+as_mat() {
+  "$PYTHON" - "$@" <<'MAT'
+import csv, re, struct, sys
+
+def element(kind, content):
+    return struct.pack("<II", kind, len(content)) + content + bytes(-len(content) % 8)
+
+def variable(name, values, missing):
+    shape = struct.pack("<ii", len(values), 1)
+    values = values[: len(values) - missing]
+    tags = element(6, struct.pack("<II", 6, 0)) + element(5, shape) + element(1, name.encode())
+    return element(14, tags + element(9, struct.pack(f"<{len(values)}d", *values)))
+
+header, *rows = csv.reader(open(sys.argv[1]))
+with open(sys.argv[1].replace(".csv", ".mat"), "wb") as file:
+    file.write(b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H", 0x0100) + b"IM")
+    for i, name in enumerate(header):
+        missing = int(sys.argv[2]) if i == len(header) - 1 else 0
+        name = re.sub(r"\W+", "_", name)
+        file.write(variable(name, [float(row[i]) for row in rows], missing))
+MAT
+}
+
+@test "outputs in a MAT file are judged, and a variable that lacks a value is named" {
+  filter=(--filter px4-v1.5.5/rates/p_alone@250hz)
+  "$ATTEST" vectors vectors "${filter[@]}" >/dev/null
+  answer
+  out=vectors/px4-v1.5.5/rates/p_alone/250hz.out
+  as_mat $out.csv 0
+  rows=$(($(wc -l <$out.csv) - 1))
+  last=$(head -n 1 $out.csv | tr -d '\r' | sed 's/.*,//; s/[^a-zA-Z0-9_]/_/g')
+  mv $out.csv kept.out.csv
+  run "$ATTEST" run --port recorded:vectors "${filter[@]}"
+  [ "$status" -eq 0 ]
+  has "PASS 1 of 1"
+  cp kept.out.csv $out.csv
+  as_mat $out.csv 1
+  rm $out.csv
+  run "$ATTEST" run --port recorded:vectors "${filter[@]}"
+  [ "$status" -eq 1 ]
+  has "$out.mat: the variable \`$last\` has $((rows - 1)) values, but its dimensions are $rows x 1"
+}
+
 @test "a damaged header and a link to nowhere are errors of the recording" {
   filter=(--filter px4-v1.5.5/rates/p_alone@250hz)
   "$ATTEST" vectors vectors "${filter[@]}" >/dev/null

@@ -100,6 +100,7 @@ _OWNED_BY_ONE = {
     "SUNDIALS": re.compile(r'\s*#\s*include\s*[<"](?:arkode|nvector|sun\w+)/'),
     "dlopen": re.compile(r".*\bdlopen\s*\("),
     "libmatio": re.compile(r'\s*#\s*include\s*[<"]matio\.h'),
+    "zlib": re.compile(r'\s*#\s*include\s*[<"]zlib\.h'),
     "toml++": re.compile(r'\s*#\s*include\s*[<"]toml(?:\+\+|plusplus)?[./]'),
 }
 

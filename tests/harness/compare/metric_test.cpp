@@ -136,13 +136,16 @@ TEST(Metric, OfSomethingThatIsNoNumberIsNone) {
   EXPECT_TRUE(std::isnan(measured(metric(Measure::overshoot_deg), trace)));
 }
 
+Trace trace_of(Module module, std::size_t ticks) {
+  Trace trace;
+  trace.present = channels_of(module);
+  trace.samples.resize(ticks);
+  return trace;
+}
+
 // Of the cascade: 2 ms between the rate unit's ticks, 4 ms between the attitude unit's.
 TEST(AttitudeSetpoints, AreThoseOfTheAttitudeUnitsLastTick) {
-  Trace rate, attitude;
-  rate.present = channels_of(Module::rate_unit);
-  attitude.present = channels_of(Module::attitude_unit);
-  rate.samples.resize(4);
-  attitude.samples.resize(2);
+  Trace rate = trace_of(Module::rate_unit, 4), attitude = trace_of(Module::attitude_unit, 2);
   for (std::size_t i = 0; i < 4; ++i) rate.samples[i].in.timestamp = 1000 + 2000 * i;
   for (std::size_t i = 0; i < 2; ++i) {
     Sample& sample = attitude.samples[i];
@@ -164,12 +167,9 @@ TEST(AttitudeSetpoints, AreThoseOfTheAttitudeUnitsLastTick) {
 }
 
 TEST(Metrics, OfTheCascadeReadTheRateUnit) {
-  Trace rate, attitude;
-  rate.present = channels_of(Module::rate_unit);
-  attitude.present = channels_of(Module::attitude_unit);
-  rate.samples.resize(1);
+  Trace rate = trace_of(Module::rate_unit, 1);
+  const Trace attitude = trace_of(Module::attitude_unit, 1);
   rate.plant.resize(1);
-  attitude.samples.resize(1);
   Sample& sample = rate.samples[0];
   sample.rate_in.vehicle_rates_setpoint.roll = 3;
   sample.rate_out.vehicle_rates_setpoint.pitch = 5;

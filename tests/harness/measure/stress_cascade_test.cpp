@@ -4,9 +4,8 @@
 
 #include "harness/casefile/parse.hpp"
 #include "harness/host/port_process.hpp"
-#include "harness/loop/timing_file.hpp"
 #include "harness/measure/stress.hpp"
-#include "tests/harness/core/temporary_directory.hpp"
+#include "tests/harness/measure/one_tick_flight.hpp"
 #include "tests/harness/times.hpp"
 
 namespace attest {
@@ -58,20 +57,19 @@ TEST(StressCascade, BothUnitsHaveAResult) {
   }
 }
 
-TEST(StressCascade, AWrongAttitudeUnitFails) {
-  const StressResults results =
-      stressed("fault:cascade-error-is-angle", cascade_task("tilt_step_30.toml"));
-  ASSERT_EQ(results.size(), 2u);
-  EXPECT_EQ(results[1].result.verdict, Verdict::fail);
-  EXPECT_FALSE(fails_a_run(results[0].result.verdict)) << results[0].result.reason;
-}
-
-TEST(StressCascade, AWrongRateUnitFails) {
-  const StressResults results =
-      stressed("fault:cascade-d-reversed", cascade_task("tilt_step_30.toml"));
-  ASSERT_EQ(results.size(), 2u);
-  EXPECT_EQ(results[0].result.verdict, Verdict::fail);
-  EXPECT_FALSE(fails_a_run(results[1].result.verdict)) << results[1].result.reason;
+TEST(StressCascade, OnlyTheWrongUnitFails) {
+  constexpr std::size_t rate_unit = 0, attitude_unit = 1;
+  const struct {
+    const char* port;
+    std::size_t wrong, right;
+  } faults[] = {{"fault:cascade-error-is-angle", attitude_unit, rate_unit},
+                {"fault:cascade-d-reversed", rate_unit, attitude_unit}};
+  for (const auto& [port, wrong, right] : faults) {
+    const StressResults results = stressed(port, cascade_task("tilt_step_30.toml"));
+    ASSERT_EQ(results.size(), 2u);
+    EXPECT_EQ(results[wrong].result.verdict, Verdict::fail) << port;
+    EXPECT_FALSE(fails_a_run(results[right].result.verdict)) << results[right].result.reason;
+  }
 }
 
 // A port could leave out a unit, and fly with that of the reference.
@@ -130,19 +128,12 @@ TEST(JudgeLiveCascade, AFaultOfOneUnitEndsTheFlightOfTheOther) {
 }
 
 TEST(JudgeLiveCascade, TheTimesOfBothUnitsAreWritten) {
-  const TemporaryDirectory directory;
-  StressTask task = cascade_task();
-  task.record_timing = directory.path() / "timing.json";
-  StressMeasurement measured = measured_flight();
-  LiveTick tick;
-  tick.sampled = us(1);
-  tick.begins = us(2);
-  measured.flight->unit.ticks = {tick};
-  measured.flight->plant.commanded = {us(4)};
-  measured.flight->attitude_unit->ticks = {tick};
+  const StressTask task = cascade_task();
+  StressMeasurement measured = one_tick_flight(us(4));
+  measured.attitude_unit.emplace();
+  measured.flight->attitude_unit.emplace().ticks = {one_tick()};
   measured.flight->unit.setpoints_received = {us(3)};
-  ASSERT_TRUE(judge_live(task, std::move(measured)));
-  const auto read = read_timing(task.record_timing);
+  const auto read = written_times(task, std::move(measured));
   ASSERT_TRUE(read) << read.error().to_string();
   EXPECT_EQ(read->configuration, task.configuration);
   EXPECT_EQ(read->ticks.unit, (LoopTiming{{us(1), us(2), us(4)}}));

@@ -6,9 +6,9 @@
 
 #include "harness/casefile/parse.hpp"
 #include "harness/core/json_text.hpp"
-#include "harness/loop/timing_file.hpp"
 #include "harness/measure/stress_json.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
+#include "tests/harness/measure/one_tick_flight.hpp"
 #include "tests/harness/times.hpp"
 #include "tests/harness/verify/small_suite.hpp"
 
@@ -185,17 +185,8 @@ TEST(JudgeLive, AFaultOfThePortIsTheVerdict) {
 }
 
 TEST(JudgeLive, WritesTheTimesOfTheFlightWhereTheTaskSaysSo) {
-  const TemporaryDirectory directory;
-  StressTask task = hover_task();
-  task.record_timing = directory.path() / "timing.json";
-  StressMeasurement measured = measured_flight();
-  LiveTick tick;
-  tick.sampled = us(1);
-  tick.begins = us(2);
-  measured.flight->unit.ticks = {tick};
-  measured.flight->plant.commanded = {us(3)};
-  ASSERT_TRUE(judge_live(task, std::move(measured)));
-  const auto read = read_timing(task.record_timing);
+  const StressTask task = hover_task();
+  const auto read = written_times(task, one_tick_flight(us(3)));
   ASSERT_TRUE(read) << read.error().to_string();
   EXPECT_EQ(read->case_id, "px4-v1.5.5/flight/hover");
   EXPECT_EQ(read->case_sha256, task.the_case.sha256);

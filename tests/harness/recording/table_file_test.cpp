@@ -1,10 +1,12 @@
 #include "harness/recording/table_file.hpp"
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include "harness/core/file.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
@@ -12,6 +14,7 @@
 namespace attest {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -160,6 +163,75 @@ TEST_F(TableFile, AMatFileThatEndsInsideAVariableIsCutOff) {
     EXPECT_TRUE(table ? table->size() < columns : error.find("is cut off") != std::string::npos)
         << missing << " bytes are missing; " << error;
   }
+}
+
+// Of "MAT-File Format", MathWorks: the size of the file's header and of an element's tag, and where
+// an element of this file has its first dimension (after the tags of element, flags and
+// dimensions).
+constexpr std::size_t mat_header = 128, mat_tag = 8, mat_dimension_at = 8 + 16 + 8;
+
+std::uint32_t mat_size_at(const std::string& bytes, std::size_t element) {
+  std::uint32_t size = 0;
+  std::memcpy(&size, &bytes[element + 4], sizeof size);
+  return size;
+}
+
+// With three values instead of two in the dimensions of each variable.
+std::string with_a_third_row(std::string mat) {
+  for (std::size_t at = mat_header; at < mat.size(); at += mat_tag + mat_size_at(mat, at)) {
+    mat[at + mat_dimension_at] = 3;
+  }
+  return mat;
+}
+
+// The same file as MATLAB writes it, each variable compressed; `missing` bytes of it left out.
+std::string with_compressed_variables(const std::string& mat, std::size_t missing = 0) {
+  std::string result = mat.substr(0, mat_header);
+  for (std::size_t at = mat_header; at < mat.size(); at += mat_tag + mat_size_at(mat, at)) {
+    const std::size_t size = mat_tag + mat_size_at(mat, at);
+    std::vector<Bytef> compressed(::compressBound(size));
+    uLongf count = compressed.size();
+    ::compress(compressed.data(), &count, reinterpret_cast<const Bytef*>(&mat[at]), size);
+    const std::uint32_t tag[] = {15, static_cast<std::uint32_t>(count - missing)};
+    result.append(reinterpret_cast<const char*>(tag), sizeof tag);
+    result.append(compressed.begin(),
+                  compressed.begin() + static_cast<std::ptrdiff_t>(count - missing));
+  }
+  return result;
+}
+
+// libmatio returns zeros, or other bytes of the file or of its memory.
+TEST_F(TableFile, AMatVariableWithFewerValuesThanItsDimensionsIsAnError) {
+  ASSERT_TRUE(write_inputs(path("a.mat"), TableFormat::mat, two_ticks()));
+  const std::string whole = read_file(path("a.mat")).value();
+  const std::size_t columns = read_table(path("a.mat"), TableFormat::mat, {})->size();
+  const auto compressed = read("b.mat", TableFormat::mat, with_compressed_variables(whole));
+  ASSERT_TRUE(compressed) << compressed.error().to_string();
+  EXPECT_EQ(compressed->size(), columns);
+  const std::string short_by_one = with_a_third_row(whole);
+  for (const std::string& damaged : {short_by_one, with_compressed_variables(short_by_one)}) {
+    EXPECT_THAT(error("b.mat", TableFormat::mat, damaged),
+                AllOf(HasSubstr("b.mat: "), HasSubstr("the variable `timestamp` has 2 values, but "
+                                                      "its dimensions are 3 x 1")));
+  }
+  EXPECT_THAT(error("b.mat", TableFormat::mat, with_compressed_variables(whole, 9)),
+              HasSubstr("a compressed variable is damaged"));
+}
+
+// Those with doubles, floats, and bytes, whose values are in the tag.
+TEST_F(TableFile, EachVariableOfAMatFileIsChecked) {
+  ASSERT_TRUE(write_inputs(path("a.mat"), TableFormat::mat, two_ticks()));
+  const std::string whole = read_file(path("a.mat")).value();
+  std::size_t variables = 0;
+  for (std::size_t at = mat_header; at < whole.size(); at += mat_tag + mat_size_at(whole, at)) {
+    std::string damaged = whole;
+    for (const char rows : {'\0', '\1', '\3'}) {
+      damaged[at + mat_dimension_at] = rows;
+      EXPECT_THAT(error("b.mat", TableFormat::mat, damaged), HasSubstr("but its dimensions are"));
+    }
+    ++variables;
+  }
+  EXPECT_EQ(variables, inputs_of(two_ticks()).size());
 }
 
 TEST_F(TableFile, ACsvTableMayHaveRowNumbersWithoutAName) {

@@ -2,6 +2,7 @@
 #include "harness/verify/evaluate_log.hpp"
 
 #include <cmath>
+#include <initializer_list>
 
 #include <gmock/gmock.h>
 
@@ -16,14 +17,29 @@ using testing::HasSubstr;
 
 constexpr const char* law_of_log = "px4-v1.16.0";
 
-// What a rate unit of 1 kHz logged in 0.4 s: the reference's outputs.
-LoggedUnit logged_rate_unit() {
+// A log with every step of a unit, as yet without a tick.
+LoggedUnit log_of(Module module, const char* step_topic) {
   LoggedUnit log;
-  log.module = Module::rate_unit;
-  log.step_topic = "vehicle_angular_velocity";
+  log.module = module;
+  log.step_topic = step_topic;
   log.has_every_step = true;
   log.trace.source = "flight.ulg";
-  log.trace.present = channels_of(Module::rate_unit);
+  log.trace.present = channels_of(module);
+  return log;
+}
+
+// Adds the reference's outputs, as logged outputs of these topics.
+void add_outputs(const char* law, std::initializer_list<const char*> topics, LoggedUnit& log) {
+  const std::size_t ticks = log.trace.samples.size();
+  log.known.assign(ticks, Known::all);
+  HostHere reference(open_builtin());
+  EXPECT_FALSE(reference.drive({law, log.module}, log.trace));
+  for (const char* topic : topics) log.outputs.push_back({topic, ticks, ticks});
+}
+
+// What a rate unit of 1 kHz logged in 0.4 s.
+LoggedUnit logged_rate_unit() {
+  LoggedUnit log = log_of(Module::rate_unit, "vehicle_angular_velocity");
   for (std::uint64_t tick = 0; tick < 400; ++tick) {
     Sample sample;
     const float time_s = 1e-3f * static_cast<float>(tick);
@@ -37,13 +53,10 @@ LoggedUnit logged_rate_unit() {
     if (tick == 0) sample.in.updated = 0xff;
     log.trace.samples.push_back(sample);
   }
-  log.known.assign(log.trace.samples.size(), Known::all);
-  HostHere reference(open_builtin());
-  EXPECT_FALSE(reference.drive({law_of_log, Module::rate_unit}, log.trace));
-  for (const char* topic : {"vehicle_torque_setpoint", "vehicle_thrust_setpoint",
-                            "rate_ctrl_status", "vehicle_rates_setpoint"}) {
-    log.outputs.push_back({topic, 400, 400});
-  }
+  add_outputs(law_of_log,
+              {"vehicle_torque_setpoint", "vehicle_thrust_setpoint", "rate_ctrl_status",
+               "vehicle_rates_setpoint"},
+              log);
   return log;
 }
 
@@ -68,11 +81,7 @@ TEST(EvaluateLog, ARightUnitAgreesAndAWrongOneDoesNot) {
 
 // What a controller of v1.5.5 logged.
 LoggedUnit logged_controller() {
-  LoggedUnit log;
-  log.step_topic = "control_state";
-  log.has_every_step = true;
-  log.trace.source = "flight.ulg";
-  log.trace.present = channels_of(Module::mc_att_control);
+  LoggedUnit log = log_of(Module::mc_att_control, "control_state");
   for (std::uint64_t tick = 0; tick < 100; ++tick) {
     Sample sample;
     sample.in.timestamp = 5000000 + 4000 * tick;
@@ -86,13 +95,8 @@ LoggedUnit logged_controller() {
     sample.in.vehicle_status.is_rotary_wing = 1;
     log.trace.samples.push_back(sample);
   }
-  log.known.assign(log.trace.samples.size(), Known::all);
-  HostHere reference(open_builtin());
-  EXPECT_FALSE(reference.drive({"px4-v1.5.5"}, log.trace));
-  for (const char* topic :
-       {"vehicle_rates_setpoint", "actuator_controls_0", "mc_att_ctrl_status"}) {
-    log.outputs.push_back({topic, 100, 100});
-  }
+  add_outputs("px4-v1.5.5", {"vehicle_rates_setpoint", "actuator_controls_0", "mc_att_ctrl_status"},
+              log);
   return log;
 }
 
