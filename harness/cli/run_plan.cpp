@@ -169,8 +169,7 @@ Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, Run
   if (!options.select.selects_all())
     return fail("--timing selects the flight; leave out all other selections");
   if (!options.parameters.empty()) {
-    return fail(
-        "--timing is a flight, and --param sets parameters of open-loop cases; leave it out");
+    return fail("--timing is a flight, and --param leaves flights out; leave out one of them");
   }
   auto flight = find_timed_flight(options.timing, suite);
   if (!flight) return tl::unexpected(flight.error());
