@@ -120,7 +120,7 @@ void add_new_port(CLI::App& app, const Globals& globals, Action& action) {
   command
       ->add_option("--lang", options->language,
                    "`c`, `cpp`, `numpy`, `python`, `rust` or `simulink`: a port of v1.5.5 and "
-                   "v1.3.4; `c_cascade`: a port of v1.14 to v1.16")
+                   "v1.3.4; `c_cascade` or `python_cascade`: a port of v1.14 to v1.16")
       ->type_name("LANG")
       ->required();
   add_examples(

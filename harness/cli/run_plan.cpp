@@ -168,6 +168,9 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
 Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, RunPlan& plan) {
   if (!options.select.selects_all())
     return fail("--timing selects the flight; leave out all other selections");
+  if (!options.parameters.empty()) {
+    return fail("--timing is a flight, and --param leaves flights out; leave out one of them");
+  }
   auto flight = find_timed_flight(options.timing, suite);
   if (!flight) return tl::unexpected(flight.error());
   if (auto asked = ask_port({flight->the_case.profile}, plan); !asked) return asked;

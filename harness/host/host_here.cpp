@@ -37,7 +37,8 @@ Result<Flown> HostHere::fly(const FlightPlan& plan) {
     const auto units = units_for(whole, driven(), *reference);
     if (!units) {
       Flown none;
-      none.fault = held(no_unit_of(whole.profile, says_), whole.profile);
+      if (whole.attitude_loop) none.attitude_trace.emplace();
+      none.fault = held(units.error(), whole.profile);
       return none;
     }
     auto flown =

@@ -52,6 +52,17 @@ void add_hover_thrust(const Vehicle& vehicle, Case& the_case) {
   the_case.parameters.push_back({name, Constant{vehicle.hover_thrust()}});
 }
 
+PortFault no_profile(const std::string& profile) {
+  return {PortFault::Kind::profile, 0,
+          fmt::format("the port does not support profile {}", profile)};
+}
+
+// The rate unit is made first.
+PortFault makes_one_at_a_time() {
+  return {PortFault::Kind::unsupported, 0,
+          "the port makes no attitude unit while it has a rate unit: create() returned NULL"};
+}
+
 }  // namespace
 
 Result<void> check_rate(const Case& the_case, const LoopRate& rate) {
@@ -101,21 +112,28 @@ Result<std::unique_ptr<Plant>> plant_for(const Case& the_case,
                                   {physics_of(the_case, configuration.rate.unit), flight.floor});
 }
 
-std::optional<PortUnits> units_for(const Case& the_case, Port& port, Port& other) {
-  std::vector<Module> modules{the_case.module};
-  if (the_case.attitude_loop) modules.push_back(Module::attitude_unit);
-  PortUnits units;
-  bool makes_one = false;
-  for (const Module module : modules) {
-    auto& unit = module == the_case.module ? units.unit : units.attitude_unit;
-    if (contains(port.modules(), module)) {
-      unit = port.create_unit(module, the_case.profile, "");
-    }
-    makes_one = makes_one || unit;
-    if (!unit) unit = other.create_unit(module, the_case.profile, "");
-    if (!unit) return std::nullopt;
+tl::expected<PortUnits, PortFault> units_for(const Case& the_case, Port& port, Port& other) {
+  const auto made_by = [&](Port& maker, Module module) -> std::unique_ptr<Unit> {
+    if (!contains(maker.modules(), module)) return nullptr;
+    return maker.create_unit(module, the_case.profile, "");
+  };
+  constexpr Module attitude_unit = Module::attitude_unit;
+  PortUnits units{made_by(port, the_case.module), nullptr};
+  if (the_case.attitude_loop) units.attitude_unit = made_by(port, attitude_unit);
+  if (!units.unit && !units.attitude_unit) return tl::unexpected(no_profile(the_case.profile));
+  if (units.unit && units.attitude_unit) return units;
+  if (units.unit && the_case.attitude_loop && contains(port.modules(), attitude_unit)) {
+    units.unit = nullptr;
+    if (made_by(port, attitude_unit)) return tl::unexpected(makes_one_at_a_time());
+    units.unit = made_by(port, the_case.module);
   }
-  return makes_one ? std::optional(std::move(units)) : std::nullopt;
+  if (!units.unit) units.unit = made_by(other, the_case.module);
+  if (the_case.attitude_loop && !units.attitude_unit) {
+    units.attitude_unit = made_by(other, attitude_unit);
+  }
+  const bool is_complete = units.unit && (units.attitude_unit || !the_case.attitude_loop);
+  if (!is_complete) return tl::unexpected(no_profile(the_case.profile));
+  return units;
 }
 
 Result<Flown> fly(const Case& the_case, const RunConfiguration& configuration,

@@ -50,9 +50,10 @@ struct PortUnits {
   FlightUnits for_flight() const { return {*unit, attitude_unit.get()}; }
 };
 
-// A port of the cascade may have one of the two units; the other is then that of `other`. Empty:
-// the port has no unit that flies this, or makes none of the profile. REQUIRES: a flight.
-std::optional<PortUnits> units_for(const Case& the_case, Port& port, Port& other);
+// A port of the cascade may have one of the two units; the other is then that of `other`. Faults:
+// the port has no unit that flies this, or makes none of the profile (Kind::profile); it makes both
+// units, but not at the same time (Kind::unsupported). REQUIRES: a flight.
+tl::expected<PortUnits, PortFault> units_for(const Case& the_case, Port& port, Port& other);
 
 // Flies `the_case` with fresh units, at the times that the case schedules, or at those of
 // `timing`. REQUIRES: the case is a flight. Errors, with the case's file: physics slower than the

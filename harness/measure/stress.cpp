@@ -74,7 +74,10 @@ Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
   if (is_cascade && port.modules() != task.port.modules) return measured;
   const auto reference = open_builtin();
   const auto units = units_for(task.the_case, port, *reference);
-  if (!units) return measured;
+  if (!units) {
+    if (units.error().kind != PortFault::Kind::profile) measured.refusal = units.error();
+    return measured;
+  }
   progress({{}, true});
   const LoopRate& rate = task.configuration.rate;
   const Histogram idle = idle_latency(rate.unit, task.idle_duration, task.live, stop);
@@ -110,7 +113,8 @@ Result<StressResults> judge_live(const StressTask& task, StressMeasurement measu
   StressResults results;
   if (!measurement.flight) {
     results.push_back(fresh(std::move(measurement.stress)));
-    judge(no_unit_of(task.the_case.profile, task.port), results.front().result);
+    const PortFault no_unit = no_unit_of(task.the_case.profile, task.port);
+    judge(measurement.refusal.value_or(no_unit), results.front().result);
     return results;
   }
   LiveFlight& flight = *measurement.flight;

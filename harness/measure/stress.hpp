@@ -84,7 +84,8 @@ struct StressProgress {
 struct StressMeasurement {
   StressResult stress;                        // of the unit that commands the motors
   std::optional<StressResult> attitude_unit;  // of a flight of the cascade
-  std::optional<LiveFlight> flight;           // empty: the port makes no unit of that profile
+  std::optional<LiveFlight> flight;           // empty: the port did not make the units
+  std::optional<PortFault> refusal;           // why; empty: it makes no unit of that profile
 };
 
 // Flies the task in a child process, and judges it in this one; a port that crashes or hangs gets a

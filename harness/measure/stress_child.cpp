@@ -5,7 +5,8 @@
 //      "divergence"}                                             ticks, times at which its outputs
 //                                                                were followed
 //                                                                (LoopTick::commanded)
-//     {"refused": true}                                          the port made no unit
+//     {"refused": true}                                          the port made no unit, or not
+//                                                                both; with the fault
 //     {"error": {...}}
 //
 // The port's code runs in the child, so no verdict is taken from there. A port can forge the
@@ -45,7 +46,9 @@ using Times = std::vector<std::optional<Nanoseconds>>;
 
 void send_measured(const StressMeasurement& measured, MessageSocket& parent) {
   if (!measured.flight) {
-    parent.send(text_of({{"refused", true}}));
+    json refused = {{"refused", true}};
+    set_end(measured.refusal, std::nullopt, refused);
+    parent.send(text_of(refused));
     return;
   }
   const LiveFlight& flight = *measured.flight;
@@ -278,7 +281,11 @@ class Listener {
       return Result<StressResults>(tl::unexpected(error ? *error : error.error()));
     }
     try {
-      if (head.contains("refused")) return judge_live(task_, {});
+      if (head.contains("refused")) {
+        StressMeasurement measured;
+        measured.refusal = fault_from(head, of_program_);
+        return judge_live(task_, std::move(measured));
+      }
       if (head.contains("units")) {
         auto kind = Received::Kind::no_message;
         BlobReader blobs(received.blobs, [&](void* place, std::size_t size) {

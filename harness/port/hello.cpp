@@ -11,6 +11,7 @@
 #include "harness/core/suggestion.hpp"
 #include "harness/core/version.hpp"
 #include "harness/port/port.hpp"
+#include "harness/port/profiles.hpp"
 #include "harness/trace/csv_cells.hpp"
 
 namespace attest {
@@ -84,7 +85,16 @@ std::vector<std::string> further_modules() {
   return names;
 }
 
+// A profile that attest does not know is one of the controller.
+bool is_of_controller(const std::string& name) {
+  const ProfileInfo* const profile = find_profile(name);
+  return !profile || contains(profile->modules, Module::mc_att_control);
+}
+
 void read_modules(Members& members, Hello& hello) {
+  if (std::any_of(hello.profiles.begin(), hello.profiles.end(), is_of_controller)) {
+    hello.modules = only(Module::mc_att_control);
+  }
   const std::string what = fmt::format("a list of `{}`", fmt::join(further_modules(), "`, `"));
   for (const auto& name : members.optional<std::vector<std::string>>("modules", what.c_str())) {
     const auto module = module_named(name);

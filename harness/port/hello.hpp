@@ -21,7 +21,7 @@ struct Hello {
   std::string name, version;
   std::vector<std::string> profiles;
   FrameForm frames = FrameForm::binary;
-  ModuleSet modules = only(Module::mc_att_control);
+  ModuleSet modules;  // with the controller, if a profile has one
   bool has_batch = false;
   std::vector<std::string> unsupported_groups;
   std::optional<int> fraction_bits;

@@ -73,8 +73,9 @@ std::string render_flights(const CaseResult& in_time, const CaseResult& schedule
   }
   for (const auto& [when, result] :
        {std::pair("in time", &in_time), std::pair("scheduled", &scheduled)}) {
-    if (result->reason.empty()) continue;
-    out += fmt::format("  {}: {}: {}\n", when, name_of(result->verdict), one_line(result->reason));
+    if (result->verdict == Verdict::pass) continue;
+    out += fmt::format("  {}: {}: {}\n{}", when, name_of(result->verdict), reason_text(*result),
+                       finding_text(*result, Level::numeric));
   }
   return out;
 }

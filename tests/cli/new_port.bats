@@ -32,6 +32,11 @@ made() {
   made numpy python3
 }
 @test "a new port in Python" { made python python3; }
+@test "a new port in Python of the cascade" {
+  made python_cascade python3
+  has "px4-v1.16.0/rates"
+  lacks "px4-v1.5.5"
+}
 @test "a new port in Rust" { made rust cargo; }
 @test "a new port of a Simulink model" { made simulink cc; }
 
@@ -39,7 +44,7 @@ made() {
   run "$ATTEST" new-port mine --lang pyton
   [ "$status" -eq 2 ]
   has "no starter in \`pyton\`; did you mean \`python\`?"
-  has "; there are c, c_cascade, cpp, numpy, python, rust, simulink"
+  has "; there are c, c_cascade, cpp, numpy, python, python_cascade, rust, simulink"
   [ ! -e mine ]
   mkdir mine
   echo mine >mine/file

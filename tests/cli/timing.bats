@@ -24,6 +24,9 @@ TASKS
   has "scheduled"
   run "$ATTEST" run --timing t.json
   [ "$status" -eq 0 ]
+  run "$ATTEST" run --timing t.json --param MC_ROLL_P=3
+  [ "$status" -eq 2 ]
+  has "--timing is a flight, and --param leaves flights out"
 }
 
 @test "the estimator releases the unit when it finishes" {

@@ -1,5 +1,8 @@
 #include "harness/loop/flight.hpp"
 
+#include <memory>
+#include <string>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,6 +32,70 @@ TEST(Fly, AMotorThatTheVehicleDoesNotHaveCannotFail) {
   ASSERT_FALSE(none);
   EXPECT_THAT(none.error().message,
               testing::HasSubstr("names rotor 4, but iris has rotors 0 to 3"));
+}
+
+// Counts itself among the living units of its port.
+class CountedUnit final : public Unit {
+ public:
+  explicit CountedUnit(int& living) : living_(++living) {}
+  CountedUnit(const CountedUnit&) = delete;
+  CountedUnit& operator=(const CountedUnit&) = delete;
+  ~CountedUnit() override { --living_; }
+  int set_parameter(const std::string&, float) override { return ATTEST_OK; }
+  int step_structs(const void*, void*) override { return ATTEST_OK; }
+
+ private:
+  int& living_;
+};
+
+// Declares both units of the cascade, and makes those in `made`, at most `at_once` of them.
+class CountingCascade final : public Port {
+ public:
+  CountingCascade(ModuleSet made, int at_once) : made_(made), at_once_(at_once) {}
+  std::string name() const override { return "cascade"; }
+  std::string version() const override { return "1"; }
+  ModuleSet modules() const override {
+    return only(Module::attitude_unit) | only(Module::rate_unit);
+  }
+  std::unique_ptr<Unit> create_unit(Module module, const std::string&,
+                                    const std::string&) override {
+    if (!contains(made_, module) || living >= at_once_) return nullptr;
+    return std::make_unique<CountedUnit>(living);
+  }
+  int living = 0;
+
+ private:
+  ModuleSet made_;
+  int at_once_;
+};
+
+// How many of the units that fly the cascade are the port's, or the fault.
+tl::expected<int, PortFault> flown_by(ModuleSet made, int at_once) {
+  const Case hover = *parse_case(source_folder / "cases/px4-v1.16.0/flight/hover.toml");
+  CountingCascade port(made, at_once);
+  const auto reference = open_builtin();
+  const auto units = units_for(hover, port, *reference);
+  if (!units) return tl::unexpected(units.error());
+  EXPECT_TRUE(units->unit && units->attitude_unit);
+  return port.living;
+}
+
+TEST(UnitsFor, AUnitThatThePortDoesNotMakeIsTheOthers) {
+  const ModuleSet attitude = only(Module::attitude_unit), rate = only(Module::rate_unit);
+  EXPECT_EQ(flown_by(attitude | rate, 2), 2);
+  EXPECT_EQ(flown_by(attitude, 2), 1);
+  EXPECT_EQ(flown_by(rate, 2), 1);
+  EXPECT_EQ(flown_by(rate, 1), 1);
+  ASSERT_FALSE(flown_by({}, 2));
+  EXPECT_EQ(flown_by({}, 2).error().kind, PortFault::Kind::profile);
+}
+
+TEST(UnitsFor, APortThatMakesOneUnitAtATimeDoesNotFlyWithHalfOfItself) {
+  const auto flown = flown_by(only(Module::attitude_unit) | only(Module::rate_unit), 1);
+  ASSERT_FALSE(flown);
+  EXPECT_EQ(flown.error().kind, PortFault::Kind::unsupported);
+  EXPECT_THAT(flown.error().what,
+              testing::HasSubstr("makes no attitude unit while it has a rate unit"));
 }
 
 }  // namespace

@@ -70,6 +70,19 @@ TEST(ParseHello, TakesAllThatAPortMaySay) {
   EXPECT_EQ(hello->fixed_step->to_string(), "1000/3");
 }
 
+TEST(ParseHello, AProgramOfTheCascadeAloneHasNoController) {
+  const auto modules_of = [](const std::string& profiles) {
+    const auto hello = parse_hello(R"({"protocol":1,"name":"n","version":"2","profiles":[)" +
+                                   profiles + R"(],"frames":"binary","modules":["rate_unit"]})");
+    return hello ? hello->modules : ModuleSet();
+  };
+  const ModuleSet controller = only(Module::mc_att_control), unit = only(Module::rate_unit);
+  EXPECT_EQ(modules_of(R"("px4-v1.16.0")"), unit);
+  EXPECT_EQ(modules_of(R"("px4-v1.16.0","px4-v1.14.4")"), unit);
+  EXPECT_EQ(modules_of(R"("px4-v1.16.0","px4-v1.3.4")"), unit | controller);
+  EXPECT_EQ(modules_of(R"("our-law")"), unit | controller);
+}
+
 TEST(ParseHello, EveryPrefixOfAnAnswerIsAnError) {
   const std::string whole =
       R"({"protocol":1,"name":"n","version":"2","profiles":["px4-v1.5.5"],"frames":"text"})";

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Numbers of IEEE 754 binary32, as the firmware computes with.
+
+A float of Python is binary64. An operation of two numbers of binary32, computed in binary64 and
+then rounded, has the result of the same operation in binary32: this holds for +, -, *, / and sqrt.
+Like C, and unlike Python, no operation raises an exception.
+"""
+
+import ctypes
+import math
+
+
+class Binary32(ctypes.c_float):
+    """Both operands of an operator must be of this class: a float of Python, which is not rounded,
+    has no `value` and is refused."""
+
+    __slots__ = ()
+
+    def __add__(self, other):
+        return Binary32(self.value + other.value)
+
+    def __sub__(self, other):
+        return Binary32(self.value - other.value)
+
+    def __mul__(self, other):
+        return Binary32(self.value * other.value)
+
+    def __truediv__(self, other):
+        try:
+            return Binary32(self.value / other.value)
+        except ZeroDivisionError:  # where C gives infinity, or NaN for 0 / 0
+            return Binary32(self.value * math.copysign(math.inf, other.value))
+
+    def __neg__(self):
+        return Binary32(-self.value)
+
+    def __abs__(self):
+        return Binary32(abs(self.value))
+
+    def __eq__(self, other):
+        return self.value == other.value
+
+    def __lt__(self, other):
+        return self.value < other.value
+
+    def __le__(self, other):
+        return self.value <= other.value
+
+    def __gt__(self, other):
+        return self.value > other.value
+
+    __hash__ = None
+
+
+ZERO = Binary32(0.0)
+HALF = Binary32(0.5)
+ONE = Binary32(1.0)
+TWO = Binary32(2.0)
+NAN = Binary32(math.nan)
+EPSILON = Binary32(2.0**-23)  # FLT_EPSILON
+PI = Binary32(math.pi)
+TWO_PI = Binary32(2.0 * math.pi)
+
+
+def is_finite(number):
+    return math.isfinite(number.value)
+
+
+def _of_libm(name, arguments=1):
+    """A function of the C library, which Python is linked with. Another library may give other
+    last bits, except for the square root."""
+    function = getattr(ctypes.CDLL(None), name)
+    function.argtypes = (Binary32,) * arguments
+    function.restype = Binary32
+    return function
+
+
+square_root = _of_libm("sqrtf")
+floor = _of_libm("floorf")
+sin = _of_libm("sinf")
+cos = _of_libm("cosf")
+asin = _of_libm("asinf")
+acos = _of_libm("acosf")
+atan2 = _of_libm("atan2f", 2)

@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Stabilized mode: the sticks make an attitude setpoint.
+
+Tilt is the same in all profiles but for its filter. Heading and throttle have a class for each law.
+Each of them has the state of its own; `Vehicle` is what the unit knows of the vehicle.
+"""
+
+from binary32 import EPSILON, HALF, NAN, ONE, TWO, ZERO, Binary32, is_finite
+from parameters import PX4_V114, PX4_V116
+from rotation import (
+    UP_AND_DOWN,
+    between,
+    heading_of,
+    heading_of_in_v114,
+    inverse,
+    norm,
+    of_heading,
+    of_rotation_vector,
+    product,
+    times,
+    z_axis,
+)
+from scalar import (
+    LowPass,
+    LowPassOfV114,
+    clamp,
+    dead_zone,
+    expo,
+    line,
+    radians,
+    slewed,
+    smaller,
+    wrap,
+)
+
+IDLE_THROTTLE = Binary32(-0.9)
+CONVERGED = Binary32(0.0174532924)  # [rad], a degree
+LARGE_FOR_INT = Binary32(2.0**31)
+
+
+class Vehicle:
+    """Of the last samples; before the first ones, of a multicopter on the ground."""
+
+    def __init__(self):
+        self.is_rotary_wing = True
+        self.is_vtol = self.is_tailsitter = self.is_in_transition = False
+        self.has_spooled_up = False
+        self.is_landed = True
+        self.has_good_heading = True
+        self.unaided_heading = NAN  # [rad] of the gyros alone; not finite: none
+
+
+def _resets_heading(throttle, parameters):
+    """At idle the vehicle may be on the ground, and be turned by hand."""
+    return throttle < IDLE_THROTTLE and parameters["MC_AIRMODE"] != TWO
+
+
+class LockedHeading:
+    """v1.16: locks the heading while the yaw stick is in its middle, corrected for the drift that
+    the estimator's heading has against that of the gyros."""
+
+    def __init__(self):
+        self.setpoint = ZERO  # NaN: no lock
+        self.reference = self.correction = ZERO
+        self.is_converging = False
+        self.drift = LowPass()
+        self.rate = LowPass()
+
+    def update(self, sticks, vehicle, q, p, dt):
+        """The heading to hold [rad], and the yaw rate [rad/s]."""
+        if _resets_heading(sticks.throttle, p) or not vehicle.has_good_heading:
+            self.setpoint = NAN
+        heading = heading_of(q)
+        before = self.correction
+        self.correction = self._corrected(heading, vehicle.unaided_heading, dt)
+        stick = expo(dead_zone(sticks.yaw, p["MPC_HOLD_DZ"]), p["MPC_YAW_EXPO"])
+        rate = self.rate.update(p["MPC_MAN_Y_TAU"], dt, stick * radians(p["MPC_MAN_Y_MAX"]))
+        if abs(rate) > EPSILON:
+            self.setpoint = NAN
+        elif not is_finite(self.setpoint):
+            self.setpoint = heading
+        else:
+            self.setpoint = wrap(self.setpoint - before + self.correction)
+        return (self.setpoint if is_finite(self.setpoint) else heading), rate
+
+    def _corrected(self, heading, unaided, dt):
+        if not is_finite(unaided):
+            return ZERO
+        drift = wrap(heading - unaided)
+        change = wrap(drift - self.drift.state)
+        self.drift.update(ONE, dt, drift)
+        was_converging = self.is_converging
+        self.is_converging = abs(change) > CONVERGED
+        if not self.is_converging:
+            self.reference = drift
+            if was_converging:
+                self.setpoint = NAN
+        return wrap(drift - self.reference)
+
+    def rest(self, vehicle, q):
+        """A step without sticks."""
+        self.setpoint = NAN
+        if is_finite(vehicle.unaided_heading):
+            self.drift.state = wrap(heading_of(q) - vehicle.unaided_heading)
+
+    def turn(self, rotation):
+        """The estimator turned the attitude."""
+        angle = heading_of(rotation)
+        if is_finite(self.setpoint):
+            self.setpoint = wrap(self.setpoint + angle)
+        self.drift.state = wrap(self.drift.state + angle)
+        self.reference = wrap(self.reference + angle)
+
+    def end_step(self, has_used_sticks, vehicle):
+        pass
+
+
+class IntegratedHeading:
+    """v1.14 and v1.15: the integral of the yaw rate."""
+
+    def __init__(self, heading_of):
+        self.heading_of = heading_of
+        self.heading = ZERO
+        self.is_reset = True
+
+    def update(self, sticks, vehicle, q, p, dt):
+        """The heading to hold [rad], and the yaw rate [rad/s]."""
+        rate = sticks.yaw * radians(p["MPC_MAN_Y_MAX"])
+        if self.is_reset or _resets_heading(sticks.throttle, p):
+            self.heading = self.heading_of(q)
+        else:
+            self.heading = wrap(self.heading + rate * dt)
+        return self.heading, rate
+
+    def rest(self, vehicle, q):
+        pass
+
+    def turn(self, rotation):
+        """The estimator turned the attitude."""
+        self.heading = wrap(self.heading + self.heading_of(rotation))
+
+    def end_step(self, has_used_sticks, vehicle):
+        in_transition = vehicle.is_vtol and vehicle.is_in_transition
+        self.is_reset = not has_used_sticks or not vehicle.has_good_heading or in_transition
+
+
+class Throttle:
+    """v1.15 and v1.16: the limits move slowly after take-off and arming, in v1.16 the hover thrust
+    does, too. `estimate` of the hover thrust is NaN in v1.15."""
+
+    def __init__(self):
+        self.least = self.most = ZERO
+        self.hover = None  # of the parameter, from the first reading on
+
+    def read(self, p, estimate):
+        if not is_finite(estimate):
+            self.hover = p["MPC_THR_HOVER"]
+
+    def thrust(self, stick, p):
+        full = p["MPC_THR_MAX"]
+        if p["MPC_THR_CURVE"] == ONE:
+            return smaller(line(stick, -ONE, ONE, self.least, full), self.most)
+        hover = p["MPC_THR_HOVER"] if p["MPC_THR_CURVE"] == TWO else self.hover
+        if stick > ZERO:
+            return smaller(line(stick, ZERO, ONE, hover, full), self.most)
+        return smaller(line(stick, -ONE, ZERO, self.least, hover), self.most)
+
+    def end_step(self, vehicle, p, estimate, dt):
+        per_second = Binary32(0.05)
+        least = ZERO if vehicle.is_landed else p["MPC_MANTHR_MIN"]
+        self.least = slewed(self.least, per_second, dt, least)
+        self.most = slewed(self.most, HALF, dt, ONE) if vehicle.has_spooled_up else ZERO
+        if is_finite(estimate):
+            self.hover = slewed(self.hover, per_second, dt, estimate)
+
+
+class ThrottleOfV114:
+    def read(self, p, estimate):
+        pass
+
+    def thrust(self, stick, p):
+        least, hover, full = p["MPC_MANTHR_MIN"], p["MPC_THR_HOVER"], p["MPC_THR_MAX"]
+        s = (stick + ONE) * HALF
+        if p["MPC_THR_CURVE"] == ONE:
+            return line(s, ZERO, ONE, least, full)
+        # NaN and too large numbers are below the middle, as in a conversion to int on x86.
+        if ONE <= s * TWO < LARGE_FOR_INT:
+            return line(s, HALF, ONE, hover, full)
+        return line(s, ZERO, HALF, least, hover)
+
+    def end_step(self, vehicle, p, estimate, dt):
+        pass
+
+
+class Sticks:
+    def __init__(self, profile):
+        low_pass = LowPassOfV114 if profile == PX4_V114 else LowPass
+        self.roll = low_pass()
+        self.pitch = low_pass()
+        self.throttle = ThrottleOfV114() if profile == PX4_V114 else Throttle()
+        if profile == PX4_V116:
+            self.heading = LockedHeading()
+        else:
+            is_v114 = profile == PX4_V114
+            self.heading = IntegratedHeading(heading_of_in_v114 if is_v114 else heading_of)
+
+    def setpoint(self, sticks, vehicle, q, p, dt):
+        """q_d, yaw rate and thrust for the attitude q. `p` are the parameters, dt is in s."""
+        heading, yaw_rate = self.heading.update(sticks, vehicle, q, p, dt)
+        tilt = self._tilt(sticks, p, dt)
+        turn = of_heading(heading)
+        if vehicle.is_vtol:
+            tilt = _for_the_present_heading(tilt, turn, q)
+        thrust = self.throttle.thrust(sticks.throttle, p)
+        return product(turn, tilt), yaw_rate, (ZERO, ZERO, -thrust)
+
+    def _tilt(self, sticks, p, dt):
+        most = radians(p["MPC_MAN_TILT_MAX"])
+        tau = p["MC_MAN_TILT_TAU"]
+        v = (
+            self.roll.update(tau, dt, sticks.roll * most),
+            -self.pitch.update(tau, dt, sticks.pitch * most),
+        )
+        angle = norm(v)
+        if angle > most:
+            v = times(v, most / angle)
+        return of_rotation_vector(*v)
+
+    def reset_tilt(self):
+        self.roll.state = self.pitch.state = ZERO
+
+
+def _for_the_present_heading(tilt, turn, q):
+    """The same tilt in the world, seen from the heading that the vehicle has now."""
+    present = product(inverse(between(UP_AND_DOWN, z_axis(q))), q)
+    return between(UP_AND_DOWN, z_axis(product(product(inverse(turn), present), tilt)))
