@@ -12,6 +12,8 @@
 #include <fstream>
 #include <mutex>
 #include <set>
+#include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -93,38 +95,14 @@ void own_nothing() {
   owned().mutex.unlock();
 }
 
-// Both ends of the pipe on which the guard reports that it has joined the group.
-using Ready = std::array<int, 2>;
-
-[[noreturn]] void lead_group(pid_t parent, const Ready& ready, const std::function<void()>& work) {
-  own_nothing();
+[[noreturn]] void lead_group(pid_t parent, const std::function<void()>& work) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(EXIT_FAILURE);  // it died before the line above
-  // Waits for the guard. Without it, processes started now would outlive a parent that dies now.
-  ::close(ready[1]);
-  char byte = 0;
-  if (::read(ready[0], &byte, 1) != 1) ::_exit(EXIT_FAILURE);
-  ::close(ready[0]);
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
   reset_signals();
   work();
-  ::_exit(EXIT_SUCCESS);
-}
-
-// The leader itself gets PR_SET_PDEATHSIG, but what it starts does not. The guard is in the group,
-// with all signals blocked, so that only SIGKILL to the group or the death of the parent ends it.
-[[noreturn]] void guard_group(pid_t parent, const Ready& ready, pid_t leader) {
-  ::prctl(PR_SET_PDEATHSIG, SIGHUP);
-  if (::setpgid(0, leader) != 0 || ::write(ready[1], "", 1) != 1) ::_exit(EXIT_FAILURE);
-  // It must not keep open a pipe whose end of file another process waits for.
-  ::close_range(0, ~0u, 0);
-  sigset_t death_of_parent;
-  ::sigemptyset(&death_of_parent);
-  ::sigaddset(&death_of_parent, SIGHUP);
-  while (::getppid() == parent) ::sigwaitinfo(&death_of_parent, nullptr);
-  ::kill(-leader, SIGKILL);
   ::_exit(EXIT_SUCCESS);
 }
 
@@ -135,30 +113,138 @@ void reap(pid_t process, Ending& ending) {
   if (has_ended) ending.wait_status = status;
 }
 
-std::vector<pid_t> children() {
+// Of `process`, a number or "self". Empty if it has ended.
+std::vector<pid_t> children(const std::string& process) {
   std::vector<pid_t> found;
-  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
-    std::ifstream list(task.path() / "children");
+  std::error_code gone;
+  std::filesystem::directory_iterator task("/proc/" + process + "/task", gone);
+  for (; !gone && task != end(task); task.increment(gone)) {
+    std::ifstream list(task->path() / "children");
     for (pid_t child = 0; list >> child;) found.push_back(child);
   }
   return found;
 }
 
-void end_orphans() {
-  Owned& all = owned();
-  const std::lock_guard lock(all.mutex);
-  // When an orphan ends, its own children become orphans.
-  constexpr int generations = 100;
-  for (int i = 0; i < generations; ++i) {
-    std::vector<pid_t> orphans = children();
-    std::erase_if(orphans, [&](pid_t child) { return all.processes.contains(child); });
-    if (orphans.empty()) return;
-    for (const pid_t orphan : orphans) {
-      ::kill(orphan, SIGKILL);
-      Ending ignored;
-      reap(orphan, ignored);
-    }
+// The children without an owner, and all that these have started.
+std::vector<pid_t> orphans() {
+  constexpr std::size_t enough = 10'000;  // processes that fork all the time have no end
+  std::vector<pid_t> found = children("self");
+  std::erase_if(found, [](pid_t child) { return owned().processes.contains(child); });
+  for (std::size_t i = 0; i < found.size() && found.size() < enough; ++i) {
+    const std::vector<pid_t> next = children(std::to_string(found[i]));
+    found.insert(found.end(), next.begin(), next.end());
   }
+  return found;
+}
+
+// When an orphan ends, its own children become orphans.
+void end_orphans() {
+  const std::lock_guard lock(owned().mutex);
+  happens_within(time_to_die_s, [] {
+    const std::vector<pid_t> all = orphans();
+    for (const pid_t orphan : all) ::kill(orphan, SIGKILL);
+    for (const pid_t orphan : all) ::waitpid(orphan, nullptr, WNOHANG);
+    return all.empty();
+  });
+}
+
+// ---- the guard ----------------------------------------------------------------------------------
+
+// The guard is the parent of the process, and of all descendants that have lost their parents. It
+// has a group of its own, so that signals that the process sends to its group do not reach it. All
+// its signals are blocked. It takes these: SIGCHLD; SIGTERM, which it passes on to the group; and
+// SIGHUP: the owner asks for the end, or has died.
+constexpr int end_all = SIGHUP;
+
+// Waits for the end of `leader`. Empty: it must be ended.
+std::optional<int> status_of(pid_t leader, pid_t owner) {
+  sigset_t taken;
+  ::sigemptyset(&taken);
+  for (const int signal : {SIGCHLD, SIGTERM, end_all}) ::sigaddset(&taken, signal);
+  int signal = 0;
+  while (signal != end_all && ::getppid() == owner) {
+    int status = 0;
+    for (pid_t ended = 0; (ended = ::waitpid(-1, &status, WNOHANG)) > 0;) {
+      if (ended == leader) return status;
+    }
+    signal = ::sigwaitinfo(&taken, nullptr);
+    if (signal == SIGTERM) ::kill(-leader, SIGTERM);
+  }
+  return std::nullopt;
+}
+
+// Ends as the process has ended, so that the owner sees how.
+[[noreturn]] void end_as(const Ending& ending) {
+  if (ending.wait_status && WIFEXITED(*ending.wait_status)) {
+    ::_exit(WEXITSTATUS(*ending.wait_status));
+  }
+  const int signal = ending.wait_status ? WTERMSIG(*ending.wait_status) : SIGKILL;
+  ::prctl(PR_SET_DUMPABLE, 0);  // one core dump is enough
+  std::signal(signal, SIG_DFL);
+  sigset_t only;
+  ::sigemptyset(&only);
+  ::sigaddset(&only, signal);
+  ::raise(signal);
+  ::pthread_sigmask(SIG_UNBLOCK, &only, nullptr);
+  ::_exit(EXIT_FAILURE);  // not reached
+}
+
+// Writes the error of fork() to `ready`, 0 for none, when the process can be sent signals.
+[[noreturn]] void guard(pid_t owner, int ready, const std::function<void()>& work) {
+  ::setpgid(0, 0);
+  ::prctl(PR_SET_PDEATHSIG, end_all);
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);
+  if (::getppid() != owner) ::_exit(EXIT_FAILURE);  // it died before the lines above
+  std::signal(SIGCHLD, SIG_DFL);
+  const pid_t self = ::getpid(), leader = ::fork();
+  if (leader == 0) {
+    ::close(ready);
+    lead_group(self, work);
+  }
+  const int reason = leader > 0 ? 0 : errno;
+  if (leader > 0) ::setpgid(leader, leader);  // here too: the first of the two calls decides
+  const bool is_told = ::write(ready, &reason, sizeof reason) == sizeof reason;
+  // It must not keep open a pipe whose end of file another process waits for.
+  ::close_range(0, ~0u, 0);
+  if (leader < 0 || !is_told) ::_exit(EXIT_FAILURE);
+  Ending ending;
+  ending.wait_status = status_of(leader, owner);
+  if (!ending.wait_status) {
+    ::kill(leader, SIGKILL);
+    reap(leader, ending);
+  }
+  end_orphans();
+  end_as(ending);
+}
+
+// Forks the guard, and waits until it has forked the process. -1: errno has the reason.
+pid_t start_guarded(const std::function<void()>& work) {
+  const pid_t owner = ::getpid();
+  std::array<int, 2> ready{-1, -1};
+  if (::pipe2(ready.data(), O_CLOEXEC) != 0) return -1;
+  const pid_t started = ::fork();
+  if (started == 0) {
+    own_nothing();
+    ::close(ready[0]);
+    guard(owner, ready[1], work);
+  }
+  int reason = errno;
+  ::close(ready[1]);
+  if (started > 0 && ::read(ready[0], &reason, sizeof reason) != sizeof reason) reason = ECHILD;
+  ::close(ready[0]);
+  if (started > 0 && reason != 0) ::waitpid(started, nullptr, 0);
+  errno = reason;
+  return started > 0 && reason == 0 ? started : -1;
+}
+
+pid_t start_alone(const std::function<void()>& work) {
+  const pid_t owner = ::getpid(), started = ::fork();
+  if (started == 0) {
+    own_nothing();
+    lead_group(owner, work);
+  }
+  if (started > 0) ::setpgid(started, started);  // here too: the first of the two calls decides
+  return started;
 }
 
 }  // namespace
@@ -177,32 +263,16 @@ std::string Ending::to_string() const {
 }
 
 Result<Process> Process::start(const std::function<void()>& work, bool with_guard) {
-  const pid_t parent = ::getpid();
   // Otherwise a child that calls exit() would print the unflushed output of the parent, too.
   std::fflush(nullptr);
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   const SignalsBlocked blocked;
   const std::lock_guard lock(owned().mutex);
-  Ready ready{-1, -1};
-  const bool has_pipe = ::pipe2(ready.data(), O_CLOEXEC) == 0;
-  const pid_t leader = has_pipe ? ::fork() : -1;
-  if (leader == 0) lead_group(parent, ready, work);
-  if (leader > 0) ::setpgid(leader, leader);  // here too: the first of the two calls decides
-  const pid_t guard = leader > 0 && with_guard ? ::fork() : -1;
-  if (guard == 0) guard_group(parent, ready, leader);
+  const pid_t started = with_guard ? start_guarded(work) : start_alone(work);
   const int reason = errno;
-  const bool is_released = !with_guard && leader > 0 && ::write(ready[1], "", 1) == 1;
-  for (const int end : ready) {
-    if (end >= 0) ::close(end);
-  }
-  if (leader > 0) owned().processes.insert(leader);
-  if (guard > 0) owned().processes.insert(guard);
-  if (guard > 0 || is_released) return Process(leader, guard);
-  if (leader > 0) {
-    ::kill(leader, SIGKILL);
-    Ending ignored;
-    reap(leader, ignored);
-    owned().processes.erase(leader);
+  if (started > 0) {
+    owned().processes.insert(started);
+    return Process(started, with_guard);
   }
   return fail(fmt::format("cannot start a process: {}{}", std::strerror(reason),
                           reason == EAGAIN ? " (`ulimit -u` limits how many there are)" : ""));
@@ -210,14 +280,14 @@ Result<Process> Process::start(const std::function<void()>& work, bool with_guar
 
 Process::Process(Process&& other) noexcept
     : pid_(std::exchange(other.pid_, -1)),
-      guard_(std::exchange(other.guard_, -1)),
+      has_guard_(other.has_guard_),
       was_killed_(other.was_killed_) {}
 
 Process& Process::operator=(Process&& other) noexcept {
   if (this == &other) return *this;
   end(0);
   pid_ = std::exchange(other.pid_, -1);
-  guard_ = std::exchange(other.guard_, -1);
+  has_guard_ = other.has_guard_;
   was_killed_ = other.was_killed_;
   return *this;
 }
@@ -240,8 +310,12 @@ void Process::terminate() {
 void Process::kill() {
   if (pid_ <= 0) return;
   was_killed_ = true;
-  ::kill(-pid_, SIGKILL);
-  ::kill(pid_, SIGKILL);  // it may have moved to another group
+  if (has_guard_) {
+    ::kill(pid_, end_all);  // without the guard, a daemon would outlive a kill of us at this moment
+  } else {
+    ::kill(-pid_, SIGKILL);
+    ::kill(pid_, SIGKILL);  // it may have moved to another group
+  }
 }
 
 Ending Process::end(double patience_s) {
@@ -250,17 +324,15 @@ Ending Process::end(double patience_s) {
   if (!ends_within(patience_s)) kill();
   ending.was_killed = was_killed_;
   // Kills the group before reap(): until then no other process can get this number.
-  ::kill(-pid_, SIGKILL);
+  if (!has_guard_) ::kill(-pid_, SIGKILL);
   reap(pid_, ending);
-  if (guard_ > 0) {
-    ::kill(guard_, SIGKILL);  // it may not have joined the group yet
-    Ending ignored;
-    reap(guard_, ignored);
+  if (!ending.wait_status) {  // a guard that was stopped does not end itself
+    ::kill(pid_, SIGKILL);
+    reap(pid_, ending);
   }
   {
     const std::lock_guard lock(owned().mutex);
     owned().processes.erase(std::exchange(pid_, -1));
-    owned().processes.erase(std::exchange(guard_, -1));
   }
   end_orphans();
   return ending;

@@ -22,14 +22,14 @@ struct Ending {
   std::string to_string() const;
 };
 
-// The process leads a process group of its own. Its descendants in that group end with it. Those in
-// other groups or sessions become children of this process when their parents have ended; the next
-// end() of any Process kills them. No member function waits longer than its argument and a few
+// The process leads a process group of its own. Its descendants end with it, also those in other
+// groups or sessions (daemons). No member function waits longer than its argument and a few
 // seconds.
 //
 // When this process dies, even by SIGKILL, the process ends too. Its descendants then end only if
-// the group has a second process, the guard. Code of others needs the guard. Code of attest starts
-// only Processes, which end with their parent.
+// there is a guard: a process of attest between this one and the process, which becomes the parent
+// of all descendants whose parents have ended. Code of others needs the guard. Code of attest
+// starts only Processes, which end with their parent.
 //
 // One thread at a time. The thread that calls start() must live as long as the Process, because
 // Linux treats the end of that thread as the death of the parent.
@@ -44,26 +44,26 @@ class Process {
   Process& operator=(Process&& other) noexcept;
   ~Process();  // kills
 
-  pid_t pid() const { return pid_; }  // -1 after end()
+  pid_t pid() const { return pid_; }  // of the guard, if there is one; -1 after end()
 
   // True if it has ended by itself, or does so in that time. end() then still returns how.
   bool ends_within(double seconds);
 
   void terminate();  // sends SIGTERM to the group
-  void kill();       // sends SIGKILL to the group
+  void kill();       // sends SIGKILL to the process and its descendants
   bool was_killed() const { return was_killed_; }
 
-  // Waits up to `patience_s` for it to end by itself, then kills it with its group.
+  // Waits up to `patience_s` for it to end by itself, then kills it with its descendants.
   Ending end(double patience_s);
 
   // Sends SIGTERM, and kills it after the grace period.
   Ending stop(double grace_s);
 
  private:
-  Process(pid_t pid, pid_t guard) : pid_(pid), guard_(guard) {}
+  Process(pid_t pid, bool has_guard) : pid_(pid), has_guard_(has_guard) {}
 
   pid_t pid_ = -1;
-  pid_t guard_ = -1;
+  bool has_guard_ = false;
   bool was_killed_ = false;
 };
 

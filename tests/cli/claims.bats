@@ -38,6 +38,29 @@ value() { python3 -c "import json; r = json.load(open('report.json')); print($1)
   ! grep -q "#3a7d34" badge.svg
 }
 
+# hash_of_program SHARD: of the port in the report of that half of a run of ./port.py.
+hash_of_program() {
+  "$ATTEST" run --filter 'tpa/*@250hz' --shard "$1/2" --no-diagnose --json report.json \
+    --port "proc:$PYTHON -B port.py $SOURCE/README.md --no-such-file" >/dev/null
+  cp report.json "part$1.json"
+  value 'r["port"]["sha256"]'
+}
+
+@test "the hash of a program covers all files that its command names" {
+  echo "import sys; sys.path.insert(0, '$SOURCE/controller/starters/python')" >port.py
+  echo "import port; port.main()" >>port.py
+  before=$(hash_of_program 1)
+  [ "$before" = "$(sha256sum "$PYTHON" port.py "$SOURCE/README.md" | cut -d ' ' -f 1 |
+    sha256sum | cut -d ' ' -f 1)" ]
+  [ "$before" = "$(hash_of_program 2)" ]
+  "$ATTEST" merge part1.json part2.json
+  echo "# another version" >>port.py
+  [ "$before" != "$(hash_of_program 2)" ]
+  run "$ATTEST" merge part1.json part2.json
+  [ "$status" -eq 2 ]
+  has "part2.json"
+}
+
 @test "the reports name the port's file, the suite and the day" {
   run "$ATTEST" run --group tpa --rate 250 --port "lib:$STARTER" --json report.json \
     --junit junit.xml

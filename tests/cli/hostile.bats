@@ -140,3 +140,57 @@ RESULT
   [ "$status" -eq 1 ]
   has "protocol"
 }
+
+# daemons: the processes of this test that the port has made daemons.
+daemons() {
+  local process
+  for process in $(grep -lx port_daemon /proc/[0-9]*/comm 2>/dev/null); do
+    grep -qzx "DAEMON_OF=$BATS_TEST_TMPDIR" "${process%comm}environ" 2>/dev/null && echo "$process"
+  done
+  return 0
+}
+
+# wait_for_daemons TEST: until there is one (-n), or none (-z).
+wait_for_daemons() {
+  for _ in $(seq 100); do
+    [ "$1" "$(daemons)" ] && return 0
+    sleep 0.1
+  done
+  echo "daemons: $(daemons)"
+  return 1
+}
+
+@test "a daemon of a port does not outlive attest, even if attest is killed" {
+  export DAEMON_OF="$BATS_TEST_TMPDIR"
+  judged daemon
+  [ -z "$(daemons)" ]
+  has "vectors conform"
+  [ "$status" -eq 0 ]
+  cp -r "$SOURCE/controller/starters/python" starter
+  cat >daemon.py <<'PORT'
+import os, sys, time
+if os.fork() == 0:
+    os.setsid()
+    if os.fork() == 0:
+        open("/proc/self/comm", "w").write("port_daemon")
+        time.sleep(1000)
+    os._exit(0)
+os.wait()
+if "DAEMON_PORT_WAITS" in os.environ:
+    time.sleep(1000)
+sys.path.insert(0, "starter")
+import port
+port.main()
+PORT
+  export DAEMON_PORT_WAITS=1
+  for port in "lib:$PORTS/hostile_daemon.so" "proc:$PYTHON -B daemon.py"; do
+    for signal in INT TERM KILL; do
+      echo "$port, SIG$signal"
+      "$ATTEST" run --port "$port" --filter 'rates/*@250hz' --timeout 60 --jobs 2 3>&- &
+      wait_for_daemons -n
+      kill -$signal $!
+      wait $! || true
+      wait_for_daemons -z
+    done
+  done
+}

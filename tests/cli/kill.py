@@ -7,10 +7,9 @@ temporary file and no partial report, and every golden is complete, old or new.
 Each point is a command, SIGKILL or SIGINT, and a random time between the start and the end of that
 command. A process has the mark of its point in its environment, which it inherits from attest.
 
-SIGKILL has three limits that are no error here. A killed `bless` leaves its lock and unfinished
+SIGKILL has two limits that are no error here. A killed `bless` leaves its lock and unfinished
 goldens (`*.new`), which the next `bless` removes. A kill between the two system calls that replace
-an old report leaves the new one with another name. A process that a port moves to a session of its
-own is not found by the guard of attest.
+an old report leaves the new one with another name.
 """
 
 import argparse
@@ -54,9 +53,11 @@ REPORTS = ("r.html", "r.json", "r.xml", "r.svg")
 OLD = b"a report of an earlier run"
 OLD_SHA256 = hashlib.sha256(OLD).hexdigest()
 
-# A port with a process of its own, which does not end by itself.
-PORT_WITH_HELPER = """import subprocess, sys
-subprocess.Popen(["sleep", "1000"], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+# A port with two processes of its own, which do not end by themselves. The second is in a session
+# of its own, and its parent has ended.
+PORT_WITH_HELPERS = """import subprocess, sys
+for command in (["sleep", "1000"], ["setsid", "--fork", "sleep", "1000"]):
+    subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
 sys.path.insert(0, {folder!r})
 import port
 port.main()
@@ -149,7 +150,7 @@ def traces(place):
 def proc_port(place):
     script = place.folder.parent / "port.py"  # in a report
     starter = str(ROOT / "controller/starters/python")
-    script.write_text(PORT_WITH_HELPER.format(folder=starter), encoding="utf-8")
+    script.write_text(PORT_WITH_HELPERS.format(folder=starter), encoding="utf-8")
     return f"proc:{sys.executable} -B {script}"
 
 

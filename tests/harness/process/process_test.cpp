@@ -164,8 +164,8 @@ TEST(Process, WhatItLeftBehindEndsWhenItHasEnded) {
   Alive alive;
   Process process = started([&] {
     if (::fork() == 0) stay_whatever_comes(alive);
+    if (!alive.are_alive(1)) ::_exit(EXIT_FAILURE);
   });
-  ASSERT_TRUE(alive.are_alive(1));
   EXPECT_TRUE(process.end(60).is_success());
   EXPECT_TRUE(alive.are_gone());
 }
@@ -202,6 +202,57 @@ TEST(Process, ItAndWhatItStartedEndWithItsParent) {
   ::waitpid(parent, nullptr, 0);
   EXPECT_TRUE(were_alive);
   EXPECT_TRUE(alive.are_gone());
+}
+
+// A process in a session of its own whose parent has ended, as a daemon.
+[[noreturn]] void stay_with_a_daemon(const Alive& alive) {
+  if (::fork() == 0) {
+    ::setsid();
+    if (::fork() == 0) stay_whatever_comes(alive);
+    ::_exit(EXIT_SUCCESS);
+  }
+  stay_whatever_comes(alive);
+}
+
+TEST(Process, ItsDaemonsEndWithItsParent) {
+  Alive alive;
+  const pid_t parent = ::fork();
+  if (parent == 0) {
+    const auto process = Process::start([&] { stay_with_a_daemon(alive); });
+    stay();
+  }
+  const bool were_alive = alive.are_alive(2);
+  ::kill(parent, SIGKILL);
+  ::waitpid(parent, nullptr, 0);
+  EXPECT_TRUE(were_alive);
+  EXPECT_TRUE(alive.are_gone());
+}
+
+// Each process is the parent of the next one, so that the death of one makes one orphan.
+TEST(Process, ALongLineOfSessionsEndsWithIt) {
+  constexpr int length = 150;
+  Alive alive;
+  Process process = started([&] {
+    for (int i = 0; i < length && ::fork() == 0; ++i) ::setsid();
+    stay_whatever_comes(alive);
+  });
+  ASSERT_TRUE(alive.are_alive(length + 1));
+  process.stop(0);
+  EXPECT_TRUE(alive.are_gone());
+}
+
+// A signal to the group reaches what the process started, but not the guard.
+TEST(Process, ThatKillsItsOwnGroupLeavesNoDaemon) {
+  Alive alive;
+  Process process = started([&] {
+    if (::fork() == 0) stay_with_a_daemon(alive);
+    if (!alive.are_alive(2)) ::_exit(EXIT_FAILURE);
+    ::kill(0, SIGKILL);
+    stay();
+  });
+  EXPECT_TRUE(process.ends_within(60));
+  EXPECT_TRUE(alive.are_gone());
+  EXPECT_EQ(process.end(60).to_string(), "was killed by signal 9 (Killed)");
 }
 
 TEST(Process, LeavesNoZombie) {
