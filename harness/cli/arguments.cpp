@@ -22,10 +22,12 @@ namespace attest::cli {
 namespace {
 
 constexpr const char* description =
-    "Judges whether a port of PX4's multicopter attitude and rate control conforms to the\n"
-    "reference at every loop rate: of the controller of v1.5.5 and v1.3.4, or of the attitude unit "
-    "and the rate unit of v1.14 to v1.16. Reports the first divergence: its tick, signal and stage "
-    "of the law.\n";
+    "Judges whether a port of PX4's multicopter attitude and rate control conforms to the "
+    "reference\n"
+    "at every loop rate: of the controller of v1.5.5 and v1.3.4, or of the attitude unit and the "
+    "rate\n"
+    "unit of v1.14 to v1.16. Reports the first divergence: its tick, signal and stage of the "
+    "law.\n";
 
 constexpr const char* footer =
     "\nFirst steps (`attest help COMMAND` has more):\n"
