@@ -27,10 +27,8 @@ void print_nearest(const SuiteMargins& margins) {
   fmt::print("{} numeric vectors, {} too near to a decision", margins.vectors,
              margins.too_near.size());
   if (margins.not_measured == 0) return fmt::print("\n");
-  fmt::print(
-      "; {} of battery estimates and unknown profiles, which have no decisions that attest "
-      "knows\n",
-      margins.not_measured);
+  fmt::print("; {} more without known decisions: battery estimates, profiles of your own\n",
+             margins.not_measured);
 }
 
 }  // namespace
