@@ -86,22 +86,7 @@ load common
 }
 
 @test "both units fly as their tasks are scheduled, and the times can be flown again" {
-  cat >tasks.toml <<'TASKS'
-[task.unit]
-rate_hz = 1000
-execution_us = 60
-priority = 30
-
-[task.attitude_unit]
-trigger = "estimator"
-execution_us = 90
-priority = 20
-
-[task.estimator]
-rate_hz = 250
-execution_us = [800, 2200]
-priority = 10
-TASKS
+  cascade_tasks 1000 250
   run "$ATTEST" schedule tasks.toml --case tilt_step_30 --record-timing timing.json
   [ "$status" -eq 0 ]
   has "attitude_unit"

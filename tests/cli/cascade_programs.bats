@@ -102,22 +102,7 @@ cases=(acro/superexpo attitude/tilt_by_azimuth battery/clamped_after_scaling
 }
 
 @test "both units of a program fly as scheduled, and a failure has its reason" {
-  cat >tasks.toml <<'TASKS'
-[task.unit]
-rate_hz = 400
-execution_us = 60
-priority = 30
-
-[task.attitude_unit]
-trigger = "estimator"
-execution_us = 90
-priority = 20
-
-[task.estimator]
-rate_hz = 100
-execution_us = [800, 2200]
-priority = 10
-TASKS
+  cascade_tasks 400 100
   run "$ATTEST" schedule tasks.toml --case tilt_step_30 --port "$both" --record-timing t.json
   [ "$status" -eq 0 ]
   run "$ATTEST" run --timing t.json --port "$both"

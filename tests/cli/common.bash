@@ -88,3 +88,24 @@ text = "".join(line for line in lines if not line.startswith(prefix))
 path.write_text(text + prefix + hashlib.sha256(text.encode()).hexdigest() + "\n")
 SEAL
 }
+
+# cascade_tasks RATE ATTITUDE_RATE: writes ./tasks.toml, the tasks of a flight of the cascade at
+# these rates [Hz].
+cascade_tasks() {
+  cat >tasks.toml <<TASKS
+[task.unit]
+rate_hz = $1
+execution_us = 60
+priority = 30
+
+[task.attitude_unit]
+trigger = "estimator"
+execution_us = 90
+priority = 20
+
+[task.estimator]
+rate_hz = $2
+execution_us = [800, 2200]
+priority = 10
+TASKS
+}

@@ -68,7 +68,7 @@ class AttitudeUnit:
         self.reset_counter = 0
         self.pending_setpoint = None  # the newest one, until it is latched
         self.has_autotune = False
-        self.is_manual = self.is_stabilized = self.controls_attitude = False
+        self.is_stabilized = self.controls_attitude = False
 
     def step(self, inputs, outputs):
         """One step of the loop, at each sample of the attitude. Fills `outputs`."""
@@ -83,23 +83,20 @@ class AttitudeUnit:
             self._follow_setpoint(attitude)
         self._latch_mode(inputs)
         self._latch_vehicle(inputs)
-        vehicle = self.vehicle
-        is_multicopter = vehicle.is_rotary_wing and not vehicle.is_in_transition
-        is_hovering_in_transition = vehicle.is_tailsitter and vehicle.is_in_transition
-        runs = self.controls_attitude and (is_multicopter or is_hovering_in_transition)
+        runs = self.controls_attitude and self.vehicle.flies_as_multicopter()
         uses_sticks = runs and self.is_stabilized
         if uses_sticks:
             self._follow_sticks(inputs, q, dt, outputs.vehicle_attitude_setpoint)
         else:
             if runs or self.profile == PX4_V116:
                 self.sticks.reset_tilt()
-            self.sticks.heading.rest(vehicle, q)
+            self.sticks.heading.rest(self.vehicle, q)
         if runs:
             if self.profile != PX4_V114:
                 self._follow_setpoint(attitude)
             self._publish_rates(inputs, q, outputs.vehicle_rates_setpoint)
-        self.sticks.throttle.end_step(vehicle, self.values, self.hover_estimate, dt)
-        self.sticks.heading.end_step(uses_sticks, vehicle)
+        self.sticks.throttle.end_step(self.vehicle, self.values, self.hover_estimate, dt)
+        self.sticks.heading.end_step(uses_sticks, self.vehicle)
 
     def _read_parameters(self, updated):
         values = self.parameters.newly_read(updated & PARAMETER_UPDATE)

@@ -22,7 +22,7 @@ from binary32 import (
 )
 
 IDENTITY = (ONE, ZERO, ZERO, ZERO)
-UP_AND_DOWN = (ZERO, ZERO, ONE)  # the vertical of the world
+DOWN = (ZERO, ZERO, ONE)  # the z axis of the world
 HALF_PI = Binary32(math.pi / 2.0)
 NEARLY_VERTICAL = Binary32(0.001)  # [rad]
 

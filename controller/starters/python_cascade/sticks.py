@@ -8,7 +8,7 @@ Each of them has the state of its own; `Vehicle` is what the unit knows of the v
 from binary32 import EPSILON, HALF, NAN, ONE, TWO, ZERO, Binary32, is_finite
 from parameters import PX4_V114, PX4_V116
 from rotation import (
-    UP_AND_DOWN,
+    DOWN,
     between,
     heading_of,
     heading_of_in_v114,
@@ -48,6 +48,11 @@ class Vehicle:
         self.is_landed = True
         self.has_good_heading = True
         self.unaided_heading = NAN  # [rad] of the gyros alone; not finite: none
+
+    def flies_as_multicopter(self):
+        if self.is_in_transition:
+            return self.is_tailsitter
+        return self.is_rotary_wing
 
 
 def _resets_heading(throttle, parameters):
@@ -232,5 +237,5 @@ class Sticks:
 
 def _for_the_present_heading(tilt, turn, q):
     """The same tilt in the world, seen from the heading that the vehicle has now."""
-    present = product(inverse(between(UP_AND_DOWN, z_axis(q))), q)
-    return between(UP_AND_DOWN, z_axis(product(product(inverse(turn), present), tilt)))
+    present = product(inverse(between(DOWN, z_axis(q))), q)
+    return between(DOWN, z_axis(product(product(inverse(turn), present), tilt)))
