@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
@@ -35,7 +37,6 @@ void on_warning(const char* text) {
 }
 
 // ---- callbacks of the model ---------------------------------------------------------------------
-
 // userdata of mjData: linear drag [kg/s] by body axis FLU, velocity of the air [m/s] ENU.
 enum UserData : int { drag_at = 0, wind_at = 3, userdata_size = 6 };
 
@@ -79,14 +80,12 @@ void install_callbacks() {
   mjcb_passive = drag;
 }
 
-struct DeleteModel {
+struct Delete {
   void operator()(mjModel* model) const { mj_deleteModel(model); }
-};
-struct DeleteData {
   void operator()(mjData* data) const { mj_deleteData(data); }
 };
-using Model = std::unique_ptr<mjModel, DeleteModel>;
-using Data = std::unique_ptr<mjData, DeleteData>;
+using Model = std::unique_ptr<mjModel, Delete>;
+using Data = std::unique_ptr<mjData, Delete>;
 
 // ---- loading ------------------------------------------------------------------------------------
 
@@ -143,32 +142,37 @@ Result<ModelNumbers> numbers_of(const mjModel& model, const std::filesystem::pat
 }
 
 // ---- the plant ----------------------------------------------------------------------------------
-
 void copy(const Vector3& vector, mjtNum* numbers) {
   std::copy(vector.begin(), vector.end(), numbers);
 }
 
 // Memory for the contacts of a few feet: four points on each of some geoms, up to four rows each.
 void enable_floor(mjModel& model) {
-  constexpr int contacts = 64, rows_of_one = 4;
-  constexpr int stack_numbers = 200'000;
+  constexpr int contacts = 64, rows_of_one = 4, stack_numbers = 200'000;
   model.nconmax = std::max(model.nconmax, contacts);
   model.njmax = std::max(model.njmax, rows_of_one * contacts);
   model.nstack = std::max(model.nstack, stack_numbers);
   model.opt.disableflags &= ~(mjDSBL_CONSTRAINT | mjDSBL_CONTACT);
 }
 
+// Its model has own arrays where place_centre_of_mass() writes, and shares the others with the
+// compiled one: a whole copy would have more than a megabyte of textures.
 class MujocoPlant final : public Plant {
  public:
-  MujocoPlant(Model model, Data data, const Vehicle& vehicle, const Rate& physics)
-      : model_(std::move(model)),
+  MujocoPlant(const mjModel& model, Data data, const Vehicle& vehicle, const Rate& physics)
+      : model_(model),
         data_(std::move(data)),
         vehicle_(vehicle),
         physics_(physics),
-        rotors_(vehicle.rotors.size()) {}
+        rotors_(vehicle.rotors.size()) {
+    own(model_.body_ipos, 3 * model.nbody, ipos_);
+    own(model_.body_sameframe, model.nbody, sameframe_);
+    own(model_.body_simple, model.nbody, simple_);
+    own(model_.dof_simplenum, model.nv, simplenum_);
+  }
 
   void reset(const PlantState& start) override {
-    mj_resetData(model_.get(), data_.get());
+    mj_resetData(&model_, data_.get());
     copy(vehicle_.drag_kg_s, data_->userdata + drag_at);  // by axis, without direction
     place_centre_of_mass({0, 0, 0});
     now_ = Nanoseconds(0);
@@ -204,16 +208,22 @@ class MujocoPlant final : public Plant {
   const PlantState& state() const override { return state_; }
 
  private:
+  template <typename T>
+  static void own(T*& array, int size, std::vector<T>& copy) {
+    copy.assign(array, array + size);
+    array = copy.data();
+  }
+
   // To the next multiple of the physics period, or to `to` if that comes first.
   void step(Nanoseconds to) {
     Nanoseconds next = physics_.tick(steps_ + 1);
     if (next <= to) ++steps_;
     next = std::min(next, to);
     const double h = in_seconds(next - now_);
-    model_->opt.timestep = h;
+    model_.opt.timestep = h;
     const double power_before = power_ratio();
     try {
-      mj_step(model_.get(), data_.get());
+      mj_step(&model_, data_.get());
     } catch (const MujocoError& error) {
       lost_ = Divergence{next, "MuJoCo: " + error.what};
     }
@@ -242,18 +252,17 @@ class MujocoPlant final : public Plant {
 
   // MuJoCo has faster code for a centre of mass at the body's origin. These fields select it.
   void place_centre_of_mass(const Vector3& offset_flu) {
-    copy(offset_flu, model_->body_ipos + 3 * body);
+    copy(offset_flu, model_.body_ipos + 3 * body);
     const bool at_origin = offset_flu == Vector3{0, 0, 0};
-    model_->body_sameframe[body] = at_origin;
-    model_->body_simple[body] = at_origin;
-    for (int i = 0; i < model_->nv; ++i) model_->dof_simplenum[i] = at_origin ? model_->nv - i : 0;
+    model_.body_sameframe[body] = at_origin;
+    model_.body_simple[body] = at_origin;
+    for (int i = 0; i < model_.nv; ++i) model_.dof_simplenum[i] = at_origin ? model_.nv - i : 0;
   }
 
   // MuJoCo's free joint is at the body's origin; PlantState is that of the centre of mass.
   void write_body() {
     const Quaternion q = flu_to_enu(state_.attitude);
-    mjtNum* qpos = data_->qpos;
-    mjtNum* qvel = data_->qvel;
+    mjtNum *const qpos = data_->qpos, *const qvel = data_->qvel;
     qpos[3] = q.w, qpos[4] = q.x, qpos[5] = q.y, qpos[6] = q.z;
     copy(flu_from_frd(state_.rate_rad_s), qvel + 3);
     mjtNum arm_W[3], velocity_W[3];
@@ -267,8 +276,7 @@ class MujocoPlant final : public Plant {
   }
 
   void read_body() {
-    const mjtNum* qpos = data_->qpos;
-    const mjtNum* qvel = data_->qvel;
+    const mjtNum *const qpos = data_->qpos, *const qvel = data_->qvel;
     state_.attitude = frd_to_ned({qpos[3], qpos[4], qpos[5], qpos[6]});
     state_.rate_rad_s = frd_from_flu(vector_at(qvel + 3));
     mjtNum arm_W[3], velocity_W[3];
@@ -281,19 +289,21 @@ class MujocoPlant final : public Plant {
 
   // From the body's origin to the centre of mass, and its velocity, in the world.
   void offset_in_world(mjtNum* arm_W, mjtNum* velocity_W) const {
-    const mjtNum* arm_B = model_->body_ipos + 3 * body;
+    const mjtNum* arm_B = model_.body_ipos + 3 * body;
     mjtNum velocity_B[3];
     mju_cross(velocity_B, data_->qvel + 3, arm_B);
     mju_rotVecQuat(arm_W, arm_B, data_->qpos + 3);
     mju_rotVecQuat(velocity_W, velocity_B, data_->qpos + 3);
   }
 
-  Model model_;
+  mjModel model_;
+  std::vector<mjtNum> ipos_;
+  std::vector<mjtByte> sameframe_, simple_;
+  std::vector<int> simplenum_;
   Data data_;
   const Vehicle& vehicle_;
   Rate physics_;
   std::size_t rotors_;
-
   Nanoseconds now_{0};
   std::int64_t steps_ = 0;  // whole physics periods
   PlantState state_;
@@ -308,11 +318,10 @@ class CompiledModel final : public MujocoModel {
   Result<std::unique_ptr<Plant>> make_plant(const Vehicle& vehicle,
                                             const PlantOptions& options) const override {
     try {
-      Model model(mj_copyModel(nullptr, model_.get()));
-      if (options.floor) enable_floor(*model);
-      Data data(mj_makeData(model.get()));
-      return std::make_unique<MujocoPlant>(std::move(model), std::move(data), vehicle,
-                                           options.physics);
+      mjModel model = *model_;  // shares all arrays
+      if (options.floor) enable_floor(model);
+      Data data(mj_makeData(&model));
+      return std::make_unique<MujocoPlant>(model, std::move(data), vehicle, options.physics);
     } catch (const MujocoError& error) {
       return fail_at(file_.string(), "MuJoCo: " + one_line(error.what));
     }

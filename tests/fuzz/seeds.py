@@ -43,6 +43,25 @@ def vehicle_seeds():
         yield file.read_bytes()
 
 
+# Elements and attributes of MJCF that no model here uses.
+MJCF_WORDS = """
+actuator angle armature asset axis body builtin camera cdof childclass class composite connect
+contact content_type coordinate damping default density diaginertia discardvisual dynprm dyntype
+element elevation equality euler exclude extension file fitaabb flag frictionloss fromto fullinertia
+gainprm gear general geom hfield inertiafromgeom inertial integrator joint keyframe key limited
+margin mesh muscle name ncol nkey nrow numeric nuser_geom nuserdata option pair plugin pos quat
+range ref sensor site size skin solimp solref spatial springlength statistic tendon text texture
+tuple type user vertex visual weld width worldbody xyaxes zaxis
+"""
+
+
+def mjcf_seeds():
+    for file in sorted((ROOT / "models").glob("*.xml")):
+        yield file.read_bytes()
+    elements = "".join(f"<{word} name='a'/>" for word in MJCF_WORDS.split())
+    yield f"<mujoco><worldbody>{elements}</worldbody>{elements}</mujoco>".encode()
+
+
 def timing_seeds():
     timing = {
         "attest_timing": 1,
