@@ -187,27 +187,32 @@ TEST(Child, CodeOfOursHasNoLimits) {
 }
 
 // The socket stays open while a process that the child started holds it.
+// A guard would end that process.
 TEST(Child, ItsDeathIsSeenAlthoughWhatItStartedLivesOn) {
-  Child child = spawned([](MessageSocket& parent) {
-    if (::fork() == 0) {
-      while (true) ::pause();
-    }
-    parent.send("last");
-    ::_exit(7);
-  });
+  Child child = spawned(
+      [](MessageSocket& parent) {
+        if (::fork() == 0) {
+          while (true) ::pause();
+        }
+        parent.send("last");
+        ::_exit(7);
+      },
+      Child::Runs::our_code);
   EXPECT_THAT(said(child), Optional(std::string("last")));
   EXPECT_EQ(child.receive(Patience::seconds(patience_s)).kind, Received::Kind::ended);
   EXPECT_EQ(child.end(), "exited with status 7");
 }
 
 TEST(Child, WhatItForksDoesNotAnswerForIt) {
-  Child child = spawned([](MessageSocket& parent) {
-    if (::fork() == 0) {
-      parent.send("of the fork");
-      ::_exit(EXIT_SUCCESS);
-    }
-    parent.send("of the child");
-  });
+  Child child = spawned(
+      [](MessageSocket& parent) {
+        if (::fork() == 0) {
+          parent.send("of the fork");
+          ::_exit(EXIT_SUCCESS);
+        }
+        parent.send("of the child");
+      },
+      Child::Runs::our_code);
   EXPECT_THAT(said(child), Optional(std::string("of the child")));
   EXPECT_EQ(said(child), std::nullopt);
 }
