@@ -168,6 +168,12 @@ quick=(--group battery --group rates --rate 100,250,8000)
   done
 }
 
+@test "a parent that ignores ended children changes nothing" {
+  run env --ignore-signal=CHLD "$ATTEST" run --group tpa --rate 250
+  [ "$status" -eq 0 ]
+  has "PASS 8 of 8"
+}
+
 @test "reports are complete although nobody reads the summary to its end" {
   "$ATTEST" run "${quick[@]}" --port "lib:$PORTS/port_sign_flip.so" --json r.json |
     head -n 1 || true
