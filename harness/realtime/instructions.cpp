@@ -40,17 +40,17 @@ class NamelessFile {
   int descriptor_;  // -1: it could not be made
 };
 
-// Each part of callgrind's output has a line such as "totals: 812". The last part has what was
-// counted after the last call: nothing.
+// Each part of callgrind's output has a line such as "totals: 812". A part of 0 is no call: the end
+// of the command, or of a process that it forked.
 std::vector<std::uint64_t> totals_in(const std::string& dumps) {
   constexpr std::string_view key = "totals: ";
   std::vector<std::uint64_t> totals;
   std::istringstream lines(dumps);
   for (std::string line; std::getline(lines, line);) {
     if (!line.starts_with(key)) continue;
-    totals.push_back(std::strtoull(line.c_str() + key.size(), nullptr, 10));
+    const std::uint64_t total = std::strtoull(line.c_str() + key.size(), nullptr, 10);
+    if (total > 0) totals.push_back(total);
   }
-  if (!totals.empty()) totals.pop_back();
   return totals;
 }
 

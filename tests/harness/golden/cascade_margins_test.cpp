@@ -138,6 +138,20 @@ TEST(CascadeMarginsOf, DecisionsWithoutEffectAreNotMeasured) {
                        Decision::battery_scale));
 }
 
+// The threshold is FLT_EPSILON, so only a ratio shows how near a value is.
+TEST(CascadeMarginsOf, TwiceAnEpsilonIsSafe) {
+  const Margins yaw =
+      margins_of(Module::attitude_unit,
+                 stabilized + straight_yaw + "[manual_control_setpoint]\nyaw = 9.1069754e-8\n");
+  EXPECT_NEAR(yaw[Decision::yaw_lock].distance, 1, 1e-3);
+  const Margins flags = margins_of(Module::rate_unit,
+                                   "[control_allocator_status]\ntorque_setpoint_achieved = 0\n"
+                                   "\"unallocated_torque[2]\" = 2.3841858e-7\n"
+                                   "[parameters]\nMC_YAW_TQ_CUTOFF = 2.3841858e-7\n");
+  EXPECT_NEAR(flags[Decision::saturation_flag].distance, 1, 1e-3);
+  EXPECT_NEAR(flags[Decision::yaw_cutoff].distance, 1, 1e-3);
+}
+
 // Opposite thrust directions are not tilted, so their arbitrary axis has no effect.
 TEST(CascadeMarginsOf, OppositeThrustHasNoAxis) {
   const Margins found = margins_of(
