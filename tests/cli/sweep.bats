@@ -153,7 +153,7 @@ MORE
   has "part1: is of another sweep: the hash of sweep file, case, vehicle and samples"
 }
 
-@test "a port with gains off by 3% is told from the reference, though it flies well" {
+@test "a port with gains off by 3% differs in the paired test, though each flight is good" {
   make_sweep 40 <<MORE
 [require.tilts]
 max = 1.2
