@@ -1,6 +1,7 @@
 #include "harness/sweep/sample_stream.hpp"
 
 #include <array>
+#include <cstddef>
 
 #include <openssl/sha.h>
 

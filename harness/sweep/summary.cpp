@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "harness/realtime/histogram.hpp"
 #include "harness/sweep/requirement.hpp"

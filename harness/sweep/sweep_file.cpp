@@ -16,8 +16,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::int64_t sweep_schema = 1;
-// An index is an exact double in the tables of other programs.
-constexpr std::uint64_t most_samples = 1'000'000'000;
+// The report keeps all numbers of the table in memory: about a gigabyte for so many samples.
+constexpr std::uint64_t most_samples = 10'000'000;
 
 LoopRate parse_rate(const TomlTable& root) {
   constexpr const char* key = "rate";

@@ -1,6 +1,7 @@
 #include "harness/sweep/statistics.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 

@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"schema = 1", "schema = 2", "s.toml:1:1: must be 1"},
         Wrong{"samples = 100", "sample = 100", "s.toml:5:1: unknown key `sample`; did you mean"},
         Wrong{"samples = 100", "samples = 0", "s.toml:5:1: must be positive"},
-        Wrong{"samples = 100", "samples = 2000000000", "at most 1000000000 are possible"},
+        Wrong{"samples = 100", "samples = 2000000000", "at most 10000000 are possible"},
         Wrong{"'250:1000'", "'250:'", "s.toml:3:1: "},
         Wrong{"latin_hypercube", "latin", "s.toml:4:1: unknown design `latin`"},
         Wrong{"['vehicle.mass_kg']", "['mass_kg']", "s.toml:7:1: `mass_kg` must begin with"},
