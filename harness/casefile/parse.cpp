@@ -291,13 +291,16 @@ void parse_body(const TomlTable& root, Case& parsed) {
 }  // namespace
 
 Result<Case> parse_case(const fs::path& file) {
-  auto text = read_file(file);
-  if (!text) return tl::unexpected(text.error());
-  auto toml = TomlFile::parse(*text, file.string());
+  return read_file(file).and_then(
+      [&](const std::string& text) { return parse_case_text(text, file); });
+}
+
+Result<Case> parse_case_text(std::string_view text, const fs::path& file) {
+  auto toml = TomlFile::parse(text, file.string());
   if (!toml) return tl::unexpected(toml.error());
   Case parsed;
   parsed.file = file;
-  parsed.sha256 = sha256(*text);
+  parsed.sha256 = sha256(text);
   const TomlTable root = toml->root();
   parse_identity(root, file, parsed);
   parse_body(root, parsed);

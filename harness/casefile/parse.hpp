@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "harness/casefile/case.hpp"
@@ -18,6 +19,8 @@ inline constexpr std::int64_t schema_version = 1;
 // reported together with file:line: syntax, unknown keys (with the nearest known one), values out
 // of range, a first profile or a group that differs from the folder's.
 Result<Case> parse_case(const std::filesystem::path& file);
+// The same for the text of a file, which need not exist.
+Result<Case> parse_case_text(std::string_view text, const std::filesystem::path& file);
 
 // Folders with case files. A file replaces the one with the same path below an earlier folder.
 using CaseFolders = std::vector<std::filesystem::path>;

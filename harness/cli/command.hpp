@@ -2,6 +2,7 @@
 // returns the exit code. One file a command.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -149,7 +150,7 @@ struct StressOptions {
 };
 int stress_command(const StressOptions& options, const Globals& globals);
 
-struct SweepOptions {
+struct RateSweepOptions {
   std::string case_name = "flight/tilt_step_30";
   std::vector<std::string> rates = {"50", "100", "250", "500", "1000"};
   std::vector<std::string> vehicles, plants;  // empty: all of the case
@@ -157,7 +158,19 @@ struct SweepOptions {
   int jobs = 1;
   std::string csv, html;
 };
-int sweep_rate_command(const SweepOptions& options, const Globals& globals);
+int sweep_rate_command(const RateSweepOptions& options, const Globals& globals);
+
+struct SweepOptions {
+  std::string file;
+  HostOptions host;  // with the port `builtin` only the reference flies
+  int jobs = 1;
+  std::uint64_t samples = 0;  // 0: those of the file
+  std::string shard = "1/1";
+  std::string out;
+  int keep_worst = 0;              // of each requirement
+  std::vector<std::string> merge;  // folders of shards; empty: fly
+};
+int sweep_command(const SweepOptions& options, const Globals& globals);
 
 struct ScheduleOptions {
   std::string tasks;  // file

@@ -26,7 +26,7 @@ struct SweepPlan {
 };
 
 Result<std::vector<PlantConfiguration>> plant_configurations_of(const Case& the_case,
-                                                                const SweepOptions& options) {
+                                                                const RateSweepOptions& options) {
   std::vector<PlantConfiguration> plant_configurations;
   for (const PlantConfiguration& plant_configuration : the_case.flight->plant_configurations) {
     const auto wanted = [](const std::vector<std::string>& names, std::string_view name) {
@@ -44,7 +44,7 @@ Result<std::vector<PlantConfiguration>> plant_configurations_of(const Case& the_
                   the_case.id()));
 }
 
-Result<SweepPlan> make_plan(const SweepOptions& options, const SuiteFolder& suite) {
+Result<SweepPlan> make_plan(const RateSweepOptions& options, const SuiteFolder& suite) {
   SweepPlan plan;
   auto rates = parse_rates(options.rates);
   if (!rates) return tl::unexpected(rates.error());
@@ -76,7 +76,7 @@ Result<SweepPlan> make_plan(const SweepOptions& options, const SuiteFolder& suit
 
 }  // namespace
 
-int sweep_rate_command(const SweepOptions& options, const Globals& globals) {
+int sweep_rate_command(const RateSweepOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
   const auto checked =

@@ -116,7 +116,7 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
 }
 
 void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
-  auto options = std::make_shared<SweepOptions>();
+  auto options = std::make_shared<RateSweepOptions>();
   CLI::App* command = app.add_subcommand("sweep-rate",
                                          "For each vehicle: the lowest loop rate, and the largest "
                                          "delay of the motor commands, at which "
@@ -146,6 +146,67 @@ void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
                  "the lowest rate and the largest delay with which the Iris flies within bounds"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return sweep_rate_command(*options, globals); };
+  });
+}
+
+void add_sweep_parts(CLI::App& command, SweepOptions& options) {
+  command
+      .add_option("--samples", options.samples,
+                  "Number of samples; replaces that of the file, and gives other samples")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  CLI::Option* const shard =
+      command.add_option("--shard", options.shard, "Fly the Ith of N parts of the samples only")
+          ->type_name("I/N")
+          ->capture_default_str();
+  command
+      .add_option("--merge", options.merge,
+                  "Fly nothing: join the shards in these folders to the result of one machine")
+      ->type_name("DIR...")
+      ->excludes(shard);
+  command
+      .add_option("--keep-worst", options.keep_worst,
+                  "Keep so many of the worst flights of each requirement, in OUT/worst, for "
+                  "`attest sim`")
+      ->check(CLI::Range(0, 1000))
+      ->type_name("K")
+      ->capture_default_str()
+      ->group(option_group::reports);
+}
+
+void add_sweep(CLI::App& app, const Globals& globals, Action& action) {
+  auto options = std::make_shared<SweepOptions>();
+  CLI::App* command = app.add_subcommand(
+      "sweep",
+      "Fly a case many times with dispersed values: the probability with which it holds its "
+      "requirements, and whether a port flies like the reference");
+  command
+      ->add_option("file", options->file,
+                   "The sweep (TOML): case, dispersions, design, requirements")
+      ->type_name("SWEEP.toml")
+      ->required();
+  add_port(*command, options->host.port);
+  command
+      ->add_option("--out", options->out,
+                   "Folder of the results: samples.csv, report.json. With the results of an "
+                   "interrupted sweep, only what is missing is flown")
+      ->type_name("DIR")
+      ->required()
+      ->group(option_group::reports);
+  add_sweep_parts(*command, *options);
+  add_timeout(*command, options->host.timeout_s);
+  add_jobs(*command, options->jobs, "Samples at a time");
+  add_examples(
+      *command,
+      {{"attest sweep SWEEP.toml --out results --keep-worst 3",
+        "fly the reference, and keep the three worst flights of each requirement"},
+       {"attest sweep SWEEP.toml --port lib:./libmine.so --out results",
+        "fly port and reference on the same samples, and test whether they differ"},
+       {"attest sweep SWEEP.toml --shard 2/4 --out part2", "the second quarter of the samples"},
+       {"attest sweep SWEEP.toml --merge part1 part2 part3 part4 --out results",
+        "the result of all samples"}});
+  command->callback([options, &globals, &action] {
+    action = [=, &globals] { return sweep_command(*options, globals); };
   });
 }
 
@@ -235,6 +296,7 @@ void add_time(CLI::App& app, const Globals& globals, Action& action) {
 
 void add_timing_commands(CLI::App& app, const Globals& globals, Action& action) {
   add_stress(app, globals, action);
+  add_sweep(app, globals, action);
   add_sweep_rate(app, globals, action);
   add_schedule(app, globals, action);
   add_time(app, globals, action);

@@ -11,12 +11,13 @@
 #include <mujoco/mujoco.h>
 
 #include "harness/plant/model_numbers.hpp"
+#include "harness/plant/mujoco_numbers.hpp"
 #include "harness/plant/simulator_message.hpp"
 
 namespace attest {
 namespace {
 
-constexpr int body = 1;  // 0 is the world
+using namespace mujoco_layout;  // NOLINT(google-build-using-namespace)
 
 Vector3 vector_at(const mjtNum* numbers) { return {numbers[0], numbers[1], numbers[2]}; }
 
@@ -37,8 +38,6 @@ void on_warning(const char* text) {
 }
 
 // ---- callbacks of the model ---------------------------------------------------------------------
-// userdata of mjData: linear drag [kg/s] by body axis FLU, velocity of the air [m/s] ENU.
-enum UserData : int { drag_at = 0, wind_at = 3, userdata_size = 6 };
 
 // Rotor speed is the activation: first-order lag, dynprm = {tau up, tau down}.
 mjtNum rotor_lag(const mjModel* model, const mjData* data, int id) {
@@ -106,42 +105,8 @@ Result<Model> compile(const std::filesystem::path& xml) {
   return model;
 }
 
-// The numbers of the compiled model, for the comparison with the TOML (model_numbers.hpp). Errors:
-// a model of another structure, with the missing element.
-Result<ModelNumbers> numbers_of(const mjModel& model, const std::filesystem::path& xml) {
-  const bool free_body = model.nbody == 2 && model.njnt == 1 && model.jnt_type[0] == mjJNT_FREE;
-  if (!free_body) return fail_at(xml.string(), "needs one body with one free joint");
-  if (model.opt.integrator != mjINT_RK4) {
-    return fail_at(xml.string(), "needs <option integrator=\"RK4\"/>");
-  }
-  if (model.nuserdata < userdata_size) {
-    return fail_at(xml.string(), fmt::format("needs <size nuserdata=\"{}\"/>", int{userdata_size}));
-  }
-  ModelNumbers numbers;
-  numbers.mass_kg = model.body_mass[body];
-  numbers.inertia_kg_m2 = vector_at(model.body_inertia + 3 * body);
-  numbers.centre_of_mass_m = frd_from_flu(vector_at(model.body_ipos + 3 * body));
-  numbers.gravity_m_s2 = -model.opt.gravity[2];
-  for (int i = 0; i < model.nu; ++i) {
-    const bool is_rotor = model.actuator_trntype[i] == mjTRN_SITE &&
-                          model.actuator_dyntype[i] == mjDYN_USER &&
-                          model.actuator_gaintype[i] == mjGAIN_USER;
-    if (!is_rotor) {
-      return fail_at(xml.string(), fmt::format("actuator {} needs a `site`, and `dyntype` and "
-                                               "`gaintype` \"user\"",
-                                               i));
-    }
-    const mjtNum* gear = model.actuator_gear + 6 * i;
-    const mjtNum* lag = model.actuator_dynprm + i * mjNDYN;
-    const mjtNum* place = model.site_pos + 3 * model.actuator_trnid[2 * i];
-    numbers.rotors.push_back({frd_from_flu(vector_at(place)), frd_from_flu(vector_at(gear)),
-                              frd_from_flu(vector_at(gear + 3)),
-                              model.actuator_gainprm[i * mjNGAIN], lag[0], lag[1]});
-  }
-  return numbers;
-}
-
 // ---- the plant ----------------------------------------------------------------------------------
+
 void copy(const Vector3& vector, mjtNum* numbers) {
   std::copy(vector.begin(), vector.end(), numbers);
 }
@@ -314,6 +279,25 @@ class CompiledModel final : public MujocoModel {
  public:
   CompiledModel(std::filesystem::path file, Model model)
       : file_(std::move(file)), model_(std::move(model)) {}
+
+  Result<std::shared_ptr<const MujocoModel>> with_numbers_of(
+      const Vehicle& vehicle) const override {
+    const auto rotors = static_cast<std::size_t>(model_->nu);
+    if (rotors != vehicle.rotors.size()) {
+      return fail_at(vehicle.file.string(),
+                     fmt::format("has {} rotors, but {} has {}; they must have the same number",
+                                 vehicle.rotors.size(), file_.filename().string(), rotors));
+    }
+    try {
+      Model model(mj_copyModel(nullptr, model_.get()));
+      set_numbers(vehicle, *model);
+      const Data data(mj_makeData(model.get()));
+      mj_setConst(model.get(), data.get());
+      return std::make_shared<const CompiledModel>(file_, std::move(model));
+    } catch (const MujocoError& error) {
+      return fail_at(file_.string(), "MuJoCo: " + one_line(error.what));
+    }
+  }
 
   Result<std::unique_ptr<Plant>> make_plant(const Vehicle& vehicle,
                                             const PlantOptions& options) const override {

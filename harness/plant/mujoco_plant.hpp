@@ -19,6 +19,10 @@ class MujocoModel {
                                                          const Vehicle& vehicle);
   virtual ~MujocoModel() = default;
 
+  // A copy with the numbers of another vehicle. Errors: another number of rotors.
+  virtual Result<std::shared_ptr<const MujocoModel>> with_numbers_of(
+      const Vehicle& vehicle) const = 0;
+
   // Errors: the text of MuJoCo's error. The vehicle must outlive the plant.
   virtual Result<std::unique_ptr<Plant>> make_plant(const Vehicle& vehicle,
                                                     const PlantOptions& options) const = 0;

@@ -19,6 +19,12 @@ class LoadedModel final : public VehicleModel {
 
   const Vehicle& vehicle() const override { return vehicle_; }
 
+  Result<std::shared_ptr<const VehicleModel>> with_numbers_of(Vehicle vehicle) const override {
+    auto model = model_->with_numbers_of(vehicle);
+    if (!model) return tl::unexpected(model.error());
+    return std::make_shared<const LoadedModel>(std::move(vehicle), *std::move(model));
+  }
+
   Result<std::unique_ptr<Plant>> make_plant(PlantKind kind,
                                             const PlantOptions& options) const override {
     if (options.floor && !has_floor(kind)) {
@@ -37,6 +43,21 @@ class LoadedModel final : public VehicleModel {
   Vehicle vehicle_;
   std::shared_ptr<const MujocoModel> model_;
 };
+
+Result<std::shared_ptr<const VehicleModel>> load_with_other_mjcf(
+    const std::filesystem::path& models, Vehicle vehicle) {
+  const std::string file = vehicle.file.string();
+  if (vehicle.mjcf_of == vehicle.name) {
+    return fail_at(file, "`mjcf_of` names this vehicle itself; leave it out");
+  }
+  const auto other = VehicleModel::load(models, vehicle.mjcf_of);
+  if (!other) return tl::unexpected(other.error());
+  if (!(*other)->vehicle().mjcf_of.empty()) {
+    return fail_at(file, fmt::format("`mjcf_of` names {}, which has no MJCF of its own; name {}",
+                                     vehicle.mjcf_of, (*other)->vehicle().mjcf_of));
+  }
+  return (*other)->with_numbers_of(std::move(vehicle));
+}
 
 }  // namespace
 
@@ -81,6 +102,7 @@ Result<std::shared_ptr<const VehicleModel>> VehicleModel::load(const std::filesy
   }
   auto vehicle = read_vehicle(toml);
   if (!vehicle) return tl::unexpected(vehicle.error());
+  if (!vehicle->mjcf_of.empty()) return load_with_other_mjcf(models, *std::move(vehicle));
   auto model = MujocoModel::load(models / (name + ".xml"), *vehicle);
   if (!model) return tl::unexpected(model.error());
   return std::make_shared<const LoadedModel>(std::move(*vehicle), std::move(*model));

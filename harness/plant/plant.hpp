@@ -87,14 +87,19 @@ struct PlantOptions {
 // and is done once. Immutable; may be shared, also across fork().
 class VehicleModel {
  public:
-  // Reads models/<name>.toml and models/<name>.xml. Errors, with file and, if known, line: no such
-  // vehicle (with the known ones), the errors of read_vehicle, XML that MuJoCo refuses, a model
-  // that disagrees with its TOML (with the quantity).
+  // Reads models/<name>.toml and models/<name>.xml. A vehicle with the key `mjcf_of` has the MuJoCo
+  // model of that other vehicle, with its own numbers. Errors, with file and, if known, line: no
+  // such vehicle (with the known ones), the errors of read_vehicle, XML that MuJoCo refuses, a
+  // model that disagrees with its TOML (with the quantity).
   static Result<std::shared_ptr<const VehicleModel>> load(const std::filesystem::path& models,
                                                           const std::string& name);
   virtual ~VehicleModel() = default;
 
   virtual const Vehicle& vehicle() const = 0;
+
+  // The same MuJoCo model with the numbers of another vehicle, without compiling it again. Errors:
+  // another number of rotors.
+  virtual Result<std::shared_ptr<const VehicleModel>> with_numbers_of(Vehicle vehicle) const = 0;
 
   // Errors: options.floor for a plant without a floor. The vehicle model must outlive the plant.
   virtual Result<std::unique_ptr<Plant>> make_plant(PlantKind kind,

@@ -9,6 +9,7 @@
 
 #include "controller/actuation/mixer.hpp"
 #include "controller/reference/parameters.hpp"
+#include "harness/core/file.hpp"
 #include "harness/core/suggestion.hpp"
 #include "harness/core/toml.hpp"
 
@@ -175,6 +176,7 @@ void read_root(const TomlTable& root, Vehicle& vehicle) {
   vehicle.rate_bound_rad_s = positive(root, "rate_bound_rad_s");
   vehicle.battery = read_battery(root);
   vehicle.mixer = root.text("mixer");
+  vehicle.mjcf_of = root.text("mjcf_of", "");
   if (root.has("parameters")) {
     const TomlTable parameters = root.table("parameters");
     for (const std::string& name : parameters.keys()) {
@@ -191,7 +193,8 @@ void read_root(const TomlTable& root, Vehicle& vehicle) {
 }  // namespace
 
 std::vector<fs::path> Vehicle::files() const {
-  return {file, fs::path(file).replace_extension(".xml")};
+  const fs::path own = fs::path(file).replace_extension(".xml");
+  return {file, mjcf_of.empty() ? own : own.parent_path() / (mjcf_of + ".xml")};
 }
 
 double Vehicle::hover_rotor_rad_s() const {
@@ -219,7 +222,12 @@ double Vehicle::arm_m() const {
 }
 
 Result<Vehicle> read_vehicle(const fs::path& file) {
-  auto toml = TomlFile::read(file);
+  return read_file(file).and_then(
+      [&](const std::string& text) { return parse_vehicle(text, file); });
+}
+
+Result<Vehicle> parse_vehicle(std::string_view text, const fs::path& file) {
+  auto toml = TomlFile::parse(text, file.string());
   if (!toml) return tl::unexpected(toml.error());
   Vehicle vehicle;
   vehicle.name = file.stem().string();

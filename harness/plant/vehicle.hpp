@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -55,7 +56,10 @@ struct Vehicle {
   std::string mixer;                                       // "R: 4x 10000 10000 10000 0"
   std::vector<std::pair<std::string, double>> parameters;  // of the law: gains for this vehicle
 
-  // The files of the vehicle: models/<name>.toml and .xml.
+  // The vehicle whose MuJoCo model this one uses, with its own numbers; empty: models/<name>.xml.
+  std::string mjcf_of;
+
+  // The files of the vehicle: models/<name>.toml and .xml, or the .xml of `mjcf_of`.
   std::vector<std::filesystem::path> files() const;
 
   double hover_rotor_rad_s() const;  // the same for all rotors
@@ -73,6 +77,8 @@ inline constexpr double gravity_m_s2 = 9.80665;  // standard gravity, ISO 80000-
 // positive, an inertia that breaks the triangle inequality), an unknown key or parameter, a mixer
 // whose rotors are at other places than the vehicle's.
 Result<Vehicle> read_vehicle(const std::filesystem::path& file);
+// The same for the text of a file, which need not exist.
+Result<Vehicle> parse_vehicle(std::string_view text, const std::filesystem::path& file);
 
 // The names of the vehicles (*.toml) in a folder, sorted; empty when there is no such folder.
 std::vector<std::string> vehicle_names(const std::filesystem::path& models);

@@ -29,20 +29,38 @@ Progress::Options Progress::on_stderr(bool quiet) {
 }
 
 void Progress::add(const CaseResult& result, Clock::time_point now) {
+  add(fails_a_run(result.verdict), result.id(), now);
+}
+
+void Progress::add(bool failed, const std::string& latest, Clock::time_point now) {
   ++done_;
-  if (fails_a_run(result.verdict)) ++failed_;
+  if (failed) ++failed_;
+  if (begin_ == Clock::time_point{}) {
+    begin_ = now;
+    done_before_ = done_;
+  }
   if (!options_.visible || (drawn_ && now - last_drawn_ < redraw_interval)) return;
-  draw(result);
+  draw(latest, now);
   drawn_ = true;
   last_drawn_ = now;
 }
 
-void Progress::draw(const CaseResult& latest) const {
+std::string Progress::speed(Clock::time_point now) const {
+  const double seconds = std::chrono::duration<double>(now - begin_).count();
+  if (done_ == done_before_ || !(seconds > 0) || done_ > total_) return "";
+  const double rate = static_cast<double>(done_ - done_before_) / seconds;
+  const double left = static_cast<double>(total_ - done_) / rate;
+  constexpr double long_s = 120;
+  return left > long_s ? fmt::format("  {:.3g}/s, {:.0f} min left", rate, left / 60)
+                       : fmt::format("  {:.3g}/s, {:.0f} s left", rate, left);
+}
+
+void Progress::draw(const std::string& latest, Clock::time_point now) const {
   const std::size_t filled = total_ == 0 ? bar_width : std::min(done_, total_) * bar_width / total_;
   std::string line =
       fmt::format("[{:#<{}}{:-<{}}] {}/{}", "", filled, "", bar_width - filled, done_, total_);
   if (failed_ > 0) line += fmt::format(", {} failed", failed_);
-  line += "  " + one_line(latest.id());
+  line += speed(now) + "  " + one_line(latest);
   // A line that wraps cannot be erased.
   line.resize(std::min(line.size(), static_cast<std::size_t>(std::max(options_.width - 1, 0))));
   std::fputs((erase_line + line).c_str(), options_.stream);

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdio>
+#include <string>
 
 #include "harness/verify/verdict.hpp"
 
@@ -25,24 +26,30 @@ class Progress {
   // Visible when stderr is a terminal that can move its cursor and `quiet` is false.
   static Options on_stderr(bool quiet);
 
-  Progress(std::size_t total, Options options) : options_(options), total_(total) {}
+  // `done`: of these so many were done before.
+  Progress(std::size_t total, Options options, std::size_t done = 0)
+      : options_(options), total_(total), done_(done), done_before_(done) {}
   ~Progress() { finish(); }
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // Counts one more result. Draws at most once per interval.
+  // Counts one more result. Draws at most once per interval; from the second drawing on with the
+  // results per second and the remaining time.
   void add(const CaseResult& result, Clock::time_point now = Clock::now());
+  void add(bool failed, const std::string& latest, Clock::time_point now = Clock::now());
   void finish();
 
  private:
-  void draw(const CaseResult& latest) const;
+  void draw(const std::string& latest, Clock::time_point now) const;
+  std::string speed(Clock::time_point now) const;
 
   Options options_;
   std::size_t total_;
-  std::size_t done_ = 0;
+  std::size_t done_;
+  std::size_t done_before_;  // the first drawing, from which the time is counted
   std::size_t failed_ = 0;
   bool drawn_ = false;
-  Clock::time_point last_drawn_{};
+  Clock::time_point last_drawn_{}, begin_{};
 };
 
 }  // namespace attest

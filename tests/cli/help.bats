@@ -1,7 +1,7 @@
 load common
 
-commands=(run replay sim stress sweep-rate schedule time compare plot record faults list vectors
-  bless new-port doctor smoke)
+commands=(run replay sim stress sweep sweep-rate schedule time compare plot record faults list
+  vectors bless new-port doctor smoke)
 
 @test "each command shows examples of itself, with options that it has" {
   for command in "${commands[@]}"; do

@@ -228,10 +228,10 @@ CHECK
       --repeat 1 --no-stack --instructions >said &
     local attest=$!
     for _ in $(seq 300); do
-      pgrep -P $attest -f callgrind >/dev/null && break
+      pgrep -f "callgrind.*long_run_5000" >/dev/null && break
       sleep 0.1
     done
-    pgrep -P $attest -f callgrind
+    pgrep -f "callgrind.*long_run_5000"
     sleep 2 # valgrind has started
     kill -$signal $attest
     wait $attest && false

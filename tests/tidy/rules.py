@@ -14,7 +14,7 @@ MAX_FILE_LINES = 350
 # A folder of harness/ includes itself and those before it.
 HARNESS_ORDER = (
     "core process workers schedule trace ulog plant port recording compare casefile loop realtime"
-    " host golden verify diagnosis measure report cli".split()
+    " host golden verify diagnosis measure sweep report cli".split()
 )
 
 
@@ -112,13 +112,14 @@ def one_owner(tree: Tree):
             lines = cxx.without_comments(tree.text(path)).splitlines()
             users += [(path, number) for number, line in enumerate(lines, 1) if pattern.match(line)]
         owners = sorted({path for path, _ in users if path.endswith(".cpp")})
+        folders = {path.rsplit("/", 1)[0] for path in owners}
         for path, number in users:
-            if owners != [path]:
+            if path not in owners or len(folders) > 1:
                 yield Finding(
                     path,
                     number,
-                    f"{what} belongs into one .cpp (found in {', '.join(owners) or 'none'}): go"
-                    " through the interface of its owner",
+                    f"{what} belongs into the .cpp files of one folder (found in"
+                    f" {', '.join(owners) or 'none'}): go through the interface of its owner",
                 )
 
 

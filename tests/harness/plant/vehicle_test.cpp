@@ -72,6 +72,55 @@ TEST(Models, TheIrisHoversWherePx4Does) {
   EXPECT_NEAR(iris->arm_m(), 0.2555, 1e-4);
 }
 
+class OtherMjcf : public VehicleFile {
+ protected:
+  // Writes heavy.toml: brick.toml with other numbers and the MuJoCo model of `mjcf_of`.
+  void write_heavy(const std::string& mjcf_of) const {
+    std::string toml = text("brick.toml");
+    toml.replace(toml.find("mass_kg = 1"), 11, "mass_kg = 1.25");
+    toml.replace(toml.find("[0.01, 0.015"), 12, "[0.011, 0.016");
+    toml.replace(toml.find("0.1414, 0.1414"), 14, "0.15, 0.1414");
+    std::ofstream(folder_.path() / "heavy.toml") << "mjcf_of = '" << mjcf_of << "'\n" << toml;
+  }
+  // The state after 0.1 s with unequal rotors on MuJoCo.
+  PlantState flown(const std::string& name) const {
+    const auto model = VehicleModel::load(folder_.path(), name);
+    if (!model) throw std::runtime_error(model.error().to_string());
+    const auto plant = *(*model)->make_plant(PlantKind::mujoco, {});
+    plant->reset({});
+    plant->command(std::vector<double>{400, 420, 440, 460});
+    plant->advance(std::chrono::milliseconds(100));
+    return plant->state();
+  }
+};
+
+TEST_F(OtherMjcf, FliesAsIfItsOwnMjcfHadItsNumbers) {
+  write_heavy("brick");
+  const PlantState with_others = flown("heavy");
+  replace("heavy.toml", "mjcf_of = 'brick'\n", "");
+  std::ofstream(folder_.path() / "heavy.xml") << text("brick.xml");
+  replace("heavy.xml", "mass=\"1\"", "mass=\"1.25\"");
+  replace("heavy.xml", "diaginertia=\"0.01 0.015", "diaginertia=\"0.011 0.016");
+  replace("heavy.xml", "pos=\"0.1414 -0.1414 0\"", "pos=\"0.15 -0.1414 0\"");
+  const PlantState own = flown("heavy");
+  EXPECT_EQ(with_others.position_m, own.position_m);
+  EXPECT_EQ(with_others.rate_rad_s, own.rate_rad_s);
+  EXPECT_NE(with_others.rate_rad_s, flown("brick").rate_rad_s);
+}
+
+TEST_F(OtherMjcf, MustBeOfAVehicleThatHasOne) {
+  write_heavy("heavy");
+  EXPECT_THAT(VehicleModel::load(folder_.path(), "heavy").error().to_string(),
+              HasSubstr("heavy.toml: `mjcf_of` names this vehicle itself"));
+  write_heavy("brik");
+  EXPECT_THAT(VehicleModel::load(folder_.path(), "heavy").error().to_string(),
+              HasSubstr("unknown vehicle `brik`; did you mean `brick`?"));
+  write_heavy("brick");
+  std::ofstream(folder_.path() / "third.toml") << "mjcf_of = 'heavy'\n" << text("brick.toml");
+  EXPECT_THAT(VehicleModel::load(folder_.path(), "third").error().to_string(),
+              HasSubstr("which has no MJCF of its own; name brick"));
+}
+
 TEST_F(VehicleFile, ImpossibleNumbersAreNamedWithTheirLine) {
   EXPECT_THAT(error("mass_kg = 1", "mass_kg = -1"), HasSubstr("brick.toml:2:1: must be positive"));
 }

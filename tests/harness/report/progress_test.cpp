@@ -62,6 +62,13 @@ TEST_F(ProgressTest, CountsEveryResultButDrawsAtMostTwentyTimesASecond) {
   EXPECT_THAT(text, HasSubstr(" 951/1000 "));
 }
 
+TEST_F(ProgressTest, TellsTheSpeedAndTheRemainingTime) {
+  Progress progress(1000, visible(), 400);  // 400 were done before
+  for (int i = 0; i <= 10; ++i)
+    progress.add(false, "sample 7", start_ + milliseconds(1000 * i + 1));
+  EXPECT_THAT(written(), HasSubstr(" 411/1000  1/s, 10 min left  sample 7"));
+}
+
 TEST_F(ProgressTest, CountsFailures) {
   result_.verdict = Verdict::crash;
   Progress progress(1, visible());

@@ -1,0 +1,29 @@
+// The sweep that a command line names, ready to fly.
+#pragma once
+
+#include <string>
+
+#include "harness/casefile/select.hpp"
+#include "harness/cli/command.hpp"
+#include "harness/cli/suite_folder.hpp"
+#include "harness/sweep/flight_sampler.hpp"
+#include "harness/sweep/flights.hpp"
+#include "harness/sweep/identity.hpp"
+
+namespace attest::cli {
+
+struct SweepPlan {
+  FlightSampler sampler;
+  FlightsOptions flights;
+  Shard shard;
+  SweepIdentity identity;
+
+  SampleColumns columns() const { return columns_of(sampler, flights.with_port); }
+  std::uint64_t samples() const { return sampler.sweep().design.samples; }
+};
+
+// Errors: those of the sweep file, its case and its vehicle; an option that is no shard; the port
+// cannot be opened.
+Result<SweepPlan> plan_sweep(const SweepOptions& options, const SuiteFolder& suite);
+
+}  // namespace attest::cli

@@ -1,0 +1,147 @@
+#include "harness/core/toml_document.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include "harness/core/toml_depth.hpp"
+
+namespace attest {
+namespace {
+
+struct Path {
+  std::vector<std::string> tables;
+  std::string key;
+  std::optional<std::size_t> index;
+};
+
+Path parse_path(const std::string& text) {
+  Path path;
+  std::size_t begin = 0;
+  for (std::size_t end = text.find('.'); end != std::string::npos; end = text.find('.', begin)) {
+    path.tables.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  path.key = text.substr(begin);
+  const std::size_t bracket = path.key.rfind('[');
+  if (bracket == std::string::npos || !path.key.ends_with(']')) return path;
+  std::size_t index = 0;
+  const char* const last = path.key.data() + path.key.size() - 1;
+  const auto [stop, code] = std::from_chars(path.key.data() + bracket + 1, last, index);
+  if (code != std::errc() || stop != last) return path;
+  path.index = index;
+  path.key.resize(bracket);
+  return path;
+}
+
+// Errors: a value that is no table. Null: no such table.
+Result<toml::table*> find_table(toml::table& root, const Path& path, bool make) {
+  toml::table* table = &root;
+  for (const std::string& name : path.tables) {
+    toml::node* node = table->get(name);
+    if (node == nullptr) {
+      if (!make) return nullptr;
+      node = &table->emplace<toml::table>(name).first->second;
+    }
+    table = node->as_table();
+    if (table == nullptr) return fail(fmt::format("`{}` is no table", name));
+  }
+  return table;
+}
+
+// A key may itself end in brackets: "q[1]".
+void prefer_literal_key(const toml::table& table, Path& path) {
+  if (!path.index) return;
+  const std::string literal = fmt::format("{}[{}]", path.key, *path.index);
+  if (!table.contains(literal)) return;
+  path.key = literal;
+  path.index.reset();
+}
+
+// The number's node; null if there is no such key.
+Result<toml::node*> find_number(toml::table& table, const Path& path) {
+  toml::node* node = table.get(path.key);
+  if (path.index) {
+    toml::array* const array = node ? node->as_array() : nullptr;
+    if (array == nullptr) return fail(fmt::format("`{}` is no array", path.key));
+    if (*path.index >= array->size()) {
+      return fail(fmt::format("`{}` has {} elements; the first is [0]", path.key, array->size()));
+    }
+    node = array->get(*path.index);
+  }
+  if (node != nullptr && !node->is_number()) {
+    return fail(
+        fmt::format("`{}` is no number; name a number in it, or give a number there", path.key));
+  }
+  return node;
+}
+
+template <typename T>
+void put(toml::table& table, const Path& path, T value) {
+  if (path.index) {
+    toml::array& array = *table.get_as<toml::array>(path.key);
+    array.insert(array.erase(array.cbegin() + static_cast<std::ptrdiff_t>(*path.index)), value);
+  } else {
+    table.insert_or_assign(path.key, value);
+  }
+}
+
+Result<void> set_number(toml::table& root, const std::string& text, double value) {
+  constexpr double whole_below = 0x1p53;
+  Path path = parse_path(text);
+  const auto table = find_table(root, path, true);
+  if (!table) return tl::unexpected(table.error());
+  prefer_literal_key(**table, path);
+  if (const auto node = find_number(**table, path); !node) return tl::unexpected(node.error());
+  if (value == std::floor(value) && std::abs(value) < whole_below) {
+    put(**table, path, static_cast<std::int64_t>(value));
+  } else {
+    put(**table, path, value);
+  }
+  return {};
+}
+
+}  // namespace
+
+struct TomlDocument::Impl {
+  toml::table root;
+};
+
+Result<TomlDocument> TomlDocument::parse(std::string_view text, const std::string& name) {
+  if (auto checked = check_depth(text, name); !checked) return tl::unexpected(checked.error());
+  try {
+    return TomlDocument(std::make_shared<const Impl>(Impl{toml::parse(text, name)}));
+  } catch (const toml::parse_error& error) {
+    return fail_at(name, fmt::format("not valid TOML: {}", error.description()),
+                   static_cast<int>(error.source().begin.line),
+                   static_cast<int>(error.source().begin.column));
+  }
+}
+
+Result<std::optional<double>> TomlDocument::number(const std::string& path) const {
+  toml::table copy = impl_->root;
+  Path parsed = parse_path(path);
+  const auto table = find_table(copy, parsed, false);
+  if (!table) return tl::unexpected(table.error());
+  if (*table == nullptr) return std::nullopt;
+  prefer_literal_key(**table, parsed);
+  const auto node = find_number(**table, parsed);
+  if (!node) return tl::unexpected(node.error());
+  return *node ? (*node)->value<double>() : std::nullopt;
+}
+
+Result<std::string> TomlDocument::with(const Replacements& replacements) const {
+  toml::table copy = impl_->root;
+  for (const auto& [path, value] : replacements) {
+    if (auto set = set_number(copy, path, value); !set) return tl::unexpected(set.error());
+  }
+  std::ostringstream text;
+  text << toml::toml_formatter(copy) << '\n';
+  return std::move(text).str();
+}
+
+}  // namespace attest

@@ -1,0 +1,150 @@
+#include "harness/report/sweep_summary_text.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "harness/report/failure_text.hpp"
+#include "harness/report/text.hpp"
+#include "harness/sweep/keep_flights.hpp"
+
+namespace attest {
+namespace {
+
+std::string number(double value) { return fmt::format("{:.4g}", value); }
+std::string number(const std::optional<double>& value) { return value ? number(*value) : "-"; }
+
+std::string title(const FlightSampler& sampler, const SweepSummary& summary,
+                  const std::string& port) {
+  const SweepFile& sweep = sampler.sweep();
+  const RunConfiguration configuration{sweep.rate, sampler.nominal().plant_configuration};
+  std::vector<std::string> outcomes;
+  for (const auto& [outcome, count] : summary.outcomes) {
+    outcomes.push_back(fmt::format("{} {}", count, outcome));
+  }
+  return fmt::format("{}: {} samples, design {}; {}: {}\n",
+                     sampler.nominal().the_case.id_at(configuration), summary.samples,
+                     name_of(sweep.design.kind), port.empty() ? "reference" : one_line(port),
+                     fmt::join(outcomes, ", "));
+}
+
+std::string requirements_of(const SweepFile& sweep, const SweepSummary& summary) {
+  if (summary.requirements.empty()) return "";
+  const bool is_grid = sweep.design.kind == DesignKind::grid;
+  std::string out = fmt::format(
+      "\n{:<16}{:<16}{:<18}{:>12}  {:<20}{:<10}{}\n", "requirement", "metric", "bounds", "held",
+      is_grid ? "part" : fmt::format("probability ({:g})", sweep.confidence), "needed", "decision");
+  for (const RequirementResult& one : summary.requirements) {
+    MetricResult bounds;
+    bounds.min = one.requirement.min;
+    bounds.max = one.requirement.max;
+    const auto [low, high] = one.probability;
+    out += fmt::format(
+        "{:<16}{:<16}{:<18}{:>12}  {:<20}{:<10}{}\n", one.requirement.name, one.requirement.metric,
+        metric_bounds(bounds), fmt::format("{}/{}", one.held, one.count),
+        is_grid ? fmt::format("{:.4f}", low) : fmt::format("{:.4f} to {:.4f}", low, high),
+        fmt::format("{:g}", one.requirement.probability), name_of(one.decision));
+  }
+  return out;
+}
+
+std::string metrics_of(const SweepSummary& summary) {
+  std::string out = fmt::format("\n{:<16}{:>8}{:>11}{:>11}{:>11}{:>11}{:>11}\n", "metric",
+                                "flights", "min", "median", "p95", "p99", "max");
+  for (const MetricSummary& one : summary.metrics) {
+    out += fmt::format("{:<16}{:>8}", one.name, one.count);
+    if (one.count == 0) {
+      out += "\n";
+      continue;
+    }
+    out += fmt::format("{:>11}{:>11}{:>11}{:>11}{:>11}\n", number(one.min), number(one.median),
+                       number(one.p95), number(one.p99), number(one.max));
+  }
+  return out;
+}
+
+std::string sensitivity_of(const SampleColumns& columns, const SweepSummary& summary) {
+  std::string out = fmt::format("\n{:<24}", "rank correlation with");
+  for (const std::string& name : columns.metrics) out += fmt::format(" {:>12}", name);
+  out += "\n";
+  for (std::size_t d = 0; d < columns.dispersions.size(); ++d) {
+    out += fmt::format("{:<24}", columns.dispersions[d]);
+    for (const MetricSummary& one : summary.metrics) {
+      const double correlation = one.correlation[d];
+      out += fmt::format(" {:>12}",
+                         std::isnan(correlation) ? "-" : fmt::format("{:+.2f}", correlation));
+    }
+    out += "\n";
+  }
+  return out;
+}
+
+std::string conclusion_of(const PortDifference& port) {
+  std::vector<std::string> where;
+  if (port.loses_more) where.emplace_back("the number of flights that are lost");
+  for (const MetricDifference& one : port.metrics) {
+    if (one.differs) where.push_back(one.name);
+  }
+  if (!where.empty()) {
+    return fmt::format("The port differs from the reference: {}.\n", fmt::join(where, ", "));
+  }
+  return "No test shows a difference between the port and the reference.\n";
+}
+
+std::string difference_of(const SweepFile& sweep, const PortDifference& port) {
+  std::string out = fmt::format(
+      "\nport minus reference on the same samples; above, below: flights that differ by more than "
+      "{:g} of the metric\n{:<16}{:>8}{:>8}{:>8}{:>12}{:>12}{:>12}{:>14}\n",
+      sweep.tie, "metric", "flights", "above", "below", "median", "p1", "p99", "sign test p");
+  for (const MetricDifference& one : port.metrics) {
+    out += fmt::format("{:<16}{:>8}{:>8}{:>8}{:>12}{:>12}{:>12}{:>14}{}\n", one.name, one.count,
+                       one.above, one.below, number(one.median), number(one.p1), number(one.p99),
+                       fmt::format("{:.2g}", one.p_value), one.differs ? "  differs" : "");
+  }
+  out += fmt::format("lost by the port only: {}, by the reference only: {}, sign test p {:.2g}{}\n",
+                     port.lost_by_port, port.lost_by_reference, port.p_value,
+                     port.loses_more ? "  differs" : "");
+  return out + conclusion_of(port);
+}
+
+std::string sim_command_for(const FlightSampler& sampler, std::uint64_t sample,
+                            const std::string& port, const std::filesystem::path& kept) {
+  const Case& the_case = sampler.nominal().the_case;
+  const PlantConfiguration& plant = sampler.nominal().plant_configuration;
+  return fmt::format(
+      "attest --suite {} sim {}/{}/{} --rate {} --vehicle {} --plant {}{} --html sample_{}.html",
+      shell_word(kept.string()), the_case.profile, the_case.group, kept_name(the_case.name, sample),
+      sampler.sweep().rate.to_string(), kept_name(plant.vehicle, sample), name_of(plant.plant),
+      port.empty() ? "" : " --port " + shell_word(port), sample);
+}
+
+std::string worst_of(const FlightSampler& sampler, const SweepSummary& summary,
+                     const std::string& port, const std::filesystem::path& kept) {
+  std::string out;
+  for (const RequirementResult& one : summary.requirements) {
+    if (one.worst.empty()) continue;
+    out += fmt::format("\nworst flights for {}:\n", one.requirement.name);
+    for (const std::uint64_t sample : one.worst) {
+      out += "  " + sim_command_for(sampler, sample, port, kept) + "\n";
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string render_summary(const FlightSampler& sampler, const SampleColumns& columns,
+                           const SweepSummary& summary, const std::string& port,
+                           const std::filesystem::path& kept) {
+  std::string out = title(sampler, summary, port);
+  out += requirements_of(sampler.sweep(), summary);
+  out += metrics_of(summary);
+  out += sensitivity_of(columns, summary);
+  if (summary.port) out += difference_of(sampler.sweep(), *summary.port);
+  if (!kept.empty()) out += worst_of(sampler, summary, port, kept);
+  return out;
+}
+
+}  // namespace attest

@@ -1,0 +1,165 @@
+#include "harness/sweep/flights.hpp"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "harness/core/error_json.hpp"
+#include "harness/host/host_here.hpp"
+#include "harness/loop/case_timing.hpp"
+#include "harness/measure/simulate.hpp"
+#include "harness/port/builtin.hpp"
+#include "harness/verify/fixed_step.hpp"
+#include "harness/workers/pool.hpp"
+
+namespace attest {
+namespace {
+
+// A worker process flies so many samples before the next one takes its place: much more work than a
+// fork, and little enough that the last workers end at nearly the same time.
+constexpr std::uint64_t samples_of_worker = 32;
+
+Result<FlightResult> flight_result(const FlightSampler& sampler, const SampledFlight& sample,
+                                   PortHost& host) {
+  const RunConfiguration configuration{sampler.sweep().rate, sampler.nominal().plant_configuration};
+  const FlightPlan plan{configuration, flight_timing(sample.the_case, configuration.rate)};
+  const auto flown = simulate_flight(sample.the_case, plan, host);
+  if (!flown) return tl::unexpected(flown.error());
+  const auto& [result, flight] = *flown;
+  if (flight.divergence) return FlightResult{outcome_diverged, {}};
+  if (result.verdict == Verdict::unsupported || result.verdict == Verdict::skip) {
+    return fail(fmt::format("the port does not fly {}: {}", result.id(), result.reason));
+  }
+  if (flight.trace.samples.empty()) return FlightResult{std::string(name_of(result.verdict)), {}};
+  FlightResult done;
+  for (const MetricResult& metric : result.metrics) done.metrics.push_back(metric.value);
+  return done;
+}
+
+// A port with a fixed step flies from one period on, and so does the reference then.
+SampledFlight for_reference(SampledFlight sample, const FlightsOptions& options) {
+  const auto& said = options.host.said;
+  if (options.with_port && said && has_fixed_step(*said, sample.the_case)) {
+    sample.the_case = sample.the_case.from_one_period_on();
+  }
+  return sample;
+}
+
+Result<std::string> fly_sample(const FlightSampler& sampler, std::uint64_t index,
+                               const FlightsOptions& options) {
+  const auto sample = sampler.sample(index);
+  if (!sample) return tl::unexpected(sample.error());
+  const SampledFlight of_reference = for_reference(*sample, options);
+  std::vector<FlightResult> flights;
+  HostHere reference(open_builtin(), {}, {&of_reference.the_case, sample->vehicle_model.get()});
+  auto flown = flight_result(sampler, of_reference, reference);
+  if (flown && options.with_port) {
+    flights.push_back(*std::move(flown));
+    const auto host = start_host(options.host, {&sample->the_case, sample->vehicle_model.get()});
+    if (!host) return tl::unexpected(host.error());
+    flown = flight_result(sampler, *sample, **host);
+  }
+  if (!flown) {
+    Error error = flown.error();
+    error.message = fmt::format("sample {}: {}", index, error.message);
+    return tl::unexpected(std::move(error));
+  }
+  flights.push_back(*std::move(flown));
+  return columns_of(sampler, options.with_port).line(index, sample->drawn, flights);
+}
+
+// Puts the rows in the order of the samples.
+class RowOrder {
+ public:
+  RowOrder(std::uint64_t next, const std::function<Result<void>(const std::string&)>& on_row)
+      : next_(next), on_row_(on_row) {}
+
+  // False: an error, of on_row.
+  bool take(std::uint64_t index, std::string row) {
+    waiting_.emplace(index, std::move(row));
+    for (auto first = waiting_.begin(); first != waiting_.end() && first->first == next_;
+         first = waiting_.erase(first)) {
+      if (auto taken = on_row_(first->second); !taken) {
+        error_ = taken.error();
+        return false;
+      }
+      ++next_;
+    }
+    return true;
+  }
+
+  std::uint64_t next() const { return next_; }
+  const std::optional<Error>& error() const { return error_; }
+
+ private:
+  std::uint64_t next_;
+  const std::function<Result<void>(const std::string&)>& on_row_;
+  std::map<std::uint64_t, std::string> waiting_;
+  std::optional<Error> error_;
+};
+
+std::vector<Work> work_of(const FlightSampler& sampler, const SampleRange& range,
+                          const FlightsOptions& options) {
+  std::vector<Work> all;
+  for (std::uint64_t begin = range.begin; begin < range.end; begin += samples_of_worker) {
+    const std::uint64_t tasks = std::min(samples_of_worker, range.end - begin);
+    all.push_back(
+        {tasks, [&sampler, &options, begin, tasks](std::size_t first, const Work::Done& done) {
+           for (std::size_t task = first; task < tasks; ++task) {
+             const auto row = fly_sample(sampler, begin + task, options);
+             done(encode(row.map([&](const std::string& text) {
+                    return nlohmann::json{{"sample", begin + task}, {"row", text}};
+                  })),
+                  row ? 1 : tasks - task);
+             if (!row) return;
+           }
+         }});
+  }
+  return all;
+}
+
+}  // namespace
+
+SampleColumns columns_of(const FlightSampler& sampler, bool with_port) {
+  SampleColumns columns;
+  for (const auto& dispersion : sampler.sweep().dispersions) {
+    columns.dispersions.push_back(dispersion.name);
+  }
+  for (const Metric& metric : sampler.nominal().the_case.flight->metrics) {
+    columns.metrics.push_back(metric.name);
+  }
+  columns.with_port = with_port;
+  return columns;
+}
+
+Result<void> fly_samples(const FlightSampler& sampler, const SampleRange& range,
+                         const FlightsOptions& options,
+                         const std::function<Result<void>(const std::string& row)>& on_row) {
+  RowOrder order(range.begin, on_row);
+  std::map<std::size_t, Error> errors;  // by the place of the work
+  PoolOptions pool;
+  pool.processes = options.processes;
+  pool.stop = [&] { return options.stop() || order.error().has_value(); };
+  pool.on_answer = [&](std::size_t work, const std::string& text) {
+    const auto answer = decode(text);
+    if (!answer) errors.emplace(work, answer.error());
+    return answer && order.take(answer->at("sample").get<std::uint64_t>(),
+                                answer->at("row").get<std::string>());
+  };
+  pool.on_error = [&](std::size_t work, const Error& error) {
+    errors.emplace(work, error);
+    return false;
+  };
+  run_in_workers(work_of(sampler, range, options), pool);
+  if (order.error()) return tl::unexpected(*order.error());
+  if (!errors.empty()) return tl::unexpected(errors.begin()->second);
+  return {};
+}
+
+}  // namespace attest

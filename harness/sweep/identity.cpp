@@ -1,0 +1,92 @@
+#include "harness/sweep/identity.hpp"
+
+#include <array>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "harness/core/file.hpp"
+
+namespace attest {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Member = std::string SweepIdentity::*;
+
+struct Named {
+  const char* key;
+  const char* what;
+  Member member;
+};
+constexpr std::array<Named, 5> identity_members = {{
+    {"attest", "the version of attest", &SweepIdentity::attest_version},
+    {"sweep_sha256", "the hash of sweep file, case, vehicle and samples",
+     &SweepIdentity::sweep_sha256},
+    {"port", "the port", &SweepIdentity::port},
+    {"port_sha256", "the hash of the port", &SweepIdentity::port_sha256},
+    {"shard", "the shard", &SweepIdentity::shard},
+}};
+
+std::string first_difference(const SweepIdentity& found, const SweepIdentity& expected,
+                             bool with_shard) {
+  for (const Named& named : identity_members) {
+    if (!with_shard && named.member == &SweepIdentity::shard) continue;
+    const std::string& has = found.*named.member;
+    const std::string& wants = expected.*named.member;
+    if (has == wants) continue;
+    return fmt::format("{} is {:.20}, not {:.20}", named.what, has.empty() ? "none" : has,
+                       wants.empty() ? "none" : wants);
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string difference(const SweepIdentity& found, const SweepIdentity& expected) {
+  return first_difference(found, expected, false);
+}
+
+Result<SweepIdentity> read_identity(const fs::path& folder) {
+  const fs::path file = folder / identity_file;
+  const auto text = read_file(file);
+  if (!text) return tl::unexpected(text.error());
+  const auto json = nlohmann::json::parse(*text, nullptr, false);
+  SweepIdentity identity;
+  for (const Named& named : identity_members) {
+    if (!json.is_object() || !json.contains(named.key) || !json[named.key].is_string()) {
+      return fail_at(file.string(),
+                     fmt::format("is not of `attest sweep`: it has no `{}`", named.key));
+    }
+    identity.*named.member = json[named.key].get<std::string>();
+  }
+  return identity;
+}
+
+Result<void> claim_folder(const fs::path& folder, const SweepIdentity& identity) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) return fail_at(folder.string(), "cannot be made: " + failed.message());
+  if (fs::exists(folder / identity_file, failed)) {
+    const auto found = read_identity(folder);
+    if (!found) return tl::unexpected(found.error());
+    const std::string other = first_difference(*found, identity, true);
+    if (other.empty()) return {};
+    return fail_at(folder.string(),
+                   fmt::format("has the results of another sweep: {}; name another folder with "
+                               "--out, or remove this one",
+                               other));
+  }
+  if (!fs::is_empty(folder, failed)) {
+    return fail_at(folder.string(),
+                   "has other files, and no results of a sweep; name an empty or new folder with "
+                   "--out");
+  }
+  nlohmann::ordered_json json;
+  for (const Named& named : identity_members) json[named.key] = identity.*named.member;
+  return write_file(folder / identity_file, json.dump(2) + "\n");
+}
+
+}  // namespace attest

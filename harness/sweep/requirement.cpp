@@ -1,0 +1,57 @@
+#include "harness/sweep/requirement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace attest {
+namespace {
+
+// The distance beyond the bounds; below 0 within them. A flight without the metric is the worst.
+double violation(const Requirement& requirement, double value) {
+  if (std::isnan(value)) return std::numeric_limits<double>::infinity();
+  return std::max(value - requirement.max, requirement.min - value);
+}
+
+std::vector<std::uint64_t> worst_samples(const Requirement& requirement,
+                                         const std::vector<double>& values, std::size_t count) {
+  std::vector<std::pair<double, std::uint64_t>> order;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    order.emplace_back(-violation(requirement, values[i]), i);
+  }
+  const auto end = order.begin() + static_cast<std::ptrdiff_t>(std::min(count, order.size()));
+  std::partial_sort(order.begin(), end, order.end());
+  std::vector<std::uint64_t> samples;
+  for (auto it = order.begin(); it != end; ++it) samples.push_back(it->second);
+  return samples;
+}
+
+RequirementVerdict decided(const Interval& interval, double probability) {
+  if (interval.low >= probability) return RequirementVerdict::met;
+  return interval.high < probability ? RequirementVerdict::not_met : RequirementVerdict::undecided;
+}
+
+}  // namespace
+
+RequirementResult judge_requirement(const Requirement& requirement, const PilotData& flights,
+                                    std::size_t metric, const SweepFile& sweep, std::size_t worst) {
+  RequirementResult result;
+  result.requirement = requirement;
+  const std::vector<double>& values = flights.metrics[metric];
+  result.count = values.size();
+  for (const double value : values) {
+    if (requirement.holds(value)) ++result.held;
+  }
+  if (sweep.design.kind == DesignKind::grid) {
+    const double part = static_cast<double>(result.held) / static_cast<double>(result.count);
+    result.probability = {part, part};
+  } else {
+    result.probability = clopper_pearson(result.held, result.count, sweep.confidence);
+  }
+  result.decision = decided(result.probability, requirement.probability);
+  result.worst = worst_samples(requirement, values, worst);
+  return result;
+}
+
+}  // namespace attest

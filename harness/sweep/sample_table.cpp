@@ -1,0 +1,257 @@
+#include "harness/sweep/sample_table.hpp"
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include "harness/core/file.hpp"
+
+namespace attest {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr mode_t table_mode = 0644;  // less the umask
+
+Error table_error(const fs::path& file, const std::string& what) {
+  return {fmt::format("{}: {}", what, std::generic_category().message(errno)), file.string()};
+}
+
+std::vector<std::string_view> cells_of(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (std::size_t comma = line.find(','); comma != std::string_view::npos;
+       comma = line.find(',')) {
+    cells.push_back(line.substr(0, comma));
+    line.remove_prefix(comma + 1);
+  }
+  cells.push_back(line);
+  return cells;
+}
+
+template <typename T>
+std::optional<T> parsed(std::string_view cell) {
+  T value{};
+  const auto [end, code] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (code != std::errc() || end != cell.data() + cell.size()) return std::nullopt;
+  return value;
+}
+
+// The numbers of a row; NaN for an empty cell. Outcomes are left as text.
+struct Row {
+  std::vector<double> drawn;
+  std::vector<FlightResult> flights;
+};
+
+bool read_flight(const std::vector<std::string_view>& cells, std::size_t first, std::size_t metrics,
+                 FlightResult& flight) {
+  flight.outcome = std::string(cells[first]);
+  flight.metrics.clear();
+  for (std::size_t i = first + 1; i <= first + metrics; ++i) {
+    const auto value = cells[i].empty() ? std::nan("") : parsed<double>(cells[i]);
+    if (!value || cells[i].empty() != (flight.outcome != outcome_done)) return false;
+    flight.metrics.push_back(*value);
+  }
+  return !flight.outcome.empty();
+}
+
+// False: the line is not the row of that sample.
+bool read_row(std::string_view line, const SampleColumns& columns, std::uint64_t index, Row& row) {
+  const std::vector<std::string_view> cells = cells_of(line);
+  const std::size_t of_flight = 1 + columns.metrics.size();
+  const std::size_t flights = columns.with_port ? 2 : 1;
+  const std::size_t first = 1 + columns.dispersions.size();
+  if (cells.size() != first + flights * of_flight) return false;
+  if (parsed<std::uint64_t>(cells[0]) != index) return false;
+  row.drawn.clear();
+  for (std::size_t i = 1; i < first; ++i) {
+    const auto value = parsed<double>(cells[i]);
+    if (!value) return false;
+    row.drawn.push_back(*value);
+  }
+  row.flights.resize(flights);
+  for (std::size_t i = 0; i < flights; ++i) {
+    if (!read_flight(cells, first + i * of_flight, columns.metrics.size(), row.flights[i])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+struct Extent {
+  std::uint64_t rows = 0;
+  std::uint64_t bytes = 0;  // of complete lines
+  bool is_cut = false;      // an incomplete line follows
+};
+
+// Reads the complete lines, a line at a time. A file without a complete header is empty.
+class TableReader {
+ public:
+  TableReader(const fs::path& file, const SampleColumns& columns, const SampleRange& range)
+      : file_(file), columns_(columns), range_(range) {}
+
+  Result<Extent> read(const std::function<void(const Row&)>& on_row) {
+    const auto opened = open_regular_file(file_);
+    if (!opened) return tl::unexpected(opened.error());
+    std::FILE* const stream = ::fdopen(*opened, "r");
+    if (stream == nullptr) return tl::unexpected(table_error(file_, "cannot be read"));
+    char* line = nullptr;
+    std::size_t capacity = 0;
+    Result<void> taken;
+    while (taken) {
+      const ssize_t size = ::getline(&line, &capacity, stream);
+      if (size <= 0) break;
+      taken = take({line, static_cast<std::size_t>(size)}, on_row);
+    }
+    std::free(line);
+    std::fclose(stream);
+    if (!taken) return tl::unexpected(taken.error());
+    return extent_;
+  }
+
+ private:
+  Result<void> take(std::string_view line, const std::function<void(const Row&)>& on_row) {
+    extent_.is_cut = line.back() != '\n';
+    if (extent_.is_cut) return {};
+    const int number = ++lines_;
+    const std::uint64_t bytes = line.size();
+    if (number == 1) {
+      if (line != columns_.header()) return wrong(number, "has other columns than this sweep");
+    } else {
+      const std::uint64_t index = range_.begin + extent_.rows;
+      line.remove_suffix(1);
+      if (index >= range_.end || !read_row(line, columns_, index, row_)) {
+        return wrong(number, fmt::format("is not the row of sample {}", index));
+      }
+      on_row(row_);
+      ++extent_.rows;
+    }
+    extent_.bytes += bytes;
+    return {};
+  }
+
+  Result<void> wrong(int line, const std::string& what) const {
+    return fail_at(file_.string(),
+                   what + "; the file was changed: remove it, and run the sweep again", line);
+  }
+
+  const fs::path& file_;
+  const SampleColumns& columns_;
+  const SampleRange& range_;
+  Extent extent_;
+  Row row_;
+  int lines_ = 0;
+};
+
+Result<void> write_all(int descriptor, std::string_view bytes, const fs::path& file) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return tl::unexpected(table_error(file, "cannot be written"));
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string SampleColumns::header() const {
+  std::string line = "sample";
+  for (const std::string& name : dispersions) line += "," + name;
+  for (const char* pilot : {"reference", "port"}) {
+    if (!with_port && std::string_view(pilot) == "port") break;
+    line += fmt::format(",{}.outcome", pilot);
+    for (const std::string& name : metrics) line += fmt::format(",{}.{}", pilot, name);
+  }
+  return line + "\n";
+}
+
+std::string SampleColumns::line(std::uint64_t index, const std::vector<double>& drawn,
+                                const std::vector<FlightResult>& flights) const {
+  std::string line = fmt::format("{}", index);
+  for (const double number : drawn) line += fmt::format(",{}", number);
+  for (const FlightResult& flight : flights) {
+    line += "," + flight.outcome;
+    for (std::size_t i = 0; i < metrics.size(); ++i) {
+      line += flight.metrics.empty() ? "," : fmt::format(",{}", flight.metrics[i]);
+    }
+  }
+  return line + "\n";
+}
+
+Result<SampleTable> SampleTable::open(const fs::path& file, const SampleColumns& columns,
+                                      const SampleRange& range) {
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, table_mode);
+  if (descriptor < 0) return tl::unexpected(table_error(file, "cannot be opened"));
+  SampleTable table(file, descriptor, range.begin);
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+    return fail_at(file.string(), "another `attest sweep` is writing this file; wait for its end");
+  }
+  const auto extent = TableReader(file, columns, range).read([](const Row&) {});
+  if (!extent) return tl::unexpected(extent.error());
+  if (::ftruncate(descriptor, static_cast<off_t>(extent->bytes)) != 0 ||
+      ::lseek(descriptor, 0, SEEK_END) < 0) {
+    return tl::unexpected(table_error(file, "cannot be continued"));
+  }
+  table.next_ += extent->rows;
+  if (extent->bytes > 0) return table;
+  if (auto written = write_all(descriptor, columns.header(), file); !written) {
+    return tl::unexpected(written.error());
+  }
+  return table;
+}
+
+SampleTable::SampleTable(SampleTable&& other) noexcept
+    : file_(std::move(other.file_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      next_(other.next_) {}
+
+SampleTable::~SampleTable() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Result<void> SampleTable::append(std::string_view line) {
+  ++next_;
+  return write_all(descriptor_, line, file_);
+}
+
+Result<void> SampleTable::finish() {
+  if (::fsync(descriptor_) == 0) return {};
+  return tl::unexpected(table_error(file_, "cannot be written"));
+}
+
+Result<SampleData> read_samples(const fs::path& file, const SampleColumns& columns,
+                                const SampleRange& range) {
+  SampleData data;
+  data.drawn.resize(columns.dispersions.size());
+  data.pilots.resize(columns.with_port ? 2 : 1);
+  for (PilotData& pilot : data.pilots) pilot.metrics.resize(columns.metrics.size());
+  const auto extent = TableReader(file, columns, range).read([&](const Row& row) {
+    for (std::size_t i = 0; i < row.drawn.size(); ++i) data.drawn[i].push_back(row.drawn[i]);
+    for (std::size_t p = 0; p < row.flights.size(); ++p) {
+      data.pilots[p].outcomes.push_back(row.flights[p].outcome);
+      for (std::size_t m = 0; m < columns.metrics.size(); ++m) {
+        data.pilots[p].metrics[m].push_back(row.flights[p].metrics[m]);
+      }
+    }
+  });
+  if (!extent) return tl::unexpected(extent.error());
+  if (extent->is_cut || extent->rows != range.size()) {
+    return fail_at(file.string(), fmt::format("has {} of {} samples; run this sweep again with the "
+                                              "same --out, which flies the others",
+                                              extent->rows, range.size()));
+  }
+  return data;
+}
+
+}  // namespace attest

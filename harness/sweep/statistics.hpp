@@ -1,0 +1,30 @@
+// The statistics of a sweep. Distributions are those of Boost.Math.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace attest {
+
+struct Interval {
+  double low = 0, high = 1;
+};
+
+// The interval of Clopper and Pearson (1934) for the probability of an event that happened `held`
+// times of `count`: it contains the probability with at least this confidence. 0 to 1 for no
+// sample.
+Interval clopper_pearson(std::uint64_t held, std::uint64_t count, double confidence);
+
+// The smallest value that at least `part` of the values do not exceed (type 1 of Hyndman and Fan,
+// 1996). REQUIRES: sorted, without NaN, not empty; 0 <= part <= 1.
+double empirical_quantile(const std::vector<double>& sorted, double part);
+
+// Spearman's rank correlation, equal values with their mean rank. Pairs with a NaN are left out.
+// NaN: fewer than three pairs, or all values of one side are equal.
+double rank_correlation(const std::vector<double>& x, const std::vector<double>& y);
+
+// The exact two-sided sign test (Dixon and Mood, 1946): the probability of a split at least as
+// unequal, if both signs are equally likely. 1 for no difference at all.
+double sign_test(std::uint64_t positive, std::uint64_t negative);
+
+}  // namespace attest

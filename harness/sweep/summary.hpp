@@ -1,0 +1,77 @@
+// What a sweep shows: from the table of its samples.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/sweep/sample_table.hpp"
+#include "harness/sweep/statistics.hpp"
+#include "harness/sweep/sweep_file.hpp"
+
+namespace attest {
+
+// Whether the flights show, with the confidence of the file, that a requirement is met.
+enum class RequirementVerdict { met, not_met, undecided };
+std::string_view name_of(RequirementVerdict decision);  // "not met"
+
+struct RequirementResult {
+  Requirement requirement;
+  std::uint64_t held = 0;  // flights; one that was not done does not hold
+  std::uint64_t count = 0;
+  Interval
+      probability;  // with the confidence of the file; of a grid, which is not random, its part
+  RequirementVerdict decision = RequirementVerdict::undecided;
+  std::vector<std::uint64_t> worst;  // samples, the worst first
+};
+
+// Of the flights that were done. Percentiles are empty where there are too few flights
+// (supports_percentile()).
+struct MetricSummary {
+  std::string name;
+  std::uint64_t count = 0;
+  double min = 0, median = 0, max = 0;
+  std::optional<double> p95, p99;
+  std::vector<double> correlation;  // rank correlation with each dispersion; NaN: none
+};
+
+// Port minus reference on the same samples, where both were done.
+struct MetricDifference {
+  std::string name;
+  std::uint64_t count = 0;
+  std::uint64_t above = 0, below = 0;  // beyond the tie of the file
+  double median = 0;
+  std::optional<double> p1, p99;
+  double p_value = 1;  // of the sign test
+  bool differs = false;
+};
+
+struct PortDifference {
+  std::vector<MetricDifference> metrics;
+  // Flights that only one of the two lost.
+  std::uint64_t lost_by_port = 0, lost_by_reference = 0;
+  double p_value = 1;
+  bool loses_more = false;  // or fewer: the numbers of lost flights differ
+  bool differs() const;
+};
+
+struct SweepSummary {
+  std::uint64_t samples = 0;
+  // Of the judged pilot, which is the port if there is one: outcome -> flights.
+  std::map<std::string, std::uint64_t> outcomes;
+  std::vector<RequirementResult> requirements;
+  std::vector<MetricSummary> metrics;
+  std::optional<PortDifference> port;
+
+  // All requirements are met, the port has no fault, and does not differ from the reference.
+  bool passes() const;
+};
+
+// `worst`: the samples to name for each requirement.
+SweepSummary summarise(const SweepFile& sweep, const SampleColumns& columns, const SampleData& data,
+                       std::size_t worst);
+
+}  // namespace attest

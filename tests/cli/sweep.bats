@@ -1,0 +1,260 @@
+# attest sweep: a flight with dispersed values.
+
+load common
+
+# A sweep of N short flights in ./sweep.toml; more lines on stdin.
+make_sweep() {
+  local more
+  more=$(cat)
+  cat >sweep.toml <<SWEEP
+schema = 1
+case = "px4-v1.5.5/flight/tilt_step_30"
+vehicle = "iris"
+plant = "mujoco"
+rate = 250
+design = "latin_hypercube"
+samples = $1
+
+[disperse.mass]
+keys = ["vehicle.mass_kg"]
+as = "factor"
+distribution = "truncated_normal"
+mean = 1
+deviation = 0.05
+low = 0.85
+high = 1.15
+
+[disperse.inertia]
+keys = ["vehicle.inertia_kg_m2[0]", "vehicle.inertia_kg_m2[1]", "vehicle.inertia_kg_m2[2]"]
+as = "factor"
+distribution = "log_normal"
+median = 1
+spread = 0.1
+
+[disperse.tilt]
+keys = ["case.flight.start.tilt_deg"]
+distribution = "uniform"
+low = -5
+high = 5
+
+[correlate.airframe]
+dispersions = ["mass", "inertia"]
+matrix = [1, 0.8, 0.8, 1]
+$more
+SWEEP
+}
+
+same() {
+  cmp "$1/samples.csv" "$2/samples.csv" && cmp "$1/report.json" "$2/report.json" &&
+    diff -r "$1" "$2"
+}
+
+@test "the requirements of a sweep are judged, and its worst flights fly again" {
+  make_sweep 60 <<MORE
+[require.tilts]
+max = 1.2
+probability = 0.9
+MORE
+  run "$ATTEST" sweep sweep.toml --out out --jobs 2 --keep-worst 2
+  [ "$status" -eq 0 ]
+  has "60 samples, design latin_hypercube; reference: 60 done"
+  has "at most 1.2"
+  has "met"
+  has "rank correlation with"
+  [ "$(wc -l <out/samples.csv)" -eq 61 ]
+  # The command in the text flies the same flight: its metric is that of the table.
+  local command sample
+  command=$(grep -m1 'sample_[0-9]*\.html' <<<"$output" | sed 's/^ *attest //')
+  sample=$(sed 's/.*sample_\([0-9]*\)\.html/\1/' <<<"$command")
+  run bash -c "\"$ATTEST\" $command"
+  [ "$status" -eq 0 ]
+  local value
+  value=$(grep "^$sample," out/samples.csv | cut -d, -f7)
+  has "$(printf '%.4g' "$value")"
+  [ -s "sample_$sample.html" ]
+}
+
+@test "a requirement that is not shown fails" {
+  make_sweep 20 <<MORE
+[require.tilts]
+max = 0.2
+probability = 0.9
+MORE
+  run "$ATTEST" sweep sweep.toml --out out
+  [ "$status" -eq 1 ]
+  has "not met"
+  # No flight of 20 is bad, which does not show 99%.
+  make_sweep 20 <<MORE
+[require.tilts]
+max = 1.2
+probability = 0.99
+MORE
+  run "$ATTEST" sweep sweep.toml --out other
+  [ "$status" -eq 1 ]
+  has "undecided"
+}
+
+@test "a killed sweep continues to the same bytes, with any number of jobs" {
+  make_sweep 150 </dev/null
+  "$ATTEST" -q sweep sweep.toml --out whole --jobs 2
+  for kill_after in 0.3 0.6; do
+    "$ATTEST" -q sweep sweep.toml --out parts --jobs 1 &
+    local attest=$!
+    sleep $kill_after
+    kill -9 $attest 2>/dev/null || true
+    wait $attest || true
+  done
+  "$ATTEST" -q sweep sweep.toml --out parts --jobs 3
+  same whole parts
+  # An incomplete last line is never read.
+  truncate -s -17 parts/samples.csv
+  "$ATTEST" -q sweep sweep.toml --out parts --jobs 2
+  same whole parts
+}
+
+@test "an interrupted sweep says how to go on" {
+  make_sweep 3000 </dev/null
+  "$ATTEST" sweep sweep.toml --out out --jobs 2 2>errors.txt &
+  local attest=$!
+  until [ "$(wc -l <out/samples.csv 2>/dev/null || echo 0)" -gt 3 ]; do sleep 0.05; done
+  kill -INT $attest
+  local status=0
+  wait $attest || status=$?
+  [ "$status" -eq 130 ]
+  grep -q "the same command flies the others of 3000" errors.txt
+  nothing_is_left
+}
+
+@test "shards, in any order, give the bytes of one machine" {
+  make_sweep 31 </dev/null
+  "$ATTEST" -q sweep sweep.toml --out whole
+  for i in 1 2 3; do "$ATTEST" -q sweep sweep.toml --shard $i/3 --out part$i; done
+  "$ATTEST" -q sweep sweep.toml --merge part3 part1 part2 --out merged
+  same whole merged
+  "$ATTEST" -q sweep sweep.toml --merge part2 part1 part3 --out merged # again
+  same whole merged
+  run "$ATTEST" sweep sweep.toml --merge part3 part1 --out other
+  [ "$status" -eq 2 ]
+  has "missing: the folder of shard 2/3"
+  run "$ATTEST" sweep sweep.toml --merge part3 part1 part2 part1 --out other
+  [ "$status" -eq 2 ]
+  has "part1: is shard 1/3, and so is part1"
+  "$ATTEST" -q sweep sweep.toml --shard 2/4 --out quarter
+  run "$ATTEST" sweep sweep.toml --merge part1 quarter part3 --out other
+  [ "$status" -eq 2 ]
+  has "quarter: is shard 2/4, but part1 is one of 3"
+  sed -i '$d' part2/samples.csv
+  run "$ATTEST" sweep sweep.toml --merge part1 part2 part3 --out other
+  [ "$status" -eq 2 ]
+  has "part2/samples.csv: has 9 of 10 samples"
+  echo "# changed" >>sweep.toml
+  run "$ATTEST" sweep sweep.toml --merge part1 part2 part3 --out other
+  [ "$status" -eq 2 ]
+  has "part1: is of another sweep: the hash of sweep file, case, vehicle and samples"
+}
+
+@test "a port with gains off by 3% differs in the paired test, though each flight is good" {
+  make_sweep 40 <<MORE
+[require.tilts]
+max = 1.2
+probability = 0.9
+MORE
+  for plant in mujoco ode; do
+    "$ATTEST" sim flight/tilt_step_30 --rate 250 --vehicle iris --plant $plant --out f.csv \
+      --port "lib:$PORTS/port_gains_off.so"
+  done
+  run "$ATTEST" sweep sweep.toml --out off --jobs 2 --port "lib:$PORTS/port_gains_off.so"
+  [ "$status" -eq 1 ]
+  has "The port differs from the reference: "
+  has "met"
+  run "$ATTEST" sweep sweep.toml --out starter --jobs 2 --port "lib:$STARTER"
+  [ "$status" -eq 0 ]
+  has "No test shows a difference between the port and the reference."
+}
+
+@test "a port that crashes is a result of each sample" {
+  make_sweep 3 </dev/null
+  run "$ATTEST" sweep sweep.toml --out out --port "lib:$PORTS/port_crash.so"
+  [ "$status" -eq 1 ]
+  has "3 crash"
+  run cat out/samples.csv
+  has ",crash,,"
+}
+
+@test "a vehicle that is lost is counted, not dropped" {
+  cat >sweep.toml <<SWEEP
+schema = 1
+case = "px4-v1.5.5/flight/tilt_step_30"
+rate = 250
+plant = "ode"
+design = "grid"
+[disperse.gain]
+keys = ["vehicle.parameters.MC_ROLLRATE_P", "vehicle.parameters.MC_PITCHRATE_P"]
+as = "factor"
+distribution = "choice"
+values = [1, -3]
+[disperse.noise]
+keys = ["case.flight.estimator.rate_noise_rad_s"]
+distribution = "choice"
+values = [0.05]
+[disperse.seed]
+keys = ["case.flight.estimator.seed"]
+distribution = "seed"
+[require.tilts]
+max = 1.2
+probability = 0.6
+SWEEP
+  run "$ATTEST" sweep sweep.toml --out out --keep-worst 1
+  [ "$status" -eq 1 ]
+  has "2 samples, design grid; reference: 1 diverged, 1 done"
+  has "1/2"
+  has "0.5000"
+}
+
+@test "a sweep that cannot be flown is refused with file, line and value" {
+  make_sweep 5 </dev/null
+  refused() { # SED TEXT
+    sed "$1" sweep.toml >wrong.toml
+    run "$ATTEST" sweep wrong.toml --out out
+    [ "$status" -eq 2 ]
+    has "$2"
+    [ ! -e out ]
+  }
+  refused 's/low = 0.85/low = -1/; s/deviation = 0.05/deviation = 5/' \
+    'wrong.toml:9: [disperse.mass] at its lowest number, -1: vehicle.mass_kg = -1.5, the vehicle'
+  refused 's/0.8, 0.8/0.8, 0.7/' 'wrong.toml:33:1: needs 2 x 2 numbers'
+  refused 's/start.tilt_deg/start.tild_deg/' 'unknown key `tild_deg`; did you mean `tilt_deg`?'
+  refused 's/flight.tilt_step_30/flight\/nope/' 'wrong.toml'
+  refused 's/^rate = 250/rate = "250:1000"/' 'is a flight of the controller, which has one rate'
+  refused 's/vehicle = "iris"/vehicle = "irish"/' 'unknown vehicle `irish`; did you mean `iris`?'
+  run "$ATTEST" sweep sweep.toml --out out --shard 3/2
+  [ "$status" -eq 2 ]
+}
+
+@test "the folder of another sweep is not continued" {
+  make_sweep 3 </dev/null
+  "$ATTEST" -q sweep sweep.toml --out out
+  run "$ATTEST" sweep sweep.toml --out out --samples 4
+  [ "$status" -eq 2 ]
+  has "out: has the results of another sweep: the hash of sweep file"
+  run "$ATTEST" sweep sweep.toml --out out --port "lib:$STARTER"
+  [ "$status" -eq 2 ]
+  has "out: has the results of another sweep: the port is none"
+  mkdir notes && touch notes/mine
+  run "$ATTEST" sweep sweep.toml --out notes
+  [ "$status" -eq 2 ]
+  has "notes: has other files"
+  run "$ATTEST" sweep sweep.toml --out "$SOURCE/models"
+  [ "$status" -eq 2 ]
+  has "is a folder of the suite"
+}
+
+@test "a full disk is an error, and the sweep continues when there is room" {
+  make_sweep 30 </dev/null
+  "$ATTEST" -q sweep sweep.toml --out whole
+  run bash -c "ulimit -f 2; exec \"$ATTEST\" sweep sweep.toml --out out"
+  [ "$status" -eq 2 ]
+  has "out/samples.csv: cannot be written: File too large"
+  "$ATTEST" -q sweep sweep.toml --out out
+  same whole out
+}

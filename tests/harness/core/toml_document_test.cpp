@@ -1,0 +1,79 @@
+#include "harness/core/toml_document.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include "harness/core/toml.hpp"
+
+namespace attest {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* iris_text =
+    "mass_kg = 1.5  # of the airframe\n"
+    "name = 'iris'\n"
+    "inertia = [0.1, 0.2, 0.3]\n"
+    "'q[1]' = 0.25\n"
+    "[battery]\n"
+    "cells = 3\n"
+    "[rotors]\n"
+    "r0 = { position_m = [1, 2, 3] }\n";
+
+const TomlDocument& document() {
+  static const auto parsed = TomlDocument::parse(iris_text, "iris.toml");
+  return *parsed;
+}
+
+double number_in(const std::string& toml, const std::string& path) {
+  return TomlDocument::parse(toml, "new.toml")->number(path)->value();
+}
+
+TEST(TomlDocument, FindsTheNumberAtAPath) {
+  EXPECT_EQ(*document().number("mass_kg"), 1.5);
+  EXPECT_EQ(*document().number("inertia[2]"), 0.3);
+  EXPECT_EQ(*document().number("rotors.r0.position_m[1]"), 2);
+  EXPECT_EQ(*document().number("battery.cells"), 3);
+  EXPECT_EQ(*document().number("q[1]"), 0.25);  // the key itself ends in [1]
+  EXPECT_EQ(*document().number("drag"), std::nullopt);
+  EXPECT_EQ(*document().number("flight.start.tilt_deg"), std::nullopt);
+}
+
+TEST(TomlDocument, RefusesAPathToSomethingElse) {
+  const auto error = [](const char* path) { return document().number(path).error().message; };
+  EXPECT_THAT(error("name"), HasSubstr("`name` is no number"));
+  EXPECT_THAT(error("inertia[3]"), HasSubstr("`inertia` has 3 elements"));
+  EXPECT_THAT(error("mass_kg[0]"), HasSubstr("`mass_kg` is no array"));
+  EXPECT_THAT(error("mass_kg.x"), HasSubstr("`mass_kg` is no table"));
+}
+
+TEST(TomlDocument, ReplacesAndAddsNumbers) {
+  const auto changed = document().with(
+      {{"mass_kg", 1.625}, {"inertia[1]", 0.5}, {"q[1]", 0.75}, {"flight.start.tilt_deg", -12.5}});
+  ASSERT_TRUE(changed) << changed.error().to_string();
+  EXPECT_EQ(number_in(*changed, "mass_kg"), 1.625);
+  EXPECT_EQ(number_in(*changed, "inertia[0]"), 0.1);
+  EXPECT_EQ(number_in(*changed, "inertia[1]"), 0.5);
+  EXPECT_EQ(number_in(*changed, "q[1]"), 0.75);
+  EXPECT_EQ(number_in(*changed, "flight.start.tilt_deg"), -12.5);
+  EXPECT_THAT(*changed, HasSubstr("'iris'"));
+}
+
+TEST(TomlDocument, WritesWholeNumbersAsIntegers) {
+  const auto changed = document().with({{"battery.cells", 4.0}});
+  const auto file = TomlFile::parse(*changed, "new.toml");
+  EXPECT_EQ(file->root().table("battery").integer("cells"), 4);
+}
+
+TEST(TomlDocument, KeepsEveryBitOfANumber) {
+  rc::check([] {
+    const double value = *rc::gen::arbitrary<double>();
+    const auto changed = document().with({{"mass_kg", value}});
+    RC_ASSERT(changed.has_value());
+    RC_ASSERT(number_in(*changed, "mass_kg") == value);
+  });
+}
+
+}  // namespace
+}  // namespace attest
