@@ -77,6 +77,8 @@ TEST(SweepFile, AGridHasTheProductOfItsLevels) {
 
 struct Wrong {
   std::string what, replacement, message;
+
+  friend void PrintTo(const Wrong& wrong, std::ostream* out) { *out << wrong.replacement; }
 };
 
 class WrongSweep : public testing::TestWithParam<Wrong> {};
