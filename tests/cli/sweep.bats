@@ -258,3 +258,13 @@ SWEEP
   "$ATTEST" -q sweep sweep.toml --out out
   same whole out
 }
+
+@test "the options replace vehicle and plant of the file" {
+  make_sweep 2 </dev/null
+  run "$ATTEST" sweep sweep.toml --out out --vehicle hexa --plant ode
+  [ "$status" -eq 0 ]
+  has "tilt_step_30@250hz-hexa-ode: 2 samples"
+  run "$ATTEST" sweep sweep.toml --out out
+  [ "$status" -eq 2 ]
+  has "out: has the results of another sweep"
+}
