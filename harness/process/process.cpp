@@ -31,9 +31,6 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-// The kernel ends a killed process immediately, unless the process waits for a device.
-constexpr double time_to_die_s = 5;
-
 // Polls `happened`, at first with short pauses, because most processes end within a millisecond.
 template <typename Happened>
 bool happens_within(double seconds, Happened&& happened) {
@@ -254,19 +251,6 @@ pid_t start_alone(const std::function<void()>& work) {
 }
 
 }  // namespace
-
-bool Ending::is_success() const {
-  return wait_status && WIFEXITED(*wait_status) && WEXITSTATUS(*wait_status) == EXIT_SUCCESS;
-}
-
-std::string Ending::to_string() const {
-  if (!wait_status) return fmt::format("did not end within {} s of SIGKILL", time_to_die_s);
-  if (WIFSIGNALED(*wait_status)) {
-    const int signal = WTERMSIG(*wait_status);
-    return fmt::format("was killed by signal {} ({})", signal, ::strsignal(signal));
-  }
-  return fmt::format("exited with status {}", WEXITSTATUS(*wait_status));
-}
 
 Result<Process> Process::start(const std::function<void()>& work) {
   // Otherwise a child that calls exit() would print the unflushed output of the parent, too.

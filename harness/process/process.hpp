@@ -2,25 +2,13 @@
 #pragma once
 
 #include <functional>
-#include <optional>
-#include <string>
 
 #include <sys/types.h>
 
 #include "harness/core/result.hpp"
+#include "harness/process/ending.hpp"
 
 namespace attest {
-
-// How a process ended.
-struct Ending {
-  bool was_killed = false;         // by us
-  std::optional<int> wait_status;  // of waitpid(); empty: not even SIGKILL ended it in time
-
-  bool is_success() const;  // it exited with status 0
-
-  // As a verb: "was killed by signal 11 (Segmentation fault)", "exited with status 0".
-  std::string to_string() const;
-};
 
 // The process leads a process group of its own. Its descendants end with it, also those in other
 // groups or sessions (daemons). No member function waits longer than its argument and a few
