@@ -77,7 +77,8 @@ struct RateStages {
     return !landed && !maybe_landed;
   }
 
-  // The error of one axis, without the direction that is saturated. A NaN becomes 0 then.
+  // The error of one axis, without the direction that is saturated. If a direction is saturated, a
+  // NaN becomes 0.
   ATTEST_INLINE static Scalar unsaturated(Scalar error, bool positive, bool negative) {
     if (positive) error = min(error, Scalar(0));
     if (negative) error = max(error, Scalar(0));

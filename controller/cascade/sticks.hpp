@@ -65,7 +65,7 @@ class Sticks {
   StickGains<Scalar> gains_{};
   LowPass<Scalar> roll_, pitch_, yaw_rate_;
   YawCorrection<Scalar> correction_;
-  Scalar yaw_sp_ = Scalar(0);  // [rad] NaN: not held. It starts as a number, north.
+  Scalar yaw_sp_ = Scalar(0);  // [rad]; NaN: no heading is held; at the start north is held
   bool restart_ = true;
   [[no_unique_address]] Stages stages_;
 };

@@ -87,13 +87,13 @@ auto filtered() {
 
 const Fault timing_list[] = {
     {"cascade-attitude-dt-from-2-ms", "timing", Stage::timing,
-     "bounds dt of the attitude unit below at 2 ms, as the older law", "rates above 500 Hz",
+     "limits dt of the attitude unit to 2 ms or more, as the older law", "rates above 500 Hz",
      "wrong clamp",
      [](FaultyLaw& law) {
        set_bounds(law.attitude_unit, {0.002f, 0.02f});
      }},
     {"cascade-attitude-dt-from-0.125-ms", "timing", Stage::timing,
-     "bounds dt of the attitude unit below at that of the rate unit", "rates above 5 kHz",
+     "limits dt of the attitude unit to 0.125 ms or more, as the rate unit", "rates above 5 kHz",
      "wrong clamp",
      [](FaultyLaw& law) {
        set_bounds(law.attitude_unit, {0.000125f, 0.02f});
@@ -105,7 +105,7 @@ const Fault timing_list[] = {
        set_bounds(law.attitude_unit, {0.0002f, 1e9f});
      }},
     {"cascade-attitude-dt-to-50-ms", "timing", Stage::timing,
-     "bounds dt of the attitude unit above at 50 ms", "a gap of more than 20 ms", "wrong clamp",
+     "limits dt of the attitude unit to 50 ms or less", "a gap of more than 20 ms", "wrong clamp",
      [](FaultyLaw& law) {
        set_bounds(law.attitude_unit, {0.0002f, 0.05f});
      }},
@@ -146,13 +146,13 @@ const Fault timing_list[] = {
     {"cascade-attitude-dt-filtered", "timing", Stage::timing, "low-passes dt of the attitude unit",
      "jitter", "a helpful extra", [](FaultyLaw& law) { measure_attitude(law, filtered()); }},
     {"cascade-rate-dt-from-2-ms", "timing", Stage::timing,
-     "bounds dt of the rate unit below at 2 ms, as the older law", "rates above 500 Hz",
+     "limits dt of the rate unit to 2 ms or more, as the older law", "rates above 500 Hz",
      "wrong clamp",
      [](FaultyLaw& law) {
        set_bounds(law.rate_unit, {0.002f, 0.02f});
      }},
     {"cascade-rate-dt-from-0.2-ms", "timing", Stage::timing,
-     "bounds dt of the rate unit below at that of the attitude unit", "rates above 5 kHz",
+     "limits dt of the rate unit to 0.2 ms or more, as the attitude unit", "rates above 5 kHz",
      "wrong clamp",
      [](FaultyLaw& law) {
        set_bounds(law.rate_unit, {0.0002f, 0.02f});
@@ -168,7 +168,7 @@ const Fault timing_list[] = {
        set_bounds(law.rate_unit, {0.000125f, 1e9f});
      }},
     {"cascade-rate-dt-to-50-ms", "timing", Stage::timing,
-     "bounds dt of the rate unit above at 50 ms", "a gap of more than 20 ms", "wrong clamp",
+     "limits dt of the rate unit to 50 ms or less", "a gap of more than 20 ms", "wrong clamp",
      [](FaultyLaw& law) {
        set_bounds(law.rate_unit, {0.000125f, 0.05f});
      }},

@@ -151,8 +151,10 @@ void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
 
 void add_sweep_parts(CLI::App& command, SweepOptions& options) {
   command
-      .add_option("--samples", options.samples,
-                  "Number of samples; replaces that of the file, and gives other samples")
+      .add_option(
+          "--samples", options.samples,
+          "Number of samples; replaces that of the file. All samples depend on this number, so "
+          "a larger one does not continue a smaller sweep")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
   CLI::Option* const shard =
@@ -189,8 +191,8 @@ void add_sweep(CLI::App& app, const Globals& globals, Action& action) {
   add_port(*command, options->host.port);
   command
       ->add_option("--out", options->out,
-                   "Folder of the results: samples.csv, report.json. With the results of an "
-                   "interrupted sweep, only what is missing is flown")
+                   "Folder of the results: samples.csv, report.json. If it has the results of an "
+                   "interrupted sweep, only the missing samples are flown")
       ->type_name("DIR")
       ->required()
       ->group(option_group::reports);

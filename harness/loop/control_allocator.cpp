@@ -174,7 +174,8 @@ ControlAllocator::Speeds ControlAllocator::with_yaw(double yaw, Speeds speeds) c
   return speeds;
 }
 
-// The largest part of yaw for which there is a change of thrust, `lower`, from 0 to thrust_for_yaw:
+// The largest part of yaw that fits when the thrust is lowered by a suitable amount `lower`, which
+// is at least 0 and at most thrust_for_yaw:
 //
 //     0 <= speed_i + part * turn_i - lower <= full_i        for each rotor i
 //

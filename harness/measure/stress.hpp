@@ -31,7 +31,8 @@ struct Percentiles {
 Percentiles percentiles_of(const Histogram& histogram);
 
 struct StressResult {
-  // Verdict; ticks, first and tightest are of the outputs, compared with the reference's.
+  // The verdict. Its members `ticks`, `first` and `tightest` come from the comparison of the
+  // outputs with those of the reference.
   CaseResult result;
   // The unit, in a flight of the cascade. Empty: the controller, or a flight without measurements.
   std::optional<Module> module;
@@ -79,8 +80,8 @@ struct StressProgress {
   bool idle = false;  // measuring the idle machine
 };
 
-// The measurements, without a verdict, and the further input of a judge: of `flight` the outputs,
-// the ticks, and how it ended.
+// The measurements, without a verdict. A judge also needs the outputs of `flight`, its ticks and
+// its end.
 struct StressMeasurement {
   StressResult stress;                        // of the unit that commands the motors
   std::optional<StressResult> attitude_unit;  // of a flight of the cascade

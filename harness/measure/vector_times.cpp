@@ -13,7 +13,7 @@
 namespace attest {
 namespace {
 
-// Times vectors, in a new process of the port after the last one ended.
+// Times vectors. All run in one process of the port; after that process has ended, in a new one.
 class Stopwatches {
  public:
   Stopwatches(const TimeOptions& options, const HostOptions& host)

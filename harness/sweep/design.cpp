@@ -137,7 +137,7 @@ struct DesignPoints::Impl {
   Design design;
   SampleStream stream;
   Matrix factor;
-  std::vector<boost::random::sobol> sobol;  // one, for the design of this name
+  std::vector<boost::random::sobol> sobol;  // one element for the design `sobol`, otherwise empty
 };
 
 DesignPoints::DesignPoints(Design design, SampleStream stream)

@@ -163,7 +163,7 @@ Result<void> FlightSampler::apply(const std::string& what, SampledFlight& flight
   return {};
 }
 
-// The other numbers are those of the medians.
+// While one number is at an end, the others are at their medians.
 Result<void> FlightSampler::check_ends() const {
   SampledFlight flight;
   for (const Dispersion& dispersion : sweep_.dispersions) {

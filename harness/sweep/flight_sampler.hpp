@@ -34,15 +34,15 @@ struct SampledFlight {
 
 class FlightSampler {
  public:
-  // Also checks the flight with each dispersed number at its lowest and at its highest value: an
-  // unbounded distribution is taken from 1e-16 to 1 - 1e-16. Errors, with the line of the sweep
-  // file: those of bind_sweep(); a number that the case or the vehicle refuses.
+  // Also checks the flight at both ends of each distribution, with the other numbers at their
+  // medians. The ends are the quantiles of the probabilities 2^-53 and 1 - 2^-53. Errors, with the
+  // line of the sweep file: those of bind_sweep(); a number that the case or the vehicle refuses.
   static Result<FlightSampler> make(SweepFile sweep, NominalFlight nominal);
 
   const SweepFile& sweep() const { return sweep_; }
   const NominalFlight& nominal() const { return nominal_; }
-  // Names the samples: SHA-256 of the sweep file, case, vehicle and number of samples. Flights with
-  // the same index and the same hash are the same.
+  // Identifies the samples: SHA-256 of all that they depend on (sweep file, case, plant, vehicle,
+  // MJCF and number of samples). Flights with the same index and the same hash are the same.
   const std::string& sha256() const { return sha256_; }
 
   // Errors: the numbers together are impossible, with the sample and the number.

@@ -27,8 +27,8 @@ Result<SweepIdentity> read_identity(const std::filesystem::path& folder);
 // other files; the results of another sweep, with the first difference.
 Result<void> claim_folder(const std::filesystem::path& folder, const SweepIdentity& identity);
 
-// Which of the two is different, for people: "the port is lib:a.so, not lib:b.so". The shard is not
-// compared. Empty: both are of the same sweep.
+// The first difference, as text: "the port is lib:a.so, not lib:b.so". The shard is not compared.
+// Empty: both are of the same sweep.
 std::string difference(const SweepIdentity& found, const SweepIdentity& expected);
 
 }  // namespace attest

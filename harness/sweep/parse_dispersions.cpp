@@ -146,7 +146,7 @@ void check_name(const TomlTable& table, const std::string& name) {
   }
 }
 
-// The place of a name among the dimensions; the count of dimensions if it is none.
+// The index of the dimension with this name. Without such a dimension: the number of dimensions.
 std::size_t dimension_named(const std::string& name, const std::vector<Dispersion>& dispersions) {
   const std::vector<std::size_t> dimensions = dimensions_of(dispersions);
   const auto found = std::find_if(dimensions.begin(), dimensions.end(),
@@ -240,7 +240,7 @@ std::vector<Dispersion> parse_dispersions(const TomlTable& root, DesignKind desi
     root.error("disperse", fmt::format("has more than {} dispersions", most_dimensions));
   }
   if (dimensions == 0 && root.has("disperse")) {
-    root.error("disperse", "disperses no value: name at least one that is no seed");
+    root.error("disperse", "needs at least one dispersion that is not a seed");
   }
   return dispersions;
 }

@@ -1,4 +1,4 @@
-// What a sweep shows: from the table of its samples.
+// The results of a sweep, computed from the table of its samples.
 #pragma once
 
 #include <cstdint>
@@ -20,10 +20,11 @@ std::string_view name_of(RequirementVerdict decision);  // "not met"
 
 struct RequirementResult {
   Requirement requirement;
-  std::uint64_t held = 0;  // flights; one that was not done does not hold
+  std::uint64_t held = 0;  // flights that hold it; a flight that was not done does not
   std::uint64_t count = 0;
-  Interval
-      probability;  // with the confidence of the file; of a grid, which is not random, its part
+  // With the confidence of the file. A grid is not random: both ends are the part of its flights
+  // that hold the requirement.
+  Interval probability;
   RequirementVerdict decision = RequirementVerdict::undecided;
   std::vector<std::uint64_t> worst;  // samples, the worst first
 };
@@ -54,7 +55,7 @@ struct PortDifference {
   // Flights that only one of the two lost.
   std::uint64_t lost_by_port = 0, lost_by_reference = 0;
   double p_value = 1;
-  bool loses_more = false;  // or fewer: the numbers of lost flights differ
+  bool loses_more = false;  // more or fewer: the sign test finds different numbers of lost flights
   bool differs() const;
 };
 

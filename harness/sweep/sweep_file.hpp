@@ -61,8 +61,9 @@ struct SweepFile {
   double tie = 1e-3;  // a relative difference of a metric that counts as none
 };
 
-// Replaces the number of samples that the file gives, unless 0. Errors, all reported together with
-// file:line: those of TomlFile, values out of range, a matrix that is not positive definite.
+// `samples` replaces the number of samples in the file, unless it is 0. Errors, all reported
+// together with file:line: those of TomlFile, values out of range, a matrix that is not positive
+// definite.
 Result<SweepFile> parse_sweep(std::string_view text, const std::filesystem::path& file,
                               std::uint64_t samples = 0);
 

@@ -65,7 +65,7 @@ std::string too_sparse(Module module, const StepGaps& gaps, std::optional<double
       static_cast<double>(gaps.longest_us) / us_per_ms, memory);
 }
 
-// A log that has every fourth sample of all topics has no gaps. So of a rate unit the rate must be
+// A log that has every fourth sample of all topics has no gaps. So the rate of a rate unit must be
 // known.
 bool may_be_complete(Module module, const StepGaps& gaps, std::optional<double> fastest_hz) {
   if (gaps.missing > 0) return false;

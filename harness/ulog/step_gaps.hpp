@@ -15,7 +15,7 @@ struct StepGaps {
   std::size_t steps = 0;  // in the log
   double median_us = 0;   // of the times between them; 0 with fewer than two steps
   std::uint64_t longest_us = 0;
-  std::size_t missing = 0;  // about: how many times the median fits into the longer gaps
+  std::size_t missing = 0;  // an estimate: each gap of n medians, rounded, lacks n - 1 steps
 
   double part_missing() const;  // 0..1
 };
@@ -23,9 +23,9 @@ struct StepGaps {
 // REQUIRES: increasing times.
 StepGaps step_gaps(std::span<const std::uint64_t> times_us);
 
-// Why outputs that depend on earlier steps cannot be computed from a log with these gaps; empty if
-// they can, about: at most 1% of the steps are missing, and the loop can be as slow as the log is.
-// `fastest_hz`: what the log's parameters say of the loop's rate.
+// Why outputs that depend on earlier steps cannot be computed from a log with these gaps. Empty if
+// they can be computed approximately: at most 1% of the steps are missing, and a loop of PX4 may be
+// as slow as the samples of the log. `fastest_hz`: the loop rate in the parameters of the log.
 std::string too_sparse(Module module, const StepGaps& gaps, std::optional<double> fastest_hz);
 
 // Whether the log may have every step: none is missing, and a rate unit is about as fast as the

@@ -76,8 +76,8 @@ bool was_judged(const Groups& groups) {
   });
 }
 
-// At the rates that were run, or at the one of a fixed step, where some groups have no case: these
-// are not whole.
+// Whether all cases of the group are good, at the rates of the run or at the rate of a fixed step.
+// A group without any case at a fixed step is not whole, because it has no pass.
 bool is_whole(const Group& group, const RunResult& run) {
   const std::set<LoopRate> selected(run.rates.begin(), run.rates.end());
   return group.passes && std::all_of(group.rates.begin(), group.rates.end(), [&](const auto& each) {
@@ -104,7 +104,8 @@ void say(const Groups& groups, std::size_t Group::*count, const char* singular, 
       fmt::format("{} {} ({})", all, all == 1 ? singular : plural, fmt::join(names, ", ")));
 }
 
-// "100, 250 Hz"; of more than a line can hold, the number: "19 groups".
+// Up to four names: "100, 250 Hz". More names do not fit into a line, so only their number is
+// given: "19 groups".
 std::string few_or_counted(const std::vector<std::string>& names, std::string_view unit,
                            std::string_view noun) {
   constexpr std::size_t few = 4;

@@ -108,11 +108,11 @@ class Comparable {
       return "it depends on earlier steps, and the log does not have every step";
     }
     if (topic.paired == 0) {
-      return fmt::format("no sample of it answers a {} of which the log has all that it needs",
+      return fmt::format("for each logged sample of it, the {} or another input is not in the log",
                          log_.step_topic);
     }
     if (log_.has_every_step && log_.module == Module::mc_att_control) return "";
-    // The topics of a rate unit are judged together: without its integral little is left of it.
+    // The topics of a rate unit are judged together, because its torque contains the integral.
     for (const TopicAgreement& one : of_reference_) {
       const bool concerns = one.topic == topic.topic || log_.module == Module::rate_unit;
       if (concerns && one.paired > 0 && !one.agrees(limits_)) return why_unlike_reference(one);

@@ -30,8 +30,8 @@ bool leaves_ticks_to_judge(const PortFault& fault);
 // From `tick` on, `answered` gets the outputs of `want`, so that only the ticks before it decide.
 void leave_out_from(std::size_t tick, const Trace& want, Trace& answered);
 
-// Gives `answered` the outputs `not_recorded` of `want`, so that these are not judged, and nor are
-// the values of a topic at ticks where it is then not published.
+// Copies the outputs `not_recorded` from `want` to `answered`, so that they are not judged. If a
+// copied `published` is 0 at a tick, the other values of that topic are not judged there either.
 void fill_in(const ChannelSet& not_recorded, const Trace& want, Trace& answered);
 
 // Whether a recording without the outputs `not_recorded` leaves a value to compare with `want`: a

@@ -197,7 +197,7 @@ TEST_F(CascadeLoop, EachUnitGetsItsOwnParameters) {
   EXPECT_EQ(std::count(notes_.begin(), notes_.end(), "rate unit gets MC_ROLL_P"), 0);
 }
 
-// Delay and drift are those of the estimator; the rate unit reads the gyro itself.
+// The estimator's delay applies to the attitude unit only; the rate unit reads the gyro itself.
 TEST_F(CascadeLoop, TheEstimateIsOldAndTheGyroIsNot) {
   case_.flight->estimator.delay = in_s(0.003);
   fly();
