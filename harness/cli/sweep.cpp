@@ -11,6 +11,7 @@
 #include "harness/cli/suite_folder.hpp"
 #include "harness/cli/sweep_plan.hpp"
 #include "harness/core/file.hpp"
+#include "harness/report/html/dispersed_page.hpp"
 #include "harness/report/progress.hpp"
 #include "harness/report/sweep_summary_text.hpp"
 #include "harness/sweep/keep_flights.hpp"
@@ -65,9 +66,14 @@ Result<SweepSummary> report(const SweepPlan& plan, const SweepOptions& options,
   const auto written =
       write_file(folder / "report.json", summary_json(plan.identity, columns, summary));
   if (!written) return tl::unexpected(written.error());
+  const fs::path shown = worst.empty() ? fs::path() : kept;
+  if (!options.html.empty()) {
+    const std::string page =
+        dispersed_page({plan.sampler, columns, *data, summary, plan.identity, shown});
+    if (auto done = write_file(options.html, page); !done) return tl::unexpected(done.error());
+  }
   if (!quiet) {
-    fmt::print("{}", render_summary(plan.sampler, columns, summary, plan.identity.port,
-                                    worst.empty() ? fs::path() : kept));
+    fmt::print("{}", render_summary(plan.sampler, columns, summary, plan.identity.port, shown));
   }
   return summary;
 }
@@ -79,9 +85,16 @@ void print_interrupted(const SweepPlan& plan, const SweepOptions& options) {
              options.out, range_of(plan.shard, plan.samples()).size());
 }
 
-Result<void> check_folders(const SweepOptions& options, const SuiteFolder& suite) {
+Result<void> check_options(const SweepOptions& options, const SuiteFolder& suite) {
   if (options.out.empty()) return fail("needs --out, the folder of the results");
-  return check_output_folder(options.out, suite);
+  if (auto apart = check_output_folder(options.out, suite); !apart) return apart;
+  return check_outputs({options.html}, {options.host.port, {options.file}}, suite);
+}
+
+// A shard is a part of the samples.
+Result<void> check_shard(const SweepPlan& plan, const SweepOptions& options) {
+  if (plan.shard.count == 1 || options.html.empty()) return {};
+  return fail_at(options.html, "a shard has no page; name --html with --merge");
 }
 
 }  // namespace
@@ -89,9 +102,10 @@ Result<void> check_folders(const SweepOptions& options, const SuiteFolder& suite
 int sweep_command(const SweepOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
-  if (auto checked = check_folders(options, *suite); !checked) return report_error(checked.error());
+  if (auto checked = check_options(options, *suite); !checked) return report_error(checked.error());
   const auto plan = plan_sweep(options, *suite);
   if (!plan) return report_error(plan.error());
+  if (auto checked = check_shard(*plan, options); !checked) return report_error(checked.error());
   if (!options.merge.empty()) {
     const auto merged = merge_shards({options.merge.begin(), options.merge.end()}, plan->identity,
                                      plan->columns(), plan->samples(), options.out);

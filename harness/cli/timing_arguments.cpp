@@ -194,12 +194,14 @@ void add_sweep(CLI::App& app, const Globals& globals, Action& action) {
       ->required()
       ->group(option_group::reports);
   add_sweep_parts(*command, *options);
+  add_page(*command, options->html,
+           "A page with the requirements, distributions, sensitivities and worst flights");
   add_timeout(*command, options->host.timeout_s);
   add_jobs(*command, options->jobs, "Samples at a time");
   add_examples(
       *command,
-      {{"attest sweep SWEEP.toml --out results --keep-worst 3",
-        "fly the reference, and keep the three worst flights of each requirement"},
+      {{"attest sweep SWEEP.toml --out results --keep-worst 3 --html sweep.html",
+        "fly the reference, keep the three worst flights of each requirement, and write a page"},
        {"attest sweep SWEEP.toml --port lib:./libmine.so --out results",
         "fly port and reference on the same samples, and test whether they differ"},
        {"attest sweep SWEEP.toml --shard 2/4 --out part2", "the second quarter of the samples"},

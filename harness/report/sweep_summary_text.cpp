@@ -16,36 +16,16 @@ namespace {
 std::string number(double value) { return fmt::format("{:.4g}", value); }
 std::string number(const std::optional<double>& value) { return value ? number(*value) : "-"; }
 
-std::string title(const FlightSampler& sampler, const SweepSummary& summary,
-                  const std::string& port) {
-  const SweepFile& sweep = sampler.sweep();
-  const RunConfiguration configuration{sweep.rate, sampler.nominal().plant_configuration};
-  std::vector<std::string> outcomes;
-  for (const auto& [outcome, count] : summary.outcomes) {
-    outcomes.push_back(fmt::format("{} {}", count, outcome));
-  }
-  return fmt::format("{}: {} samples, design {}; {}: {}\n",
-                     sampler.nominal().the_case.id_at(configuration), summary.samples,
-                     name_of(sweep.design.kind), port.empty() ? "reference" : one_line(port),
-                     fmt::join(outcomes, ", "));
-}
-
 std::string requirements_of(const SweepFile& sweep, const SweepSummary& summary) {
   if (summary.requirements.empty()) return "";
-  const bool is_grid = sweep.design.kind == DesignKind::grid;
-  std::string out = fmt::format(
-      "\n{:<16}{:<16}{:<18}{:>12}  {:<20}{:<10}{}\n", "requirement", "metric", "bounds", "held",
-      is_grid ? "part" : fmt::format("probability ({:g})", sweep.confidence), "needed", "decision");
+  std::string out =
+      fmt::format("\n{:<16}{:<16}{:<18}{:>12}  {:<20}{:<10}{}\n", "requirement", "metric", "bounds",
+                  "held", probability_heading(sweep), "needed", "decision");
   for (const RequirementResult& one : summary.requirements) {
-    MetricResult bounds;
-    bounds.min = one.requirement.min;
-    bounds.max = one.requirement.max;
-    const auto [low, high] = one.probability;
-    out += fmt::format(
-        "{:<16}{:<16}{:<18}{:>12}  {:<20}{:<10}{}\n", one.requirement.name, one.requirement.metric,
-        metric_bounds(bounds), fmt::format("{}/{}", one.held, one.count),
-        is_grid ? fmt::format("{:.4f}", low) : fmt::format("{:.4f} to {:.4f}", low, high),
-        fmt::format("{:g}", one.requirement.probability), name_of(one.decision));
+    out += fmt::format("{:<16}{:<16}{:<18}{:>12}  {:<20}{:<10}{}\n", one.requirement.name,
+                       one.requirement.metric, bounds_of(one.requirement),
+                       fmt::format("{}/{}", one.held, one.count), probability_of(sweep, one),
+                       fmt::format("{:g}", one.requirement.probability), name_of(one.decision));
   }
   return out;
 }
@@ -81,18 +61,6 @@ std::string sensitivity_of(const SampleColumns& columns, const SweepSummary& sum
   return out;
 }
 
-std::string conclusion_of(const PortDifference& port) {
-  std::vector<std::string> where;
-  if (port.loses_more) where.emplace_back("the number of flights that are lost");
-  for (const MetricDifference& one : port.metrics) {
-    if (one.differs) where.push_back(one.name);
-  }
-  if (!where.empty()) {
-    return fmt::format("The port differs from the reference: {}.\n", fmt::join(where, ", "));
-  }
-  return "No test shows a difference between the port and the reference.\n";
-}
-
 std::string difference_of(const SweepFile& sweep, const PortDifference& port) {
   std::string out = fmt::format(
       "\nport minus reference on the same samples; above, below: flights that differ by more than "
@@ -106,18 +74,7 @@ std::string difference_of(const SweepFile& sweep, const PortDifference& port) {
   out += fmt::format("lost by the port only: {}, by the reference only: {}, sign test p {:.2g}{}\n",
                      port.lost_by_port, port.lost_by_reference, port.p_value,
                      port.loses_more ? "  differs" : "");
-  return out + conclusion_of(port);
-}
-
-std::string sim_command_for(const FlightSampler& sampler, std::uint64_t sample,
-                            const std::string& port, const std::filesystem::path& kept) {
-  const Case& the_case = sampler.nominal().the_case;
-  const PlantConfiguration& plant = sampler.nominal().plant_configuration;
-  return fmt::format(
-      "attest --suite {} sim {}/{}/{} --rate {} --vehicle {} --plant {}{} --html sample_{}.html",
-      shell_word(kept.string()), the_case.profile, the_case.group, kept_name(the_case.name, sample),
-      sampler.sweep().rate.to_string(), kept_name(plant.vehicle, sample), name_of(plant.plant),
-      port.empty() ? "" : " --port " + shell_word(port), sample);
+  return out + conclusion_of(port) + "\n";
 }
 
 std::string worst_of(const FlightSampler& sampler, const SweepSummary& summary,
@@ -135,10 +92,67 @@ std::string worst_of(const FlightSampler& sampler, const SweepSummary& summary,
 
 }  // namespace
 
+std::string heading_of(const FlightSampler& sampler, const SweepSummary& summary) {
+  const SweepFile& sweep = sampler.sweep();
+  const RunConfiguration configuration{sweep.rate, sampler.nominal().plant_configuration};
+  return fmt::format("{}: {} samples, design {}", sampler.nominal().the_case.id_at(configuration),
+                     summary.samples, name_of(sweep.design.kind));
+}
+
+std::string outcomes_of(const SweepSummary& summary) {
+  std::vector<std::string> outcomes;
+  for (const auto& [outcome, count] : summary.outcomes) {
+    outcomes.push_back(fmt::format("{} {}", count, outcome));
+  }
+  return fmt::format("{}", fmt::join(outcomes, ", "));
+}
+
+std::string bounds_of(const Requirement& requirement) {
+  MetricResult bounds;
+  bounds.min = requirement.min;
+  bounds.max = requirement.max;
+  return metric_bounds(bounds);
+}
+
+std::string probability_heading(const SweepFile& sweep) {
+  if (sweep.design.kind == DesignKind::grid) return "part";
+  return fmt::format("probability ({:g})", sweep.confidence);
+}
+
+std::string probability_of(const SweepFile& sweep, const RequirementResult& result) {
+  const auto [low, high] = result.probability;
+  if (sweep.design.kind == DesignKind::grid) return fmt::format("{:.4f}", low);
+  return fmt::format("{:.4f} to {:.4f}", low, high);
+}
+
+std::string conclusion_of(const PortDifference& port) {
+  std::vector<std::string> where;
+  if (port.loses_more) where.emplace_back("the number of flights that are lost");
+  for (const MetricDifference& one : port.metrics) {
+    if (one.differs) where.push_back(one.name);
+  }
+  if (!where.empty()) {
+    return fmt::format("The port differs from the reference: {}.", fmt::join(where, ", "));
+  }
+  return "No test shows a difference between the port and the reference.";
+}
+
+std::string sim_command_for(const FlightSampler& sampler, std::uint64_t sample,
+                            const std::string& port, const std::filesystem::path& kept) {
+  const Case& the_case = sampler.nominal().the_case;
+  const PlantConfiguration& plant = sampler.nominal().plant_configuration;
+  return fmt::format(
+      "attest --suite {} sim {}/{}/{} --rate {} --vehicle {} --plant {}{} --html sample_{}.html",
+      shell_word(kept.string()), the_case.profile, the_case.group, kept_name(the_case.name, sample),
+      sampler.sweep().rate.to_string(), kept_name(plant.vehicle, sample), name_of(plant.plant),
+      port.empty() ? "" : " --port " + shell_word(port), sample);
+}
+
 std::string render_summary(const FlightSampler& sampler, const SampleColumns& columns,
                            const SweepSummary& summary, const std::string& port,
                            const std::filesystem::path& kept) {
-  std::string out = title(sampler, summary, port);
+  std::string out = fmt::format("{}; {}: {}\n", heading_of(sampler, summary),
+                                port.empty() ? "reference" : one_line(port), outcomes_of(summary));
   out += requirements_of(sampler.sweep(), summary);
   out += metrics_of(summary);
   out += sensitivity_of(columns, summary);

@@ -258,3 +258,24 @@ SWEEP
   "$ATTEST" -q sweep sweep.toml --out out
   same whole out
 }
+
+@test "the page of a sweep has its requirements, plots and worst flights, for any number of jobs" {
+  make_sweep 40 <<MORE
+[require.tilts]
+max = 1.2
+probability = 0.9
+MORE
+  "$ATTEST" -q sweep sweep.toml --out out --keep-worst 1 --jobs 1 --html page.html
+  "$ATTEST" -q sweep sweep.toml --out out --keep-worst 1 --jobs 3 --html again.html
+  cmp page.html again.html
+  grep -q '</span> pass</p>' page.html
+  grep -q 'attest --suite out/worst sim ' page.html
+  grep -q '"title":"tilts over mass"' page.html
+  run "$ATTEST" sweep sweep.toml --out part --shard 1/2 --html part.html
+  [ "$status" -eq 2 ]
+  has "part.html: a shard has no page"
+  [ ! -e part.html ]
+  run "$ATTEST" sweep sweep.toml --out other --html sweep.toml
+  [ "$status" -eq 2 ]
+  has "sweep.toml: is read by this command"
+}
