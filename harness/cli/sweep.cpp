@@ -14,6 +14,7 @@
 #include "harness/report/html/dispersed_page.hpp"
 #include "harness/report/progress.hpp"
 #include "harness/report/sweep_summary_text.hpp"
+#include "harness/sweep/early_stop.hpp"
 #include "harness/sweep/keep_flights.hpp"
 #include "harness/sweep/merge_shards.hpp"
 #include "harness/sweep/summary_json.hpp"
@@ -23,22 +24,41 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Flies what is missing in the table.
-Result<void> fly_missing(const SweepPlan& plan, const fs::path& folder, bool quiet) {
+SampleRow row_of(std::string_view line, const SampleColumns& columns, std::uint64_t index) {
+  SampleRow row;
+  line.remove_suffix(1);  // the line break
+  read_row(line, columns, index, row);
+  return row;
+}
+
+// Flies what is missing in the table. The end of the samples that are there now.
+Result<std::uint64_t> fly_missing(const SweepPlan& plan, const fs::path& folder, bool quiet) {
   const SampleRange range = range_of(plan.shard, plan.samples());
-  auto table = SampleTable::open(folder / sample_file, plan.columns(), range);
+  const SampleColumns columns = plan.columns();
+  EarlyStop early(plan.sampler.sweep(), columns);
+  auto table = SampleTable::open(folder / sample_file, columns, range,
+                                 [&](const SampleRow& row) { early.add(row); });
   if (!table) return tl::unexpected(table.error());
   Progress progress(range.size(), Progress::on_stderr(quiet), table->next() - range.begin);
   const auto on_row = [&](const std::string& row) -> Result<void> {
-    const std::string sample = fmt::format("sample {}", table->next());
+    if (early.is_decided()) return {};  // a worker had begun this sample
+    const std::uint64_t index = table->next();
+    const std::string sample = fmt::format("sample {}", index);
     progress.add(row.find(fmt::format(",{}", outcome_diverged)) != std::string::npos, sample);
-    return table->append(row);
+    if (auto appended = table->append(row); !appended) return appended;
+    early.add(row_of(row, columns, index));
+    return {};
   };
-  if (auto flown = fly_samples(plan.sampler, {table->next(), range.end}, plan.flights, on_row);
-      !flown) {
-    return flown;
+  FlightsOptions flights = plan.flights;
+  flights.stop = [&] { return plan.flights.stop() || early.is_decided(); };
+  const SampleRange missing{table->next(), early.is_decided() ? table->next() : range.end};
+  // A later sample that is impossible was perhaps begun, and perhaps not.
+  const auto flown = fly_samples(plan.sampler, missing, flights, on_row);
+  if (!flown && !early.is_decided()) {
+    return tl::unexpected(flown.error());
   }
-  return table->finish();
+  if (auto finished = table->finish(); !finished) return tl::unexpected(finished.error());
+  return table->next();
 }
 
 std::vector<std::uint64_t> worst_samples_of(const SweepSummary& summary) {
@@ -51,10 +71,10 @@ std::vector<std::uint64_t> worst_samples_of(const SweepSummary& summary) {
 
 // From the complete table of a folder: report, kept flights, the text on stdout.
 Result<SweepSummary> report(const SweepPlan& plan, const SweepOptions& options,
-                            const SuiteFolder& suite, bool quiet) {
+                            const SuiteFolder& suite, std::uint64_t samples, bool quiet) {
   const fs::path folder = options.out;
   const SampleColumns columns = plan.columns();
-  const auto data = read_samples(folder / sample_file, columns, {0, plan.samples()});
+  const auto data = read_samples(folder / sample_file, columns, {0, samples});
   if (!data) return tl::unexpected(data.error());
   SweepSummary summary =
       summarise(plan.sampler.sweep(), columns, *data, static_cast<std::size_t>(options.keep_worst));
@@ -93,8 +113,14 @@ Result<void> check_options(const SweepOptions& options, const SuiteFolder& suite
 
 // A shard is a part of the samples.
 Result<void> check_shard(const SweepPlan& plan, const SweepOptions& options) {
-  if (plan.shard.count == 1 || options.html.empty()) return {};
-  return fail_at(options.html, "a shard has no page; name --html with --merge");
+  const bool is_part = plan.shard.count > 1;
+  if (is_part && !options.html.empty()) {
+    return fail_at(options.html, "a shard has no page; name --html with --merge");
+  }
+  if (!plan.sampler.sweep().stop_when_decided || (!is_part && options.merge.empty())) return {};
+  return fail_at(options.file,
+                 "has `stop_when_decided`, so each sample depends on those before it, and shards "
+                 "are not possible; remove the key");
 }
 
 }  // namespace
@@ -106,6 +132,7 @@ int sweep_command(const SweepOptions& options, const Globals& globals) {
   const auto plan = plan_sweep(options, *suite);
   if (!plan) return report_error(plan.error());
   if (auto checked = check_shard(*plan, options); !checked) return report_error(checked.error());
+  std::uint64_t samples = plan->samples();
   if (!options.merge.empty()) {
     const auto merged = merge_shards({options.merge.begin(), options.merge.end()}, plan->identity,
                                      plan->columns(), plan->samples(), options.out);
@@ -117,6 +144,7 @@ int sweep_command(const SweepOptions& options, const Globals& globals) {
     note_interrupts();
     const auto flown = fly_missing(*plan, options.out, globals.quiet);
     if (!flown) return report_error(flown.error());
+    samples = *flown;
     if (interrupted()) {
       print_interrupted(*plan, options);
       return exit_interrupted;
@@ -132,7 +160,7 @@ int sweep_command(const SweepOptions& options, const Globals& globals) {
     }
     return exit_ok;
   }
-  const auto summary = report(*plan, options, *suite, globals.quiet);
+  const auto summary = report(*plan, options, *suite, samples, globals.quiet);
   if (!summary) return report_error(summary.error());
   return summary->passes() ? exit_ok : exit_failed;
 }

@@ -1,5 +1,6 @@
 #include "harness/report/sweep_summary_text.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -95,8 +96,22 @@ std::string worst_of(const FlightSampler& sampler, const SweepSummary& summary,
 std::string heading_of(const FlightSampler& sampler, const SweepSummary& summary) {
   const SweepFile& sweep = sampler.sweep();
   const RunConfiguration configuration{sweep.rate, sampler.nominal().plant_configuration};
-  return fmt::format("{}: {} samples, design {}", sampler.nominal().the_case.id_at(configuration),
-                     summary.samples, name_of(sweep.design.kind));
+  const bool ended_early = summary.samples < summary.planned;
+  return fmt::format("{}: {}{} samples, design {}", sampler.nominal().the_case.id_at(configuration),
+                     summary.samples, ended_early ? fmt::format(" of {}", summary.planned) : "",
+                     name_of(sweep.design.kind));
+}
+
+std::string ending_of(const SweepFile& sweep, const SweepSummary& summary) {
+  if (!sweep.stop_when_decided) return "";
+  const auto& all = summary.requirements;
+  const bool is_decided = std::all_of(all.begin(), all.end(), [](const RequirementResult& one) {
+    return one.decision != RequirementVerdict::undecided;
+  });
+  return fmt::format(
+      "{}; intervals and tests are sequential: valid although the sweep may end early",
+      is_decided ? "Ended because every requirement is decided"
+                 : "Flew all samples, and not every requirement is decided");
 }
 
 std::string outcomes_of(const SweepSummary& summary) {
@@ -153,6 +168,9 @@ std::string render_summary(const FlightSampler& sampler, const SampleColumns& co
                            const std::filesystem::path& kept) {
   std::string out = fmt::format("{}; {}: {}\n", heading_of(sampler, summary),
                                 port.empty() ? "reference" : one_line(port), outcomes_of(summary));
+  if (const std::string ending = ending_of(sampler.sweep(), summary); !ending.empty()) {
+    out += ending + "\n";
+  }
   out += requirements_of(sampler.sweep(), summary);
   out += metrics_of(summary);
   out += sensitivity_of(columns, summary);

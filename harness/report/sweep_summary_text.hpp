@@ -11,6 +11,8 @@ namespace attest {
 
 // "px4-v1.5.5/flight/tilt_step_30@250hz-iris-mujoco: 1000 samples, design sobol".
 std::string heading_of(const FlightSampler& sampler, const SweepSummary& summary);
+// How a sweep with `stop_when_decided` ended; empty for others.
+std::string ending_of(const SweepFile& sweep, const SweepSummary& summary);
 // "998 done, 2 diverged".
 std::string outcomes_of(const SweepSummary& summary);
 // "at most 1.2".

@@ -6,6 +6,7 @@
 
 #include "harness/realtime/histogram.hpp"
 #include "harness/sweep/requirement.hpp"
+#include "harness/sweep/sequential.hpp"
 
 namespace attest {
 namespace {
@@ -38,6 +39,10 @@ MetricSummary summary_of(const std::string& name, const std::vector<double>& val
   return summary;
 }
 
+double sign_test_of(const SweepFile& sweep, std::uint64_t above, std::uint64_t below) {
+  return sweep.stop_when_decided ? sequential_sign_test(above, below) : sign_test(above, below);
+}
+
 double median_size(std::vector<double> values) {
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
   if (values.empty()) return 0;
@@ -48,7 +53,7 @@ double median_size(std::vector<double> values) {
 
 // The sign test ignores differences within the tie: those of another order of arithmetic.
 MetricDifference difference_of(const std::string& name, const std::vector<double>& reference,
-                               const std::vector<double>& port, double tie) {
+                               const std::vector<double>& port, const SweepFile& sweep) {
   MetricDifference difference;
   difference.name = name;
   const double usual = median_size(reference);
@@ -58,12 +63,12 @@ MetricDifference difference_of(const std::string& name, const std::vector<double
     const double one = reference[i] == port[i] ? 0 : port[i] - reference[i];
     sorted.push_back(one);
     const double scale = std::isfinite(reference[i]) ? std::abs(reference[i]) : 0;
-    const double allowed = tie * std::max(scale, usual);
+    const double allowed = sweep.tie * std::max(scale, usual);
     if (one > allowed) ++difference.above;
     if (one < -allowed) ++difference.below;
   }
   difference.count = sorted.size();
-  difference.p_value = sign_test(difference.above, difference.below);
+  difference.p_value = sign_test_of(sweep, difference.above, difference.below);
   if (sorted.empty()) return difference;
   std::sort(sorted.begin(), sorted.end());
   difference.median = empirical_quantile(sorted, 0.5);
@@ -81,14 +86,14 @@ PortDifference compare_pilots(const SweepFile& sweep, const SampleColumns& colum
     if (by_port && !by_reference) ++result.lost_by_port;
     if (by_reference && !by_port) ++result.lost_by_reference;
   }
-  result.p_value = sign_test(result.lost_by_port, result.lost_by_reference);
+  result.p_value = sign_test_of(sweep, result.lost_by_port, result.lost_by_reference);
   // Bonferroni: all tests together are wrong with at most the probability 1 - confidence.
   const double tests = static_cast<double>(columns.metrics.size() + 1);
   const double significant = (1 - sweep.confidence) / tests;
   result.loses_more = result.p_value < significant;
   for (std::size_t i = 0; i < columns.metrics.size(); ++i) {
     MetricDifference one =
-        difference_of(columns.metrics[i], reference.metrics[i], port.metrics[i], sweep.tie);
+        difference_of(columns.metrics[i], reference.metrics[i], port.metrics[i], sweep);
     one.differs = one.p_value < significant;
     result.metrics.push_back(std::move(one));
   }
@@ -128,14 +133,12 @@ SweepSummary summarise(const SweepFile& sweep, const SampleColumns& columns, con
                        std::size_t worst) {
   SweepSummary summary;
   summary.samples = data.samples();
+  summary.planned = sweep.design.samples;
   const PilotData& judged = data.pilots.back();
   for (const std::string& outcome : judged.outcomes) ++summary.outcomes[outcome];
   for (const Requirement& requirement : sweep.requirements) {
-    const auto metric =
-        std::find(columns.metrics.begin(), columns.metrics.end(), requirement.metric);
-    summary.requirements.push_back(judge_requirement(
-        requirement, judged, static_cast<std::size_t>(metric - columns.metrics.begin()), sweep,
-        worst));
+    summary.requirements.push_back(
+        judge_requirement(requirement, judged, columns.place_of(requirement.metric), sweep, worst));
   }
   for (std::size_t i = 0; i < columns.metrics.size(); ++i) {
     summary.metrics.push_back(summary_of(columns.metrics[i], judged.metrics[i], data));

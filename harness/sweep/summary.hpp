@@ -22,8 +22,9 @@ struct RequirementResult {
   Requirement requirement;
   std::uint64_t held = 0;  // flights; one that was not done does not hold
   std::uint64_t count = 0;
-  Interval
-      probability;  // with the confidence of the file; of a grid, which is not random, its part
+  // With the confidence of the file. Of a grid, which is not random, its part. Of a sweep that may
+  // end early a sequential interval.
+  Interval probability;
   RequirementVerdict decision = RequirementVerdict::undecided;
   std::vector<std::uint64_t> worst;  // samples, the worst first
 };
@@ -45,7 +46,7 @@ struct MetricDifference {
   std::uint64_t above = 0, below = 0;  // beyond the tie of the file
   double median = 0;
   std::optional<double> p1, p99;
-  double p_value = 1;  // of the sign test
+  double p_value = 1;  // of the sign test; of a sweep that may end early of the sequential one
   bool differs = false;
 };
 
@@ -60,6 +61,7 @@ struct PortDifference {
 
 struct SweepSummary {
   std::uint64_t samples = 0;
+  std::uint64_t planned = 0;  // more than `samples`: all requirements were decided before
   // Of the judged pilot, which is the port if there is one: outcome -> flights.
   std::map<std::string, std::uint64_t> outcomes;
   std::vector<RequirementResult> requirements;

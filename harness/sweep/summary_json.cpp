@@ -69,6 +69,7 @@ std::string summary_json(const SweepIdentity& identity, const SampleColumns& col
               {"port_sha256", identity.port_sha256},
               {"shard", identity.shard},
               {"samples", summary.samples},
+              {"planned_samples", summary.planned},
               {"passes", summary.passes()},
               {"outcomes", summary.outcomes},
               {"requirements", Json::array()},

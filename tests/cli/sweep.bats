@@ -279,3 +279,34 @@ MORE
   [ "$status" -eq 2 ]
   has "sweep.toml: is read by this command"
 }
+
+@test "a sweep ends when its requirements are decided, at the same sample in all circumstances" {
+  make_sweep 3000 <<MORE
+[require.tilts]
+max = 1.2
+probability = 0.9
+MORE
+  sed -i 's/latin_hypercube/monte_carlo/; s/^samples/stop_when_decided = true\nsamples/' sweep.toml
+  run "$ATTEST" sweep sweep.toml --out one --jobs 1
+  [ "$status" -eq 0 ]
+  # 1 / (n + 1) / 0.9^n >= 20 for the first time at n = 69
+  has "69 of 3000 samples"
+  has "Ended because every requirement is decided"
+  has "69/69"
+  [ "$(wc -l <one/samples.csv)" -eq 70 ]
+  "$ATTEST" -q sweep sweep.toml --out three --jobs 3
+  same one three
+  # Killed in the middle, and run again when it is complete.
+  sed -i '40,$d' three/samples.csv
+  "$ATTEST" -q sweep sweep.toml --out three --jobs 2
+  same one three
+  "$ATTEST" -q sweep sweep.toml --out three
+  same one three
+  for part in "--shard 1/2" "--merge one"; do
+    # shellcheck disable=SC2086 # two words
+    run "$ATTEST" sweep sweep.toml --out other $part
+    [ "$status" -eq 2 ]
+    has 'sweep.toml: has `stop_when_decided`'
+    [ ! -e other ]
+  done
+}

@@ -147,6 +147,9 @@ PageConclusion page_conclusion(const DispersedRun& run) {
 
 std::vector<PageNote> notes_of(const DispersedRun& run, const DispersedPlots& plots) {
   std::vector<PageNote> notes;
+  if (const std::string ending = ending_of(run.sampler.sweep(), run.summary); !ending.empty()) {
+    notes.push_back({ending + "."});
+  }
   if (run.data.samples() > most_drawn_samples) {
     notes.push_back({fmt::format(
         "The plots are thinned: a distribution has {} quantiles and the outermost {} values at "

@@ -53,6 +53,19 @@ TEST_F(SummaryTest, ARequirementIsMetWhenItsIntervalIsAboveTheNeededProbability)
   EXPECT_EQ(summary().requirements[0].decision, RequirementVerdict::not_met);
 }
 
+TEST_F(SummaryTest, AnEarlyStopHasSequentialIntervalsAndTests) {
+  for (int i = 0; i < 400; ++i) add(i, i < 380 ? 1 : 3);
+  add_port([](std::size_t i) { return i < 390 ? 1.01 : 1; });
+  const SweepSummary fixed = summary();
+  sweep_.stop_when_decided = true;
+  sweep_.design.samples = 1000;
+  const SweepSummary sequential = summary();
+  EXPECT_EQ(sequential.planned, 1000u);
+  EXPECT_LT(sequential.requirements[0].probability.low, fixed.requirements[0].probability.low);
+  EXPECT_EQ(sequential.requirements[0].decision, RequirementVerdict::met);
+  EXPECT_GT(sequential.port->metrics[0].p_value, fixed.port->metrics[0].p_value);
+}
+
 TEST_F(SummaryTest, AGridIsJudgedByItsPart) {
   sweep_.design.kind = DesignKind::grid;
   for (int i = 0; i < 20; ++i) add(i, i < 18 ? 1 : 3);
