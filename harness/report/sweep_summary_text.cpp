@@ -62,6 +62,22 @@ std::string sensitivity_of(const SampleColumns& columns, const SweepSummary& sum
   return out;
 }
 
+std::string indices_of(const SweepFile& sweep, const SweepSummary& summary) {
+  std::string out;
+  for (const MetricSummary& metric : summary.metrics) {
+    if (!metric.sobol) continue;
+    out += fmt::format("\n{}\n{:<24}{:>26}{:>26}\n", indices_heading(sweep, metric), "dispersion",
+                       "first order", "total");
+    for (std::size_t i = 0; i < metric.sobol->dimensions.size(); ++i) {
+      const SobolIndex& one = metric.sobol->dimensions[i];
+      out += fmt::format("{:<24}{:>26}{:>26}\n", summary.dimensions[i],
+                         index_text(one.first, one.first_interval),
+                         index_text(one.total, one.total_interval));
+    }
+  }
+  return out;
+}
+
 std::string difference_of(const SweepFile& sweep, const PortDifference& port) {
   std::string out = fmt::format(
       "\nport minus reference on the same samples; above, below: flights that differ by more than "
@@ -140,6 +156,22 @@ std::string probability_of(const SweepFile& sweep, const RequirementResult& resu
   return fmt::format("{:.4f} to {:.4f}", low, high);
 }
 
+std::string index_text(double value, const Interval& interval) {
+  return fmt::format("{:.2f} ({:.2f} to {:.2f})", value, interval.low, interval.high);
+}
+
+std::string indices_heading(const SweepFile& sweep, const MetricSummary& metric) {
+  const SobolIndices& sobol = *metric.sobol;
+  std::string heading = fmt::format("Sobol indices of {}, of {} blocks ({:g})", metric.name,
+                                    sobol.blocks, sweep.confidence);
+  if (sobol.left_out > 0) {
+    heading +=
+        fmt::format("; {} blocks left out, because a flight has no finite value", sobol.left_out);
+  }
+  if (sobol.dimensions.empty()) heading += "; too few blocks, or the metric does not vary";
+  return heading;
+}
+
 std::string conclusion_of(const PortDifference& port) {
   std::vector<std::string> where;
   if (port.loses_more) where.emplace_back("the number of flights that are lost");
@@ -174,6 +206,7 @@ std::string render_summary(const FlightSampler& sampler, const SampleColumns& co
   out += requirements_of(sampler.sweep(), summary);
   out += metrics_of(summary);
   out += sensitivity_of(columns, summary);
+  out += indices_of(sampler.sweep(), summary);
   if (summary.port) out += difference_of(sampler.sweep(), *summary.port);
   if (!kept.empty()) out += worst_of(sampler, summary, port, kept);
   return out;

@@ -20,6 +20,10 @@ std::string bounds_of(const Requirement& requirement);
 // "probability (0.95)" and "0.9430 to 0.9810"; of a grid "part" and "0.9800".
 std::string probability_heading(const SweepFile& sweep);
 std::string probability_of(const SweepFile& sweep, const RequirementResult& result);
+// "0.31 (0.28 to 0.34)".
+std::string index_text(double value, const Interval& interval);
+// "Sobol indices of tilts, of 500 blocks (0.95)", and how many blocks are left out.
+std::string indices_heading(const SweepFile& sweep, const MetricSummary& metric);
 // "The port differs from the reference: settles."
 std::string conclusion_of(const PortDifference& port);
 // The command that flies a kept sample again. `port` and `kept` as below.

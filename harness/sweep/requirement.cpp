@@ -50,9 +50,10 @@ RequirementResult judge_requirement(const Requirement& requirement, const PilotD
   RequirementResult result;
   result.requirement = requirement;
   const std::vector<double>& values = flights.metrics[metric];
-  result.count = values.size();
-  for (const double value : values) {
-    if (requirement.holds(value)) ++result.held;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!sweep.design.is_judged(i)) continue;
+    ++result.count;
+    if (requirement.holds(values[i])) ++result.held;
   }
   result.worst = worst_samples(requirement, values, worst);
   if (sweep.stop_when_decided) {

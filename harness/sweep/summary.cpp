@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "harness/realtime/histogram.hpp"
+#include "harness/sweep/parse_dispersions.hpp"
 #include "harness/sweep/requirement.hpp"
 #include "harness/sweep/sequential.hpp"
 
@@ -17,8 +18,8 @@ std::optional<double> percentile(const std::vector<double>& sorted, double part)
   return empirical_quantile(sorted, part);
 }
 
-MetricSummary summary_of(const std::string& name, const std::vector<double>& values,
-                         const SampleData& data) {
+MetricSummary summary_of(const SweepFile& sweep, const std::string& name,
+                         const std::vector<double>& values, const SampleData& data) {
   MetricSummary summary;
   summary.name = name;
   std::vector<double> sorted;
@@ -35,6 +36,9 @@ MetricSummary summary_of(const std::string& name, const std::vector<double>& val
   }
   for (const std::vector<double>& drawn : data.drawn) {
     summary.correlation.push_back(rank_correlation(drawn, values));
+  }
+  if (sweep.design.kind == DesignKind::saltelli) {
+    summary.sobol = sobol_indices(values, sweep.design.dimensions, sweep.confidence);
   }
   return summary;
 }
@@ -59,7 +63,7 @@ MetricDifference difference_of(const std::string& name, const std::vector<double
   const double usual = median_size(reference);
   std::vector<double> sorted;
   for (std::size_t i = 0; i < reference.size(); ++i) {
-    if (std::isnan(reference[i]) || std::isnan(port[i])) continue;
+    if (std::isnan(reference[i]) || std::isnan(port[i]) || !sweep.design.is_judged(i)) continue;
     const double one = reference[i] == port[i] ? 0 : port[i] - reference[i];
     sorted.push_back(one);
     const double scale = std::isfinite(reference[i]) ? std::abs(reference[i]) : 0;
@@ -81,6 +85,7 @@ PortDifference compare_pilots(const SweepFile& sweep, const SampleColumns& colum
                               const PilotData& reference, const PilotData& port) {
   PortDifference result;
   for (std::size_t i = 0; i < reference.outcomes.size(); ++i) {
+    if (!sweep.design.is_judged(i)) continue;
     const bool by_reference = reference.outcomes[i] != outcome_done;
     const bool by_port = port.outcomes[i] != outcome_done;
     if (by_port && !by_reference) ++result.lost_by_port;
@@ -141,7 +146,10 @@ SweepSummary summarise(const SweepFile& sweep, const SampleColumns& columns, con
         judge_requirement(requirement, judged, columns.place_of(requirement.metric), sweep, worst));
   }
   for (std::size_t i = 0; i < columns.metrics.size(); ++i) {
-    summary.metrics.push_back(summary_of(columns.metrics[i], judged.metrics[i], data));
+    summary.metrics.push_back(summary_of(sweep, columns.metrics[i], judged.metrics[i], data));
+  }
+  for (const std::size_t i : dimensions_of(sweep.dispersions)) {
+    summary.dimensions.push_back(sweep.dispersions[i].name);
   }
   if (columns.with_port) {
     summary.port = compare_pilots(sweep, columns, data.pilots.front(), data.pilots.back());

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/sweep/sample_table.hpp"
+#include "harness/sweep/sobol_indices.hpp"
 #include "harness/sweep/statistics.hpp"
 #include "harness/sweep/sweep_file.hpp"
 
@@ -36,7 +37,8 @@ struct MetricSummary {
   std::uint64_t count = 0;
   double min = 0, median = 0, max = 0;
   std::optional<double> p95, p99;
-  std::vector<double> correlation;  // rank correlation with each dispersion; NaN: none
+  std::vector<double> correlation;    // rank correlation with each dispersion; NaN: none
+  std::optional<SobolIndices> sobol;  // of the design `saltelli`, of SweepSummary::dimensions
 };
 
 // Port minus reference on the same samples, where both were done.
@@ -66,6 +68,7 @@ struct SweepSummary {
   std::map<std::string, std::uint64_t> outcomes;
   std::vector<RequirementResult> requirements;
   std::vector<MetricSummary> metrics;
+  std::vector<std::string> dimensions;  // the dispersions that are no seeds
   std::optional<PortDifference> port;
 
   // All requirements are met, the port has no fault, and does not differ from the reference.

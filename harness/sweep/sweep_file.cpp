@@ -59,6 +59,11 @@ void parse_samples(const TomlTable& root, std::uint64_t replaced, SweepFile& swe
     if (root.has(key) && samples < 1) root.error(key, "must be positive");
     design.samples = replaced != 0 ? replaced : static_cast<std::uint64_t>(std::max(samples, 0l));
   }
+  if (design.kind == DesignKind::saltelli && design.samples % design.block() != 0) {
+    root.error(key, fmt::format("must be a multiple of {}: a block is two points, and one more for "
+                                "each of {} dispersions",
+                                design.block(), design.dimensions));
+  }
   if (design.samples > most_samples) {
     root.error(
         design.kind == DesignKind::grid ? "design" : key,

@@ -310,3 +310,34 @@ MORE
     [ ! -e other ]
   done
 }
+
+@test "the design saltelli has the Sobol index of each dispersion" {
+  make_sweep 160 </dev/null
+  sed -i 's/latin_hypercube/saltelli/; /^\[correlate/,$d' sweep.toml # 32 blocks of 5
+  cat >>sweep.toml <<MORE
+[disperse.seed]
+keys = ["case.flight.estimator.seed"]
+distribution = "seed"
+[disperse.noise]
+keys = ["case.flight.estimator.rate_noise_rad_s"]
+distribution = "choice"
+values = [0.05]
+MORE
+  sed -i 's/^samples = .*/samples = 192/' sweep.toml # noise is a fourth dimension
+  run "$ATTEST" sweep sweep.toml --out out --html page.html
+  [ "$status" -eq 0 ]
+  has "Sobol indices of tilts, of 32 blocks (0.95)"
+  grep -q 'Sobol indices of tilts, of 32 blocks (0.95)</caption>' page.html
+  # A constant causes nothing, also with noise: a block has one seed.
+  run python3 -c '
+import json
+metric = json.load(open("out/report.json"))["metrics"][0]["sobol"]
+assert metric["indices"]["noise"]["total"] == 0, metric
+assert metric["indices"]["noise"]["first"] == 0, metric
+assert metric["indices"]["inertia"]["total"] > 0.3, metric
+assert "seed" not in metric["indices"], metric'
+  [ "$status" -eq 0 ]
+  run "$ATTEST" sweep sweep.toml --out other --samples 100
+  [ "$status" -eq 2 ]
+  has "sweep.toml:7:1: must be a multiple of 6"
+}

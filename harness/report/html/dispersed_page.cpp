@@ -91,6 +91,17 @@ PageTable correlation_table(const DispersedRun& run) {
   return table;
 }
 
+PageTable indices_table(const DispersedRun& run, const MetricSummary& metric) {
+  PageTable table{indices_heading(run.sampler.sweep(), metric),
+                  {"dispersion", "first order", "total"}};
+  for (std::size_t i = 0; i < metric.sobol->dimensions.size(); ++i) {
+    const SobolIndex& one = metric.sobol->dimensions[i];
+    table.rows.push_back({run.summary.dimensions[i], index_text(one.first, one.first_interval),
+                          index_text(one.total, one.total_interval)});
+  }
+  return table;
+}
+
 PageTable worst_table(const DispersedRun& run, const RequirementResult& result) {
   const std::size_t shown = std::min(most_shown_dispersions, run.columns.dispersions.size());
   PageTable table{fmt::format("Worst flights for {}", result.requirement.name), {"sample"}};
@@ -117,6 +128,9 @@ std::vector<PageTable> tables_of(const DispersedRun& run) {
   if (run.summary.port) tables.push_back(difference_table(run.sampler.sweep(), *run.summary.port));
   tables.push_back(metrics_table(run.summary));
   tables.push_back(correlation_table(run));
+  for (const MetricSummary& one : run.summary.metrics) {
+    if (one.sobol) tables.push_back(indices_table(run, one));
+  }
   for (const RequirementResult& one : run.summary.requirements) {
     if (!one.worst.empty()) tables.push_back(worst_table(run, one));
   }

@@ -66,6 +66,23 @@ TEST_F(SummaryTest, AnEarlyStopHasSequentialIntervalsAndTests) {
   EXPECT_GT(sequential.port->metrics[0].p_value, fixed.port->metrics[0].p_value);
 }
 
+// The other samples of a block share their numbers.
+TEST_F(SummaryTest, OfABlockTwoSamplesAreJudged) {
+  sweep_.design = {DesignKind::saltelli, 300, 1, {}, {}};
+  sweep_.dispersions.resize(1);
+  for (int i = 0; i < 300; ++i) add(i, i % 3 == 2 ? 9 : 1 + 1e-3 * i);
+  add_port([](std::size_t i) { return i % 3 == 2 ? 2 : 1; });
+  const SweepSummary found = summary();
+  EXPECT_EQ(found.requirements[0].held, 200u);
+  EXPECT_EQ(found.requirements[0].count, 200u);
+  EXPECT_EQ(found.requirements[0].worst.front(), 2u);
+  EXPECT_EQ(found.port->metrics[0].count, 200u);
+  EXPECT_EQ(found.port->metrics[0].above, 0u);
+  EXPECT_EQ(found.metrics[0].sobol->blocks, 100u);
+  sweep_.design.kind = DesignKind::monte_carlo;
+  EXPECT_FALSE(summary().metrics[0].sobol);
+}
+
 TEST_F(SummaryTest, AGridIsJudgedByItsPart) {
   sweep_.design.kind = DesignKind::grid;
   for (int i = 0; i < 20; ++i) add(i, i < 18 ? 1 : 3);

@@ -114,6 +114,12 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"[1, 0.5, 0.5, 1]", "[1, 0.5, 0.4, 1]", "s.toml:19:1: needs 2 x 2 numbers"},
         Wrong{"[1, 0.5, 0.5, 1]", "[1, 1.5, 1.5, 1]", "s.toml:19:1: needs 2 x 2 numbers"},
         Wrong{"latin_hypercube", "grid", "a grid has all combinations; leave it out"},
+        Wrong{"latin_hypercube", "saltelli",
+              "s.toml:17:2: Sobol indices need independent dispersions"},
+        Wrong{
+            "latin_hypercube'\nsamples = 100", "saltelli'\nsamples = 101",
+            "s.toml:5:1: must be a multiple of 4: a block is two points, and one more for each of "
+            "2 dispersions"},
         Wrong{"max = 2\n", "", "s.toml:20:10: needs `min` or `max`"},
         Wrong{"max = 2\n", "max = 2\nmin = 3\n", "no number is within these bounds"},
         Wrong{"probability = 0.9", "probability = 1", "must be between 0 and 1"},
