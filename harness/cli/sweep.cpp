@@ -15,6 +15,7 @@
 #include "harness/report/progress.hpp"
 #include "harness/report/sweep_summary_text.hpp"
 #include "harness/sweep/early_stop.hpp"
+#include "harness/sweep/hdf5_table.hpp"
 #include "harness/sweep/keep_flights.hpp"
 #include "harness/sweep/merge_shards.hpp"
 #include "harness/sweep/summary_json.hpp"
@@ -69,6 +70,14 @@ std::vector<std::uint64_t> worst_samples_of(const SweepSummary& summary) {
   return {samples.begin(), samples.end()};
 }
 
+Result<void> write_columns(const SweepPlan& plan, const SweepOptions& options,
+                           const SampleColumns& columns, const SampleData& data) {
+  if (options.hdf5.empty()) return {};
+  const auto bytes = hdf5_table(plan.sampler, plan.identity, columns, data);
+  if (!bytes) return fail_at(options.hdf5, bytes.error().message);
+  return write_file(options.hdf5, *bytes);
+}
+
 // From the complete table of a folder: report, kept flights, the text on stdout.
 Result<SweepSummary> report(const SweepPlan& plan, const SweepOptions& options,
                             const SuiteFolder& suite, std::uint64_t samples, bool quiet) {
@@ -86,6 +95,9 @@ Result<SweepSummary> report(const SweepPlan& plan, const SweepOptions& options,
   const auto written =
       write_file(folder / "report.json", summary_json(plan.identity, columns, summary));
   if (!written) return tl::unexpected(written.error());
+  if (auto done = write_columns(plan, options, columns, *data); !done) {
+    return tl::unexpected(done.error());
+  }
   const fs::path shown = worst.empty() ? fs::path() : kept;
   if (!options.html.empty()) {
     const std::string page =
@@ -108,14 +120,16 @@ void print_interrupted(const SweepPlan& plan, const SweepOptions& options) {
 Result<void> check_options(const SweepOptions& options, const SuiteFolder& suite) {
   if (options.out.empty()) return fail("needs --out, the folder of the results");
   if (auto apart = check_output_folder(options.out, suite); !apart) return apart;
-  return check_outputs({options.html}, {options.host.port, {options.file}}, suite);
+  return check_outputs({options.html, options.hdf5}, {options.host.port, {options.file}}, suite);
 }
 
 // A shard is a part of the samples.
 Result<void> check_shard(const SweepPlan& plan, const SweepOptions& options) {
   const bool is_part = plan.shard.count > 1;
-  if (is_part && !options.html.empty()) {
-    return fail_at(options.html, "a shard has no page; name --html with --merge");
+  for (const std::string& file : {options.html, options.hdf5}) {
+    if (is_part && !file.empty()) {
+      return fail_at(file, "is of all samples; name it with --merge");
+    }
   }
   if (!plan.sampler.sweep().stop_when_decided || (!is_part && options.merge.empty())) return {};
   return fail_at(options.file,

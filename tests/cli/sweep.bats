@@ -273,7 +273,7 @@ MORE
   grep -q '"title":"tilts over mass"' page.html
   run "$ATTEST" sweep sweep.toml --out part --shard 1/2 --html part.html
   [ "$status" -eq 2 ]
-  has "part.html: a shard has no page"
+  has "part.html: is of all samples; name it with --merge"
   [ ! -e part.html ]
   run "$ATTEST" sweep sweep.toml --out other --html sweep.toml
   [ "$status" -eq 2 ]
@@ -340,4 +340,59 @@ assert "seed" not in metric["indices"], metric'
   run "$ATTEST" sweep sweep.toml --out other --samples 100
   [ "$status" -eq 2 ]
   has "sweep.toml:7:1: must be a multiple of 6"
+}
+
+# h5 DATASET: its values, one a line.
+h5() {
+  h5dump -m '%.17g' -d "$1" -w 1 -y results.h5 |
+    awk '/ DATA {/ {on = 1; next} on && /}/ {exit} on {gsub(/[ ,]/, ""); if ($0 != "") print}'
+}
+
+@test "the columns of an HDF5 file are those of the table, read by the tools of HDF5" {
+  cat >sweep.toml <<SWEEP
+schema = 1
+case = "px4-v1.5.5/flight/tilt_step_30"
+rate = 250
+plant = "ode"
+design = "grid"
+[disperse.gain]
+keys = ["vehicle.parameters.MC_ROLLRATE_P", "vehicle.parameters.MC_PITCHRATE_P"]
+as = "factor"
+distribution = "choice"
+values = [1, -3, 1.1]
+SWEEP
+  "$ATTEST" -q sweep sweep.toml --out out --hdf5 results.h5 --port "lib:$PORTS/port_gains_off.so"
+  [ "$(h5 sample | xargs)" = "0 1 2" ]
+  [ "$(h5 gain | xargs)" = "1 -3 1.1000000000000001" ]
+  [ "$(h5 reference.outcome | xargs)" = "done diverged done" ]
+  local name value
+  for name in reference.tilts port.tilts; do
+    local column
+    column=$(head -1 out/samples.csv | tr , '\n' | grep -nx "$name" | cut -d: -f1)
+    value=$(sed -n 2p out/samples.csv | cut -d, -f"$column")
+    [ "$(h5 "$name" | head -1)" = "$(awk -v value="$value" 'BEGIN {printf "%.17g", value}')" ]
+    [ "$(h5 "$name" | sed -n 2p)" = "nan" ]
+  done
+  run h5dump -A results.h5
+  has "$(sed -n 's/.*"sweep_sha256": "\(.*\)".*/\1/p' out/identity.json)"
+  has '"vehicle.parameters.MC_ROLLRATE_P vehicle.parameters.MC_PITCHRATE_P"'
+  has '"settling_time_s"'
+  has '"crash" '
+}
+
+@test "the HDF5 file is the same for the same table, and a full disk leaves none" {
+  make_sweep 40 </dev/null
+  "$ATTEST" -q sweep sweep.toml --out out --hdf5 one.h5
+  sleep 1.1 # time stamps would differ
+  "$ATTEST" -q sweep sweep.toml --out other --hdf5 two.h5 --jobs 2
+  cmp one.h5 two.h5
+  run bash -c "ulimit -f 4; exec \"$ATTEST\" sweep sweep.toml --out out --hdf5 full.h5"
+  [ "$status" -eq 2 ]
+  has "full.h5"
+  [ ! -e full.h5 ]
+}
+
+@test "attest does not load HDF5 until it is asked for" {
+  run ldd "$ATTEST"
+  lacks hdf5
 }
