@@ -167,7 +167,8 @@ struct SweepOptions {
   int jobs = 1;
   std::uint64_t samples = 0;  // 0: those of the file
   std::string shard = "1/1";
-  std::string out;
+  std::string out;                 // folder
+  std::string html, hdf5;          // files; empty: none
   int keep_worst = 0;              // of each requirement
   std::vector<std::string> merge;  // folders of shards; empty: fly
 };

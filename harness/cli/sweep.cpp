@@ -11,8 +11,11 @@
 #include "harness/cli/suite_folder.hpp"
 #include "harness/cli/sweep_plan.hpp"
 #include "harness/core/file.hpp"
+#include "harness/report/html/dispersed_page.hpp"
 #include "harness/report/progress.hpp"
 #include "harness/report/sweep_summary_text.hpp"
+#include "harness/sweep/early_stop.hpp"
+#include "harness/sweep/hdf5_table.hpp"
 #include "harness/sweep/keep_flights.hpp"
 #include "harness/sweep/merge_shards.hpp"
 #include "harness/sweep/summary_json.hpp"
@@ -22,22 +25,41 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Flies what is missing in the table.
-Result<void> fly_missing(const SweepPlan& plan, const fs::path& folder, bool quiet) {
+SampleRow row_of(std::string_view line, const SampleColumns& columns, std::uint64_t index) {
+  SampleRow row;
+  line.remove_suffix(1);  // the line break
+  read_row(line, columns, index, row);
+  return row;
+}
+
+// Flies what is missing in the table. The end of the samples that are there now.
+Result<std::uint64_t> fly_missing(const SweepPlan& plan, const fs::path& folder, bool quiet) {
   const SampleRange range = range_of(plan.shard, plan.samples());
-  auto table = SampleTable::open(folder / sample_file, plan.columns(), range);
+  const SampleColumns columns = plan.columns();
+  EarlyStop early(plan.sampler.sweep(), columns);
+  auto table = SampleTable::open(folder / sample_file, columns, range,
+                                 [&](const SampleRow& row) { early.add(row); });
   if (!table) return tl::unexpected(table.error());
   Progress progress(range.size(), Progress::on_stderr(quiet), table->next() - range.begin);
   const auto on_row = [&](const std::string& row) -> Result<void> {
-    const std::string sample = fmt::format("sample {}", table->next());
+    if (early.is_decided()) return {};  // a worker had begun this sample
+    const std::uint64_t index = table->next();
+    const std::string sample = fmt::format("sample {}", index);
     progress.add(row.find(fmt::format(",{}", outcome_diverged)) != std::string::npos, sample);
-    return table->append(row);
+    if (auto appended = table->append(row); !appended) return appended;
+    early.add(row_of(row, columns, index));
+    return {};
   };
-  if (auto flown = fly_samples(plan.sampler, {table->next(), range.end}, plan.flights, on_row);
-      !flown) {
-    return flown;
+  FlightsOptions flights = plan.flights;
+  flights.stop = [&] { return plan.flights.stop() || early.is_decided(); };
+  const SampleRange missing{table->next(), early.is_decided() ? table->next() : range.end};
+  // A later sample that is impossible was perhaps begun, and perhaps not.
+  const auto flown = fly_samples(plan.sampler, missing, flights, on_row);
+  if (!flown && !early.is_decided()) {
+    return tl::unexpected(flown.error());
   }
-  return table->finish();
+  if (auto finished = table->finish(); !finished) return tl::unexpected(finished.error());
+  return table->next();
 }
 
 std::vector<std::uint64_t> worst_samples_of(const SweepSummary& summary) {
@@ -48,12 +70,20 @@ std::vector<std::uint64_t> worst_samples_of(const SweepSummary& summary) {
   return {samples.begin(), samples.end()};
 }
 
+Result<void> write_columns(const SweepPlan& plan, const SweepOptions& options,
+                           const SampleColumns& columns, const SampleData& data) {
+  if (options.hdf5.empty()) return {};
+  const auto bytes = hdf5_table(plan.sampler, plan.identity, columns, data);
+  if (!bytes) return fail_at(options.hdf5, bytes.error().message);
+  return write_file(options.hdf5, *bytes);
+}
+
 // From the complete table of a folder: report, kept flights, the text on stdout.
 Result<SweepSummary> report(const SweepPlan& plan, const SweepOptions& options,
-                            const SuiteFolder& suite, bool quiet) {
+                            const SuiteFolder& suite, std::uint64_t samples, bool quiet) {
   const fs::path folder = options.out;
   const SampleColumns columns = plan.columns();
-  const auto data = read_samples(folder / sample_file, columns, {0, plan.samples()});
+  const auto data = read_samples(folder / sample_file, columns, {0, samples});
   if (!data) return tl::unexpected(data.error());
   SweepSummary summary =
       summarise(plan.sampler.sweep(), columns, *data, static_cast<std::size_t>(options.keep_worst));
@@ -65,9 +95,17 @@ Result<SweepSummary> report(const SweepPlan& plan, const SweepOptions& options,
   const auto written =
       write_file(folder / "report.json", summary_json(plan.identity, columns, summary));
   if (!written) return tl::unexpected(written.error());
+  if (auto done = write_columns(plan, options, columns, *data); !done) {
+    return tl::unexpected(done.error());
+  }
+  const fs::path shown = worst.empty() ? fs::path() : kept;
+  if (!options.html.empty()) {
+    const std::string page =
+        dispersed_page({plan.sampler, columns, *data, summary, plan.identity, shown});
+    if (auto done = write_file(options.html, page); !done) return tl::unexpected(done.error());
+  }
   if (!quiet) {
-    fmt::print("{}", render_summary(plan.sampler, columns, summary, plan.identity.port,
-                                    worst.empty() ? fs::path() : kept));
+    fmt::print("{}", render_summary(plan.sampler, columns, summary, plan.identity.port, shown));
   }
   return summary;
 }
@@ -79,9 +117,24 @@ void print_interrupted(const SweepPlan& plan, const SweepOptions& options) {
              options.out, range_of(plan.shard, plan.samples()).size());
 }
 
-Result<void> check_folders(const SweepOptions& options, const SuiteFolder& suite) {
+Result<void> check_options(const SweepOptions& options, const SuiteFolder& suite) {
   if (options.out.empty()) return fail("needs --out, the folder of the results");
-  return check_output_folder(options.out, suite);
+  if (auto apart = check_output_folder(options.out, suite); !apart) return apart;
+  return check_outputs({options.html, options.hdf5}, {options.host.port, {options.file}}, suite);
+}
+
+// A shard is a part of the samples.
+Result<void> check_shard(const SweepPlan& plan, const SweepOptions& options) {
+  const bool is_part = plan.shard.count > 1;
+  for (const std::string& file : {options.html, options.hdf5}) {
+    if (is_part && !file.empty()) {
+      return fail_at(file, "is of all samples; name it with --merge");
+    }
+  }
+  if (!plan.sampler.sweep().stop_when_decided || (!is_part && options.merge.empty())) return {};
+  return fail_at(options.file,
+                 "has `stop_when_decided`, so each sample depends on those before it, and shards "
+                 "are not possible; remove the key");
 }
 
 }  // namespace
@@ -89,9 +142,11 @@ Result<void> check_folders(const SweepOptions& options, const SuiteFolder& suite
 int sweep_command(const SweepOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
-  if (auto checked = check_folders(options, *suite); !checked) return report_error(checked.error());
+  if (auto checked = check_options(options, *suite); !checked) return report_error(checked.error());
   const auto plan = plan_sweep(options, *suite);
   if (!plan) return report_error(plan.error());
+  if (auto checked = check_shard(*plan, options); !checked) return report_error(checked.error());
+  std::uint64_t samples = plan->samples();
   if (!options.merge.empty()) {
     const auto merged = merge_shards({options.merge.begin(), options.merge.end()}, plan->identity,
                                      plan->columns(), plan->samples(), options.out);
@@ -103,6 +158,7 @@ int sweep_command(const SweepOptions& options, const Globals& globals) {
     note_interrupts();
     const auto flown = fly_missing(*plan, options.out, globals.quiet);
     if (!flown) return report_error(flown.error());
+    samples = *flown;
     if (interrupted()) {
       print_interrupted(*plan, options);
       return exit_interrupted;
@@ -118,7 +174,7 @@ int sweep_command(const SweepOptions& options, const Globals& globals) {
     }
     return exit_ok;
   }
-  const auto summary = report(*plan, options, *suite, globals.quiet);
+  const auto summary = report(*plan, options, *suite, samples, globals.quiet);
   if (!summary) return report_error(summary.error());
   return summary->passes() ? exit_ok : exit_failed;
 }

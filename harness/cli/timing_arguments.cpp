@@ -197,14 +197,24 @@ void add_sweep(CLI::App& app, const Globals& globals, Action& action) {
       ->required()
       ->group(option_group::reports);
   add_sweep_parts(*command, *options);
+  command
+      ->add_option("--hdf5", options->hdf5,
+                   "Write the results as columns in an HDF5 file, for large sweeps; needs about "
+                   "three times their size in memory")
+      ->type_name("F.h5")
+      ->group(option_group::reports);
+  add_page(*command, options->html,
+           "A page with the requirements, distributions, sensitivities and worst flights");
   add_timeout(*command, options->host.timeout_s);
   add_jobs(*command, options->jobs, "Samples at a time");
   add_examples(
       *command,
-      {{"attest sweep SWEEP.toml --out results --keep-worst 3",
-        "fly the reference, and keep the three worst flights of each requirement"},
+      {{"attest sweep SWEEP.toml --out results --keep-worst 3 --html sweep.html",
+        "fly the reference, keep the three worst flights of each requirement, and write a page"},
        {"attest sweep SWEEP.toml --port lib:./libmine.so --out results",
         "fly port and reference on the same samples, and test whether they differ"},
+       {"attest sweep SWEEP.toml --out results --hdf5 results.h5",
+        "the numbers as binary columns: when the sweep is complete, only the file is written"},
        {"attest sweep SWEEP.toml --shard 2/4 --out part2", "the second quarter of the samples"},
        {"attest sweep SWEEP.toml --merge part1 part2 part3 part4 --out results",
         "the result of all samples"}});

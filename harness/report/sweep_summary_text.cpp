@@ -1,5 +1,6 @@
 #include "harness/report/sweep_summary_text.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -16,36 +17,16 @@ namespace {
 std::string number(double value) { return fmt::format("{:.4g}", value); }
 std::string number(const std::optional<double>& value) { return value ? number(*value) : "-"; }
 
-std::string title(const FlightSampler& sampler, const SweepSummary& summary,
-                  const std::string& port) {
-  const SweepFile& sweep = sampler.sweep();
-  const RunConfiguration configuration{sweep.rate, sampler.nominal().plant_configuration};
-  std::vector<std::string> outcomes;
-  for (const auto& [outcome, count] : summary.outcomes) {
-    outcomes.push_back(fmt::format("{} {}", count, outcome));
-  }
-  return fmt::format("{}: {} samples, design {}; {}: {}\n",
-                     sampler.nominal().the_case.id_at(configuration), summary.samples,
-                     name_of(sweep.design.kind), port.empty() ? "reference" : one_line(port),
-                     fmt::join(outcomes, ", "));
-}
-
 std::string requirements_of(const SweepFile& sweep, const SweepSummary& summary) {
   if (summary.requirements.empty()) return "";
-  const bool is_grid = sweep.design.kind == DesignKind::grid;
-  std::string out = fmt::format(
-      "\n{:<16}{:<16}{:<18}{:>12}  {:<20}{:<10}{}\n", "requirement", "metric", "bounds", "held",
-      is_grid ? "part" : fmt::format("probability ({:g})", sweep.confidence), "needed", "decision");
+  std::string out =
+      fmt::format("\n{:<16}{:<16}{:<18}{:>12}  {:<20}{:<10}{}\n", "requirement", "metric", "bounds",
+                  "held", probability_heading(sweep), "needed", "decision");
   for (const RequirementResult& one : summary.requirements) {
-    MetricResult bounds;
-    bounds.min = one.requirement.min;
-    bounds.max = one.requirement.max;
-    const auto [low, high] = one.probability;
-    out += fmt::format(
-        "{:<16}{:<16}{:<18}{:>12}  {:<20}{:<10}{}\n", one.requirement.name, one.requirement.metric,
-        metric_bounds(bounds), fmt::format("{}/{}", one.held, one.count),
-        is_grid ? fmt::format("{:.4f}", low) : fmt::format("{:.4f} to {:.4f}", low, high),
-        fmt::format("{:g}", one.requirement.probability), name_of(one.decision));
+    out += fmt::format("{:<16}{:<16}{:<18}{:>12}  {:<20}{:<10}{}\n", one.requirement.name,
+                       one.requirement.metric, bounds_of(one.requirement),
+                       fmt::format("{}/{}", one.held, one.count), probability_of(sweep, one),
+                       fmt::format("{:g}", one.requirement.probability), name_of(one.decision));
   }
   return out;
 }
@@ -81,16 +62,20 @@ std::string sensitivity_of(const SampleColumns& columns, const SweepSummary& sum
   return out;
 }
 
-std::string conclusion_of(const PortDifference& port) {
-  std::vector<std::string> where;
-  if (port.loses_more) where.emplace_back("the number of flights that are lost");
-  for (const MetricDifference& one : port.metrics) {
-    if (one.differs) where.push_back(one.name);
+std::string indices_of(const SweepFile& sweep, const SweepSummary& summary) {
+  std::string out;
+  for (const MetricSummary& metric : summary.metrics) {
+    if (!metric.sobol) continue;
+    out += fmt::format("\n{}\n{:<24}{:>26}{:>26}\n", indices_heading(sweep, metric), "dispersion",
+                       "first order", "total");
+    for (std::size_t i = 0; i < metric.sobol->dimensions.size(); ++i) {
+      const SobolIndex& one = metric.sobol->dimensions[i];
+      out += fmt::format("{:<24}{:>26}{:>26}\n", summary.dimensions[i],
+                         index_text(one.first, one.first_interval),
+                         index_text(one.total, one.total_interval));
+    }
   }
-  if (!where.empty()) {
-    return fmt::format("The port differs from the reference: {}.\n", fmt::join(where, ", "));
-  }
-  return "No test shows a difference between the port and the reference.\n";
+  return out;
 }
 
 std::string difference_of(const SweepFile& sweep, const PortDifference& port) {
@@ -106,18 +91,7 @@ std::string difference_of(const SweepFile& sweep, const PortDifference& port) {
   out += fmt::format("lost by the port only: {}, by the reference only: {}, sign test p {:.2g}{}\n",
                      port.lost_by_port, port.lost_by_reference, port.p_value,
                      port.loses_more ? "  differs" : "");
-  return out + conclusion_of(port);
-}
-
-std::string sim_command_for(const FlightSampler& sampler, std::uint64_t sample,
-                            const std::string& port, const std::filesystem::path& kept) {
-  const Case& the_case = sampler.nominal().the_case;
-  const PlantConfiguration& plant = sampler.nominal().plant_configuration;
-  return fmt::format(
-      "attest --suite {} sim {}/{}/{} --rate {} --vehicle {} --plant {}{} --html sample_{}.html",
-      shell_word(kept.string()), the_case.profile, the_case.group, kept_name(the_case.name, sample),
-      sampler.sweep().rate.to_string(), kept_name(plant.vehicle, sample), name_of(plant.plant),
-      port.empty() ? "" : " --port " + shell_word(port), sample);
+  return out + conclusion_of(port) + "\n";
 }
 
 std::string worst_of(const FlightSampler& sampler, const SweepSummary& summary,
@@ -135,13 +109,104 @@ std::string worst_of(const FlightSampler& sampler, const SweepSummary& summary,
 
 }  // namespace
 
+std::string heading_of(const FlightSampler& sampler, const SweepSummary& summary) {
+  const SweepFile& sweep = sampler.sweep();
+  const RunConfiguration configuration{sweep.rate, sampler.nominal().plant_configuration};
+  const bool ended_early = summary.samples < summary.planned;
+  return fmt::format("{}: {}{} samples, design {}", sampler.nominal().the_case.id_at(configuration),
+                     summary.samples, ended_early ? fmt::format(" of {}", summary.planned) : "",
+                     name_of(sweep.design.kind));
+}
+
+std::string ending_of(const SweepFile& sweep, const SweepSummary& summary) {
+  if (!sweep.stop_when_decided) return "";
+  const auto& all = summary.requirements;
+  const bool is_decided = std::all_of(all.begin(), all.end(), [](const RequirementResult& one) {
+    return one.decision != RequirementVerdict::undecided;
+  });
+  return fmt::format(
+      "{}; intervals and tests are sequential: valid although the sweep may end early",
+      is_decided ? "Ended because every requirement is decided"
+                 : "Flew all samples, and not every requirement is decided");
+}
+
+std::string outcomes_of(const SweepSummary& summary) {
+  std::vector<std::string> outcomes;
+  for (const auto& [outcome, count] : summary.outcomes) {
+    outcomes.push_back(fmt::format("{} {}", count, outcome));
+  }
+  return fmt::format("{}", fmt::join(outcomes, ", "));
+}
+
+std::string bounds_of(const Requirement& requirement) {
+  MetricResult bounds;
+  bounds.min = requirement.min;
+  bounds.max = requirement.max;
+  return metric_bounds(bounds);
+}
+
+std::string probability_heading(const SweepFile& sweep) {
+  if (sweep.design.kind == DesignKind::grid) return "part";
+  return fmt::format("probability ({:g})", sweep.confidence);
+}
+
+std::string probability_of(const SweepFile& sweep, const RequirementResult& result) {
+  const auto [low, high] = result.probability;
+  if (sweep.design.kind == DesignKind::grid) return fmt::format("{:.4f}", low);
+  return fmt::format("{:.4f} to {:.4f}", low, high);
+}
+
+std::string index_text(double value, const Interval& interval) {
+  return fmt::format("{:.2f} ({:.2f} to {:.2f})", value, interval.low, interval.high);
+}
+
+std::string indices_heading(const SweepFile& sweep, const MetricSummary& metric) {
+  const SobolIndices& sobol = *metric.sobol;
+  std::string heading = fmt::format("Sobol indices of {}, of {} blocks ({:g})", metric.name,
+                                    sobol.blocks, sweep.confidence);
+  if (sobol.left_out > 0) {
+    heading +=
+        fmt::format("; {} blocks left out, because a flight has no finite value", sobol.left_out);
+  }
+  if (sobol.dimensions.empty()) heading += "; too few blocks, or the metric does not vary";
+  return heading;
+}
+
+std::string conclusion_of(const PortDifference& port) {
+  std::vector<std::string> where;
+  if (port.loses_more) where.emplace_back("the number of flights that are lost");
+  for (const MetricDifference& one : port.metrics) {
+    if (one.differs) where.push_back(one.name);
+  }
+  if (!where.empty()) {
+    return fmt::format("The port differs from the reference: {}.", fmt::join(where, ", "));
+  }
+  return "No test shows a difference between the port and the reference.";
+}
+
+std::string sim_command_for(const FlightSampler& sampler, std::uint64_t sample,
+                            const std::string& port, const std::filesystem::path& kept) {
+  const Case& the_case = sampler.nominal().the_case;
+  const PlantConfiguration& plant = sampler.nominal().plant_configuration;
+  return fmt::format(
+      "attest --suite {} sim {}/{}/{} --rate {} --vehicle {} --plant {}{} --html sample_{}.html",
+      shell_word(kept.string()), the_case.profile, the_case.group, kept_name(the_case.name, sample),
+      sampler.sweep().rate.to_string(), kept_name(plant.vehicle, sample), name_of(plant.plant),
+      port.empty() ? "" : " --port " + shell_word(port), sample);
+}
+
 std::string render_summary(const FlightSampler& sampler, const SampleColumns& columns,
                            const SweepSummary& summary, const std::string& port,
                            const std::filesystem::path& kept) {
-  std::string out = title(sampler, summary, port);
+  std::string out = fmt::format("{}; {}: {}\n", heading_of(sampler, summary),
+                                port.empty() ? "reference" : one_line(port), outcomes_of(summary));
+  if (const std::string ending = ending_of(sampler.sweep(), summary); !ending.empty()) {
+    out += ending + "\n";
+  }
   out += requirements_of(sampler.sweep(), summary);
   out += metrics_of(summary);
   out += sensitivity_of(columns, summary);
+  out += indices_of(sampler.sweep(), summary);
   if (summary.port) out += difference_of(sampler.sweep(), *summary.port);
   if (!kept.empty()) out += worst_of(sampler, summary, port, kept);
   return out;

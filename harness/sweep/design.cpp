@@ -19,11 +19,12 @@ namespace {
 using Purpose = SampleStream::Purpose;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr std::array<std::pair<DesignKind, std::string_view>, 4> design_names = {{
+constexpr std::array<std::pair<DesignKind, std::string_view>, 5> design_names = {{
     {DesignKind::monte_carlo, "monte_carlo"},
     {DesignKind::latin_hypercube, "latin_hypercube"},
     {DesignKind::sobol, "sobol"},
     {DesignKind::grid, "grid"},
+    {DesignKind::saltelli, "saltelli"},
 }};
 
 Eigen::LLT<Matrix> factorised(const Design& design) {
@@ -79,6 +80,7 @@ struct DesignPoints::Impl {
   Impl(Design of, SampleStream with) : design(std::move(of)), stream(std::move(with)) {
     if (!design.correlation.empty()) factor = factorised(design).matrixL();
     if (design.kind == DesignKind::sobol) sobol.emplace_back(design.dimensions);
+    if (design.kind == DesignKind::saltelli) sobol.emplace_back(2 * design.dimensions);
   }
 
   double random(std::uint64_t index, std::size_t dimension) const {
@@ -89,11 +91,22 @@ struct DesignPoints::Impl {
   std::vector<double> sobol_point(std::uint64_t index) {
     std::vector<double> point;
     if (index > 0) sobol.front().seed(index - 1);
-    for (std::size_t i = 0; i < design.dimensions; ++i) {
+    for (std::size_t i = 0; i < sobol.front().dimension(); ++i) {
       const std::uint64_t digits = index > 0 ? sobol.front()() : 0;
       point.push_back(open_uniform(digits ^ stream.bits(Purpose::shift, 0, i)));
     }
     return point;
+  }
+
+  std::vector<double> saltelli_point(std::uint64_t index) {
+    std::vector<double> a = sobol_point(index / design.block());
+    const auto middle = a.begin() + static_cast<std::ptrdiff_t>(design.dimensions);
+    const std::vector<double> b(middle, a.end());
+    a.erase(middle, a.end());
+    const std::uint64_t place = index % design.block();
+    if (place == 1) return b;
+    if (place > 1) a[place - 2] = b[place - 2];
+    return a;
   }
 
   std::vector<double> grid_point(std::uint64_t index) const {
@@ -107,6 +120,7 @@ struct DesignPoints::Impl {
 
   std::vector<double> independent(std::uint64_t index) {
     if (design.kind == DesignKind::sobol) return sobol_point(index);
+    if (design.kind == DesignKind::saltelli) return saltelli_point(index);
     if (design.kind == DesignKind::grid) return grid_point(index);
     std::vector<double> point;
     for (std::size_t i = 0; i < design.dimensions; ++i) {

@@ -21,6 +21,7 @@ enum class DesignKind {
   latin_hypercube,  // in each dimension one sample in each of `samples` strata of equal probability
   sobol,            // Joe and Kuo's direction numbers (2008), with a random digital shift
   grid,             // all combinations of levels, each in the middle of its stratum
+  saltelli,         // blocks for Sobol indices, on Sobol points of twice as many dimensions
 };
 std::string_view name_of(DesignKind kind);
 Result<DesignKind> parse_design(std::string_view name);  // the error lists them all
@@ -32,6 +33,19 @@ struct Design {
   std::vector<std::uint64_t> levels;  // grid: of each dimension; their product is `samples`
   // Of the dimensions' normal scores, row by row: Gaussian copula. Empty: independent.
   std::vector<double> correlation;
+
+  // A block of `saltelli` (Saltelli et al., Variance based sensitivity analysis of model output,
+  // 2010): a point A, a point B, and for each dimension A with that number of B.
+  std::uint64_t block() const { return dimensions + 2; }
+  // Whether requirements and tests use the sample: of `saltelli` A and B, because the others share
+  // their numbers.
+  bool is_judged(std::uint64_t index) const {
+    return kind != DesignKind::saltelli || index % block() < 2;
+  }
+  // The sample whose seeds this sample has: of `saltelli`, all of a block except B have those of A.
+  std::uint64_t with_seeds(std::uint64_t index) const {
+    return is_judged(index) ? index : index - index % block();
+  }
 };
 
 inline constexpr std::size_t most_dimensions = 1000;

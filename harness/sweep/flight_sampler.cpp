@@ -97,7 +97,8 @@ std::vector<double> FlightSampler::drawn(std::uint64_t index) const {
   for (std::size_t i = 0; i < sweep_.dispersions.size(); ++i) {
     const Distribution& of = sweep_.dispersions[i].distribution;
     if (of.kind == Distribution::Kind::seed) {
-      const std::uint64_t bits = stream_.bits(SampleStream::Purpose::seed, index, i);
+      const std::uint64_t bits =
+          stream_.bits(SampleStream::Purpose::seed, sweep_.design.with_seeds(index), i);
       numbers.push_back(static_cast<double>(bits % most_seed));
     } else {
       numbers.push_back(quantile(of, point[dimension++]));

@@ -256,6 +256,9 @@ std::vector<double> parse_correlation(const TomlTable& root,
   if (design == DesignKind::grid) {
     root.error("correlate", "a grid has all combinations; leave it out");
   }
+  if (design == DesignKind::saltelli) {
+    root.error("correlate", "Sobol indices need independent dispersions; leave it out");
+  }
   std::set<std::size_t> taken;
   for (const std::string& name : tables.keys()) {
     const TomlTable table = tables.table(name);

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "harness/sweep/sequential.hpp"
+
 namespace attest {
 namespace {
 
@@ -27,6 +29,15 @@ std::vector<std::uint64_t> worst_samples(const Requirement& requirement,
   return samples;
 }
 
+// The same rule as that of EarlyStop.
+RequirementVerdict decided_sequentially(const RequirementResult& result, double confidence) {
+  const double needed = result.requirement.probability;
+  if (!excludes(result.held, result.count, needed, confidence))
+    return RequirementVerdict::undecided;
+  const double share = static_cast<double>(result.held) / static_cast<double>(result.count);
+  return share >= needed ? RequirementVerdict::met : RequirementVerdict::not_met;
+}
+
 RequirementVerdict decided(const Interval& interval, double probability) {
   if (interval.low >= probability) return RequirementVerdict::met;
   return interval.high < probability ? RequirementVerdict::not_met : RequirementVerdict::undecided;
@@ -39,9 +50,16 @@ RequirementResult judge_requirement(const Requirement& requirement, const PilotD
   RequirementResult result;
   result.requirement = requirement;
   const std::vector<double>& values = flights.metrics[metric];
-  result.count = values.size();
-  for (const double value : values) {
-    if (requirement.holds(value)) ++result.held;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!sweep.design.is_judged(i)) continue;
+    ++result.count;
+    if (requirement.holds(values[i])) ++result.held;
+  }
+  result.worst = worst_samples(requirement, values, worst);
+  if (sweep.stop_when_decided) {
+    result.probability = sequential_interval(result.held, result.count, sweep.confidence);
+    result.decision = decided_sequentially(result, sweep.confidence);
+    return result;
   }
   if (sweep.design.kind == DesignKind::grid) {
     const double part = static_cast<double>(result.held) / static_cast<double>(result.count);
@@ -50,7 +68,6 @@ RequirementResult judge_requirement(const Requirement& requirement, const PilotD
     result.probability = clopper_pearson(result.held, result.count, sweep.confidence);
   }
   result.decision = decided(result.probability, requirement.probability);
-  result.worst = worst_samples(requirement, values, worst);
   return result;
 }
 

@@ -1,5 +1,6 @@
 #include "harness/sweep/sample_table.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -47,12 +48,7 @@ std::optional<T> parsed(std::string_view cell) {
   return value;
 }
 
-// The numbers of a row; NaN for an empty cell. Outcomes are left as text.
-struct Row {
-  std::vector<double> drawn;
-  std::vector<FlightResult> flights;
-};
-
+// NaN for an empty cell.
 bool read_flight(const std::vector<std::string_view>& cells, std::size_t first, std::size_t metrics,
                  FlightResult& flight) {
   flight.outcome = std::string(cells[first]);
@@ -63,29 +59,6 @@ bool read_flight(const std::vector<std::string_view>& cells, std::size_t first, 
     flight.metrics.push_back(*value);
   }
   return !flight.outcome.empty();
-}
-
-// False: the line is not the row of that sample.
-bool read_row(std::string_view line, const SampleColumns& columns, std::uint64_t index, Row& row) {
-  const std::vector<std::string_view> cells = cells_of(line);
-  const std::size_t of_flight = 1 + columns.metrics.size();
-  const std::size_t flights = columns.with_port ? 2 : 1;
-  const std::size_t first = 1 + columns.dispersions.size();
-  if (cells.size() != first + flights * of_flight) return false;
-  if (parsed<std::uint64_t>(cells[0]) != index) return false;
-  row.drawn.clear();
-  for (std::size_t i = 1; i < first; ++i) {
-    const auto value = parsed<double>(cells[i]);
-    if (!value) return false;
-    row.drawn.push_back(*value);
-  }
-  row.flights.resize(flights);
-  for (std::size_t i = 0; i < flights; ++i) {
-    if (!read_flight(cells, first + i * of_flight, columns.metrics.size(), row.flights[i])) {
-      return false;
-    }
-  }
-  return true;
 }
 
 struct Extent {
@@ -100,7 +73,7 @@ class TableReader {
   TableReader(const fs::path& file, const SampleColumns& columns, const SampleRange& range)
       : file_(file), columns_(columns), range_(range) {}
 
-  Result<Extent> read(const std::function<void(const Row&)>& on_row) {
+  Result<Extent> read(const std::function<void(const SampleRow&)>& on_row) {
     const auto opened = open_regular_file(file_);
     if (!opened) return tl::unexpected(opened.error());
     std::FILE* const stream = ::fdopen(*opened, "r");
@@ -120,7 +93,7 @@ class TableReader {
   }
 
  private:
-  Result<void> take(std::string_view line, const std::function<void(const Row&)>& on_row) {
+  Result<void> take(std::string_view line, const std::function<void(const SampleRow&)>& on_row) {
     extent_.is_cut = line.back() != '\n';
     if (extent_.is_cut) return {};
     const int number = ++lines_;
@@ -149,7 +122,7 @@ class TableReader {
   const SampleColumns& columns_;
   const SampleRange& range_;
   Extent extent_;
-  Row row_;
+  SampleRow row_;
   int lines_ = 0;
 };
 
@@ -164,6 +137,29 @@ Result<void> write_all(int descriptor, std::string_view bytes, const fs::path& f
 }
 
 }  // namespace
+
+bool read_row(std::string_view line, const SampleColumns& columns, std::uint64_t index,
+              SampleRow& row) {
+  const std::vector<std::string_view> cells = cells_of(line);
+  const std::size_t of_flight = 1 + columns.metrics.size();
+  const std::size_t flights = columns.with_port ? 2 : 1;
+  const std::size_t first = 1 + columns.dispersions.size();
+  if (cells.size() != first + flights * of_flight) return false;
+  if (parsed<std::uint64_t>(cells[0]) != index) return false;
+  row.drawn.clear();
+  for (std::size_t i = 1; i < first; ++i) {
+    const auto value = parsed<double>(cells[i]);
+    if (!value) return false;
+    row.drawn.push_back(*value);
+  }
+  row.flights.resize(flights);
+  for (std::size_t i = 0; i < flights; ++i) {
+    if (!read_flight(cells, first + i * of_flight, columns.metrics.size(), row.flights[i])) {
+      return false;
+    }
+  }
+  return true;
+}
 
 std::string SampleColumns::header() const {
   std::string line = "sample";
@@ -189,15 +185,21 @@ std::string SampleColumns::line(std::uint64_t index, const std::vector<double>& 
   return line + "\n";
 }
 
+std::size_t SampleColumns::place_of(const std::string& metric) const {
+  return static_cast<std::size_t>(std::find(metrics.begin(), metrics.end(), metric) -
+                                  metrics.begin());
+}
+
 Result<SampleTable> SampleTable::open(const fs::path& file, const SampleColumns& columns,
-                                      const SampleRange& range) {
+                                      const SampleRange& range,
+                                      const std::function<void(const SampleRow&)>& on_row) {
   const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, table_mode);
   if (descriptor < 0) return tl::unexpected(table_error(file, "cannot be opened"));
   SampleTable table(file, descriptor, range.begin);
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
     return fail_at(file.string(), "another `attest sweep` is writing this file; wait for its end");
   }
-  const auto extent = TableReader(file, columns, range).read([](const Row&) {});
+  const auto extent = TableReader(file, columns, range).read(on_row);
   if (!extent) return tl::unexpected(extent.error());
   if (::ftruncate(descriptor, static_cast<off_t>(extent->bytes)) != 0 ||
       ::lseek(descriptor, 0, SEEK_END) < 0) {
@@ -236,7 +238,7 @@ Result<SampleData> read_samples(const fs::path& file, const SampleColumns& colum
   data.drawn.resize(columns.dispersions.size());
   data.pilots.resize(columns.with_port ? 2 : 1);
   for (PilotData& pilot : data.pilots) pilot.metrics.resize(columns.metrics.size());
-  const auto extent = TableReader(file, columns, range).read([&](const Row& row) {
+  const auto extent = TableReader(file, columns, range).read([&](const SampleRow& row) {
     for (std::size_t i = 0; i < row.drawn.size(); ++i) data.drawn[i].push_back(row.drawn[i]);
     for (std::size_t p = 0; p < row.flights.size(); ++p) {
       data.pilots[p].outcomes.push_back(row.flights[p].outcome);

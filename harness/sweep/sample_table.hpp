@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -34,7 +35,19 @@ struct SampleColumns {
   // `flights`: of the reference, then of the port if there is one.
   std::string line(std::uint64_t index, const std::vector<double>& drawn,
                    const std::vector<FlightResult>& flights) const;
+  // Of a metric. REQUIRES: there is one with this name.
+  std::size_t place_of(const std::string& metric) const;
 };
+
+// The numbers of a line. Without a metric, because the flight was not done, it is NaN.
+struct SampleRow {
+  std::vector<double> drawn;
+  std::vector<FlightResult> flights;  // of the reference, then of the port if there is one
+};
+
+// False: `line`, without its line break, is not the row of that sample.
+bool read_row(std::string_view line, const SampleColumns& columns, std::uint64_t index,
+              SampleRow& row);
 
 // The samples of a shard, [begin, end).
 struct SampleRange {
@@ -45,9 +58,11 @@ struct SampleRange {
 class SampleTable {
  public:
   // Makes the file, or continues it. The file is locked until this ends. Errors: another process
-  // has it open; a line that is not of this table, with its number.
-  static Result<SampleTable> open(const std::filesystem::path& file, const SampleColumns& columns,
-                                  const SampleRange& range);
+  // has it open; a line that is not of this table, with its number. `on_row`
+  // gets the rows that are there.
+  static Result<SampleTable> open(
+      const std::filesystem::path& file, const SampleColumns& columns, const SampleRange& range,
+      const std::function<void(const SampleRow&)>& on_row = [](const SampleRow&) {});
   SampleTable(SampleTable&& other) noexcept;
   SampleTable& operator=(SampleTable&&) = delete;
   ~SampleTable();

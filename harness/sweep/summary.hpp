@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/sweep/sample_table.hpp"
+#include "harness/sweep/sobol_indices.hpp"
 #include "harness/sweep/statistics.hpp"
 #include "harness/sweep/sweep_file.hpp"
 
@@ -23,7 +24,7 @@ struct RequirementResult {
   std::uint64_t held = 0;  // flights that hold it; a flight that was not done does not
   std::uint64_t count = 0;
   // With the confidence of the file. A grid is not random: both ends are the part of its flights
-  // that hold the requirement.
+  // that hold the requirement. A sweep that may end early has a sequential interval.
   Interval probability;
   RequirementVerdict decision = RequirementVerdict::undecided;
   std::vector<std::uint64_t> worst;  // samples, the worst first
@@ -36,7 +37,8 @@ struct MetricSummary {
   std::uint64_t count = 0;
   double min = 0, median = 0, max = 0;
   std::optional<double> p95, p99;
-  std::vector<double> correlation;  // rank correlation with each dispersion; NaN: none
+  std::vector<double> correlation;    // rank correlation with each dispersion; NaN: none
+  std::optional<SobolIndices> sobol;  // of the design `saltelli`, of SweepSummary::dimensions
 };
 
 // Port minus reference on the same samples, where both were done.
@@ -46,7 +48,7 @@ struct MetricDifference {
   std::uint64_t above = 0, below = 0;  // beyond the tie of the file
   double median = 0;
   std::optional<double> p1, p99;
-  double p_value = 1;  // of the sign test
+  double p_value = 1;  // of the sign test; of a sweep that may end early of the sequential one
   bool differs = false;
 };
 
@@ -61,10 +63,12 @@ struct PortDifference {
 
 struct SweepSummary {
   std::uint64_t samples = 0;
+  std::uint64_t planned = 0;  // more than `samples`: all requirements were decided before
   // Of the judged pilot, which is the port if there is one: outcome -> flights.
   std::map<std::string, std::uint64_t> outcomes;
   std::vector<RequirementResult> requirements;
   std::vector<MetricSummary> metrics;
+  std::vector<std::string> dimensions;  // the dispersions that are no seeds
   std::optional<PortDifference> port;
 
   // All requirements are met, the port has no fault, and does not differ from the reference.

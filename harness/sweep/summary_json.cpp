@@ -27,6 +27,19 @@ Json json_of(const RequirementResult& result) {
           {"worst", result.worst}};
 }
 
+Json json_of(const SobolIndices& sobol, const std::vector<std::string>& dimensions) {
+  Json out = {{"blocks", sobol.blocks}, {"left_out", sobol.left_out}, {"indices", Json::object()}};
+  for (std::size_t i = 0; i < sobol.dimensions.size(); ++i) {
+    const SobolIndex& one = sobol.dimensions[i];
+    out["indices"][dimensions[i]] = {
+        {"first", one.first},
+        {"first_interval", {one.first_interval.low, one.first_interval.high}},
+        {"total", one.total},
+        {"total_interval", {one.total_interval.low, one.total_interval.high}}};
+  }
+  return out;
+}
+
 Json json_of(const MetricSummary& metric, const SampleColumns& columns) {
   Json correlation = Json::object();
   for (std::size_t i = 0; i < columns.dispersions.size(); ++i) {
@@ -69,12 +82,16 @@ std::string summary_json(const SweepIdentity& identity, const SampleColumns& col
               {"port_sha256", identity.port_sha256},
               {"shard", identity.shard},
               {"samples", summary.samples},
+              {"planned_samples", summary.planned},
               {"passes", summary.passes()},
               {"outcomes", summary.outcomes},
               {"requirements", Json::array()},
               {"metrics", Json::array()}};
   for (const auto& one : summary.requirements) out["requirements"].push_back(json_of(one));
-  for (const auto& one : summary.metrics) out["metrics"].push_back(json_of(one, columns));
+  for (const auto& one : summary.metrics) {
+    out["metrics"].push_back(json_of(one, columns));
+    if (one.sobol) out["metrics"].back()["sobol"] = json_of(*one.sobol, summary.dimensions);
+  }
   if (summary.port) out["port_difference"] = json_of(*summary.port);
   return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

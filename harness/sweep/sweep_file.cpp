@@ -59,6 +59,11 @@ void parse_samples(const TomlTable& root, std::uint64_t replaced, SweepFile& swe
     if (root.has(key) && samples < 1) root.error(key, "must be positive");
     design.samples = replaced != 0 ? replaced : static_cast<std::uint64_t>(std::max(samples, 0l));
   }
+  if (design.kind == DesignKind::saltelli && design.samples % design.block() != 0) {
+    root.error(key, fmt::format("must be a multiple of {}: a block is two points, and one more for "
+                                "each of {} dispersions",
+                                design.block(), design.dimensions));
+  }
   if (design.samples > most_samples) {
     root.error(
         design.kind == DesignKind::grid ? "design" : key,
@@ -84,6 +89,22 @@ Requirement parse_requirement(const TomlTable& all, const std::string& name) {
   return requirement;
 }
 
+void parse_requirements(const TomlTable& root, SweepFile& sweep) {
+  if (root.has("require")) {
+    const TomlTable all = root.table("require");
+    for (const std::string& name : all.keys()) {
+      sweep.requirements.push_back(parse_requirement(all, name));
+    }
+  }
+  constexpr const char* key = "stop_when_decided";
+  sweep.stop_when_decided = root.boolean(key, false);
+  if (!sweep.stop_when_decided) return;
+  if (sweep.requirements.empty()) root.error(key, "needs a requirement: [require.NAME]");
+  if (sweep.design.kind != DesignKind::monte_carlo) {
+    root.error(key, "needs independent samples: use the design `monte_carlo`");
+  }
+}
+
 void parse_root(const TomlTable& root, std::uint64_t samples, SweepFile& sweep) {
   if (root.integer("schema") != sweep_schema && root.has("schema")) {
     root.error("schema", fmt::format("must be {}", sweep_schema));
@@ -105,11 +126,7 @@ void parse_root(const TomlTable& root, std::uint64_t samples, SweepFile& sweep) 
   }
   sweep.tie = root.number("tie", sweep.tie);
   if (!(sweep.tie >= 0 && sweep.tie < 1)) root.error("tie", "must be from 0 to below 1");
-  if (!root.has("require")) return;
-  const TomlTable all = root.table("require");
-  for (const std::string& name : all.keys()) {
-    sweep.requirements.push_back(parse_requirement(all, name));
-  }
+  parse_requirements(root, sweep);
 }
 
 Result<void> bind_key(const TomlDocument& document, const std::string& file,

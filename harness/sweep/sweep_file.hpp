@@ -58,6 +58,8 @@ struct SweepFile {
   std::vector<Dispersion> dispersions;  // in the order of the file
   std::vector<Requirement> requirements;
   double confidence = 0.95;
+  // End at the first sample after which all requirements are decided, by sequential intervals.
+  bool stop_when_decided = false;
   double tie = 1e-3;  // a relative difference of a metric that counts as none
 };
 

@@ -15,8 +15,8 @@ commands=(run replay sim stress sweep sweep-rate schedule time compare plot reco
     while read -r line; do
       [[ $line == "attest $command"* ]]
       # --suite is an option of attest itself.
-      for option in $(grep -oE -- '--[a-z-]+' <<<"$line" | grep -vx -- --suite); do
-        grep -qE -- "^ +(-j,)?([a-z,-]*,)?$option([ ,=]|$)" <<<"$output" || {
+      for option in $(grep -oE -- '--[a-z0-9-]+' <<<"$line" | grep -vx -- --suite); do
+        grep -qE -- "^ +(-j,)?([a-z0-9,-]*,)?$option([ ,=]|$)" <<<"$output" || {
           echo "$command: $option"
           false
         }

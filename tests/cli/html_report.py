@@ -268,6 +268,41 @@ class StepTimes(Page):
             self.browser.send("Emulation.setScriptExecutionDisabled", value=False)
 
 
+SWEEP = """
+schema = 1
+case = "px4-v1.5.5/flight/tilt_step_30"
+rate = 250
+design = "monte_carlo"
+samples = 30
+[disperse.mass]
+keys = ["vehicle.mass_kg"]
+as = "factor"
+distribution = "uniform"
+low = 0.9
+high = 1.1
+[require.tilts]
+max = 1.2
+probability = 0.8
+"""
+
+
+class DispersedSweep(StepTimes):
+    """The page of `attest sweep --html`: distributions and dots, in groups of their own."""
+
+    @classmethod
+    def make_page(cls, folder: pathlib.Path):
+        sweep = folder / "sweep.toml"
+        sweep.write_text(SWEEP)
+        options = ["--out", folder / "out", "--keep-worst", "2"]
+        cls.run_attest("sweep", sweep, *options, "--html", cls.page)
+
+    def test_the_worst_flights_are_marked(self):
+        titles = self.run_in_page("[...document.querySelectorAll('h3')].map((h) => h.textContent)")
+        place = next(i for i, title in enumerate(titles) if "tilts over mass" in title)
+        legend = f"document.querySelectorAll('.legend-of-plot')[{place}].textContent"
+        self.assertIn("worst flights", self.run_in_page(legend))
+
+
 class Flight(Page):
     """The page of `attest sim --html`."""
 

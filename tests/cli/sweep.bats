@@ -276,3 +276,141 @@ SWEEP
   [ "$status" -eq 2 ]
   has "out: has the results of another sweep"
 }
+
+@test "the page of a sweep has its requirements, plots and worst flights, for any number of jobs" {
+  make_sweep 40 <<MORE
+[require.tilts]
+max = 1.2
+probability = 0.9
+MORE
+  "$ATTEST" -q sweep sweep.toml --out out --keep-worst 1 --jobs 1 --html page.html
+  "$ATTEST" -q sweep sweep.toml --out out --keep-worst 1 --jobs 3 --html again.html
+  cmp page.html again.html
+  grep -q '</span> pass</p>' page.html
+  grep -q 'attest --suite out/worst sim ' page.html
+  grep -q '"title":"tilts over mass"' page.html
+  run "$ATTEST" sweep sweep.toml --out part --shard 1/2 --html part.html
+  [ "$status" -eq 2 ]
+  has "part.html: is of all samples; name it with --merge"
+  [ ! -e part.html ]
+  run "$ATTEST" sweep sweep.toml --out other --html sweep.toml
+  [ "$status" -eq 2 ]
+  has "sweep.toml: is read by this command"
+}
+
+@test "a sweep ends when its requirements are decided, at the same sample in all circumstances" {
+  make_sweep 3000 <<MORE
+[require.tilts]
+max = 1.2
+probability = 0.9
+MORE
+  sed -i 's/latin_hypercube/monte_carlo/; s/^samples/stop_when_decided = true\nsamples/' sweep.toml
+  run "$ATTEST" sweep sweep.toml --out one --jobs 1
+  [ "$status" -eq 0 ]
+  # 1 / (n + 1) / 0.9^n >= 20 for the first time at n = 69
+  has "69 of 3000 samples"
+  has "Ended because every requirement is decided"
+  has "69/69"
+  [ "$(wc -l <one/samples.csv)" -eq 70 ]
+  "$ATTEST" -q sweep sweep.toml --out three --jobs 3
+  same one three
+  # Killed in the middle, and run again when it is complete.
+  sed -i '40,$d' three/samples.csv
+  "$ATTEST" -q sweep sweep.toml --out three --jobs 2
+  same one three
+  "$ATTEST" -q sweep sweep.toml --out three
+  same one three
+  for part in "--shard 1/2" "--merge one"; do
+    # shellcheck disable=SC2086 # two words
+    run "$ATTEST" sweep sweep.toml --out other $part
+    [ "$status" -eq 2 ]
+    has 'sweep.toml: has `stop_when_decided`'
+    [ ! -e other ]
+  done
+}
+
+@test "the design saltelli has the Sobol index of each dispersion" {
+  make_sweep 160 </dev/null
+  sed -i 's/latin_hypercube/saltelli/; /^\[correlate/,$d' sweep.toml # 32 blocks of 5
+  cat >>sweep.toml <<MORE
+[disperse.seed]
+keys = ["case.flight.estimator.seed"]
+distribution = "seed"
+[disperse.noise]
+keys = ["case.flight.estimator.rate_noise_rad_s"]
+distribution = "choice"
+values = [0.05]
+MORE
+  sed -i 's/^samples = .*/samples = 192/' sweep.toml # noise is a fourth dimension
+  run "$ATTEST" sweep sweep.toml --out out --html page.html
+  [ "$status" -eq 0 ]
+  has "Sobol indices of tilts, of 32 blocks (0.95)"
+  grep -q 'Sobol indices of tilts, of 32 blocks (0.95)</caption>' page.html
+  # A constant causes nothing, also with noise: a block has one seed.
+  run python3 -c '
+import json
+metric = json.load(open("out/report.json"))["metrics"][0]["sobol"]
+assert metric["indices"]["noise"]["total"] == 0, metric
+assert metric["indices"]["noise"]["first"] == 0, metric
+assert metric["indices"]["inertia"]["total"] > 0.3, metric
+assert "seed" not in metric["indices"], metric'
+  [ "$status" -eq 0 ]
+  run "$ATTEST" sweep sweep.toml --out other --samples 100
+  [ "$status" -eq 2 ]
+  has "sweep.toml:7:1: must be a multiple of 6"
+}
+
+# h5 DATASET: its values, one a line.
+h5() {
+  h5dump -m '%.17g' -d "$1" -w 1 -y results.h5 |
+    awk '/ DATA {/ {on = 1; next} on && /}/ {exit} on {gsub(/[ ,]/, ""); if ($0 != "") print}'
+}
+
+@test "the columns of an HDF5 file are those of the table, read by the tools of HDF5" {
+  cat >sweep.toml <<SWEEP
+schema = 1
+case = "px4-v1.5.5/flight/tilt_step_30"
+rate = 250
+plant = "ode"
+design = "grid"
+[disperse.gain]
+keys = ["vehicle.parameters.MC_ROLLRATE_P", "vehicle.parameters.MC_PITCHRATE_P"]
+as = "factor"
+distribution = "choice"
+values = [1, -3, 1.1]
+SWEEP
+  "$ATTEST" -q sweep sweep.toml --out out --hdf5 results.h5 --port "lib:$PORTS/port_gains_off.so"
+  [ "$(h5 sample | xargs)" = "0 1 2" ]
+  [ "$(h5 gain | xargs)" = "1 -3 1.1000000000000001" ]
+  [ "$(h5 reference.outcome | xargs)" = "done diverged done" ]
+  local name value
+  for name in reference.tilts port.tilts; do
+    local column
+    column=$(head -1 out/samples.csv | tr , '\n' | grep -nx "$name" | cut -d: -f1)
+    value=$(sed -n 2p out/samples.csv | cut -d, -f"$column")
+    [ "$(h5 "$name" | head -1)" = "$(awk -v value="$value" 'BEGIN {printf "%.17g", value}')" ]
+    [ "$(h5 "$name" | sed -n 2p)" = "nan" ]
+  done
+  run h5dump -A results.h5
+  has "$(sed -n 's/.*"sweep_sha256": "\(.*\)".*/\1/p' out/identity.json)"
+  has '"vehicle.parameters.MC_ROLLRATE_P vehicle.parameters.MC_PITCHRATE_P"'
+  has '"settling_time_s"'
+  has '"crash" '
+}
+
+@test "the HDF5 file is the same for the same table, and a full disk leaves none" {
+  make_sweep 40 </dev/null
+  "$ATTEST" -q sweep sweep.toml --out out --hdf5 one.h5
+  sleep 1.1 # time stamps would differ
+  "$ATTEST" -q sweep sweep.toml --out other --hdf5 two.h5 --jobs 2
+  cmp one.h5 two.h5
+  run bash -c "ulimit -f 4; exec \"$ATTEST\" sweep sweep.toml --out out --hdf5 full.h5"
+  [ "$status" -eq 2 ]
+  has "full.h5"
+  [ ! -e full.h5 ]
+}
+
+@test "attest does not load HDF5 until it is asked for" {
+  run ldd "$ATTEST"
+  lacks hdf5
+}

@@ -74,7 +74,7 @@ std::string_view name_of(LinePattern pattern) {
 }
 
 std::string_view name_of(PlotShape shape) {
-  constexpr std::array<std::string_view, 4> names = {"line", "steps", "bars", "points"};
+  constexpr std::array<std::string_view, 5> names = {"line", "steps", "bars", "points", "scatter"};
   return names[static_cast<std::size_t>(shape)];
 }
 

@@ -82,9 +82,10 @@ struct PlotBand {
 
 enum class PlotShape {
   line,
-  steps,   // a value holds until the next x
-  bars,    // a filled step down to the axis; the last y of a series only ends the last bar
-  points,  // a symbol for each series
+  steps,    // a value holds until the next x
+  bars,     // a filled step down to the axis; the last y of a series only ends the last bar
+  points,   // a symbol for each series
+  scatter,  // the same, but dots for the first series, and without the value 0
 };
 
 // A vertical line: the first deviation, a budget.

@@ -6,6 +6,8 @@
   const palette = ['expected', 'got', 'broken', 'pass', 'quiet', 'text'];
   const patterns = {solid: null, dashed: [7, 3], dotted: [2, 3]};
 
+  const isOfPoints = (shape) => shape === 'points' || shape === 'scatter';
+
   // A sixth series has the first colour again, so its line is dashed.
   const styleOf = ({colour: number, pattern}) => ({
     colour: colour(palette[number % palette.length]),
@@ -144,11 +146,25 @@
     }
   };
 
+  // Many dots: where they are dense, the colour is dark.
+  const drawDots = ({style}) => ({drawingContext: context, points}) => {
+    context.fillStyle = style.colour;
+    context.globalAlpha = 0.45;
+    for (const {canvasx, canvasy} of points) {
+      if (!Number.isFinite(canvasy)) continue;
+      context.beginPath();
+      context.arc(canvasx, canvasy, 2, 0, 7);
+      context.fill();
+    }
+    context.globalAlpha = 1;
+  };
+
   const seriesOptions = ({shape}, series, i) => {
     const {colour: color, pattern, width} = series.style;
     const options = {color, strokePattern: pattern, strokeWidth: width};
     if (shape === 'bars') return {...options, plotter: drawBars(series)};
-    if (shape === 'points') return {...options, plotter: drawPoints(series, i)};
+    if (shape === 'scatter' && i === 0) return {...options, plotter: drawDots(series)};
+    if (isOfPoints(shape)) return {...options, plotter: drawPoints(series, i)};
     return options;
   };
 
@@ -194,8 +210,10 @@
     return key;
   };
 
-  const symbolKey = ({style}, i) => {
-    const key = element('span', {}, ['\u25cb', '\u25a1', '\u25b3', '\u2715'][i % 4]);
+  const symbolKey = ({style}, i, shape) => {
+    const isDot = shape === 'scatter' && i === 0;
+    const symbol = isDot ? '\u25cf' : ['\u25cb', '\u25a1', '\u25b3', '\u2715'][i % 4];
+    const key = element('span', {}, symbol);
     key.style.color = style.colour;
     return key;
   };
@@ -204,7 +222,9 @@
   const legendOf = (plot, toggle) => {
     const values = plot.series.map(() => element('span', {className: 'at-cursor'}));
     const buttons = plot.series.map((series, i) => {
-      const key = plot.shape === 'points' ? symbolKey(series, i) : keyOf(series, plot.shape);
+      const key = isOfPoints(plot.shape)
+        ? symbolKey(series, i, plot.shape)
+        : keyOf(series, plot.shape);
       const button = element('button', {type: 'button'}, key, `${series.name} `, values[i]);
       button.setAttribute('aria-pressed', 'true');
       button.addEventListener('click', () => {
@@ -222,7 +242,7 @@
       plot.series.forEach((series, i) => {
         const at = nearest(series.x, x);
         const value = series.y[at];
-        const isGap = plot.shape === 'points' && Number.isNaN(value);
+        const isGap = isOfPoints(plot.shape) && Number.isNaN(value);
         values[i].textContent = isGap ? '-' : shown(value);
       });
       place.textContent = `at ${shown(x)}`;

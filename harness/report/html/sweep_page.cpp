@@ -11,6 +11,7 @@
 
 #include "harness/core/version.hpp"
 #include "harness/report/failure_text.hpp"
+#include "harness/report/html/plot_bounds.hpp"
 #include "harness/report/html/plot_page.hpp"
 #include "harness/report/sweep_text.hpp"
 #include "harness/report/text.hpp"
@@ -108,24 +109,14 @@ PageTable failing_table(const SweepRun& run, const std::vector<Line>& lines) {
   return table;
 }
 
-// A bound that is infinite is drawn at the outermost value.
 PlotBand bounds_of(const Metric& metric, const std::vector<PlotSeries>& series) {
   double first = std::numeric_limits<double>::max(), last = 0;
-  double low = metric.min, high = metric.max;
-  double lowest = std::numeric_limits<double>::max(), highest = -lowest;
   for (const PlotSeries& one : series) {
-    for (std::size_t i = 0; i < one.x.size(); ++i) {
-      first = std::min(first, one.x[i]);
-      last = std::max(last, one.x[i]);
-      if (!std::isfinite(one.y[i])) continue;
-      lowest = std::min(lowest, static_cast<double>(one.y[i]));
-      highest = std::max(highest, static_cast<double>(one.y[i]));
-    }
+    first = std::min(first, one.x.front());
+    last = std::max(last, one.x.back());
   }
-  if (std::isinf(low)) low = std::min(lowest, high);
-  if (std::isinf(high)) high = std::max(highest, low);
-  const auto from = static_cast<float>(low), to = static_cast<float>(high);
-  return {"within bounds", {first, last}, {from, from}, {to, to}};
+  const auto [low, high] = drawn_bounds(metric.min, metric.max, series);
+  return {"within bounds", {first, last}, {low, low}, {high, high}};
 }
 
 Plot metric_plot(const Metric& metric, std::size_t number, const std::vector<Line>& lines) {

@@ -25,6 +25,24 @@ std::vector<std::vector<double>> all_points(const Design& design, const std::str
   return all;
 }
 
+TEST(Saltelli, ABlockIsTwoPointsAndTheirMixtures) {
+  const Design design = design_of(DesignKind::saltelli, 50, 3);
+  const auto all = all_points(design);
+  for (std::size_t begin = 0; begin < all.size(); begin += 5) {
+    const auto &a = all[begin], &b = all[begin + 1];
+    for (std::size_t i = 0; i < 3; ++i) {
+      auto mixed = a;
+      mixed[i] = b[i];
+      EXPECT_NE(a[i], b[i]);
+      EXPECT_EQ(all[begin + 2 + i], mixed);
+      EXPECT_EQ(design.with_seeds(begin + 2 + i), begin);
+      EXPECT_FALSE(design.is_judged(begin + 2 + i));
+    }
+    EXPECT_EQ(design.with_seeds(begin + 1), begin + 1);
+    EXPECT_TRUE(design.is_judged(begin) && design.is_judged(begin + 1));
+  }
+}
+
 class EveryDesign : public testing::TestWithParam<DesignKind> {
  protected:
   static Design design() {
@@ -36,7 +54,7 @@ class EveryDesign : public testing::TestWithParam<DesignKind> {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryDesign,
                          testing::Values(DesignKind::monte_carlo, DesignKind::latin_hypercube,
-                                         DesignKind::sobol, DesignKind::grid),
+                                         DesignKind::sobol, DesignKind::grid, DesignKind::saltelli),
                          [](const auto& kind) { return std::string(name_of(kind.param)); });
 
 TEST_P(EveryDesign, APointDependsOnItsIndexOnly) {

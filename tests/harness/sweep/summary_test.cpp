@@ -53,6 +53,36 @@ TEST_F(SummaryTest, ARequirementIsMetWhenItsIntervalIsAboveTheNeededProbability)
   EXPECT_EQ(summary().requirements[0].decision, RequirementVerdict::not_met);
 }
 
+TEST_F(SummaryTest, AnEarlyStopHasSequentialIntervalsAndTests) {
+  for (int i = 0; i < 400; ++i) add(i, i < 380 ? 1 : 3);
+  add_port([](std::size_t i) { return i < 390 ? 1.01 : 1; });
+  const SweepSummary fixed = summary();
+  sweep_.stop_when_decided = true;
+  sweep_.design.samples = 1000;
+  const SweepSummary sequential = summary();
+  EXPECT_EQ(sequential.planned, 1000u);
+  EXPECT_LT(sequential.requirements[0].probability.low, fixed.requirements[0].probability.low);
+  EXPECT_EQ(sequential.requirements[0].decision, RequirementVerdict::met);
+  EXPECT_GT(sequential.port->metrics[0].p_value, fixed.port->metrics[0].p_value);
+}
+
+// The other samples of a block share their numbers.
+TEST_F(SummaryTest, OfABlockTwoSamplesAreJudged) {
+  sweep_.design = {DesignKind::saltelli, 300, 1, {}, {}};
+  sweep_.dispersions.resize(1);
+  for (int i = 0; i < 300; ++i) add(i, i % 3 == 2 ? 9 : 1 + 1e-3 * i);
+  add_port([](std::size_t i) { return i % 3 == 2 ? 2 : 1; });
+  const SweepSummary found = summary();
+  EXPECT_EQ(found.requirements[0].held, 200u);
+  EXPECT_EQ(found.requirements[0].count, 200u);
+  EXPECT_EQ(found.requirements[0].worst.front(), 2u);
+  EXPECT_EQ(found.port->metrics[0].count, 200u);
+  EXPECT_EQ(found.port->metrics[0].above, 0u);
+  EXPECT_EQ(found.metrics[0].sobol->blocks, 100u);
+  sweep_.design.kind = DesignKind::monte_carlo;
+  EXPECT_FALSE(summary().metrics[0].sobol);
+}
+
 TEST_F(SummaryTest, AGridIsJudgedByItsPart) {
   sweep_.design.kind = DesignKind::grid;
   for (int i = 0; i < 20; ++i) add(i, i < 18 ? 1 : 3);

@@ -114,13 +114,30 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"[1, 0.5, 0.5, 1]", "[1, 0.5, 0.4, 1]", "s.toml:19:1: needs 2 x 2 numbers"},
         Wrong{"[1, 0.5, 0.5, 1]", "[1, 1.5, 1.5, 1]", "s.toml:19:1: needs 2 x 2 numbers"},
         Wrong{"latin_hypercube", "grid", "a grid has all combinations; leave it out"},
+        Wrong{"latin_hypercube", "saltelli",
+              "s.toml:17:2: Sobol indices need independent dispersions"},
+        Wrong{
+            "latin_hypercube'\nsamples = 100", "saltelli'\nsamples = 101",
+            "s.toml:5:1: must be a multiple of 4: a block is two points, and one more for each of "
+            "2 dispersions"},
         Wrong{"max = 2\n", "", "s.toml:20:10: needs `min` or `max`"},
         Wrong{"max = 2\n", "max = 2\nmin = 3\n", "no number is within these bounds"},
         Wrong{"probability = 0.9", "probability = 1", "must be between 0 and 1"},
         Wrong{"probability = 0.9\n", "", "missing key `probability`"},
         Wrong{"samples = 100", "samples = 100\nconfidence = 1", "s.toml:6:1: must be from 0.5"},
+        Wrong{"samples = 100", "samples = 100\nstop_when_decided = true",
+              "s.toml:6:1: needs independent samples: use the design `monte_carlo`"},
+        Wrong{"samples = 100", "samples = 100\nstop_when_decided = 1", "s.toml:6:1: "},
         Wrong{"samples = 100", "samples = 100\ntie = -1",
               "s.toml:6:1: must be from 0 to below 1"}));
+
+TEST(SweepFile, AnEarlyStopNeedsARequirement) {
+  std::string text = with("'latin_hypercube'", "'monte_carlo'\nstop_when_decided = true");
+  EXPECT_TRUE(parse_sweep(text, "s.toml")->stop_when_decided);
+  text.resize(text.find("[require"));
+  EXPECT_THAT(parse_sweep(text, "s.toml").error().to_string(),
+              HasSubstr("s.toml:5:1: needs a requirement: [require.NAME]"));
+}
 
 TEST(SweepFile, AMatrixThatIsNotPositiveDefiniteIsRefused) {
   const std::string third =

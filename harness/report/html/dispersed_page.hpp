@@ -1,0 +1,26 @@
+// The page of `attest sweep --html`.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "harness/sweep/flight_sampler.hpp"
+#include "harness/sweep/identity.hpp"
+#include "harness/sweep/summary.hpp"
+
+namespace attest {
+
+struct DispersedRun {
+  const FlightSampler& sampler;
+  const SampleColumns& columns;
+  const SampleData& data;
+  const SweepSummary& summary;
+  const SweepIdentity& identity;
+  std::filesystem::path kept;  // the folder of keep_flights(); empty: none are kept
+};
+
+// Requirements, metrics, differences from the reference, sensitivities and worst flights as tables;
+// distributions, and metrics over dispersions, as plots. A few megabytes for any number of samples.
+std::string dispersed_page(const DispersedRun& run);
+
+}  // namespace attest

@@ -1,0 +1,30 @@
+// The plots of a dispersed sweep. What is drawn does not grow with the number of samples.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "harness/report/html/plot_page.hpp"
+#include "harness/sweep/summary.hpp"
+
+namespace attest {
+
+// Of a distribution: more values are drawn as quantiles, with the outermost ones as they are.
+inline constexpr std::size_t most_drawn_quantiles = 900;
+inline constexpr std::size_t drawn_tail = 50;  // values at each end
+// Of a scatter plot: a random choice of the samples, and the worst ones.
+inline constexpr std::size_t most_drawn_samples = 1000;
+// On the page: those of the pairs with the strongest rank correlation.
+inline constexpr std::size_t most_scatter_plots = 48;
+
+struct DispersedPlots {
+  std::vector<PlotGroup> groups;
+  std::size_t scatter_plots = 0;  // without the limit; most_scatter_plots are drawn
+};
+
+// For each metric its cumulative distribution, and that of the difference between the pilots; then
+// metrics over dispersions.
+DispersedPlots dispersed_plots(const SweepFile& sweep, const SampleColumns& columns,
+                               const SampleData& data, const SweepSummary& summary);
+
+}  // namespace attest

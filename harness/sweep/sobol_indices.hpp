@@ -1,0 +1,34 @@
+// Which dispersion causes how much of the variance of a metric, of a sweep with the design
+// `saltelli`.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "harness/sweep/statistics.hpp"
+
+namespace attest {
+
+// Shares of the variance: of the dispersion alone, and with all its interactions.
+struct SobolIndex {
+  double first = 0, total = 0;
+  Interval first_interval, total_interval;
+};
+
+struct SobolIndices {
+  std::uint64_t blocks = 0;            // that were used
+  std::uint64_t left_out = 0;          // a metric in them is infinite or missing
+  std::vector<SobolIndex> dimensions;  // empty: too few blocks, or the metric does not vary
+};
+
+// `values`: one for each sample, in the order of the design; an incomplete last block is left out.
+//
+// First-order indices by Saltelli et al., total ones by Jansen (1999): formulas (b) and (f) of
+// table 2 in Saltelli et al., Variance based sensitivity analysis of model output, 2010. The
+// intervals are normal ones with the standard error of the delta method, for independent blocks.
+// Blocks on Sobol points are more even than that, so the intervals are rather too wide.
+SobolIndices sobol_indices(const std::vector<double>& values, std::size_t dimensions,
+                           double confidence);
+
+}  // namespace attest
