@@ -1,6 +1,10 @@
+#include <chrono>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,11 +26,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Waits while another process of this machine makes the table. Empty: interrupted.
+Result<std::optional<SampleTable>> open_table(const SweepPlan& plan, const fs::path& folder,
+                                              const SampleRange& range) {
+  bool is_first = true;
+  while (!interrupted()) {
+    auto table = SampleTable::open(folder / sample_file, plan.columns(), range);
+    if (!table || *table) return table;
+    if (std::exchange(is_first, false)) {
+      fmt::print(stderr, "attest: note: waiting for another `attest sweep` that flies for {}\n",
+                 folder.string());
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  return std::nullopt;
+}
+
 // Flies what is missing in the table.
 Result<void> fly_missing(const SweepPlan& plan, const fs::path& folder, bool quiet) {
   const SampleRange range = range_of(plan.shard, plan.samples());
-  auto table = SampleTable::open(folder / sample_file, plan.columns(), range);
-  if (!table) return tl::unexpected(table.error());
+  auto opened = open_table(plan, folder, range);
+  if (!opened) return tl::unexpected(opened.error());
+  if (!*opened) return {};
+  SampleTable* const table = &**opened;
   Progress progress(range.size(), Progress::on_stderr(quiet), table->next() - range.begin);
   const auto on_row = [&](const std::string& row) -> Result<void> {
     const std::string sample = fmt::format("sample {}", table->next());
@@ -37,7 +59,7 @@ Result<void> fly_missing(const SweepPlan& plan, const fs::path& folder, bool qui
       !flown) {
     return flown;
   }
-  return table->finish();
+  return interrupted() ? Result<void>() : table->finish();
 }
 
 std::vector<std::uint64_t> worst_samples_of(const SweepSummary& summary) {
