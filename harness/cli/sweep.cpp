@@ -12,6 +12,7 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/outputs.hpp"
+#include "harness/cli/shard_plan.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/cli/sweep_plan.hpp"
 #include "harness/core/file.hpp"
@@ -49,6 +50,9 @@ Result<void> fly_missing(const SweepPlan& plan, const fs::path& folder, bool qui
   if (!opened) return tl::unexpected(opened.error());
   if (!*opened) return {};
   SampleTable* const table = &**opened;
+  if (const auto flown = table->next() - range.begin; flown > 0 && flown < range.size() && !quiet) {
+    fmt::print(stderr, "attest: note: continues after {} of {} samples\n", flown, range.size());
+  }
   Progress progress(range.size(), Progress::on_stderr(quiet), table->next() - range.begin);
   const auto on_row = [&](const std::string& row) -> Result<void> {
     const std::string sample = fmt::format("sample {}", table->next());
@@ -114,6 +118,12 @@ int sweep_command(const SweepOptions& options, const Globals& globals) {
   if (auto checked = check_folders(options, *suite); !checked) return report_error(checked.error());
   const auto plan = plan_sweep(options, *suite);
   if (!plan) return report_error(plan.error());
+  if (!options.plan.empty()) {
+    const auto planned = plan_shards(*plan, options, globals);
+    if (!planned) return report_error(planned.error());
+    if (!globals.quiet) fmt::print("{}\n", *planned);
+    return exit_ok;
+  }
   if (!options.merge.empty()) {
     const auto merged = merge_shards({options.merge.begin(), options.merge.end()}, plan->identity,
                                      plan->columns(), plan->samples(), options.out);
