@@ -58,6 +58,12 @@ std::string difference(const SweepIdentity& found, const SweepIdentity& expected
   return first_difference(found, expected, false);
 }
 
+std::string identity_text(const SweepIdentity& identity) {
+  nlohmann::ordered_json json;
+  for (const Named& named : identity_members) json[named.key] = identity.*named.member;
+  return json.dump(2) + "\n";
+}
+
 Result<SweepIdentity> read_identity(const fs::path& folder) {
   const fs::path file = folder / identity_file;
   const auto text = read_file(file);
@@ -95,9 +101,7 @@ Result<void> claim_folder(const fs::path& folder, const SweepIdentity& identity)
                    "has other files, and no results of a sweep; name an empty or new folder with "
                    "--out");
   }
-  nlohmann::ordered_json json;
-  for (const Named& named : identity_members) json[named.key] = identity.*named.member;
-  return write_file(folder / identity_file, json.dump(2) + "\n");
+  return write_file(folder / identity_file, identity_text(identity));
 }
 
 }  // namespace attest
