@@ -112,10 +112,9 @@ std::string row_of(const char* what, const std::optional<Cost>& cost, double mos
   }
   const bool holds = cost->seconds <= bound_s && (most_mb == 0 || cost->peak_mb <= most_mb);
   met = met && holds;
-  return fmt::format("| {} | {:.2f} s | {:.0f} MB | at most {:g} s{} | {} |\n", what, cost->seconds,
-                     cost->peak_mb, bound_s,
-                     most_mb == 0 ? "" : fmt::format(" and {:g} MB", most_mb),
-                     holds ? "met" : "MISSED");
+  return fmt::format(
+      "| {} | {:.2f} s | {:.0f} MB | at most {:g} s{} | {} |\n", what, cost->seconds, cost->peak_mb,
+      bound_s, most_mb == 0 ? "" : fmt::format(" and {:g} MB", most_mb), holds ? "met" : "MISSED");
 }
 
 }  // namespace
@@ -138,9 +137,10 @@ std::string shards_table(bool& met) {
   cost_of(with({"--samples", "1", "--out", top / "one"}));
   make_up_rows(plan / "shards", columns_of(top / "one"));
   const auto merged = cost_of(with({"--merge", plan / "shards", "--out", top / "merged"}));
-  return fmt::format("| {} samples in {} shards | time | peak memory | claimed | |\n"
-                     "|---|---|---|---|---|\n",
-                     samples, shards) +
+  return fmt::format(
+             "| {} samples in {} shards | time | peak memory | claimed | |\n"
+             "|---|---|---|---|---|\n",
+             samples, shards) +
          row_of("planned", planned, bound_mb, met) +
          row_of("merged, with the report; the rows are made up", merged, 0, met);
 }

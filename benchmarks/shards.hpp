@@ -1,5 +1,5 @@
-// The claims about a sweep that many machines fly. Each is of one run of the program, so it is not a
-// benchmark.
+// The claims about a sweep that many machines fly. Each is of one run of the program, so it is not
+// a benchmark.
 #pragma once
 
 #include <string>
