@@ -1,9 +1,10 @@
 // The results of a sweep as a CSV file: a row for each sample, in the order of their indices.
 //
-// Rows are appended to an unfinished table, which has another name: "samples.csv.part-1f0c9a7e".
-// When it is complete, it is renamed. So `samples.csv` is complete or missing, and has the same
-// bytes whether the sweep was interrupted or not. After a kill the last line of the unfinished
-// table may be incomplete; it is dropped when the table is continued.
+// Rows are appended to an unfinished table, which has another name:
+// "samples.csv.part-node7-1f0c9a7e". When it is complete, it is renamed. So `samples.csv` is
+// complete or missing, and has the same bytes whether the sweep was interrupted or not. After a
+// kill the last line of the unfinished table may be incomplete; it is dropped when the table is
+// continued.
 //
 // Several machines may make the same table at the same time in a shared folder, for example if a
 // cluster starts a shard again while its lost node still works. Each has an unfinished table of its

@@ -1,5 +1,6 @@
 // SampleTable: the rows of an unfinished table.
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <random>
 #include <system_error>
@@ -85,11 +86,14 @@ Result<void> copy_from(const Source& source, int descriptor, const fs::path& par
   return tl::unexpected(table_error(part, "cannot be written"));
 }
 
-// The identity of this start of this machine. All its containers have the same one, and see the
-// same locks.
+// Two processes with the same name see each other's locks: the start of the machine, and the host
+// name, because copies of a virtual machine may share the first.
 std::string this_machine() {
   constexpr std::size_t enough = 8;
-  return read_file("/proc/sys/kernel/random/boot_id").value_or("unknown").substr(0, enough);
+  std::array<char, 256> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  const auto boot = read_file("/proc/sys/kernel/random/boot_id").value_or("unknown");
+  return fmt::format("{}-{}", host.data(), boot.substr(0, enough));
 }
 
 }  // namespace
