@@ -132,6 +132,11 @@ BENCHMARK_CAPTURE(flight, at_1000, Rate::hz(1000), false)->Name("flight/1000hz")
 BENCHMARK_CAPTURE(bare_steps, at_1000, Rate::hz(1000))->Name("mj_step/1000hz")->UseManualTime();
 BENCHMARK_CAPTURE(flight, cascade, cascade_rate(), false)->Name("flight/cascade")->UseManualTime();
 BENCHMARK_CAPTURE(bare_steps, cascade, cascade_rate())->Name("mj_step/cascade")->UseManualTime();
+// As many as the flights of a sweep.
+BENCHMARK_CAPTURE(bare_steps, of_sweep, Rate::hz(250))
+    ->Name("sweep/mj_step")
+    ->UseManualTime()
+    ->Iterations(64);
 BENCHMARK(set_up)->Name("plant/set_up");
 BENCHMARK(bare_set_up)->Name("mujoco/set_up");
 

@@ -24,10 +24,14 @@ std::string duration(double seconds) {
   return fmt::format("{:.2f} s", seconds);
 }
 
-// The median and the quartiles of the turns.
-std::string spread(const std::vector<double>& values) {
-  return fmt::format("{} ({} .. {})", duration(median(values)), duration(quantile(values, 0.25)),
-                     duration(quantile(values, 0.75)));
+// The median and the quartiles of the turns, as times or as speeds.
+std::string spread(const std::vector<double>& seconds, const std::string& speed) {
+  const double middle = median(seconds);
+  const double low = quantile(seconds, 0.25), high = quantile(seconds, 0.75);
+  if (speed.empty()) {
+    return fmt::format("{} ({} .. {})", duration(middle), duration(low), duration(high));
+  }
+  return fmt::format("{:.1f} {} ({:.1f} .. {:.1f})", 1 / middle, speed, 1 / high, 1 / low);
 }
 
 // Applies `of` to the two times of each turn.
@@ -60,8 +64,11 @@ std::vector<Group> groups(const std::string& filter) {
   return out;
 }
 
-// Few turns for the suite: each of its runs takes half a minute.
-int turns(const std::string& floor) { return floor.starts_with("suite/") ? 3 : 101; }
+// Few turns for the suite and for sweeps: their runs take half a minute, or seconds.
+int turns(const std::string& floor) {
+  if (floor.starts_with("suite/")) return 3;
+  return floor.starts_with("sweep/") ? 11 : 101;
+}
 
 }  // namespace
 
@@ -116,6 +123,12 @@ const std::vector<Pair>& pairs() {
        "at most 1.25x the bare steps"},
       {"flight of the cascade, 250 Hz and 1 kHz, MuJoCo at 1 kHz", "flight/cascade",
        "mj_step/cascade", 1.25, "at most 1.25x the bare steps"},
+      {"flight of a sweep, one job", "sweep/reference", "sweep/mj_step", 1.10,
+       "at most 1.10x the bare steps", 0, 0, "flights/s"},
+      {"flight of a sweep with a port, one job", "sweep/with_port", "sweep/mj_step", 1.10,
+       "at most 1.10x the bare steps", 0, 0, "flights/s"},
+      {"flight of a sweep, 2 jobs", "sweep/two_jobs", "sweep/one_job", 1 / 1.95,
+       "at least 1.95x the speed of 1 job", 0, 0, "flights/s"},
       {"ode plant, 1 s at 1 kHz", "ode/plant", "ode/erkstep", 1.10, "at most 1.10x bare ERKStep"},
       {"plant made and reset", "plant/set_up", "mujoco/set_up", 0,
        "within 100 us of MuJoCo's own time", 100e-6},
@@ -177,9 +190,9 @@ std::string PairReporter::table(bool& met) const {
     met = met && holds;
     const std::string bound = pair.bound > 0 ? fmt::format("{:.3f}: ", pair.bound) : "";
     out += fmt::format("| {} | {} | {} | {:.3f} ({:.3f} .. {:.3f}) | {}{} | {} |\n", pair.what,
-                       spread(measured->seconds), spread(floor->seconds), median(ratios),
-                       quantile(ratios, 0.25), quantile(ratios, 0.75), bound, pair.claim,
-                       holds ? "met" : "MISSED");
+                       spread(measured->seconds, pair.speed), spread(floor->seconds, pair.speed),
+                       median(ratios), quantile(ratios, 0.25), quantile(ratios, 0.75), bound,
+                       pair.claim, holds ? "met" : "MISSED");
   }
   return out;
 }

@@ -14,10 +14,11 @@ struct Pair {
   std::string what;      // "controller step"
   std::string measured;  // names of the two benchmarks
   std::string floor;
-  double bound;          // of measured time / floor time; 0: one of the bounds below
-  std::string claim;     // the bound in words: "at most 1.15x the hand-written law"
-  double beyond_s = 0;   // bound of the difference of the two times
-  double at_most_s = 0;  // bound of the measured time; the floor shows what the machine adds
+  double bound;            // of measured time / floor time; 0: one of the bounds below
+  std::string claim;       // the bound in words: "at most 1.15x the hand-written law"
+  double beyond_s = 0;     // bound of the difference of the two times
+  double at_most_s = 0;    // bound of the measured time; the floor shows what the machine adds
+  std::string speed = {};  // "flights/s": the table shows speeds of this unit instead of times
 
   // `measured_s` and `floor_s`: the times of each turn.
   bool is_met(const std::vector<double>& measured_s, const std::vector<double>& floor_s) const;

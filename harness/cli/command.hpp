@@ -163,7 +163,8 @@ int sweep_rate_command(const RateSweepOptions& options, const Globals& globals);
 
 struct SweepOptions {
   std::string file;
-  HostOptions host;  // with the port `builtin` only the reference flies
+  std::string vehicle, plant;  // empty: those of the file
+  HostOptions host;            // with the port `builtin` only the reference flies
   int jobs = 1;
   std::uint64_t samples = 0;  // 0: those of the file
   std::string shard = "1/1";

@@ -139,6 +139,8 @@ Command command_of(const SweepPlan& plan, const SweepOptions& options, const Glo
   const auto add = [](std::vector<std::string>& to, const char* option, const std::string& value) {
     to.insert(to.end(), {option, value});
   };
+  if (!options.vehicle.empty()) add(command.sweep, "--vehicle", options.vehicle);
+  if (!options.plant.empty()) add(command.sweep, "--plant", options.plant);
   if (options.samples != 0) add(command.sweep, "--samples", fmt::to_string(options.samples));
   if (plan.flights.with_port) add(command.sweep, "--port", options.host.port);
   if (options.host.timeout_s != default_timeout_s) {

@@ -99,10 +99,12 @@ CLI::Option* add_rates(CLI::App& command, std::vector<std::string>& rates, const
       ->allow_extra_args(false);
 }
 
-void add_plant(CLI::App& command, std::string& vehicle, std::string& plant) {
-  command.add_option("--vehicle", vehicle, "One of `attest list --vehicles`; default: the case's")
+void add_plant(CLI::App& command, std::string& vehicle, std::string& plant, const char* usual) {
+  command
+      .add_option("--vehicle", vehicle,
+                  fmt::format("One of `attest list --vehicles`; default: {}", usual))
       ->type_name("VEHICLE");
-  command.add_option("--plant", plant, "`mujoco` or `ode`; default: the case's first")
+  command.add_option("--plant", plant, fmt::format("`mujoco` or `ode`; default: {}", usual))
       ->type_name("PLANT");
 }
 

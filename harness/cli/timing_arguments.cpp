@@ -204,6 +204,7 @@ void add_sweep(CLI::App& app, const Globals& globals, Action& action) {
                    "The sweep (TOML): case, dispersions, design, requirements")
       ->type_name("SWEEP.toml")
       ->required();
+  add_plant(*command, options->vehicle, options->plant, "that of the file");
   add_port(*command, options->host.port);
   command
       ->add_option("--out", options->out,

@@ -99,17 +99,15 @@ Result<Child> Child::spawn(Runs runs, const std::function<void(MessageSocket&)>&
     return fail(fmt::format("cannot open the files of a process: {}{}", std::strerror(reason),
                             reason == EMFILE ? " (`ulimit -n` limits how many are open)" : ""));
   }
-  auto process = Process::start(
-      [&] {
-        ::close(ends[0]);
-        keep_only(nothing, output, ends[1]);
-        if (runs == Runs::code_of_others) {
-          limit_files();
-          limit_memory();
-        }
-        work_and_end(work, ends[1]);
-      },
-      runs == Runs::code_of_others);
+  auto process = Process::start([&] {
+    ::close(ends[0]);
+    keep_only(nothing, output, ends[1]);
+    if (runs == Runs::code_of_others) {
+      limit_files();
+      limit_memory();
+    }
+    work_and_end(work, ends[1]);
+  });
   close_all({nothing, ends[1]});
   if (process) return Child(*std::move(process), MessageSocket(ends[0]), output);
   close_all({ends[0], output});

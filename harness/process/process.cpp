@@ -31,9 +31,6 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-// The kernel ends a killed process immediately, unless the process waits for a device.
-constexpr double time_to_die_s = 5;
-
 // Polls `happened`, at first with short pauses, because most processes end within a millisecond.
 template <typename Happened>
 bool happens_within(double seconds, Happened&& happened) {
@@ -152,6 +149,9 @@ void end_orphans() {
 
 // ---- the guard ----------------------------------------------------------------------------------
 
+// True below a guard.
+bool is_guarded = false;
+
 // The guard is the parent of the process, and of all descendants that have lost their parents. It
 // has a group of its own, so that signals that the process sends to its group do not reach it. All
 // its signals are blocked. It takes these: SIGCHLD; SIGTERM, which it passes on to the group; and
@@ -201,6 +201,7 @@ std::optional<int> status_of(pid_t leader, pid_t owner) {
   const pid_t self = ::getpid(), leader = ::fork();
   if (leader == 0) {
     ::close(ready);
+    is_guarded = true;
     lead_group(self, work);
   }
   const int reason = leader > 0 ? 0 : errno;
@@ -251,25 +252,13 @@ pid_t start_alone(const std::function<void()>& work) {
 
 }  // namespace
 
-bool Ending::is_success() const {
-  return wait_status && WIFEXITED(*wait_status) && WEXITSTATUS(*wait_status) == EXIT_SUCCESS;
-}
-
-std::string Ending::to_string() const {
-  if (!wait_status) return fmt::format("did not end within {} s of SIGKILL", time_to_die_s);
-  if (WIFSIGNALED(*wait_status)) {
-    const int signal = WTERMSIG(*wait_status);
-    return fmt::format("was killed by signal {} ({})", signal, ::strsignal(signal));
-  }
-  return fmt::format("exited with status {}", WEXITSTATUS(*wait_status));
-}
-
-Result<Process> Process::start(const std::function<void()>& work, bool with_guard) {
+Result<Process> Process::start(const std::function<void()>& work) {
   // Otherwise a child that calls exit() would print the unflushed output of the parent, too.
   std::fflush(nullptr);
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   const SignalsBlocked blocked;
   const std::lock_guard lock(owned().mutex);
+  const bool with_guard = !is_guarded;
   const pid_t started = with_guard ? start_guarded(work) : start_alone(work);
   const int reason = errno;
   if (started > 0) {

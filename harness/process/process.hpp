@@ -2,34 +2,22 @@
 #pragma once
 
 #include <functional>
-#include <optional>
-#include <string>
 
 #include <sys/types.h>
 
 #include "harness/core/result.hpp"
+#include "harness/process/ending.hpp"
 
 namespace attest {
-
-// How a process ended.
-struct Ending {
-  bool was_killed = false;         // by us
-  std::optional<int> wait_status;  // of waitpid(); empty: not even SIGKILL ended it in time
-
-  bool is_success() const;  // it exited with status 0
-
-  // As a verb: "was killed by signal 11 (Segmentation fault)", "exited with status 0".
-  std::string to_string() const;
-};
 
 // The process leads a process group of its own. Its descendants end with it, also those in other
 // groups or sessions (daemons). No member function waits longer than its argument and a few
 // seconds.
 //
-// When this process dies, even by SIGKILL, the process ends too. Its descendants then end only if
-// there is a guard: a process of attest between this one and the process, which becomes the parent
-// of all descendants whose parents have ended. Code of others needs the guard. Code of attest
-// starts only Processes, which end with their parent.
+// When this process dies, even by SIGKILL, the process and its descendants end too. That is the
+// work of a guard: a process of attest between this one and the process, which becomes the parent
+// of all descendants whose parents have ended. A process below a guard starts others without a
+// guard of their own.
 //
 // One thread at a time. The thread that calls start() must live as long as the Process, because
 // Linux treats the end of that thread as the death of the parent.
@@ -37,7 +25,7 @@ class Process {
  public:
   // Forks. `work` runs in the child, which then exits with status 0. The child starts with default
   // signal handlers and an empty signal mask, and leaves no core file. `work` must not throw.
-  static Result<Process> start(const std::function<void()>& work, bool with_guard = true);
+  static Result<Process> start(const std::function<void()>& work);
 
   Process() = default;  // none, same as after end()
   Process(Process&& other) noexcept;

@@ -78,6 +78,17 @@ FAKE
   has "is of another sweep"
 }
 
+@test "the options of a plan are those of its shards and its merge" {
+  local options=(--samples 6 --vehicle hexa --plant ode --timeout 40 --port "lib:$STARTER")
+  "$ATTEST" --suite "$SOURCE" -q sweep "$sweep" "${options[@]}" --out one
+  "$ATTEST" --suite "$SOURCE" -q sweep "$sweep" "${options[@]}" --plan slurm --shards 2 --out plan
+  for shard in 1 2; do plan/shard $shard; done
+  run plan/merge
+  [ "$status" -eq 0 ]
+  diff -r one plan/results
+  grep -q -- "--timeout 40 --jobs 1" plan/shard
+}
+
 @test "the jobs of GitHub and GitLab give the bytes of one machine" {
   "$PYTHON" -c "import yaml" 2>/dev/null || skip "no python3-yaml"
   "$ATTEST" -q sweep "$sweep" --out one

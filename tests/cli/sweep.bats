@@ -203,10 +203,18 @@ C
 max = 1.2
 probability = 0.9
 MORE
-  for plant in mujoco ode; do
-    "$ATTEST" sim flight/tilt_step_30 --rate 250 --vehicle iris --plant $plant --out f.csv \
-      --port "lib:$PORTS/port_gains_off.so"
-  done
+  # Five single flights hold the bounds of their case.
+  local vehicle plant
+  while read -r vehicle plant; do
+    "$ATTEST" -q sim flight/tilt_step_30 --rate 250 --vehicle $vehicle --plant $plant \
+      --out f.csv --port "lib:$PORTS/port_gains_off.so"
+  done <<FLIGHTS
+iris mujoco
+iris ode
+hexa mujoco
+hummingbird mujoco
+crazyflie2 ode
+FLIGHTS
   run "$ATTEST" sweep sweep.toml --out off --jobs 2 --port "lib:$PORTS/port_gains_off.so"
   [ "$status" -eq 1 ]
   has "The port differs from the reference: "
@@ -301,4 +309,14 @@ SWEEP
   has "cannot be written: File too large"
   "$ATTEST" -q sweep sweep.toml --out out
   same whole out
+}
+
+@test "the options replace vehicle and plant of the file" {
+  make_sweep 2 </dev/null
+  run "$ATTEST" sweep sweep.toml --out out --vehicle hexa --plant ode
+  [ "$status" -eq 0 ]
+  has "tilt_step_30@250hz-hexa-ode: 2 samples"
+  run "$ATTEST" sweep sweep.toml --out out
+  [ "$status" -eq 2 ]
+  has "out: has the results of another sweep"
 }

@@ -186,21 +186,24 @@ TEST(Child, CodeOfOursHasNoLimits) {
   EXPECT_THAT(said(child), Optional(std::string("none")));
 }
 
-// The socket stays open while a process that the child started holds it.
-// A guard would end that process.
+// What a child says that dies while a process that it started holds its socket. In a process below
+// the guard: the guard of a child would end that process.
+std::string seen_of_a_death() {
+  Child child = spawned([](MessageSocket& parent) {
+    if (::fork() == 0) {
+      while (true) ::pause();
+    }
+    parent.send("last");
+    ::_exit(7);
+  });
+  const std::string last = said(child).value_or("nothing");
+  const bool has_ended = child.receive(Patience::seconds(patience_s)).kind == Received::Kind::ended;
+  return fmt::format("{}, {}, {}", last, has_ended ? "ended" : "not ended", child.end());
+}
+
 TEST(Child, ItsDeathIsSeenAlthoughWhatItStartedLivesOn) {
-  Child child = spawned(
-      [](MessageSocket& parent) {
-        if (::fork() == 0) {
-          while (true) ::pause();
-        }
-        parent.send("last");
-        ::_exit(7);
-      },
-      Child::Runs::our_code);
-  EXPECT_THAT(said(child), Optional(std::string("last")));
-  EXPECT_EQ(child.receive(Patience::seconds(patience_s)).kind, Received::Kind::ended);
-  EXPECT_EQ(child.end(), "exited with status 7");
+  Child outer = spawned([](MessageSocket& parent) { parent.send(seen_of_a_death()); });
+  EXPECT_THAT(said(outer), Optional(std::string("last, ended, exited with status 7")));
 }
 
 TEST(Child, WhatItForksDoesNotAnswerForIt) {

@@ -228,6 +228,35 @@ TEST(Process, ItsDaemonsEndWithItsParent) {
   EXPECT_TRUE(alive.are_gone());
 }
 
+// As a port that a worker started: there is one guard, above both.
+TEST(Process, TheDaemonsOfAProcessBelowAGuardEndWithIt) {
+  Process worker = started([] {
+    Alive alive;
+    Process port = started([&] { stay_with_a_daemon(alive); });
+    const bool were_alive = alive.are_alive(2);
+    port.stop(0);
+    ::_exit(were_alive && alive.are_gone() ? EXIT_SUCCESS : EXIT_FAILURE);
+  });
+  EXPECT_TRUE(worker.end(60).is_success());
+}
+
+TEST(Process, TheDaemonsOfAProcessBelowAGuardEndWithTheOwnerOfTheGuard) {
+  Alive alive;
+  const pid_t owner = ::fork();
+  if (owner == 0) {
+    const auto worker = Process::start([&] {
+      const auto port = Process::start([&] { stay_with_a_daemon(alive); });
+      stay();
+    });
+    stay();
+  }
+  const bool were_alive = alive.are_alive(2);
+  ::kill(owner, SIGKILL);
+  ::waitpid(owner, nullptr, 0);
+  EXPECT_TRUE(were_alive);
+  EXPECT_TRUE(alive.are_gone());
+}
+
 // Each process is the parent of the next one, so that the death of one makes one orphan.
 TEST(Process, ALongLineOfSessionsEndsWithIt) {
   constexpr int length = 150;

@@ -1,0 +1,123 @@
+"""Flies step_in_wind.toml with the reference on every vehicle: the baseline for ports.
+
+Prints the table of tests/QUALITY.md. --write keeps it as robustness.csv. --check flies one sample
+for each vehicle, and fails if the hash of a sweep is not that of robustness.csv: the sweep file,
+the case, a vehicle or the numbers of the samples have changed since."""
+
+import argparse
+import csv
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).parent
+SWEEP = HERE / "step_in_wind.toml"
+BASELINE = HERE / "robustness.csv"
+VEHICLES = sorted(path.stem for path in (HERE.parents[1] / "models").glob("*.toml"))
+STATISTICS = ["min", "median", "p95", "p99", "max"]
+
+
+def sweep(attest, vehicle, folder, *options):
+    """Ends with 1 when a requirement is not met, which is a result here."""
+    command = [attest, "-q", "sweep", SWEEP, "--vehicle", vehicle, "--out", folder, *options]
+    if subprocess.run(command).returncode not in (0, 1):
+        sys.exit(f"robustness.py: the sweep of {vehicle} cannot be flown")
+
+
+def rows_of(report, vehicle):
+    """One row for each metric. An infinite number is null in JSON, and empty here."""
+    requirements = {one["metric"]: one for one in report["requirements"]}
+    for metric in report["metrics"]:
+        required = requirements[metric["name"]]
+        low, high = required["interval"]
+        correlation = metric["rank_correlation"]
+        strongest = max(correlation, key=lambda name: abs(correlation[name] or 0))
+        yield {
+            "vehicle": vehicle,
+            "metric": metric["name"],
+            "samples": report["samples"],
+            "lost": report["samples"] - report["outcomes"].get("done", 0),
+            "at_most_s": required["max"],
+            "held": required["held"],
+            "probability_low": f"{low:.4f}",
+            "probability_high": f"{high:.4f}",
+            **{name: "" if metric[name] is None else f"{metric[name]:.4g}" for name in STATISTICS},
+            "strongest_dispersion": strongest,
+            "rank_correlation": f"{correlation[strongest]:+.2f}",
+            "attest": report["attest"],
+            "sweep_sha256": report["sweep_sha256"],
+        }
+
+
+def fly_all(attest, options):
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        for vehicle in VEHICLES:
+            out = pathlib.Path(folder) / vehicle
+            print(f"robustness.py: {vehicle}", file=sys.stderr)
+            sweep(attest, vehicle, out, *options)
+            rows += rows_of(json.loads((out / "report.json").read_text()), vehicle)
+    return rows
+
+
+def print_table(rows):
+    print("| vehicle | metric | flights | lost | held | with probability (0.95) | median [s] "
+          "| strongest dispersion |")
+    print("|---|---|---|---|---|---|---|---|")
+    for row in rows:
+        print(f"| {row['vehicle']} | {row['metric']} | {row['samples']} | {row['lost']} "
+              f"| {row['held']} | {row['probability_low']} to {row['probability_high']} "
+              f"| {row['median']} | {row['strongest_dispersion']} ({row['rank_correlation']}) |")
+
+
+def write(rows):
+    text = BASELINE.with_suffix(".csv.new")
+    with open(text, "w", newline="") as file:
+        table = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
+        table.writeheader()
+        table.writerows(rows)
+    text.replace(BASELINE)
+
+
+def stale_vehicles(attest):
+    """Those whose samples are not those of the baseline."""
+    with open(BASELINE, newline="") as file:
+        baseline = {row["vehicle"]: row for row in csv.DictReader(file)}
+    stale = set(baseline) ^ set(VEHICLES)
+    with tempfile.TemporaryDirectory() as folder:
+        for vehicle in set(baseline) & set(VEHICLES):
+            samples = baseline[vehicle]["samples"]
+            out = pathlib.Path(folder) / vehicle
+            sweep(attest, vehicle, out, "--samples", samples, "--shard", f"1/{samples}")
+            identity = json.loads((out / "identity.json").read_text())
+            if identity["sweep_sha256"] != baseline[vehicle]["sweep_sha256"]:
+                stale.add(vehicle)
+    return sorted(stale)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[1])
+    parser.add_argument("--attest", required=True)
+    parser.add_argument("--samples", help="replaces the number of the sweep file")
+    parser.add_argument("--jobs", default="2")
+    kind = parser.add_mutually_exclusive_group()
+    kind.add_argument("--write", action="store_true", help="replace robustness.csv")
+    kind.add_argument("--check", action="store_true", help="is robustness.csv still true?")
+    arguments = parser.parse_args()
+    if arguments.check:
+        stale = stale_vehicles(arguments.attest)
+        if stale:
+            sys.exit(f"robustness.csv is not of these samples: {', '.join(stale)}; run "
+                     "`ci/quality --sweep`")
+        return
+    samples = ["--samples", arguments.samples] if arguments.samples else []
+    rows = fly_all(arguments.attest, ["--jobs", arguments.jobs, *samples])
+    print_table(rows)
+    if arguments.write:
+        write(rows)
+
+
+if __name__ == "__main__":
+    main()
