@@ -79,7 +79,7 @@ FAKE
 }
 
 @test "the options of a plan are those of its shards and its merge" {
-  local options=(--samples 6 --vehicle hexa --plant ode --timeout 40 --port "lib:$STARTER")
+  local options=(--samples 12 --vehicle hexa --plant ode --timeout 40 --port "lib:$STARTER")
   "$ATTEST" --suite "$SOURCE" -q sweep "$sweep" "${options[@]}" --out one
   "$ATTEST" --suite "$SOURCE" -q sweep "$sweep" "${options[@]}" --plan slurm --shards 2 --out plan
   for shard in 1 2; do plan/shard $shard; done
