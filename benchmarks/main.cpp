@@ -12,6 +12,7 @@
 
 #include "benchmarks/memory.hpp"
 #include "benchmarks/pairs.hpp"
+#include "benchmarks/shards.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/version.hpp"
 
@@ -44,15 +45,17 @@ int main(int argc, char** argv) {
   // First, while this process has not allocated much memory itself.
   const bool of_memory = filter.empty() || filter == "memory";
   const std::string memory = of_memory ? "\n" + attest::bench::memory_table(met) : "";
+  const bool of_shards = filter.empty() || filter == "shards";
+  const std::string shards = of_shards ? "\n" + attest::bench::shards_table(met) : "";
   attest::bench::PairReporter reporter;
-  if (!attest::bench::run_alternating(filter, reporter) && !of_memory) {
+  if (!attest::bench::run_alternating(filter, reporter) && !of_memory && !of_shards) {
     fmt::print(stderr, "--benchmark_filter={}: no benchmark of that name\n", filter);
     return 2;
   }
   std::string text =
       fmt::format("attest {}, {}, {}, {} processors, {}\n\n{}", attest::version, attest::compiler(),
                   cpu_model(), std::thread::hardware_concurrency(), today(), reporter.table(met)) +
-      memory;
+      memory + shards;
   fmt::print("{}", text);
   if (const char* const path = std::getenv("ATTEST_BENCH_JSON")) {
     auto file = attest::AtomicFile::open(path);

@@ -45,6 +45,18 @@ function(attest_library name)
                                                                           ${ARG_PRIVATE})
 endfunction()
 
+# attest_embed(SOURCE NAME=FILE ...): the source includes these files (harness/core/embed.hpp).
+# ATTEST_NAME is the path of a file in it.
+function(attest_embed source)
+  foreach(entry IN LISTS ARGN)
+    string(REGEX MATCH "^([^=]+)=(.+)$" entry ${entry})
+    list(APPEND definitions "ATTEST_${CMAKE_MATCH_1}=\"${CMAKE_MATCH_2}\"")
+    list(APPEND files ${CMAKE_MATCH_2})
+  endforeach()
+  set_source_files_properties(${source} PROPERTIES COMPILE_DEFINITIONS "${definitions}"
+                                                   OBJECT_DEPENDS "${files}")
+endfunction()
+
 # Time limits [s]: tens of times the duration of the slowest test with sanitizers on two busy cores.
 # So a test that hangs fails, and a slow machine does not cause failures.
 set(ATTEST_UNIT_TEST_TIMEOUT 600)

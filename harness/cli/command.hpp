@@ -2,6 +2,7 @@
 // returns the exit code. One file a command.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -171,6 +172,8 @@ struct SweepOptions {
   std::string html, hdf5;          // files; empty: none
   int keep_worst = 0;              // of each requirement
   std::vector<std::string> merge;  // folders of shards; empty: fly
+  std::string plan;                // for which program; empty: fly
+  std::size_t shards = 0;          // of the plan
 };
 int sweep_command(const SweepOptions& options, const Globals& globals);
 

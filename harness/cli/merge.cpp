@@ -1,10 +1,12 @@
 // Puts the JSON reports of shards together.
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <set>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -20,6 +22,7 @@
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/version.hpp"
 #include "harness/report/read_report.hpp"
+#include "harness/sweep/identity.hpp"
 
 namespace attest::cli {
 namespace {
@@ -80,6 +83,12 @@ const std::vector<Property>& properties() {
 Result<std::vector<Part>> read_parts(const std::vector<std::string>& files) {
   std::vector<Part> parts;
   for (const std::string& file : files) {
+    std::error_code failed;
+    if (std::filesystem::exists(std::filesystem::path(file) / identity_file, failed)) {
+      return fail_at(file,
+                     "is a folder of `attest sweep`; `attest sweep FILE --merge DIR... --out DIR` "
+                     "joins the shards of a sweep");
+    }
     auto run = read_report(file);
     if (!run) return tl::unexpected(run.error());
     parts.push_back({file, *std::move(run)});

@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include "harness/cli/command.hpp"
+#include "harness/cli/new_folder.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/suggestion.hpp"
 #include "harness/process/program.hpp"
@@ -63,13 +63,6 @@ Result<Parts> parts_of(const Language& language) {
                *data / (is_installed ? "ci" : "ci/examples")};
 }
 
-Result<void> check_folder(const fs::path& folder) {
-  std::error_code ignored;
-  if (!fs::exists(fs::symlink_status(folder, ignored))) return {};
-  if (fs::is_directory(folder, ignored) && fs::is_empty(folder, ignored)) return {};
-  return fail_at(folder.string(), "exists; name a new folder");
-}
-
 // What builds in a starter's folder leave there.
 bool is_build_result(const fs::path& path) {
   const std::string name = path.filename().string();
@@ -107,19 +100,11 @@ Result<Language> make_port(const NewPortOptions& options) {
   if (!language) return language;
   const auto parts = parts_of(*language);
   if (!parts) return tl::unexpected(parts.error());
-  fs::path folder = fs::path(options.folder).lexically_normal();
-  if (!folder.has_filename()) folder = folder.parent_path();  // "mine/"
-  if (auto checked = check_folder(folder); !checked) return tl::unexpected(checked.error());
-  // Made aside and renamed, so that no half of a port is left.
-  const fs::path aside = folder.string() + fmt::format(".part-{}", ::getpid());
-  std::error_code ignored;
-  try {
-    lay_out(*parts, *language, aside);
-    fs::rename(aside, folder);
-  } catch (const fs::filesystem_error& error) {
-    fs::remove_all(aside, ignored);
-    return fail_at(options.folder, fmt::format("cannot be made: {}", error.code().message()));
-  }
+  const auto made = make_new_folder(options.folder, [&](const fs::path& folder) -> Result<void> {
+    lay_out(*parts, *language, folder);
+    return {};
+  });
+  if (!made) return tl::unexpected(made.error());
   return language;
 }
 

@@ -1,6 +1,10 @@
+#include <chrono>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -8,6 +12,7 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/outputs.hpp"
+#include "harness/cli/shard_plan.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/cli/sweep_plan.hpp"
 #include "harness/core/file.hpp"
@@ -32,14 +37,36 @@ SampleRow row_of(std::string_view line, const SampleColumns& columns, std::uint6
   return row;
 }
 
+// Waits while another process of this machine makes the table. Empty: interrupted.
+Result<std::optional<SampleTable>> open_table(const SampleColumns& columns, const fs::path& folder,
+                                              const SampleRange& range, EarlyStop& early) {
+  bool is_first = true;
+  while (!interrupted()) {
+    auto table = SampleTable::open(folder / sample_file, columns, range,
+                                   [&](const SampleRow& row) { early.add(row); });
+    if (!table || *table) return table;
+    if (std::exchange(is_first, false)) {
+      fmt::print(stderr, "attest: note: waiting for another `attest sweep` that flies for {}\n",
+                 folder.string());
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  return std::nullopt;
+}
+
 // Flies what is missing in the table. The end of the samples that are there now.
 Result<std::uint64_t> fly_missing(const SweepPlan& plan, const fs::path& folder, bool quiet) {
   const SampleRange range = range_of(plan.shard, plan.samples());
   const SampleColumns columns = plan.columns();
   EarlyStop early(plan.sampler.sweep(), columns);
-  auto table = SampleTable::open(folder / sample_file, columns, range,
-                                 [&](const SampleRow& row) { early.add(row); });
-  if (!table) return tl::unexpected(table.error());
+  auto opened = open_table(columns, folder, range, early);
+  if (!opened) return tl::unexpected(opened.error());
+  if (!*opened) return range.begin;
+  SampleTable* const table = &**opened;
+  if (const auto flown = table->next() - range.begin;
+      flown > 0 && flown < range.size() && !early.is_decided() && !quiet) {
+    fmt::print(stderr, "attest: note: continues after {} of {} samples\n", flown, range.size());
+  }
   Progress progress(range.size(), Progress::on_stderr(quiet), table->next() - range.begin);
   const auto on_row = [&](const std::string& row) -> Result<void> {
     if (early.is_decided()) return {};  // a worker had begun this sample
@@ -58,6 +85,7 @@ Result<std::uint64_t> fly_missing(const SweepPlan& plan, const fs::path& folder,
   if (!flown && !early.is_decided()) {
     return tl::unexpected(flown.error());
   }
+  if (interrupted()) return table->next();
   if (auto finished = table->finish(); !finished) return tl::unexpected(finished.error());
   return table->next();
 }
@@ -131,7 +159,8 @@ Result<void> check_shard(const SweepPlan& plan, const SweepOptions& options) {
       return fail_at(file, "is of all samples; name it with --merge");
     }
   }
-  if (!plan.sampler.sweep().stop_when_decided || (!is_part && options.merge.empty())) return {};
+  const bool has_shards = is_part || !options.merge.empty() || !options.plan.empty();
+  if (!plan.sampler.sweep().stop_when_decided || !has_shards) return {};
   return fail_at(options.file,
                  "has `stop_when_decided`, so each sample depends on those before it, and shards "
                  "are not possible; remove the key");
@@ -146,6 +175,12 @@ int sweep_command(const SweepOptions& options, const Globals& globals) {
   const auto plan = plan_sweep(options, *suite);
   if (!plan) return report_error(plan.error());
   if (auto checked = check_shard(*plan, options); !checked) return report_error(checked.error());
+  if (!options.plan.empty()) {
+    const auto planned = plan_shards(*plan, options, globals);
+    if (!planned) return report_error(planned.error());
+    if (!globals.quiet) fmt::print("{}\n", *planned);
+    return exit_ok;
+  }
   std::uint64_t samples = plan->samples();
   if (!options.merge.empty()) {
     const auto merged = merge_shards({options.merge.begin(), options.merge.end()}, plan->identity,

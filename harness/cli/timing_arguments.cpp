@@ -176,6 +176,25 @@ void add_sweep_parts(CLI::App& command, SweepOptions& options) {
       ->group(option_group::reports);
 }
 
+void add_sweep_plan(CLI::App& command, SweepOptions& options) {
+  CLI::Option* const plan =
+      command
+          .add_option("--plan", options.plan,
+                      "Fly nothing: make the folder OUT with all that flies the sweep in shards on "
+                      "many machines, and merges them: `slurm` (a job array), `parallel` (GNU "
+                      "parallel), `github` or `gitlab` (jobs of CI)")
+          ->type_name("KIND")
+          ->group(option_group::execution);
+  CLI::Option* const shards =
+      command.add_option("--shards", options.shards, "Number of shards of the plan")
+          ->type_name("N")
+          ->check(CLI::PositiveNumber)
+          ->needs(plan)
+          ->group(option_group::execution);
+  plan->needs(shards);
+  for (const char* other : {"--shard", "--merge"}) plan->excludes(command.get_option(other));
+}
+
 void add_sweep(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<SweepOptions>();
   CLI::App* command = app.add_subcommand(
@@ -205,8 +224,9 @@ void add_sweep(CLI::App& app, const Globals& globals, Action& action) {
       ->group(option_group::reports);
   add_page(*command, options->html,
            "A page with the requirements, distributions, sensitivities and worst flights");
+  add_sweep_plan(*command, *options);
   add_timeout(*command, options->host.timeout_s);
-  add_jobs(*command, options->jobs, "Samples at a time");
+  add_jobs(*command, options->jobs, "Samples at a time; with --plan, in each shard, by default 1");
   add_examples(
       *command,
       {{"attest sweep SWEEP.toml --out results --keep-worst 3 --html sweep.html",
@@ -217,8 +237,12 @@ void add_sweep(CLI::App& app, const Globals& globals, Action& action) {
         "the numbers as binary columns: when the sweep is complete, only the file is written"},
        {"attest sweep SWEEP.toml --shard 2/4 --out part2", "the second quarter of the samples"},
        {"attest sweep SWEEP.toml --merge part1 part2 part3 part4 --out results",
-        "the result of all samples"}});
-  command->callback([options, &globals, &action] {
+        "the result of all samples"},
+       {"attest sweep SWEEP.toml --plan slurm --shards 200 --out plan",
+        "a job array for a cluster; plan/submit submits it"}});
+  command->callback([options, command, &globals, &action] {
+    const bool gives_jobs = command->get_option("--jobs")->count() > 0;
+    if (!options->plan.empty() && !gives_jobs) options->jobs = 1;
     action = [=, &globals] { return sweep_command(*options, globals); };
   });
 }

@@ -6,43 +6,27 @@
 #include <utility>
 #include <vector>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
+
+#include "harness/core/file_lock.hpp"
 
 namespace attest {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr mode_t lock_mode = 0644;  // less the umask
-
-// The process that held the lock before may have removed the file between our open() and flock().
-bool is_still_there(int descriptor, const fs::path& file) {
-  struct stat opened, there;
-  return ::fstat(descriptor, &opened) == 0 && ::stat(file.c_str(), &there) == 0 &&
-         opened.st_dev == there.st_dev && opened.st_ino == there.st_ino;
-}
-
 // The descriptor of the locked file.
 Result<int> lock(const fs::path& file) {
-  while (true) {
-    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, lock_mode);
-    const bool locked = descriptor >= 0 && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
-    const int reason = errno;
-    if (locked && is_still_there(descriptor, file)) return descriptor;
-    if (descriptor >= 0) ::close(descriptor);
-    if (locked) continue;
-    if (descriptor >= 0 && reason == EWOULDBLOCK) {
-      return fail_at(file.string(),
-                     "another `attest bless` holds this lock and is writing goldens; try again "
-                     "when it has ended");
-    }
-    return fail_at(file.string(), fmt::format("cannot lock the goldens: {}",
-                                              std::generic_category().message(reason)));
+  const int descriptor = open_locked(file);
+  if (descriptor >= 0) return descriptor;
+  if (errno == EWOULDBLOCK) {
+    return fail_at(file.string(),
+                   "another `attest bless` holds this lock and is writing goldens; try again when "
+                   "it has ended");
   }
+  return fail_at(file.string(), fmt::format("cannot lock the goldens: {}",
+                                            std::generic_category().message(errno)));
 }
 
 // The folders <profile>/<group>/<name>, where goldens stand and are written.

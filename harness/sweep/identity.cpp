@@ -43,10 +43,25 @@ std::string first_difference(const SweepIdentity& found, const SweepIdentity& ex
   return "";
 }
 
+// What a kill may have left of the file, and the file itself, do not count.
+bool has_other_files(const fs::path& folder) {
+  std::error_code failed;
+  for (fs::directory_iterator it(folder, failed), end; it != end && !failed; it.increment(failed)) {
+    if (it->path().filename().string().find(identity_file) == std::string::npos) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string difference(const SweepIdentity& found, const SweepIdentity& expected) {
   return first_difference(found, expected, false);
+}
+
+std::string identity_text(const SweepIdentity& identity) {
+  nlohmann::ordered_json json;
+  for (const Named& named : identity_members) json[named.key] = identity.*named.member;
+  return json.dump(2) + "\n";
 }
 
 Result<SweepIdentity> read_identity(const fs::path& folder) {
@@ -69,6 +84,8 @@ Result<void> claim_folder(const fs::path& folder, const SweepIdentity& identity)
   std::error_code failed;
   fs::create_directories(folder, failed);
   if (failed) return fail_at(folder.string(), "cannot be made: " + failed.message());
+  // Before the look at the file: another attempt at the same shard may be writing it now.
+  const bool has_others = has_other_files(folder);
   if (fs::exists(folder / identity_file, failed)) {
     const auto found = read_identity(folder);
     if (!found) return tl::unexpected(found.error());
@@ -79,14 +96,12 @@ Result<void> claim_folder(const fs::path& folder, const SweepIdentity& identity)
                                "--out, or remove this one",
                                other));
   }
-  if (!fs::is_empty(folder, failed)) {
+  if (has_others) {
     return fail_at(folder.string(),
                    "has other files, and no results of a sweep; name an empty or new folder with "
                    "--out");
   }
-  nlohmann::ordered_json json;
-  for (const Named& named : identity_members) json[named.key] = identity.*named.member;
-  return write_file(folder / identity_file, json.dump(2) + "\n");
+  return write_file(folder / identity_file, identity_text(identity));
 }
 
 }  // namespace attest

@@ -20,6 +20,8 @@ struct SweepIdentity {
 
 inline constexpr const char* identity_file = "identity.json";
 
+std::string identity_text(const SweepIdentity& identity);  // the content of the file
+
 // Errors: no such file, or another kind of file.
 Result<SweepIdentity> read_identity(const std::filesystem::path& folder);
 

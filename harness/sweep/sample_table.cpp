@@ -9,25 +9,16 @@
 #include <functional>
 #include <optional>
 #include <system_error>
-#include <utility>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include "harness/core/file.hpp"
+#include "harness/sweep/table_extent.hpp"
 
 namespace attest {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr mode_t table_mode = 0644;  // less the umask
-
-Error table_error(const fs::path& file, const std::string& what) {
-  return {fmt::format("{}: {}", what, std::generic_category().message(errno)), file.string()};
-}
 
 std::vector<std::string_view> cells_of(std::string_view line) {
   std::vector<std::string_view> cells;
@@ -61,19 +52,14 @@ bool read_flight(const std::vector<std::string_view>& cells, std::size_t first, 
   return !flight.outcome.empty();
 }
 
-struct Extent {
-  std::uint64_t rows = 0;
-  std::uint64_t bytes = 0;  // of complete lines
-  bool is_cut = false;      // an incomplete line follows
-};
-
 // Reads the complete lines, a line at a time. A file without a complete header is empty.
 class TableReader {
  public:
-  TableReader(const fs::path& file, const SampleColumns& columns, const SampleRange& range)
-      : file_(file), columns_(columns), range_(range) {}
+  TableReader(const fs::path& file, const SampleColumns& columns, const SampleRange& range,
+              WrongLine wrong = WrongLine::is_error)
+      : file_(file), columns_(columns), range_(range), wrong_(wrong) {}
 
-  Result<Extent> read(const std::function<void(const SampleRow&)>& on_row) {
+  Result<TableExtent> read(const OnRow& on_row) {
     const auto opened = open_regular_file(file_);
     if (!opened) return tl::unexpected(opened.error());
     std::FILE* const stream = ::fdopen(*opened, "r");
@@ -88,12 +74,12 @@ class TableReader {
     }
     std::free(line);
     std::fclose(stream);
-    if (!taken) return tl::unexpected(taken.error());
+    if (!taken && wrong_ == WrongLine::is_error) return tl::unexpected(taken.error());
     return extent_;
   }
 
  private:
-  Result<void> take(std::string_view line, const std::function<void(const SampleRow&)>& on_row) {
+  Result<void> take(std::string_view line, const OnRow& on_row) {
     extent_.is_cut = line.back() != '\n';
     if (extent_.is_cut) return {};
     const int number = ++lines_;
@@ -121,20 +107,11 @@ class TableReader {
   const fs::path& file_;
   const SampleColumns& columns_;
   const SampleRange& range_;
-  Extent extent_;
+  WrongLine wrong_;
+  TableExtent extent_;
   SampleRow row_;
   int lines_ = 0;
 };
-
-Result<void> write_all(int descriptor, std::string_view bytes, const fs::path& file) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return tl::unexpected(table_error(file, "cannot be written"));
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return {};
-}
 
 }  // namespace
 
@@ -190,46 +167,13 @@ std::size_t SampleColumns::place_of(const std::string& metric) const {
                                   metrics.begin());
 }
 
-Result<SampleTable> SampleTable::open(const fs::path& file, const SampleColumns& columns,
-                                      const SampleRange& range,
-                                      const std::function<void(const SampleRow&)>& on_row) {
-  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, table_mode);
-  if (descriptor < 0) return tl::unexpected(table_error(file, "cannot be opened"));
-  SampleTable table(file, descriptor, range.begin);
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
-    return fail_at(file.string(), "another `attest sweep` is writing this file; wait for its end");
-  }
-  const auto extent = TableReader(file, columns, range).read(on_row);
-  if (!extent) return tl::unexpected(extent.error());
-  if (::ftruncate(descriptor, static_cast<off_t>(extent->bytes)) != 0 ||
-      ::lseek(descriptor, 0, SEEK_END) < 0) {
-    return tl::unexpected(table_error(file, "cannot be continued"));
-  }
-  table.next_ += extent->rows;
-  if (extent->bytes > 0) return table;
-  if (auto written = write_all(descriptor, columns.header(), file); !written) {
-    return tl::unexpected(written.error());
-  }
-  return table;
+Result<TableExtent> extent_of(const fs::path& file, const SampleColumns& columns,
+                              const SampleRange& range, WrongLine wrong, const OnRow& on_row) {
+  return TableReader(file, columns, range, wrong).read(on_row);
 }
 
-SampleTable::SampleTable(SampleTable&& other) noexcept
-    : file_(std::move(other.file_)),
-      descriptor_(std::exchange(other.descriptor_, -1)),
-      next_(other.next_) {}
-
-SampleTable::~SampleTable() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-Result<void> SampleTable::append(std::string_view line) {
-  ++next_;
-  return write_all(descriptor_, line, file_);
-}
-
-Result<void> SampleTable::finish() {
-  if (::fsync(descriptor_) == 0) return {};
-  return tl::unexpected(table_error(file_, "cannot be written"));
+Error table_error(const fs::path& file, const std::string& what) {
+  return {fmt::format("{}: {}", what, std::generic_category().message(errno)), file.string()};
 }
 
 Result<SampleData> read_samples(const fs::path& file, const SampleColumns& columns,

@@ -1,12 +1,22 @@
 // The results of a sweep as a CSV file: a row for each sample, in the order of their indices.
 //
-// Rows are appended. After a kill the last line may be incomplete; it is dropped when the file is
-// opened again. So the file is the same whether the sweep was interrupted or not.
+// Rows are appended to an unfinished table, which has another name:
+// "samples.csv.part-node7-1f0c9a7e". When it is complete, it is renamed. So `samples.csv` is
+// complete or missing, and has the same bytes whether the sweep was interrupted or not. After a
+// kill the last line of the unfinished table may be incomplete; it is dropped when the table is
+// continued.
+//
+// Several machines may make the same table at the same time in a shared folder, for example if a
+// cluster starts a shard again while its lost node still works. Each has an unfinished table of its
+// own, named after the machine, and begins with the rows of the longest one. All would finish with
+// the same bytes, so it does not matter which of them is renamed last. This needs no lock between
+// machines, which many shared file systems do not have, or do not release after a machine's death.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -45,6 +55,8 @@ struct SampleRow {
   std::vector<FlightResult> flights;  // of the reference, then of the port if there is one
 };
 
+using OnRow = std::function<void(const SampleRow&)>;
+
 // False: `line`, without its line break, is not the row of that sample.
 bool read_row(std::string_view line, const SampleColumns& columns, std::uint64_t index,
               SampleRow& row);
@@ -57,30 +69,38 @@ struct SampleRange {
 
 class SampleTable {
  public:
-  // Makes the file, or continues it. The file is locked until this ends. Errors: another process
-  // has it open; a line that is not of this table, with its number. `on_row`
-  // gets the rows that are there.
-  static Result<SampleTable> open(
+  // Makes the unfinished table, or continues the longest one; `on_row` gets the rows that are
+  // there. Empty: another process of this machine is making this table, or has just finished it;
+  // try again. Errors: a finished table with a line that is not of it, with its number; it cannot
+  // be written.
+  static Result<std::optional<SampleTable>> open(
       const std::filesystem::path& file, const SampleColumns& columns, const SampleRange& range,
-      const std::function<void(const SampleRow&)>& on_row = [](const SampleRow&) {});
+      const OnRow& on_row = [](const SampleRow&) {});
+  // The same on the machine of this name.
+  static Result<std::optional<SampleTable>> open_on(
+      const std::string& machine, const std::filesystem::path& file, const SampleColumns& columns,
+      const SampleRange& range, const OnRow& on_row = [](const SampleRow&) {});
   SampleTable(SampleTable&& other) noexcept;
   SampleTable& operator=(SampleTable&&) = delete;
-  ~SampleTable();
+  ~SampleTable();  // without finish(): the table stays unfinished
 
   std::uint64_t next() const { return next_; }  // the first sample that has no row
 
   // The row of sample next(). Errors: the disk is full.
   Result<void> append(std::string_view line);
-  // Flushes to disk.
+  // Flushes to disk, gives the table its name, and removes all unfinished ones.
+  // REQUIRES: no row is missing that should be there.
   Result<void> finish();
 
  private:
-  SampleTable(std::filesystem::path file, int descriptor, std::uint64_t next)
-      : file_(std::move(file)), descriptor_(descriptor), next_(next) {}
+  SampleTable(std::filesystem::path file, std::filesystem::path part, int descriptor,
+              std::uint64_t next)
+      : file_(std::move(file)), part_(std::move(part)), descriptor_(descriptor), next_(next) {}
 
-  std::filesystem::path file_;
+  std::filesystem::path file_, part_;
   int descriptor_;
   std::uint64_t next_;
+  bool is_complete_ = false;  // finish() has nothing to do
 };
 
 // All rows of one pilot: the reference or the port.

@@ -116,7 +116,7 @@ MORE
   make_sweep 3000 </dev/null
   "$ATTEST" sweep sweep.toml --out out --jobs 2 2>errors.txt &
   local attest=$!
-  until [ "$(wc -l <out/samples.csv 2>/dev/null || echo 0)" -gt 3 ]; do sleep 0.05; done
+  until [ "$(wc -l <out/samples.csv.part-* 2>/dev/null || echo 0)" -gt 3 ]; do sleep 0.05; done
   kill -INT $attest
   local status=0
   wait $attest || status=$?
@@ -133,9 +133,13 @@ MORE
   same whole merged
   "$ATTEST" -q sweep sweep.toml --merge part2 part1 part3 --out merged # again
   same whole merged
+  mkdir all
+  cp -r part1 part2 part3 all
+  "$ATTEST" -q sweep sweep.toml --merge all --out folder
+  same whole folder
   run "$ATTEST" sweep sweep.toml --merge part3 part1 --out other
   [ "$status" -eq 2 ]
-  has "missing: the folder of shard 2/3"
+  has "missing: the folders of shards 2 of 3; run these"
   run "$ATTEST" sweep sweep.toml --merge part3 part1 part2 part1 --out other
   [ "$status" -eq 2 ]
   has "part1: is shard 1/3, and so is part1"
@@ -146,11 +150,51 @@ MORE
   sed -i '$d' part2/samples.csv
   run "$ATTEST" sweep sweep.toml --merge part1 part2 part3 --out other
   [ "$status" -eq 2 ]
-  has "part2/samples.csv: has 9 of 10 samples"
+  has "incomplete: shards 2 of 3 (part2 has 9 of 10 samples); run these shards again"
   echo "# changed" >>sweep.toml
   run "$ATTEST" sweep sweep.toml --merge part1 part2 part3 --out other
   [ "$status" -eq 2 ]
   has "part1: is of another sweep: the hash of sweep file, case, vehicle and samples"
+}
+
+@test "a merge names all shards that it lacks" {
+  make_sweep 50 </dev/null
+  for i in 2 4 5 6 9; do "$ATTEST" -q sweep sweep.toml --shard $i/10 --out part$i; done
+  "$ATTEST" -q sweep sweep.toml --shard 7/10 --out part7
+  mv part7/samples.csv part7/samples.csv.part-lost # its machine died before the end
+  sed -i '$d' part7/samples.csv.part-lost
+  run "$ATTEST" sweep sweep.toml --merge part* --out merged
+  [ "$status" -eq 2 ]
+  has "missing: the folders of shards 1,3,8,10 of 10; incomplete: shards 7 of 10 (part7 has 4 of 5"
+  [ ! -e merged/samples.csv ]
+  run "$ATTEST" merge part2 part4
+  [ "$status" -eq 2 ]
+  has "part2: is a folder of \`attest sweep\`; \`attest sweep FILE --merge DIR... --out DIR\` joins"
+}
+
+@test "processes that fly for one folder take turns, on file systems without locks too" {
+  make_sweep 200 </dev/null
+  "$ATTEST" -q sweep sweep.toml --out whole
+  "$ATTEST" -q sweep sweep.toml --out out --jobs 1 &
+  until [ -e out/identity.json ] && ls out/samples.csv.part-* 2>/dev/null; do sleep 0.01; done
+  run "$ATTEST" -q sweep sweep.toml --out out --jobs 1
+  [ "$status" -eq 0 ]
+  has "waiting for another \`attest sweep\` that flies for out"
+  wait
+  same whole out
+  cc -shared -fPIC -x c -o without_locks.so - <<'C'
+#include <errno.h>
+int flock(int file, int operation) {
+  (void)file, (void)operation;
+  errno = ENOSYS;
+  return -1;
+}
+C
+  export LD_PRELOAD=$PWD/without_locks.so
+  for process in 1 2; do "$ATTEST" -q sweep sweep.toml --out unlocked --jobs 1 & done
+  wait
+  unset LD_PRELOAD
+  same whole unlocked
 }
 
 @test "a port with gains off by 3% differs in the paired test, though each flight is good" {
@@ -262,7 +306,7 @@ SWEEP
   "$ATTEST" -q sweep sweep.toml --out whole
   run bash -c "ulimit -f 2; exec \"$ATTEST\" sweep sweep.toml --out out"
   [ "$status" -eq 2 ]
-  has "out/samples.csv: cannot be written: File too large"
+  has "cannot be written: File too large"
   "$ATTEST" -q sweep sweep.toml --out out
   same whole out
 }

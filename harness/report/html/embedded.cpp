@@ -1,21 +1,6 @@
-// The assembler includes the files. CMakeLists.txt defines their paths.
 #include "harness/report/html/embedded.hpp"
 
-#define ATTEST_EMBED(name, path)       \
-  asm(".section .rodata\n"             \
-      ".global attest_embedded_" #name \
-      "\n"                             \
-      ".global attest_embedded_" #name \
-      "_end\n"                         \
-      "attest_embedded_" #name         \
-      ":\n"                            \
-      ".incbin \"" path                \
-      "\"\n"                           \
-      "attest_embedded_" #name         \
-      "_end:\n"                        \
-      ".byte 0\n"                      \
-      ".previous\n");                  \
-  extern "C" const char attest_embedded_##name[], attest_embedded_##name##_end[]
+#include "harness/core/embed.hpp"
 
 ATTEST_EMBED(page_template, ATTEST_PAGE_TEMPLATE);
 ATTEST_EMBED(page_style, ATTEST_PAGE_STYLE);
@@ -35,18 +20,12 @@ ATTEST_EMBED(dygraphs_licence, ATTEST_DYGRAPHS_LICENCE);
 namespace attest {
 namespace {
 
-std::string_view between(const char* begin, const char* end) {
-  return {begin, static_cast<std::size_t>(end - begin)};
-}
-
 // Without the comment that names a source map: a browser's debugger would request that file.
 std::string_view without_source_map(std::string_view text) {
   return text.substr(0, text.find("# sourceMappingURL=") - 2);
 }
 
 }  // namespace
-
-#define ATTEST_EMBEDDED(name) between(attest_embedded_##name, attest_embedded_##name##_end)
 
 std::string_view page_template() { return ATTEST_EMBEDDED(page_template); }
 std::string_view page_style() { return ATTEST_EMBEDDED(page_style); }

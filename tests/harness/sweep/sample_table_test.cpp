@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <random>
 #include <sstream>
 
@@ -24,14 +25,25 @@ class SampleTableTest : public testing::Test {
     return columns_.line(index, {x * 0.1, -x},
                          {done, index % 7 == 3 ? FlightResult{outcome_diverged, {}} : done});
   }
+  std::optional<SampleTable> open_on(const std::string& machine) const {
+    return SampleTable::open_on(machine, file_, columns_, range_).value();
+  }
+  // Appends the rows up to `end`; returns their number.
+  std::uint64_t append_to(SampleTable& table, std::uint64_t end) const {
+    const std::uint64_t begin = table.next();
+    while (table.next() < end) EXPECT_TRUE(table.append(row(table.next())));
+    return table.next() - begin;
+  }
   // Appends all rows that are missing.
   Result<void> fill() const {
     auto table = SampleTable::open(file_, columns_, range_);
     if (!table) return tl::unexpected(table.error());
-    while (table->next() < range_.end) {
-      if (auto done = table->append(row(table->next())); !done) return done;
-    }
-    return table->finish();
+    append_to(**table, range_.end);
+    return (*table)->finish();
+  }
+  std::size_t files() const {
+    const std::filesystem::directory_iterator all(folder_.path());
+    return static_cast<std::size_t>(std::distance(begin(all), end(all)));
   }
   std::string text() const {
     std::ostringstream all;
@@ -95,11 +107,63 @@ TEST_F(SampleTableTest, AChangedLineIsRefusedWithItsNumber) {
   EXPECT_THAT(error_after("\n25,", "\n"), HasSubstr("is not the row of sample 25"));
 }
 
-TEST_F(SampleTableTest, HasOneWriter) {
-  const auto first = SampleTable::open(file_, columns_, range_);
-  ASSERT_TRUE(first);
-  EXPECT_THAT(SampleTable::open(file_, columns_, range_).error().message,
-              HasSubstr("another `attest sweep` is writing this file"));
+TEST_F(SampleTableTest, HasOneWriterOnAMachine) {
+  auto first = SampleTable::open(file_, columns_, range_);
+  ASSERT_TRUE(first && *first);
+  const auto second = SampleTable::open(file_, columns_, range_);
+  ASSERT_TRUE(second);
+  EXPECT_FALSE(*second);
+  append_to(**first, range_.end);
+  ASSERT_TRUE((*first)->finish());
+  EXPECT_EQ((*SampleTable::open(file_, columns_, range_))->next(), range_.end);
+  EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(SampleTableTest, IsMissingUntilItIsFinished) {
+  {
+    auto table = open_on("a");
+    append_to(*table, range_.end);
+    EXPECT_FALSE(std::filesystem::exists(file_));
+  }
+  ASSERT_TRUE(open_on("a")->finish());
+  EXPECT_TRUE(read_samples(file_, columns_, range_));
+}
+
+// A node is lost, but still works; the cluster has started its shard again.
+TEST_F(SampleTableTest, TwoMachinesMakeOneTable) {
+  ASSERT_TRUE(fill());
+  const std::string whole = text();
+  std::filesystem::remove(file_);
+  for (const bool lost_is_last : {false, true}) {
+    auto lost = open_on("lost");
+    append_to(*lost, 31);
+    auto second = open_on("second");
+    EXPECT_EQ(second->next(), 31u);  // it continues
+    append_to(*lost, 37);
+    append_to(*second, 50);
+    auto third = open_on("third");
+    EXPECT_EQ(append_to(*third, range_.end), 10u);
+    append_to(*lost, range_.end);
+    ASSERT_TRUE((lost_is_last ? third : lost)->finish());
+    ASSERT_TRUE((lost_is_last ? lost : third)->finish());
+    append_to(*second, 55);  // it dies without an end
+    EXPECT_EQ(text(), whole);
+    EXPECT_EQ(files(), 1u);
+    std::filesystem::remove(file_);
+  }
+}
+
+TEST_F(SampleTableTest, ADyingMachineMayLeaveAnything) {
+  ASSERT_TRUE(fill());
+  const std::string whole = text();
+  std::filesystem::remove(file_);
+  std::string damaged = whole;
+  damaged.replace(whole.find("\n30,") + 2, 40, 40, '\0');  // a block that did not arrive
+  std::ofstream(file_.string() + ".part-lost") << damaged;
+  EXPECT_EQ(open_on("lost")->next(), 30u);
+  EXPECT_EQ(open_on("other")->next(), 30u);
+  ASSERT_TRUE(fill());
+  EXPECT_EQ(text(), whole);
 }
 
 }  // namespace
