@@ -7,12 +7,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "controller/reference/parameters.hpp"
 #include "harness/casefile/parse.hpp"
 #include "harness/casefile/parse_limits.hpp"
 #include "harness/core/toml.hpp"
@@ -26,10 +26,18 @@ constexpr double us_per_s = 1e6;
 
 double seconds(std::uint64_t time_us) { return static_cast<double>(time_us) / us_per_s; }
 
+// The topic that is new at every step: the first of the module's inputs.
+std::string_view step_topic_of(Module module) {
+  constexpr std::string_view prefix = "in/";
+  const std::string_view first = channels()[channels_of(module, prefix)._Find_first()].name;
+  return first.substr(prefix.size(), first.find('.') - prefix.size());
+}
+
 // Ticks [begin, end) of a log.
 struct Ticks {
   const Trace& log;
   std::size_t begin = 0, end = 0;
+  Module module = Module::mc_att_control;
 
   std::size_t size() const { return end - begin; }
   const Sample& operator[](std::size_t tick) const { return log.samples[tick]; }
@@ -48,7 +56,7 @@ struct Ticks {
 // A value that changes at some times.
 class History {
  public:
-  void add(double time_s, float value) {
+  void add(double time_s, double value) {
     if (!values_.empty() && same(values_.back(), value)) return;
     times_s_.push_back(time_s);
     values_.push_back(value);
@@ -57,20 +65,19 @@ class History {
   bool is_constant() const { return values_.size() == 1; }
 
   void write(std::string_view table, std::string_view key, TomlWriter& toml) const {
-    if (is_constant()) return toml.set(table, key, static_cast<double>(values_.front()));
-    const std::vector<double> values(values_.begin(), values_.end());
+    if (is_constant()) return toml.set(table, key, values_.front());
     toml.set(table, key, "signal", "samples");
     toml.set(table, key, "times_s", times_s_);
-    toml.set(table, key, "values", values);
+    toml.set(table, key, "values", values_);
   }
 
  private:
-  static bool same(float a, float b) {
-    return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
+  static bool same(double a, double b) {
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
   }
 
   std::vector<double> times_s_;
-  std::vector<float> values_;
+  std::vector<double> values_;
 };
 
 // The ticks at which the topic was new.
@@ -93,17 +100,37 @@ std::vector<std::size_t> all_of(const Ticks& ticks) {
   return all;
 }
 
+// A signed difference of two times [s].
+double seconds_from(std::uint64_t from_us, std::uint64_t time_us) {
+  return static_cast<double>(static_cast<std::int64_t>(time_us - from_us)) / us_per_s;
+}
+
+// The value of a field as the case has it: times since the tick that received the sample,
+// armed_time since the first tick (SCHEMA.md). The reset counter counts from the first tick on,
+// because the unit that starts there knows of no earlier reset.
+double case_value(const Ticks& ticks, std::size_t tick, const Channel& channel) {
+  const Sample& sample = ticks[tick];
+  if (channel.type == ChannelType::u64) {
+    const bool of_start = channel.name.ends_with(".armed_time");
+    return seconds_from(ticks[of_start ? ticks.begin : tick].in.timestamp,
+                        integer_of(channel, sample));
+  }
+  const double value = value_of(channel, sample);
+  if (!channel.name.ends_with(".quat_reset_counter")) return value;
+  return static_cast<std::uint8_t>(value - value_of(channel, ticks[ticks.begin]) + 256);
+}
+
 // True if each field is constant.
 bool write_fields(const Ticks& ticks, std::string_view topic,
                   const std::vector<std::size_t>& released, TomlWriter& toml) {
   bool is_constant = true;
-  const ChannelSet fields = channels_of(Module::mc_att_control, fmt::format("in/{}.", topic));
+  const ChannelSet fields = channels_of(ticks.module, fmt::format("in/{}.", topic));
   for (std::size_t i = 0; i < channels().size(); ++i) {
     const Channel& channel = channels()[i];
-    if (!fields[i] || channel.type == ChannelType::u64 || channel.is_output()) continue;
+    if (!fields[i] || channel.is_output()) continue;
     History history;
     for (const std::size_t tick : released) {
-      history.add(ticks.time_s(tick), static_cast<float>(value_of(channel, ticks[tick])));
+      history.add(ticks.time_s(tick), case_value(ticks, tick, channel));
     }
     history.write(topic, channel.name.substr(channel.name.find('.') + 1), toml);
     is_constant = is_constant && history.is_constant();
@@ -122,17 +149,28 @@ void write_topic(const Ticks& ticks, std::string_view topic, std::uint32_t bit, 
 }
 
 void write_topics(const Ticks& ticks, TomlWriter& toml) {
-  write_fields(ticks, "control_state", all_of(ticks), toml);
-  for (const std::string_view topic : updated_topics(Module::mc_att_control)) {
-    const auto bit = find_channel(Module::mc_att_control, fmt::format("in/updated.{}", topic));
+  write_fields(ticks, step_topic_of(ticks.module), all_of(ticks), toml);
+  for (const std::string_view topic : updated_topics(ticks.module)) {
+    const auto bit = find_channel(ticks.module, fmt::format("in/updated.{}", topic));
     if (topic == "parameter_update" || !bit) continue;
     write_topic(ticks, topic, channels()[*bit].bit, toml);
   }
 }
 
+// In a profile that attest does not know: of the law of attest.
+std::optional<float> default_of_parameter(Module module, const std::string& profile,
+                                          std::string_view name) {
+  const auto* const known = find_profile(profile);
+  for (const Parameter& parameter :
+       parameters_of(module, known != nullptr ? *known : known_profiles().front())) {
+    if (parameter.name == name) return parameter.default_value;
+  }
+  return std::nullopt;
+}
+
 // Before its first change in the log, a parameter has its default.
 void write_parameters(const Ticks& ticks, const std::string& profile, TomlWriter& toml) {
-  const auto own = parameter_names(Module::mc_att_control, profile);
+  const auto own = parameter_names(ticks.module, profile);
   std::map<std::string, float> at_begin;
   std::map<std::string, History> histories;
   for (const ParameterChange& change : ticks.log.parameters) {
@@ -142,10 +180,10 @@ void write_parameters(const Ticks& ticks, const std::string& profile, TomlWriter
   for (const auto& [name, value] : at_begin) histories[name].add(0, value);
   for (const ParameterChange& change : ticks.log.parameters) {
     if (change.tick <= ticks.begin || change.tick >= ticks.end) continue;
-    const auto* const info = reference::find_parameter(change.name);
-    if (!info || std::find(own.begin(), own.end(), change.name) == own.end()) continue;
+    const auto before = default_of_parameter(ticks.module, profile, change.name);
+    if (!before || std::find(own.begin(), own.end(), change.name) == own.end()) continue;
     const auto [history, is_first] = histories.try_emplace(change.name);
-    if (is_first) history->second.add(0, info->default_value);
+    if (is_first) history->second.add(0, *before);
     history->second.add(ticks.time_s(change.tick), change.value);
   }
   for (const auto& [name, history] : histories) history.write("parameters", name, toml);
@@ -159,16 +197,21 @@ std::string identifier(std::string text) {
   return text.empty() ? "log" : text;
 }
 
-std::string name_of(const Trace& log, const LogStretch& stretch) {
+std::string case_name(const Trace& log, const LogStretch& stretch) {
   std::string name = std::filesystem::path(log.source).stem().string();
   if (stretch.from_s > 0) name += fmt::format("_from_{}s", stretch.from_s);
   if (std::isfinite(stretch.to_s)) name += fmt::format("_to_{}s", stretch.to_s);
+  // A log of the cascade makes a case of each unit.
+  const Module module = module_of(log.present);
+  if (module != Module::mc_att_control) name += fmt::format("_{}", name_of(module));
   return identifier(name);
 }
 
 Result<Ticks> ticks_of(const Trace& log, const LogStretch& stretch) {
-  const Ticks whole{log, 0, log.samples.size()};
-  if (whole.size() < 2) return fail_at(log.source, "has fewer than 2 samples of control_state");
+  const Module module = module_of(log.present);
+  const std::string topic(step_topic_of(module));
+  const Ticks whole{log, 0, log.samples.size(), module};
+  if (whole.size() < 2) return fail_at(log.source, "has fewer than 2 samples of " + topic);
   const double length_s = seconds(whole.duration_us());
   if (!(stretch.from_s < stretch.to_s)) {
     return fail(fmt::format("the stretch from {} s to {} s is empty: it must begin before it ends",
@@ -176,10 +219,9 @@ Result<Ticks> ticks_of(const Trace& log, const LogStretch& stretch) {
   }
   const bool is_beyond = std::isfinite(stretch.to_s) && stretch.to_s > length_s;
   if (stretch.from_s < 0 || stretch.from_s >= length_s || is_beyond) {
-    return fail_at(log.source,
-                   fmt::format("the stretch is beyond the log, whose samples of control_state "
-                               "are from 0 to {:.6g} s",
-                               length_s));
+    return fail_at(log.source, fmt::format("the stretch is beyond the log, whose samples of {} "
+                                           "are from 0 to {:.6g} s",
+                                           topic, length_s));
   }
   const auto before = [&](double time_s) {
     const auto first =
@@ -188,11 +230,11 @@ Result<Ticks> ticks_of(const Trace& log, const LogStretch& stretch) {
         });
     return static_cast<std::size_t>(first - log.samples.begin());
   };
-  const Ticks ticks{log, before(stretch.from_s), before(stretch.to_s)};
+  const Ticks ticks{log, before(stretch.from_s), before(stretch.to_s), module};
   if (ticks.size() >= 2) return ticks;
-  return fail_at(log.source, fmt::format("has {} samples of control_state in this stretch; a case "
+  return fail_at(log.source, fmt::format("has {} samples of {} in this stretch; a case "
                                          "needs at least 2",
-                                         ticks.size()));
+                                         ticks.size(), topic));
 }
 
 Result<void> check_length(const Ticks& ticks) {
@@ -209,11 +251,11 @@ Result<void> check_length(const Ticks& ticks) {
 std::string reason(const Ticks& ticks, const std::vector<std::string>& notes) {
   const std::uint64_t first = ticks.log.samples.front().in.timestamp;
   std::string text = fmt::format(
-      "What the controller received in the flight {}, from {} s to {} s after the first "
-      "control_state of its log.",
-      std::filesystem::path(ticks.log.source).filename().string(),
+      "What the {} received in the flight {}, from {} s to {} s after the first {} of its log.",
+      info_of(ticks.module).title, std::filesystem::path(ticks.log.source).filename().string(),
       seconds(ticks[ticks.begin].in.timestamp - first),
-      seconds(ticks[ticks.begin].in.timestamp - first + ticks.duration_us()));
+      seconds(ticks[ticks.begin].in.timestamp - first + ticks.duration_us()),
+      step_topic_of(ticks.module));
   for (const std::string& note : notes) text += fmt::format("\n- {}", note);
   return text;
 }
@@ -225,11 +267,13 @@ Result<LogCase> case_of_log(const Trace& log, const std::string& profile, const 
   const auto ticks = ticks_of(log, stretch);
   if (!ticks) return tl::unexpected(ticks.error());
   if (auto checked = check_length(*ticks); !checked) return tl::unexpected(checked.error());
-  LogCase made{name_of(log, stretch), "", ticks->size(), seconds(ticks->duration_us())};
+  LogCase made{case_name(log, stretch), "", std::string(step_topic_of(ticks->module)),
+               ticks->size(), seconds(ticks->duration_us())};
   TomlWriter toml;
   toml.set("", "schema", schema_version);
   toml.set("", "profiles", std::vector<std::string>{profile});
   toml.set("", "group", log_case_group);
+  if (ticks->module != Module::mc_att_control) toml.set("", "module", name_of(ticks->module));
   toml.set("", "why", reason(*ticks, notes));
   toml.set("", "duration_s", made.duration_s);
   toml.set("unit", "start_s", seconds((*ticks)[ticks->begin].in.timestamp));

@@ -11,7 +11,7 @@
 
 namespace attest {
 
-// Times since the first control_state of the log.
+// Times since the first step of the unit in the log.
 struct LogStretch {
   double from_s = 0;                                      // included
   double to_s = std::numeric_limits<double>::infinity();  // not included; infinite: to the end
@@ -22,16 +22,18 @@ inline constexpr const char* log_case_group = "from_log";
 struct LogCase {
   std::string name;         // of the log and the stretch: "gust", "gust_1_5s_to_3s"
   std::string toml;         // the case file, as in SCHEMA.md
-  std::size_t samples = 0;  // of control_state
+  std::string step_topic;   // "control_state"
+  std::size_t samples = 0;  // of it
   double duration_s = 0;
 };
 
-// `log` has a tick for each control_state (ulog/flight_log.hpp). The case begins at the first tick
-// of the stretch, with the timestamp of that tick, and lasts one mean period longer than the last
-// one. A sample of another topic is published at the tick that first received it in the log; what
-// the controller knew before the stretch is published at the first tick. At the times of the log's
+// `log` has a tick for each step of the unit (ulog/flight_log.hpp). The case begins at the first
+// tick of the stretch, with the timestamp of that tick, and lasts one mean period longer than the
+// last one. A sample of another topic is published at the tick that first received it in the log;
+// what the unit knew before the stretch is published at the first tick. At the times of the log's
 // ticks, a unit receives the values of the log, to the bit. Parameters that `profile` does not have
-// are left out. `notes` are added to the reason of the case.
+// are left out. quat_reset_counter counts from the first tick of the stretch. `notes` are added to
+// the reason of the case.
 //
 // Errors: a stretch with less than two ticks, one that is not in the log, one with too many ticks
 // for a case (max_ticks) at the fastest rate.

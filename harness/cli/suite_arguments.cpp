@@ -69,7 +69,8 @@ void add_from_log(CLI::App& command, VectorOptions& options) {
           .add_option(
               "--from-log", options.from_log,
               "Instead, make a case with the inputs of this flight (.ulg) in a suite of your own, "
-              "DIR/cases/PROFILE/from_log. `attest bless` makes the golden of the case")
+              "DIR/cases/PROFILE/from_log; of v1.14 to v1.16, a case of each unit. `attest bless` "
+              "makes the goldens")
           ->type_name("FLIGHT.ulg")
           ->group(option_group::logs);
   const auto add_time = [&](const char* name, auto& value, const char* what) {
@@ -79,8 +80,8 @@ void add_from_log(CLI::App& command, VectorOptions& options) {
         ->needs(log)
         ->group(option_group::logs);
   };
-  add_time("--from", options.from_s, "Begin at this time after the log's first control_state [s]");
-  add_time("--to", options.to_s, "End before this time after the log's first control_state [s]");
+  add_time("--from", options.from_s, "Begin at this time after the first step in the log [s]");
+  add_time("--to", options.to_s, "End before this time after the first step in the log [s]");
   add_assumed(command, options.assumed);
   command.get_option("--assume")->needs(log);
   for (const char* other : {"--lint", "--format", "--fixed-step", "--filter", "--exclude",

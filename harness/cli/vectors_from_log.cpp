@@ -2,10 +2,11 @@
 #include <filesystem>
 #include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "controller/reference/profile.hpp"
 #include "harness/casefile/log_case.hpp"
 #include "harness/casefile/parse.hpp"
 #include "harness/cli/command.hpp"
@@ -14,6 +15,7 @@
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/suggestion.hpp"
+#include "harness/port/profiles.hpp"
 
 namespace attest::cli {
 namespace {
@@ -23,10 +25,9 @@ namespace fs = std::filesystem;
 // The law of attest, or a profile that the suite in `folder` has already.
 Result<void> check_profile(const std::string& profile, const fs::path& folder) {
   std::error_code ignored;
-  if (reference::profile_from_name(profile) ||
-      fs::is_directory(folder / "cases" / profile, ignored))
+  if (find_profile(profile) != nullptr || fs::is_directory(folder / "cases" / profile, ignored))
     return {};
-  const auto names = reference::profile_names();
+  const auto names = known_profile_names();
   return fail(fmt::format("--profile {}: unknown{}; it is neither of attest nor in {}", profile,
                           suggestion(profile, {names.begin(), names.end()}),
                           (folder / "cases").string()));
@@ -62,49 +63,71 @@ Result<void> write_case(const fs::path& file, const LogCase& made) {
   return tl::unexpected(parsed.error());
 }
 
-// Returns the case file.
-Result<fs::path> write_case_of_log(const VectorOptions& options, LogCase& made) {
+struct WrittenCase {
+  fs::path file;
+  LogCase made;
+};
+
+Result<void> check_folder(const std::string& folder) {
+  const auto released = data_folder();
+  if (!released) return {};
+  return check_output_folder((fs::path(folder) / "cases").string(), {*released, {}});
+}
+
+// A case of each unit that can be computed from the log. The controller's outputs are compared with
+// a reference that starts at the same tick, so a log of it may lack steps.
+Result<std::vector<LogCase>> cases_of(const VectorOptions& options, FlightLog& log) {
+  std::vector<LogCase> cases;
+  for (const LoggedUnit& unit : log.units) {
+    if (unit.module != Module::mc_att_control && !unit.not_judged.empty()) {
+      log.notes.push_back(
+          fmt::format("no case of the {}: {}", info_of(unit.module).title, unit.not_judged));
+      continue;
+    }
+    auto made = case_of_log(unit.trace, log.profile,
+                            {options.from_s, options.to_s.value_or(LogStretch().to_s)}, log.notes);
+    if (!made) return tl::unexpected(made.error());
+    cases.push_back(*std::move(made));
+  }
+  if (cases.empty()) return fail_at(options.from_log, log.notes.back());
+  return cases;
+}
+
+// All cases are made before the first is written.
+Result<std::vector<WrittenCase>> write_cases_of_log(const VectorOptions& options) {
   const auto profile = profile_in(options);
   if (!profile) return tl::unexpected(profile.error());
-  if (const auto released = data_folder()) {
-    if (auto checked =
-            check_output_folder((fs::path(options.folder) / "cases").string(), {*released, {}});
-        !checked) {
-      return tl::unexpected(checked.error());
-    }
+  if (auto checked = check_folder(options.folder); !checked) {
+    return tl::unexpected(checked.error());
   }
-  const auto log = read_log(options.from_log, options.assumed, *profile);
+  auto log = read_log(options.from_log, options.assumed, *profile);
   if (!log) return tl::unexpected(log.error());
-  const LoggedUnit& unit = log->units.front();
-  if (unit.module != Module::mc_att_control) {
-    return fail_at(options.from_log,
-                   fmt::format("is a log of the {}; --from-log makes cases of logs of the "
-                               "controller of v1.5.5 and v1.3.4",
-                               info_of(unit.module).title));
-  }
   const fs::path root = options.folder;
   if (auto known = check_profile(log->profile, root); !known) return tl::unexpected(known.error());
-  auto of_log = case_of_log(unit.trace, log->profile,
-                            {options.from_s, options.to_s.value_or(LogStretch().to_s)}, log->notes);
-  if (!of_log) return tl::unexpected(of_log.error());
-  made = *std::move(of_log);
+  auto cases = cases_of(options, *log);
+  if (!cases) return tl::unexpected(cases.error());
   const fs::path folder = root / "cases" / log->profile / log_case_group;
   if (auto ready = make_suite(root, folder); !ready) return tl::unexpected(ready.error());
-  const fs::path file = folder / (made.name + ".toml");
-  if (auto written = write_case(file, made); !written) return tl::unexpected(written.error());
+  std::vector<WrittenCase> all;
+  for (LogCase& made : *cases) {
+    const fs::path file = folder / (made.name + ".toml");
+    if (auto written = write_case(file, made); !written) return tl::unexpected(written.error());
+    all.push_back({file, std::move(made)});
+  }
   print_notes(options.from_log, log->notes);
-  return file;
+  return all;
 }
 
 }  // namespace
 
 int vectors_from_log_command(const VectorOptions& options, const Globals& globals) {
-  LogCase made;
-  const auto file = write_case_of_log(options, made);
-  if (!file) return report_error(file.error());
+  const auto written = write_cases_of_log(options);
+  if (!written) return report_error(written.error());
   if (globals.quiet) return exit_ok;
-  fmt::print("{}: {:g} s, {} samples of control_state\n", file->string(), made.duration_s,
-             made.samples);
+  for (const auto& [file, made] : *written) {
+    fmt::print("{}: {:g} s, {} samples of {}\n", file.string(), made.duration_s, made.samples,
+               made.step_topic);
+  }
   fmt::print(
       "its golden: attest --suite {0} bless --group {1} --yes --reason \"...\"\n"
       "a run:      attest --suite {0} run --group {1} --port PORT\n",

@@ -6,48 +6,27 @@
 
 namespace attest {
 
-namespace {
-
-AttitudeQuaternion quaternion(const float (&q)[4]) { return {q[0], q[1], q[2], q[3]}; }
-
-// The attitude setpoint that is new at this tick: from outside, or of the unit's own sticks.
-const float (*new_setpoint(const Sample& tick, Module module, bool is_first))[4] {
-  if (module == Module::mc_att_control) {
-    const bool is_new = (tick.in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;
-    return is_new || is_first ? &tick.in.vehicle_attitude_setpoint.q_d : nullptr;
-  }
-  const auto& own = tick.attitude_out.vehicle_attitude_setpoint;
-  if (own.published != 0) return &own.q_d;
-  const bool is_new = (tick.in.updated & ATTEST_ATTITUDE_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;
-  return is_new || is_first ? &tick.attitude_in.vehicle_attitude_setpoint.q_d : nullptr;
-}
-
-}  // namespace
-
 void AllowedDeviation::next(const Sample& want, std::span<const ParameterChange> changes) {
   for (const ParameterChange& change : changes) gain_.set(change);
-  if (module_ != Module::mc_att_control && module_ != Module::attitude_unit) return;
-  if (const auto* q_d = new_setpoint(want, module_, is_first_)) setpoint_ = quaternion(*q_d);
-  is_first_ = false;
+  if (follows_attitude(module_)) setpoint_.next(want);
 }
 
 bool AllowedDeviation::widens(std::size_t channel, const Sample& tick) const {
   const Channel& what = channels()[channel];
   if (what.quantity != Quantity::rate || tolerances_.level() != Level::numeric) return false;
   if (module_ == Module::attitude_unit) return what.stage == Stage::attitude_law;
-  return module_ == Module::mc_att_control &&
-         tick.in.vehicle_control_mode.flag_control_attitude_enabled != 0;
+  return module_ == Module::mc_att_control && uses_attitude_law(tick, module_);
 }
 
 double AllowedDeviation::widening(const Sample& tick) const {
   if (module_ == Module::mc_att_control) {
-    const double error = tilt_error(quaternion(tick.in.control_state.q), setpoint_);
+    const double error = tilt_error(attitude_at(tick, module_), setpoint_.q_d());
     return tolerances_.widening(error, gain_.value());
   }
   // The law of the cascade computes yaw from what tilt leaves, so its noise is larger: in float and
   // double 1.3e-4 rad/s apart at 179 deg, 1.5e-3 at 179.9 (measured on random attitudes).
   constexpr double noise = 10.0 / 3;
-  const double error = attitude_error(quaternion(tick.attitude_in.vehicle_attitude.q), setpoint_);
+  const double error = attitude_error(attitude_at(tick, module_), setpoint_.q_d());
   return tolerances_.widening(error, noise * gain_.value());
 }
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include "harness/compare/tilt.hpp"
+#include "harness/compare/followed_setpoint.hpp"
 #include "harness/compare/tolerance.hpp"
 #include "harness/trace/trace.hpp"
 
@@ -16,7 +16,7 @@ class AllowedDeviation {
  public:
   // REQUIRES: the tolerances outlive this.
   AllowedDeviation(const Tolerances& tolerances, Module module)
-      : tolerances_(tolerances), module_(module), gain_(module) {}
+      : tolerances_(tolerances), module_(module), setpoint_(module), gain_(module) {}
 
   // The next tick of the expected trace, with the parameters that it sets.
   void next(const Sample& want, std::span<const ParameterChange> changes);
@@ -31,8 +31,7 @@ class AllowedDeviation {
 
   const Tolerances& tolerances_;
   Module module_;
-  bool is_first_ = true;
-  AttitudeQuaternion setpoint_{};  // the last new one
+  FollowedSetpoint setpoint_;
   AttitudeGain gain_;
 };
 

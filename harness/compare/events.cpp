@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "harness/compare/publication.hpp"
+
 namespace attest {
 namespace {
 
@@ -14,6 +16,7 @@ enum class State { no, yes, unclear };
 
 // A property of one output, such as `published`: yes, no or unclear at each tick.
 struct Kind {
+  Module module;
   const char* channel;
   State (*at)(const Trace& trace, std::size_t tick, const Channel& channel);
   const char* yes;  // the text for messages
@@ -25,52 +28,111 @@ State published(const Trace& trace, std::size_t tick, const Channel& channel) {
 }
 
 State finite(const Trace& trace, std::size_t tick, const Channel& channel) {
-  if (trace.samples[tick].out.vehicle_rates_setpoint.published == 0) return State::unclear;
-  return std::isfinite(float_of(channel, trace.samples[tick])) ? State::yes : State::no;
+  const Sample& sample = trace.samples[tick];
+  if (!is_published(channel, sample)) return State::unclear;
+  return std::isfinite(float_of(channel, sample)) ? State::yes : State::no;
+}
+
+// The step of an integral since the tick before; empty if one of them is not published.
+std::optional<double> step_of(const Trace& trace, std::size_t tick, const Channel& channel) {
+  const auto is_there = [&](std::size_t at) { return is_published(channel, trace.samples[at]); };
+  if (tick == 0 || !is_there(tick) || !is_there(tick - 1)) return std::nullopt;
+  return static_cast<double>(float_of(channel, trace.samples[tick])) -
+         static_cast<double>(float_of(channel, trace.samples[tick - 1]));
 }
 
 // An integral moves if its step is above a fraction of the integrals' tolerance. That tolerance is
 // the total deviation allowed over the run.
-State moving(const Trace& trace, std::size_t tick, const Channel& channel) {
+State above_noise(double step) {
   constexpr double still = 1e-6, surely = 4e-6;
-  const auto is_published = [&](std::size_t at) {
-    return trace.samples[at].out.mc_att_ctrl_status.published != 0;
-  };
-  if (tick == 0 || !is_published(tick) || !is_published(tick - 1)) return State::unclear;
-  const double step = std::abs(static_cast<double>(float_of(channel, trace.samples[tick])) -
-                               static_cast<double>(float_of(channel, trace.samples[tick - 1])));
   if (step > surely) return State::yes;
   return step < still ? State::no : State::unclear;
+}
+
+State moving(const Trace& trace, std::size_t tick, const Channel& channel) {
+  const auto step = step_of(trace, tick, channel);
+  return step ? above_noise(std::abs(*step)) : State::unclear;
+}
+
+State rising(const Trace& trace, std::size_t tick, const Channel& channel) {
+  const auto step = step_of(trace, tick, channel);
+  return step ? above_noise(*step) : State::unclear;
+}
+
+State falling(const Trace& trace, std::size_t tick, const Channel& channel) {
+  const auto step = step_of(trace, tick, channel);
+  return step ? above_noise(-*step) : State::unclear;
 }
 
 State beyond_thrust(const Trace& trace, std::size_t tick, const Channel& channel) {
   constexpr double near = 1e-3;
   const Sample& sample = trace.samples[tick];
-  if (sample.out.actuator_controls_0.published == 0) return State::unclear;
+  if (!is_published(channel, sample)) return State::unclear;
   const double over = std::abs(static_cast<double>(float_of(channel, sample))) -
                       static_cast<double>(sample.out.actuator_controls_0.control[3]);
   if (std::abs(over) < near) return State::unclear;
   return over > 0 ? State::yes : State::no;
 }
 
+#define PUBLISHED(topic) \
+  { Module::MODULE, "out/" topic ".published", published, "published", "not published" }
+#define FINITE(signal) \
+  { Module::MODULE, "out/" signal, finite, "finite", "not finite" }
+#define BEYOND_THRUST(signal) \
+  { Module::MODULE, "out/" signal, beyond_thrust, "beyond the thrust", "within it" }
+#define MOVING(signal) \
+  { Module::MODULE, "out/" signal, moving, "moving", "still" }
+// Both directions: a saturation flag of the rate unit stops one of them.
+#define RISING_FALLING(signal)                                       \
+  {Module::MODULE, "out/" signal, rising, "rising", "not rising"}, { \
+    Module::MODULE, "out/" signal, falling, "falling", "not falling" \
+  }
+
 constexpr Kind kinds[] = {
-    {"out/vehicle_rates_setpoint.published", published, "published", "not published"},
-    {"out/actuator_controls_0.published", published, "published", "not published"},
-    {"out/mc_att_ctrl_status.published", published, "published", "not published"},
-    {"out/vehicle_rates_setpoint.roll", finite, "finite", "not finite"},
-    {"out/vehicle_rates_setpoint.pitch", finite, "finite", "not finite"},
-    {"out/vehicle_rates_setpoint.yaw", finite, "finite", "not finite"},
-    {"out/actuator_controls_0.control[0]", beyond_thrust, "beyond the thrust", "within it"},
-    {"out/actuator_controls_0.control[1]", beyond_thrust, "beyond the thrust", "within it"},
-    {"out/actuator_controls_0.control[2]", beyond_thrust, "beyond the thrust", "within it"},
-    {"out/mc_att_ctrl_status.roll_rate_integ", moving, "moving", "still"},
-    {"out/mc_att_ctrl_status.pitch_rate_integ", moving, "moving", "still"},
-    {"out/mc_att_ctrl_status.yaw_rate_integ", moving, "moving", "still"},
+#define MODULE mc_att_control
+    PUBLISHED("vehicle_rates_setpoint"),
+    PUBLISHED("actuator_controls_0"),
+    PUBLISHED("mc_att_ctrl_status"),
+    FINITE("vehicle_rates_setpoint.roll"),
+    FINITE("vehicle_rates_setpoint.pitch"),
+    FINITE("vehicle_rates_setpoint.yaw"),
+    BEYOND_THRUST("actuator_controls_0.control[0]"),
+    BEYOND_THRUST("actuator_controls_0.control[1]"),
+    BEYOND_THRUST("actuator_controls_0.control[2]"),
+    MOVING("mc_att_ctrl_status.roll_rate_integ"),
+    MOVING("mc_att_ctrl_status.pitch_rate_integ"),
+    MOVING("mc_att_ctrl_status.yaw_rate_integ"),
+#undef MODULE
+#define MODULE attitude_unit
+    PUBLISHED("vehicle_rates_setpoint"),
+    PUBLISHED("vehicle_attitude_setpoint"),
+    FINITE("vehicle_rates_setpoint.roll"),
+    FINITE("vehicle_rates_setpoint.pitch"),
+    FINITE("vehicle_rates_setpoint.yaw"),
+    FINITE("vehicle_rates_setpoint.thrust_body[2]"),
+#undef MODULE
+#define MODULE rate_unit
+    PUBLISHED("vehicle_torque_setpoint"),
+    PUBLISHED("vehicle_thrust_setpoint"),
+    PUBLISHED("rate_ctrl_status"),
+    PUBLISHED("vehicle_rates_setpoint"),
+    FINITE("vehicle_thrust_setpoint.xyz[2]"),
+    FINITE("vehicle_rates_setpoint.roll"),
+    FINITE("vehicle_rates_setpoint.pitch"),
+    FINITE("vehicle_rates_setpoint.yaw"),
+    RISING_FALLING("rate_ctrl_status.rollspeed_integ"),
+    RISING_FALLING("rate_ctrl_status.pitchspeed_integ"),
+    RISING_FALLING("rate_ctrl_status.yawspeed_integ"),
+#undef MODULE
 };
 
-std::size_t channel_of(const Kind& kind) {
-  return *find_channel(Module::mc_att_control, kind.channel);
-}
+#undef PUBLISHED
+#undef FINITE
+#undef BEYOND_THRUST
+#undef MOVING
+#undef RISING_FALLING
+
+std::size_t channel_of(const Kind& kind) { return *find_channel(kind.module, kind.channel); }
 
 std::vector<State> states(const Kind& kind, const Trace& trace, const Channel& channel) {
   std::vector<State> all;
@@ -101,6 +163,11 @@ std::optional<std::size_t> first_difference(const std::vector<State>& got,
 }
 
 }  // namespace
+
+bool has_events(Module module) {
+  return std::any_of(std::begin(kinds), std::end(kinds),
+                     [&](const Kind& kind) { return kind.module == module; });
+}
 
 bool tells_events(const ChannelSet& present) {
   return std::any_of(std::begin(kinds), std::end(kinds),

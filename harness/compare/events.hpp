@@ -1,8 +1,12 @@
 // Compares the events of traces instead of their values. For ports that are a tick late, or compute
 // with coarse numbers.
 //
-// Events are the changes of these states: a topic is published; an integral moves; the control of
-// roll, pitch or yaw is larger than that of thrust, in absolute value; a rates setpoint is finite.
+// Events are the changes of states of outputs; the table in events.cpp has those of each module.
+// - All: a topic is published; a rates setpoint is finite.
+// - Controller: an integral moves; the control of roll, pitch or yaw is larger than that of thrust,
+//   in absolute value.
+// - Attitude unit and rate unit: the thrust is finite.
+// - Rate unit: an integral rises or falls. Landing, saturation flags, disarming and limits stop it.
 // Where a value is too near to the threshold of a state, both states are accepted.
 #pragma once
 
@@ -19,8 +23,8 @@ struct EventDifference {
   std::string what;  // "mc_att_ctrl_status.yaw_rate_integ is moving, expected still within a tick"
 };
 
-// Only the controller has events. Mixer and battery estimate are judged by their values.
-inline bool has_events(Module module) { return module == Module::mc_att_control; }
+// Mixer and battery estimate have no events. They are judged by their values.
+bool has_events(Module module);
 
 // True if a channel of `present` defines an event.
 bool tells_events(const ChannelSet& present);

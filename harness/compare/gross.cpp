@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "harness/compare/followed_setpoint.hpp"
+#include "harness/compare/publication.hpp"
 
 namespace attest {
 namespace {
@@ -35,40 +39,21 @@ std::vector<std::size_t> float_outputs_of(const Trace& got, const Trace& want) {
   return chosen;
 }
 
-bool is_published(const Channel& channel, const Sample& sample) {
-  if (channel.name.starts_with("out/vehicle_rates_setpoint.")) {
-    return sample.out.vehicle_rates_setpoint.published != 0;
-  }
-  if (channel.name.starts_with("out/actuator_controls_0.")) {
-    return sample.out.actuator_controls_0.published != 0;
-  }
-  return sample.out.mc_att_ctrl_status.published != 0;
-}
-
-// |w| of the rotation from one attitude to the other: cos(angle / 2).
-double similarity_of(const float (&q)[4], const float (&q_d)[4]) {
-  double product = 0, of_q = 0, of_q_d = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    product += static_cast<double>(q[i]) * static_cast<double>(q_d[i]);
-    of_q += static_cast<double>(q[i]) * static_cast<double>(q[i]);
-    of_q_d += static_cast<double>(q_d[i]) * static_cast<double>(q_d[i]);
-  }
-  return std::abs(product) / std::sqrt(of_q * of_q_d);
-}
-
 // The ticks near a half turn, where the direction of rotation changes, and those at which attitude
 // or setpoint is zero or not finite. Only ticks at which the law controls the attitude.
 std::vector<bool> half_turns_in(const Trace& want) {
-  constexpr double near = 0.1;  // cos of half an angle that is 11 deg short of a half turn
-  std::vector<bool> is_half_turn;
-  attest_inputs setpoint{};
-  for (const Sample& sample : want.samples) {
-    const bool has_setpoint = (sample.in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;
-    if (is_half_turn.empty() || has_setpoint) setpoint = sample.in;
-    const double similarity =
-        similarity_of(sample.in.control_state.q, setpoint.vehicle_attitude_setpoint.q_d);
-    const bool goes_by_it = sample.in.vehicle_control_mode.flag_control_attitude_enabled != 0;
-    is_half_turn.push_back(goes_by_it && !(similarity >= near));
+  constexpr double near_rad = 0.2;  // 11 deg short of a half turn
+  const Module module = module_of(want.present);
+  std::vector<bool> is_half_turn(want.samples.size());
+  if (!follows_attitude(module)) return is_half_turn;
+  FollowedSetpoint setpoint(module);
+  for (std::size_t tick = 0; tick < want.samples.size(); ++tick) {
+    const Sample& sample = want.samples[tick];
+    setpoint.next(sample);
+    const double error = attitude_error(attitude_at(sample, module), setpoint.q_d());
+    // Written so that a NaN error is near.
+    is_half_turn[tick] =
+        uses_attitude_law(sample, module) && !(error <= std::numbers::pi - near_rad);
   }
   return is_half_turn;
 }

@@ -34,7 +34,8 @@ double attitude_error(const AttitudeQuaternion& q, const AttitudeQuaternion& q_d
   const double sine = std::hypot(w * xd - x * wd - y * zd + z * yd,  // of half the angle
                                  w * yd - y * wd - z * xd + x * zd,  //
                                  w * zd - z * wd - x * yd + y * xd);
-  if (cosine == 0 && sine == 0) return std::nan("");
+  if ((cosine == 0 && sine == 0) || !std::isfinite(cosine) || !std::isfinite(sine))
+    return std::nan("");
   return 2 * std::atan2(sine, cosine);
 }
 

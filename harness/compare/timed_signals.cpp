@@ -52,7 +52,7 @@ void add_sample(Signals& signals, std::uint64_t time_us, LeftOut& left_out, Valu
 }
 
 // The numbers of a subscription's topic.
-struct Topic {
+struct TimedTopic {
   std::optional<ulog::Column> time;
   std::vector<ulog::Column> columns;
   std::vector<TimedSignal> signals;  // of columns
@@ -63,8 +63,8 @@ std::string name_of_topic(const std::string& topic, std::uint8_t multi_id) {
   return multi_id == 0 ? topic : fmt::format("{}[{}]", topic, multi_id);
 }
 
-Topic topic_of(const ulog::Subscription& subscription) {
-  Topic topic;
+TimedTopic topic_of(const ulog::Subscription& subscription) {
+  TimedTopic topic;
   const std::string name = name_of_topic(subscription.topic, subscription.multi_id);
   for (const ulog::Field& leaf : subscription.format->leaves) {
     if (leaf.type == ulog::Type::character) continue;
@@ -82,7 +82,7 @@ Topic topic_of(const ulog::Subscription& subscription) {
   return topic;
 }
 
-void add_data(const ulog::Data& data, Topic& topic) {
+void add_data(const ulog::Data& data, TimedTopic& topic) {
   if (!topic.time) {
     ++topic.left_out.without_time;
     return;
@@ -92,13 +92,13 @@ void add_data(const ulog::Data& data, Topic& topic) {
 }
 
 // By topic and instance: the name of a topic may look like that of an instance of another one.
-using TopicsOfLog = std::map<std::pair<std::string, std::uint8_t>, Topic>;
+using TopicsOfLog = std::map<std::pair<std::string, std::uint8_t>, TimedTopic>;
 
 Result<TimedSignals> signals_of_log(const std::filesystem::path& path) {
   auto reader = ulog::Reader::open(path);
   if (!reader) return tl::unexpected(reader.error());
   TopicsOfLog topics;
-  std::vector<Topic*> by_subscription;
+  std::vector<TimedTopic*> by_subscription;
   ulog::Message message;
   while (true) {
     const auto more = reader->next(message);

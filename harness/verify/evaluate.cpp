@@ -128,18 +128,6 @@ Result<Prepared> prepare_varied(const Case& the_case, const Case& begun, const R
   return prepared;
 }
 
-// Whether the level has no meaning for a module: the events and their bounds are those of
-// mc_att_control. If so, the verdict becomes skip. Mixer and battery estimate are judged at the
-// level numeric instead.
-bool has_no_such_level(Level level, Module module, CaseResult& result) {
-  const bool is_of_cascade = module == Module::attitude_unit || module == Module::rate_unit;
-  if (level != Level::events || !is_of_cascade) return false;
-  result.verdict = Verdict::skip;
-  result.reason =
-      "the level events is not defined for the units of v1.14 to v1.16; use --level numeric";
-  return true;
-}
-
 // Those that the subject has.
 std::vector<ParameterChange> accepted_by(const Subject& subject,
                                          std::vector<ParameterChange> parameters) {
@@ -178,7 +166,6 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
     result.reason = exact_level_only;
     return result;
   }
-  if (has_no_such_level(level, the_case.module, result)) return result;
   if (has_other_steps(host.says(), the_case, rate, result)) return result;
   const bool is_shifted = has_fixed_step(host.says(), the_case);
   const auto parameters = accepted_by(subject_of(the_case), options.parameters);
@@ -204,10 +191,6 @@ CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHos
                           const Tolerances& tolerances, Trace* got) {
   const Stopwatch stopwatch;
   CaseResult result = result_for(recorded, subject.profile);
-  if (has_no_such_level(tolerances.level(), subject.module, result)) {
-    if (got != nullptr) *got = recorded;
-    return result;
-  }
   if (has_other_steps(host.says(), recorded, subject.module, result)) return result;
   Trace answered = recorded;
   for (Sample& sample : answered.samples) sample.clear_outputs();

@@ -49,3 +49,72 @@ from_log=ours/cases/px4-v1.5.5/from_log/gust_from_1s_to_1_5s.toml
   [ "$status" -eq 2 ]
   has "--from-log"
 }
+
+units_log() {
+  "$PYTHON" "$SOURCE/tests/cli/cascade_log.py" "$@"
+}
+
+@test "a log of v1.14 to v1.16 becomes a case of each unit, at the rates of the unit" {
+  units_log flight.ulg
+  "$ATTEST" vectors ours --from-log flight.ulg --from 0.9 --to 2.9 >out.txt 2>/dev/null
+  made=ours/cases/px4-v1.16.0/from_log/flight_from_0_9s_to_2_9s
+  grep -q "${made}_attitude_unit.toml: 2 s, 500 samples of vehicle_attitude" out.txt
+  grep -q "${made}_rate_unit.toml: 2 s, 2000 samples of vehicle_angular_velocity" out.txt
+  "$ATTEST" --suite ours bless --group from_log --yes --reason "a flight"
+  for port in builtin "lib:$(dirname "$STARTER")/../c_cascade/attest_starter_c_cascade.so"; do
+    run "$ATTEST" --suite ours run --group from_log --level exact --port "$port"
+    [ "$status" -eq 0 ]
+    has "16 of 16 vectors conform"
+  done
+  run "$ATTEST" --suite ours run --group from_log --no-diagnose --port fault:cascade-m-not-canonical
+  [ "$status" -eq 1 ]
+  has "FAIL 5 failed"
+  run "$ATTEST" --suite ours run --group from_log --no-diagnose --port fault:cascade-d-reversed
+  [ "$status" -eq 1 ]
+  has "FAIL 11 failed"
+}
+
+@test "a log that is too sparse for the rate unit becomes a case of the attitude unit alone" {
+  units_log sparse.ulg --profile px4-v1.14.4 --thin vehicle_angular_velocity=20 \
+    --thin vehicle_torque_setpoint=20 --thin vehicle_thrust_setpoint=20
+  run "$ATTEST" vectors ours --from-log sparse.ulg
+  [ "$status" -eq 0 ]
+  has "no case of the rate unit: the log has a gyro sample every 20 ms"
+  [ "$(ls ours/cases/px4-v1.14.4/from_log)" = sparse_attitude_unit.toml ]
+}
+
+# answer VECTOR PORT: the outputs of the port, without its inputs, as the answer in ./inputs.
+answer() {
+  "$ATTEST" --suite ours record "$1" --rate 250 --port "$2" --out answer.csv
+  "$PYTHON" - "inputs/$1/250hz.out.csv" <<'ANSWER'
+import csv, pathlib, sys
+lines = [line for line in pathlib.Path("answer.csv").read_text().splitlines() if line[0] != "#"]
+rows = list(csv.DictReader(lines))
+columns = [name for name in rows[0] if name == "timestamp" or name.startswith("out/")]
+with open(sys.argv[1], "w", newline="", encoding="utf-8") as out:
+    writer = csv.DictWriter(out, columns, extrasaction="ignore")
+    writer.writeheader()
+    writer.writerows(rows)
+ANSWER
+}
+
+@test "a port that cannot be called answers the cases of both units in files" {
+  units_log flight.ulg
+  "$ATTEST" vectors ours --from-log flight.ulg --from 0.9 --to 2.9 2>/dev/null
+  "$ATTEST" --suite ours bless --group from_log --yes --reason "a flight"
+  "$ATTEST" --suite ours vectors inputs --group from_log --rate 250
+  for port in "lib:$(dirname "$STARTER")/../c_cascade/attest_starter_c_cascade.so" \
+    fault:cascade-d-reversed; do
+    for unit in attitude_unit rate_unit; do
+      answer "px4-v1.16.0/from_log/flight_from_0_9s_to_2_9s_$unit" "$port"
+    done
+    run "$ATTEST" --suite ours run --group from_log --rate 250 --port recorded:inputs --no-diagnose
+    if [[ $port == lib:* ]]; then
+      [ "$status" -eq 0 ]
+      has "PASS 2 of 2 vectors conform"
+    else
+      [ "$status" -eq 1 ]
+      has "FAIL 1 failed; 1 of 2 vectors conform"
+    fi
+  done
+}

@@ -31,22 +31,38 @@ open_loop=(--group anti_windup --group modes --group arming --group attitude --g
   [ "$status" -eq 0 ]
 }
 
-@test "the units of the cascade have no level events: no case is judged, and no claim is made" {
-  cascade=(--level events --profile px4-v1.16.0 --group rates --rate 250)
-  run "$ATTEST" run "${cascade[@]}"
-  [ "$status" -eq 2 ]
-  has "NONE 0 of"
-  has "skip: the level events is not defined for the units of v1.14 to v1.16; use --level numeric"
-  has "conformance: none"
-  run "$ATTEST" run --level events --group rates --rate 250
-  [ "$status" -eq 0 ]
-  has "px4-v1.5.5, events"
-  lacks "px4-v1.16.0, events"
-  "$ATTEST" record px4-v1.16.0/rates/p_alone --rate 250 --out trace.csv
+units=(--level events --profile px4-v1.16.0 --exclude '*/flight/*' --rate 250 --no-diagnose)
+
+@test "units of the cascade are judged by their events: right ones conform" {
+  for port in builtin "lib:$PORTS/reference_double.so" "lib:$PORTS/reference_fma_gcc.so" \
+    "lib:$(dirname "$STARTER")/../c_cascade/attest_starter_c_cascade.so"; do
+    run "$ATTEST" run "${units[@]}" --port "$port"
+    echo "$port: $output"
+    [ "$status" -eq 0 ]
+    has "px4-v1.16.0, events"
+  done
+}
+
+@test "wrong units of the cascade do not conform at the events level" {
+  for fault in m-not-canonical quat-order-xyzw error-reversed acro-not-published acro-in-each-step \
+    integral-on-the-ground disarmed-keeps-integral d-reversed ff-reversed; do
+    run "$ATTEST" run "${units[@]}" --fail-fast --port "fault:cascade-$fault"
+    echo "$fault: $output"
+    [ "$status" -eq 1 ]
+  done
+  run "$ATTEST" run --level events --profile px4-v1.16.0 --group landed --rate 250 --no-diagnose \
+    --port fault:cascade-integral-on-the-ground
+  has "_integ is rising, expected not rising within a tick"
+}
+
+@test "a trace of a unit is replayed and compared at the events level" {
+  "$ATTEST" record px4-v1.16.0/rates/i_alone --rate 250 --out trace.csv
   run "$ATTEST" replay trace.csv --profile px4-v1.16.0 --level events
-  [ "$status" -eq 2 ]
-  has "no trace was compared"
+  [ "$status" -eq 0 ]
   run "$ATTEST" compare trace.csv trace.csv --level events
+  [ "$status" -eq 0 ]
+  "$ATTEST" record px4-v1.16.0/rates/i_alone --rate 250 --out wrong.csv \
+    --port fault:cascade-rate-error-reversed
+  run "$ATTEST" compare wrong.csv trace.csv --level events
   [ "$status" -eq 1 ]
-  has "these outputs define no events"
 }

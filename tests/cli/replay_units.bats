@@ -363,10 +363,3 @@ CHECK
   [ "$status" -eq 2 ]
   has "would be overwritten"
 }
-
-@test "a case is not made of a log of the units" {
-  run "$ATTEST" vectors ours --from-log "$FLIGHT"
-  [ "$status" -eq 2 ]
-  has "is a log of the attitude unit; --from-log makes cases of logs of the controller"
-  [ ! -e ours ]
-}

@@ -51,9 +51,9 @@ LogCase made_of(const Trace& log, const LogStretch& stretch = {}) {
   return *std::move(made);
 }
 
-Case parsed(const LogCase& made) {
+Case parsed(const LogCase& made, std::string_view profile = "px4-v1.5.5") {
   const CaseFiles files;
-  auto the_case = parse_case(files.write(log_case_group, made.name, made.toml));
+  auto the_case = parse_case(files.write(log_case_group, made.name, made.toml, profile));
   EXPECT_TRUE(the_case) << the_case.error().message;
   return *std::move(the_case);
 }
@@ -77,11 +77,12 @@ Trace given_at_times_of(const Trace& log, std::size_t first, const Case& the_cas
   return given;
 }
 
-void expect_the_same(const Sample& given, const Sample& logged) {
+void expect_the_same(const Sample& given, const Sample& logged,
+                     Module module = Module::mc_att_control) {
   Sample a = given, b = logged;
   for (Sample* sample : {&a, &b}) sample->in.updated &= ~ATTEST_UPDATED_PARAMETER_UPDATE;
   for (const Channel& channel : channels()) {
-    if (channel.is_output() || channel.module != Module::mc_att_control) continue;
+    if (channel.is_output() || channel.module != module) continue;
     EXPECT_EQ(value_of(channel, a), value_of(channel, b)) << channel.name;
   }
 }
@@ -109,6 +110,63 @@ TEST(LogCase, BeginsWithWhatWasKnownBeforeTheStretch) {
   for (std::size_t tick = 3; tick < 8; ++tick) {
     SCOPED_TRACE(tick);
     expect_the_same(given.samples[tick - 3], log.samples[tick]);
+  }
+}
+
+// Ten ticks of an attitude unit, 4 ms apart: an estimator reset at the third and at the seventh, a
+// setpoint at each third one.
+Trace flown_by_attitude_unit() {
+  Trace log;
+  log.source = "logs/my flight.ulg";
+  log.present = channels_of(Module::attitude_unit, "in/");
+  log.parameters = {{0, "MC_YAW_WEIGHT", 0.5f}, {6, "MC_ROLL_P", 6.0f}};
+  Sample sample;
+  for (std::size_t tick = 0; tick < 10; ++tick) {
+    attest_attitude_inputs& in = sample.attitude_in;
+    in.timestamp = begin_us + 4000 * tick;
+    in.updated = tick == 0 ? ATTEST_ATTITUDE_UPDATED_VEHICLE_STATUS : 0;
+    in.vehicle_status.armed = 1;
+    in.vehicle_status.armed_time = begin_us - 2'000'001;
+    in.vehicle_attitude.timestamp = in.timestamp - 100;
+    in.vehicle_attitude.timestamp_sample = in.timestamp - 500 - tick;
+    in.vehicle_attitude.q[1] = 0.1f * static_cast<float>(tick);
+    in.vehicle_attitude.quat_reset_counter = tick < 3 ? 255 : tick < 7 ? 0 : 1;
+    if (tick % 3 == 1) {
+      in.updated |= ATTEST_ATTITUDE_UPDATED_VEHICLE_ATTITUDE_SETPOINT;
+      in.vehicle_attitude_setpoint.timestamp = in.timestamp - 33 * tick;
+      in.vehicle_attitude_setpoint.yaw_sp_move_rate = 0.3f * static_cast<float>(tick);
+    }
+    log.samples.push_back(sample);
+  }
+  return log;
+}
+
+// A unit that starts with the stretch knows of no earlier reset.
+TEST(LogCase, OfAUnitHasTheTimesOfTheLogAndCountsResetsFromItsBegin) {
+  const Trace log = flown_by_attitude_unit();
+  for (const std::size_t first : {std::size_t{0}, std::size_t{5}}) {
+    const auto made = case_of_log(log, "px4-v1.16.0", {0.004 * static_cast<double>(first)}, {});
+    ASSERT_TRUE(made) << made.error().message;
+    EXPECT_EQ(made->step_topic, "vehicle_attitude");
+    EXPECT_THAT(made->name, testing::EndsWith("_attitude_unit"));
+    const Case the_case = parsed(*made, "px4-v1.16.0");
+    EXPECT_EQ(the_case.module, Module::attitude_unit);
+    const Trace given = given_at_times_of(log, first, the_case);
+    for (std::size_t tick = first; tick < log.samples.size(); ++tick) {
+      SCOPED_TRACE(tick);
+      Sample logged = log.samples[tick];
+      attest_attitude_inputs& in = logged.attitude_in;
+      in.vehicle_attitude.quat_reset_counter = static_cast<std::uint8_t>(
+          in.vehicle_attitude.quat_reset_counter -
+          log.samples[first].attitude_in.vehicle_attitude.quat_reset_counter);
+      if (tick == first && first > 0) {  // received before the stretch
+        in.updated = ATTEST_ATTITUDE_UPDATED_VEHICLE_STATUS |
+                     ATTEST_ATTITUDE_UPDATED_VEHICLE_ATTITUDE_SETPOINT;
+      }
+      if (tick < 1)
+        in.vehicle_attitude_setpoint = given.samples[0].attitude_in.vehicle_attitude_setpoint;
+      expect_the_same(given.samples[tick - first], logged, Module::attitude_unit);
+    }
   }
 }
 

@@ -1,0 +1,32 @@
+// The attitude and its setpoint that a unit goes by, tick by tick. The direction of the rotation
+// between them is undefined at a half turn, so comparisons allow more near it.
+#pragma once
+
+#include "harness/compare/tilt.hpp"
+#include "harness/trace/trace.hpp"
+
+namespace attest {
+
+// Whether the module has an attitude law: the controller and the attitude unit.
+bool follows_attitude(Module module);
+
+// REQUIRES: follows_attitude(module), of the constructor and of both functions.
+AttitudeQuaternion attitude_at(const Sample& tick, Module module);
+// Whether the rates setpoint of the tick comes from the attitude law.
+bool uses_attitude_law(const Sample& tick, Module module);
+
+class FollowedSetpoint {
+ public:
+  explicit FollowedSetpoint(Module module) : module_(module) {}
+
+  // The next tick of the expected trace: its setpoint from outside, or of the unit's own sticks.
+  void next(const Sample& want);
+  const AttitudeQuaternion& q_d() const { return q_d_; }
+
+ private:
+  Module module_;
+  bool is_first_ = true;
+  AttitudeQuaternion q_d_{};  // the last new one
+};
+
+}  // namespace attest
