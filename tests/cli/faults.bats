@@ -10,7 +10,7 @@ load common
   [ "$status" -eq 0 ]
   has "quat-order-xyzw"
   lacks "auto-by-velocity"
-  run "$ATTEST" faults yaw-dropped tpa-missing
+  run "$ATTEST" faults --profile px4-v1.5.5 yaw-dropped tpa-missing
   [ "$status" -eq 0 ]
   has "px4-v1.5.5: 2 faults; 2 of 2"
   run "$ATTEST" faults quat-order-xyz

@@ -182,7 +182,7 @@ TEST(CascadeFaults, InstancesShareNothing) {
     for (const auto& step : walk.steps) first.step(step.in, once);
     FaultyAttitudeUnit second(cascade::Profile::px4_v1_16_0, one);
     for (const auto& step : walk.steps) second.step(step.in, again);
-    EXPECT_EQ(std::memcmp(&once, &again, sizeof once), 0) << fault->id;
+    EXPECT_FALSE(differs(once, again, 0)) << fault->id;
   }
 }
 

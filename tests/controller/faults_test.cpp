@@ -1,5 +1,6 @@
 // The catalogue itself. `attest faults` tests with the corpus that each fault is wrong, and how
 // soon it is caught.
+#include <cstddef>
 #include <cstring>
 #include <set>
 
@@ -39,6 +40,16 @@ attest_inputs tick(std::uint64_t i) {
   return in;
 }
 
+// Whether the topics have the same bytes. The padding after `published` may have any value.
+bool same_answers(const attest_outputs& a, const attest_outputs& b) {
+  const auto same = []<typename Topic>(const Topic& x, const Topic& y) {
+    return std::memcmp(&x, &y, offsetof(Topic, published) + sizeof x.published) == 0;
+  };
+  return same(a.vehicle_rates_setpoint, b.vehicle_rates_setpoint) &&
+         same(a.actuator_controls_0, b.actuator_controls_0) &&
+         same(a.mc_att_ctrl_status, b.mc_att_ctrl_status);
+}
+
 attest_outputs flown(FaultyController& controller) {
   attest_outputs out{};
   for (std::uint64_t i = 0; i < 50; ++i) controller.step(tick(i), out);
@@ -54,7 +65,7 @@ TEST(FaultyController, WithoutAFaultIsTheReferenceToTheBit) {
     const attest_inputs in = tick(i);
     controller.step(in, got);
     unit.step(self, &in, &want);
-    ASSERT_EQ(std::memcmp(&got, &want, sizeof got), 0) << i;
+    ASSERT_TRUE(same_answers(got, want)) << i;
   }
   unit.destroy(self);
 }
@@ -68,7 +79,7 @@ TEST(FaultyController, InstancesShareNothing) {
     flown(first);
     FaultyController second(Profile::px4_v1_5_5, one);
     const attest_outputs again = flown(second);
-    EXPECT_EQ(std::memcmp(&once, &again, sizeof once), 0) << fault->id;
+    EXPECT_TRUE(same_answers(once, again)) << fault->id;
   }
 }
 
