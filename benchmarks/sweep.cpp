@@ -15,7 +15,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* sweep_text = R"(
+constexpr const char* rate_sweep_text = R"(
 schema = 1
 case = "px4-v1.5.5/flight/tilt_step_30"
 vehicle = "iris"
@@ -55,7 +55,7 @@ FlightSampler make_sampler() {
   nominal.plant_configuration = {"iris", PlantKind::mujoco};
   nominal.vehicle_model = *VehicleModel::load(source + "/models", "iris");
   nominal.vehicle_text = *read_file(nominal.vehicle_model->vehicle().file);
-  return *FlightSampler::make(*parse_sweep(sweep_text, "sweep.toml"), std::move(nominal));
+  return *FlightSampler::make(*parse_sweep(rate_sweep_text, "sweep.toml"), std::move(nominal));
 }
 
 // The time of one flight: that of the sweep by its flights.

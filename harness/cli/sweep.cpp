@@ -16,7 +16,7 @@
 #include "harness/cli/suite_folder.hpp"
 #include "harness/cli/sweep_plan.hpp"
 #include "harness/core/file.hpp"
-#include "harness/report/html/dispersed_page.hpp"
+#include "harness/report/html/sweep_page.hpp"
 #include "harness/report/progress.hpp"
 #include "harness/report/sweep_summary_text.hpp"
 #include "harness/sweep/early_stop.hpp"
@@ -129,7 +129,7 @@ Result<SweepSummary> report(const SweepPlan& plan, const SweepOptions& options,
   const fs::path shown = worst.empty() ? fs::path() : kept;
   if (!options.html.empty()) {
     const std::string page =
-        dispersed_page({plan.sampler, columns, *data, summary, plan.identity, shown});
+        sweep_page({plan.sampler, columns, *data, summary, plan.identity, shown});
     if (auto done = write_file(options.html, page); !done) return tl::unexpected(done.error());
   }
   if (!quiet) {

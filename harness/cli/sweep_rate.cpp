@@ -9,20 +9,20 @@
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
-#include "harness/measure/sweep.hpp"
+#include "harness/measure/rate_sweep.hpp"
 #include "harness/plant/vehicle_models.hpp"
-#include "harness/report/html/sweep_page.hpp"
+#include "harness/report/html/rate_sweep_page.hpp"
 #include "harness/report/progress.hpp"
-#include "harness/report/sweep_text.hpp"
+#include "harness/report/rate_sweep_text.hpp"
 
 namespace attest::cli {
 namespace {
 
-struct SweepPlan {
+struct RateSweepPlan {
   Case the_case;
   std::vector<LoopRate> rates;
   PortSays port;
-  Jobs<SweepResult> jobs;
+  Jobs<RateSweepResult> jobs;
 };
 
 Result<std::vector<PlantConfiguration>> plant_configurations_of(const Case& the_case,
@@ -44,8 +44,8 @@ Result<std::vector<PlantConfiguration>> plant_configurations_of(const Case& the_
                   the_case.id()));
 }
 
-Result<SweepPlan> make_plan(const RateSweepOptions& options, const SuiteFolder& suite) {
-  SweepPlan plan;
+Result<RateSweepPlan> make_plan(const RateSweepOptions& options, const SuiteFolder& suite) {
+  RateSweepPlan plan;
   auto rates = parse_rates(options.rates);
   if (!rates) return tl::unexpected(rates.error());
   plan.rates = *std::move(rates);
@@ -66,8 +66,8 @@ Result<SweepPlan> make_plan(const RateSweepOptions& options, const SuiteFolder& 
   for (const PlantConfiguration& plant_configuration : *plant_configurations) {
     auto vehicle_model = vehicle_models.get(plant_configuration.vehicle);
     if (!vehicle_model) return tl::unexpected(vehicle_model.error());
-    plan.jobs.push_back(std::make_unique<SweepJob>(*the_case, plant_configuration, plan.rates,
-                                                   *std::move(vehicle_model), host));
+    plan.jobs.push_back(std::make_unique<RateSweepJob>(*the_case, plant_configuration, plan.rates,
+                                                       *std::move(vehicle_model), host));
   }
   plan.the_case = std::move(*the_case);
   plan.port = *port;
@@ -87,23 +87,24 @@ int sweep_rate_command(const RateSweepOptions& options, const Globals& globals) 
   note_interrupts();
   Progress progress(plan->jobs.size() * (plan->rates.size() + 1),
                     Progress::on_stderr(globals.quiet));
-  JobOptions<SweepResult> jobs;
+  JobOptions<RateSweepResult> jobs;
   jobs.processes = options.jobs;
-  jobs.on_result = [&](const SweepResult& found) { progress.add(found.result); };
+  jobs.on_result = [&](const RateSweepResult& found) { progress.add(found.result); };
   jobs.stop = interrupted;
-  const JobResults<SweepResult> outcome = run_jobs(plan->jobs, jobs);
+  const JobResults<RateSweepResult> outcome = run_jobs(plan->jobs, jobs);
   progress.finish();
   if (interrupted()) return exit_interrupted;
   for (const Error& error : outcome.errors) report_error(error);
   if (!outcome.errors.empty()) return exit_usage;
 
-  const std::vector<SweepRow> rows = sweep_rows(outcome.results);
-  if (auto written = write_file(options.csv, sweep_csv(rows, plan->rates)); !written) {
+  const std::vector<RateSweepRow> rows = rate_sweep_rows(outcome.results);
+  if (auto written = write_file(options.csv, rate_sweep_csv(rows, plan->rates)); !written) {
     return report_error(written.error());
   }
   if (!options.html.empty()) {
-    const SweepRun run{options.host.port, plan->port, plan->the_case, plan->rates, outcome.results};
-    if (auto written = write_file(options.html, sweep_page(run)); !written) {
+    const RateSweepRun run{options.host.port, plan->port, plan->the_case, plan->rates,
+                           outcome.results};
+    if (auto written = write_file(options.html, rate_sweep_page(run)); !written) {
       return report_error(written.error());
     }
   }
@@ -111,10 +112,10 @@ int sweep_rate_command(const RateSweepOptions& options, const Globals& globals) 
     fmt::print(
         "{}: lowest loop rate, and largest delay of the motor commands, within its bounds\n"
         "{}",
-        plan->the_case.id(), render_sweep(rows, plan->rates));
+        plan->the_case.id(), render_rate_sweep(rows, plan->rates));
   }
   const bool failed = std::any_of(rows.begin(), rows.end(),
-                                  [](const SweepRow& row) { return !row.failure.empty(); });
+                                  [](const RateSweepRow& row) { return !row.failure.empty(); });
   return failed ? exit_failed : exit_ok;
 }
 

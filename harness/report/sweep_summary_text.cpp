@@ -90,7 +90,7 @@ std::string difference_of(const SweepFile& sweep, const PortDifference& port) {
   }
   out += fmt::format("lost by the port only: {}, by the reference only: {}, sign test p {:.2g}{}\n",
                      port.lost_by_port, port.lost_by_reference, port.p_value,
-                     port.loses_more ? "  differs" : "");
+                     port.losses_differ ? "  differs" : "");
   return out + conclusion_of(port) + "\n";
 }
 
@@ -174,7 +174,7 @@ std::string indices_heading(const SweepFile& sweep, const MetricSummary& metric)
 
 std::string conclusion_of(const PortDifference& port) {
   std::vector<std::string> where;
-  if (port.loses_more) where.emplace_back("the number of flights that are lost");
+  if (port.losses_differ) where.emplace_back("the number of flights that are lost");
   for (const MetricDifference& one : port.metrics) {
     if (one.differs) where.push_back(one.name);
   }

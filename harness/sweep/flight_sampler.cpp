@@ -63,6 +63,19 @@ std::string identity_of(const SweepFile& sweep, const NominalFlight& nominal) {
   return sha256(all);
 }
 
+using NamedNumber = std::pair<const char*, double>;
+
+// The lowest and the highest number that a design can draw.
+std::vector<NamedNumber> ends_of(const Distribution& distribution) {
+  if (distribution.kind != Distribution::Kind::choice) {
+    return {{"lowest", quantile(distribution, lowest_probability)},
+            {"highest", quantile(distribution, highest_probability)}};
+  }
+  const auto [lowest, highest] =
+      std::minmax_element(distribution.values.begin(), distribution.values.end());
+  return {{"lowest", *lowest}, {"highest", *highest}};
+}
+
 }  // namespace
 
 FlightSampler::FlightSampler(SweepFile sweep, NominalFlight nominal, TomlDocument case_document,
@@ -174,12 +187,11 @@ Result<void> FlightSampler::check_ends() const {
   const std::vector<double> middle = flight.drawn;
   for (const std::size_t i : dimensions_of(sweep_.dispersions)) {
     const Dispersion& dispersion = sweep_.dispersions[i];
-    for (const double u : {lowest_probability, highest_probability}) {
+    for (const auto& [which, number] : ends_of(dispersion.distribution)) {
       flight.drawn = middle;
-      flight.drawn[i] = quantile(dispersion.distribution, u);
+      flight.drawn[i] = number;
       const std::string what =
-          fmt::format("[disperse.{}] at its {} number, {:.6g}", dispersion.name,
-                      u < 0.5 ? "lowest" : "highest", flight.drawn[i]);
+          fmt::format("[disperse.{}] at its {} number, {:.6g}", dispersion.name, which, number);
       if (auto applied = apply(what, flight); !applied) {
         Error error = applied.error();
         error.line = dispersion.line;

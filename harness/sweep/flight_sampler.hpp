@@ -34,8 +34,8 @@ struct SampledFlight {
 
 class FlightSampler {
  public:
-  // Also checks the flight at both ends of each distribution, with the other numbers at their
-  // medians. The ends are the quantiles of the probabilities 2^-53 and 1 - 2^-53. Errors, with the
+  // Also checks the flight at the lowest and at the highest number of each distribution (the
+  // quantiles of 2^-53 and 1 - 2^-53), with the other numbers at their medians. Errors, with the
   // line of the sweep file: those of bind_sweep(); a number that the case or the vehicle refuses.
   static Result<FlightSampler> make(SweepFile sweep, NominalFlight nominal);
 

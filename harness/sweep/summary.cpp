@@ -95,7 +95,7 @@ PortDifference compare_pilots(const SweepFile& sweep, const SampleColumns& colum
   // Bonferroni: all tests together are wrong with at most the probability 1 - confidence.
   const double tests = static_cast<double>(columns.metrics.size() + 1);
   const double significant = (1 - sweep.confidence) / tests;
-  result.loses_more = result.p_value < significant;
+  result.losses_differ = result.p_value < significant;
   for (std::size_t i = 0; i < columns.metrics.size(); ++i) {
     MetricDifference one =
         difference_of(columns.metrics[i], reference.metrics[i], port.metrics[i], sweep);
@@ -120,8 +120,8 @@ std::string_view name_of(RequirementVerdict decision) {
 }
 
 bool PortDifference::differs() const {
-  return loses_more || std::any_of(metrics.begin(), metrics.end(),
-                                   [](const MetricDifference& one) { return one.differs; });
+  return losses_differ || std::any_of(metrics.begin(), metrics.end(),
+                                      [](const MetricDifference& one) { return one.differs; });
 }
 
 bool SweepSummary::passes() const {

@@ -57,7 +57,8 @@ struct PortDifference {
   // Flights that only one of the two lost.
   std::uint64_t lost_by_port = 0, lost_by_reference = 0;
   double p_value = 1;
-  bool loses_more = false;  // more or fewer: the sign test finds different numbers of lost flights
+  bool losses_differ =
+      false;  // more or fewer: the sign test finds different numbers of lost flights
   bool differs() const;
 };
 

@@ -2,182 +2,216 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
-#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include "harness/core/version.hpp"
-#include "harness/report/failure_text.hpp"
-#include "harness/report/html/plot_bounds.hpp"
 #include "harness/report/html/plot_page.hpp"
-#include "harness/report/sweep_text.hpp"
+#include "harness/report/html/sweep_plots.hpp"
+#include "harness/report/sweep_summary_text.hpp"
 #include "harness/report/text.hpp"
 
 namespace attest {
 namespace {
 
-constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
+// The table of the worst flights stays readable.
+constexpr std::size_t most_shown_dispersions = 12;
 
-// A row of the table with the flights without further delay, by their rate [Hz].
-struct Line {
-  int vehicle = 0;  // its number
-  SweepRow row;
-  std::map<double, SweepTrial> flights;
+std::string figure(double value) { return fmt::format("{:.4g}", value); }
+std::string figure(const std::optional<double>& value) { return value ? figure(*value) : "-"; }
 
-  std::string name() const {
-    return fmt::format("{} on {}", row.plant_configuration.vehicle,
-                       name_of(row.plant_configuration.plant));
+Verdict verdict_on(RequirementVerdict decision) {
+  return decision == RequirementVerdict::met ? Verdict::pass : Verdict::fail;
+}
+
+PageTable requirements_table(const SweepRun& run) {
+  const SweepFile& sweep = run.sampler.sweep();
+  PageTable table{"Requirements",
+                  {"requirement", "metric", "bounds", "held", probability_heading(sweep), "needed",
+                   "decision"}};
+  for (const RequirementResult& one : run.summary.requirements) {
+    table.rows.push_back({one.requirement.name,
+                          one.requirement.metric,
+                          bounds_of(one.requirement),
+                          fmt::format("{} of {}", one.held, one.count),
+                          probability_of(sweep, one),
+                          fmt::format("{:g}", one.requirement.probability),
+                          {std::string(name_of(one.decision)), verdict_on(one.decision)}});
   }
-};
+  return table;
+}
 
-std::vector<Line> lines_of(const SweepRun& run) {
-  std::vector<Line> lines;
-  for (SweepRow& row : sweep_rows(run.results)) {
-    const bool is_same = !lines.empty() && lines.back().row.plant_configuration.vehicle ==
-                                               row.plant_configuration.vehicle;
-    const int vehicle = lines.empty() ? 0 : lines.back().vehicle + (is_same ? 0 : 1);
-    lines.push_back({vehicle, std::move(row), {}});
-  }
-  for (const SweepResult& found : run.results) {
-    const auto line = std::find_if(lines.begin(), lines.end(), [&](const Line& one) {
-      return one.row.plant_configuration == *found.result.plant_configuration;
-    });
-    for (const SweepTrial& trial : found.trials) {
-      if (trial.delay_ms == 0) line->flights.emplace(trial.rate_hz, trial);
+PageTable metrics_table(const SweepSummary& summary) {
+  PageTable table{"Metrics of the flights that were done",
+                  {"metric", "flights", "min", "median", "p95", "p99", "max"}};
+  for (const MetricSummary& one : summary.metrics) {
+    if (one.count == 0) {
+      table.rows.push_back({one.name, "0", "-", "-", "-", "-", "-"});
+      continue;
     }
+    table.rows.push_back({one.name, fmt::to_string(one.count), figure(one.min), figure(one.median),
+                          figure(one.p95), figure(one.p99), figure(one.max)});
   }
-  return lines;
+  return table;
 }
 
-// A vehicle has a colour. Its second plant has a dark dotted line, because both often coincide.
-PlotSeries empty_series(const Line& line) {
-  constexpr int dark = 5;
-  const bool is_first = line.row.plant_configuration.plant == plant_kinds.front();
-  return {line.name(),
-          {},
-          {},
-          is_first ? LinePattern::solid : LinePattern::dotted,
-          is_first ? line.vehicle % dark : dark};
+PageCell difference_cell(double p_value, bool differs) {
+  if (differs) return {fmt::format("{:.2g}, differs", p_value), Verdict::fail};
+  return fmt::format("{:.2g}", p_value);
 }
 
-PageCell limit_cell(double value) {
-  if (value < 0) return {"none", Verdict::fail};
-  return fmt::format("{:g}", value);
-}
-
-PageTable limits_table(const SweepRun& run, const std::vector<Line>& lines) {
-  PageTable table{"Lowest loop rate, and largest delay of the motor commands",
-                  {"vehicle and plant", "lowest rate [Hz]"}};
-  for (const LoopRate& rate : run.rates) {
-    table.header.push_back(fmt::format("delay [ms] at {} Hz", rate.to_string()));
+PageTable difference_table(const SweepFile& sweep, const PortDifference& port) {
+  PageTable table{
+      fmt::format("Port minus reference on the same samples; above, below: flights that differ by "
+                  "more than {:g} of the metric",
+                  sweep.tie),
+      {"metric", "flights", "above", "below", "median", "p1", "p99", "p of the sign test"}};
+  for (const MetricDifference& one : port.metrics) {
+    table.rows.push_back({one.name, fmt::to_string(one.count), fmt::to_string(one.above),
+                          fmt::to_string(one.below), figure(one.median), figure(one.p1),
+                          figure(one.p99), difference_cell(one.p_value, one.differs)});
   }
-  for (const Line& line : lines) {
-    std::vector<PageCell> row = {line.name(), limit_cell(line.row.lowest_rate_hz)};
-    for (const double delay : line.row.largest_delay_ms) row.push_back(limit_cell(delay));
+  table.rows.push_back({"lost flights", "", fmt::to_string(port.lost_by_port),
+                        fmt::to_string(port.lost_by_reference), "", "", "",
+                        difference_cell(port.p_value, port.losses_differ)});
+  return table;
+}
+
+PageTable correlation_table(const SweepRun& run) {
+  PageTable table{"Rank correlation (Spearman) of dispersions and metrics", {"dispersion"}};
+  table.header.insert(table.header.end(), run.columns.metrics.begin(), run.columns.metrics.end());
+  for (std::size_t d = 0; d < run.columns.dispersions.size(); ++d) {
+    std::vector<PageCell> row = {run.columns.dispersions[d]};
+    for (const MetricSummary& one : run.summary.metrics) {
+      const double correlation = one.correlation[d];
+      row.emplace_back(std::isnan(correlation) ? "-" : fmt::format("{:+.2f}", correlation));
+    }
     table.rows.push_back(std::move(row));
   }
   return table;
 }
 
-std::string what_is_missed(const Case& the_case, const SweepTrial& trial) {
-  if (trial.values.empty()) return "the vehicle is lost";
-  std::vector<std::string> missed;
-  for (std::size_t i = 0; i < trial.values.size(); ++i) {
-    const Metric& metric = the_case.flight->metrics[i];
-    const double value = trial.values[i];
-    if (value >= metric.min && value <= metric.max) continue;
-    const MetricResult as_result{metric.name, metric.measure, value, 0, 0, metric.min, metric.max};
-    missed.push_back(fmt::format("{} ({}) is {:.4g}, allowed: {}", metric.name,
-                                 name_of(metric.measure), value, metric_bounds(as_result)));
-  }
-  return fmt::format("{}", fmt::join(missed, "; "));
-}
-
-PageTable failing_table(const SweepRun& run, const std::vector<Line>& lines) {
-  PageTable table{"Highest rate at which a metric is out of bounds",
-                  {"vehicle and plant", "rate [Hz]", "what is missed"}};
-  for (const Line& line : lines) {
-    const auto failing = std::find_if(line.flights.rbegin(), line.flights.rend(),
-                                      [](const auto& flight) { return !flight.second.holds; });
-    if (failing == line.flights.rend()) continue;
-    table.rows.push_back({line.name(), fmt::format("{:g}", failing->first),
-                          what_is_missed(run.the_case, failing->second)});
+PageTable indices_table(const SweepRun& run, const MetricSummary& metric) {
+  PageTable table{indices_heading(run.sampler.sweep(), metric),
+                  {"dispersion", "first order", "total"}};
+  for (std::size_t i = 0; i < metric.sobol->dimensions.size(); ++i) {
+    const SobolIndex& one = metric.sobol->dimensions[i];
+    table.rows.push_back({run.summary.dimensions[i], index_text(one.first, one.first_interval),
+                          index_text(one.total, one.total_interval)});
   }
   return table;
 }
 
-PlotBand bounds_of(const Metric& metric, const std::vector<PlotSeries>& series) {
-  double first = std::numeric_limits<double>::max(), last = 0;
-  for (const PlotSeries& one : series) {
-    first = std::min(first, one.x.front());
-    last = std::max(last, one.x.back());
+PageTable worst_table(const SweepRun& run, const RequirementResult& result) {
+  const std::size_t shown = std::min(most_shown_dispersions, run.columns.dispersions.size());
+  PageTable table{fmt::format("Worst flights for {}", result.requirement.name), {"sample"}};
+  table.header.push_back("outcome");
+  for (const std::string& name : run.columns.metrics) table.header.push_back(name);
+  for (std::size_t d = 0; d < shown; ++d) table.header.push_back(run.columns.dispersions[d]);
+  table.header.push_back("fly it again");
+  const PilotData& judged = run.data.pilots.back();
+  for (const std::uint64_t sample : result.worst) {
+    std::vector<PageCell> row = {fmt::to_string(sample), judged.outcomes[sample]};
+    for (const std::vector<double>& values : judged.metrics) {
+      row.emplace_back(std::isnan(values[sample]) ? "-" : figure(values[sample]));
+    }
+    for (std::size_t d = 0; d < shown; ++d) row.emplace_back(figure(run.data.drawn[d][sample]));
+    row.emplace_back(sim_command_for(run.sampler, sample, run.identity.port, run.kept));
+    table.rows.push_back(std::move(row));
   }
-  const auto [low, high] = drawn_bounds(metric.min, metric.max, series);
-  return {"within bounds", {first, last}, {low, low}, {high, high}};
+  return table;
 }
 
-Plot metric_plot(const Metric& metric, std::size_t number, const std::vector<Line>& lines) {
-  Plot plot{metric.name, std::string(name_of(metric.measure)), "infinite values are not drawn"};
-  plot.logarithmic_x = true;
-  for (const Line& line : lines) {
-    PlotSeries series = empty_series(line);
-    for (const auto& [rate_hz, trial] : line.flights) {
-      series.x.push_back(rate_hz);
-      series.y.push_back(trial.values.empty() ? no_value
-                                              : static_cast<float>(trial.values[number]));
-    }
-    if (!series.x.empty()) plot.series.push_back(std::move(series));
+std::vector<PageTable> tables_of(const SweepRun& run) {
+  std::vector<PageTable> tables;
+  if (!run.summary.requirements.empty()) tables.push_back(requirements_table(run));
+  if (run.summary.port) tables.push_back(difference_table(run.sampler.sweep(), *run.summary.port));
+  tables.push_back(metrics_table(run.summary));
+  tables.push_back(correlation_table(run));
+  for (const MetricSummary& one : run.summary.metrics) {
+    if (one.sobol) tables.push_back(indices_table(run, one));
   }
-  if (!plot.series.empty()) plot.band = bounds_of(metric, plot.series);
-  return plot;
+  for (const RequirementResult& one : run.summary.requirements) {
+    if (!one.worst.empty()) tables.push_back(worst_table(run, one));
+  }
+  return tables;
 }
 
-Plot delay_plot(const SweepRun& run, const std::vector<Line>& lines) {
-  Plot plot{"Largest delay of the motor commands", "ms"};
-  plot.logarithmic_x = true;
-  for (const Line& line : lines) {
-    std::map<double, float> by_rate;
-    for (std::size_t i = 0; i < line.row.largest_delay_ms.size(); ++i) {
-      const double delay = line.row.largest_delay_ms[i];
-      by_rate[run.rates[i].hertz()] = delay < 0 ? no_value : static_cast<float>(delay);
-    }
-    PlotSeries series = empty_series(line);
-    for (const auto& [rate_hz, delay] : by_rate) {
-      series.x.push_back(rate_hz);
-      series.y.push_back(delay);
-    }
-    plot.series.push_back(std::move(series));
+std::string sentence_of(const SweepRun& run) {
+  const auto decided = [&](RequirementVerdict decision) {
+    const auto& all = run.summary.requirements;
+    return std::count_if(all.begin(), all.end(),
+                         [&](const RequirementResult& one) { return one.decision == decision; });
+  };
+  std::string sentence;
+  if (!run.summary.requirements.empty()) {
+    sentence = fmt::format("Requirements: {} met, {} not met, {} undecided. ",
+                           decided(RequirementVerdict::met), decided(RequirementVerdict::not_met),
+                           decided(RequirementVerdict::undecided));
   }
-  return plot;
+  if (run.summary.port) sentence += conclusion_of(*run.summary.port) + " ";
+  return sentence + fmt::format("Flights: {}.", outcomes_of(run.summary));
+}
+
+PageConclusion page_conclusion(const SweepRun& run) {
+  const bool passes = run.summary.passes();
+  return {passes ? Verdict::pass : Verdict::fail, passes ? "pass" : "fail",
+          heading_of(run.sampler, run.summary), sentence_of(run)};
+}
+
+std::vector<PageNote> notes_of(const SweepRun& run, const SweepPlots& plots) {
+  std::vector<PageNote> notes;
+  if (const std::string ending = ending_of(run.sampler.sweep(), run.summary); !ending.empty()) {
+    notes.push_back({ending + "."});
+  }
+  if (run.data.samples() > most_drawn_samples) {
+    notes.push_back({fmt::format(
+        "The plots are thinned: a distribution has {} quantiles and the outermost {} values at "
+        "each end; a metric over a dispersion has {} of {} samples, chosen at random, and the "
+        "worst ones. The tables are of all samples.",
+        most_drawn_quantiles, drawn_tail, most_drawn_samples, run.data.samples())});
+  }
+  if (plots.scatter_plots > most_scatter_plots) {
+    notes.push_back(
+        {fmt::format("Of {} plots of a metric over a dispersion, the {} with the "
+                     "strongest rank correlation are drawn.",
+                     plots.scatter_plots, most_scatter_plots)});
+  }
+  if (run.columns.dispersions.size() > most_shown_dispersions && !run.kept.empty()) {
+    notes.push_back(
+        {fmt::format("The tables of the worst flights have the first {} of {} "
+                     "dispersions; samples.csv has all.",
+                     most_shown_dispersions, run.columns.dispersions.size())});
+  }
+  if (run.kept.empty() && !run.summary.requirements.empty()) {
+    notes.push_back(
+        {"No worst flight was kept. `--keep-worst K` keeps and marks the worst flights "
+         "of each requirement."});
+  }
+  return notes;
+}
+
+std::vector<PageFact> facts_of(const SweepRun& run) {
+  const SweepFile& sweep = run.sampler.sweep();
+  return {{"attest", run.identity.attest_version},
+          {"sweep", sweep.file.filename().string()},
+          {"hash of sweep file, case, vehicle and samples", run.identity.sweep_sha256},
+          {"port", run.identity.port},
+          {"hash of the port", run.identity.port_sha256},
+          {"confidence", fmt::format("{:g}", sweep.confidence)},
+          {"needed for a tie", fmt::format("{:g} of the metric", sweep.tie)}};
 }
 
 }  // namespace
 
 std::string sweep_page(const SweepRun& run) {
-  const std::vector<Line> lines = lines_of(run);
+  SweepPlots plots = sweep_plots(run.sampler.sweep(), run.columns, run.data, run.summary);
   PlotPage page;
-  for (const Line& line : lines) {
-    if (line.row.failure.empty()) continue;
-    page.notes.push_back({fmt::format("{}: {}", line.name(), line.row.failure), true});
-  }
-  const bool failed = !page.notes.empty();
-  page.conclusion = {failed ? Verdict::fail : Verdict::pass, failed ? "fail" : "measured",
-                     fmt::format("{}: limits of loop rate and delay", run.the_case.id()),
-                     fmt::format("{} {}, {} with a plant", run.says.name, run.says.version,
-                                 counted(lines.size(), "vehicle"))};
-  page.facts = {{"attest", version}, {"port", run.port}};
-  page.tables = {limits_table(run, lines), failing_table(run, lines)};
-  if (page.tables.back().rows.empty()) page.tables.pop_back();
-  PlotGroup group{"By loop rate", "loop rate [Hz]", {}};
-  const auto& metrics = run.the_case.flight->metrics;
-  for (std::size_t i = 0; i < metrics.size(); ++i) {
-    group.plots.push_back(metric_plot(metrics[i], i, lines));
-  }
-  group.plots.push_back(delay_plot(run, lines));
-  page.groups = {std::move(group)};
+  page.conclusion = page_conclusion(run);
+  page.notes = notes_of(run, plots);
+  page.facts = facts_of(run);
+  page.tables = tables_of(run);
+  page.groups = std::move(plots.groups);
   return plot_page(page);
 }
 

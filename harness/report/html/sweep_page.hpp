@@ -1,25 +1,26 @@
-// The page of `attest sweep-rate --html`.
+// The page of `attest sweep --html`.
 #pragma once
 
+#include <filesystem>
 #include <string>
-#include <vector>
 
-#include "harness/casefile/case.hpp"
-#include "harness/host/port_says.hpp"
-#include "harness/measure/sweep.hpp"
+#include "harness/sweep/flight_sampler.hpp"
+#include "harness/sweep/identity.hpp"
+#include "harness/sweep/summary.hpp"
 
 namespace attest {
 
 struct SweepRun {
-  std::string port;  // as given
-  PortSays says;
-  Case the_case;
-  std::vector<LoopRate> rates;
-  std::vector<SweepResult> results;  // of SweepJobs, in their order
+  const FlightSampler& sampler;
+  const SampleColumns& columns;
+  const SampleData& data;
+  const SweepSummary& summary;
+  const SweepIdentity& identity;
+  std::filesystem::path kept;  // the folder of keep_flights(); empty: none are kept
 };
 
-// The limits as a table, each metric by rate with its bounds, and the largest delay by rate; a line
-// for each vehicle and plant. What is missed at the highest rate that does not hold.
+// Requirements, metrics, differences from the reference, sensitivities and worst flights as tables;
+// distributions, and metrics over dispersions, as plots. A few megabytes for any number of samples.
 std::string sweep_page(const SweepRun& run);
 
 }  // namespace attest

@@ -1,5 +1,6 @@
 #include "harness/sweep/flight_sampler.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -81,6 +82,17 @@ TEST(FlightSampler, ADistributionThatReachesImpossibleNumbersIsRefused) {
   EXPECT_THAT(error, HasSubstr("s.toml:6: [disperse.mass] at its lowest number, -2.6"));
   EXPECT_THAT(error, HasSubstr("vehicle.mass_kg = -2.6"));
   EXPECT_THAT(error, HasSubstr("must be positive; use a bounded distribution"));
+}
+
+TEST(FlightSampler, AnImpossibleNumberOfAChoiceIsRefusedWhereverItStands) {
+  for (const char* const values : {"[1.5, 99, -2]", "[1.5, -2, 99]", "[-2, 1.5]"}) {
+    const std::string error = error_of(
+        fmt::format("schema = 1\ncase = 'x'\nrate = 250\ndesign = 'monte_carlo'\nsamples = 5\n"
+                    "[disperse.mass]\nkeys = ['vehicle.mass_kg']\ndistribution = 'choice'\n"
+                    "values = {}\n",
+                    values));
+    EXPECT_THAT(error, HasSubstr("[disperse.mass] at its lowest number, -2")) << values;
+  }
 }
 
 TEST(FlightSampler, NumbersThatAreImpossibleTogetherAreNamedWithTheirSample) {

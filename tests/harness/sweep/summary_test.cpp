@@ -140,7 +140,7 @@ TEST_F(SummaryTest, APortThatLosesMoreFlightsDiffers) {
     data_.pilots[1].metrics[0][i] = nan;
   }
   EXPECT_EQ(summary().port->lost_by_port, 10u);
-  EXPECT_TRUE(summary().port->loses_more);
+  EXPECT_TRUE(summary().port->losses_differ);
 }
 
 TEST_F(SummaryTest, AFaultOfThePortFails) {

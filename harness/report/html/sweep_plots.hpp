@@ -17,14 +17,14 @@ inline constexpr std::size_t most_drawn_samples = 1000;
 // On the page: those of the pairs with the strongest rank correlation.
 inline constexpr std::size_t most_scatter_plots = 48;
 
-struct DispersedPlots {
+struct SweepPlots {
   std::vector<PlotGroup> groups;
   std::size_t scatter_plots = 0;  // without the limit; most_scatter_plots are drawn
 };
 
 // For each metric its cumulative distribution, and that of the difference between the pilots; then
 // metrics over dispersions.
-DispersedPlots dispersed_plots(const SweepFile& sweep, const SampleColumns& columns,
-                               const SampleData& data, const SweepSummary& summary);
+SweepPlots sweep_plots(const SweepFile& sweep, const SampleColumns& columns, const SampleData& data,
+                       const SweepSummary& summary);
 
 }  // namespace attest

@@ -1,5 +1,5 @@
 // The search for the last flight that holds, with a host whose flights the test gives.
-#include "harness/measure/sweep.hpp"
+#include "harness/measure/rate_sweep.hpp"
 
 #include <cmath>
 #include <limits>
@@ -57,7 +57,7 @@ class Sweep : public testing::Test {
  protected:
   Sweep() { case_.flight->metrics = {sink_within(-unbounded, 1)}; }
 
-  SweepJob job(const StartHost& start) const {
+  RateSweepJob job(const StartHost& start) const {
     HostOptions host;
     host.start = start;
     return {case_, plant_configuration_, rates_, nullptr, host};
@@ -75,8 +75,8 @@ class Sweep : public testing::Test {
     };
   }
 
-  Result<SweepResult> run(std::size_t task) {
-    SweepJob sweep = job(start());
+  Result<RateSweepResult> run(std::size_t task) {
+    RateSweepJob sweep = job(start());
     if (auto opened = sweep.open(); !opened) return tl::unexpected(opened.error());
     auto found = sweep.run(task);
     sweep.close();
@@ -120,7 +120,7 @@ TEST_F(Sweep, EachFlightOfTheSearchIsKeptWithItsMetrics) {
   ASSERT_TRUE(found) << found.error().to_string();
   ASSERT_EQ(found->trials.size(), plans_.size());
   for (std::size_t i = 0; i < plans_.size(); ++i) {
-    const SweepTrial& trial = found->trials[i];
+    const RateSweepTrial& trial = found->trials[i];
     EXPECT_EQ(trial.rate_hz, hertz_of(plans_[i]));
     EXPECT_EQ(trial.holds, trial.rate_hz >= 137);
     EXPECT_EQ(trial.values, std::vector<double>{trial.holds ? 0.0 : 2.0});
@@ -275,7 +275,7 @@ TEST_F(Sweep, APortWithAFixedStepFliesAtItsRateOnlyFromOnePeriodOn) {
 TEST_F(Sweep, TheHostIsStartedForTheCaseAndSpentWithIt) {
   bool is_spent = false;
   std::string course;
-  SweepJob sweep = job([&](const HostOptions&, const Course& given) {
+  RateSweepJob sweep = job([&](const HostOptions&, const Course& given) {
     course = given.the_case->id();
     GivenHost::Answers answers;
     answers.is_spent = [&] { return is_spent; };
@@ -296,7 +296,7 @@ TEST_F(Sweep, AHostThatCannotBeStartedIsAnError) {
 }
 
 TEST(SweepCodec, AResultIsReadAsItWasWritten) {
-  SweepResult rate, delay;
+  RateSweepResult rate, delay;
   rate.result.profile = delay.result.profile = "px4-v1.5.5";
   rate.result.group = delay.result.group = "flight";
   rate.result.name = delay.result.name = "hover";
@@ -305,7 +305,7 @@ TEST(SweepCodec, AResultIsReadAsItWasWritten) {
   rate.lowest_rate_hz = -1;
   rate.trials = {{333, 0.1, {0.25, unbounded}, false}, {20, 0, {}, false}};
   delay.largest_delay_ms = 7.3;
-  using SweepCodec = Codec<SweepResult>;
+  using SweepCodec = Codec<RateSweepResult>;
   const auto rate_read = SweepCodec::decode(SweepCodec::encode(rate));
   ASSERT_TRUE(rate_read) << rate_read.error().to_string();
   EXPECT_EQ(rate_read->result.verdict, Verdict::crash);
@@ -326,7 +326,7 @@ TEST(SweepCodec, AResultIsReadAsItWasWritten) {
 }
 
 TEST(SweepCodec, AnErrorStaysAnError) {
-  using SweepCodec = Codec<SweepResult>;
+  using SweepCodec = Codec<RateSweepResult>;
   const auto read = SweepCodec::decode(SweepCodec::encode(fail("no such rotor")));
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().message, "no such rotor");

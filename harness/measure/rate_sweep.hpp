@@ -16,7 +16,7 @@
 namespace attest {
 
 // A flight of the search that the port flew to its end, or until it lost the vehicle.
-struct SweepTrial {
+struct RateSweepTrial {
   double rate_hz = 0, delay_ms = 0;
   std::vector<double>
       values;          // of the metrics, in the order of the case; empty: the vehicle is lost
@@ -24,27 +24,27 @@ struct SweepTrial {
 };
 
 // One of the two figures is set. It is below 0 if no value holds, or if `result` is not a pass.
-struct SweepResult {
+struct RateSweepResult {
   CaseResult result;  // a verdict other than pass: the port failed
   std::optional<double> lowest_rate_hz;
-  std::optional<double> largest_delay_ms;  // of the motor commands, beyond the case's own
-  std::vector<SweepTrial> trials = {};     // in the order of the search
+  std::optional<double> largest_delay_ms;   // of the motor commands, beyond the case's own
+  std::vector<RateSweepTrial> trials = {};  // in the order of the search
 };
 
 template <>
-struct Codec<SweepResult> {
-  static std::string encode(const Result<SweepResult>& result);
-  static Result<SweepResult> decode(const std::string& text);
+struct Codec<RateSweepResult> {
+  static std::string encode(const Result<RateSweepResult>& result);
+  static Result<RateSweepResult> decode(const std::string& text);
 };
 
 // One vehicle on one plant. Task 0 searches for the lowest rate (of the cascade, that of the rate
 // unit, with the attitude unit at its usual rate or at the same one), task i for the largest delay
 // at rate i - 1. Both searches take steps and then bisect. The value next to the result does not
 // hold; values beyond that one are not tried.
-class SweepJob final : public Job<SweepResult> {
+class RateSweepJob final : public Job<RateSweepResult> {
  public:
-  SweepJob(Case the_case, PlantConfiguration plant_configuration, std::vector<LoopRate> rates,
-           std::shared_ptr<const VehicleModel> vehicle_model, HostOptions options)
+  RateSweepJob(Case the_case, PlantConfiguration plant_configuration, std::vector<LoopRate> rates,
+               std::shared_ptr<const VehicleModel> vehicle_model, HostOptions options)
       : case_(std::move(the_case)),
         plant_configuration_(std::move(plant_configuration)),
         rates_(std::move(rates)),
@@ -53,7 +53,7 @@ class SweepJob final : public Job<SweepResult> {
 
   std::size_t size() const override { return rates_.size() + 1; }
   Result<void> open() override;
-  Result<SweepResult> run(std::size_t task) override;
+  Result<RateSweepResult> run(std::size_t task) override;
   bool is_spent() const override { return host_->is_spent(); }
   void close() override { host_.reset(); }
 

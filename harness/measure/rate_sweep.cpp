@@ -1,4 +1,4 @@
-#include "harness/measure/sweep.hpp"
+#include "harness/measure/rate_sweep.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -49,13 +49,13 @@ class Trial {
     return false;
   }
 
-  std::vector<SweepTrial> take_trials() { return std::move(trials_); }
+  std::vector<RateSweepTrial> take_trials() { return std::move(trials_); }
 
   const std::optional<Error>& error() const { return error_; }
 
  private:
   bool note(const Rate& rate, Nanoseconds delay, const Flown& flown) {
-    SweepTrial trial{rate.hertz(), 1e3 * in_seconds(delay), {}, !flown.divergence};
+    RateSweepTrial trial{rate.hertz(), 1e3 * in_seconds(delay), {}, !flown.divergence};
     if (!flown.divergence) {
       for (const Metric& metric : case_.flight->metrics) {
         const double value = measured(metric, flown);
@@ -70,7 +70,7 @@ class Trial {
   const Case& case_;
   PortHost& host_;
   CaseResult& result_;
-  std::vector<SweepTrial> trials_;
+  std::vector<RateSweepTrial> trials_;
   std::optional<Error> error_;
 };
 
@@ -116,8 +116,8 @@ LoopRate with_unit_at(const Rate& unit, const LoopRate& usual) {
 
 }  // namespace
 
-std::string Codec<SweepResult>::encode(const Result<SweepResult>& result) {
-  return attest::encode(result.map([](const SweepResult& one) {
+std::string Codec<RateSweepResult>::encode(const Result<RateSweepResult>& result) {
+  return attest::encode(result.map([](const RateSweepResult& one) {
     nlohmann::json out = {{"result", to_json(one.result)}};
     if (one.lowest_rate_hz) out["lowest_rate_hz"] = *one.lowest_rate_hz;
     if (one.largest_delay_ms) out["largest_delay_ms"] = *one.largest_delay_ms;
@@ -131,13 +131,13 @@ std::string Codec<SweepResult>::encode(const Result<SweepResult>& result) {
   }));
 }
 
-Result<SweepResult> Codec<SweepResult>::decode(const std::string& text) {
+Result<RateSweepResult> Codec<RateSweepResult>::decode(const std::string& text) {
   const auto in = attest::decode(text);
   if (!in) return tl::unexpected(in.error());
   const auto figure = [&](const char* name) {
     return in->contains(name) ? std::optional(in->at(name).get<double>()) : std::nullopt;
   };
-  std::vector<SweepTrial> trials;
+  std::vector<RateSweepTrial> trials;
   for (const nlohmann::json& trial : in->at("trials")) {
     trials.push_back({trial[0].get<double>(), trial[1].get<double>(), {}, trial[3].get<bool>()});
     for (const nlohmann::json& value : trial[2]) {
@@ -145,21 +145,21 @@ Result<SweepResult> Codec<SweepResult>::decode(const std::string& text) {
     }
   }
   return case_result_from_json(in->at("result")).map([&](CaseResult result) {
-    return SweepResult{std::move(result), figure("lowest_rate_hz"), figure("largest_delay_ms"),
-                       std::move(trials)};
+    return RateSweepResult{std::move(result), figure("lowest_rate_hz"), figure("largest_delay_ms"),
+                           std::move(trials)};
   });
 }
 
-Result<void> SweepJob::open() {
+Result<void> RateSweepJob::open() {
   auto host = start_host(options_, {&case_, vehicle_model_.get()});
   if (!host) return tl::unexpected(host.error());
   host_ = *std::move(host);
   return {};
 }
 
-Result<SweepResult> SweepJob::run(std::size_t task) {
+Result<RateSweepResult> RateSweepJob::run(std::size_t task) {
   const RunConfiguration configuration{rates_[task == 0 ? 0 : task - 1], plant_configuration_};
-  SweepResult found{result_for(case_, configuration), {}, {}};
+  RateSweepResult found{result_for(case_, configuration), {}, {}};
   Trial trial(case_, *host_, found.result);
   if (task == 0) {
     found.lowest_rate_hz = lowest_rate([&](int hertz) {

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "harness/measure/sweep.hpp"
+#include "harness/measure/rate_sweep.hpp"
 
 namespace attest {
 
-struct SweepRow {
+struct RateSweepRow {
   PlantConfiguration plant_configuration;
   double lowest_rate_hz = -1;
   std::vector<double> largest_delay_ms;  // by rate, as in sweep.hpp
@@ -16,12 +16,14 @@ struct SweepRow {
 };
 
 // Of the results of SweepJobs, in their order.
-std::vector<SweepRow> sweep_rows(const std::vector<SweepResult>& results);
+std::vector<RateSweepRow> rate_sweep_rows(const std::vector<RateSweepResult>& results);
 
-std::string render_sweep(const std::vector<SweepRow>& rows, const std::vector<LoopRate>& rates);
+std::string render_rate_sweep(const std::vector<RateSweepRow>& rows,
+                              const std::vector<LoopRate>& rates);
 
 // "vehicle,plant,rate_hz,largest_delay_ms,lowest_rate_hz" and a row for each. A cell is
 // empty if no delay or rate is within the bounds.
-std::string sweep_csv(const std::vector<SweepRow>& rows, const std::vector<LoopRate>& rates);
+std::string rate_sweep_csv(const std::vector<RateSweepRow>& rows,
+                           const std::vector<LoopRate>& rates);
 
 }  // namespace attest

@@ -1,4 +1,4 @@
-#include "harness/report/html/dispersed_plots.hpp"
+#include "harness/report/html/sweep_plots.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -250,9 +250,9 @@ Plot scatter_of(const Pair& pair, const SweepFile& sweep, const SampleColumns& c
 
 }  // namespace
 
-DispersedPlots dispersed_plots(const SweepFile& sweep, const SampleColumns& columns,
-                               const SampleData& data, const SweepSummary& summary) {
-  DispersedPlots plots;
+SweepPlots sweep_plots(const SweepFile& sweep, const SampleColumns& columns, const SampleData& data,
+                       const SweepSummary& summary) {
+  SweepPlots plots;
   add_distributions(sweep, columns, data, plots.groups);
   const std::vector<Pair> pairs = pairs_of(sweep, summary);
   plots.scatter_plots = pairs.size();

@@ -1,0 +1,184 @@
+#include "harness/report/html/rate_sweep_page.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "harness/core/version.hpp"
+#include "harness/report/failure_text.hpp"
+#include "harness/report/html/plot_bounds.hpp"
+#include "harness/report/html/plot_page.hpp"
+#include "harness/report/rate_sweep_text.hpp"
+#include "harness/report/text.hpp"
+
+namespace attest {
+namespace {
+
+constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
+
+// A row of the table with the flights without further delay, by their rate [Hz].
+struct Line {
+  int vehicle = 0;  // its number
+  RateSweepRow row;
+  std::map<double, RateSweepTrial> flights;
+
+  std::string name() const {
+    return fmt::format("{} on {}", row.plant_configuration.vehicle,
+                       name_of(row.plant_configuration.plant));
+  }
+};
+
+std::vector<Line> lines_of(const RateSweepRun& run) {
+  std::vector<Line> lines;
+  for (RateSweepRow& row : rate_sweep_rows(run.results)) {
+    const bool is_same = !lines.empty() && lines.back().row.plant_configuration.vehicle ==
+                                               row.plant_configuration.vehicle;
+    const int vehicle = lines.empty() ? 0 : lines.back().vehicle + (is_same ? 0 : 1);
+    lines.push_back({vehicle, std::move(row), {}});
+  }
+  for (const RateSweepResult& found : run.results) {
+    const auto line = std::find_if(lines.begin(), lines.end(), [&](const Line& one) {
+      return one.row.plant_configuration == *found.result.plant_configuration;
+    });
+    for (const RateSweepTrial& trial : found.trials) {
+      if (trial.delay_ms == 0) line->flights.emplace(trial.rate_hz, trial);
+    }
+  }
+  return lines;
+}
+
+// A vehicle has a colour. Its second plant has a dark dotted line, because both often coincide.
+PlotSeries empty_series(const Line& line) {
+  constexpr int dark = 5;
+  const bool is_first = line.row.plant_configuration.plant == plant_kinds.front();
+  return {line.name(),
+          {},
+          {},
+          is_first ? LinePattern::solid : LinePattern::dotted,
+          is_first ? line.vehicle % dark : dark};
+}
+
+PageCell limit_cell(double value) {
+  if (value < 0) return {"none", Verdict::fail};
+  return fmt::format("{:g}", value);
+}
+
+PageTable limits_table(const RateSweepRun& run, const std::vector<Line>& lines) {
+  PageTable table{"Lowest loop rate, and largest delay of the motor commands",
+                  {"vehicle and plant", "lowest rate [Hz]"}};
+  for (const LoopRate& rate : run.rates) {
+    table.header.push_back(fmt::format("delay [ms] at {} Hz", rate.to_string()));
+  }
+  for (const Line& line : lines) {
+    std::vector<PageCell> row = {line.name(), limit_cell(line.row.lowest_rate_hz)};
+    for (const double delay : line.row.largest_delay_ms) row.push_back(limit_cell(delay));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+std::string what_is_missed(const Case& the_case, const RateSweepTrial& trial) {
+  if (trial.values.empty()) return "the vehicle is lost";
+  std::vector<std::string> missed;
+  for (std::size_t i = 0; i < trial.values.size(); ++i) {
+    const Metric& metric = the_case.flight->metrics[i];
+    const double value = trial.values[i];
+    if (value >= metric.min && value <= metric.max) continue;
+    const MetricResult as_result{metric.name, metric.measure, value, 0, 0, metric.min, metric.max};
+    missed.push_back(fmt::format("{} ({}) is {:.4g}, allowed: {}", metric.name,
+                                 name_of(metric.measure), value, metric_bounds(as_result)));
+  }
+  return fmt::format("{}", fmt::join(missed, "; "));
+}
+
+PageTable failing_table(const RateSweepRun& run, const std::vector<Line>& lines) {
+  PageTable table{"Highest rate at which a metric is out of bounds",
+                  {"vehicle and plant", "rate [Hz]", "what is missed"}};
+  for (const Line& line : lines) {
+    const auto failing = std::find_if(line.flights.rbegin(), line.flights.rend(),
+                                      [](const auto& flight) { return !flight.second.holds; });
+    if (failing == line.flights.rend()) continue;
+    table.rows.push_back({line.name(), fmt::format("{:g}", failing->first),
+                          what_is_missed(run.the_case, failing->second)});
+  }
+  return table;
+}
+
+PlotBand bounds_of(const Metric& metric, const std::vector<PlotSeries>& series) {
+  double first = std::numeric_limits<double>::max(), last = 0;
+  for (const PlotSeries& one : series) {
+    first = std::min(first, one.x.front());
+    last = std::max(last, one.x.back());
+  }
+  const auto [low, high] = drawn_bounds(metric.min, metric.max, series);
+  return {"within bounds", {first, last}, {low, low}, {high, high}};
+}
+
+Plot metric_plot(const Metric& metric, std::size_t number, const std::vector<Line>& lines) {
+  Plot plot{metric.name, std::string(name_of(metric.measure)), "infinite values are not drawn"};
+  plot.logarithmic_x = true;
+  for (const Line& line : lines) {
+    PlotSeries series = empty_series(line);
+    for (const auto& [rate_hz, trial] : line.flights) {
+      series.x.push_back(rate_hz);
+      series.y.push_back(trial.values.empty() ? no_value
+                                              : static_cast<float>(trial.values[number]));
+    }
+    if (!series.x.empty()) plot.series.push_back(std::move(series));
+  }
+  if (!plot.series.empty()) plot.band = bounds_of(metric, plot.series);
+  return plot;
+}
+
+Plot delay_plot(const RateSweepRun& run, const std::vector<Line>& lines) {
+  Plot plot{"Largest delay of the motor commands", "ms"};
+  plot.logarithmic_x = true;
+  for (const Line& line : lines) {
+    std::map<double, float> by_rate;
+    for (std::size_t i = 0; i < line.row.largest_delay_ms.size(); ++i) {
+      const double delay = line.row.largest_delay_ms[i];
+      by_rate[run.rates[i].hertz()] = delay < 0 ? no_value : static_cast<float>(delay);
+    }
+    PlotSeries series = empty_series(line);
+    for (const auto& [rate_hz, delay] : by_rate) {
+      series.x.push_back(rate_hz);
+      series.y.push_back(delay);
+    }
+    plot.series.push_back(std::move(series));
+  }
+  return plot;
+}
+
+}  // namespace
+
+std::string rate_sweep_page(const RateSweepRun& run) {
+  const std::vector<Line> lines = lines_of(run);
+  PlotPage page;
+  for (const Line& line : lines) {
+    if (line.row.failure.empty()) continue;
+    page.notes.push_back({fmt::format("{}: {}", line.name(), line.row.failure), true});
+  }
+  const bool failed = !page.notes.empty();
+  page.conclusion = {failed ? Verdict::fail : Verdict::pass, failed ? "fail" : "measured",
+                     fmt::format("{}: limits of loop rate and delay", run.the_case.id()),
+                     fmt::format("{} {}, {} with a plant", run.says.name, run.says.version,
+                                 counted(lines.size(), "vehicle"))};
+  page.facts = {{"attest", version}, {"port", run.port}};
+  page.tables = {limits_table(run, lines), failing_table(run, lines)};
+  if (page.tables.back().rows.empty()) page.tables.pop_back();
+  PlotGroup group{"By loop rate", "loop rate [Hz]", {}};
+  const auto& metrics = run.the_case.flight->metrics;
+  for (std::size_t i = 0; i < metrics.size(); ++i) {
+    group.plots.push_back(metric_plot(metrics[i], i, lines));
+  }
+  group.plots.push_back(delay_plot(run, lines));
+  page.groups = {std::move(group)};
+  return plot_page(page);
+}
+
+}  // namespace attest

@@ -1,0 +1,25 @@
+// The page of `attest sweep-rate --html`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/casefile/case.hpp"
+#include "harness/host/port_says.hpp"
+#include "harness/measure/rate_sweep.hpp"
+
+namespace attest {
+
+struct RateSweepRun {
+  std::string port;  // as given
+  PortSays says;
+  Case the_case;
+  std::vector<LoopRate> rates;
+  std::vector<RateSweepResult> results;  // of RateSweepJobs, in their order
+};
+
+// The limits as a table, each metric by rate with its bounds, and the largest delay by rate; a line
+// for each vehicle and plant. What is missed at the highest rate that does not hold.
+std::string rate_sweep_page(const RateSweepRun& run);
+
+}  // namespace attest

@@ -1,0 +1,58 @@
+#include "harness/report/html/rate_sweep_page.hpp"
+
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace attest {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+// Holds at 100 Hz and misses at 20 Hz.
+RateSweepRun one_vehicle() {
+  Metric settles;
+  settles.name = "settles";
+  settles.max = 1.5;
+  RateSweepRun run;
+  run.says.name = "acme";
+  run.the_case.flight.emplace().metrics = {settles};
+  run.rates = {Rate::hz(100)};
+  RateSweepResult lowest, delay;
+  lowest.result.plant_configuration = PlantConfiguration{"iris", PlantKind::ode};
+  lowest.result.verdict = Verdict::pass;
+  lowest.lowest_rate_hz = 30;
+  lowest.trials = {{100, 0, {0.5}, true}, {20, 0, {infinite}, false}};
+  delay.result = lowest.result;
+  delay.largest_delay_ms = -1;
+  run.results = {lowest, delay};
+  return run;
+}
+
+TEST(SweepPage, ShowsTheLimitsAndWhatIsMissed) {
+  const std::string page = rate_sweep_page(one_vehicle());
+  EXPECT_THAT(page, HasSubstr("</span> measured</p>"));
+  EXPECT_THAT(page, HasSubstr(">iris on ode</th><td class=\"number\">30</td>"));
+  EXPECT_THAT(page, HasSubstr("<b>\u2717</b> none</td>"));
+  EXPECT_THAT(page, HasSubstr("settles (settling_time_s) is inf, allowed: at most 1.5"));
+  EXPECT_THAT(page, HasSubstr("\"name\":\"within bounds\""));
+}
+
+TEST(SweepPage, AFailureOfThePortIsTheConclusion) {
+  RateSweepRun run = one_vehicle();
+  run.results[1].result.verdict = Verdict::crash;
+  run.results[1].result.reason = "the process died";
+  run.results[0].trials = {{100, 0, {}, false}};
+  const std::string page = rate_sweep_page(run);
+  EXPECT_THAT(page, HasSubstr("</span> fail</p>"));
+  EXPECT_THAT(page, HasSubstr("iris on ode: crash: the process died"));
+  EXPECT_THAT(page, HasSubstr("the vehicle is lost"));
+  EXPECT_THAT(page, Not(HasSubstr("</span> measured</p>")));
+}
+
+}  // namespace
+}  // namespace attest
