@@ -1,8 +1,11 @@
 #include "harness/core/toml_document.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <ostream>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -105,6 +108,57 @@ Result<void> set_number(toml::table& root, const std::string& text, double value
   return {};
 }
 
+// As in a file: with quotes where it needs them.
+std::string written_key(const std::string& key) {
+  std::ostringstream text;
+  text << toml::toml_formatter(toml::table{{key, 0}});
+  const std::string assignment = std::move(text).str();
+  return assignment.substr(0, assignment.rfind(" = "));
+}
+
+// In the order of the original; the new ones come last.
+std::vector<std::string> keys_in_order(const toml::table& table, const toml::table* original) {
+  using LineAndColumn = std::pair<toml::source_index, toml::source_index>;
+  constexpr toml::source_index behind_all = std::numeric_limits<toml::source_index>::max();
+  std::vector<std::pair<LineAndColumn, std::string>> keys;
+  for (const auto& [key, node] : table) {
+    const toml::node* const there = original ? original->get(key.str()) : nullptr;
+    const auto begin = there ? there->source().begin : toml::source_position{behind_all, 0};
+    keys.push_back({{begin.line, begin.column}, std::string(key.str())});
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<std::string> names;
+  for (auto& [place, name] : keys) names.push_back(std::move(name));
+  return names;
+}
+
+bool holds_tables(const toml::table& table) {
+  return std::any_of(table.begin(), table.end(),
+                     [](const auto& entry) { return entry.second.is_table(); });
+}
+
+// The formatter of toml++ sorts the keys of a table, and the order of metrics and rotors matters.
+void write_table(const toml::table& table, const toml::table* original, const std::string& path,
+                 std::ostream& out) {
+  std::vector<std::pair<std::string, const toml::table*>> inner;
+  for (const std::string& key : keys_in_order(table, original)) {
+    const toml::node* const node = table.get(key);
+    if (const toml::table* const part = node->as_table();
+        part && (!part->is_inline() || holds_tables(*part))) {
+      inner.emplace_back(key, part);
+    } else {
+      toml::table one;
+      one.insert(key, *node);
+      out << toml::toml_formatter(one) << '\n';
+    }
+  }
+  for (const auto& [key, part] : inner) {
+    const std::string name = path.empty() ? written_key(key) : path + "." + written_key(key);
+    out << '[' << name << "]\n";
+    write_table(*part, original ? original->get_as<toml::table>(key) : nullptr, name, out);
+  }
+}
+
 }  // namespace
 
 struct TomlDocument::Impl {
@@ -140,7 +194,7 @@ Result<std::string> TomlDocument::with(const Replacements& replacements) const {
     if (auto set = set_number(copy, path, value); !set) return tl::unexpected(set.error());
   }
   std::ostringstream text;
-  text << toml::toml_formatter(copy) << '\n';
+  write_table(copy, &impl_->root, "", text);
   return std::move(text).str();
 }
 

@@ -27,8 +27,8 @@ class TomlDocument {
   Result<std::optional<double>> number(const std::string& path) const;
 
   // The text with these numbers. Adds keys and tables that do not exist. A whole number is written
-  // as an integer. Comments are left out, and keys are in alphabetical order. Errors: those of
-  // number().
+  // as an integer. Comments are left out. In each table the keys with values come first, then its
+  // tables; both keep their order, and new ones come last. Errors: those of number().
   Result<std::string> with(const Replacements& replacements) const;
 
  private:

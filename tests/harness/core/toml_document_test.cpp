@@ -9,6 +9,7 @@
 namespace attest {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 constexpr const char* iris_text =
@@ -64,6 +65,31 @@ TEST(TomlDocument, WritesWholeNumbersAsIntegers) {
   const auto changed = document().with({{"battery.cells", 4.0}});
   const auto file = TomlFile::parse(*changed, "new.toml");
   EXPECT_EQ(file->root().table("battery").integer("cells"), 4);
+}
+
+// The order of metrics is that of their columns, and the order of rotors is that of the mixer.
+TEST(TomlDocument, KeepsTheOrderOfTheKeys) {
+  const auto changed = TomlDocument::parse(
+                           "[metrics.tilts]\nmax = 1\n[metrics.'a b']\nmax = 2\n[rotors]\n"
+                           "right = { x = [1, 2], y = 3 }\nleft = { x = [3, 4] }\n"
+                           "[more]\nof = { z = { k = 1 }, y = { k = 2 } }\nlast = 1\nfirst = 2\n",
+                           "a.toml")
+                           ->with({{"rotors.right.x[0]", 5},
+                                   {"metrics.tilts.max", 1.5},
+                                   {"more.last", 4},
+                                   {"more.added", 7},
+                                   {"a.new", 1}});
+  ASSERT_TRUE(changed) << changed.error().to_string();
+  const auto file = TomlFile::parse(*changed, "new.toml");
+  ASSERT_TRUE(file) << file.error().to_string();
+  const TomlTable root = file->root();
+  EXPECT_THAT(root.keys(), ElementsAre("metrics", "rotors", "more", "a"));
+  EXPECT_THAT(root.table("metrics").keys(), ElementsAre("tilts", "a b"));
+  EXPECT_THAT(root.table("rotors").keys(), ElementsAre("right", "left"));
+  EXPECT_THAT(root.table("more").table("of").keys(), ElementsAre("z", "y"));
+  EXPECT_THAT(root.table("more").keys(), ElementsAre("last", "first", "added", "of"));
+  EXPECT_EQ(number_in(*changed, "rotors.right.x[0]"), 5);
+  EXPECT_EQ(number_in(*changed, "metrics.tilts.max"), 1.5);
 }
 
 TEST(TomlDocument, KeepsEveryBitOfANumber) {
