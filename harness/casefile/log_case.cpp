@@ -117,7 +117,8 @@ double case_value(const Ticks& ticks, std::size_t tick, const Channel& channel) 
   }
   const double value = value_of(channel, sample);
   if (!channel.name.ends_with(".quat_reset_counter")) return value;
-  return static_cast<std::uint8_t>(value - value_of(channel, ticks[ticks.begin]) + 256);
+  const auto since_begin = static_cast<int>(value - value_of(channel, ticks[ticks.begin]));
+  return static_cast<std::uint8_t>(since_begin);  // modulo 256, as the counter
 }
 
 // True if each field is constant.
