@@ -1,8 +1,6 @@
 """Flies step_in_wind.toml with the reference on every vehicle: the baseline for ports.
 
-Prints the table of tests/QUALITY.md. --write keeps it as robustness.csv. --check flies one sample
-for each vehicle, and fails if the hash of a sweep is not that of robustness.csv: the sweep file,
-the case, a vehicle or the numbers of the samples have changed since."""
+Prints a table. --write keeps it as robustness.csv."""
 
 import argparse
 import csv
@@ -81,37 +79,13 @@ def write(rows):
     text.replace(BASELINE)
 
 
-def stale_vehicles(attest):
-    """Those whose samples are not those of the baseline."""
-    with open(BASELINE, newline="") as file:
-        baseline = {row["vehicle"]: row for row in csv.DictReader(file)}
-    stale = set(baseline) ^ set(VEHICLES)
-    with tempfile.TemporaryDirectory() as folder:
-        for vehicle in set(baseline) & set(VEHICLES):
-            samples = baseline[vehicle]["samples"]
-            out = pathlib.Path(folder) / vehicle
-            sweep(attest, vehicle, out, "--samples", samples, "--shard", f"1/{samples}")
-            identity = json.loads((out / "identity.json").read_text())
-            if identity["sweep_sha256"] != baseline[vehicle]["sweep_sha256"]:
-                stale.add(vehicle)
-    return sorted(stale)
-
-
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[1])
+    parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--attest", required=True)
     parser.add_argument("--samples", help="replaces the number of the sweep file")
     parser.add_argument("--jobs", default="2")
-    kind = parser.add_mutually_exclusive_group()
-    kind.add_argument("--write", action="store_true", help="replace robustness.csv")
-    kind.add_argument("--check", action="store_true", help="is robustness.csv still true?")
+    parser.add_argument("--write", action="store_true", help="replace robustness.csv")
     arguments = parser.parse_args()
-    if arguments.check:
-        stale = stale_vehicles(arguments.attest)
-        if stale:
-            sys.exit(f"robustness.csv is not of these samples: {', '.join(stale)}; run "
-                     "`ci/quality --sweep`")
-        return
     samples = ["--samples", arguments.samples] if arguments.samples else []
     rows = fly_all(arguments.attest, ["--jobs", arguments.jobs, *samples])
     print_table(rows)
