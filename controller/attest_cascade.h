@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
  * attest_cascade.h - the C ABI of the two units of PX4 v1.14 to v1.16: the attitude unit, which
- * makes rates of attitudes, and the rate unit, which makes torque of rates.
+ * computes a rates setpoint from the attitude, and the rate unit, which computes torque from rates.
  *
  * Each unit is an extension of attest_unit.h, a table of functions that a port returns from its
  * extension(). A port may have one of them or both. A port that has nothing else may leave create,

@@ -28,14 +28,14 @@ struct LogCase {
 };
 
 // `log` has a tick for each step of the unit (ulog/flight_log.hpp). The case begins at the first
-// tick of the stretch, with the timestamp of that tick, and lasts one mean period longer than the
-// last one. A sample of another topic is published at the tick that first received it in the log;
+// tick of the stretch, with the timestamp of that tick, and ends one mean period after the last
+// tick. A sample of another topic is published at the tick that first received it in the log;
 // what the unit knew before the stretch is published at the first tick. At the times of the log's
 // ticks, a unit receives the values of the log, to the bit. Parameters that `profile` does not have
 // are left out. quat_reset_counter counts from the first tick of the stretch. `notes` are added to
 // the reason of the case.
 //
-// Errors: a stretch with less than two ticks, one that is not in the log, one with too many ticks
+// Errors: a stretch with fewer than two ticks, one that is not in the log, one with too many ticks
 // for a case (max_ticks) at the fastest rate.
 Result<LogCase> case_of_log(const Trace& log, const std::string& profile, const LogStretch& stretch,
                             const std::vector<std::string>& notes);

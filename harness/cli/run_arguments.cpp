@@ -12,13 +12,11 @@ namespace {
 
 void add_strictness(CLI::App& command, RunOptions& options) {
   command
-      .add_option(
-          "--level", options.level,
-          "How strictly: `exact` (float32 bits), `numeric` (a tolerance for each signal) "
-          "or `events` (the same events, at most one tick apart, and values that "
-          "differ by at most about half their size plus a small floor; not for the units of v1.14 "
-          "to v1.16, whose cases are then skipped); "
-          "flights are judged the same way at each level")
+      .add_option("--level", options.level,
+                  "How strictly: `exact` (float32 bits), `numeric` (a tolerance for each signal) "
+                  "or `events` (the same events, at most one tick apart, and values that "
+                  "differ by at most about half their size plus a small floor). "
+                  "Flights are judged the same way at each level")
       ->type_name("LEVEL")
       ->capture_default_str()
       ->group(option_group::strictness);
@@ -76,7 +74,7 @@ void add_traces(CLI::App& command, RunOptions& options) {
                   "Write the traces of each failing vector to a new folder: "
                   "DIR/PROFILE/GROUP/NAME/CONFIGURATION.got.csv with the port's outputs, "
                   ".want.csv with the expected ones, .tolerance.csv with the allowed difference "
-                  "of each value")
+                  "of each value (not at the level `events`)")
       ->type_name("DIR")
       ->group(option_group::reports);
   command.get_option("--write-expected")->excludes(command.get_option("--expected-failures"));

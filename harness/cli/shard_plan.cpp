@@ -56,7 +56,7 @@ struct Kind {
   const char* next;         // what the user does, with {} for the folder
 };
 
-// A word of the shell that GitHub leaves as it is: it would evaluate `${{ ... }}`.
+// A word of the shell. GitHub would evaluate `${{ ... }}` in it, so `${{` is escaped.
 std::string github_word(std::string_view text) {
   constexpr std::string_view begin = "${{";
   std::string out = shell_word(text);
@@ -211,7 +211,7 @@ data values_of(const Kind& kind, const SweepPlan& plan, const SweepOptions& opti
   values.set("indices", fmt::format("{}", fmt::join(indices, ", ")));
   values.set("each_shard", each_shard);
   std::string set_up(ATTEST_EMBEDDED(github_set_up));
-  set_up.pop_back();  // the line of the tag has an end
+  set_up.pop_back();  // its last line break: the line of the tag has one
   values.set("set_up", kainjow::mustache::partial([set_up] { return set_up; }));
   return values;
 }
@@ -256,6 +256,12 @@ Result<void> check(const Kind& kind, const SweepPlan& plan, const SweepOptions& 
   names.insert(names.end(), command.report.begin(), command.report.end());
   if (auto checked = check_names(names); !checked) return checked;
   if (kind.shares_folder) return {};
+  for (const std::string& file : {options.html, options.hdf5}) {
+    if (file.empty()) continue;
+    return fail_at(file,
+                   "a CI service keeps only the folder of the results; leave it out, and make "
+                   "it from that folder");
+  }
   if (!command.suite.empty()) {
     if (auto checked = check_relative(command.suite.back()); !checked) return checked;
   }

@@ -158,7 +158,7 @@ void add_sweep_parts(CLI::App& command, SweepOptions& options) {
       ->check(CLI::PositiveNumber)
       ->type_name("N");
   CLI::Option* const shard =
-      command.add_option("--shard", options.shard, "Fly the Ith of N parts of the samples only")
+      command.add_option("--shard", options.shard, "Fly only part I of N of the samples")
           ->type_name("I/N")
           ->capture_default_str();
   command
@@ -179,10 +179,11 @@ void add_sweep_parts(CLI::App& command, SweepOptions& options) {
 void add_sweep_plan(CLI::App& command, SweepOptions& options) {
   CLI::Option* const plan =
       command
-          .add_option("--plan", options.plan,
-                      "Fly nothing: make the folder OUT with all that flies the sweep in shards on "
-                      "many machines, and merges them: `slurm` (a job array), `parallel` (GNU "
-                      "parallel), `github` or `gitlab` (jobs of CI)")
+          .add_option(
+              "--plan", options.plan,
+              "Fly nothing: write to OUT the files with which many machines fly the shards of "
+              "the sweep, and merge them: `slurm` (a job array), `parallel` (GNU "
+              "parallel), `github` or `gitlab` (jobs of CI)")
           ->type_name("KIND")
           ->group(option_group::execution);
   CLI::Option* const shards =
@@ -226,7 +227,9 @@ void add_sweep(CLI::App& app, const Globals& globals, Action& action) {
            "A page with the requirements, distributions, sensitivities and worst flights");
   add_sweep_plan(*command, *options);
   add_timeout(*command, options->host.timeout_s);
-  add_jobs(*command, options->jobs, "Samples at a time; with --plan, in each shard, by default 1");
+  add_jobs(
+      *command, options->jobs,
+      "Number of samples that fly at the same time (with --plan: in each shard, by default 1)");
   add_examples(
       *command,
       {{"attest sweep SWEEP.toml --out results --keep-worst 3 --html sweep.html",
@@ -234,7 +237,7 @@ void add_sweep(CLI::App& app, const Globals& globals, Action& action) {
        {"attest sweep SWEEP.toml --port lib:./libmine.so --out results",
         "fly port and reference on the same samples, and test whether they differ"},
        {"attest sweep SWEEP.toml --out results --hdf5 results.h5",
-        "the numbers as binary columns: when the sweep is complete, only the file is written"},
+        "also write the numbers as binary columns; a complete sweep is not flown again"},
        {"attest sweep SWEEP.toml --shard 2/4 --out part2", "the second quarter of the samples"},
        {"attest sweep SWEEP.toml --merge part1 part2 part3 part4 --out results",
         "the result of all samples"},
