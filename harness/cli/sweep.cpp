@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <optional>
@@ -54,7 +55,7 @@ Result<std::optional<SampleTable>> open_table(const SampleColumns& columns, cons
   return std::nullopt;
 }
 
-// Flies what is missing in the table. The end of the samples that are there now.
+// Flies the samples that the table lacks. Returns the end of the samples that it has then.
 Result<std::uint64_t> fly_missing(const SweepPlan& plan, const fs::path& folder, bool quiet) {
   const SampleRange range = range_of(plan.shard, plan.samples());
   const SampleColumns columns = plan.columns();
@@ -80,7 +81,8 @@ Result<std::uint64_t> fly_missing(const SweepPlan& plan, const fs::path& folder,
   FlightsOptions flights = plan.flights;
   flights.stop = [&] { return plan.flights.stop() || early.is_decided(); };
   const SampleRange missing{table->next(), early.is_decided() ? table->next() : range.end};
-  // A later sample that is impossible was perhaps begun, and perhaps not.
+  // After the sample that decided, workers may or may not have begun an impossible one. Its error
+  // is ignored, so that the result is the same for any number of jobs.
   const auto flown = fly_samples(plan.sampler, missing, flights, on_row);
   if (!flown && !early.is_decided()) {
     return tl::unexpected(flown.error());
@@ -145,9 +147,31 @@ void print_interrupted(const SweepPlan& plan, const SweepOptions& options) {
              options.out, range_of(plan.shard, plan.samples()).size());
 }
 
+bool is_in(const fs::path& file, const fs::path& folder) {
+  std::error_code failed;
+  const fs::path inner = fs::weakly_canonical(file, failed);
+  const fs::path outer = fs::weakly_canonical(folder, failed);
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
+// A page must not replace the results that it is made from.
+Result<void> check_apart(const std::string& file, const SweepOptions& options) {
+  std::vector<std::string> folders = options.merge;
+  folders.push_back(options.out);
+  for (const std::string& folder : folders) {
+    if (file.empty() || !is_in(file, folder)) continue;
+    return fail_at(file,
+                   fmt::format("is in {}, a folder of results; give a file elsewhere", folder));
+  }
+  return {};
+}
+
 Result<void> check_options(const SweepOptions& options, const SuiteFolder& suite) {
   if (options.out.empty()) return fail("needs --out, the folder of the results");
   if (auto apart = check_output_folder(options.out, suite); !apart) return apart;
+  for (const std::string& file : {options.html, options.hdf5}) {
+    if (auto apart = check_apart(file, options); !apart) return apart;
+  }
   return check_outputs({options.html, options.hdf5}, {options.host.port, {options.file}}, suite);
 }
 

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "harness/cli/find_case.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/run_plan.hpp"
@@ -64,6 +66,9 @@ Result<SweepPlan> plan_sweep(const SweepOptions& options, const SuiteFolder& sui
   if (!sampler) return tl::unexpected(sampler.error());
   auto flights = flights_of(options);
   if (!flights) return tl::unexpected(flights.error());
+  if (const std::uint64_t samples = sampler->sweep().design.samples; shard->count > samples) {
+    return fail(fmt::format("--shard {}: the sweep has only {} samples", options.shard, samples));
+  }
   SweepIdentity identity;
   identity.attest_version = version;
   identity.sweep_sha256 = sampler->sha256();

@@ -181,6 +181,13 @@ std::string conclusion_of(const PortDifference& port) {
   if (!where.empty()) {
     return fmt::format("The port differs from the reference: {}.", fmt::join(where, ", "));
   }
+  if (!port.is_comparison()) {
+    return fmt::format(
+        "Too few flights to compare the port with the reference: no test can find a difference in "
+        "a "
+        "metric with fewer than {} pairs of flights.",
+        port.pairs_needed);
+  }
   return "No test shows a difference between the port and the reference.";
 }
 

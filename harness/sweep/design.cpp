@@ -80,7 +80,6 @@ struct DesignPoints::Impl {
   Impl(Design of, SampleStream with) : design(std::move(of)), stream(std::move(with)) {
     if (!design.correlation.empty()) factor = factorised(design).matrixL();
     if (design.kind == DesignKind::sobol) sobol.emplace_back(design.dimensions);
-    if (design.kind == DesignKind::saltelli) sobol.emplace_back(2 * design.dimensions);
   }
 
   double random(std::uint64_t index, std::size_t dimension) const {
@@ -98,15 +97,16 @@ struct DesignPoints::Impl {
     return point;
   }
 
-  std::vector<double> saltelli_point(std::uint64_t index) {
-    std::vector<double> a = sobol_point(index / design.block());
-    const auto middle = a.begin() + static_cast<std::ptrdiff_t>(design.dimensions);
-    const std::vector<double> b(middle, a.end());
-    a.erase(middle, a.end());
-    const std::uint64_t place = index % design.block();
-    if (place == 1) return b;
-    if (place > 1) a[place - 2] = b[place - 2];
-    return a;
+  // Random points. Of a Sobol sequence A and B would have equal leading digits where the blocks are
+  // few, and an index of 1 could be estimated as 0.
+  std::vector<double> saltelli_point(std::uint64_t index) const {
+    const std::uint64_t block = index / design.block(), place = index % design.block();
+    std::vector<double> point;
+    for (std::size_t i = 0; i < design.dimensions; ++i) {
+      const bool is_of_b = place == 1 || place == i + 2;
+      point.push_back(random(2 * block + (is_of_b ? 1 : 0), i));
+    }
+    return point;
   }
 
   std::vector<double> grid_point(std::uint64_t index) const {

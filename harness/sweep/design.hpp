@@ -35,14 +35,15 @@ struct Design {
   std::vector<double> correlation;
 
   // A block of `saltelli` (Saltelli et al., Variance based sensitivity analysis of model output,
-  // 2010): a point A, a point B, and for each dimension A with that number of B.
+  // 2010): two independent points A and B, and a mixed point for each dimension: it has the number
+  // of B in this dimension, and those of A in all others.
   std::uint64_t block() const { return dimensions + 2; }
-  // Whether requirements and tests use the sample: of `saltelli` A and B, because the others share
-  // their numbers.
+  // Whether requirements and tests use the sample. Of `saltelli` only A and B: the mixed points are
+  // not independent of them.
   bool is_judged(std::uint64_t index) const {
     return kind != DesignKind::saltelli || index % block() < 2;
   }
-  // The sample whose seeds this sample has: of `saltelli`, all of a block except B have those of A.
+  // The sample whose seeds this sample has: itself, but A for the mixed points of `saltelli`.
   std::uint64_t with_seeds(std::uint64_t index) const {
     return is_judged(index) ? index : index - index % block();
   }

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 
+#include "harness/sweep/compare_pilots.hpp"
 #include "harness/sweep/sequential.hpp"
 
 namespace attest {
 
-EarlyStop::EarlyStop(const SweepFile& sweep, const SampleColumns& columns) : sweep_(sweep) {
+EarlyStop::EarlyStop(const SweepFile& sweep, const SampleColumns& columns)
+    : sweep_(sweep),
+      fewest_(columns.with_port ? pairs_to_compare(sweep, columns.metrics.size()) : 0) {
   for (const Requirement& requirement : sweep.requirements) {
     metrics_.push_back(columns.place_of(requirement.metric));
   }
@@ -22,7 +25,7 @@ void EarlyStop::add(const SampleRow& row) {
 }
 
 bool EarlyStop::is_decided() const {
-  if (!sweep_.stop_when_decided) return false;
+  if (!sweep_.stop_when_decided || count_ < fewest_) return false;
   for (std::size_t i = 0; i < held_.size(); ++i) {
     const double probability = sweep_.requirements[i].probability;
     if (!excludes(held_[i], count_, probability, sweep_.confidence)) return false;

@@ -28,6 +28,7 @@ class EarlyStop {
   const SweepFile& sweep_;
   std::vector<std::size_t> metrics_;  // of each requirement
   std::vector<std::uint64_t> held_;
+  std::uint64_t fewest_;  // samples, to compare the port with the reference
   std::uint64_t count_ = 0;
 };
 

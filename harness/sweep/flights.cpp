@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "harness/compare/compare.hpp"
 #include "harness/core/error_json.hpp"
 #include "harness/host/host_here.hpp"
 #include "harness/loop/case_timing.hpp"
@@ -25,21 +26,39 @@ namespace {
 // fork, and little enough that the last workers end at nearly the same time.
 constexpr std::uint64_t samples_of_worker = 32;
 
-Result<FlightResult> flight_result(const FlightSampler& sampler, const SampledFlight& sample,
-                                   PortHost& host) {
+struct SimulatedSample {
+  FlightResult result;
+  Flown flown;
+};
+
+Result<SimulatedSample> simulate(const FlightSampler& sampler, const SampledFlight& sample,
+                                 PortHost& host) {
   const RunConfiguration configuration{sampler.sweep().rate, sampler.nominal().plant_configuration};
   const FlightPlan plan{configuration, flight_timing(sample.the_case, configuration.rate)};
-  const auto flown = simulate_flight(sample.the_case, plan, host);
+  auto flown = simulate_flight(sample.the_case, plan, host);
   if (!flown) return tl::unexpected(flown.error());
-  const auto& [result, flight] = *flown;
-  if (flight.divergence) return FlightResult{outcome_diverged, {}};
+  auto& [result, flight] = *flown;
+  if (flight.divergence) return SimulatedSample{{outcome_diverged, {}}, std::move(flight)};
   if (result.verdict == Verdict::unsupported || result.verdict == Verdict::skip) {
     return fail(fmt::format("the port does not fly {}: {}", result.id(), result.reason));
   }
-  if (flight.trace.samples.empty()) return FlightResult{std::string(name_of(result.verdict)), {}};
-  FlightResult done;
-  for (const MetricResult& metric : result.metrics) done.metrics.push_back(metric.value);
-  return done;
+  SimulatedSample simulated;
+  if (flight.trace.samples.empty()) {
+    simulated.result.outcome = name_of(result.verdict);
+    return simulated;
+  }
+  for (const MetricResult& metric : result.metrics) {
+    simulated.result.metrics.push_back(metric.value);
+  }
+  simulated.flown = std::move(flight);
+  return simulated;
+}
+
+// Whether the port has NaN or infinity where the reference has finite outputs.
+bool is_non_finite(const Flown& port, const Flown& reference) {
+  if (first_non_finite(port.trace, reference.trace)) return true;
+  return port.attitude_trace && reference.attitude_trace &&
+         first_non_finite(*port.attitude_trace, *reference.attitude_trace);
 }
 
 // A port with a fixed step flies from one period on, and so does the reference then.
@@ -58,19 +77,23 @@ Result<std::string> fly_sample(const FlightSampler& sampler, std::uint64_t index
   const SampledFlight of_reference = for_reference(*sample, options);
   std::vector<FlightResult> flights;
   HostHere reference(open_builtin(), {}, {&of_reference.the_case, sample->vehicle_model.get()});
-  auto flown = flight_result(sampler, of_reference, reference);
+  auto flown = simulate(sampler, of_reference, reference);
   if (flown && options.with_port) {
-    flights.push_back(*std::move(flown));
+    const SimulatedSample by_reference = *std::move(flown);
+    flights.push_back(by_reference.result);
     const auto host = start_host(options.host, {&sample->the_case, sample->vehicle_model.get()});
     if (!host) return tl::unexpected(host.error());
-    flown = flight_result(sampler, *sample, **host);
+    flown = simulate(sampler, *sample, **host);
+    if (flown && is_non_finite(flown->flown, by_reference.flown)) {
+      flown->result = {std::string(name_of(Verdict::non_finite)), {}};
+    }
   }
   if (!flown) {
     Error error = flown.error();
     error.message = fmt::format("sample {}: {}", index, error.message);
     return tl::unexpected(std::move(error));
   }
-  flights.push_back(*std::move(flown));
+  flights.push_back(std::move(flown->result));
   return columns_of(sampler, options.with_port).line(index, sample->drawn, flights);
 }
 

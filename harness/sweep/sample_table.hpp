@@ -71,8 +71,8 @@ class SampleTable {
  public:
   // Makes the unfinished table, or continues the longest one; `on_row` gets the rows that are
   // there. Empty: another process of this machine is making this table, or has just finished it;
-  // try again. Errors: a finished table with a line that is not of it, with its number; it cannot
-  // be written.
+  // try again. Errors: a finished table has a line that is not one of its rows (with the line's
+  // number); the table cannot be written.
   static Result<std::optional<SampleTable>> open(
       const std::filesystem::path& file, const SampleColumns& columns, const SampleRange& range,
       const OnRow& on_row = [](const SampleRow&) {});
@@ -89,7 +89,7 @@ class SampleTable {
   // The row of sample next(). Errors: the disk is full.
   Result<void> append(std::string_view line);
   // Flushes to disk, gives the table its name, and removes all unfinished ones.
-  // REQUIRES: no row is missing that should be there.
+  // REQUIRES: the table has the rows of all samples that were to be flown.
   Result<void> finish();
 
  private:

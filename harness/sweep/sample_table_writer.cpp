@@ -99,8 +99,9 @@ Result<void> begin_part(const Source& source, const SampleColumns& columns, int 
   return source.extent.bytes > 0 ? Result<void>() : write_all(descriptor, columns.header(), part);
 }
 
-// Two processes with the same name see each other's locks: the start of the machine, and the host
-// name, because copies of a virtual machine may share the first.
+// A name of this machine: its host name, and an id of its last boot. Processes with the same name
+// must see each other's locks. The boot id alone is not enough: copies of a virtual machine may
+// share it.
 std::string this_machine() {
   constexpr std::size_t enough = 8;
   std::array<char, 256> host{};

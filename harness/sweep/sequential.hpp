@@ -1,9 +1,10 @@
-// Statistics that stay valid when one looks after each sample, and stops because of what one sees.
+// Statistics that are valid after every sample, so a sweep may end because of their values.
 //
 // The ratio of the likelihoods of a mixture of all probabilities (uniform) and of one probability
 // is a martingale under the latter (Robbins, Statistical methods related to the law of the iterated
-// logarithm, 1970). So it ever exceeds 1 / a with at most the probability a (Ville's inequality,
-// 1939). An interval of Clopper and Pearson has no such guarantee.
+// logarithm, 1970). Let `level` be between 0 and 1. The probability that the ratio exceeds
+// 1 / level after any sample is at most `level` (Ville's inequality, 1939). An interval of Clopper
+// and Pearson has no such guarantee.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +22,9 @@ bool excludes(std::uint64_t held, std::uint64_t count, double probability, doubl
 // With this confidence, the intervals after 1, 2, 3, ... samples all contain the probability.
 Interval sequential_interval(std::uint64_t held, std::uint64_t count, double confidence);
 
-// The two-sided sign test for any time of stopping: the p-values after 1, 2, 3, ... samples ever
-// fall to a with at most the probability a, if both signs are equally likely.
+// The p-value of a two-sided sign test that is valid after every sample. If both signs are equally
+// likely, the probability that one of the p-values after 1, 2, 3, ... samples is at most `level` is
+// itself at most `level`.
 double sequential_sign_test(std::uint64_t positive, std::uint64_t negative);
 
 }  // namespace attest

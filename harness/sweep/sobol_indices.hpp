@@ -27,7 +27,6 @@ struct SobolIndices {
 // First-order indices by Saltelli et al., total ones by Jansen (1999): formulas (b) and (f) of
 // table 2 in Saltelli et al., Variance based sensitivity analysis of model output, 2010. The
 // intervals are normal ones with the standard error of the delta method, for independent blocks.
-// Blocks on Sobol points are more even than that, so the intervals are rather too wide.
 SobolIndices sobol_indices(const std::vector<double>& values, std::size_t dimensions,
                            double confidence);
 

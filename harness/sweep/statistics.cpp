@@ -10,6 +10,7 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/statistics/bivariate_statistics.hpp>
 
+#include "harness/realtime/histogram.hpp"
 #include "harness/sweep/boost_policy.hpp"
 
 namespace attest {
@@ -51,6 +52,11 @@ double empirical_quantile(const std::vector<double>& sorted, double part) {
   const double rank = std::ceil(part * static_cast<double>(sorted.size()));
   const auto place = static_cast<std::size_t>(std::max(rank, 1.0));
   return sorted[std::min(place, sorted.size()) - 1];
+}
+
+std::optional<double> supported_quantile(const std::vector<double>& sorted, double part) {
+  if (!supports_percentile(sorted.size(), std::max(part, 1 - part))) return std::nullopt;
+  return empirical_quantile(sorted, part);
 }
 
 double rank_correlation(const std::vector<double>& x, const std::vector<double>& y) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace attest {
@@ -18,6 +19,9 @@ Interval clopper_pearson(std::uint64_t held, std::uint64_t count, double confide
 // The smallest value that at least `part` of the values do not exceed (type 1 of Hyndman and Fan,
 // 1996). REQUIRES: sorted, without NaN, not empty; 0 <= part <= 1.
 double empirical_quantile(const std::vector<double>& sorted, double part);
+
+// The same; empty where fewer than ten values are beyond the quantile.
+std::optional<double> supported_quantile(const std::vector<double>& sorted, double part);
 
 // Spearman's rank correlation, equal values with their mean rank. Pairs with a NaN are left out.
 // NaN: fewer than three pairs, or all values of one side are equal.

@@ -48,7 +48,7 @@ struct MetricDifference {
   std::uint64_t above = 0, below = 0;  // beyond the tie of the file
   double median = 0;
   std::optional<double> p1, p99;
-  double p_value = 1;  // of the sign test; of a sweep that may end early of the sequential one
+  double p_value = 1;  // of the sign test; the sequential one if the sweep may end early
   bool differs = false;
 };
 
@@ -57,9 +57,12 @@ struct PortDifference {
   // Flights that only one of the two lost.
   std::uint64_t lost_by_port = 0, lost_by_reference = 0;
   double p_value = 1;
-  bool losses_differ =
-      false;  // more or fewer: the sign test finds different numbers of lost flights
+  bool losses_differ = false;  // the sign test finds that the port loses more, or fewer, flights
+  std::uint64_t pairs_needed = 0;  // with fewer pairs of flights no test can find a difference
+
   bool differs() const;
+  // Every metric has enough pairs. A vehicle that both lose in all flights says nothing.
+  bool is_comparison() const;
 };
 
 struct SweepSummary {
@@ -72,7 +75,8 @@ struct SweepSummary {
   std::vector<std::string> dimensions;  // the dispersions that are no seeds
   std::optional<PortDifference> port;
 
-  // All requirements are met, the port has no fault, and does not differ from the reference.
+  // At least one flight was done, and all requirements are met. The port has no fault, was compared
+  // with the reference, and does not differ from it.
   bool passes() const;
 };
 

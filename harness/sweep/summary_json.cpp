@@ -64,11 +64,9 @@ Json json_of(const PortDifference& port) {
                        {"p_value", one.p_value},
                        {"differs", one.differs}});
   }
-  return {{"differs", port.differs()},
-          {"lost_by_port", port.lost_by_port},
-          {"lost_by_reference", port.lost_by_reference},
-          {"lost_p_value", port.p_value},
-          {"metrics", std::move(metrics)}};
+  return {{"differs", port.differs()},         {"pairs_needed", port.pairs_needed},
+          {"lost_by_port", port.lost_by_port}, {"lost_by_reference", port.lost_by_reference},
+          {"lost_p_value", port.p_value},      {"metrics", std::move(metrics)}};
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -96,11 +98,18 @@ void parse_requirements(const TomlTable& root, SweepFile& sweep) {
       sweep.requirements.push_back(parse_requirement(all, name));
     }
   }
+  const DesignKind design = sweep.design.kind;
+  if (!sweep.requirements.empty() &&
+      (design == DesignKind::sobol || design == DesignKind::saltelli)) {
+    root.error("require",
+               "needs random samples: the points of a Sobol sequence have no interval for a "
+               "probability; use the design `monte_carlo` or `latin_hypercube`");
+  }
   constexpr const char* key = "stop_when_decided";
   sweep.stop_when_decided = root.boolean(key, false);
   if (!sweep.stop_when_decided) return;
   if (sweep.requirements.empty()) root.error(key, "needs a requirement: [require.NAME]");
-  if (sweep.design.kind != DesignKind::monte_carlo) {
+  if (design != DesignKind::monte_carlo) {
     root.error(key, "needs independent samples: use the design `monte_carlo`");
   }
 }
@@ -175,8 +184,17 @@ Result<SweepFile> parse_sweep(std::string_view text, const std::filesystem::path
 Result<void> bind_sweep(const TomlDocument& the_case, const TomlDocument& vehicle,
                         const std::vector<Metric>& metrics, SweepFile& sweep) {
   const std::string file = sweep.file.string();
+  std::map<std::pair<DispersedKey::Document, std::string>, std::string> owners;
   for (Dispersion& dispersion : sweep.dispersions) {
     for (DispersedKey& key : dispersion.keys) {
+      const auto [owner, is_new] = owners.try_emplace({key.document, key.path}, dispersion.name);
+      if (!is_new) {
+        return fail_at(file,
+                       fmt::format("[disperse.{}]: `{}` is dispersed by [disperse.{}], too; each "
+                                   "number can have one dispersion",
+                                   dispersion.name, key.path, owner->second),
+                       dispersion.line);
+      }
       const bool of_vehicle = key.document == DispersedKey::Document::vehicle;
       const auto bound = bind_key(of_vehicle ? vehicle : the_case, file, dispersion, key);
       if (!bound) return bound;

@@ -224,6 +224,41 @@ FLIGHTS
   has "No test shows a difference between the port and the reference."
 }
 
+@test "a comparison with few samples does not pass" {
+  make_sweep 6 </dev/null
+  run "$ATTEST" sweep sweep.toml --out out --port fault:quat-order-xyzw
+  [ "$status" -eq 1 ]
+  has "Too few flights to compare the port with the reference: no test can find a difference in a"
+  has "metric with fewer than 7 pairs of flights."
+  make_sweep 7 </dev/null
+  run "$ATTEST" sweep sweep.toml --out other --port fault:quat-order-xyzw
+  [ "$status" -eq 1 ]
+  has "The port differs from the reference: "
+}
+
+@test "the metrics of a sample of dispersed case values are in their columns" {
+  cat >sweep.toml <<SWEEP
+schema = 1
+case = "px4-v1.5.5/flight/tilt_step_30"
+rate = 250
+design = "monte_carlo"
+samples = 1
+[disperse.tilt]
+keys = ["case.flight.start.tilt_deg"]
+distribution = "uniform"
+low = -1e-9
+high = 1e-9
+SWEEP
+  "$ATTEST" -q sweep sweep.toml --out out
+  run "$ATTEST" sim flight/tilt_step_30 --rate 250 --out f.csv
+  local name column value
+  for name in tilts levels; do
+    column=$(head -1 out/samples.csv | tr , '\n' | grep -nx "reference.$name" | cut -d: -f1)
+    value=$(sed -n 2p out/samples.csv | cut -d, -f"$column")
+    grep -Eq "^ *$name +settling_time_s +$(printf '%.4g' "$value") " <<<"$output"
+  done
+}
+
 @test "a port that crashes is a result of each sample" {
   make_sweep 3 </dev/null
   run "$ATTEST" sweep sweep.toml --out out --port "lib:$PORTS/port_crash.so"
@@ -231,6 +266,32 @@ FLIGHTS
   has "3 crash"
   run cat out/samples.csv
   has ",crash,,"
+}
+
+@test "a port that answers NaN once fails the sweep" {
+  make_sweep 8 </dev/null
+  run "$ATTEST" sweep sweep.toml --out out --port "lib:$PORTS/hostile_nan_once.so"
+  [ "$status" -eq 1 ]
+  has "8 non-finite"
+}
+
+@test "a sweep that loses every vehicle fails without a requirement, too" {
+  make_sweep 2 </dev/null
+  cat >>sweep.toml <<SWEEP
+[disperse.gain]
+keys = ["vehicle.parameters.MC_ROLLRATE_P", "vehicle.parameters.MC_PITCHRATE_P"]
+distribution = "choice"
+values = [-1]
+[disperse.noise]
+keys = ["case.flight.estimator.rate_noise_rad_s"]
+distribution = "choice"
+values = [0.05]
+SWEEP
+  run "$ATTEST" sweep sweep.toml --out out
+  [ "$status" -eq 1 ]
+  has "2 diverged"
+  run "$ATTEST" sweep sweep.toml --out same --samples 8 --port builtin
+  [ "$status" -eq 1 ]
 }
 
 @test "a vehicle that is lost is counted, not dropped" {
@@ -274,6 +335,8 @@ SWEEP
   }
   refused 's/low = 0.85/low = -1/; s/deviation = 0.05/deviation = 5/' \
     'wrong.toml:9: [disperse.mass] at its lowest number, -1: vehicle.mass_kg = -1.5, the vehicle'
+  refused 's/case.flight.start.tilt_deg/vehicle.mass_kg/' \
+    'wrong.toml:25: [disperse.tilt]: `mass_kg` is dispersed by [disperse.mass], too'
   refused 's/0.8, 0.8/0.8, 0.7/' 'wrong.toml:33:1: needs 2 x 2 numbers'
   refused 's/start.tilt_deg/start.tild_deg/' 'unknown key `tild_deg`; did you mean `tilt_deg`?'
   refused 's/flight.tilt_step_30/flight\/nope/' 'wrong.toml'
@@ -281,6 +344,9 @@ SWEEP
   refused 's/vehicle = "iris"/vehicle = "irish"/' 'unknown vehicle `irish`; did you mean `iris`?'
   run "$ATTEST" sweep sweep.toml --out out --shard 3/2
   [ "$status" -eq 2 ]
+  run "$ATTEST" sweep sweep.toml --out out --shard 1/6
+  [ "$status" -eq 2 ]
+  has "--shard 1/6: the sweep has only 5 samples"
 }
 
 @test "the folder of another sweep is not continued" {
@@ -340,6 +406,9 @@ MORE
   run "$ATTEST" sweep sweep.toml --out other --html sweep.toml
   [ "$status" -eq 2 ]
   has "sweep.toml: is read by this command"
+  run "$ATTEST" sweep sweep.toml --out out --html out/samples.csv
+  [ "$status" -eq 2 ]
+  has "out/samples.csv: is in out, a folder of results; give a file elsewhere"
 }
 
 @test "a sweep ends when its requirements are decided, at the same sample in all circumstances" {
@@ -423,7 +492,10 @@ as = "factor"
 distribution = "choice"
 values = [1, -3, 1.1]
 SWEEP
-  "$ATTEST" -q sweep sweep.toml --out out --hdf5 results.h5 --port "lib:$PORTS/port_gains_off.so"
+  local status=0
+  "$ATTEST" -q sweep sweep.toml --out out --hdf5 results.h5 \
+    --port "lib:$PORTS/port_gains_off.so" || status=$?
+  [ "$status" -eq 1 ] # three samples are too few for a comparison
   [ "$(h5 sample | xargs)" = "0 1 2" ]
   [ "$(h5 gain | xargs)" = "1 -3 1.1000000000000001" ]
   [ "$(h5 reference.outcome | xargs)" = "done diverged done" ]

@@ -250,14 +250,14 @@ Plot scatter_of(const Pair& pair, const SweepFile& sweep, const SampleColumns& c
 
 }  // namespace
 
-SweepPlots sweep_plots(const SweepFile& sweep, const SampleColumns& columns, const SampleData& data,
-                       const SweepSummary& summary) {
+SweepPlots sweep_plots(const SweepFile& sweep, const SampleColumns& columns,
+                       const SampleData& samples, const SweepSummary& summary) {
   SweepPlots plots;
-  add_distributions(sweep, columns, data, plots.groups);
+  add_distributions(sweep, columns, samples, plots.groups);
   const std::vector<Pair> pairs = pairs_of(sweep, summary);
   plots.scatter_plots = pairs.size();
   const std::set<std::uint64_t> worst = worst_of(summary);
-  const std::set<std::uint64_t> drawn = drawn_samples(data.samples(), worst);
+  const std::set<std::uint64_t> drawn = drawn_samples(samples.samples(), worst);
   const std::string* last = nullptr;
   for (const Pair& pair : strongest(pairs)) {
     const std::string& name = columns.dispersions[pair.dispersion];
@@ -265,7 +265,7 @@ SweepPlots sweep_plots(const SweepFile& sweep, const SampleColumns& columns, con
       plots.groups.push_back({last == nullptr ? "Metrics over dispersions" : "", name, {}});
     }
     last = &name;
-    plots.groups.back().plots.push_back(scatter_of(pair, sweep, columns, data, drawn, worst));
+    plots.groups.back().plots.push_back(scatter_of(pair, sweep, columns, samples, drawn, worst));
   }
   return plots;
 }

@@ -17,9 +17,14 @@ class SummaryTest : public testing::Test {
   SummaryTest() {
     sweep_.design = {DesignKind::monte_carlo, 400, 1, {}, {}};
     sweep_.requirements = {{"settles", "settles", -1e9, 2, 0.9, 1}};
-    data_.drawn.resize(1);
-    data_.pilots.resize(1);
-    data_.pilots[0].metrics.resize(1);
+    data_ = no_samples();
+  }
+  static SampleData no_samples() {
+    SampleData data;
+    data.drawn.resize(1);
+    data.pilots.resize(1);
+    data.pilots[0].metrics.resize(1);
+    return data;
   }
   void add(double drawn, double value) {
     data_.drawn[0].push_back(drawn);
@@ -115,6 +120,23 @@ TEST_F(SummaryTest, AnEqualPortDoesNotDiffer) {
   EXPECT_EQ(result.port->metrics[0].above, 0u);
   EXPECT_FALSE(result.port->differs());
   EXPECT_TRUE(result.passes());
+}
+
+TEST_F(SummaryTest, FewSamplesAreNoComparison) {
+  // Two tests at 0.025 each: 2 / 2^6 is above, 2 / 2^7 is below.
+  sweep_.requirements.clear();
+  for (const int samples : {6, 7}) {
+    data_ = no_samples();
+    for (int i = 0; i < samples; ++i) add(i, 1);
+    add_port([](std::size_t) { return 1.0; });
+    const SweepSummary equal = summary();
+    EXPECT_EQ(equal.port->pairs_needed, 7u);
+    EXPECT_EQ(equal.passes(), samples == 7);
+    data_.pilots.pop_back();
+    add_port([](std::size_t) { return 2.0; });
+    EXPECT_EQ(summary().port->differs(), samples == 7);
+    EXPECT_FALSE(summary().passes());
+  }
 }
 
 TEST_F(SummaryTest, ASmallSystematicDifferenceIsFound) {

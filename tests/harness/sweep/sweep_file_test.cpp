@@ -57,6 +57,14 @@ TEST(SweepFile, GivesEveryValue) {
   EXPECT_EQ(sweep->confidence, 0.95);
 }
 
+TEST(SweepFile, ASobolSequenceHasNoRequirements) {
+  for (const char* const design : {"sobol", "saltelli"}) {
+    const auto sweep = parse_sweep(with("latin_hypercube", design), "s.toml");
+    ASSERT_FALSE(sweep);
+    EXPECT_THAT(sweep.error().to_string(), HasSubstr("s.toml:20:2: needs random samples"));
+  }
+}
+
 TEST(SweepFile, AnOptionReplacesTheNumberOfSamples) {
   EXPECT_EQ(parse_sweep(good_sweep, "s.toml", 7)->design.samples, 7u);
 }
