@@ -36,7 +36,7 @@ TEST(FailureText, TellsWhatIsWrongWhereAndHowToRunItAgain) {
             "    got   -1.5  0xbfc00000\n"
             "    want  -1    0xbf800000\n"
             "    off by 0.5 (4194304 ulp), allowed 0.125: 4.00 times the tolerance\n"
-            "  look first at the attitude law: all before it agrees up to this tick\n"
+            "  look first at the attitude law: the stages before it agree up to this tick\n"
             "  2 of 500 ticks deviate\n"
             "  case:      cases/px4-v1.5.5/attitude/roll_30.toml\n"
             "  golden:    golden/px4-v1.5.5/attitude/roll_30/250hz.csv\n"
@@ -107,7 +107,7 @@ TEST(FindingText, IsTheDifferenceWithoutTheCase) {
             "  first at tick 3, timestamp 12000 us, in out/actuator_controls_0.published\n"
             "    got   0\n"
             "    want  1\n"
-            "  look first at the rate law: all before it agrees up to this tick\n"
+            "  look first at the rate law: the stages before it agree up to this tick\n"
             "  2 of 500 ticks deviate\n");
   EXPECT_EQ(finding_text(passed("attitude", "roll_30", Rate::hz(250)), Level::numeric), "");
 }
