@@ -81,7 +81,7 @@ std::vector<Kind> kinds() {
         {"submit", ATTEST_EMBEDDED(slurm_submit), true}},
        true,
        4'000'000,  // the most that MaxArraySize of Slurm can be; most clusters allow 1000
-       "{0}/submit gives them to Slurm, then the merge to {0}/results"},
+       "{0}/submit submits them to Slurm, and a merge that writes {0}/results"},
       {"parallel",
        shell_word,
        {shard,
@@ -128,7 +128,8 @@ struct Command {
   std::vector<std::string> suite, sweep, report;
 };
 
-Command command_of(const SweepPlan& plan, const SweepOptions& options, const Globals& globals) {
+Command command_of(const PreparedSweep& sweep, const SweepOptions& options,
+                   const Globals& globals) {
   Command command;
   const char* const from_environment = std::getenv("ATTEST_SUITE");
   const std::string suite = !globals.suite.empty() ? globals.suite
@@ -142,7 +143,7 @@ Command command_of(const SweepPlan& plan, const SweepOptions& options, const Glo
   if (!options.vehicle.empty()) add(command.sweep, "--vehicle", options.vehicle);
   if (!options.plant.empty()) add(command.sweep, "--plant", options.plant);
   if (options.samples != 0) add(command.sweep, "--samples", fmt::to_string(options.samples));
-  if (plan.flights.with_port) add(command.sweep, "--port", options.host.port);
+  if (sweep.flights.with_port) add(command.sweep, "--port", options.host.port);
   if (options.host.timeout_s != default_timeout_s) {
     add(command.sweep, "--timeout", fmt::to_string(options.host.timeout_s));
   }
@@ -169,8 +170,8 @@ Result<void> check_relative(const std::string& path) {
   const fs::path normal = fs::path(path).lexically_normal();
   if (!normal.is_absolute() && *normal.begin() != "..") return {};
   return fail_at(path,
-                 "is not in the repository for a machine of CI; plan in the top folder of the "
-                 "repository, with a relative name");
+                 "is a path that a machine of CI does not have; run this command in the top folder "
+                 "of the repository, with a relative path");
 }
 
 std::vector<std::string> indices_up_to(std::size_t count) {
@@ -192,7 +193,7 @@ Places places_of(const std::string& out) {
           fs::read_symlink("/proc/self/exe", failed).string()};
 }
 
-data values_of(const Kind& kind, const SweepPlan& plan, const SweepOptions& options,
+data values_of(const Kind& kind, const PreparedSweep& sweep, const SweepOptions& options,
                const Command& command, const Places& places) {
   const std::vector<std::string> indices = indices_up_to(options.shards);
   data each_shard(data::type::list);
@@ -207,7 +208,7 @@ data values_of(const Kind& kind, const SweepPlan& plan, const SweepOptions& opti
   values.set("suite", words(command.suite, kind.word));
   values.set("sweep", words(command.sweep, kind.word));
   values.set("report", words(command.report, kind.word));
-  values.set("with_port", plan.flights.with_port);
+  values.set("with_port", sweep.flights.with_port);
   values.set("indices", fmt::format("{}", fmt::join(indices, ", ")));
   values.set("each_shard", each_shard);
   std::string set_up(ATTEST_EMBEDDED(github_set_up));
@@ -223,8 +224,9 @@ std::string filled(std::string_view content, const data& values, Quote quote) {
 }
 
 // A flush for each file would take seconds for a thousand shards, so all are flushed at the end.
-Result<void> make_shard_folders(const SweepPlan& plan, std::size_t count, const fs::path& folder) {
-  SweepIdentity identity = plan.identity;
+Result<void> make_shard_folders(const PreparedSweep& sweep, std::size_t count,
+                                const fs::path& folder) {
+  SweepIdentity identity = sweep.identity;
   for (std::size_t index = 1; index <= count; ++index) {
     identity.shard = Shard{index, count}.to_string();
     const fs::path of_shard = folder / "shards" / fmt::to_string(index);
@@ -240,11 +242,11 @@ Result<void> make_shard_folders(const SweepPlan& plan, std::size_t count, const 
   return is_flushed ? Result<void>() : fail_at(folder.string(), "cannot be written");
 }
 
-Result<void> check(const Kind& kind, const SweepPlan& plan, const SweepOptions& options,
+Result<void> check(const Kind& kind, const PreparedSweep& sweep, const SweepOptions& options,
                    const Command& command, const Places& places) {
-  if (options.shards > plan.samples()) {
+  if (options.shards > sweep.samples()) {
     return fail(
-        fmt::format("--shards {}: the sweep has only {} samples", options.shards, plan.samples()));
+        fmt::format("--shards {}: the sweep has only {} samples", options.shards, sweep.samples()));
   }
   if (options.shards > kind.most_shards) {
     return fail(fmt::format("--shards {}: {} takes at most {}", options.shards, kind.name,
@@ -270,16 +272,16 @@ Result<void> check(const Kind& kind, const SweepPlan& plan, const SweepOptions& 
 
 }  // namespace
 
-Result<std::string> plan_shards(const SweepPlan& plan, const SweepOptions& options,
+Result<std::string> plan_shards(const PreparedSweep& sweep, const SweepOptions& options,
                                 const Globals& globals) {
   const auto kind = kind_named(options.plan);
   if (!kind) return tl::unexpected(kind.error());
-  const Command command = command_of(plan, options, globals);
+  const Command command = command_of(sweep, options, globals);
   const Places places = places_of(options.out);
-  if (auto checked = check(*kind, plan, options, command, places); !checked) {
+  if (auto checked = check(*kind, sweep, options, command, places); !checked) {
     return tl::unexpected(checked.error());
   }
-  const data values = values_of(*kind, plan, options, command, places);
+  const data values = values_of(*kind, sweep, options, command, places);
   const auto fill = [&](const fs::path& folder) -> Result<void> {
     for (const PlannedFile& file : kind->files) {
       const fs::path path = folder / file.name;
@@ -290,10 +292,10 @@ Result<std::string> plan_shards(const SweepPlan& plan, const SweepOptions& optio
     }
     if (!kind->shares_folder) return {};
     fs::create_directories(folder / "logs");
-    return make_shard_folders(plan, options.shards, folder);
+    return make_shard_folders(sweep, options.shards, folder);
   };
   if (auto made = make_new_folder(options.out, fill); !made) return tl::unexpected(made.error());
-  return fmt::format("{} samples in {} shards: {}", plan.samples(), options.shards,
+  return fmt::format("{} samples in {} shards: {}", sweep.samples(), options.shards,
                      fmt::format(fmt::runtime(kind->next), shell_word(options.out)));
 }
 

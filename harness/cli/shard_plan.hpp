@@ -3,7 +3,7 @@
 #pragma once
 
 #include "harness/cli/command.hpp"
-#include "harness/cli/sweep_plan.hpp"
+#include "harness/cli/prepare_sweep.hpp"
 #include "harness/core/result.hpp"
 
 namespace attest::cli {
@@ -13,7 +13,7 @@ namespace attest::cli {
 // with another attest, sweep, vehicle or port is then refused before it flies. Errors: an unknown
 // kind of plan; more shards than samples or than the program allows; a path that the machines of a
 // CI service do not have; a name with a control character.
-Result<std::string> plan_shards(const SweepPlan& plan, const SweepOptions& options,
+Result<std::string> plan_shards(const PreparedSweep& sweep, const SweepOptions& options,
                                 const Globals& globals);
 
 }  // namespace attest::cli

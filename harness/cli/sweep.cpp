@@ -13,9 +13,9 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/outputs.hpp"
+#include "harness/cli/prepare_sweep.hpp"
 #include "harness/cli/shard_plan.hpp"
 #include "harness/cli/suite_folder.hpp"
-#include "harness/cli/sweep_plan.hpp"
 #include "harness/core/file.hpp"
 #include "harness/report/html/sweep_page.hpp"
 #include "harness/report/progress.hpp"
@@ -55,11 +55,11 @@ Result<std::optional<SampleTable>> open_table(const SampleColumns& columns, cons
   return std::nullopt;
 }
 
-// Flies the samples that the table lacks. Returns the end of the samples that it has then.
-Result<std::uint64_t> fly_missing(const SweepPlan& plan, const fs::path& folder, bool quiet) {
-  const SampleRange range = range_of(plan.shard, plan.samples());
-  const SampleColumns columns = plan.columns();
-  EarlyStop early(plan.sampler.sweep(), columns);
+// Flies the samples that the table lacks. Returns the index after the last sample of the table.
+Result<std::uint64_t> fly_missing(const PreparedSweep& sweep, const fs::path& folder, bool quiet) {
+  const SampleRange range = range_of(sweep.shard, sweep.samples());
+  const SampleColumns columns = sweep.columns();
+  EarlyStop early(sweep.sampler.sweep(), columns);
   auto opened = open_table(columns, folder, range, early);
   if (!opened) return tl::unexpected(opened.error());
   if (!*opened) return range.begin;
@@ -78,12 +78,12 @@ Result<std::uint64_t> fly_missing(const SweepPlan& plan, const fs::path& folder,
     early.add(row_of(row, columns, index));
     return {};
   };
-  FlightsOptions flights = plan.flights;
-  flights.stop = [&] { return plan.flights.stop() || early.is_decided(); };
+  FlightsOptions flights = sweep.flights;
+  flights.stop = [&] { return sweep.flights.stop() || early.is_decided(); };
   const SampleRange missing{table->next(), early.is_decided() ? table->next() : range.end};
   // After the sample that decided, workers may or may not have begun an impossible one. Its error
   // is ignored, so that the result is the same for any number of jobs.
-  const auto flown = fly_samples(plan.sampler, missing, flights, on_row);
+  const auto flown = fly_samples(sweep.sampler, missing, flights, on_row);
   if (!flown && !early.is_decided()) {
     return tl::unexpected(flown.error());
   }
@@ -100,51 +100,51 @@ std::vector<std::uint64_t> worst_samples_of(const SweepSummary& summary) {
   return {samples.begin(), samples.end()};
 }
 
-Result<void> write_columns(const SweepPlan& plan, const SweepOptions& options,
+Result<void> write_columns(const PreparedSweep& sweep, const SweepOptions& options,
                            const SampleColumns& columns, const SampleData& data) {
   if (options.hdf5.empty()) return {};
-  const auto bytes = hdf5_table(plan.sampler, plan.identity, columns, data);
+  const auto bytes = hdf5_table(sweep.sampler, sweep.identity, columns, data);
   if (!bytes) return fail_at(options.hdf5, bytes.error().message);
   return write_file(options.hdf5, *bytes);
 }
 
 // From the complete table of a folder: report, kept flights, the text on stdout.
-Result<SweepSummary> report(const SweepPlan& plan, const SweepOptions& options,
+Result<SweepSummary> report(const PreparedSweep& sweep, const SweepOptions& options,
                             const SuiteFolder& suite, std::uint64_t samples, bool quiet) {
   const fs::path folder = options.out;
-  const SampleColumns columns = plan.columns();
+  const SampleColumns columns = sweep.columns();
   const auto data = read_samples(folder / sample_file, columns, {0, samples});
   if (!data) return tl::unexpected(data.error());
-  SweepSummary summary =
-      summarise(plan.sampler.sweep(), columns, *data, static_cast<std::size_t>(options.keep_worst));
+  SweepSummary summary = summarise(sweep.sampler.sweep(), columns, *data,
+                                   static_cast<std::size_t>(options.keep_worst));
   const fs::path kept = folder / "worst";
   const std::vector<std::uint64_t> worst = worst_samples_of(summary);
-  if (auto done = keep_flights(plan.sampler, worst, suite.models(), kept); !done) {
+  if (auto done = keep_flights(sweep.sampler, worst, suite.models(), kept); !done) {
     return tl::unexpected(done.error());
   }
   const auto written =
-      write_file(folder / "report.json", summary_json(plan.identity, columns, summary));
+      write_file(folder / "report.json", summary_json(sweep.identity, columns, summary));
   if (!written) return tl::unexpected(written.error());
-  if (auto done = write_columns(plan, options, columns, *data); !done) {
+  if (auto done = write_columns(sweep, options, columns, *data); !done) {
     return tl::unexpected(done.error());
   }
   const fs::path shown = worst.empty() ? fs::path() : kept;
   if (!options.html.empty()) {
     const std::string page =
-        sweep_page({plan.sampler, columns, *data, summary, plan.identity, shown});
+        sweep_page({sweep.sampler, columns, *data, summary, sweep.identity, shown});
     if (auto done = write_file(options.html, page); !done) return tl::unexpected(done.error());
   }
   if (!quiet) {
-    fmt::print("{}", render_summary(plan.sampler, columns, summary, plan.identity.port, shown));
+    fmt::print("{}", render_summary(sweep.sampler, columns, summary, sweep.identity.port, shown));
   }
   return summary;
 }
 
-void print_interrupted(const SweepPlan& plan, const SweepOptions& options) {
+void print_interrupted(const PreparedSweep& sweep, const SweepOptions& options) {
   fmt::print(stderr,
              "attest: note: interrupted; {} has the samples that were flown, and the same command "
              "flies the others of {}\n",
-             options.out, range_of(plan.shard, plan.samples()).size());
+             options.out, range_of(sweep.shard, sweep.samples()).size());
 }
 
 bool is_in(const fs::path& file, const fs::path& folder) {
@@ -176,18 +176,18 @@ Result<void> check_options(const SweepOptions& options, const SuiteFolder& suite
 }
 
 // A shard is a part of the samples.
-Result<void> check_shard(const SweepPlan& plan, const SweepOptions& options) {
-  const bool is_part = plan.shard.count > 1;
+Result<void> check_shard(const PreparedSweep& sweep, const SweepOptions& options) {
+  const bool is_part = sweep.shard.count > 1;
   for (const std::string& file : {options.html, options.hdf5}) {
     if (is_part && !file.empty()) {
-      return fail_at(file, "is of all samples; name it with --merge");
+      return fail_at(file, "needs all samples, so a shard cannot write it; use --merge");
     }
   }
   const bool has_shards = is_part || !options.merge.empty() || !options.plan.empty();
-  if (!plan.sampler.sweep().stop_when_decided || !has_shards) return {};
+  if (!sweep.sampler.sweep().stop_when_decided || !has_shards) return {};
   return fail_at(options.file,
-                 "has `stop_when_decided`, so each sample depends on those before it, and shards "
-                 "are not possible; remove the key");
+                 "has `stop_when_decided`: whether a sample is flown depends on those before it, "
+                 "so shards are not possible; remove the key");
 }
 
 }  // namespace
@@ -196,44 +196,44 @@ int sweep_command(const SweepOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
   if (auto checked = check_options(options, *suite); !checked) return report_error(checked.error());
-  const auto plan = plan_sweep(options, *suite);
-  if (!plan) return report_error(plan.error());
-  if (auto checked = check_shard(*plan, options); !checked) return report_error(checked.error());
+  const auto sweep = prepare_sweep(options, *suite);
+  if (!sweep) return report_error(sweep.error());
+  if (auto checked = check_shard(*sweep, options); !checked) return report_error(checked.error());
   if (!options.plan.empty()) {
-    const auto planned = plan_shards(*plan, options, globals);
+    const auto planned = plan_shards(*sweep, options, globals);
     if (!planned) return report_error(planned.error());
     if (!globals.quiet) fmt::print("{}\n", *planned);
     return exit_ok;
   }
-  std::uint64_t samples = plan->samples();
+  std::uint64_t samples = sweep->samples();
   if (!options.merge.empty()) {
-    const auto merged = merge_shards({options.merge.begin(), options.merge.end()}, plan->identity,
-                                     plan->columns(), plan->samples(), options.out);
+    const auto merged = merge_shards({options.merge.begin(), options.merge.end()}, sweep->identity,
+                                     sweep->columns(), sweep->samples(), options.out);
     if (!merged) return report_error(merged.error());
   } else {
-    if (auto claimed = claim_folder(options.out, plan->identity); !claimed) {
+    if (auto claimed = claim_folder(options.out, sweep->identity); !claimed) {
       return report_error(claimed.error());
     }
     note_interrupts();
-    const auto flown = fly_missing(*plan, options.out, globals.quiet);
+    const auto flown = fly_missing(*sweep, options.out, globals.quiet);
     if (!flown) return report_error(flown.error());
     samples = *flown;
     if (interrupted()) {
-      print_interrupted(*plan, options);
+      print_interrupted(*sweep, options);
       return exit_interrupted;
     }
   }
-  if (plan->shard.count > 1) {
+  if (sweep->shard.count > 1) {
     if (!globals.quiet) {
       fmt::print(
           "shard {}: {} samples in {}; `attest sweep {} --merge DIR... --out DIR` joins the "
           "shards\n",
-          plan->identity.shard, range_of(plan->shard, plan->samples()).size(), options.out,
+          sweep->identity.shard, range_of(sweep->shard, sweep->samples()).size(), options.out,
           options.file);
     }
     return exit_ok;
   }
-  const auto summary = report(*plan, options, *suite, samples, globals.quiet);
+  const auto summary = report(*sweep, options, *suite, samples, globals.quiet);
   if (!summary) return report_error(summary.error());
   return summary->passes() ? exit_ok : exit_failed;
 }

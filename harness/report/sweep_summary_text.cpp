@@ -81,7 +81,7 @@ std::string indices_of(const SweepFile& sweep, const SweepSummary& summary) {
 std::string difference_of(const SweepFile& sweep, const PortDifference& port) {
   std::string out = fmt::format(
       "\nport minus reference on the same samples; above, below: flights that differ by more than "
-      "{:g} of the metric\n{:<16}{:>8}{:>8}{:>8}{:>12}{:>12}{:>12}{:>14}\n",
+      "{:g} of the reference's value\n{:<16}{:>8}{:>8}{:>8}{:>12}{:>12}{:>12}{:>14}\n",
       sweep.tie, "metric", "flights", "above", "below", "median", "p1", "p99", "sign test p");
   for (const MetricDifference& one : port.metrics) {
     out += fmt::format("{:<16}{:>8}{:>8}{:>8}{:>12}{:>12}{:>12}{:>14}{}\n", one.name, one.count,
@@ -122,7 +122,7 @@ std::string ending_of(const SweepFile& sweep, const SweepSummary& summary) {
   if (!sweep.stop_when_decided) return "";
   const auto& all = summary.requirements;
   const bool is_decided = std::all_of(all.begin(), all.end(), [](const RequirementResult& one) {
-    return one.decision != RequirementVerdict::undecided;
+    return one.decision != RequirementDecision::undecided;
   });
   return fmt::format(
       "{}; intervals and tests are sequential: valid although the sweep may end early",
@@ -146,7 +146,7 @@ std::string bounds_of(const Requirement& requirement) {
 }
 
 std::string probability_heading(const SweepFile& sweep) {
-  if (sweep.design.kind == DesignKind::grid) return "part";
+  if (sweep.design.kind == DesignKind::grid) return "share";
   return fmt::format("probability ({:g})", sweep.confidence);
 }
 

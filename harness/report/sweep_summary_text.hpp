@@ -17,7 +17,7 @@ std::string ending_of(const SweepFile& sweep, const SweepSummary& summary);
 std::string outcomes_of(const SweepSummary& summary);
 // "at most 1.2".
 std::string bounds_of(const Requirement& requirement);
-// "probability (0.95)" and "0.9430 to 0.9810"; of a grid "part" and "0.9800".
+// "probability (0.95)" and "0.9430 to 0.9810"; of a grid "share" and "0.9800".
 std::string probability_heading(const SweepFile& sweep);
 std::string probability_of(const SweepFile& sweep, const RequirementResult& result);
 // "0.31 (0.28 to 0.34)".

@@ -9,8 +9,8 @@
 
 namespace attest {
 
-// The smallest number of pairs of flights with which a test can find a difference: if all differ in
-// the same direction.
+// The smallest number of pairs of flights that is significant if all differ in the same direction.
+// With fewer pairs, no test can find a difference.
 std::uint64_t pairs_to_compare(const SweepFile& sweep, std::size_t metrics);
 
 PortDifference compare_pilots(const SweepFile& sweep, const SampleColumns& columns,

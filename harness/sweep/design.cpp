@@ -97,8 +97,8 @@ struct DesignPoints::Impl {
     return point;
   }
 
-  // Random points. Of a Sobol sequence A and B would have equal leading digits where the blocks are
-  // few, and an index of 1 could be estimated as 0.
+  // Random points. With few blocks, the points A and B of a Sobol sequence would have the same
+  // leading binary digits, and a Sobol index that is 1 could be estimated as 0.
   std::vector<double> saltelli_point(std::uint64_t index) const {
     const std::uint64_t block = index / design.block(), place = index % design.block();
     std::vector<double> point;

@@ -21,7 +21,7 @@ enum class DesignKind {
   latin_hypercube,  // in each dimension one sample in each of `samples` strata of equal probability
   sobol,            // Joe and Kuo's direction numbers (2008), with a random digital shift
   grid,             // all combinations of levels, each in the middle of its stratum
-  saltelli,         // blocks for Sobol indices, on Sobol points of twice as many dimensions
+  saltelli,         // blocks for Sobol indices, of independent random points
 };
 std::string_view name_of(DesignKind kind);
 Result<DesignKind> parse_design(std::string_view name);  // the error lists them all

@@ -22,8 +22,8 @@
 namespace attest {
 namespace {
 
-// A worker process flies so many samples before the next one takes its place: much more work than a
-// fork, and little enough that the last workers end at nearly the same time.
+// The number of samples that a worker process flies before the next one takes its place: much more
+// work than a fork, and little enough that the last workers end at nearly the same time.
 constexpr std::uint64_t samples_of_worker = 32;
 
 struct SimulatedSample {

@@ -30,17 +30,18 @@ std::vector<std::uint64_t> worst_samples(const Requirement& requirement,
 }
 
 // The same rule as that of EarlyStop.
-RequirementVerdict decided_sequentially(const RequirementResult& result, double confidence) {
+RequirementDecision decided_sequentially(const RequirementResult& result, double confidence) {
   const double needed = result.requirement.probability;
   if (!excludes(result.held, result.count, needed, confidence))
-    return RequirementVerdict::undecided;
+    return RequirementDecision::undecided;
   const double share = static_cast<double>(result.held) / static_cast<double>(result.count);
-  return share >= needed ? RequirementVerdict::met : RequirementVerdict::not_met;
+  return share >= needed ? RequirementDecision::met : RequirementDecision::not_met;
 }
 
-RequirementVerdict decided(const Interval& interval, double probability) {
-  if (interval.low >= probability) return RequirementVerdict::met;
-  return interval.high < probability ? RequirementVerdict::not_met : RequirementVerdict::undecided;
+RequirementDecision decided(const Interval& interval, double probability) {
+  if (interval.low >= probability) return RequirementDecision::met;
+  return interval.high < probability ? RequirementDecision::not_met
+                                     : RequirementDecision::undecided;
 }
 
 }  // namespace
@@ -62,8 +63,8 @@ RequirementResult judge_requirement(const Requirement& requirement, const PilotD
     return result;
   }
   if (sweep.design.kind == DesignKind::grid) {
-    const double part = static_cast<double>(result.held) / static_cast<double>(result.count);
-    result.probability = {part, part};
+    const double share = static_cast<double>(result.held) / static_cast<double>(result.count);
+    result.probability = {share, share};
   } else {
     result.probability = clopper_pearson(result.held, result.count, sweep.confidence);
   }

@@ -38,13 +38,13 @@ MetricSummary summary_of(const SweepFile& sweep, const std::string& name,
 
 }  // namespace
 
-std::string_view name_of(RequirementVerdict decision) {
+std::string_view name_of(RequirementDecision decision) {
   switch (decision) {
-    case RequirementVerdict::met:
+    case RequirementDecision::met:
       return "met";
-    case RequirementVerdict::not_met:
+    case RequirementDecision::not_met:
       return "not met";
-    case RequirementVerdict::undecided:
+    case RequirementDecision::undecided:
       return "undecided";
   }
   return "";
@@ -54,7 +54,7 @@ bool SweepSummary::passes() const {
   const bool any_done = outcomes.contains(outcome_done);
   const bool met = std::all_of(
       requirements.begin(), requirements.end(),
-      [](const RequirementResult& one) { return one.decision == RequirementVerdict::met; });
+      [](const RequirementResult& one) { return one.decision == RequirementDecision::met; });
   const bool faultless = std::all_of(outcomes.begin(), outcomes.end(), [](const auto& outcome) {
     return outcome.first == outcome_done || outcome.first == outcome_diverged;
   });

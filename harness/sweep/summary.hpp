@@ -16,17 +16,17 @@
 namespace attest {
 
 // Whether the flights show, with the confidence of the file, that a requirement is met.
-enum class RequirementVerdict { met, not_met, undecided };
-std::string_view name_of(RequirementVerdict decision);  // "not met"
+enum class RequirementDecision { met, not_met, undecided };
+std::string_view name_of(RequirementDecision decision);  // "not met"
 
 struct RequirementResult {
   Requirement requirement;
-  std::uint64_t held = 0;  // flights that hold it; a flight that was not done does not
+  std::uint64_t held = 0;  // flights that hold it, all with the outcome `done`
   std::uint64_t count = 0;
-  // With the confidence of the file. A grid is not random: both ends are the part of its flights
+  // With the confidence of the file. A grid is not random: both ends are the share of its flights
   // that hold the requirement. A sweep that may end early has a sequential interval.
   Interval probability;
-  RequirementVerdict decision = RequirementVerdict::undecided;
+  RequirementDecision decision = RequirementDecision::undecided;
   std::vector<std::uint64_t> worst;  // samples, the worst first
 };
 
@@ -61,14 +61,14 @@ struct PortDifference {
   std::uint64_t pairs_needed = 0;  // with fewer pairs of flights no test can find a difference
 
   bool differs() const;
-  // Every metric has enough pairs. A vehicle that both lose in all flights says nothing.
+  // Every metric has enough pairs. A sample with a flight that was lost is not a pair.
   bool is_comparison() const;
 };
 
 struct SweepSummary {
   std::uint64_t samples = 0;
   std::uint64_t planned = 0;  // more than `samples`: all requirements were decided before
-  // Of the judged pilot, which is the port if there is one: outcome -> flights.
+  // The number of flights by outcome: of the port if there is one, else of the reference.
   std::map<std::string, std::uint64_t> outcomes;
   std::vector<RequirementResult> requirements;
   std::vector<MetricSummary> metrics;
@@ -80,7 +80,7 @@ struct SweepSummary {
   bool passes() const;
 };
 
-// `worst`: the samples to name for each requirement.
+// `worst`: the number of worst samples to name for each requirement.
 SweepSummary summarise(const SweepFile& sweep, const SampleColumns& columns, const SampleData& data,
                        std::size_t worst);
 

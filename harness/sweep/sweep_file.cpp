@@ -18,7 +18,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::int64_t sweep_schema = 1;
-// The report keeps all numbers of the table in memory: about a gigabyte for so many samples.
+// The report keeps all numbers of the table in memory: about a gigabyte for this number.
 constexpr std::uint64_t most_samples = 10'000'000;
 
 LoopRate parse_rate(const TomlTable& root) {
@@ -79,7 +79,7 @@ Requirement parse_requirement(const TomlTable& all, const std::string& name) {
   requirement.min = table.number("min", requirement.min);
   requirement.max = table.number("max", requirement.max);
   if (!table.has("min") && !table.has("max")) {
-    all.error(name, "needs `min` or `max`: every flight would hold it");
+    all.error(name, "needs `min` or `max`; without a bound, every flight holds it");
   } else if (!(requirement.min <= requirement.max)) {
     table.error(table.has("max") ? "max" : "min", "no number is within these bounds");
   }
@@ -102,8 +102,8 @@ void parse_requirements(const TomlTable& root, SweepFile& sweep) {
   if (!sweep.requirements.empty() &&
       (design == DesignKind::sobol || design == DesignKind::saltelli)) {
     root.error("require",
-               "needs random samples: the points of a Sobol sequence have no interval for a "
-               "probability; use the design `monte_carlo` or `latin_hypercube`");
+               "needs a design with an interval for the probability: `monte_carlo` or "
+               "`latin_hypercube`");
   }
   constexpr const char* key = "stop_when_decided";
   sweep.stop_when_decided = root.boolean(key, false);

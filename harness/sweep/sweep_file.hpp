@@ -58,9 +58,10 @@ struct SweepFile {
   std::vector<Dispersion> dispersions;  // in the order of the file
   std::vector<Requirement> requirements;
   double confidence = 0.95;
-  // End at the first sample after which all requirements are decided, by sequential intervals.
+  // End at the first sample after which all requirements are decided, by sequential intervals, and
+  // with a port there are enough samples for the sign tests (pairs_to_compare()).
   bool stop_when_decided = false;
-  double tie = 1e-3;  // a relative difference of a metric that counts as none
+  double tie = 1e-3;  // the largest relative difference of a metric that counts as none
 };
 
 // `samples` replaces the number of samples in the file, unless it is 0. Errors, all reported

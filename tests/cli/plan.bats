@@ -126,9 +126,9 @@ FAKE
   refused "--plan" --plan slurm --shards 2 --shard 1/2
   local name=$sweep
   sweep="$PWD/$name"
-  refused "is not in the repository for a machine of CI" --plan github --shards 2
+  refused "is a path that a machine of CI does not have" --plan github --shards 2
   sweep="../the team's folder/$name"
-  refused "is not in the repository for a machine of CI" --plan gitlab --shards 2
+  refused "is a path that a machine of CI does not have" --plan gitlab --shards 2
   sweep=$name
   mkdir -p used/mine
   run "$ATTEST" sweep "$sweep" --plan slurm --shards 2 --out used

@@ -401,7 +401,7 @@ MORE
   grep -q '"title":"tilts over mass"' page.html
   run "$ATTEST" sweep sweep.toml --out part --shard 1/2 --html part.html
   [ "$status" -eq 2 ]
-  has "part.html: is of all samples; name it with --merge"
+  has "part.html: needs all samples, so a shard cannot write it; use --merge"
   [ ! -e part.html ]
   run "$ATTEST" sweep sweep.toml --out other --html sweep.toml
   [ "$status" -eq 2 ]

@@ -20,8 +20,8 @@ constexpr std::size_t most_shown_dispersions = 12;
 std::string figure(double value) { return fmt::format("{:.4g}", value); }
 std::string figure(const std::optional<double>& value) { return value ? figure(*value) : "-"; }
 
-Verdict verdict_on(RequirementVerdict decision) {
-  return decision == RequirementVerdict::met ? Verdict::pass : Verdict::fail;
+Verdict verdict_on(RequirementDecision decision) {
+  return decision == RequirementDecision::met ? Verdict::pass : Verdict::fail;
 }
 
 PageTable requirements_table(const SweepRun& run) {
@@ -63,7 +63,7 @@ PageCell difference_cell(double p_value, bool differs) {
 PageTable difference_table(const SweepFile& sweep, const PortDifference& port) {
   PageTable table{
       fmt::format("Port minus reference on the same samples; above, below: flights that differ by "
-                  "more than {:g} of the metric",
+                  "more than {:g} of the reference's value",
                   sweep.tie),
       {"metric", "flights", "above", "below", "median", "p1", "p99", "p of the sign test"}};
   for (const MetricDifference& one : port.metrics) {
@@ -138,7 +138,7 @@ std::vector<PageTable> tables_of(const SweepRun& run) {
 }
 
 std::string sentence_of(const SweepRun& run) {
-  const auto decided = [&](RequirementVerdict decision) {
+  const auto decided = [&](RequirementDecision decision) {
     const auto& all = run.summary.requirements;
     return std::count_if(all.begin(), all.end(),
                          [&](const RequirementResult& one) { return one.decision == decision; });
@@ -146,8 +146,8 @@ std::string sentence_of(const SweepRun& run) {
   std::string sentence;
   if (!run.summary.requirements.empty()) {
     sentence = fmt::format("Requirements: {} met, {} not met, {} undecided. ",
-                           decided(RequirementVerdict::met), decided(RequirementVerdict::not_met),
-                           decided(RequirementVerdict::undecided));
+                           decided(RequirementDecision::met), decided(RequirementDecision::not_met),
+                           decided(RequirementDecision::undecided));
   }
   if (run.summary.port) sentence += conclusion_of(*run.summary.port) + " ";
   return sentence + fmt::format("Flights: {}.", outcomes_of(run.summary));
@@ -199,7 +199,7 @@ std::vector<PageFact> facts_of(const SweepRun& run) {
           {"port", run.identity.port},
           {"hash of the port", run.identity.port_sha256},
           {"confidence", fmt::format("{:g}", sweep.confidence)},
-          {"needed for a tie", fmt::format("{:g} of the metric", sweep.tie)}};
+          {"tie", fmt::format("up to {:g} of the reference's value", sweep.tie)}};
 }
 
 }  // namespace

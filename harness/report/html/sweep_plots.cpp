@@ -204,7 +204,7 @@ std::set<std::uint64_t> drawn_samples(std::uint64_t samples, const std::set<std:
   return drawn;
 }
 
-// A bound out of reach is like none.
+// A bound that is out of reach is not drawn.
 void add_band(const std::string& metric, const SweepFile& sweep, Plot& plot) {
   const auto& all = sweep.requirements;
   const auto one = std::find_if(all.begin(), all.end(),

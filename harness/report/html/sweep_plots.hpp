@@ -9,7 +9,8 @@
 
 namespace attest {
 
-// Of a distribution: more values are drawn as quantiles, with the outermost ones as they are.
+// A distribution with more than most_drawn_quantiles + 2 * drawn_tail values is drawn as quantiles,
+// and each value of its tails is drawn.
 inline constexpr std::size_t most_drawn_quantiles = 900;
 inline constexpr std::size_t drawn_tail = 50;  // values at each end
 // Of a scatter plot: a random choice of the samples, and the worst ones.
@@ -22,8 +23,8 @@ struct SweepPlots {
   std::size_t scatter_plots = 0;  // without the limit; most_scatter_plots are drawn
 };
 
-// For each metric its cumulative distribution, and that of the difference between the pilots; then
-// metrics over dispersions.
+// For each metric its cumulative distribution, and that of the difference between port and
+// reference; then metrics over dispersions.
 SweepPlots sweep_plots(const SweepFile& sweep, const SampleColumns& columns, const SampleData& data,
                        const SweepSummary& summary);
 

@@ -61,7 +61,7 @@ TEST_F(EarlyStopTest, TheReportDecidesTheSame) {
     data.metrics.assign(2, std::vector<double>(static_cast<std::size_t>(count), 1));
     const auto result = judge_requirement(sweep_.requirements[0], data, 0, sweep_, 0);
     EXPECT_EQ(result.decision,
-              count == both ? RequirementVerdict::met : RequirementVerdict::undecided);
+              count == both ? RequirementDecision::met : RequirementDecision::undecided);
     EXPECT_EQ(result.probability.low >= 0.9, count == both);
   }
 }

@@ -49,13 +49,13 @@ class SummaryTest : public testing::Test {
 TEST_F(SummaryTest, ARequirementIsMetWhenItsIntervalIsAboveTheNeededProbability) {
   for (int i = 0; i < 400; ++i) add(i, i < 380 ? 1 : 3);  // 95%, and 0.9 is needed
   EXPECT_EQ(summary().requirements[0].held, 380u);
-  EXPECT_EQ(summary().requirements[0].decision, RequirementVerdict::met);
+  EXPECT_EQ(summary().requirements[0].decision, RequirementDecision::met);
   EXPECT_TRUE(summary().passes());
   sweep_.requirements[0].probability = 0.95;
-  EXPECT_EQ(summary().requirements[0].decision, RequirementVerdict::undecided);
+  EXPECT_EQ(summary().requirements[0].decision, RequirementDecision::undecided);
   EXPECT_FALSE(summary().passes());
   sweep_.requirements[0].probability = 0.99;
-  EXPECT_EQ(summary().requirements[0].decision, RequirementVerdict::not_met);
+  EXPECT_EQ(summary().requirements[0].decision, RequirementDecision::not_met);
 }
 
 TEST_F(SummaryTest, AnEarlyStopHasSequentialIntervalsAndTests) {
@@ -67,7 +67,7 @@ TEST_F(SummaryTest, AnEarlyStopHasSequentialIntervalsAndTests) {
   const SweepSummary sequential = summary();
   EXPECT_EQ(sequential.planned, 1000u);
   EXPECT_LT(sequential.requirements[0].probability.low, fixed.requirements[0].probability.low);
-  EXPECT_EQ(sequential.requirements[0].decision, RequirementVerdict::met);
+  EXPECT_EQ(sequential.requirements[0].decision, RequirementDecision::met);
   EXPECT_GT(sequential.port->metrics[0].p_value, fixed.port->metrics[0].p_value);
 }
 
@@ -91,7 +91,7 @@ TEST_F(SummaryTest, OfABlockTwoSamplesAreJudged) {
 TEST_F(SummaryTest, AGridIsJudgedByItsPart) {
   sweep_.design.kind = DesignKind::grid;
   for (int i = 0; i < 20; ++i) add(i, i < 18 ? 1 : 3);
-  EXPECT_EQ(summary().requirements[0].decision, RequirementVerdict::met);
+  EXPECT_EQ(summary().requirements[0].decision, RequirementDecision::met);
 }
 
 TEST_F(SummaryTest, ALostFlightHoldsNothingAndIsTheWorst) {
@@ -170,7 +170,7 @@ TEST_F(SummaryTest, AFaultOfThePortFails) {
   add_port([](std::size_t) { return 1.0; });
   data_.pilots[1].outcomes[5] = "crash";
   data_.pilots[1].metrics[0][5] = nan;
-  EXPECT_EQ(summary().requirements[0].decision, RequirementVerdict::met);
+  EXPECT_EQ(summary().requirements[0].decision, RequirementDecision::met);
   EXPECT_FALSE(summary().passes());
 }
 

@@ -1,4 +1,4 @@
-// The sweep that a command line names, ready to fly.
+// The sweep that a command line names, ready to fly. shard_plan.hpp has `--plan`.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace attest::cli {
 
-struct SweepPlan {
+struct PreparedSweep {
   FlightSampler sampler;
   FlightsOptions flights;
   Shard shard;
@@ -24,6 +24,6 @@ struct SweepPlan {
 
 // Errors: those of the sweep file, its case and its vehicle; an option that is no shard; the port
 // cannot be opened.
-Result<SweepPlan> plan_sweep(const SweepOptions& options, const SuiteFolder& suite);
+Result<PreparedSweep> prepare_sweep(const SweepOptions& options, const SuiteFolder& suite);
 
 }  // namespace attest::cli

@@ -1,4 +1,4 @@
-#include "harness/cli/sweep_plan.hpp"
+#include "harness/cli/prepare_sweep.hpp"
 
 #include <utility>
 
@@ -59,7 +59,7 @@ Result<FlightsOptions> flights_of(const SweepOptions& options) {
 
 }  // namespace
 
-Result<SweepPlan> plan_sweep(const SweepOptions& options, const SuiteFolder& suite) {
+Result<PreparedSweep> prepare_sweep(const SweepOptions& options, const SuiteFolder& suite) {
   const auto shard = Shard::parse(options.shard);
   if (!shard) return tl::unexpected(shard.error());
   auto sampler = make_sampler(options, suite);
@@ -79,7 +79,7 @@ Result<SweepPlan> plan_sweep(const SweepOptions& options, const SuiteFolder& sui
     identity.port = options.host.port;
     identity.port_sha256 = *std::move(sha256);
   }
-  return SweepPlan{*std::move(sampler), *std::move(flights), *shard, std::move(identity)};
+  return PreparedSweep{*std::move(sampler), *std::move(flights), *shard, std::move(identity)};
 }
 
 }  // namespace attest::cli
