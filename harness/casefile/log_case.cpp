@@ -158,7 +158,7 @@ void write_topics(const Ticks& ticks, TomlWriter& toml) {
   }
 }
 
-// In a profile that attest does not know: of the law of attest.
+// For a profile that attest does not know: the default of attest's first profile.
 std::optional<float> default_of_parameter(Module module, const std::string& profile,
                                           std::string_view name) {
   const auto* const known = find_profile(profile);
@@ -198,29 +198,29 @@ std::string identifier(std::string text) {
   return text.empty() ? "log" : text;
 }
 
-std::string case_name(const Trace& log, const LogStretch& stretch) {
+std::string case_name(const Trace& log, const LogPart& part) {
   std::string name = std::filesystem::path(log.source).stem().string();
-  if (stretch.from_s > 0) name += fmt::format("_from_{}s", stretch.from_s);
-  if (std::isfinite(stretch.to_s)) name += fmt::format("_to_{}s", stretch.to_s);
+  if (part.from_s > 0) name += fmt::format("_from_{}s", part.from_s);
+  if (std::isfinite(part.to_s)) name += fmt::format("_to_{}s", part.to_s);
   // A log of the cascade makes a case of each unit.
   const Module module = module_of(log.present);
   if (module != Module::mc_att_control) name += fmt::format("_{}", name_of(module));
   return identifier(name);
 }
 
-Result<Ticks> ticks_of(const Trace& log, const LogStretch& stretch) {
+Result<Ticks> ticks_of(const Trace& log, const LogPart& part) {
   const Module module = module_of(log.present);
   const std::string topic(step_topic_of(module));
   const Ticks whole{log, 0, log.samples.size(), module};
   if (whole.size() < 2) return fail_at(log.source, "has fewer than 2 samples of " + topic);
   const double length_s = seconds(whole.duration_us());
-  if (!(stretch.from_s < stretch.to_s)) {
-    return fail(fmt::format("the stretch from {} s to {} s is empty: it must begin before it ends",
-                            stretch.from_s, stretch.to_s));
+  if (!(part.from_s < part.to_s)) {
+    return fail(fmt::format("the part from {} s to {} s is empty: it must begin before it ends",
+                            part.from_s, part.to_s));
   }
-  const bool is_beyond = std::isfinite(stretch.to_s) && stretch.to_s > length_s;
-  if (stretch.from_s < 0 || stretch.from_s >= length_s || is_beyond) {
-    return fail_at(log.source, fmt::format("the stretch is beyond the log, whose samples of {} "
+  const bool is_beyond = std::isfinite(part.to_s) && part.to_s > length_s;
+  if (part.from_s < 0 || part.from_s >= length_s || is_beyond) {
+    return fail_at(log.source, fmt::format("the part is beyond the log, whose samples of {} "
                                            "are from 0 to {:.6g} s",
                                            topic, length_s));
   }
@@ -231,9 +231,9 @@ Result<Ticks> ticks_of(const Trace& log, const LogStretch& stretch) {
         });
     return static_cast<std::size_t>(first - log.samples.begin());
   };
-  const Ticks ticks{log, before(stretch.from_s), before(stretch.to_s), module};
+  const Ticks ticks{log, before(part.from_s), before(part.to_s), module};
   if (ticks.size() >= 2) return ticks;
-  return fail_at(log.source, fmt::format("has {} samples of {} in this stretch; a case "
+  return fail_at(log.source, fmt::format("has {} samples of {} in this part; a case "
                                          "needs at least 2",
                                          ticks.size(), topic));
 }
@@ -244,7 +244,7 @@ Result<void> check_length(const Ticks& ticks) {
   const double duration_s = seconds(ticks.duration_us());
   if (duration_s <= longest_s) return {};
   return fail_at(ticks.log.source,
-                 fmt::format("the stretch of {:.6g} s is more than {} ticks at {} Hz; choose at "
+                 fmt::format("the part of {:.6g} s is more than {} ticks at {} Hz; choose at "
                              "most {:g} s (--from, --to)",
                              duration_s, max_ticks, fastest.to_string(), longest_s));
 }
@@ -263,13 +263,13 @@ std::string reason(const Ticks& ticks, const std::vector<std::string>& notes) {
 
 }  // namespace
 
-Result<LogCase> case_of_log(const Trace& log, const std::string& profile, const LogStretch& stretch,
+Result<LogCase> case_of_log(const Trace& log, const std::string& profile, const LogPart& part,
                             const std::vector<std::string>& notes) {
-  const auto ticks = ticks_of(log, stretch);
+  const auto ticks = ticks_of(log, part);
   if (!ticks) return tl::unexpected(ticks.error());
   if (auto checked = check_length(*ticks); !checked) return tl::unexpected(checked.error());
-  LogCase made{case_name(log, stretch), "", std::string(step_topic_of(ticks->module)),
-               ticks->size(), seconds(ticks->duration_us())};
+  LogCase made{case_name(log, part), "", std::string(step_topic_of(ticks->module)), ticks->size(),
+               seconds(ticks->duration_us())};
   TomlWriter toml;
   toml.set("", "schema", schema_version);
   toml.set("", "profiles", std::vector<std::string>{profile});

@@ -1,4 +1,4 @@
-// Makes a case of a stretch of a flight's log: its inputs become signals of the kind `samples`.
+// Makes a case of a part of a flight's log. The inputs become signals of the kind `samples`.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 namespace attest {
 
 // Times since the first step of the unit in the log.
-struct LogStretch {
+struct LogPart {
   double from_s = 0;                                      // included
   double to_s = std::numeric_limits<double>::infinity();  // not included; infinite: to the end
 };
@@ -20,7 +20,7 @@ struct LogStretch {
 inline constexpr const char* log_case_group = "from_log";
 
 struct LogCase {
-  std::string name;         // of the log and the stretch: "gust", "gust_1_5s_to_3s"
+  std::string name;         // of the log and the part: "gust", "gust_1_5s_to_3s"
   std::string toml;         // the case file, as in SCHEMA.md
   std::string step_topic;   // "control_state"
   std::size_t samples = 0;  // of it
@@ -28,16 +28,16 @@ struct LogCase {
 };
 
 // `log` has a tick for each step of the unit (ulog/flight_log.hpp). The case begins at the first
-// tick of the stretch, with the timestamp of that tick, and ends one mean period after the last
+// tick of the part, with the timestamp of that tick, and ends one mean period after the last
 // tick. A sample of another topic is published at the tick that first received it in the log;
-// what the unit knew before the stretch is published at the first tick. At the times of the log's
+// what the unit knew before the part is published at the first tick. At the times of the log's
 // ticks, a unit receives the values of the log, to the bit. Parameters that `profile` does not have
-// are left out. quat_reset_counter counts from the first tick of the stretch. `notes` are added to
+// are left out. quat_reset_counter counts from the first tick of the part. `notes` are added to
 // the reason of the case.
 //
-// Errors: a stretch with fewer than two ticks, one that is not in the log, one with too many ticks
+// Errors: a part with fewer than two ticks, one that is not in the log, one with too many ticks
 // for a case (max_ticks) at the fastest rate.
-Result<LogCase> case_of_log(const Trace& log, const std::string& profile, const LogStretch& stretch,
+Result<LogCase> case_of_log(const Trace& log, const std::string& profile, const LogPart& part,
                             const std::vector<std::string>& notes);
 
 }  // namespace attest

@@ -85,7 +85,7 @@ Result<std::vector<LogCase>> cases_of(const VectorOptions& options, FlightLog& l
       continue;
     }
     auto made = case_of_log(unit.trace, log.profile,
-                            {options.from_s, options.to_s.value_or(LogStretch().to_s)}, log.notes);
+                            {options.from_s, options.to_s.value_or(LogPart().to_s)}, log.notes);
     if (!made) return tl::unexpected(made.error());
     cases.push_back(*std::move(made));
   }

@@ -7,7 +7,7 @@ suite_of_log() {
 }
 from_log=ours/cases/px4-v1.5.5/from_log/gust_from_1s_to_1_5s.toml
 
-@test "a stretch of a log becomes a case that judges ports at all rates" {
+@test "a part of a log becomes a case that judges ports at all rates" {
   suite_of_log
   grep -q "$from_log: 0.5 s, 125 samples of control_state" out.txt
   grep -q 'attest --suite ours bless --group from_log --yes --reason' out.txt
@@ -35,7 +35,7 @@ from_log=ours/cases/px4-v1.5.5/from_log/gust_from_1s_to_1_5s.toml
   has "is a folder of the suite"
 }
 
-@test "a stretch that the log does not have is an error, and no folder is made" {
+@test "a part that the log does not have is an error, and no folder is made" {
   "$ATTEST" sim gust --rate 250 --out gust.ulg >/dev/null
   for wrong in "--from 9" "--to 9" "--from 2 --to 1" "--from 1 --to 1.001" "--profile px4-v1.5" \
     "--group tpa" "--rate 250"; do
@@ -44,7 +44,7 @@ from_log=ours/cases/px4-v1.5.5/from_log/gust_from_1s_to_1_5s.toml
     [ ! -e ours ]
   done
   run "$ATTEST" vectors ours --from-log gust.ulg --from 9
-  has "gust.ulg: the stretch is beyond the log, whose samples of control_state are from 0 to 4 s"
+  has "gust.ulg: the part is beyond the log, whose samples of control_state are from 0 to 4 s"
   run "$ATTEST" vectors ours --from 1
   [ "$status" -eq 2 ]
   has "--from-log"

@@ -45,8 +45,8 @@ Trace flown() {
   return log;
 }
 
-LogCase made_of(const Trace& log, const LogStretch& stretch = {}) {
-  auto made = case_of_log(log, "px4-v1.5.5", stretch, {"a note"});
+LogCase made_of(const Trace& log, const LogPart& part = {}) {
+  auto made = case_of_log(log, "px4-v1.5.5", part, {"a note"});
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
@@ -58,8 +58,8 @@ Case parsed(const LogCase& made, std::string_view profile = "px4-v1.5.5") {
   return *std::move(the_case);
 }
 
-std::string error_of(const Trace& log, const LogStretch& stretch) {
-  const auto made = case_of_log(log, "px4-v1.5.5", stretch, {});
+std::string error_of(const Trace& log, const LogPart& part) {
+  const auto made = case_of_log(log, "px4-v1.5.5", part, {});
   return made ? "" : made.error().message;
 }
 
@@ -100,7 +100,7 @@ TEST(LogCase, GivesTheInputsOfTheLogAtItsTimes) {
                                             ParameterChange{4, "MC_YAW_P", 3.1f}));
 }
 
-TEST(LogCase, BeginsWithWhatWasKnownBeforeTheStretch) {
+TEST(LogCase, BeginsWithWhatWasKnownBeforeThePart) {
   Trace log = flown();
   const LogCase made = made_of(log, {0.06, 0.2});
   EXPECT_EQ(made.samples, 5u);
@@ -141,7 +141,7 @@ Trace flown_by_attitude_unit() {
   return log;
 }
 
-// A unit that starts with the stretch knows of no earlier reset.
+// A unit that starts with the part knows of no earlier reset.
 TEST(LogCase, OfAUnitHasTheTimesOfTheLogAndCountsResetsFromItsBegin) {
   const Trace log = flown_by_attitude_unit();
   for (const std::size_t first : {std::size_t{0}, std::size_t{5}}) {
@@ -159,7 +159,7 @@ TEST(LogCase, OfAUnitHasTheTimesOfTheLogAndCountsResetsFromItsBegin) {
       in.vehicle_attitude.quat_reset_counter = static_cast<std::uint8_t>(
           in.vehicle_attitude.quat_reset_counter -
           log.samples[first].attitude_in.vehicle_attitude.quat_reset_counter);
-      if (tick == first && first > 0) {  // received before the stretch
+      if (tick == first && first > 0) {  // received before the part
         in.updated = ATTEST_ATTITUDE_UPDATED_VEHICLE_STATUS |
                      ATTEST_ATTITUDE_UPDATED_VEHICLE_ATTITUDE_SETPOINT;
       }
@@ -190,7 +190,7 @@ TEST(LogCase, HasConstantsWhereNothingChanges) {
   EXPECT_THAT(toml, Not(HasSubstr("SYS_OTHER")));
 }
 
-TEST(LogCase, RefusesAStretchThatIsEmptyOrBeyondTheLog) {
+TEST(LogCase, RefusesAPartThatIsEmptyOrBeyondTheLog) {
   const Trace log = flown();
   EXPECT_THAT(error_of(log, {0.1, 0.1}), HasSubstr("is empty"));
   EXPECT_THAT(error_of(log, {0.101, 0.119}), HasSubstr("has 0 samples"));
