@@ -16,10 +16,13 @@
  * step runs and increases from step to step. It is the only clock. Timestamps inside topics are
  * data: they may be equal to it or older, and in the group `robustness` anything.
  *
- * Own publications: a unit sees what it publishes itself, as in the firmware. The attitude unit in
- * stabilized mode publishes vehicle_attitude_setpoint; the rate unit in acro mode publishes
- * vehicle_rates_setpoint. That sample takes the place of one from outside that the unit has not
- * taken yet, and is itself new until the unit takes it. The host does not pass it back.
+ * Initial values: before the first sample of its topic, a field with the note "initially ..." has
+ * this value for the unit. The input usually has 0 there until then, so the unit must not read it.
+ *
+ * Own publications: a unit receives what it publishes itself, as in the firmware. The attitude unit
+ * in stabilized mode publishes vehicle_attitude_setpoint; the rate unit in acro mode publishes
+ * vehicle_rates_setpoint. This sample replaces a sample from outside that the unit has not copied
+ * yet. It counts as new until the unit copies it. The host does not pass it back.
  */
 #ifndef ATTEST_CASCADE_H
 #define ATTEST_CASCADE_H
@@ -53,7 +56,7 @@ typedef struct attest_attitude_inputs {
 
   struct {                      /* topic vehicle_attitude: new in every step, has no bit */
     uint64_t timestamp;         /* [us] when it was published */
-    uint64_t timestamp_sample;  /* [us] of the IMU data behind it; the law's dt comes from here */
+    uint64_t timestamp_sample;  /* [us] of the IMU data; the law's dt is the difference of two */
     float q[4];                 /* body FRD to world NED */
     float delta_q_reset[4];     /* how far the estimator's last reset turned the attitude */
     uint8_t quat_reset_counter; /* counts these resets */
@@ -61,16 +64,16 @@ typedef struct attest_attitude_inputs {
 
   struct {                  /* topic vehicle_attitude_setpoint, from outside */
     uint64_t timestamp;     /* [us] when it was published; the unit drops a sample that is not
-                             * newer than the last one that it took */
+                             * newer than the last one that it used */
     float q_d[4];           /* desired attitude, body FRD to world NED */
     float thrust_body[3];   /* [-1..1] along body x, y, z; hover is about {0, 0, -0.5} */
-    float yaw_sp_move_rate; /* [rad/s] about world z, fed forward; not finite: none */
+    float yaw_sp_move_rate; /* [rad/s] about world z, fed forward; ignored if not finite */
   } vehicle_attitude_setpoint;
 
   struct {                  /* topic vehicle_status */
     uint64_t armed_time;    /* [us] when the vehicle was armed */
     uint8_t armed;          /* flag: arming_state is ARMED */
-    uint8_t is_rotary_wing; /* flag: vehicle_type is ROTARY_WING; true before the first sample */
+    uint8_t is_rotary_wing; /* flag: vehicle_type is ROTARY_WING; initially true */
     uint8_t is_vtol;
     uint8_t in_transition_mode;
     uint8_t is_vtol_tailsitter;
@@ -78,7 +81,7 @@ typedef struct attest_attitude_inputs {
 
   struct {              /* topic autotune_attitude_control_status */
     uint64_t timestamp; /* [us] when it was published */
-    float rate_sp[3];   /* [rad/s] added to the rates setpoint while the state asks for it */
+    float rate_sp[3];   /* [rad/s] added to the rates setpoint in some values of `state` */
     uint8_t state;
   } autotune_attitude_control_status;
 
@@ -90,8 +93,8 @@ typedef struct attest_attitude_inputs {
   } manual_control_setpoint;
 
   struct {                            /* topic vehicle_local_position */
-    float unaided_heading;            /* [rad] from the gyros alone; not finite: none */
-    uint8_t heading_good_for_control; /* flag; true before the first sample */
+    float unaided_heading;            /* [rad] of the gyros alone; used if finite; initially NaN */
+    uint8_t heading_good_for_control; /* flag; initially true */
   } vehicle_local_position;
 
   struct {              /* topic hover_thrust_estimate */
@@ -108,7 +111,7 @@ typedef struct attest_attitude_inputs {
   } vehicle_control_mode;
 
   struct {          /* topic vehicle_land_detected */
-    uint8_t landed; /* flag; true before the first sample */
+    uint8_t landed; /* flag; initially true */
   } vehicle_land_detected;
 } attest_attitude_inputs;
 
@@ -158,7 +161,7 @@ typedef struct attest_rate_inputs {
   uint32_t reserved;  /* 0 */
 
   struct {                     /* topic vehicle_angular_velocity: new in every step, has no bit */
-    uint64_t timestamp_sample; /* [us] when the gyro was read; the law's dt comes from here */
+    uint64_t timestamp_sample; /* [us] of the gyro; the law's dt is the difference of two */
     float xyz[3];              /* [rad/s] about body x, y, z (FRD) */
     float xyz_derivative[3];   /* [rad/s^2] angular acceleration, filtered by the host */
   } vehicle_angular_velocity;
@@ -178,8 +181,8 @@ typedef struct attest_rate_inputs {
   } manual_control_setpoint;
 
   struct {                            /* topic control_allocator_status */
-    float unallocated_torque[3];      /* the torque asked for less the torque that motors give */
-    uint8_t torque_setpoint_achieved; /* flag: no axis is saturated, whatever the figures say */
+    float unallocated_torque[3];      /* commanded torque minus the torque that motors give */
+    uint8_t torque_setpoint_achieved; /* flag: no axis is saturated; the torques are ignored */
   } control_allocator_status;
 
   struct {             /* topic battery_status */
@@ -195,20 +198,20 @@ typedef struct attest_rate_inputs {
   } vehicle_control_mode;
 
   struct {                  /* topic vehicle_status */
-    uint8_t is_rotary_wing; /* flag: vehicle_type is ROTARY_WING; true before the first sample */
+    uint8_t is_rotary_wing; /* flag: vehicle_type is ROTARY_WING; initially true */
   } vehicle_status;
 
-  struct {                /* topic vehicle_land_detected; both are true before the first sample */
+  struct {                /* topic vehicle_land_detected; both are initially true */
     uint8_t maybe_landed; /* flag */
     uint8_t landed;       /* flag */
   } vehicle_land_detected;
 } attest_rate_inputs;
 
 /* The firmware's rate unit also publishes actuator_controls_status, the mean square of the torque
- * over about half a second. Nothing in the control loop reads it, so it is no part of this ABI. */
+ * over about half a second. The control loop does not read it, so this ABI does not have it. */
 typedef struct attest_rate_outputs {
   struct {        /* topic vehicle_torque_setpoint */
-    float xyz[3]; /* about [-1..1] about body x, y, z (FRD) */
+    float xyz[3]; /* about body x, y, z (FRD); usually in [-1..1], not limited */
     uint8_t published;
   } vehicle_torque_setpoint;
 

@@ -134,7 +134,7 @@ typedef struct attest_inputs {
   } actuator_armed;
 
   struct {                  /* topic vehicle_status */
-    uint8_t is_rotary_wing; /* true in a unit that has had no sample yet */
+    uint8_t is_rotary_wing; /* before the first sample, the unit takes it as true */
     uint8_t is_vtol;        /* the first sample selects the topics of the outputs, see below */
   } vehicle_status;
 
@@ -147,7 +147,7 @@ typedef struct attest_inputs {
 
 /* ---- outputs ---------------------------------------------------------------------------------
  *
- * `published` is 0, or, as a flag above, any other value in a step that publishes the topic. With 0
+ * `published` is a flag, as above: not 0 in a step that publishes the topic, otherwise 0. With 0
  * the other fields keep what was last published. The host passes the same struct to every step,
  * zeroed before the first. So a unit only has to write the topics it publishes, and `published`.
  *
@@ -159,8 +159,8 @@ typedef struct attest_inputs {
  *
  * Own publications: the unit has one copy of vehicle_rates_setpoint. Its own result overwrites an
  * external sample in that copy. If it publishes on the same topic, an external sample that it has
- * not taken yet is lost, too. A VTOL publishes on the virtual topic, so there the external sample
- * waits until offboard rates mode takes it.
+ * not copied yet is lost, too. A VTOL publishes on the virtual topic, so there the external sample
+ * waits until offboard rates mode copies it.
  */
 typedef struct attest_outputs {
   struct {        /* topic vehicle_rates_setpoint: result of the attitude loop */

@@ -1,7 +1,4 @@
 // The supported versions of the cascade, by name.
-//
-// "Section n" in a comment of this folder is a section of the page LAW-CASCADE, which defines the
-// law of each profile.
 #pragma once
 
 #include <array>
