@@ -45,7 +45,8 @@ UnitTiming parse_unit(const TomlTable& root, const char* name) {
   if (table.has("drop_ticks")) unit.drop_ticks = table.integers("drop_ticks");
   unit.drop_every = table.integer("drop_every", 0);
   if (table.has("drop_every") && unit.drop_every < 2) {
-    table.error("drop_every", "must be 2 or more: the last of each so many ticks is left out");
+    table.error("drop_every",
+                "must be 2 or more: of each group of this many ticks, the last is left out");
   }
   if (table.has("stall")) unit.stall = parse_stall(table.table("stall"));
   if (table.has("trigger")) {

@@ -38,7 +38,7 @@ constexpr const char* footer =
     "                                                 1 kHz\n"
     "  attest stress --port lib:./libmine.so          in real time, at 250 Hz to 8 kHz\n"
     "\n"
-    "Exit codes: 0 no failure, 1 a failure, 2 wrong usage or environment.\n";
+    "Exit codes: 0 no failure, 1 a failure, 2 wrong usage or environment, or no result.\n";
 
 void add_sim(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<SimOptions>();
@@ -67,7 +67,7 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
           "CSV. For v1.14 to v1.16 F has the trace of the rate unit, and a second file has that of "
           "the attitude unit: flown.csv and flown.attitude_unit.csv")
       ->type_name("F");
-  add_page(*command, options->html, "A page with plots of the flight and a replay of the attitude");
+  add_page(*command, options->html, "A page with plots of the flight, and the attitude animated");
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command, {{"attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv",
                            "hover with the lead vehicle of the case, on its first plant"},
@@ -126,7 +126,7 @@ void add_new_port(CLI::App& app, const Globals& globals, Action& action) {
   add_examples(
       *command,
       {{"attest new-port mine --lang c", "a port in C; mine/check builds and runs it"},
-       {"attest new-port mine --lang c_cascade", "the same of PX4 v1.14 to v1.16"},
+       {"attest new-port mine --lang c_cascade", "a port in C of v1.14 to v1.16"},
        {"attest new-port mine --lang simulink", "a wrapper for C code that Simulink generated"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return new_port_command(*options, globals); };

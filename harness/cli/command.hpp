@@ -21,11 +21,11 @@ namespace attest::cli {
 enum Exit : int {
   exit_ok = 0,
   exit_failed = 1,        // at least one result does not conform
-  exit_usage = 2,         // wrong usage, or the environment: files, ports, goldens
+  exit_usage = 2,         // wrong usage, no result, or the environment: files, ports, goldens
   exit_interrupted = 130  // Ctrl-C, as a shell reports it
 };
 
-// The options before the command.
+// The options of all commands.
 struct Globals {
   std::string suite;   // folder with cases/ and golden/; empty: find_suite() searches for it
   bool quiet = false;  // no progress, no summary: failures, errors and the exit code only
@@ -59,7 +59,8 @@ struct SelectionOptions {
   Result<std::vector<SelectedCase>> cases_in(const CaseFolders& folders) const;
 };
 
-// Each prints its results on stdout and its errors on stderr.
+// Each of the functions below, NAME_command(), prints its results on stdout and its errors on
+// stderr.
 
 // The results of `run` and `merge` for people and for other programs.
 struct ReportOptions {

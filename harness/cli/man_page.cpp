@@ -105,7 +105,7 @@ constexpr const char* exit_status =
     ".SH EXIT STATUS\n"
     ".TP\n0\nNothing failed.\n"
     ".TP\n1\nA vector failed, or \\fBattest bless\\fR was refused.\n"
-    ".TP\n2\nWrong usage or environment: a file, the port, a golden; or no value was compared.\n"
+    ".TP\n2\nWrong usage or environment: a file, the port, a golden; or no result.\n"
     ".TP\n130\nInterrupted by Ctrl\\-C.\n";
 
 std::string see_also(const std::vector<std::string>& pages) {

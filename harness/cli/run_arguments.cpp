@@ -144,7 +144,7 @@ void add_merge_command(CLI::App& app, const Globals& globals, Action& action) {
   add_examples(*command, {{"attest run --port lib:./libmine.so --shard 1/4 --json part1.json",
                            "the first of four jobs"},
                           {"attest merge part*.json --json attest.json --junit attest.junit.xml",
-                           "the same reports as those of a run without shards"}});
+                           "the report of all shards; its JSON is the same as without shards"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return merge_command(*options, globals); };
   });

@@ -22,7 +22,7 @@ using Action = std::function<int()>;
 namespace option_group {
 inline constexpr const char* selection = "Selection";
 inline constexpr const char* strictness = "Strictness";
-inline constexpr const char* reports = "Reports (`-` is stdout)";
+inline constexpr const char* reports = "Reports (for a file, `-` is stdout)";
 inline constexpr const char* logs = "Logs of flights";
 inline constexpr const char* execution = "Execution";
 }  // namespace option_group

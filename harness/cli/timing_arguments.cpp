@@ -60,8 +60,8 @@ void add_budgets(CLI::App& command, StressOptions& options) {
   command
       .add_option(
           "--budget", options.execution_us,
-          "Execution time [us]; a longer step is an overrun. As many overruns are allowed as "
-          "deadline misses")
+          "Execution time [us]; a longer step is an overrun. The limit of deadline misses also "
+          "applies to overruns")
       ->check(CLI::NonNegativeNumber)
       ->group(option_group::strictness);
 }
@@ -168,7 +168,7 @@ void add_sweep_parts(CLI::App& command, SweepOptions& options) {
       ->excludes(shard);
   command
       .add_option("--keep-worst", options.keep_worst,
-                  "Keep so many of the worst flights of each requirement, in OUT/worst, for "
+                  "Number of worst flights of each requirement to keep in OUT/worst, for "
                   "`attest sim`")
       ->check(CLI::Range(0, 1000))
       ->type_name("K")
@@ -176,7 +176,7 @@ void add_sweep_parts(CLI::App& command, SweepOptions& options) {
       ->group(option_group::reports);
 }
 
-void add_sweep_plan(CLI::App& command, SweepOptions& options) {
+void add_shard_plan(CLI::App& command, SweepOptions& options) {
   CLI::Option* const plan =
       command
           .add_option(
@@ -225,11 +225,12 @@ void add_sweep(CLI::App& app, const Globals& globals, Action& action) {
       ->group(option_group::reports);
   add_page(*command, options->html,
            "A page with the requirements, distributions, sensitivities and worst flights");
-  add_sweep_plan(*command, *options);
+  add_shard_plan(*command, *options);
   add_timeout(*command, options->host.timeout_s);
-  add_jobs(
-      *command, options->jobs,
-      "Number of samples that fly at the same time (with --plan: in each shard, by default 1)");
+  // add_jobs() appends "; default: one for each CPU".
+  add_jobs(*command, options->jobs,
+           "Number of samples that fly at the same time, with --plan in each shard; default with "
+           "--plan: 1");
   add_examples(
       *command,
       {{"attest sweep SWEEP.toml --out results --keep-worst 3 --html sweep.html",

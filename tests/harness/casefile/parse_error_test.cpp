@@ -141,7 +141,7 @@ TEST(CaseErrors, NothingHappensMoreOftenThanTheLongestCaseHasTicks) {
 TEST(CaseErrors, OfTheUnitsTicks) {
   EXPECT_EQ(errors_of("[unit]\njitter_shape = 'wide'\n"), "7:1: must be uniform or heavy");
   EXPECT_EQ(errors_of("[unit]\ndrop_every = 1\n"),
-            "7:1: must be 2 or more: the last of each so many ticks is left out");
+            "7:1: must be 2 or more: of each group of this many ticks, the last is left out");
   EXPECT_EQ(errors_of("[unit]\nstall = { every_ticks = 4, for_ticks = 3, catches_up = true }\n"),
             "");
   EXPECT_THAT(errors_of("[unit]\nstall = { every_s = 0.01, for_ticks = 2 }\n"),
