@@ -23,8 +23,9 @@ double AllowedDeviation::widening(const Sample& tick) const {
     const double error = tilt_error(attitude_at(tick, module_), setpoint_.q_d());
     return tolerances_.widening(error, gain_.value());
   }
-  // The law of the cascade computes yaw from what tilt leaves, so its noise is larger: in float and
-  // double 1.3e-4 rad/s apart at 179 deg, 1.5e-3 at 179.9 (measured on random attitudes).
+  // The law of the cascade computes yaw from the error that remains after the tilt correction, so
+  // its noise is larger: float and double differ by 1.3e-4 rad/s at 179 deg, and by 1.5e-3 at 179.9
+  // (measured on random attitudes).
   constexpr double noise = 10.0 / 3;
   const double error = attitude_error(attitude_at(tick, module_), setpoint_.q_d());
   return tolerances_.widening(error, noise * gain_.value());

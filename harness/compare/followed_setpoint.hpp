@@ -1,5 +1,5 @@
-// The attitude and its setpoint that a unit goes by, tick by tick. The direction of the rotation
-// between them is undefined at a half turn, so comparisons allow more near it.
+// The attitude and the attitude setpoint that a unit uses at each tick. The direction of the
+// rotation between them is undefined at a half turn, so comparisons allow more near it.
 #pragma once
 
 #include "harness/compare/tilt.hpp"

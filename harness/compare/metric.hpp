@@ -30,7 +30,7 @@ enum class Measure {
 std::string_view name_of(Measure measure);
 Result<Measure> parse_measure(std::string_view name);  // the error lists the known ones
 
-// A stretch of time since the first tick [s].
+// A part of the flight: times since the first tick [s].
 struct Window {
   double from_s = 0;
   double to_s = std::numeric_limits<double>::infinity();

@@ -24,7 +24,8 @@ struct Tolerance {
   double relative = 0;
 };
 
-// The tolerance of every channel. That of the rates setpoint widens near a tilt error of 180 deg.
+// The tolerance of every channel. That of the rates setpoint widens near a tilt error of 180 deg,
+// in the cascade near an attitude error of 180 deg (AllowedDeviation).
 class Tolerances {
  public:
   // Defaults of rate, control and integral. Measured over 10 s of open loop: correct builds (other
@@ -49,9 +50,9 @@ class Tolerances {
   // "out/"): "vehicle_rates_setpoint" or "actuator_controls_0.control[2]". False: no such channel.
   bool set(std::string_view prefix, Tolerance tolerance);
 
-  // At the numeric level: widens the tolerances for a port in fixed point with so many fraction
-  // bits. Each becomes at least a number of LSBs (last bits), the constants below. The largest
-  // errors of a correct port that rounds are smaller. Measured at 20 to 24 bits:
+  // At the numeric level: widens the tolerances for a port in fixed point with this number of
+  // fraction bits. Each becomes at least a number of LSBs (last bits), the constants below. The
+  // largest errors of a correct port that rounds are smaller. Measured at 20 to 24 bits:
   // - rates setpoints: up to 740 LSB, near a half turn
   // - controls: 750 LSB. A control that consists mostly of its D part has an error in proportion to
   //   its size, because 1 / dt is up to 500 and dt has an error of half an LSB.

@@ -1,4 +1,4 @@
-// Runs a port, and every fault of the catalogue, on some vectors of the corpus.
+// Runs a port, and every fault of the catalogue, on some vectors of the suite.
 #pragma once
 
 #include <optional>
@@ -42,7 +42,7 @@ class DiagnosisJob final : public Job<VectorDiagnosis> {
 };
 
 // For up to 48 vectors with the verdict fail or non-finite, and up to 48 that passed. One vector
-// per case, at the rate nearest to 250 Hz, spread over the corpus. `cases` are those that were run,
+// per case, at the rate nearest to 250 Hz, spread over the suite. `cases` are those that were run,
 // and must outlive the jobs.
 Jobs<VectorDiagnosis> diagnosis_jobs(const std::vector<SelectedCase>& cases,
                                      const std::vector<CaseResult>& results,

@@ -1,4 +1,4 @@
-// Runs one fault of the catalogue on the corpus until a case catches it. This measures the quality
+// Runs one fault of the catalogue on the suite until a case catches it. This measures the quality
 // of the suite.
 #pragma once
 
@@ -53,7 +53,7 @@ class FaultJob final : public Job<FaultCatch> {
   std::string profile_;
   const std::vector<SelectedCase>& cases_;
   std::filesystem::path golden_root_;
-  std::optional<int> fraction_bits_;  // judged as a port with so many would be
+  std::optional<int> fraction_bits_;  // judged as a port with this number of them
 };
 
 }  // namespace attest

@@ -1,5 +1,5 @@
 // The two usual tests of a port: a recorded hover, and random pairs of attitude and setpoint. The
-// corpus is compared with them.
+// suite is compared with them.
 #pragma once
 
 #include <string>

@@ -50,7 +50,7 @@ FaultAnswers answers_of_faults(const Trace& given, const Subject& subject,
                                const faults::Fault* partner = nullptr);
 
 // For each of the distinct outputs, of a subject's module. Values are the same when they differ by
-// no more than the tolerances, which are not widened near a tilt error of 180 deg here.
+// no more than the tolerances, without the widening of AllowedDeviation.
 VectorSimilarity distinct_similarity(const Outputs& port, const Outputs& law,
                                      std::span<const Outputs> distinct,
                                      Module module = Module::mc_att_control,

@@ -58,8 +58,8 @@ std::string metric_key(const RunConfiguration& configuration, const std::string&
 
 std::filesystem::path golden_folder(const std::filesystem::path& golden_root, const Case& the_case);
 
-// Whether a golden of so many ticks keeps them all. A longer one keeps keyframes, so that it fits
-// into a repository.
+// Whether a golden of this number of ticks keeps them all. A longer one keeps keyframes, so that it
+// fits into a repository.
 bool keeps_every_tick(std::size_t ticks);
 
 // Whether this is an open-loop case whose golden keeps keyframes.

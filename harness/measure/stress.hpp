@@ -72,7 +72,8 @@ struct StressTask {
   Nanoseconds timeout = std::chrono::seconds(10);  // for each answer of the port
 };
 
-// The outputs of so many ticks are kept and compared: half a minute at 8 kHz, 80 MB.
+// The outputs of this number of ticks, the first ones, are kept and compared: half a minute at 8
+// kHz, 80 MB.
 inline constexpr std::size_t checked_ticks = 1u << 18;
 
 struct StressProgress {

@@ -1,4 +1,4 @@
-// How long a port's steps take over the corpus, and the input of the slowest step.
+// How long a port's steps take over all vectors, and the input of the slowest step.
 #pragma once
 
 #include <cstddef>

@@ -11,7 +11,7 @@
 namespace attest {
 
 struct OdeOptions {
-  // Cash-Karp. Order 6 is broken in SUNDIALS 6.4.1. The truth tests take order 8 at a fixed step as
+  // Cash-Karp. Order 6 is broken in SUNDIALS 6.4.1. `ci/truth` takes order 8 at a fixed step as
   // exact; its error falls as order 7 there.
   int order = 5;
   double relative_tolerance = 1e-9;

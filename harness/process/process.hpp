@@ -1,4 +1,5 @@
-// A child process that its owner can always end. It ends at the latest with this process.
+// A child process that its owner, the process that starts it, can always end. It ends at the latest
+// with the owner.
 #pragma once
 
 #include <functional>
@@ -14,10 +15,10 @@ namespace attest {
 // groups or sessions (daemons). No member function waits longer than its argument and a few
 // seconds.
 //
-// When this process dies, even by SIGKILL, the process and its descendants end too. That is the
-// work of a guard: a process of attest between this one and the process, which becomes the parent
-// of all descendants whose parents have ended. A process below a guard starts others without a
-// guard of their own.
+// When the owner dies, even by SIGKILL, the child process and its descendants end too. That is the
+// work of a guard, a process of attest between the owner and the child process. The guard becomes
+// the parent of all descendants whose parents have ended. A process below a guard starts others
+// without a guard of their own.
 //
 // One thread at a time. The thread that calls start() must live as long as the Process, because
 // Linux treats the end of that thread as the death of the parent.

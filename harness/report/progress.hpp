@@ -26,7 +26,7 @@ class Progress {
   // Visible when stderr is a terminal that can move its cursor and `quiet` is false.
   static Options on_stderr(bool quiet);
 
-  // `done`: of these so many were done before.
+  // `done`: the number of these that were done before.
   Progress(std::size_t total, Options options, std::size_t done = 0)
       : options_(options), total_(total), done_(done), done_before_(done) {}
   ~Progress() { finish(); }

@@ -1,4 +1,4 @@
-// The result of a sweep: a row per vehicle and plant.
+// The result of a rate sweep: a row per vehicle and plant.
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@ namespace attest {
 struct RateSweepRow {
   PlantConfiguration plant_configuration;
   double lowest_rate_hz = -1;
-  std::vector<double> largest_delay_ms;  // by rate, as in sweep.hpp
+  std::vector<double> largest_delay_ms;  // by rate; below 0: none is within the bounds
   std::string failure;                   // of the port; empty if it did not fail
 };
 
-// Of the results of SweepJobs, in their order.
+// Of the results of RateSweepJobs, in their order.
 std::vector<RateSweepRow> rate_sweep_rows(const std::vector<RateSweepResult>& results);
 
 std::string render_rate_sweep(const std::vector<RateSweepRow>& rows,

@@ -32,7 +32,7 @@ struct TickSchedule {
   std::uint64_t seed = 1;           // of the jitter
   std::vector<std::int64_t> drops;  // values of k that are left out
   bool heavy_tail = false;
-  std::int64_t drop_every = 0;  // the last of each so many is left out; 0: none
+  std::int64_t drop_every = 0;  // the last of each group of this many is left out; 0: none
   Stall stall;                  // its times do not include the phase
 };
 

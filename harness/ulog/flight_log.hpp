@@ -41,9 +41,9 @@ struct LoggedUnit {
   Trace trace;
   std::vector<LoggedOutput> outputs;
   std::vector<Known> known;  // of each tick
-  // The log has every step of the unit and begins on the ground. A log of v1.14 to v1.16 must also
-  // have all inputs: none was assumed. Otherwise outputs that depend on earlier steps (the
-  // integral, the derivative) cannot be computed from the log.
+  // The log has every step of the unit and begins on the ground. For a log of v1.14 to v1.16, no
+  // input was assumed, either. Otherwise outputs that depend on earlier steps (the integral, the
+  // derivative) cannot be computed from the log.
   bool has_every_step = false;
   bool begins_in_flight = false;  // so the state of the unit at the first tick is not known
   // Why the outputs that depend on earlier steps cannot be computed, even approximately. Empty if

@@ -97,9 +97,9 @@ Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& g
   return Prepared{std::move(made), {std::move(*want), std::move(*others)}};
 }
 
-// The expected outputs for other inputs than those of the golden: for a port with a fixed step
-// (fixed_step.hpp) from one period after zero on, and with other parameters. They are those of the
-// reference. Errors: the reference does not agree with the golden.
+// The expected outputs for other inputs than those of the golden. A port with a fixed step
+// (fixed_step.hpp) gets times from one period after zero on; --param changes parameters. The
+// outputs are those of the reference. Errors: the reference does not agree with the golden.
 Result<Prepared> prepare_varied(const Case& the_case, const Case& begun, const Rate& rate,
                                 const Golden& golden,
                                 const std::vector<ParameterChange>& parameters) {

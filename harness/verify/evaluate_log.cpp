@@ -87,7 +87,7 @@ std::vector<bool> ticks_but(const LoggedUnit& log, Known most) {
 // What of a log can be compared with any port.
 class Comparable {
  public:
-  // `reference`: its outputs; null if it does not know the law, so that every log is believed.
+  // `reference`: its outputs; null if it does not have the profile. Then the log is not checked.
   Comparable(const LoggedUnit& log, const Trace* reference, const LogLimits& limits)
       : log_(log), limits_(limits) {
     if (log.has_every_step) {

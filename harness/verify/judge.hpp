@@ -39,7 +39,7 @@ void fill_in(const ChannelSet& not_recorded, const Trace& want, Trace& answered)
 // must publish that topic at a tick.
 bool leaves_values_to_judge(const ChannelSet& not_recorded, const Trace& want);
 
-// Adds to the reason what mistake in the recording looks like this (misrecording.hpp).
+// Adds to the reason the mistake of the recording that would give these outputs (misrecording.hpp).
 void explain_recording(const Trace& answered, const Trace& want, CaseResult& result);
 
 // Call after the ticks before the fault have been judged. A failure stays a failure; its reason

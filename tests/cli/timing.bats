@@ -96,7 +96,7 @@ CHECK
   has "has no run configuration with this vehicle and plant"
 }
 
-@test "steps are timed over the corpus, and the slowest input can be replayed" {
+@test "steps are timed over all vectors, and the slowest input can be replayed" {
   run "$ATTEST" time --group large_angle --rate 250 --worst w.csv --json t.json
   [ "$status" -eq 0 ]
   has "steps of"

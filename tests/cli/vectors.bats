@@ -29,7 +29,7 @@ load common
   has "file/below"
 }
 
-@test "no numeric vector of the corpus comes near to a decision of the law" {
+@test "no numeric vector of the suite comes near to a decision of the law" {
   run "$ATTEST" vectors --lint
   [ "$status" -eq 0 ]
   has "numeric vectors, 0 too near to a decision"

@@ -1,4 +1,4 @@
-// The catalogue itself. `attest faults` tests with the corpus that each fault is wrong, and how
+// The catalogue itself. `attest faults` tests with the suite that each fault is wrong, and how
 // soon it is caught.
 #include <cstddef>
 #include <cstring>

@@ -1,4 +1,4 @@
-"""Writes the first inputs of a fuzz target, from the corpus, and a dictionary of its words.
+"""Writes the first inputs of a fuzz target, from the suite, and a dictionary of its words.
 
     seeds.py TARGET FOLDER DICTIONARY
 """

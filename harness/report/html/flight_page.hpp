@@ -1,4 +1,4 @@
-// The page of `attest sim --html`: a flight with its metrics, plots and a replay of the attitude.
+// The page of `attest sim --html`: a flight with its metrics, plots and its animated attitude.
 #pragma once
 
 #include <string>

@@ -14,7 +14,7 @@
 namespace attest {
 namespace {
 
-constexpr std::size_t most_frames = 2000;  // of the replay
+constexpr std::size_t most_frames = 2000;  // of the animation
 
 // The column of that name: a channel, or one of the plant.
 std::vector<float> column(const Trace& flown, std::string_view name) {

@@ -1,4 +1,4 @@
-// The plots and the replay of flights, for their page.
+// The plots and the animation of flights, for their page.
 #pragma once
 
 #include <string>

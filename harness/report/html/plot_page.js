@@ -1,4 +1,4 @@
-// The plots of a PlotPage. `attest.plotGroups` lets the replay move the cursor and follow it.
+// The plots of a PlotPage. `attest.plotGroups` lets the animation move the cursor and follow it.
 'use strict';
 (() => {
   const {element, floats, colour, nearest, shown, styledAxes} = attest;

@@ -19,7 +19,7 @@ struct RateSweepRun {
 };
 
 // The limits as a table, each metric by rate with its bounds, and the largest delay by rate; a line
-// for each vehicle and plant. What is missed at the highest rate that does not hold.
+// for each vehicle and plant. Also the bounds that are missed at the highest rate that misses any.
 std::string rate_sweep_page(const RateSweepRun& run);
 
 }  // namespace attest

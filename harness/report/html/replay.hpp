@@ -1,4 +1,4 @@
-// The attitudes of a flight, for the replay on its page.
+// The attitudes of a flight, for the animation on its page.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace attest {
 // down).
 using Quaternions = std::array<std::vector<float>, 4>;
 
-// One of the vehicles of a replay. REQUIRES: all sizes are equal, and at least 1.
+// One of the vehicles of an animation. REQUIRES: all sizes are equal, and at least 1.
 struct ReplayVehicle {
   std::string name;          // may be empty if it is the only one
   std::vector<float> times;  // [s] from the first tick

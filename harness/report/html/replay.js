@@ -1,4 +1,4 @@
-// The replay of a flight: the attitude at the time to which the slider or the pointer in a plot
+// The animation of a flight: the attitude at the time to which the slider or the pointer in a plot
 // points.
 'use strict';
 (() => {
