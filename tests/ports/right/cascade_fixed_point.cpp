@@ -5,9 +5,10 @@
 // Four things keep 22 fraction bits near enough to the law:
 // - Sums of squares have 128 bits and are rounded once.
 // - A quaternion is normalised by a norm with more bits, because it is short near a half turn.
-// - A low-pass carries what its state leaves of a step to the next step. Otherwise a slow filter
-//   stops before it reaches its input.
-// - dt of the rate unit is a whole number of microseconds: 125 us are only 524 last bits.
+// - A low-pass has a state with twice the bits. Otherwise a slow filter stops before it reaches its
+//   input, and the yaw is never locked.
+// - dt is a whole number of microseconds, kept in the last bits: 125 us in s are only 524 last
+// bits.
 //
 // Must pass at the numeric level. With 32 fraction bits it is judged like any port. With 22 it
 // declares its arithmetic and is judged as fixed point.
@@ -60,25 +61,37 @@ inline attest::cascade::Quaternion<Fixed> attest::cascade::unit(const Quaternion
   return result;
 }
 
+constexpr int us_in_s = 1000000;
+
+// rate * dt.
+inline Fixed change(Fixed rate, Fixed dt_us) {
+  const Fixed::Wide product = rate.raw() * dt_us.raw();
+  return Fixed::of_raw((product + (product < 0 ? -us_in_s : us_in_s) / 2) / us_in_s);
+}
+
+// The two forms of the law are the same here.
 template <>
 struct attest::cascade::LowPass<Fixed> {
   Fixed state;
   Fixed weight;
-  Fixed::Wide carried = 0;  // of 2 * fraction_bits, at most half of the state's last bit
+  Fixed::Wide rest = 0;  // of 2 * fraction_bits, at most half of the state's last bit
 
-  // Both forms of the law are the same here.
-  Fixed update(Fixed tau_s, Fixed dt_s, Fixed input, const ProfileTraits&) {
-    const Fixed span_s = tau_s + dt_s;
-    if (span_s > Fixed(epsilon)) weight = dt_s / span_s;
-    return update(input);
-  }
-  Fixed update(Fixed input) {
-    carried += weight.raw() * (input - state).raw();
-    const Fixed step = rounded(carried);
-    carried -= step.raw() * (Fixed::Wide{1} << Fixed::fraction_bits);
+  Fixed update(Fixed tau_s, Fixed dt_us, Fixed input, const ProfileTraits&) {
+    constexpr Fixed::Wide one = Fixed::Wide{1} << Fixed::fraction_bits;
+    const Fixed::Wide dt = dt_us.raw() * one;
+    weight = Fixed::of_raw(dt * one / (tau_s.raw() * us_in_s + dt));
+    rest += (weight.raw() * ((input - state).raw() * one - rest)) >> Fixed::fraction_bits;
+    const Fixed step = rounded(rest);
+    rest -= step.raw() * one;
     return state += step;
   }
 };
+
+template <>
+inline Fixed attest::cascade::slewed(Fixed value, Fixed rate, Fixed dt_us, Fixed target) {
+  const Fixed step = change(rate, dt_us);
+  return value + clamp(target - value, -step, step);
+}
 
 namespace {
 
@@ -87,13 +100,14 @@ using Vector = Vector3<Fixed>;
 
 Vector fixed(const Vector3<float>& v) { return {Fixed(v[0]), Fixed(v[1]), Fixed(v[2])}; }
 
-constexpr int us_in_s = 1000000;
+// The clamped difference, in the last bits.
+Fixed microseconds(std::uint64_t difference_us, std::uint64_t least_us) {
+  return Fixed::of_raw(std::clamp<std::uint64_t>(difference_us, least_us, 20000));
+}
 
 struct AttitudeStep : AttitudeStepStages<Fixed> {
-  // Microseconds do not fit into Fixed; the clamped difference does.
   static Fixed step_time(std::uint64_t sample_us, std::uint64_t last_us) {
-    const auto us = std::clamp<std::uint64_t>(sample_us - last_us, 200, 20000);
-    return Fixed(static_cast<double>(us) / us_in_s);
+    return microseconds(sample_us - last_us, 200);
   }
 
   static bool is_spooled(std::uint64_t now_us, const Status& status, Fixed spoolup_us) {
@@ -127,6 +141,10 @@ struct Sticks : StickStages<Fixed> {
     return StickStages<Fixed>::locked_yaw(yaw_sp, Fixed(0), heading, old_correction, correction);
   }
 
+  static Fixed integrated_yaw(Fixed yaw_sp, Fixed rate, Fixed dt_us) {
+    return wrap(yaw_sp + change(rate, dt_us));
+  }
+
   // "None" would become a number.
   static Fixed turned(Fixed angle, Fixed turn) {
     return is_finite(angle) ? StickStages<Fixed>::turned(angle, turn) : angle;
@@ -134,17 +152,8 @@ struct Sticks : StickStages<Fixed> {
 };
 
 struct RateStep : RateStepStages<Fixed> {
-  // Microseconds, in the last bits.
   static Fixed step_time(std::uint64_t sample_us, std::uint64_t last_us) {
-    return Fixed::of_raw(std::clamp<std::uint64_t>(sample_us - last_us, 125, 20000));
-  }
-
-  static Fixed filtered_yaw(LowPass<Fixed>& filter, Fixed torque, Fixed dt,
-                            const RateUnitGains<Fixed>& gains, const ProfileTraits&) {
-    const Fixed::Wide tau_us = (gains.yaw_torque_tau_s * Fixed(us_in_s)).raw();
-    const Fixed::Wide dt_us = dt.raw() * (Fixed::Wide{1} << Fixed::fraction_bits);
-    filter.weight = Fixed::of_raw((dt_us << Fixed::fraction_bits) / (tau_us + dt_us));
-    return filter.update(torque);
+    return microseconds(sample_us - last_us, 125);
   }
 
   static RateUnitGains<Fixed> gains(const Parameters& parameters) {
@@ -161,10 +170,8 @@ struct RateStep : RateStepStages<Fixed> {
 };
 
 struct Rate : RateStages<Fixed> {
-  static Fixed integrated(Fixed integral, Fixed factor, Fixed gain, Fixed error, Fixed dt) {
-    const Fixed::Wide step = ((factor * gain) * error).raw() * dt.raw();
-    const int half = step < 0 ? -us_in_s / 2 : us_in_s / 2;
-    return integral + Fixed::of_raw((step + half) / us_in_s);
+  static Fixed integrated(Fixed integral, Fixed factor, Fixed gain, Fixed error, Fixed dt_us) {
+    return integral + change((factor * gain) * error, dt_us);
   }
 };
 
