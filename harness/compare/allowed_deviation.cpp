@@ -36,7 +36,7 @@ double AllowedDeviation::of(std::size_t channel, const Sample& tick, float got, 
   const double w = want;
   const double tolerance = std::max(base.absolute, base.relative * std::abs(w));
   const double difference = std::abs(static_cast<double>(got) - w);
-  if (difference <= tolerance || !widens(channel, tick)) return tolerance;
+  if (difference * ample_headroom <= tolerance || !widens(channel, tick)) return tolerance;
   const double wider = widening(tick);
   // Not finite without an attitude, or with a time constant of zero: then nothing is added.
   return std::isfinite(wider) ? tolerance + wider : tolerance;

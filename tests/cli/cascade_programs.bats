@@ -38,7 +38,7 @@ cases=(acro/superexpo attitude/tilt_by_azimuth battery/clamped_after_scaling
   modes/rate_setpoint_is_latched_while_rates_are_off parameters/sticks_in_flight
   parameters/rate_acro_in_flight rate_limit/after_feed_forward
   rates/not_finite_setpoint_holds_the_measured_rate robustness/zero_quaternions
-  robustness/rate_gyro@400hz saturation/nan_error_of_a_flagged_axis spool_up/hover_thrust_slews@50hz
+  robustness/rate_gyro@400hz saturation/negative_by_axis spool_up/hover_thrust_slews@50hz
   sticks/yaw_correction timing/jitter timing/rate_jitter yaw_filter/weight_follows_dt
   yaw_weight/beyond_one)
 

@@ -40,6 +40,16 @@ TEST(Widening, AppliesToTheRatesSetpointNear180Degrees) {
                       "out/actuator_controls_0.control[0]"));
 }
 
+// A deviation that is allowed without the widening, too: its headroom is that of the wider one.
+TEST(Widening, CountsInTheHeadroom) {
+  const Trace want = nearly_upside_down();
+  Trace got = want;
+  set(got, 0, roll, default_tolerance / 2);
+  const auto tightest = compare(got, want, Tolerances()).tightest;
+  ASSERT_TRUE(tightest);
+  EXPECT_NEAR(tightest->ratio, 2 * (default_tolerance + 3.4e-4) / default_tolerance, 0.1);
+}
+
 TEST(Widening, IsAddedToATolerancesOfTheCase) {
   Tolerances none;
   none.set("vehicle_rates_setpoint", {0, 0});

@@ -75,41 +75,93 @@ inline bool isfinite(Fixed value) {
   return abs(value).raw() != std::numeric_limits<std::int64_t>::max();
 }
 
-// Bit by bit.
-inline Fixed sqrt(Fixed value) {
-  Fixed::Wide rest = std::max<Fixed::Wide>(value.raw(), 0) << Fixed::fraction_bits;
+inline Fixed floor(Fixed value) {
+  return Fixed::of_raw(value.raw() >> Fixed::fraction_bits << Fixed::fraction_bits);
+}
+
+// The whole square root, bit by bit.
+inline Fixed::Wide root_of(Fixed::Wide value) {
+  Fixed::Wide rest = std::max<Fixed::Wide>(value, 0);
   Fixed::Wide root = 0;
   for (Fixed::Wide bit = Fixed::Wide{1} << (62 + Fixed::fraction_bits); bit != 0; bit >>= 2) {
     const bool fits = rest >= root + bit;
     if (fits) rest -= root + bit;
     root = (root >> 1) + (fits ? bit : 0);
   }
-  return Fixed::of_raw(root);
+  return root;
 }
 
-// CORDIC: the vector is turned onto the x axis by angles whose tangents are powers of two.
-inline Fixed atan2(Fixed sine, Fixed cosine) {
-  constexpr int guard_bits = 12, steps = 42;
-  constexpr double pi = 3.14159265358979323846;
-  const auto angle_of = [](double radians) {
-    return std::llround(std::ldexp(radians, Fixed::fraction_bits + guard_bits));
-  };
-  Fixed::Wide x = cosine.raw() * (1 << guard_bits), y = sine.raw() * (1 << guard_bits), angle = 0;
-  if (x == 0 && y == 0) return {};
-  if (x < 0) {
-    angle = y >= 0 ? angle_of(pi) : -angle_of(pi);
-    x = -x;
-    y = -y;
+inline Fixed sqrt(Fixed value) {
+  return Fixed::of_raw(root_of(value.raw() * (Fixed::Wide{1} << Fixed::fraction_bits)));
+}
+
+// CORDIC: a vector is turned by angles whose tangents are powers of two. Each turn makes it longer.
+struct Cordic {
+  using Wide = Fixed::Wide;
+  static constexpr int guard_bits = 12, steps = 42;
+  static constexpr double pi = 3.14159265358979323846;
+
+  Wide x, y;
+  Wide angle;  // by which the vector has been turned clockwise
+
+  static Wide wide(Fixed value) { return value.raw() * (1 << guard_bits); }
+  static Wide wide(double value) {
+    return std::llround(std::ldexp(value, Fixed::fraction_bits + guard_bits));
   }
-  for (int i = 0; i < steps; ++i) {
-    const int turned = y > 0 ? 1 : -1;
-    const Fixed::Wide dx = turned * (y >> i), dy = turned * (x >> i);
+  static Fixed rounded(Wide value) {
+    return Fixed::of_raw((value + (1 << (guard_bits - 1))) >> guard_bits);
+  }
+
+  void turn(int step, int clockwise) {
+    const Wide dx = clockwise * (y >> step), dy = clockwise * (x >> step);
     x += dx;
     y -= dy;
-    angle += turned * angle_of(std::atan(std::ldexp(1.0, -i)));
+    angle += clockwise * wide(std::atan(std::ldexp(1.0, -step)));
   }
-  return Fixed::of_raw((angle + (1 << (guard_bits - 1))) >> guard_bits);
+};
+
+// The vector is turned onto the x axis.
+inline Fixed atan2(Fixed sine, Fixed cosine) {
+  Cordic vector{Cordic::wide(cosine), Cordic::wide(sine), 0};
+  if (vector.x == 0 && vector.y == 0) return {};
+  if (vector.x < 0) {
+    vector.angle = vector.y >= 0 ? Cordic::wide(Cordic::pi) : -Cordic::wide(Cordic::pi);
+    vector.x = -vector.x;
+    vector.y = -vector.y;
+  }
+  for (int i = 0; i < Cordic::steps; ++i) vector.turn(i, vector.y > 0 ? 1 : -1);
+  return Cordic::rounded(vector.angle);
 }
+
+// {cos, sin}. A vector on the x axis is turned until the angle is used up. It begins as short as
+// the turns make it longer. CORDIC reaches 99 deg; the nearest multiple of 180 deg changes the
+// sign.
+struct Direction {
+  Fixed cosine, sine;
+};
+inline Direction direction_of(Fixed angle) {
+  static const double shortness = [] {
+    double product = 1;
+    for (int i = 0; i < Cordic::steps; ++i) product /= std::sqrt(1 + std::ldexp(1.0, -2 * i));
+    return product;
+  }();
+  const Fixed::Wide half_turn = Cordic::wide(Cordic::pi), turn = 2 * half_turn;
+  const Fixed::Wide shifted = 2 * Cordic::wide(angle) + half_turn;
+  const Fixed::Wide half_turns = shifted / turn - (shifted % turn < 0 ? 1 : 0);
+  Cordic vector{Cordic::wide(shortness), 0, Cordic::wide(angle) - half_turns * half_turn};
+  for (int i = 0; i < Cordic::steps; ++i) vector.turn(i, vector.angle > 0 ? -1 : 1);
+  const Direction direction{Cordic::rounded(vector.x), Cordic::rounded(vector.y)};
+  return (half_turns & 1) != 0 ? Direction{-direction.cosine, -direction.sine} : direction;
+}
+inline Fixed cos(Fixed angle) { return direction_of(angle).cosine; }
+inline Fixed sin(Fixed angle) { return direction_of(angle).sine; }
+
+// sqrt(1 - x^2), from all bits of the square. A number above 1 has none, and gives 0.
+inline Fixed other_leg(Fixed x) {
+  return Fixed::of_raw(root_of((Fixed::Wide{1} << (2 * Fixed::fraction_bits)) - x.raw() * x.raw()));
+}
+inline Fixed asin(Fixed x) { return atan2(x, other_leg(x)); }
+inline Fixed acos(Fixed x) { return atan2(other_leg(x), x); }
 
 template <>
 struct Eigen::NumTraits<Fixed> : Eigen::GenericNumTraits<Fixed> {
