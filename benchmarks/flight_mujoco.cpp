@@ -1,5 +1,5 @@
-// A flight against its unavoidable part: the same steps of MuJoCo on the same model, with the same
-// rotor commands read from memory.
+// A flight against bare MuJoCo: as many steps of the model as its file describes it, with the same
+// rotor commands read from memory. A flight leaves out the geoms, so it may take less time.
 #include <chrono>
 #include <map>
 #include <memory>

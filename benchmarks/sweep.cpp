@@ -1,6 +1,6 @@
 // The flights of a sweep, from the numbers of a sample to its row: with a worker process, a process
-// of its own for each port, and all checks. The floor is that of a flight: the bare steps of
-// MuJoCo.
+// of its own for each flight of a port, and all checks. The floor is that of a flight: the bare
+// steps of MuJoCo.
 #include <chrono>
 #include <string>
 

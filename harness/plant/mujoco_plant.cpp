@@ -11,6 +11,7 @@
 #include <mujoco/mujoco.h>
 
 #include "harness/plant/model_numbers.hpp"
+#include "harness/plant/mujoco_model_copy.hpp"
 #include "harness/plant/mujoco_numbers.hpp"
 #include "harness/plant/simulator_message.hpp"
 
@@ -105,11 +106,7 @@ Result<Model> compile(const std::filesystem::path& xml) {
   return model;
 }
 
-// ---- the plant ----------------------------------------------------------------------------------
-
-void copy(const Vector3& vector, mjtNum* numbers) {
-  std::copy(vector.begin(), vector.end(), numbers);
-}
+// ---- models for a flight ------------------------------------------------------------------------
 
 // Memory for the contacts of a few feet: four points on each of some geoms, up to four rows each.
 void enable_floor(mjModel& model) {
@@ -120,21 +117,29 @@ void enable_floor(mjModel& model) {
   model.opt.disableflags &= ~(mjDSBL_CONSTRAINT | mjDSBL_CONTACT);
 }
 
-// Its model has own arrays where place_centre_of_mass() writes, and shares the others with the
-// compiled one: a whole copy would have more than a megabyte of textures.
+// Leaves out cameras, lights and sensors, which no flight reads, and geoms that have no effect.
+// MuJoCo would compute their places at each stage of a step: a quarter of the time of a flight.
+void leave_out_unused(mjModel& model) {
+  model.ncam = model.nlight = model.nsensor = 0;
+  const bool geoms_act = (model.opt.disableflags & mjDSBL_CONTACT) == 0 || model.ntendon > 0 ||
+                         model.opt.density != 0 || model.opt.viscosity != 0;
+  if (!geoms_act) model.ngeom = 0;
+}
+
+// ---- the plant ----------------------------------------------------------------------------------
+
+void copy(const Vector3& vector, mjtNum* numbers) {
+  std::copy(vector.begin(), vector.end(), numbers);
+}
+
 class MujocoPlant final : public Plant {
  public:
-  MujocoPlant(const mjModel& model, Data data, const Vehicle& vehicle, const Rate& physics)
-      : model_(model),
-        data_(std::move(data)),
+  MujocoPlant(const mjModel& model, const Vehicle& vehicle, const Rate& physics)
+      : copy_(model),
+        data_(mj_makeData(&model_)),
         vehicle_(vehicle),
         physics_(physics),
-        rotors_(vehicle.rotors.size()) {
-    own(model_.body_ipos, 3 * model.nbody, ipos_);
-    own(model_.body_sameframe, model.nbody, sameframe_);
-    own(model_.body_simple, model.nbody, simple_);
-    own(model_.dof_simplenum, model.nv, simplenum_);
-  }
+        rotors_(vehicle.rotors.size()) {}
 
   void reset(const PlantState& start) override {
     mj_resetData(&model_, data_.get());
@@ -173,12 +178,6 @@ class MujocoPlant final : public Plant {
   const PlantState& state() const override { return state_; }
 
  private:
-  template <typename T>
-  static void own(T*& array, int size, std::vector<T>& copy) {
-    copy.assign(array, array + size);
-    array = copy.data();
-  }
-
   // To the next multiple of the physics period, or to `to` if that comes first.
   void step(Nanoseconds to) {
     Nanoseconds next = physics_.tick(steps_ + 1);
@@ -261,10 +260,8 @@ class MujocoPlant final : public Plant {
     mju_rotVecQuat(velocity_W, velocity_B, data_->qpos + 3);
   }
 
-  mjModel model_;
-  std::vector<mjtNum> ipos_;
-  std::vector<mjtByte> sameframe_, simple_;
-  std::vector<int> simplenum_;
+  MujocoModelCopy copy_;
+  mjModel& model_ = copy_.model();
   Data data_;
   const Vehicle& vehicle_;
   Rate physics_;
@@ -277,23 +274,24 @@ class MujocoPlant final : public Plant {
 
 class CompiledModel final : public MujocoModel {
  public:
-  CompiledModel(std::filesystem::path file, Model model)
-      : file_(std::move(file)), model_(std::move(model)) {}
+  CompiledModel(std::filesystem::path file, const mjModel& model)
+      : file_(std::move(file)), copy_(model) {}
 
   Result<std::shared_ptr<const MujocoModel>> with_numbers_of(
       const Vehicle& vehicle) const override {
-    const auto rotors = static_cast<std::size_t>(model_->nu);
+    const auto rotors = static_cast<std::size_t>(copy_.model().nu);
     if (rotors != vehicle.rotors.size()) {
       return fail_at(vehicle.file.string(),
                      fmt::format("has {} rotors, but {} has {}; they must have the same number",
                                  vehicle.rotors.size(), file_.filename().string(), rotors));
     }
     try {
-      Model model(mj_copyModel(nullptr, model_.get()));
-      set_numbers(vehicle, *model);
-      const Data data(mj_makeData(model.get()));
-      mj_setConst(model.get(), data.get());
-      return std::make_shared<const CompiledModel>(file_, std::move(model));
+      auto other = std::make_shared<CompiledModel>(file_, copy_.model());
+      mjModel& model = other->copy_.model();
+      set_numbers(vehicle, model);
+      const Data data(mj_makeData(&model));
+      mj_setConst(&model, data.get());
+      return other;
     } catch (const MujocoError& error) {
       return fail_at(file_.string(), "MuJoCo: " + one_line(error.what));
     }
@@ -302,10 +300,10 @@ class CompiledModel final : public MujocoModel {
   Result<std::unique_ptr<Plant>> make_plant(const Vehicle& vehicle,
                                             const PlantOptions& options) const override {
     try {
-      mjModel model = *model_;  // shares all arrays
+      mjModel model = copy_.model();  // shares all arrays
       if (options.floor) enable_floor(model);
-      Data data(mj_makeData(&model));
-      return std::make_unique<MujocoPlant>(model, std::move(data), vehicle, options.physics);
+      leave_out_unused(model);
+      return std::make_unique<MujocoPlant>(model, vehicle, options.physics);
     } catch (const MujocoError& error) {
       return fail_at(file_.string(), "MuJoCo: " + one_line(error.what));
     }
@@ -313,7 +311,7 @@ class CompiledModel final : public MujocoModel {
 
  private:
   std::filesystem::path file_;
-  Model model_;
+  MujocoModelCopy copy_;
 };
 
 }  // namespace
@@ -328,7 +326,7 @@ Result<std::shared_ptr<const MujocoModel>> MujocoModel::load(const std::filesyst
   if (const auto differs = first_difference(*numbers, vehicle); !differs.empty()) {
     return fail_at(xml.string(), differs);
   }
-  return std::make_shared<const CompiledModel>(xml, std::move(*model));
+  return std::make_shared<const CompiledModel>(xml, **model);
 }
 
 }  // namespace attest

@@ -8,7 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "harness/core/file.hpp"
 #include "tests/controller/allocation_count.hpp"
+#include "tests/harness/core/temporary_directory.hpp"
 #include "tests/harness/plant/test_vehicle.hpp"
 
 namespace attest {
@@ -234,6 +236,48 @@ TEST(Floor, HoldsAVehicleThatRestsOnIt) {
     EXPECT_NEAR((*plant)->state().velocity_m_s[2], 0, 1e-3) << name;
     EXPECT_GT((*plant)->state().attitude.w, 0.99) << name;
   }
+}
+
+// Without a floor MuJoCo computes no geoms, with one it computes all of them.
+TEST(Floor, ChangesNoBitsFarAboveIt) {
+  const auto frame = test::vehicle_model("iris");
+  PlantState start;
+  start.position_m[2] = -1000;
+  start.attitude = {0.9, 0.3, -0.1, 0.3};
+  start.rate_rad_s = {1, -2, 0.5};
+  std::vector<PlantState> ends;
+  for (const bool floor : {false, true}) {
+    const auto plant = *frame->make_plant(PlantKind::mujoco, {Rate::hz(1000), floor});
+    plant->reset(start);
+    plant->command(std::vector<double>{800, 790, 810, 795});
+    plant->set_centre_of_mass({0.01, -0.02, 0.005});
+    ASSERT_FALSE(plant->advance(ms(500)));
+    ends.push_back(plant->state());
+  }
+  EXPECT_EQ(std::memcmp(&ends[0], &ends[1], sizeof ends[0]), 0);
+}
+
+TEST(Floor, OfTheModelItselfIsKept) {
+  const TemporaryDirectory folder;
+  test::write_vehicle(folder.path(), {});
+  std::string xml = *read_file(folder.path() / "brick.xml");
+  const auto replace = [&](const std::string& old, const std::string& by) {
+    ASSERT_NE(xml.find(old), std::string::npos);
+    xml.replace(xml.find(old), old.size(), by);
+  };
+  replace("<flag constraint=\"disable\" contact=\"disable\"/>", "");
+  replace("njmax=\"1\" nconmax=\"1\"", "njmax=\"50\" nconmax=\"10\"");
+  replace("<worldbody>", "<worldbody><geom type=\"plane\" size=\"0 0 1\"/>");
+  replace("<inertial", "<geom type=\"box\" size=\"0.1 0.1 0.05\"/><inertial");
+  folder.write("brick.xml", xml);
+  const auto frame = VehicleModel::load(folder.path(), "brick");
+  ASSERT_TRUE(frame) << frame.error().to_string();
+  const auto plant = *(*frame)->make_plant(PlantKind::mujoco, {});
+  PlantState start;
+  start.position_m[2] = -0.5;
+  plant->reset(start);
+  ASSERT_FALSE(plant->advance(ms(1000)));
+  EXPECT_NEAR(plant->state().position_m[2], -0.05, 0.01);
 }
 
 TEST(Floor, IsNotThereUnlessAskedFor) {
