@@ -56,7 +56,8 @@ typedef struct attest_attitude_inputs {
 
   struct {                      /* topic vehicle_attitude: new in every step, has no bit */
     uint64_t timestamp;         /* [us] when it was published */
-    uint64_t timestamp_sample;  /* [us] of the IMU data; the law's dt is the difference of two */
+    uint64_t timestamp_sample;  /* [us] of the IMU data; the law's dt is the difference of two,
+                                 * limited to 0.2 .. 20 ms */
     float q[4];                 /* body FRD to world NED */
     float delta_q_reset[4];     /* how far the estimator's last reset turned the attitude */
     uint8_t quat_reset_counter; /* counts these resets */
@@ -161,7 +162,8 @@ typedef struct attest_rate_inputs {
   uint32_t reserved;  /* 0 */
 
   struct {                     /* topic vehicle_angular_velocity: new in every step, has no bit */
-    uint64_t timestamp_sample; /* [us] of the gyro; the law's dt is the difference of two */
+    uint64_t timestamp_sample; /* [us] of the gyro; the law's dt is the difference of two,
+                                * limited to 0.125 .. 20 ms */
     float xyz[3];              /* [rad/s] about body x, y, z (FRD) */
     float xyz_derivative[3];   /* [rad/s^2] angular acceleration, filtered by the host */
   } vehicle_angular_velocity;

@@ -81,8 +81,9 @@ enum {
 
 typedef struct attest_inputs {
   uint64_t timestamp; /* [us] time of this step; never decreases. The law's dt is the
-                       * difference between the timestamps of two steps. The sample in
-                       * control_state may be older: see ATTEST_EXTENSION_TIMESTAMP_SAMPLE. */
+                       * difference between the timestamps of two steps, limited to
+                       * 2 .. 20 ms. The sample in control_state may be older: see
+                       * ATTEST_EXTENSION_TIMESTAMP_SAMPLE. */
   uint32_t updated;   /* ATTEST_UPDATED_... bits */
 
   struct {            /* topic control_state: the estimate that this step uses */

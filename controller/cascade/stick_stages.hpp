@@ -75,8 +75,8 @@ struct StickStages {
     return stick * gains.yaw_rate_max_rad_s;
   }
 
-  // v1.16.0: while the stick turns, no yaw is held. The next one is the heading at that time, and
-  // it follows the change of the correction.
+  // v1.16.0: while a yaw rate is commanded, no yaw is held. After that the heading at that time is
+  // held. The held yaw moves with the correction.
   ATTEST_INLINE static Scalar locked_yaw(Scalar yaw_sp, Scalar rate, Scalar heading,
                                          Scalar old_correction, Scalar correction) {
     using std::abs;
@@ -104,7 +104,8 @@ struct StickStages {
     return rotation_about(rotation[0], rotation[1]);
   }
 
-  // A VTOL corrects yaw slowly, so it tilts in the direction that it has now.
+  // A VTOL corrects yaw slowly, so the sticks command a tilt relative to its present yaw. Returns
+  // that tilt relative to the desired yaw.
   static Q tilt_for_yaw_error(const Q& tilt, const Q& desired_yaw, const Q& q_WB) {
     const Vector up(Scalar(0), Scalar(0), Scalar(1));
     const Q yaw = product(inverse(shortest_rotation(up, z_axis(q_WB))), q_WB);

@@ -84,7 +84,7 @@ struct UnitStall {
 // The unit's own ticks: late by jitter or stalls, or missing, as in TickSchedule
 // (schedule/ticks.hpp).
 struct UnitTiming {
-  Span start{5.0, Span::In::seconds};  // timestamp of the first tick
+  Span start{5.0, Span::In::seconds};  // timestamp at time 0 of the case
   double jitter = 0;
   bool heavy_tail = false;
   std::uint64_t seed = 1;
@@ -97,7 +97,8 @@ struct UnitTiming {
 };
 
 // The attitude unit of a flight of the cascade. The case itself is that of the rate unit, which
-// commands the motors. Times in ticks are ticks of the rate unit, but for those in `unit`.
+// commands the motors. Times in ticks are ticks of the attitude unit in `unit` and `delay`, and of
+// the rate unit in `topics`.
 struct AttitudeLoop {
   UnitTiming unit;
   std::vector<TopicStimulus> topics;

@@ -23,7 +23,7 @@ bool is_whole_ticks(const Span& span) {
 // One topic on a timeline: publishes into a sample.
 class Publisher {
  public:
-  // `start`: the timestamp of the first tick.
+  // `start`: the timestamp at time 0 of the case.
   Publisher(const TopicStimulus& topic, const Timeline& timeline, Nanoseconds start)
       : topic_(topic), timeline_(timeline), delay_(topic.publication.delay.on(timeline.rate)) {
     for (const FieldStimulus& field : topic.fields) {

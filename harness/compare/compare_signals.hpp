@@ -29,7 +29,7 @@ struct SignalComparison {
   bool agrees() const { return compared > 0 && deviating == 0; }
 };
 
-// `got` lags by this time: each of its samples has the value that `want` has so much earlier.
+// `got` lags by this time: a sample of `got` at t has the value that `want` has at t - us.
 struct TimeShift {
   std::int64_t us = 0;
   std::string signal;                 // the one that it was estimated from

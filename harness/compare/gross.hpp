@@ -11,14 +11,16 @@
 //   than another.
 // - Half the size: a gain, a filter or a table may be that coarse. An inverted sign and twice the
 //   value are outside, if the value is well above the floor.
-// - floor: 0.1 rad/s for rates setpoints, 0.05 for controls and thrust, 0.02 for integrals. With
-//   this floor, a correct controller in fixed point with 14 fraction bits passes the value check in
-//   every case whose events agree. With 11 bits it fails in 2 of 451.
+// - floor: 0.1 rad/s for rates setpoints and yaw rates, 0.02 for integrals, 0.05 for all other
+//   values. With this floor, a correct controller in fixed point with 14 fraction bits passes the
+//   value check in every case whose events agree. With 11 bits it fails in 2 of 451.
 //
 // Values are not compared
-// - at the first and the last tick, and where one of the three ticks does not publish the topic
+// - at the first and the last tick
+// - where the reference, at one of the three ticks, does not publish the topic, or has NaN or
+//   infinity
 // - within 11 deg of a half turn between attitude and setpoint, where a last bit decides the
-//   direction in which the law turns.
+//   direction in which the law turns; also where one of the two is zero or not finite.
 #pragma once
 
 #include <optional>

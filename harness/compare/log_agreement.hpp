@@ -17,8 +17,9 @@ namespace attest {
 struct LogLimits {
   double within = 1e-4;  // in the unit of the signal
   double least_part_within = 0.85;
-  // In a real log of 69 s it was 0.9%: a third of these in fast manoeuvres, where the value between
-  // two logged samples is larger than at both, the others barely beyond the tolerance.
+  // In a real log of 69 s, 0.9% had no explanation. A third of these were in fast manoeuvres, where
+  // the value between two logged samples is larger than at both. The others were barely beyond the
+  // tolerance.
   double most_unexplained = 0.02;
 };
 
@@ -33,7 +34,7 @@ struct LoggedPair {
 struct TopicAgreement {
   std::string_view topic;
   std::string not_judged;    // why it is only reported; empty: it is judged
-  std::size_t left_out = 0;  // ticks with an output in the log, which cannot be computed from it
+  std::size_t left_out = 0;  // ticks whose logged output cannot be computed from the log
   std::size_t paired = 0;    // the other ticks with an output in the log
   std::size_t missing = 0;   // of these: the port published nothing
   // Of the pairs that both have: the port has NaN or infinity where the log has a number. One is

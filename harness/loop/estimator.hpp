@@ -45,7 +45,7 @@ class NoisyEstimator {
 
 // The samples of one unit: the attitude estimate with its resets for the attitude unit, the gyro
 // with its derivative for the rate unit, attitude and rates for the controller. The noise of the
-// cascade's gyro has the seed after the estimator's. No allocation.
+// cascade's gyro has the estimator's seed plus 1. No allocation.
 class UnitEstimator {
  public:
   // `own` is the rate of the unit of the case's module, `timeline` that of the flight. REQUIRES: a

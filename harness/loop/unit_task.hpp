@@ -37,7 +37,7 @@ struct Arrivals {
 
 class UnitTask {
  public:
-  // A unit of the case's module. `start` is used before the first estimate arrives, that of time 0.
+  // A unit of the case's module. `start`: the estimate of time 0, used until the first one arrives.
   // REQUIRES: same as ClosedLoop.
   UnitTask(const Case& the_case, const Rate& rate, const Vehicle& vehicle, Unit& unit,
            const Estimate& start);

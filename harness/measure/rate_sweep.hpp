@@ -40,8 +40,8 @@ struct Codec<RateSweepResult> {
 // One vehicle on one plant. Task 0 searches for the lowest rate (of the cascade, that of the rate
 // unit, with the attitude unit at its usual rate or at the same one), task i for the largest delay
 // at rate i - 1. Each search begins at 1000 Hz, or without delay, and moves in steps until a flight
-// misses a bound. Then it bisects the last step. It tries no rate below, and no delay above, that
-// of the first flight that missed.
+// misses a bound. Then it bisects the last step. It tries no lower rate, and no longer delay, than
+// that of the first flight that missed a bound.
 class RateSweepJob final : public Job<RateSweepResult> {
  public:
   RateSweepJob(Case the_case, PlantConfiguration plant_configuration, std::vector<LoopRate> rates,

@@ -24,7 +24,8 @@ std::vector<std::string> known_profile_names();
 // Null if there is none of that name.
 const ProfileInfo* find_profile(std::string_view name);
 
-// True if the port makes a unit of that profile. Of a profile that is not known: a controller.
+// True if the port makes a unit of that profile: any unit, or a controller if attest does not know
+// the profile.
 bool makes_unit_of(Port& port, const std::string& profile);
 
 // A parameter of a module.

@@ -1,4 +1,5 @@
-// When in a flight its steps were late or long: the figures of many ticks in some hundred parts.
+// Shows when in a flight steps were late or long: the flight is divided into at most 400 parts, and
+// each part has the figures of its ticks.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // The text about a failing result, shared by the terminal and JUnit. A CI log may be all that its
-// reader has. So it has the error, the first deviation, the stage of the law to look at, and the
-// command that runs this vector again.
+// reader has. So the text has the error, the first deviation, the stage of the law to look at, and
+// the command that runs this vector again.
 #pragma once
 
 #include <string>

@@ -13,8 +13,8 @@ namespace attest {
 struct LoopTick {
   Nanoseconds sampled{0};  // time of the plant's state that the unit receives
   Nanoseconds begins{0};   // the unit's step begins; its timestamp
-  // From this time on the motors follow the unit's outputs; of the attitude unit, the rate unit
-  // does. Empty: never, because those of the next tick arrive first.
+  // From this time on the unit's outputs are used: those of the attitude unit by the rate unit, all
+  // others by the motors. Empty: never, because the outputs of the next tick arrive first.
   std::optional<Nanoseconds> commanded;
 
   friend bool operator==(const LoopTick&, const LoopTick&) = default;

@@ -64,8 +64,8 @@ Result<void> check_seal(const std::filesystem::path& file);
 // Divides the columns of traces that will be in one folder. A channel that has the same value in
 // every sample of all traces (by bits, NaN = NaN) goes to `constants`. So does a parameter that has
 // the same value from tick 0 on in all of them. The rest, and timestamp, stay columns. REQUIRES:
-// all traces have the same channels and parameter names, or no parameters as keyframes do, which
-// are not the first then; each has a sample.
+// each trace has a sample; all have the same channels; all have the parameter names of the first,
+// except that keyframes may have no parameters.
 struct Division {
   CsvColumns columns;
   std::map<std::string, double> constants;

@@ -14,9 +14,9 @@ namespace attest {
 std::vector<std::string> assumption_words();
 std::vector<std::string> assumption_words(Module module, bool by_default);
 
-// Sets in `sample`, that of before the first step, what holds for this module by these words, or by
-// default if there are none. `updated` is set for their topics. Topics with samples in the log are
-// left out. Returns the words that were used.
+// Sets the inputs of `sample`, which is the sample before the first step, as these words say for
+// this module. Without words, the default ones are used. `updated` is set for their topics. Topics
+// with samples in the log are left out. Returns the words that were used.
 std::vector<std::string> assume(const std::vector<std::string>& words,
                                 const ulog::ModuleContents& log, Sample& sample);
 
