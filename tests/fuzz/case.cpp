@@ -20,7 +20,7 @@ std::string first_match(const std::string& text, const std::regex& pattern) {
 }
 
 std::filesystem::path write_case(const std::string& text) {
-  static const std::regex profile(R"(\nprofiles = \["(px4-v1\.[35]\.[45])\")");
+  static const std::regex profile(R"(\nprofiles = \["(px4-v1\.\d{1,2}\.\d)\")");
   static const std::regex group(R"(\ngroup = "([a-z_]{1,24})\")");
   static const bool has_models = [] {
     std::filesystem::create_symlink(ATTEST_SOURCE_DIR "/models", folder() / "models");
@@ -47,16 +47,19 @@ void require_same_inputs(const Case& the_case, const Case& again, const Rate& ra
   }
 }
 
+void use_flight(const Case& the_case, const LoopRate& rate) {
+  flight_timing(the_case, rate);
+  const Timeline timeline = timeline_of(the_case, rate.unit);
+  task_times(the_case.flight->saturation, timeline);
+  if (the_case.flight->battery) task_times(the_case.flight->battery->timing, timeline);
+}
+
 void use(const Case& the_case, const Case& again) {
   require(!the_case.configurations().empty(), "there is a run configuration");
-  for (const Rate& rate : {the_case.rates.front(), the_case.rates.back()}) {
-    if (tick_count(the_case.duration, rate) > most_ticks) continue;
-    require_same_inputs(the_case, again, rate);
-    if (!the_case.flight) continue;
-    case_timing(the_case, rate);
-    const Timeline timeline = timeline_of(the_case, rate);
-    task_times(the_case.flight->motor_limits, timeline);
-    if (the_case.flight->battery) task_times(the_case.flight->battery->timing, timeline);
+  for (const LoopRate& rate : {the_case.rates.front(), the_case.rates.back()}) {
+    if (tick_count(the_case.duration, rate.unit) > most_ticks) continue;
+    require_same_inputs(the_case, again, rate.unit);
+    if (the_case.flight) use_flight(the_case, rate);
   }
 }
 
