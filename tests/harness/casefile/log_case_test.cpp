@@ -1,6 +1,7 @@
 // A case of a log gives a unit what the log has, at the times of the log.
 #include "harness/casefile/log_case.hpp"
 
+#include <cstdint>
 #include <cstring>
 #include <limits>
 
@@ -80,7 +81,9 @@ Trace given_at_times_of(const Trace& log, std::size_t first, const Case& the_cas
 void expect_the_same(const Sample& given, const Sample& logged,
                      Module module = Module::mc_att_control) {
   Sample a = given, b = logged;
-  for (Sample* sample : {&a, &b}) sample->in.updated &= ~ATTEST_UPDATED_PARAMETER_UPDATE;
+  for (Sample* sample : {&a, &b}) {
+    sample->in.updated &= ~std::uint32_t{ATTEST_UPDATED_PARAMETER_UPDATE};
+  }
   for (const Channel& channel : channels()) {
     if (channel.is_output() || channel.module != module) continue;
     EXPECT_EQ(value_of(channel, a), value_of(channel, b)) << channel.name;

@@ -111,7 +111,7 @@ TEST(Gross, WhereTheReferenceIsNotFiniteOneTickLaterIsRight) {
 // A port may turn the other way, a tick sooner or later.
 TEST(Gross, AroundAHalfTurnAnyValueIsAccepted) {
   Trace want = constant(2, 0.4, 0.2);
-  for (std::size_t tick : {8, 9}) {
+  for (std::size_t tick : {std::size_t{8}, std::size_t{9}}) {
     set(want, tick, "in/updated.vehicle_attitude_setpoint", 1);
     set(want, tick, "in/vehicle_attitude_setpoint.q_d[0]", tick == 8 ? 0 : 1);
     set(want, tick, "in/vehicle_attitude_setpoint.q_d[3]", tick == 8 ? 1 : 0);

@@ -11,13 +11,13 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr std::size_t ticks = 12;
+constexpr std::size_t trace_ticks = 12;
 const char* const axes[] = {"roll", "pitch", "yaw"};
 
 // Three axes that move in their own way.
 Trace moving() {
-  Trace trace = sample_trace(ticks);
-  for (std::size_t tick = 0; tick < ticks; ++tick) {
+  Trace trace = sample_trace(trace_ticks);
+  for (std::size_t tick = 0; tick < trace_ticks; ++tick) {
     const auto t = static_cast<double>(tick);
     set(trace, tick, "out/vehicle_rates_setpoint.roll", 0.1 + 0.01 * t * t);
     set(trace, tick, "out/vehicle_rates_setpoint.pitch", -0.3 + 0.02 * t);
@@ -28,7 +28,7 @@ Trace moving() {
 
 Trace with_rates_times(double factor) {
   Trace trace = moving();
-  for (std::size_t tick = 0; tick < ticks; ++tick) {
+  for (std::size_t tick = 0; tick < trace_ticks; ++tick) {
     for (const char* axis : axes) {
       const std::string name = std::string("out/vehicle_rates_setpoint.") + axis;
       set(trace, tick, name, factor * value_of(channels()[channel(name)], trace.samples[tick]));
@@ -61,10 +61,10 @@ TEST(Misrecording, ExchangedAxesAreNamed) {
 TEST(Misrecording, ShiftedAndReversedRowsAreNamed) {
   const Trace want = moving();
   Trace late = want, early = want, reversed = want;
-  for (std::size_t tick = 0; tick < ticks; ++tick) {
+  for (std::size_t tick = 0; tick < trace_ticks; ++tick) {
     late.samples[tick].copy_outputs(want.samples[tick == 0 ? 0 : tick - 1]);
-    early.samples[tick].copy_outputs(want.samples[tick + 1 == ticks ? tick : tick + 1]);
-    reversed.samples[tick].copy_outputs(want.samples[ticks - 1 - tick]);
+    early.samples[tick].copy_outputs(want.samples[tick + 1 == trace_ticks ? tick : tick + 1]);
+    reversed.samples[tick].copy_outputs(want.samples[trace_ticks - 1 - tick]);
   }
   EXPECT_THAT(misrecording(late, want), HasSubstr("looks a tick late"));
   EXPECT_THAT(misrecording(early, want), HasSubstr("looks a tick early"));
