@@ -321,7 +321,7 @@ bool is_computed(const std::string& topic) {
 
 void leave_out_computed(const TomlTable& root, Module module, std::vector<TopicStimulus>& topics) {
   std::erase_if(topics, [&](const TopicStimulus& topic) {
-    // The rate unit takes the attitude unit's setpoint, but in modes without attitude control.
+    // The rate unit receives the attitude unit's setpoints, and those of the case if it has any.
     const bool is_own = module == Module::rate_unit && topic.topic == "vehicle_rates_setpoint";
     if (is_own) return !root.has(topic.topic);
     if (!is_computed(topic.topic)) return false;

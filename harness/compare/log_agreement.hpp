@@ -37,15 +37,17 @@ struct TopicAgreement {
   std::size_t left_out = 0;  // ticks whose logged output cannot be computed from the log
   std::size_t paired = 0;    // the other ticks with an output in the log
   std::size_t missing = 0;   // of these: the port published nothing
-  // Of the pairs that both have: the port has NaN or infinity where the log has a number. One is
-  // enough for the port not to agree.
+  // Ticks at which log and port have an output, and the port has NaN or infinity where the log has
+  // a number. A tick that is left out counts too, if the reference is finite there. One is enough
+  // for the port not to agree.
   std::size_t non_finite = 0;
-  // Of the pairs that both have. Nearest rank; 0 without pairs.
+  // Deviations at the paired ticks at which the port published. Nearest rank; 0 without such ticks.
   double median = 0, p90 = 0, p99 = 0, largest = 0;
   std::size_t within = 0;
   // Not within, but the log and the port are, in every field, between the reference's smallest and
-  // largest value at the tick and its two neighbours: the log has the answer to a sample between
-  // these. The range is the reference's, because a port with wild values would widen its own.
+  // largest value at the tick and its two neighbours. The logged output may then be that of a
+  // sample between these, which the log lacks. The range is the reference's, because a port with
+  // wild values would widen its own.
   std::size_t between_samples = 0;
   std::optional<LoggedPair> first_unexplained;
 

@@ -72,9 +72,10 @@ class Tolerances {
   // All tolerances times `factor`, widening included.
   Tolerances scaled(double factor) const;
 
-  // Addition to the rates setpoint's absolute tolerance at this attitude error [rad]. The direction
-  // of the rotation becomes undefined at 180 deg, and float noise in it grows as 1/(pi - error).
-  // `gain` is the attitude gain [1/s], 6.5 by default in the law of v1.5.5.
+  // Addition to the rates setpoint's absolute tolerance at this tilt error, in the cascade at this
+  // attitude error [rad]. The direction of the rotation becomes undefined at 180 deg, and float
+  // noise in it grows as 1/(pi - error). `gain` is the attitude gain [1/s], 6.5 by default in the
+  // law of v1.5.5.
   double widening(double error_rad, double gain) const;
 
  private:

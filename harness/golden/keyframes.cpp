@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t first_ticks = 4;
 constexpr std::size_t regular_ticks = 12;
 
-// NaN is neither smallest nor largest.
+// A NaN is not taken as an extreme. If tick 0 has NaN, no extreme is found.
 void add_extremes(const Channel& channel, const Trace& flown, std::set<std::size_t>& kept) {
   std::size_t lowest = 0, highest = 0;
   for (std::size_t tick = 1; tick < flown.samples.size(); ++tick) {
@@ -44,8 +44,9 @@ Trace at_ticks_of(const Trace& kept, const Trace& all) {
   return chosen;
 }
 
-// Without parameters and freshness, which say what happened since the tick before. A golden has
-// them as constants where the same case keeps every tick at slower rates.
+// Without parameters and freshness, because both describe changes since the previous tick. The
+// provenance of a golden may still have them as constants, for slower rates at which the same case
+// keeps every tick.
 Trace without_history(Trace rows) {
   rows.parameters.clear();
   rows.present &= ~channels_of(module_of(rows.present), "in/updated.");

@@ -26,7 +26,7 @@ class PortCalls {
   std::uint64_t count() const;
 
   // The port, with create() and each call of its units noted. Used in the port's process. This and
-  // `port` must outlive it.
+  // `port` must outlive the result.
   std::unique_ptr<Port> noted(Port& port) const;
   std::unique_ptr<Unit> noted(std::unique_ptr<Unit> unit) const;
 

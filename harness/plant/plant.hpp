@@ -36,8 +36,8 @@ struct PlantState {
   double hover_seconds_used = 0;
 };
 
-// The early end of a flight: the state is not finite, the body rate is beyond the vehicle's bound,
-// or the simulator reported an error or a warning.
+// The early end of a flight: the state or a motor command is not finite, the body rate is beyond
+// the vehicle's bound, or the simulator reported an error or a warning.
 struct Divergence {
   Nanoseconds at{0};
   std::string what;  // "the body rate is 103 rad/s, beyond 100"

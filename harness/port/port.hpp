@@ -135,10 +135,10 @@ inline constexpr const char* callable_port_kinds =
 // functions to call: start_host() does.
 std::optional<std::string> recorded_folder(const std::string& specification);
 
-// Opens a port of one of these kinds. Loading a library runs its code, and a program may not
-// answer: a caller that must survive a bad port does this in a child process. Errors: unknown kind,
-// unknown fault; missing library, missing symbol, wrong ABI version, incomplete function table;
-// those of open_program().
+// Opens a port of a kind in `callable_port_kinds`. Loading a library runs its code, and a program
+// may not answer: a caller that must survive a bad port does this in a child process. Errors:
+// unknown kind, unknown fault; missing library, missing symbol, wrong ABI version, incomplete
+// function table; those of open_program().
 Result<std::unique_ptr<Port>> open_port(const std::string& specification);
 
 }  // namespace attest

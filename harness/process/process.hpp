@@ -1,5 +1,5 @@
-// A child process that its owner, the process that starts it, can always end. It ends at the latest
-// with the owner.
+// A child process and its owner, the process that starts it. The owner can always end the child
+// process. The child process ends at the latest with the owner.
 #pragma once
 
 #include <functional>

@@ -1,7 +1,7 @@
 // Merges the events of several tasks into one sequence.
 //
-// Events are ordered by time; at one instant, by the number of their task. This order alone defines
-// simultaneity in the harness.
+// Events are ordered by time; at one instant, by the number of their task. This rule alone orders
+// simultaneous events of a simulated flight.
 #pragma once
 
 #include <cstddef>

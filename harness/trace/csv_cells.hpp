@@ -33,7 +33,7 @@ inline CellType cell_type(ChannelType type) {
 
 // Parses the rare floats: those with a plus sign, and those too small for 32 bits, which become
 // zero. Returns the end of the number. Returns null if [first, last) does not begin with a number,
-// or with one that is too large for 32 bits.
+// or if that number is too large for 32 bits.
 const char* parse_unusual_float(const char* first, const char* last, float& value);
 
 // "`1.2.3` is not a number for in/battery_status.scale; write a decimal number, nan, inf or -inf".

@@ -180,7 +180,7 @@ std::optional<PortFault> fault_of(const Course& course, const FlightPlan& plan,
                    fmt::format("{}: the port changed memory that is not its own", contradiction)};
 }
 
-// A fresh unit flies at those times, and is compared with the reference.
+// A fresh unit flies at the times of `plan`, and is compared with the reference.
 Result<CaseResult> evaluate_with(const Course& course, const FlightPlan& plan,
                                  const ReferenceFlight& reference, PortHost& host,
                                  const std::filesystem::path& saved_traces) {

@@ -26,8 +26,8 @@ Trace inputs_for(const PortSays& port, const Case& the_case, const Rate& rate);
 
 // Whether the port has a fixed step that the case does not keep: another rate, ticks that are not
 // exactly periodic, samples taken at other times, or a `start_s` of the case's own. In a flight of
-// the cascade both units must keep the step. If not, the verdict becomes unsupported, with the
-// reason.
+// the cascade both units must keep the step. If the result is true, the verdict becomes
+// unsupported, with the reason.
 bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
                      CaseResult& result);
 bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
