@@ -66,10 +66,11 @@ set(ATTEST_LONG_TEST_TIMEOUT 3600)
 # test is checked for undefined behaviour and its tests are not, so they compile sooner.
 set(ATTEST_TEST_OPTIONS -O0 $<$<CONFIG:Debug>:-fno-sanitize=undefined>)
 
-# attest_test(NAME SOURCES a.cpp ... LINK target ... [LABEL label]): one GoogleTest program a
+# attest_unit_tests(NAME SOURCES a.cpp ... LINK target ... [LABEL label]): one GoogleTest program a
 # folder. It is one test of CTest, because with sanitizers the start of a process takes longer than
-# most cases. `NAME --gtest_filter=CASE` runs one case.
-function(attest_test name)
+# most cases. `NAME --gtest_filter=CASE` runs one case. Without ATTEST_UNIT_TESTS the program is
+# built on request only, and is no test.
+function(attest_unit_tests name)
   cmake_parse_arguments(ARG "" "LABEL" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE attest_flags attest_warnings ${ARG_LINK} GTest::gmock
@@ -79,6 +80,10 @@ function(attest_test name)
   get_target_property(sources ${name} SOURCES)
   if(NOT sources MATCHES "\\.c(;|$)") # the precompiled headers are C++
     target_precompile_headers(${name} REUSE_FROM attest_test_headers)
+  endif()
+  if(NOT ATTEST_UNIT_TESTS)
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
+    return()
   endif()
   add_test(NAME ${name} COMMAND ${name})
   set_tests_properties(${name} PROPERTIES TIMEOUT ${ATTEST_COMMAND_TEST_TIMEOUT})
