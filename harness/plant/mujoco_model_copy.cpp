@@ -19,7 +19,8 @@ template <typename Act>
 void for_each_array(mjModel& model, Act&& act) {
   MJMODEL_POINTERS_PREAMBLE((&model))
 #define X(type, name, rows, columns) \
-  act(model.name, sizeof(type) * static_cast<std::size_t>(model.rows) * (columns));
+  act(model.name,                    \
+      sizeof(type) * static_cast<std::size_t>(model.rows) * static_cast<std::size_t>(columns));
   MJMODEL_POINTERS
 #undef X
 }
