@@ -24,7 +24,9 @@ auto with_diagnosis(std::string (*render)(const RunResult&, const std::optional<
 std::span<const ReportFormat> report_formats() {
   static const ReportFormat formats[] = {
       {"--html",
-       "Write a report as one HTML page with plots of failing vectors; it needs no network",
+       "Write a report as one HTML page, which needs no network; that of `run` has plots of "
+       "failing "
+       "vectors",
        html_report, true},
       {"--junit", "Write a JUnit XML report", with_diagnosis(junit_report)},
       {"--json", "Write a JSON report", with_diagnosis(json_report)},
