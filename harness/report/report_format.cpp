@@ -25,8 +25,7 @@ std::span<const ReportFormat> report_formats() {
   static const ReportFormat formats[] = {
       {"--html",
        "Write a report as one HTML page, which needs no network; that of `run` has plots of "
-       "failing "
-       "vectors",
+       "failing vectors",
        html_report, true},
       {"--junit", "Write a JUnit XML report", with_diagnosis(junit_report)},
       {"--json", "Write a JSON report", with_diagnosis(json_report)},
