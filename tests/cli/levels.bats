@@ -31,7 +31,9 @@ open_loop=(--group anti_windup --group modes --group arming --group attitude --g
   [ "$status" -eq 0 ]
 }
 
-units=(--level events --profile px4-v1.16.0 --exclude '*/flight/*' --rate 250 --no-diagnose)
+# In attest's process, because the judge is what is tested: a process for each vector takes longer.
+units=(--level events --profile px4-v1.16.0 --exclude '*/flight/*' --rate 250 --no-diagnose
+  --in-process)
 
 @test "units of the cascade are judged by their events: right ones conform" {
   for port in builtin "lib:$PORTS/reference_double.so" "lib:$PORTS/reference_fma_gcc.so" \
