@@ -1,7 +1,6 @@
 """Flies step_in_wind.toml with the reference on every vehicle: the baseline for ports.
 
-Prints a table. --write keeps it as robustness.csv. --check flies one sample of each vehicle, and
-exits 1 if robustness.csv is of other sweeps than those that would be flown now."""
+Prints a table. --write keeps it as robustness.csv."""
 
 import argparse
 import csv
@@ -60,20 +59,6 @@ def fly_all(attest, out, options):
     return rows
 
 
-def outdated(attest, out):
-    """What robustness.csv says of other sweeps than those of now, line by line."""
-    with open(BASELINE, newline="") as file:
-        kept = {row["vehicle"]: row["sweep_sha256"] for row in csv.DictReader(file)}
-    found = [f"{vehicle} is no vehicle now" for vehicle in kept if vehicle not in VEHICLES]
-    for vehicle in VEHICLES:
-        # The identity of a sweep is written with its first sample.
-        sweep(attest, vehicle, out / vehicle, "--shard", "1/10000")
-        now = json.loads((out / vehicle / "identity.json").read_text())["sweep_sha256"]
-        if kept.get(vehicle) != now:
-            found.append(f"{vehicle} is of the sweep {kept.get(vehicle)}, and it is {now} now")
-    return found
-
-
 def print_table(rows):
     print("| vehicle | metric | flights | lost | held | with probability (0.95) | median [s] "
           "| strongest dispersion |")
@@ -99,16 +84,11 @@ def main():
     parser.add_argument("--samples", help="replaces the number of the sweep file")
     parser.add_argument("--jobs", default="2")
     parser.add_argument("--write", action="store_true", help="replace robustness.csv")
-    parser.add_argument("--check", action="store_true", help="compare robustness.csv with now")
     parser.add_argument("--out", type=pathlib.Path, help="keep the sweeps here, and continue them")
     arguments = parser.parse_args()
     samples = ["--samples", arguments.samples] if arguments.samples else []
     with tempfile.TemporaryDirectory() as temporary:
         out = arguments.out or pathlib.Path(temporary)
-        if arguments.check:
-            found = outdated(arguments.attest, out)
-            print("\n".join(found), end="\n" if found else "")
-            sys.exit("robustness.csv is outdated: run ci/quality --sweep" if found else 0)
         rows = fly_all(arguments.attest, out, ["--jobs", arguments.jobs, *samples])
     print_table(rows)
     if arguments.write:
