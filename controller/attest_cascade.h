@@ -12,17 +12,18 @@
  * but the topic vehicle_rates_setpoint, which the host carries from one to the other.
  *
  * What attest_unit.h says of frames, threads, memory, parameters, results, `updated` and
- * `published` holds here too. In each step one more rule holds for time: `timestamp` is when the
- * step runs and increases from step to step. It is the only clock. Timestamps inside topics are
- * data: they may be equal to it or older, and in the group `robustness` anything.
+ * `published` holds here too. One more rule holds for time: `timestamp` is when the step runs, and
+ * increases from step to step. It is the only clock. Timestamps inside topics are data: they may be
+ * equal to it or older, and in the group `robustness` anything.
  *
  * Initial values: before the first sample of its topic, a field with the note "initially ..." has
  * this value for the unit. The input usually has 0 there until then, so the unit must not read it.
  *
- * Own publications: a unit receives what it publishes itself, as in the firmware. The attitude unit
- * in stabilized mode publishes vehicle_attitude_setpoint; the rate unit in acro mode publishes
+ * Own publications: a setpoint that a unit publishes is also an input of that unit, as in the
+ * firmware. The host does not pass it back, so the unit keeps it. The attitude unit in stabilized
+ * mode publishes vehicle_attitude_setpoint; the rate unit in acro mode publishes
  * vehicle_rates_setpoint. This sample replaces a sample from outside that the unit has not copied
- * yet. It counts as new until the unit copies it. The host does not pass it back.
+ * yet. It counts as new until the unit copies it.
  */
 #ifndef ATTEST_CASCADE_H
 #define ATTEST_CASCADE_H
@@ -184,7 +185,8 @@ typedef struct attest_rate_inputs {
 
   struct {                            /* topic control_allocator_status */
     float unallocated_torque[3];      /* commanded torque minus the torque that motors give */
-    uint8_t torque_setpoint_achieved; /* flag: no axis is saturated; the torques are ignored */
+    uint8_t torque_setpoint_achieved; /* flag: no axis is saturated; if set, the unit ignores the
+                                       * torques */
   } control_allocator_status;
 
   struct {             /* topic battery_status */

@@ -243,8 +243,8 @@ typedef struct attest_unit {
  * unsupported, and every report names the fixed step. The cases begin one period after zero, so
  * that the first dt is the period too. (For other ports they begin at 5 s, and the first dt is the
  * longest, 20 ms.) The port computes with the law's dt: its period, clamped to the law's limits
- * (2 .. 20 ms in px4-v1.5.5). It holds for the units of attest_cascade.h, too: their samples are
- * then taken at the time of their steps. */
+ * (2 .. 20 ms in px4-v1.5.5). The extension also applies to the units of attest_cascade.h: their
+ * samples are then taken at the time of their steps. */
 #define ATTEST_EXTENSION_FIXED_STEP "attest.fixed_step"
 
 /* Extension: const attest_timestamp_sample*, for a port that needs the time at which the sample in

@@ -1,8 +1,9 @@
 // The rate law: from body rates and their setpoint to dimensionless torques.
 //
 // P, I and D with a feed-forward of the setpoint. D acts on the angular acceleration, which the
-// host filters. The integral grows less with more error. It does not move in a direction in which
-// the actuators are saturated. On the ground it does not change.
+// host filters. The larger the error, the smaller the share of it that is integrated. The integral
+// does not move in a direction in which the actuators are saturated. On the ground it does not
+// change.
 //
 // Body axes FRD, in the order roll, pitch, yaw; rates [rad/s], acceleration [rad/s^2], time [s].
 // The state is the integral and the saturation. No clock, no allocation; one thread at a time.

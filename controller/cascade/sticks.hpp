@@ -52,7 +52,7 @@ class Sticks {
   // The estimator was reset by the rotation `delta`.
   void reset_heading(const Quaternion<Scalar>& delta);
 
-  // Until v1.15.4: whether the next step starts from the heading.
+  // Up to v1.15.4: whether the next step takes the heading as its yaw setpoint.
   void set_restart(bool restart) { restart_ = restart; }
 
  private:

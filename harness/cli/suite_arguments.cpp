@@ -104,8 +104,9 @@ void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
           ->type_name("DIR");
   CLI::Option* const lint =
       command->add_flag("--lint", options->lint,
-                        "Write no files; report numeric vectors that are too near to a threshold "
-                        "of the law, where correct controllers may take different branches");
+                        "Write no files; report vectors that are compared numerically, but are too "
+                        "near to a threshold of the law, where correct controllers may take "
+                        "different branches");
   lint->excludes(folder);
   command->add_option("--format", options->format, "`csv`, `mat` (MATLAB) or `npy` (numpy)")
       ->type_name("FORMAT")

@@ -163,7 +163,8 @@ void add_sweep_parts(CLI::App& command, SweepOptions& options) {
           ->capture_default_str();
   command
       .add_option("--merge", options.merge,
-                  "Fly nothing: join the shards in these folders to the result of one machine")
+                  "Fly nothing: join the shards in these folders; the result is that of one "
+                  "machine")
       ->type_name("DIR...")
       ->excludes(shard);
   command
@@ -229,8 +230,8 @@ void add_sweep(CLI::App& app, const Globals& globals, Action& action) {
   add_timeout(*command, options->host.timeout_s);
   // add_jobs() appends "; default: one for each CPU".
   add_jobs(*command, options->jobs,
-           "Number of samples that fly at the same time, with --plan in each shard; default with "
-           "--plan: 1");
+           "Number of samples that fly at the same time (with --plan: in each shard, 1 by "
+           "default)");
   add_examples(
       *command,
       {{"attest sweep SWEEP.toml --out results --keep-worst 3 --html sweep.html",

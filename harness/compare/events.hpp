@@ -6,7 +6,8 @@
 // - Controller: an integral moves; the control of roll, pitch or yaw is larger than that of thrust,
 //   in absolute value.
 // - Attitude unit and rate unit: the thrust is finite.
-// - Rate unit: an integral rises or falls. Landing, saturation flags, disarming and limits stop it.
+// - Rate unit: an integral rises; an integral falls. Landing, a saturation flag, disarming or a
+//   limit stops an integral.
 // Where a value is too near to the threshold of a state, both states are accepted.
 #pragma once
 

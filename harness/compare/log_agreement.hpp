@@ -30,7 +30,7 @@ struct LoggedPair {
   double got, logged;
 };
 
-// One topic. The deviation of a pair is the largest of its fields. NaN agrees with NaN only.
+// One topic. Its deviation at a tick is the largest of its fields. NaN agrees with NaN only.
 struct TopicAgreement {
   std::string_view topic;
   std::string not_judged;    // why it is only reported; empty: it is judged
@@ -52,7 +52,7 @@ struct TopicAgreement {
   std::optional<LoggedPair> first_unexplained;
 
   std::size_t unexplained() const { return paired - within - between_samples; }
-  double part_within() const;  // of the pairs, 0..1
+  double part_within() const;  // of the paired ticks, 0..1
   double part_unexplained() const;
   bool agrees(const LogLimits& limits) const;
 };

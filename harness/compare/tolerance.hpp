@@ -35,7 +35,8 @@ class Tolerances {
   static constexpr Tolerance control{1e-4, 1e-5};
   static constexpr Tolerance integral{2e-5, 1e-5};
   static constexpr Tolerance passed_through{1e-6, 1e-6};  // thrust: copied, at most scaled
-  // An attitude of 2e-5 rad off: at the default gain 1.3e-4 rad/s.
+  // 1e-5 in a quaternion is 2e-5 rad in the attitude, and at the default gain 1.3e-4 rad/s in the
+  // rates setpoint.
   static constexpr Tolerance quaternion{1e-5, 0};
   // For mixer and battery estimate: correct builds stay within 1.2e-6 and 2.4e-7.
   static constexpr Tolerance motor{2e-5, 0};

@@ -18,7 +18,7 @@ struct Record {
   std::size_t fault = 0;  // index in the catalogue
   std::size_t matched = 0, ticks = 0;
   std::size_t passes = 0;              // passing vectors that it matches
-  std::size_t matched_passing = 0;     // their ticks
+  std::size_t matched_passing = 0;     // ticks of all passing vectors that it matches
   std::vector<std::size_t> explained;  // failing vectors that it matches at every tick
   std::size_t intersection = 0, union_size = 0;
 

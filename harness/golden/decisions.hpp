@@ -53,9 +53,10 @@ inline constexpr auto decision_count = static_cast<std::size_t>(Decision::overfl
 
 std::string_view name_of(Decision decision);  // "integrator gate"
 
-// The least distance that a numeric vector may have; for the norm, the largest. It is several times
-// the difference between correct builds in that quantity. Measured over 10 s of open loop: 8e-7 on
-// controls, 5e-7 on integrals (compare/tolerance.hpp), some 1e-6 rad on angles.
+// The least distance that a vector may have, if it is compared numerically; for the norm, the
+// largest. It is several times the difference between correct builds in that quantity. Measured
+// over 10 s of open loop: 8e-7 on controls, 5e-7 on integrals (compare/tolerance.hpp), some 1e-6
+// rad on angles.
 double least_margin(Decision decision);
 
 // The same for a port in fixed point, if `fraction_bits` is given: at least `decision_lsb` of its

@@ -144,7 +144,8 @@ class PortProcess final : public PortHost {
   }
 
   // The time limit of a library is for a whole trace. A program may take longer for a trace, so its
-  // limit is for each call. It cannot write where the calls are counted.
+  // limit is for each call. The program cannot write to the memory in which its calls are counted,
+  // so it cannot extend the limit.
   Patience patience() const {
     Patience limit = Patience::seconds(options_.timeout_s);
     limit.given_up = options_.stop;

@@ -9,7 +9,7 @@
 //     the unit        that commands the motors: the controller, or the cascade's rate unit.
 //                     Stimulus; messages; step; mixer or allocator
 //     attitude unit   of the cascade: stimulus; messages; step
-//     actuators       the commands that have arrived are held until the next
+//     actuators       take the commands that have arrived, and hold them until the next ones
 //
 // In the firmware the rate unit has the higher priority, so it runs before the attitude unit of the
 // same instant, and receives that unit's setpoint at its next tick.

@@ -143,7 +143,7 @@ class MujocoPlant final : public Plant {
 
   void reset(const PlantState& start) override {
     mj_resetData(&model_, data_.get());
-    copy(vehicle_.drag_kg_s, data_->userdata + drag_at);  // by axis, without direction
+    copy(vehicle_.drag_kg_s, data_->userdata + drag_at);  // no sign: the same in FRD and FLU
     place_centre_of_mass({0, 0, 0});
     now_ = Nanoseconds(0);
     steps_ = 0;
@@ -191,8 +191,8 @@ class MujocoPlant final : public Plant {
     } catch (const MujocoError& error) {
       lost_ = Divergence{next, "MuJoCo: " + error.what};
     }
-    // The cube of a speed that follows an exponential: the error of the trapezium rule is of the
-    // order of (h / tau)^2. The numbers of a battery are much less accurate than that.
+    // The power is the cube of a speed that follows an exponential, so the error of the trapezium
+    // rule is of the order of (h / tau)^2. A battery's numbers are much less accurate than that.
     state_.hover_seconds_used += h * (power_before + power_ratio()) / 2;
     now_ = next;
     check();

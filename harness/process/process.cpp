@@ -74,8 +74,8 @@ void reset_signals() {
   ::pthread_sigmask(SIG_SETMASK, &none, nullptr);
 }
 
-// The processes that have an owner. All other children are orphans: a process of this list started
-// them and ended before them. Locked while a child exists that is not in the list yet.
+// The children that this process has started. All its other children are orphans: a process of this
+// list started them and ended before them. Locked while a child exists that is not in the list yet.
 struct Owned {
   std::mutex mutex;
   std::set<pid_t> processes;
@@ -122,9 +122,9 @@ std::vector<pid_t> children(const std::string& process) {
   return found;
 }
 
-// The children without an owner, and all that these have started.
+// The orphans, and all that these have started.
 std::vector<pid_t> orphans() {
-  constexpr std::size_t enough = 10'000;  // processes that fork all the time have no end
+  constexpr std::size_t enough = 10'000;  // a limit: processes may fork faster than this loop
   std::vector<pid_t> found = children("self");
   std::erase_if(found, [](pid_t child) { return owned().processes.contains(child); });
   for (std::size_t i = 0; i < found.size() && found.size() < enough; ++i) {
@@ -136,7 +136,8 @@ std::vector<pid_t> orphans() {
 
 // When an orphan ends, its own children become orphans.
 void end_orphans() {
-  siginfo_t ignored{};  // Most have no children at all, and reading /proc costs 100 page faults.
+  // Most processes have no children at this point, and reading /proc costs 100 page faults.
+  siginfo_t ignored{};
   if (::waitid(P_ALL, 0, &ignored, WEXITED | WNOHANG | WNOWAIT) != 0 && errno == ECHILD) return;
   const std::lock_guard lock(owned().mutex);
   happens_within(time_to_die_s, [] {
@@ -302,7 +303,8 @@ void Process::kill() {
   if (pid_ <= 0) return;
   was_killed_ = true;
   if (has_guard_) {
-    ::kill(pid_, end_all);  // without the guard, a daemon would outlive a kill of us at this moment
+    // Not SIGKILL: if we were killed just after the guard, a daemon would outlive us.
+    ::kill(pid_, end_all);
   } else {
     ::kill(-pid_, SIGKILL);
     ::kill(pid_, SIGKILL);  // it may have moved to another group

@@ -24,8 +24,8 @@ const Rate& own_rate(const UnitTask& task, const LoopRate& rate) {
 DelayLine<LiveRatesSetpoint> rates_setpoints(const Case& the_case, const LoopRate& rate) {
   if (!the_case.attitude_loop) return {Nanoseconds(0), 0};
   const Nanoseconds delay = the_case.attitude_loop->delay.on(rate.unit);
-  // After a late tick of the attitude unit the next one follows at once, so that more setpoints
-  // are made within the delay than it has periods.
+  // After a late tick of the attitude unit the next tick follows at once. So the unit may make more
+  // setpoints within the delay than the delay has periods.
   return {delay, static_cast<std::size_t>(2 * rate.attitude_unit->ticks_in(delay)) + 2};
 }
 
@@ -167,7 +167,8 @@ bool LiveUnit::take_sample() {
   return sampled_ = true;
 }
 
-// A buffer has one reader.
+// A buffer has one reader, so only the unit that commands the motors reads those that both units
+// could read.
 void LiveUnit::take_messages() {
   if (const LandDetected* landed = own_.landed.read()) landed_ = *landed;
   if (!commands_motors_) return;

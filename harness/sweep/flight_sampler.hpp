@@ -45,7 +45,7 @@ class FlightSampler {
   // MJCF and number of samples). Flights with the same index and the same hash are the same.
   const std::string& sha256() const { return sha256_; }
 
-  // Errors: the numbers together are impossible, with the sample and the number.
+  // Errors: the numbers together are impossible. The message names the sample and the number.
   Result<SampledFlight> sample(std::uint64_t index) const;
 
  private:

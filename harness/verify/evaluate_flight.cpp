@@ -210,8 +210,9 @@ Result<CaseResult> evaluate_with(const Course& course, const FlightPlan& plan,
   return result;
 }
 
-// For a port with a fixed step (fixed_step.hpp): compared with the reference from one period after
-// zero on. Errors: the reference does not agree with the golden.
+// For a port with a fixed step (fixed_step.hpp): the case begins one period after zero, and the
+// port is compared with the reference in that case. Errors: the reference does not agree with the
+// golden.
 Result<CaseResult> evaluate_from_one_period_on(const Course& course, FlightPlan plan,
                                                const ReferenceFlight& golden, PortHost& host,
                                                const std::filesystem::path& saved_traces) {

@@ -53,8 +53,9 @@ Trace with_parameters_of_log(const LoggedUnit& log, Trace got) {
   return got;
 }
 
-// Gives the inputs the reference's outputs. False, without outputs, if the reference refuses them,
-// for example because it does not have the profile: then no deviation from the log is explained.
+// Adds the reference's outputs to the inputs. False, without outputs, if the reference refuses the
+// inputs, for example because it does not have the profile: then no deviation from the log is
+// explained.
 bool answer_by_reference(const Subject& subject, Trace& inputs) {
   HostHere reference(open_builtin());
   const bool has_answered = !reference.drive(subject, inputs);
@@ -156,7 +157,7 @@ class Comparable {
 void judge_topics(const std::vector<TopicAgreement>& topics, const LogLimits& limits,
                   CaseResult& result) {
   for (const TopicAgreement& topic : topics) {
-    const bool is_non_finite = topic.non_finite > 0;  // wrong after any earlier steps
+    const bool is_non_finite = topic.non_finite > 0;  // wrong, whatever the earlier steps were
     if (!is_non_finite && (!topic.not_judged.empty() || topic.agrees(limits))) continue;
     if (result.verdict == Verdict::non_finite) continue;
     if (result.reason.empty() || is_non_finite) result.reason = why_it_fails(topic, limits);
