@@ -9,8 +9,8 @@
 #include "harness/casefile/select.hpp"
 #include "harness/diagnosis/similarity.hpp"
 #include "harness/host/port_process.hpp"
+#include "harness/verify/port_job.hpp"
 #include "harness/verify/verdict.hpp"
-#include "harness/workers/job.hpp"
 
 namespace attest {
 
@@ -24,7 +24,7 @@ struct Codec<VectorDiagnosis> {
 };
 
 // One vector.
-class DiagnosisJob final : public Job<VectorDiagnosis> {
+class DiagnosisJob final : public PortJob<VectorDiagnosis> {
  public:
   // Open loop. The case must outlive this. With a `partner`, each fault is combined with it.
   DiagnosisJob(const Case& the_case, const Rate& rate, const faults::Fault* partner,

@@ -1,6 +1,6 @@
 // The messages between a judge and the process of a port (message_socket.hpp): a head in JSON, and
-// structs as they are in memory. One process is a fork of the other, so the structs have the same
-// layout.
+// structs as they are in memory. Both processes are forks of one process, so the structs have
+// the same layout.
 //
 //     process -> {"request": 0, "says": {...}}              once, when the port is loaded
 //     judge   -> {"do": "drive", "subject": ..., ...}       samples, with inputs only

@@ -159,6 +159,8 @@ Result<PortCalls> PortCalls::make() {
   return PortCalls(new (memory) Now);
 }
 
+void PortCalls::reset() const { new (now_.get()) Now; }
+
 void PortCalls::Unmap::operator()(Now* now) const { ::munmap(now, sizeof(Now)); }
 
 std::string PortCalls::current() const {

@@ -17,6 +17,9 @@ class PortCalls {
   // Errors: no shared memory.
   static Result<PortCalls> make();
 
+  // Forgets the calls of a process that has ended.
+  void reset() const;
+
   // " in step() at tick 17", " in create()"; empty between the calls. In a live flight of the
   // cascade two calls may run at the same time. A port can write there, so only messages may depend
   // on it.

@@ -8,38 +8,14 @@
 
 #include "harness/host/host_here.hpp"
 #include "harness/host/host_protocol.hpp"
-#include "harness/host/port_calls.hpp"
+#include "harness/host/port_launcher.hpp"
 #include "harness/host/recorded_host.hpp"
-#include "harness/process/child.hpp"
 
 namespace attest {
 namespace {
 
 using Kind = Received::Kind;
 using SteadyClock = std::chrono::steady_clock;
-
-// In the child.
-void serve(const HostOptions& options, const Course& course, const PortCalls& calls,
-           MessageSocket& judge) {
-  auto host = open_host_here(options.port, options.said, course, &calls);
-  if (!host) {
-    refuse(host.error(), 0, judge);
-    return;
-  }
-  bool goes_on = greet((*host)->says(), judge);
-  for (std::uint64_t request = 1; goes_on; ++request) {
-    const Received question = judge.receive();
-    if (question.kind != Kind::message) return;
-    BlobReader blobs(question.blobs, [&](void* place, std::size_t size) {
-      return judge.receive_blob(place, size) == Kind::message;
-    });
-    try {
-      goes_on = answer({question.head, blobs, request}, **host, judge);
-    } catch (const PortBroke& broke) {  // a program broke the protocol in its answer to `create`
-      goes_on = give_fault(fault_of(broke), request, judge);
-    }
-  }
-}
 
 // The expected outputs are not sent to the port.
 std::vector<Sample> inputs_of(const Trace& trace) {
@@ -56,20 +32,20 @@ void set_outputs(const std::vector<Sample>& answered, Trace& trace) {
 
 class PortProcess final : public PortHost {
  public:
-  // `child` is empty for a port that is not started (HostOptions::hangs). `calls` are the child's.
-  PortProcess(const HostOptions& options, PortCalls calls, std::optional<Child> child)
-      : options_(options), calls_(std::move(calls)), child_(std::move(child)) {
+  // `port` is empty if it is not started (HostOptions::hangs).
+  PortProcess(const HostOptions& options, std::optional<PortChild> port)
+      : options_(options), port_(std::move(port)) {
     if (options.said) says_ = *options.said;
-    if (!child_) fault_ = PortFault{PortFault::Kind::timeout, 0, options.hangs};
+    if (!port_) fault_ = PortFault{PortFault::Kind::timeout, 0, options.hangs};
   }
 
   // Waits until the port is loaded. Errors: the port cannot be loaded.
   Result<void> greet() {
-    if (!child_) return {};
+    if (!port_) return {};
     const auto greeted = answer_from("when it was loaded", patience(), read_greeting);
     if (greeted && !*greeted) {
       Error error = greeted->error();
-      if (is_program(options_.port)) error.message += child_->last_printed();
+      if (is_program(options_.port)) error.message += port_->child.last_printed();
       return tl::unexpected(std::move(error));
     }
     if (greeted && !options_.said) says_ = **greeted;
@@ -124,7 +100,7 @@ class PortProcess final : public PortHost {
 
   const std::optional<PortFault>& fault() const { return fault_; }
 
-  std::string last_words() const { return child_ ? child_->last_words() : ""; }
+  std::string last_words() const { return port_ ? port_->child.last_words() : ""; }
 
  private:
   // Empty after a fault of the port, in this request or before; fault_ has it.
@@ -139,7 +115,7 @@ class PortProcess final : public PortHost {
     ++request_;
     const Patience limit = patience();
     // If this fails, the wait for the answer finds out why.
-    child_->socket().send(question, blobs, limit);
+    port_->child.socket().send(question, blobs, limit);
     return answer_from("", limit, std::move(read));
   }
 
@@ -151,8 +127,9 @@ class PortProcess final : public PortHost {
     limit.given_up = options_.stop;
     if (!is_program(options_.port)) return limit;
     limit.until = SteadyClock::time_point::max();
-    limit.given_up = [this, count = calls_.count(), heard = SteadyClock::now()]() mutable {
-      if (std::exchange(count, calls_.count()) != calls_.count()) heard = SteadyClock::now();
+    limit.given_up = [this, count = port_->calls->count(), heard = SteadyClock::now()]() mutable {
+      if (std::exchange(count, port_->calls->count()) != port_->calls->count())
+        heard = SteadyClock::now();
       return options_.stop() ||
              SteadyClock::now() - heard > std::chrono::duration<double>(options_.timeout_s);
     };
@@ -163,7 +140,7 @@ class PortProcess final : public PortHost {
   std::optional<PortFault> with_words(std::optional<PortFault> fault) const {
     if (fault && is_program(options_.port) &&
         (fault->kind == PortFault::Kind::crash || fault->kind == PortFault::Kind::protocol)) {
-      fault->what += child_->last_printed();
+      fault->what += port_->child.last_printed();
     }
     return fault;
   }
@@ -171,11 +148,11 @@ class PortProcess final : public PortHost {
   template <typename Read>
   auto answer_from(const std::string& when, const Patience& patience, Read read)
       -> std::invoke_result_t<Read, const Arrived&> {
-    const Received received = child_->receive(patience);
+    const Received received = port_->child.receive(patience);
     Kind kind = received.kind;
     if (kind == Kind::message) {
       BlobReader blobs(received.blobs, [&](void* place, std::size_t size) {
-        const Kind came = child_->receive_blob(place, size, patience);
+        const Kind came = port_->child.receive_blob(place, size, patience);
         if (came != Kind::message) kind = came;
         return came == Kind::message;
       });
@@ -191,20 +168,20 @@ class PortProcess final : public PortHost {
   }
 
   void give_up(Kind why, const std::string& when) {
-    if (why != Kind::ended) child_->kill();
-    const std::string how = child_->end();
-    const std::string where = when.empty() ? calls_.current() : ", " + when;
+    if (why != Kind::ended) port_->child.kill();
+    const std::string how = port_->child.end();
+    const std::string where = when.empty() ? port_->calls->current() : ", " + when;
     switch (why) {
       case Kind::ended:
-        fault_ =
-            PortFault{PortFault::Kind::crash, 0,
-                      fmt::format("the port's process {}{}{}", how, where, child_->last_printed())};
+        fault_ = PortFault{
+            PortFault::Kind::crash, 0,
+            fmt::format("the port's process {}{}{}", how, where, port_->child.last_printed())};
         return;
       case Kind::too_late:
       case Kind::given_up:
         fault_ = PortFault{PortFault::Kind::timeout, 0,
                            fmt::format("no answer within {} s{}{}", options_.timeout_s, where,
-                                       child_->last_printed())};
+                                       port_->child.last_printed())};
         return;
       default:
         fault_ = PortFault{PortFault::Kind::protocol, 0,
@@ -213,8 +190,7 @@ class PortProcess final : public PortHost {
   }
 
   HostOptions options_;
-  PortCalls calls_;
-  std::optional<Child> child_;
+  std::optional<PortChild> port_;
   PortSays says_;
   std::uint64_t request_ = 0;
   bool was_asked_ = false;          // a request was made: after a timeout the next is `not run`
@@ -223,17 +199,13 @@ class PortProcess final : public PortHost {
 
 Result<std::unique_ptr<PortProcess>> start_process(const HostOptions& options,
                                                    const Course& course) {
-  auto calls = PortCalls::make();
-  if (!calls) return tl::unexpected(calls.error());
-  std::optional<Child> child;
+  std::optional<PortChild> port;
   if (options.hangs.empty()) {
-    auto spawned = Child::spawn(Child::Runs::code_of_others, [&](MessageSocket& judge) {
-      serve(options, course, *calls, judge);
-    });
-    if (!spawned) return tl::unexpected(spawned.error());
-    child = *std::move(spawned);
+    auto launched = launch_port(options, course);
+    if (!launched) return tl::unexpected(launched.error());
+    port = *std::move(launched);
   }
-  auto host = std::make_unique<PortProcess>(options, *std::move(calls), std::move(child));
+  auto host = std::make_unique<PortProcess>(options, std::move(port));
   if (auto greeted = host->greet(); !greeted) return tl::unexpected(greeted.error());
   return host;
 }

@@ -1,6 +1,5 @@
-// A host in a process of its own, which starts before the golden of its case is read. It is a fork,
-// so its memory has the case with its tolerances, but no golden. A crash or hang of the port
-// affects that process only.
+// A host in a process of its own. It is a fork (port_launcher.hpp), whose memory has the cases with
+// their tolerances, but no golden. A crash or hang of the port affects that process only.
 #pragma once
 
 #include <cstdint>
@@ -38,8 +37,9 @@ struct HostOptions {
   StartHost start = {};
 };
 
-// Starts a process, which loads the port and waits for requests. REQUIRES: the caller's memory has
-// no data that the port must not read, because the process is a copy of it. Errors: the port cannot
+// Starts a process, which loads the port and waits for requests. REQUIRES: those of launch_port();
+// without a launcher the process is a copy of the caller's memory, which must have no data that the
+// port must not read. Errors: the port cannot
 // be opened, a process cannot be started. A port that crashes or hangs when it is loaded is no
 // error: each request ends with that fault.
 Result<std::unique_ptr<PortHost>> start_host(const HostOptions& options, const Course& course = {});

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "harness/host/port_process.hpp"
+#include "harness/verify/port_job.hpp"
 #include "harness/verify/verdict.hpp"
-#include "harness/workers/job.hpp"
 
 namespace attest {
 
@@ -42,7 +42,7 @@ struct Codec<RateSweepResult> {
 // at rate i - 1. Each search begins at 1000 Hz, or without delay, and moves in steps until a flight
 // misses a bound. Then it bisects the last step. It tries no lower rate, and no longer delay, than
 // that of the first flight that missed a bound.
-class RateSweepJob final : public Job<RateSweepResult> {
+class RateSweepJob final : public PortJob<RateSweepResult> {
  public:
   RateSweepJob(Case the_case, PlantConfiguration plant_configuration, std::vector<LoopRate> rates,
                std::shared_ptr<const VehicleModel> vehicle_model, HostOptions options)

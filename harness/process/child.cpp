@@ -55,23 +55,32 @@ void limit_files() {
   ::signal(SIGXFSZ, SIG_IGN);  // a write past the limit then fails instead of killing the process
 }
 
-// Keeps the child's socket, replaces the parent's input and output, and closes all other files.
-void keep_only(int nothing, int output, int socket) {
-  ::dup2(nothing, STDIN_FILENO);
-  ::close(nothing);
-  ::dup2(output, STDOUT_FILENO);
-  ::dup2(output, STDERR_FILENO);
-  // The child must not hold the reports and sockets that the parent has open.
+// Replaces the parent's input and output, and closes all files except the child's socket. The child
+// must not hold the reports and sockets that the parent has open.
+void keep_only(const ChildFiles& files) {
+  ::dup2(files.input, STDIN_FILENO);
+  ::close(files.input);
+  ::dup2(files.output, STDOUT_FILENO);
+  ::dup2(files.output, STDERR_FILENO);
   constexpr unsigned first_other = 3;
-  const auto kept = static_cast<unsigned>(socket);
+  const auto kept = static_cast<unsigned>(files.socket);
   if (kept > first_other) ::close_range(first_other, kept - 1, 0);
   ::close_range(kept + 1, ~0u, 0);
 }
 
-// Neither returns nor throws. The child must not unwind the parent's stack, which owns files to be
+}  // namespace
+
+bool memory_is_limited() { return !built_with_sanitizers; }
+
+// Does not throw, either. The child must not unwind the parent's stack, which owns files to be
 // renamed and other children, and must not run the parent's exit handlers.
-[[noreturn]] void work_and_end(const std::function<void(MessageSocket&)>& work, int descriptor) {
-  MessageSocket socket(descriptor);
+void run_in_child(Child::Runs runs, const ChildFiles& files, const Child::Work& work) {
+  keep_only(files);
+  if (runs == Child::Runs::code_of_others) {
+    limit_files();
+    limit_memory();
+  }
+  MessageSocket socket(files.socket);
   try {
     work(socket);
   } catch (const std::exception& error) {
@@ -83,11 +92,7 @@ void keep_only(int nothing, int output, int socket) {
   ::_exit(EXIT_SUCCESS);
 }
 
-}  // namespace
-
-bool memory_is_limited() { return !built_with_sanitizers; }
-
-Result<Child> Child::spawn(Runs runs, const std::function<void(MessageSocket&)>& work) {
+Result<Child> Child::adopt(const std::function<Result<Process>(const ChildFiles&)>& launch) {
   // All files are opened before the fork, so that a failure is not attributed to the work.
   std::array<int, 2> ends{-1, -1};
   const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
@@ -99,19 +104,17 @@ Result<Child> Child::spawn(Runs runs, const std::function<void(MessageSocket&)>&
     return fail(fmt::format("cannot open the files of a process: {}{}", std::strerror(reason),
                             reason == EMFILE ? " (`ulimit -n` limits how many are open)" : ""));
   }
-  auto process = Process::start([&] {
-    ::close(ends[0]);
-    keep_only(nothing, output, ends[1]);
-    if (runs == Runs::code_of_others) {
-      limit_files();
-      limit_memory();
-    }
-    work_and_end(work, ends[1]);
-  });
+  auto process = launch({nothing, output, ends[1]});
   close_all({nothing, ends[1]});
   if (process) return Child(*std::move(process), MessageSocket(ends[0]), output);
   close_all({ends[0], output});
   return tl::unexpected(process.error());
+}
+
+Result<Child> Child::spawn(Runs runs, const Work& work) {
+  return adopt([&](const ChildFiles& files) {
+    return Process::start([&] { run_in_child(runs, files, work); });
+  });
 }
 
 Child::Child(Child&& other) noexcept

@@ -12,6 +12,13 @@
 
 namespace attest {
 
+// The descriptors that a child keeps.
+struct ChildFiles {
+  int input;   // empty
+  int output;  // in memory
+  int socket;  // the child's end
+};
+
 // Limits of a child that runs code of others. A build with sanitizers does not limit the memory.
 inline constexpr int max_memory_gib = 4, max_file_mib = 16;
 bool memory_is_limited();
@@ -19,11 +26,16 @@ bool memory_is_limited();
 class Child {
  public:
   enum class Runs { our_code, code_of_others };
+  using Work = std::function<void(MessageSocket&)>;
 
   // Forks; `work` runs in the child, a Process, which then ends. Its stdout and stderr are captured
   // (last_words), its stdin is empty, and it has no descriptors of the parent. Code of others also
   // has limits: of memory, and of the size of each file that it writes, including its output.
-  static Result<Child> spawn(Runs runs, const std::function<void(MessageSocket&)>& work);
+  static Result<Child> spawn(Runs runs, const Work& work);
+
+  // Same, for a process that `launch` starts. In that process, run_in_child() is called with the
+  // files, which remain the caller's.
+  static Result<Child> adopt(const std::function<Result<Process>(const ChildFiles&)>& launch);
 
   Child(Child&& other) noexcept;
   Child& operator=(Child&& other) noexcept;
@@ -63,5 +75,8 @@ class Child {
   int output_ = -1;  // file that holds what the child prints
   bool has_exited_well_ = false;
 };
+
+// Called in the new child: keeps the files, closes all others, and does the work. Does not return.
+[[noreturn]] void run_in_child(Child::Runs runs, const ChildFiles& files, const Child::Work& work);
 
 }  // namespace attest

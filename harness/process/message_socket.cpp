@@ -36,6 +36,12 @@ bool is_sane(const Prefix& prefix) {
   return prefix.magic == magic && prefix.blobs <= most_blobs && prefix.head <= longest_head;
 }
 
+// Room for the descriptors of a message, in the form of the system.
+struct Control {
+  static constexpr std::size_t most_descriptors = 8;
+  alignas(cmsghdr) std::array<char, CMSG_SPACE(most_descriptors * sizeof(int))> bytes{};
+};
+
 // Waits until the descriptor is ready. Returns the reason if the waiting ended before that.
 std::optional<Kind> wait_for(int descriptor, short what, const Patience& patience) {
   constexpr double look_every_ms = 100;  // whether to give up
@@ -127,6 +133,41 @@ Kind MessageSocket::receive_blob(void* place, std::size_t size, const Patience& 
     }
   }
   return Kind::message;
+}
+
+bool MessageSocket::send_descriptors(std::span<const int> descriptors) {
+  if (::getpid() != owner_) return false;
+  char byte = 0;  // descriptors do not travel without data
+  iovec data{&byte, sizeof byte};
+  Control control;
+  msghdr message{};
+  message.msg_iov = &data;
+  message.msg_iovlen = 1;
+  message.msg_control = control.bytes.data();
+  message.msg_controllen = CMSG_SPACE(descriptors.size_bytes());
+  cmsghdr* const head = CMSG_FIRSTHDR(&message);
+  head->cmsg_level = SOL_SOCKET;
+  head->cmsg_type = SCM_RIGHTS;
+  head->cmsg_len = CMSG_LEN(descriptors.size_bytes());
+  std::memcpy(CMSG_DATA(head), descriptors.data(), descriptors.size_bytes());
+  return ::sendmsg(descriptor_, &message, MSG_NOSIGNAL) == sizeof byte;
+}
+
+std::vector<int> MessageSocket::receive_descriptors() {
+  char byte = 0;
+  iovec data{&byte, sizeof byte};
+  Control control;
+  msghdr message{};
+  message.msg_iov = &data;
+  message.msg_iovlen = 1;
+  message.msg_control = control.bytes.data();
+  message.msg_controllen = control.bytes.size();
+  if (::recvmsg(descriptor_, &message, MSG_CMSG_CLOEXEC) != sizeof byte) return {};
+  const cmsghdr* const head = CMSG_FIRSTHDR(&message);
+  if (head == nullptr || head->cmsg_type != SCM_RIGHTS) return {};
+  std::vector<int> descriptors((head->cmsg_len - CMSG_LEN(0)) / sizeof(int));
+  std::memcpy(descriptors.data(), CMSG_DATA(head), descriptors.size() * sizeof(int));
+  return descriptors;
 }
 
 Received MessageSocket::receive(const Patience& patience) {

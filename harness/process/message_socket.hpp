@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -71,6 +72,12 @@ class MessageSocket {
 
   // Receives the next blob of that message, which has `size` bytes, into `place`.
   Received::Kind receive_blob(void* place, std::size_t size, const Patience& patience = {});
+
+  // Sends copies of at most 8 descriptors. The other end must then call receive_descriptors().
+  bool send_descriptors(std::span<const int> descriptors);
+
+  // The caller owns the descriptors. Empty: they did not come.
+  std::vector<int> receive_descriptors();
 
  private:
   bool write_all(std::string_view bytes, const Patience& patience);

@@ -20,10 +20,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sched.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "harness/process/signals.hpp"
 
 namespace attest {
 namespace {
@@ -41,37 +45,6 @@ bool happens_within(double seconds, Happened&& happened) {
     std::this_thread::sleep_for(pause);
   }
   return true;
-}
-
-// Between fork() and the reset of the handlers, a handler of the parent must not run in the child.
-class SignalsBlocked {
- public:
-  SignalsBlocked() {
-    sigset_t all;
-    ::sigfillset(&all);
-    ::pthread_sigmask(SIG_SETMASK, &all, &before_);
-  }
-  ~SignalsBlocked() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  SignalsBlocked(const SignalsBlocked&) = delete;
-  SignalsBlocked& operator=(const SignalsBlocked&) = delete;
-
- private:
-  sigset_t before_{};
-};
-
-// The handlers of these signals stay, because the sanitizers report errors with them.
-bool is_of_an_error(int signal) {
-  return signal == SIGSEGV || signal == SIGBUS || signal == SIGFPE || signal == SIGILL ||
-         signal == SIGABRT || signal == SIGTRAP;
-}
-
-void reset_signals() {
-  for (int signal = 1; signal < NSIG; ++signal) {
-    if (!is_of_an_error(signal)) std::signal(signal, SIG_DFL);
-  }
-  sigset_t none;
-  ::sigemptyset(&none);
-  ::pthread_sigmask(SIG_SETMASK, &none, nullptr);
 }
 
 // The children that this process has started. All its other children are orphans: a process of this
@@ -247,7 +220,6 @@ pid_t start_alone(const std::function<void()>& work) {
     own_nothing();
     lead_group(owner, work);
   }
-  if (started > 0) ::setpgid(started, started);  // here too: the first of the two calls decides
   return started;
 }
 
@@ -256,18 +228,40 @@ pid_t start_alone(const std::function<void()>& work) {
 Result<Process> Process::start(const std::function<void()>& work) {
   // Otherwise a child that calls exit() would print the unflushed output of the parent, too.
   std::fflush(nullptr);
+  if (is_guarded) return adopt([&] { return start_alone(work); });
+  auto started = adopt([&] { return start_guarded(work); });
+  if (started) started->has_guard_ = true;
+  return started;
+}
+
+Result<Process> Process::adopt(const std::function<pid_t()>& fork) {
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   const SignalsBlocked blocked;
   const std::lock_guard lock(owned().mutex);
-  const bool with_guard = !is_guarded;
-  const pid_t started = with_guard ? start_guarded(work) : start_alone(work);
+  const pid_t started = fork();
   const int reason = errno;
   if (started > 0) {
+    ::setpgid(started, started);  // here too: the first of the two calls decides
     owned().processes.insert(started);
-    return Process(started, with_guard);
+    return Process(started);
   }
   return fail(fmt::format("cannot start a process: {}{}", std::strerror(reason),
                           reason == EAGAIN ? " (`ulimit -u` limits how many there are)" : ""));
+}
+
+pid_t fork_sibling(const std::function<void()>& work) {
+  std::fflush(nullptr);
+  const SignalsBlocked blocked;
+  const std::lock_guard lock(owned().mutex);
+  const pid_t owner = ::getppid();
+  // glibc has no function for CLONE_PARENT. Its fork() also restores locks that other threads hold.
+  const long forked =
+      ::syscall(SYS_clone, CLONE_PARENT | SIGCHLD, nullptr, nullptr, nullptr, nullptr);
+  if (forked == 0) {
+    own_nothing();
+    lead_group(owner, work);
+  }
+  return static_cast<pid_t>(forked);
 }
 
 Process::Process(Process&& other) noexcept

@@ -28,6 +28,10 @@ class Process {
   // signal handlers and an empty signal mask, and leaves no core file. `work` must not throw.
   static Result<Process> start(const std::function<void()>& work);
 
+  // Takes over a child process that `fork` makes without start(): it makes another process call
+  // fork_sibling(), and returns the number, or -1 with errno. The child process has no guard.
+  static Result<Process> adopt(const std::function<pid_t()>& fork);
+
   Process() = default;  // none, same as after end()
   Process(Process&& other) noexcept;
   Process& operator=(Process&& other) noexcept;
@@ -49,11 +53,16 @@ class Process {
   Ending stop(double grace_s);
 
  private:
-  Process(pid_t pid, bool has_guard) : pid_(pid), has_guard_(has_guard) {}
+  explicit Process(pid_t pid) : pid_(pid) {}
 
   pid_t pid_ = -1;
   bool has_guard_ = false;
   bool was_killed_ = false;
 };
+
+// Forks, as Process::start() does, but for another owner: the child process is a child of the
+// parent of this process, which adopts it. Returns its number; -1: errno has the reason.
+// REQUIRES: this process is below a guard, and its other threads hold no lock.
+pid_t fork_sibling(const std::function<void()>& work);
 
 }  // namespace attest

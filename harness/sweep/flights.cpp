@@ -13,6 +13,7 @@
 #include "harness/compare/compare.hpp"
 #include "harness/core/error_json.hpp"
 #include "harness/host/host_here.hpp"
+#include "harness/host/port_launcher.hpp"
 #include "harness/loop/case_timing.hpp"
 #include "harness/measure/simulate.hpp"
 #include "harness/port/builtin.hpp"
@@ -22,9 +23,9 @@
 namespace attest {
 namespace {
 
-// The number of samples that a worker process flies before the next one takes its place: much more
-// work than a fork, and little enough that the last workers end at nearly the same time.
-constexpr std::uint64_t samples_of_worker = 32;
+// The number of samples of one piece of work: much more work than starting a port launcher, and
+// little enough that the last workers end at nearly the same time.
+constexpr std::uint64_t samples_of_work = 32;
 
 struct SimulatedSample {
   FlightResult result;
@@ -70,20 +71,18 @@ SampledFlight for_reference(SampledFlight sample, const FlightsOptions& options)
   return sample;
 }
 
-Result<std::string> fly_sample(const FlightSampler& sampler, std::uint64_t index,
-                               const FlightsOptions& options) {
-  const auto sample = sampler.sample(index);
-  if (!sample) return tl::unexpected(sample.error());
-  const SampledFlight of_reference = for_reference(*sample, options);
+Result<std::string> fly_sample(const FlightSampler& sampler, const SampledFlight& sample,
+                               std::uint64_t index, const FlightsOptions& options) {
+  const SampledFlight of_reference = for_reference(sample, options);
   std::vector<FlightResult> flights;
-  HostHere reference(open_builtin(), {}, {&of_reference.the_case, sample->vehicle_model.get()});
+  HostHere reference(open_builtin(), {}, {&of_reference.the_case, sample.vehicle_model.get()});
   auto flown = simulate(sampler, of_reference, reference);
   if (flown && options.with_port) {
     const SimulatedSample by_reference = *std::move(flown);
     flights.push_back(by_reference.result);
-    const auto host = start_host(options.host, {&sample->the_case, sample->vehicle_model.get()});
+    const auto host = start_host(options.host, {&sample.the_case, sample.vehicle_model.get()});
     if (!host) return tl::unexpected(host.error());
-    flown = simulate(sampler, *sample, **host);
+    flown = simulate(sampler, sample, **host);
     if (flown && is_non_finite(flown->flown, by_reference.flown)) {
       flown->result = {std::string(name_of(Verdict::non_finite)), {}};
     }
@@ -94,7 +93,7 @@ Result<std::string> fly_sample(const FlightSampler& sampler, std::uint64_t index
     return tl::unexpected(std::move(error));
   }
   flights.push_back(std::move(flown->result));
-  return columns_of(sampler, options.with_port).line(index, sample->drawn, flights);
+  return columns_of(sampler, options.with_port).line(index, sample.drawn, flights);
 }
 
 // Puts the rows in the order of the samples.
@@ -127,22 +126,35 @@ class RowOrder {
   std::optional<Error> error_;
 };
 
+// Flies the samples of one piece of work. The launcher starts before the reference flies, so that
+// no process of the port has a flight of the reference in its memory.
+void fly_piece(const FlightSampler& sampler, const SampleRange& piece,
+               const FlightsOptions& options, const Work::Done& done) {
+  std::vector<Result<SampledFlight>> samples;
+  for (std::uint64_t i = piece.begin; i < piece.end; ++i) samples.push_back(sampler.sample(i));
+  if (options.with_port) start_port_launcher();
+  for (std::uint64_t i = piece.begin; i < piece.end; ++i) {
+    const auto row = samples[i - piece.begin].and_then(
+        [&](const SampledFlight& sample) { return fly_sample(sampler, sample, i, options); });
+    done(encode(row.map([&](const std::string& text) {
+           return nlohmann::json{{"sample", i}, {"row", text}};
+         })),
+         row ? 1 : piece.end - i);
+    if (!row) return;
+  }
+}
+
 std::vector<Work> work_of(const FlightSampler& sampler, const SampleRange& range,
                           const FlightsOptions& options) {
   std::vector<Work> all;
-  for (std::uint64_t begin = range.begin; begin < range.end; begin += samples_of_worker) {
-    const std::uint64_t tasks = std::min(samples_of_worker, range.end - begin);
-    all.push_back(
-        {tasks, [&sampler, &options, begin, tasks](std::size_t first, const Work::Done& done) {
-           for (std::size_t task = first; task < tasks; ++task) {
-             const auto row = fly_sample(sampler, begin + task, options);
-             done(encode(row.map([&](const std::string& text) {
-                    return nlohmann::json{{"sample", begin + task}, {"row", text}};
-                  })),
-                  row ? 1 : tasks - task);
-             if (!row) return;
-           }
-         }});
+  for (std::uint64_t begin = range.begin; begin < range.end; begin += samples_of_work) {
+    const SampleRange piece{begin, std::min(begin + samples_of_work, range.end)};
+    Work work;
+    work.tasks = piece.size();
+    work.run = [&sampler, &options, piece](const Work::Done& done) {
+      fly_piece(sampler, piece, options, done);
+    };
+    all.push_back(std::move(work));
   }
   return all;
 }

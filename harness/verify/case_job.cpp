@@ -28,6 +28,11 @@ Result<void> CaseJob::open() {
   return {};
 }
 
+void CaseJob::close() {
+  host_.reset();
+  golden_.reset();
+}
+
 Result<CaseResult> CaseJob::run(std::size_t task) {
   const RunConfiguration& configuration = configurations_[task];
   if (!vehicle_model_)

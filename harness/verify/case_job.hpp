@@ -17,8 +17,8 @@
 #include "harness/loop/timing_file.hpp"
 #include "harness/plant/vehicle_models.hpp"
 #include "harness/verify/evaluate.hpp"
+#include "harness/verify/port_job.hpp"
 #include "harness/verify/verdict.hpp"
-#include "harness/workers/job.hpp"
 
 namespace attest {
 
@@ -29,9 +29,8 @@ struct Codec<CaseResult> {
 };
 
 // A case in some of its run configurations. For an open-loop case: any of its run configurations.
-// For a flight: those with one vehicle and one plant. The port's own process starts before the
-// golden is read, so that its memory has no golden.
-class CaseJob final : public Job<CaseResult> {
+// For a flight: those with one vehicle and one plant.
+class CaseJob final : public PortJob<CaseResult> {
  public:
   // `vehicle_model` is the plant configuration's; null for open loop.
   CaseJob(Case the_case, std::vector<RunConfiguration> configurations,
@@ -48,7 +47,7 @@ class CaseJob final : public Job<CaseResult> {
   Result<void> open() override;
   Result<CaseResult> run(std::size_t task) override;
   bool is_spent() const override { return host_->is_spent(); }
-  void close() override { host_.reset(); }
+  void close() override;
 
  private:
   Case case_;
@@ -62,7 +61,7 @@ class CaseJob final : public Job<CaseResult> {
 };
 
 // A flight at recorded times.
-class TimedJob final : public Job<CaseResult> {
+class TimedJob final : public PortJob<CaseResult> {
  public:
   TimedJob(Case the_case, TimingFile timing, std::shared_ptr<const VehicleModel> vehicle_model,
            std::filesystem::path saved_traces, HostOptions options)

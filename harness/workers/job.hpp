@@ -22,16 +22,20 @@ class Job {
 
   virtual std::size_t size() const = 0;  // tasks
 
-  // Called before the first task of a process. An error applies to all tasks, which are left out.
+  // Called in a worker process that begins with this job, before open(). The process runs other
+  // jobs of the same kind afterwards.
+  virtual void begin_worker() {}
+
+  // Called before the first task. An error applies to all tasks, which are left out.
   virtual Result<void> open() { return {}; }
 
   // REQUIRES: open() succeeded.
   virtual Result<R> run(std::size_t task) = 0;
 
-  // Called after a task. True if the other tasks need a fresh process.
+  // Called after a task. True if the job must be closed and opened again before the next task.
   virtual bool is_spent() const { return false; }
 
-  // Called after the last task of a process, or after an open() that failed. Undoes open().
+  // Called after the last task, or after an open() that failed. Undoes open().
   virtual void close() {}
 };
 
@@ -64,19 +68,19 @@ struct JobResults {
 
 namespace detail {
 
-// Runs the tasks from `first` on. Calls `done` with each result and the number of its tasks.
+// Calls `done` with each result and the number of its tasks.
 template <typename R, typename Done>
-void run_tasks(Job<R>& job, std::size_t first, Done&& done) {
-  if (const auto opened = job.open(); !opened) {
+void run_tasks(Job<R>& job, Done&& done) {
+  for (std::size_t task = 0; task < job.size();) {
+    if (const auto opened = job.open(); !opened) {
+      job.close();
+      return done(Result<R>(tl::unexpected(opened.error())), job.size() - task);
+    }
+    do {
+      done(job.run(task), 1);
+    } while (++task < job.size() && !job.is_spent());
     job.close();
-    return done(Result<R>(tl::unexpected(opened.error())), job.size() - first);
   }
-  bool is_spent = false;
-  for (std::size_t task = first; task < job.size() && !is_spent; ++task) {
-    done(job.run(task), 1);
-    is_spent = job.is_spent();
-  }
-  job.close();
 }
 
 // Collects the results of the jobs.
@@ -124,7 +128,7 @@ JobResults<R> run_here(const Jobs<R>& jobs, const JobOptions<R>& options) {
   Collector<R> collector(jobs.size(), options);
   std::size_t end = 0;
   for (bool goes_on = true; goes_on && end < jobs.size() && !options.stop(); ++end) {
-    run_tasks(*jobs[end], 0, [&](Result<R> result, std::size_t) {
+    run_tasks(*jobs[end], [&](Result<R> result, std::size_t) {
       goes_on = collector.take(end, std::move(result)) && goes_on;
     });
   }
@@ -138,11 +142,11 @@ JobResults<R> run_jobs(const Jobs<R>& jobs, const JobOptions<R>& options) {
   if (options.in_process) return detail::run_here(jobs, options);
   std::vector<Work> work;
   for (const auto& job : jobs) {
-    work.push_back({job->size(), [&job](std::size_t first, const auto& done) {
-                      detail::run_tasks(*job, first,
-                                        [&](const Result<R>& result, std::size_t tasks) {
-                                          done(Codec<R>::encode(result), tasks);
-                                        });
+    work.push_back({job->size(), [&job] { job->begin_worker(); },
+                    [&job](const Work::Done& done) {
+                      detail::run_tasks(*job, [&](const Result<R>& result, std::size_t tasks) {
+                        done(Codec<R>::encode(result), tasks);
+                      });
                     }});
   }
   detail::Collector<R> collector(jobs.size(), options);

@@ -27,36 +27,56 @@ class Pool {
 
  private:
   struct Worker {
-    std::size_t work;
-    std::size_t first, task;  // the first task of this process, and the current one
     Child child;
+    std::size_t work;
+    std::size_t open_tasks;  // of this work
     bool over = false;
   };
 
   void start_workers() {
     const auto most = static_cast<std::size_t>(std::max(options_.processes, 1));
-    while (workers_.size() < most && next_ < end_ && !options_.stop()) {
-      const std::size_t work = next_++;
-      if (work_[work].tasks == 0 || start(work, 0)) continue;
-      if (!workers_.empty()) return;  // a process may be available when one of these has ended
+    while (workers_.size() < most && has_next() && !options_.stop()) {
+      auto child =
+          Child::spawn(Child::Runs::our_code, [this](MessageSocket& parent) { do_work(parent); });
+      if (child) {
+        workers_.push_back({*std::move(child), 0, 0});
+        give_work(workers_.back());
+      } else if (workers_.empty()) {
+        fail(next_++, child.error());
+      } else {
+        return;  // the workers that there are do the rest
+      }
     }
   }
 
-  bool start(std::size_t work, std::size_t first) {
-    auto child = Child::spawn(Child::Runs::our_code, [&](MessageSocket& parent) {
-      // An interrupt may come just before the fork. The work must not begin then: it would report
-      // the interrupt as a port that does not answer.
+  // Skips work without tasks.
+  bool has_next() {
+    while (next_ < end_ && work_[next_].tasks == 0) ++next_;
+    return next_ < end_;
+  }
+
+  // In a worker.
+  void do_work(MessageSocket& parent) {
+    bool has_begun = false;
+    std::size_t index = 0;
+    while (parent.receive().kind == Received::Kind::message &&
+           parent.receive_blob(&index, sizeof index) == Received::Kind::message) {
+      // An interrupt may come just before this. The work must not begin then: it would report the
+      // interrupt as a port that does not answer.
       if (options_.stop()) return;
-      work_[work].run(first, [&](const std::string& answer, std::size_t tasks) {
+      const Work& work = work_[index];
+      if (!std::exchange(has_begun, true)) work.begin_worker();
+      work.run([&](const std::string& answer, std::size_t tasks) {
         parent.send(answer, {{&tasks, sizeof tasks}});
       });
-    });
-    if (child) {
-      workers_.push_back({work, first, first, *std::move(child)});
-    } else {
-      fail(work, child.error());
     }
-    return child.has_value();
+  }
+
+  // REQUIRES: has_next(). If the worker has died, the wait for its answer finds out how.
+  void give_work(Worker& worker) {
+    worker.work = next_++;
+    worker.open_tasks = work_[worker.work].tasks;
+    worker.child.socket().send("", {{&worker.work, sizeof worker.work}});
   }
 
   void fail(std::size_t work, const Error& error) {
@@ -88,19 +108,20 @@ class Pool {
       return conclude(worker);
     }
     if (!options_.on_answer(worker.work, received.head)) end_ = std::min(end_, worker.work + 1);
-    worker.task += tasks;
+    worker.open_tasks -= std::min(tasks, worker.open_tasks);
+    if (worker.open_tasks > 0) return;
+    if (has_next()) {
+      give_work(worker);
+    } else {
+      worker.over = true;
+    }
   }
 
   void conclude(Worker& worker) {
     worker.over = true;
     const std::string how = worker.child.end(), words = worker.child.last_words();
-    const bool is_done = worker.task >= work_[worker.work].tasks;
-    if (!worker.child.has_exited_well() || (!is_done && worker.task == worker.first)) {
-      fail(worker.work, {fmt::format("a worker process of attest {}{}{}; please report this", how,
-                                     words.empty() ? "" : ": ", words)});
-    } else if (!is_done) {
-      start(worker.work, worker.task);  // `worker` may have moved
-    }
+    fail(worker.work, {fmt::format("a worker process of attest {}{}{}; please report this", how,
+                                   words.empty() ? "" : ": ", words)});
   }
 
   const std::vector<Work>& work_;

@@ -14,11 +14,12 @@ namespace attest {
 // Some tasks in a row for one process.
 struct Work {
   std::size_t tasks = 0;
+  // Called in a worker if this is its first piece of work, before `run`.
+  std::function<void()> begin_worker = [] {};
   // Sends an answer, and the number of tasks that it is for.
   using Done = std::function<void(const std::string& answer, std::size_t tasks)>;
-  // Called in a worker: does the tasks from `first` on, in their order. If it returns before the
-  // last task, the rest is done in a fresh process.
-  std::function<void(std::size_t first, const Done& done)> run;
+  // Called in a worker: does the tasks in their order. The worker does other work afterwards.
+  std::function<void(const Done& done)> run;
 };
 
 struct PoolOptions {
@@ -26,8 +27,8 @@ struct PoolOptions {
   std::function<bool()> stop = [] { return false; };  // true: end soon, answers are not needed
   // Called in the caller's process, in any order. False: do not begin the work after this piece.
   std::function<bool(std::size_t work, const std::string& answer)> on_answer;
-  // The rest of that piece is left out: a process cannot be started, or one died. The latter is a
-  // bug of attest, because the code of a port runs in processes of its own (host/port_process.hpp).
+  // The rest of that piece is left out: no process can be started, or one died. The latter is a bug
+  // of attest, because the code of a port runs in processes of its own (host/port_process.hpp).
   // Returns the same as on_answer.
   std::function<bool(std::size_t work, const Error& error)> on_error;
 };

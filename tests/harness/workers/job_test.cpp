@@ -40,25 +40,30 @@ class FakeJob final : public Job<std::string> {
   FakeJob(std::vector<Task> tasks, bool opens) : tasks_(std::move(tasks)), opens_(opens) {}
 
   std::size_t size() const override { return tasks_.size(); }
+  void begin_worker() override { worker_began_with = tasks_.size(); }
   Result<void> open() override {
     if (!opens_) return fail("no golden");
     opened_ = true;
+    done_since_open_ = 0;
     return {};
   }
   Result<std::string> run(std::size_t task) override {
     EXPECT_TRUE(opened_);
     auto result = tasks_[task]();
     is_spent_ = result && *result == "spent";
-    ++done_here_;
-    if (result && *result == "counts") return fmt::format("{} here", done_here_);
+    ++done_since_open_;
+    if (result && *result == "counts") return fmt::format("task {}", done_since_open_);
     return result;
   }
   bool is_spent() const override { return is_spent_; }
+  void close() override { opened_ = false; }
+
+  static inline std::size_t worker_began_with = 0;  // the number of tasks of its first job
 
  private:
   std::vector<Task> tasks_;
   bool opens_, opened_ = false, is_spent_ = false;
-  int done_here_ = 0;
+  int done_since_open_ = 0;
 };
 
 Task says(const std::string& word) {
@@ -98,9 +103,35 @@ TEST(Jobs, ResultsAreInOrderWhateverFinishesFirst) {
   EXPECT_THAT(run_jobs(jobs, in_process()).results, ElementsAre("a", "b", "c", "d", "e"));
 }
 
-TEST(Jobs, AfterASpentTaskTheRestHasAFreshProcess) {
+TEST(Jobs, ASpentJobIsOpenedAgain) {
   const auto jobs = jobs_of({{says("counts"), says("spent"), says("counts"), says("counts")}});
-  EXPECT_THAT(run_jobs(jobs, with(1)).results, ElementsAre("1 here", "spent", "1 here", "2 here"));
+  for (const auto& options : {with(1), in_process()}) {
+    EXPECT_THAT(run_jobs(jobs, options).results,
+                ElementsAre("task 1", "spent", "task 1", "task 2"));
+  }
+}
+
+Result<std::string> process_and_first_job() {
+  return fmt::format("process {} began with {}", ::getpid(), FakeJob::worker_began_with);
+}
+
+TEST(Jobs, AWorkerRunsJobsOneAfterTheOther) {
+  const Task says_where = process_and_first_job;
+  const auto results = run_jobs(jobs_of({{says_where}, {says_where, says_where}}), with(1)).results;
+  ASSERT_EQ(results.size(), 3u);
+  EXPECT_THAT(results[0], testing::EndsWith("began with 1"));
+  EXPECT_THAT(results, testing::Each(results[0]));
+}
+
+TEST(Jobs, AfterADeathTheOtherJobsHaveAnotherWorker) {
+  const Task says_where = process_and_first_job;
+  const Task dies = []() -> Result<std::string> { std::abort(); };
+  const auto results =
+      run_jobs(jobs_of({{says_where}, {dies}, {says_where, says_where}}), with(1)).results;
+  ASSERT_EQ(results.size(), 3u);
+  EXPECT_THAT(results[0], testing::EndsWith("began with 1"));
+  EXPECT_THAT(results[1], testing::EndsWith("began with 2"));
+  EXPECT_EQ(results[1], results[2]);
 }
 
 TEST(Jobs, AnErrorIsOfItsTask) {
@@ -163,7 +194,6 @@ TEST(Jobs, AProcessThatCannotBeStartedIsAnErrorOfItsJob) {
   EXPECT_THAT(outcome.errors[0].message, HasSubstr("`ulimit -n`"));
 }
 
-// It would be restarted again and again.
 TEST(Jobs, AWorkerThatEndsWithoutAnAnswerIsAnError) {
   const Task ends = []() -> Result<std::string> { ::_exit(EXIT_SUCCESS); };
   const auto outcome = run_jobs(jobs_of({{ends, says("a")}, {says("b")}}), with(1));

@@ -1,0 +1,114 @@
+#include "harness/host/port_launcher.hpp"
+
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <unistd.h>
+
+#include "harness/host/host_here.hpp"
+#include "harness/host/host_protocol.hpp"
+#include "harness/host/port_process.hpp"
+#include "harness/process/launcher.hpp"
+
+namespace attest {
+namespace {
+
+using Kind = Received::Kind;
+
+// What a port's process serves: objects that it has in the memory that it is a copy of.
+struct Served {
+  const HostOptions* options;
+  Course course;
+};
+
+// In the port's process.
+void serve(const Served& served, const PortCalls& calls, MessageSocket& judge) {
+  auto host = open_host_here(served.options->port, served.options->said, served.course, &calls);
+  if (!host) {
+    refuse(host.error(), 0, judge);
+    return;
+  }
+  bool goes_on = greet((*host)->says(), judge);
+  for (std::uint64_t request = 1; goes_on; ++request) {
+    const Received question = judge.receive();
+    if (question.kind != Kind::message) return;
+    BlobReader blobs(question.blobs, [&](void* place, std::size_t size) {
+      return judge.receive_blob(place, size) == Kind::message;
+    });
+    try {
+      goes_on = answer({question.head, blobs, request}, **host, judge);
+    } catch (const PortBroke& broke) {  // a program broke the protocol in its answer to `create`
+      goes_on = give_fault(fault_of(broke), request, judge);
+    }
+  }
+}
+
+Result<std::shared_ptr<const PortCalls>> shared_calls() {
+  return PortCalls::make().map(
+      [](PortCalls calls) { return std::make_shared<const PortCalls>(std::move(calls)); });
+}
+
+// One thread at a time, same as Launcher.
+class PortLauncher {
+ public:
+  static Result<PortLauncher> start() {
+    auto calls = shared_calls();
+    if (!calls) return tl::unexpected(calls.error());
+    auto launcher = Launcher::start(Child::Runs::code_of_others,
+                                    [&calls](const std::string& request, MessageSocket& judge) {
+                                      Served served{};
+                                      std::memcpy(&served, request.data(), sizeof served);
+                                      serve(served, **calls, judge);
+                                    });
+    if (!launcher) return tl::unexpected(launcher.error());
+    return PortLauncher(*std::move(calls), *std::move(launcher));
+  }
+
+  Result<PortChild> launch(const Served& served) {
+    calls_->reset();
+    std::string request(sizeof served, '\0');
+    std::memcpy(request.data(), &served, sizeof served);
+    return launcher_.launch(request).map([&](Child child) {
+      return PortChild{std::move(child), calls_};
+    });
+  }
+
+ private:
+  PortLauncher(std::shared_ptr<const PortCalls> calls, Launcher launcher)
+      : calls_(std::move(calls)), launcher_(std::move(launcher)) {}
+
+  std::shared_ptr<const PortCalls> calls_;
+  Launcher launcher_;
+};
+
+// Empty: this process has none.
+std::optional<Result<PortLauncher>>& port_launcher() {
+  static std::optional<Result<PortLauncher>> launcher;
+  return launcher;
+}
+
+}  // namespace
+
+void start_port_launcher() {
+  port_launcher().reset();
+  port_launcher() = PortLauncher::start();
+}
+
+Result<PortChild> launch_port(const HostOptions& options, const Course& course) {
+  const Served served{&options, course};
+  if (auto& launcher = port_launcher()) {
+    return launcher->and_then([&](PortLauncher& one) { return one.launch(served); });
+  }
+  auto calls = shared_calls();
+  if (!calls) return tl::unexpected(calls.error());
+  return Child::spawn(Child::Runs::code_of_others,
+                      [&](MessageSocket& judge) { serve(served, **calls, judge); })
+      .map([&](Child child) {
+        return PortChild{std::move(child), *std::move(calls)};
+      });
+}
+
+}  // namespace attest

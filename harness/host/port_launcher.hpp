@@ -1,0 +1,31 @@
+// Starts the processes of ports. Each is a fork of this process's launcher, or, without a launcher,
+// of this process.
+#pragma once
+
+#include <memory>
+
+#include "harness/core/result.hpp"
+#include "harness/host/port_calls.hpp"
+#include "harness/host/port_host.hpp"
+#include "harness/process/child.hpp"
+
+namespace attest {
+
+struct HostOptions;
+
+// Starts the launcher of this process, and ends the one that it had. A worker calls this before it
+// reads data that ports must not read (Job::begin_worker()). It can then judge many ports, one
+// after the other. An error is returned by the next launch_port().
+void start_port_launcher();
+
+// A process that loads a port and serves requests (host_protocol.hpp).
+struct PortChild {
+  Child child;
+  std::shared_ptr<const PortCalls> calls;
+};
+
+// REQUIRES, if there is a launcher: it was started after `options` and the objects of `course` were
+// made, because only their addresses are sent; the process before has ended.
+Result<PortChild> launch_port(const HostOptions& options, const Course& course);
+
+}  // namespace attest

@@ -1,0 +1,72 @@
+#include "harness/process/launcher.hpp"
+
+#include <array>
+#include <cerrno>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "harness/process/process.hpp"
+
+namespace attest {
+namespace {
+
+struct Launched {
+  pid_t child;
+  int reason;  // errno, if there is no child
+};
+
+// In the launcher, until its owner closes the socket.
+void serve(Child::Runs runs, const Launcher::Work& work, MessageSocket& owner) {
+  while (true) {
+    const Received request = owner.receive();
+    if (request.kind != Received::Kind::message) return;
+    const std::vector<int> descriptors = owner.receive_descriptors();
+    if (descriptors.size() != 3) return;
+    const ChildFiles files{descriptors[0], descriptors[1], descriptors[2]};
+    Launched launched{};
+    launched.child = fork_sibling([&] {
+      run_in_child(runs, files, [&](MessageSocket& socket) { work(request.head, socket); });
+    });
+    launched.reason = errno;
+    for (const int descriptor : descriptors) ::close(descriptor);
+    if (!owner.send("", {{&launched, sizeof launched}})) return;
+  }
+}
+
+}  // namespace
+
+Result<Launcher> Launcher::start(Child::Runs runs, const Work& work) {
+  // A thread allocates memory in an arena of its own. A child that allocated in the fragments that
+  // the owner has left in the main arena would copy a page for nearly each of them.
+  auto process = Child::spawn(Child::Runs::our_code, [&](MessageSocket& owner) {
+    std::thread([&] { serve(runs, work, owner); }).join();
+  });
+  if (!process) return tl::unexpected(process.error());
+  return Launcher(*std::move(process));
+}
+
+Result<Child> Launcher::launch(const std::string& request) {
+  bool has_died = false;
+  const auto fork_there = [&](const ChildFiles& files) -> pid_t {
+    const std::array descriptors{files.input, files.output, files.socket};
+    Launched launched{};
+    has_died = !process_.socket().send(request) ||
+               !process_.socket().send_descriptors(descriptors) ||
+               process_.receive().kind != Received::Kind::message ||
+               process_.receive_blob(&launched, sizeof launched) != Received::Kind::message;
+    if (has_died) return -1;
+    errno = launched.reason;
+    return launched.child;
+  };
+  auto child = Child::adopt(
+      [&](const ChildFiles& files) { return Process::adopt([&] { return fork_there(files); }); });
+  if (!has_died) return child;
+  process_.kill();
+  return fail(fmt::format("a launcher process of attest {}; please report this", process_.end()));
+}
+
+}  // namespace attest

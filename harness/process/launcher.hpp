@@ -1,0 +1,34 @@
+// A process that starts the children of its owner.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "harness/core/result.hpp"
+#include "harness/process/child.hpp"
+
+namespace attest {
+
+// The children are copies of the launcher's memory, and the launcher is a copy of its owner's
+// memory at start(). So a child cannot read what the owner has read since then. It is a child of
+// the owner in all other respects.
+//
+// One thread at a time. REQUIRES: the owner is below a guard (Process).
+class Launcher {
+ public:
+  // Handles one request in a child.
+  using Work = std::function<void(const std::string& request, MessageSocket& owner)>;
+
+  // Forks the launcher.
+  static Result<Launcher> start(Child::Runs runs, const Work& work);
+
+  // Errors: no child can be started, or the launcher has died.
+  Result<Child> launch(const std::string& request);
+
+ private:
+  explicit Launcher(Child process) : process_(std::move(process)) {}
+
+  Child process_;
+};
+
+}  // namespace attest

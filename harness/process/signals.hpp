@@ -1,0 +1,25 @@
+// Signals while a process forks.
+#pragma once
+
+#include <signal.h>
+
+namespace attest {
+
+// Blocks all signals of this thread for as long as it exists. Between fork() and reset_signals(), a
+// handler of the parent must not run in the child.
+class SignalsBlocked {
+ public:
+  SignalsBlocked();
+  ~SignalsBlocked();
+  SignalsBlocked(const SignalsBlocked&) = delete;
+  SignalsBlocked& operator=(const SignalsBlocked&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+
+// Called in the child: the default handlers, and an empty mask. The handlers of errors stay,
+// because the sanitizers report errors with them.
+void reset_signals();
+
+}  // namespace attest
