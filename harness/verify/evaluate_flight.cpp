@@ -110,8 +110,8 @@ Result<Comparison> compare_units(const Flown& flown, const std::string& profile,
 Result<void> judge_ticks(const Case& the_case, const Flown& flown, const ReferenceFlight& reference,
                          std::optional<int> fraction_bits, CaseResult& result) {
   // The horizon was measured with floats. In flight, a port's rounding changes its later inputs. A
-  // port with 22 fraction bits was measured to deviate from the golden by seven times the tolerance
-  // of its LSBs. With 30 bits, seven times that tolerance is a tenth of the tolerance of floats.
+  // port with 22 fraction bits was measured to deviate from the golden's rates by seven times the
+  // tolerance of its LSBs. With 30 bits, that is a tenth of the tolerance of floats for rates.
   // With fewer bits, the loop as a whole is judged by the metrics only.
   constexpr int as_near_as_floats_bits = 30;
   const double horizon_s = fraction_bits.value_or(as_near_as_floats_bits) < as_near_as_floats_bits

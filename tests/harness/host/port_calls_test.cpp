@@ -70,6 +70,21 @@ TEST(PortCalls, TheRunningCallIsNamed) {
   EXPECT_EQ(calls->current(), "");
 }
 
+// The call in which the process before has crashed.
+TEST(PortCalls, AfterAResetNoCallRuns) {
+  const auto calls = PortCalls::make();
+  ASSERT_TRUE(calls) << calls.error().to_string();
+  std::string seen = "not called";
+  const std::function<void()> reset = [&] {
+    calls->reset();
+    seen = calls->current();
+  };
+  CallingPort original(reset);
+  calls->noted(original)->create("px4-v1.5.5");
+  EXPECT_EQ(seen, "");
+  EXPECT_EQ(calls->count(), 0u);
+}
+
 TEST(PortCalls, EachInstanceCountsItsOwnTicks) {
   const auto calls = PortCalls::make();
   ASSERT_TRUE(calls);
