@@ -2,8 +2,8 @@
 // discharge.
 //
 // The estimate of PX4 v1.5.5 systemlib Battery. The cell voltage, corrected for the drop under
-// load, gives a measured charge. Its low-pass is the remaining charge, which gives the voltage of
-// the cell at rest. The order of the operations is part of the estimate:
+// load, gives a measured charge. Filtered by a low-pass, this is the remaining charge, from which
+// the voltage of the cell at rest follows. The order of the operations is part of the estimate:
 // golden/recorded/battery-v1.5.5 is matched to the bit.
 //
 // Voltages [V], currents [A], throttle [0..1]. No clock: one update is one sample at 100 Hz. No

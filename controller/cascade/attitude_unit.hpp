@@ -74,7 +74,7 @@ struct AttitudeStepStages {
     return status.armed != 0 && Scalar(now_us - status.armed_time) > spoolup_us;
   }
 
-  // A tailsitter flies as a multicopter in transition too.
+  // A tailsitter flies as a multicopter during a transition, too.
   ATTEST_INLINE static bool runs(const Topics& topics) {
     const Status& status = topics.status;
     const bool transition = status.in_transition_mode != 0;

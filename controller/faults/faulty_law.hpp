@@ -1,7 +1,7 @@
 // The law with every stage replaceable. Each stage is a function: that of the reference, or that of
 // a fault. McAttControl<float, FaultyLaw> is then the reference with that one mistake.
 //
-// Each controller has its own copy of the law, with the state of its functions.
+// A function may have state. Each controller has its own copy of the law, and so of this state.
 #pragma once
 
 #include <functional>

@@ -22,8 +22,8 @@ bool matches(const std::string& pattern, const std::string& text) {
   return ::fnmatch(pattern.c_str(), text.c_str(), 0) == 0;
 }
 
-// Does a pattern match this vector? Adds all patterns that do to `matching`, because a pattern that
-// matches no vector is an error.
+// Whether a pattern matches this vector. All patterns that match it are added to `matching`,
+// because a pattern that matches no vector is an error.
 bool matches_any(const std::vector<std::string>& filters, const Case& the_case,
                  const RunConfiguration& configuration, std::set<std::string>& matching) {
   if (filters.empty()) return false;
@@ -73,9 +73,10 @@ Result<void> check_groups(const std::vector<fs::path>& files, const Selection& s
   return check_names(selection.groups, groups, "group");
 }
 
-// Whether a pattern can match a case of this file, as far as its path tells. The text between the
-// last wildcard and the @ is the end of `<profile>/<group>/<name>`, or longer than what is known
-// here. A wildcard in a pattern without @ may match the @ of a vector.
+// Whether a pattern can match a case of this file. Of `<profile>/<group>/<name>`, only group and
+// name are known here, from the path. The text between the pattern's last wildcard and its @ must
+// be an end of the known part, or end with it. A wildcard in a pattern without @ may match the @ of
+// a vector.
 bool may_match(const std::string& pattern, const fs::path& file) {
   const std::size_t at = pattern.find('@');
   const std::string id = pattern.substr(0, at);
@@ -171,8 +172,8 @@ Result<void> check_known(const Selection& selection, const Known& known) {
 }
 
 // How long a vector takes [ms], to balance shards. Measured with the reference: an open-loop vector
-// takes 1 ms at any rate; a flight takes a time for each second and for each tick of the loop,
-// which MuJoCo's steps follow.
+// takes 1 ms at any rate; a flight takes a time for each second and a time for each tick of the
+// loop. With more ticks MuJoCo also makes more steps.
 double cost_ms(const Case& the_case, const RunConfiguration& configuration) {
   if (!configuration.plant_configuration) return 1;
   const bool is_mujoco = configuration.plant_configuration->plant == PlantKind::mujoco;
@@ -331,7 +332,8 @@ Result<std::vector<SelectedCase>> select_cases(const CaseFolders& folders,
   auto files = find_case_files(folders);
   if (!files) return tl::unexpected(files.error());
   if (auto known = check_groups(*files, selection); !known) return tl::unexpected(known.error());
-  // An error names what there is in all files of the groups, so these are read then.
+  // Only files that a pattern can match are read first. If there is an error, all files of the
+  // groups are read, because the error names what there is in them.
   std::erase_if(*files,
                 [&](const fs::path& file) { return !contains(selection.groups, group_of(file)); });
   std::vector<fs::path> likely = *files;

@@ -23,9 +23,9 @@ namespace {
 
 constexpr const char* description =
     "Judges whether a port of PX4's multicopter attitude and rate control conforms to the\n"
-    "reference at every loop rate: of the controller of v1.5.5 and v1.3.4, or of the attitude\n"
-    "unit and the rate unit of v1.14 to v1.16. Reports the first deviation: its tick, signal and\n"
-    "stage of the law.\n";
+    "reference at every loop rate. It is a port of the controller of v1.5.5 and v1.3.4, or of\n"
+    "the attitude unit and the rate unit of v1.14 to v1.16. Reports the first deviation: its\n"
+    "tick, signal and stage of the law.\n";
 
 constexpr const char* footer =
     "\nFirst steps (`attest help COMMAND` has more):\n"

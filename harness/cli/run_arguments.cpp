@@ -73,8 +73,8 @@ void add_traces(CLI::App& command, RunOptions& options) {
       .add_option("--save-traces", options.save_traces,
                   "Write the traces of each failing vector to a new folder: "
                   "DIR/PROFILE/GROUP/NAME/CONFIGURATION.got.csv with the port's outputs, "
-                  ".want.csv with the expected ones, .tolerance.csv with the allowed difference "
-                  "of each value (not at the level `events`)")
+                  ".want.csv with the expected ones and, except at the level `events`, "
+                  ".tolerance.csv with the allowed difference of each value")
       ->type_name("DIR")
       ->group(option_group::reports);
   command.get_option("--write-expected")->excludes(command.get_option("--expected-failures"));

@@ -63,8 +63,9 @@ Result<void> check_recorded(const std::vector<SelectedCase>& cases, const RunPla
   return {};
 }
 
-// Stores the parameters of --param. Errors: a parameter that no selected case can have; a port or a
-// suite whose outputs for other parameters than those of the cases are not known.
+// Stores the parameters of --param. Errors: a parameter that no selected case can have; a recorded
+// port, or a suite whose reference is a port, because their outputs are known only for the
+// parameters of the cases.
 Result<void> set_parameters(const RunOptions& options, const SuiteFolder& suite,
                             const std::vector<SelectedCase>& cases, RunPlan& plan) {
   const auto folder = recorded_folder(options.host.port);

@@ -71,8 +71,9 @@ void add_port(CLI::App& command, std::string& port, Ports accepted) {
 void add_timeout(CLI::App& command, double& timeout_s) {
   command
       .add_option("--timeout", timeout_s,
-                  "Limit for each answer of the port [s]. A library answers a whole trace, a "
-                  "program each step or batch; without an answer in time the verdict is `timeout`")
+                  "Limit for each answer of the port [s]. An answer of a library is a whole trace, "
+                  "one of a program is a step or a batch of steps; without an answer in time the "
+                  "verdict is `timeout`")
       ->check(CLI::Range(0.1, 86400.0))
       ->capture_default_str()
       ->group(option_group::execution);

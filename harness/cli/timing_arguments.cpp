@@ -34,7 +34,7 @@ void add_machine(CLI::App& command, StressOptions& options) {
       ->group(option_group::execution);
   command
       .add_option("--spin", options.spin_us,
-                  "Time [us] before each release at which the unit wakes up; it spins until the "
+                  "The unit wakes up this time [us] before each release, and spins until the "
                   "release")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str()
@@ -154,7 +154,7 @@ void add_sweep_parts(CLI::App& command, SweepOptions& options) {
       .add_option(
           "--samples", options.samples,
           "Number of samples; replaces that of the file. All samples depend on this number, so "
-          "a larger one does not continue a smaller sweep")
+          "a sweep with a larger number does not continue one with a smaller number")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
   CLI::Option* const shard =
@@ -201,8 +201,8 @@ void add_sweep(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<SweepOptions>();
   CLI::App* command = app.add_subcommand(
       "sweep",
-      "Fly a case many times with dispersed values: the probability with which it holds its "
-      "requirements, and whether a port flies like the reference");
+      "Fly a case many times with dispersed values: the probability that a flight holds each "
+      "requirement, and whether a port flies like the reference");
   command
       ->add_option("file", options->file,
                    "The sweep (TOML): case, dispersions, design, requirements")

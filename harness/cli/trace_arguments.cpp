@@ -36,9 +36,9 @@ void add_law_options(CLI::App& command, ReplayOptions& options) {
       .add_option(
           "--profile", options.profile,
           "Version of the law. Default for a trace: that of the provenance.toml next to it, else "
-          "the newest that has its unit; for a log: the release of PX4 that wrote it. A log of "
-          "attitude unit and "
-          "rate unit that does not name its release needs this option")
+          "the newest version that has the unit of the trace; for a log: the release of PX4 that "
+          "wrote it. A log of attitude unit and rate unit that does not name its release needs "
+          "this option")
       ->type_name("PROFILE");
   command.add_option("--param", options.parameters, "Set a parameter from the first step on")
       ->type_name("NAME=VALUE")

@@ -19,8 +19,9 @@
 // - at the first and the last tick
 // - where the reference, at one of the three ticks, does not publish the topic, or has NaN or
 //   infinity
-// - within 11 deg of a half turn between attitude and setpoint, where a last bit decides the
-//   direction in which the law turns; also where one of the two is zero or not finite.
+// - where, at one of the three ticks, the law controls the attitude and the rotation between
+//   attitude and setpoint is within 11 deg of a half turn, so that a last bit decides the direction
+//   in which the law turns; also where, at such a tick, attitude or setpoint is zero or not finite.
 #pragma once
 
 #include <optional>
@@ -29,7 +30,7 @@
 
 namespace attest {
 
-// The first value outside these bounds. REQUIRES: as many ticks in both.
+// The first value outside these bounds. REQUIRES: both have the same number of ticks.
 std::optional<EventDifference> first_gross_difference(const Trace& got, const Trace& want);
 
 // The first NaN or Inf where `want` is finite at that tick, the tick before and the tick after.

@@ -102,8 +102,8 @@ class NewGolden {
   NewGolden& operator=(NewGolden&&) = delete;
   ~NewGolden();  // removes the golden that is not in place: this one, or the one it replaced
 
-  // A complete golden exists at each moment, even if the process is killed. If the file system can
-  // exchange two folders, it is in its place; else there or in `*.old`.
+  // A complete golden exists at each moment, even if the process is killed. It is in its place if
+  // the file system can exchange two folders; otherwise it is in its place or in `*.old`.
   Result<void> put_in_place();
 
   const std::filesystem::path& written() const { return written_; }

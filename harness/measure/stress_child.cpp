@@ -5,12 +5,12 @@
 //      "divergence"}                                             ticks, times at which its outputs
 //                                                                were followed
 //                                                                (LoopTick::commanded)
-//     {"refused": true}                                          the port made no unit, or not
-//                                                                both; with the fault
+//     {"refused": true}                                          the port made no unit, or only
+//                                                                one of two; has the fault, too
 //     {"error": {...}}
 //
 // The port's code runs in the child, so no verdict is taken from there. A port can forge the
-// measurements, same as its own execution time. It cannot forge the verdict on its outputs, because
+// measurements, such as its own execution time. It cannot forge the verdict on its outputs, because
 // the parent judges them.
 #include <algorithm>
 #include <atomic>
@@ -252,7 +252,7 @@ class Listener {
 
   bool hangs() const {
     const Nanoseconds duration(static_cast<std::int64_t>(task_.the_case.duration.amount * 1e9));
-    // A child hangs if it sends no message for so long, or flies so long after the end.
+    // A child hangs if it sends no message for this time, or still flies this time after the end.
     const Nanoseconds limit = report_every + task_.timeout;
     return Clock::now() - heard_ > (idle_ ? task_.idle_duration + limit : limit) ||
            flown_ > duration + limit ||
@@ -323,7 +323,7 @@ class Listener {
   const Clock::time_point began_ = Clock::now();
   Clock::time_point heard_ = Clock::now();
   bool is_stopping_ = false;
-  bool is_made_ = false;  // the unit: the first progress comes after that
+  bool is_made_ = false;  // the unit was made; the first progress comes after that
   bool idle_ = true;
   Nanoseconds flown_{0};
 };

@@ -57,9 +57,9 @@ class Plant {
   // Velocity of the air, NED; held until the next call.
   virtual void set_wind(const Vector3& velocity_m_s) = 0;
 
-  // Offset of the centre of mass from its nominal place, FRD; held until the next call. Its
-  // position and velocity do not jump; the hubs' places relative to it do, as when a load is
-  // dropped.
+  // Offset of the centre of mass from its nominal place, FRD; held until the next call. The
+  // position and velocity of the centre of mass do not jump. The hubs' places relative to it jump,
+  // as when a load is dropped.
   virtual void set_centre_of_mass(const Vector3& offset_m) = 0;
 
   // Integrates to exactly the time `to`. REQUIRES: `to` is not before the time reached. After a

@@ -25,7 +25,7 @@
 namespace attest {
 namespace {
 
-// The output is in memory. A port that prints at every step must not use it up.
+// The output is in memory. A port that prints at every step must not use up the memory.
 constexpr rlim_t max_file_bytes = std::uint64_t{max_file_mib} << 20;
 constexpr rlim_t max_memory_bytes = std::uint64_t{max_memory_gib} << 30;
 
@@ -72,7 +72,7 @@ void keep_only(const ChildFiles& files) {
 
 bool memory_is_limited() { return !built_with_sanitizers; }
 
-// Does not throw, either. The child must not unwind the parent's stack, which owns files to be
+// Neither returns nor throws. The child must not unwind the parent's stack, which owns files to be
 // renamed and other children, and must not run the parent's exit handlers.
 void run_in_child(Child::Runs runs, const ChildFiles& files, const Child::Work& work) {
   keep_only(files);

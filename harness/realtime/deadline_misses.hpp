@@ -8,10 +8,10 @@
 //     machine's: finish_i = max(release_i, finish_(i-1)) + delay_i
 //     port's:    finish_i = max(release_i, finish_(i-1)) + min(delay_i, usual) + execution_i
 //
-// delay_i is the delay by the machine: from the time at which the step could start to its start,
-// preemption within the step, and attest's own work around it. A delay postpones the finish of its
-// tick, and so also the later ticks that wait for that finish. `usual` is the median of the delays,
-// limited to a tenth of the period. A miss is the port's if both hold:
+// delay_i is the delay by the machine. It is the sum of three times: from when the step could start
+// to its start, preemption within the step, and attest's own work around it. A delay postpones the
+// finish of its tick, and so also the later ticks that wait for that finish. `usual` is the median
+// of the delays, limited to a tenth of the period. A miss is the port's if both hold:
 //
 //  1. In the machine's timeline the deadline is kept. A miss that also happens to a port whose
 //     steps take no time is the machine's.

@@ -49,7 +49,7 @@ struct SampleColumns {
   std::size_t place_of(const std::string& metric) const;
 };
 
-// The numbers of a line. Without a metric, because the flight was not done, it is NaN.
+// The numbers of a line. The metrics of a flight whose outcome is not "done" are NaN.
 struct SampleRow {
   std::vector<double> drawn;
   std::vector<FlightResult> flights;  // of the reference, then of the port if there is one

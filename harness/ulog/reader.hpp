@@ -153,7 +153,7 @@ class Reader {
   Reader() = default;
   Result<void> read_header();
   void start();
-  // The bytes of the file from `offset` on: `count` or more, at most 1 MiB; fewer only before end_.
+  // The bytes of the file from `offset` on: `count` or more, at most 1 MiB; fewer only at end_.
   std::string_view bytes_at(std::uint64_t offset, std::size_t count);
   void fill_buffer(std::uint64_t offset);
   // Each sets `message` and returns true, or counts the damage and returns false.

@@ -44,7 +44,7 @@ class Pool {
       } else if (workers_.empty()) {
         fail(next_++, child.error());
       } else {
-        return;  // the workers that there are do the rest
+        return;  // the existing workers do the rest
       }
     }
   }

@@ -64,14 +64,14 @@ typedef struct attitude_setpoint {
 /* State of sticks.c. */
 typedef struct stick_state {
   lowpass roll, pitch; /* of the tilt [rad] */
-  float yaw_sp;        /* [rad]; with yaw_lock not finite: no heading is locked */
+  float yaw_sp;        /* [rad]; not finite, with yaw_lock: no heading is locked */
   float throttle_min;  /* thrust with the stick at its lowest, slews */
   float throttle_max;  /* limit of the thrust, slews up after arming */
   float hover;         /* thrust with a centred stick, slews */
 
   /* With yaw_lock. */
   lowpass yaw_rate;  /* [rad/s] */
-  lowpass yaw_error; /* estimated less unaided heading [rad] */
+  lowpass yaw_error; /* estimated minus unaided heading [rad] */
   float yaw_ref;     /* yaw_error when the heading was last steady [rad] */
   float correction;  /* [rad] */
   bool converging;   /* the estimate of the heading changes without a turn of the vehicle */
