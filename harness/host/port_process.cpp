@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/core/own_arena.hpp"
 #include "harness/host/host_here.hpp"
 #include "harness/host/host_protocol.hpp"
 #include "harness/host/port_launcher.hpp"
@@ -229,27 +230,22 @@ Result<void> ensure_host(std::unique_ptr<PortHost>& host, const HostOptions& opt
   return {};
 }
 
-Result<PortDescription> describe_port(const HostOptions& options,
-                                      const std::vector<std::string>& profiles) {
+namespace {
+
+// Of a port that can be called.
+Result<PortDescription> describe_callable(const HostOptions& options,
+                                          const std::vector<std::string>& profiles) {
   PortDescription description;
-  if (const auto folder = recorded_folder(options.port)) {
-    const auto host = open_recorded_host(*folder);
-    if (!host) return tl::unexpected(host.error());
-    static_cast<PortSays&>(description) = (*host)->says();
+  auto host = start_process(options, {});
+  if (!host) return tl::unexpected(host.error());
+  if (const auto& fault = (*host)->fault()) {
+    if (fault->kind != PortFault::Kind::timeout) return fail_at(options.port, fault->what);
+    description.hangs = fault->what;
     return description;
   }
-  {
-    const auto first = start_process(options, {});
-    if (!first) return tl::unexpected(first.error());
-    if (const auto& fault = (*first)->fault()) {
-      if (fault->kind != PortFault::Kind::timeout) return fail_at(options.port, fault->what);
-      description.hangs = fault->what;
-      return description;
-    }
-    static_cast<PortSays&>(description) = (*first)->says();
-  }  // one process of the port at a time
+  static_cast<PortSays&>(description) = (*host)->says();
   for (const std::string& profile : profiles) {
-    const auto host = start_process(options, {});
+    if (!*host) host = start_process(options, {});
     if (!host) return tl::unexpected(host.error());
     const bool supports = (*host)->supports(profile);
     if (const auto& fault = (*host)->fault()) {
@@ -265,8 +261,25 @@ Result<PortDescription> describe_port(const HostOptions& options,
     } else {
       description.refusals[profile] = (*host)->last_words();
     }
+    host->reset();  // one process of the port at a time
   }
   return description;
+}
+
+}  // namespace
+
+Result<PortDescription> describe_port(const HostOptions& options,
+                                      const std::vector<std::string>& profiles) {
+  if (const auto folder = recorded_folder(options.port)) {
+    return open_recorded_host(*folder).map([](const auto& host) {
+      PortDescription description;
+      static_cast<PortSays&>(description) = host->says();
+      return description;
+    });
+  }
+  Result<PortDescription> described;
+  in_own_arena([&] { described = describe_callable(options, profiles); });
+  return described;
 }
 
 }  // namespace attest

@@ -39,9 +39,8 @@ struct HostOptions {
 
 // Starts a process, which loads the port and waits for requests. REQUIRES: those of launch_port();
 // without a launcher the process is a copy of the caller's memory, which must have no data that the
-// port must not read. Errors: the port cannot
-// be opened, a process cannot be started. A port that crashes or hangs when it is loaded is no
-// error: each request ends with that fault.
+// port must not read. Errors: the port cannot be opened, a process cannot be started. A port that
+// crashes or hangs when it is loaded is no error: each request ends with that fault.
 Result<std::unique_ptr<PortHost>> start_host(const HostOptions& options, const Course& course = {});
 
 // Replaces `host` by a new one without a course if it is null or spent (PortHost::is_spent(): after

@@ -2,13 +2,13 @@
 
 #include <array>
 #include <cerrno>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "harness/core/own_arena.hpp"
 #include "harness/process/process.hpp"
 
 namespace attest {
@@ -40,10 +40,8 @@ void serve(Child::Runs runs, const Launcher::Work& work, MessageSocket& owner) {
 }  // namespace
 
 Result<Launcher> Launcher::start(Child::Runs runs, const Work& work) {
-  // A thread allocates memory in an arena of its own. A child that allocated in the fragments that
-  // the owner has left in the main arena would copy a page for nearly each of them.
   auto process = Child::spawn(Child::Runs::our_code, [&](MessageSocket& owner) {
-    std::thread([&] { serve(runs, work, owner); }).join();
+    in_own_arena([&] { serve(runs, work, owner); });
   });
   if (!process) return tl::unexpected(process.error());
   return Launcher(*std::move(process));

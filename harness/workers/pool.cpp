@@ -7,6 +7,7 @@
 #include <malloc.h>
 #include <poll.h>
 
+#include "harness/core/own_arena.hpp"
 #include "harness/process/child.hpp"
 
 namespace attest {
@@ -36,8 +37,9 @@ class Pool {
   void start_workers() {
     const auto most = static_cast<std::size_t>(std::max(options_.processes, 1));
     while (workers_.size() < most && has_next() && !options_.stop()) {
-      auto child =
-          Child::spawn(Child::Runs::our_code, [this](MessageSocket& parent) { do_work(parent); });
+      auto child = Child::spawn(Child::Runs::our_code, [this](MessageSocket& parent) {
+        in_own_arena([&] { do_work(parent); });
+      });
       if (child) {
         workers_.push_back({*std::move(child), 0, 0});
         give_work(workers_.back());

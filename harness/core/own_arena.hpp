@@ -1,0 +1,14 @@
+// Memory for processes that are about to be forked.
+#pragma once
+
+#include <functional>
+
+namespace attest {
+
+// Calls `work` in a thread, and returns when it has ended. The thread, and the processes that it
+// forks, allocate memory in an arena of their own. In the main arena they would allocate in the
+// fragments that the suite's files left behind: a copy of a page for nearly each allocation, in
+// each process. `work` must not throw.
+void in_own_arena(const std::function<void()>& work);
+
+}  // namespace attest
