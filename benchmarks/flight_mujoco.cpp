@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -79,28 +80,80 @@ std::vector<double> commands(const Flying& f) {
   return all;
 }
 
-void bare_steps(benchmark::State& state, const LoopRate& rate) {
-  static std::map<LoopRate, std::vector<double>> flown;  // kept, so that later turns start fast
-  const Flying& f = flying(rate);
-  if (!flown.contains(rate)) flown[rate] = commands(f);  // installs MuJoCo's callbacks too
-  const std::vector<double>& all = flown[rate];
-  const auto steps = static_cast<int>(physics_of(f.the_case, rate.unit).hertz() / rate.hertz());
-  mjModel* model = mj_loadXML(ATTEST_SOURCE_DIR "/models/iris.xml", nullptr, nullptr, 0);
-  mjData* data = mj_makeData(model);
-  for (auto _ : state) {
-    mj_resetData(model, data);
-    mju_copy(data->userdata, f.iris->vehicle().drag_kg_s.data(), 3);
-    for (int i = 0; i < 4; ++i) data->act[i] = f.iris->vehicle().hover_rotor_rad_s();
-    const auto begin = Clock::now();
-    for (std::size_t tick = 0; tick + 4 < all.size(); tick += 4) {
-      mju_copy(data->ctrl, all.data() + tick, 4);
-      for (int i = 0; i < steps; ++i) mj_step(model, data);
+// As many bare steps as a flight makes.
+class BareSteps {
+ public:
+  explicit BareSteps(const LoopRate& rate) : vehicle_(flying(rate).iris->vehicle()) {
+    static std::map<LoopRate, std::vector<double>> flown;  // kept, so that later turns start fast
+    const Flying& f = flying(rate);
+    if (!flown.contains(rate)) flown[rate] = commands(f);  // installs MuJoCo's callbacks too
+    commands_ = flown[rate];
+    per_tick_ = static_cast<int>(physics_of(f.the_case, rate.unit).hertz() / rate.hertz());
+  }
+  ~BareSteps() {
+    mj_deleteData(data_);
+    mj_deleteModel(model_);
+  }
+  BareSteps(const BareSteps&) = delete;
+  BareSteps& operator=(const BareSteps&) = delete;
+
+  void reset() {
+    mj_resetData(model_, data_);
+    mju_copy(data_->userdata, vehicle_.drag_kg_s.data(), 3);
+    for (int i = 0; i < 4; ++i) data_->act[i] = vehicle_.hover_rotor_rad_s();
+  }
+
+  void run() {
+    for (std::size_t tick = 0; tick + 4 < commands_.size(); tick += 4) {
+      mju_copy(data_->ctrl, commands_.data() + tick, 4);
+      for (int i = 0; i < per_tick_; ++i) mj_step(model_, data_);
     }
+  }
+
+ private:
+  const Vehicle& vehicle_;
+  std::vector<double> commands_;
+  int per_tick_ = 0;
+  mjModel* model_ = mj_loadXML(ATTEST_SOURCE_DIR "/models/iris.xml", nullptr, nullptr, 0);
+  mjData* data_ = mj_makeData(model_);
+};
+
+void bare_steps(benchmark::State& state, const LoopRate& rate) {
+  BareSteps steps(rate);
+  for (auto _ : state) {
+    steps.reset();
+    const auto begin = Clock::now();
+    steps.run();
     state.SetIterationTime(std::chrono::duration<double>(Clock::now() - begin).count());
   }
-  mj_deleteData(data);
-  mj_deleteModel(model);
 }
+
+// The flights of a sweep shared by threads: the time of one flight.
+void bare_steps_in_threads(benchmark::State& state, std::size_t threads) {
+  constexpr std::size_t flights = 64;
+  std::vector<std::unique_ptr<BareSteps>> steps;
+  for (std::size_t i = 0; i < threads; ++i) {
+    steps.push_back(std::make_unique<BareSteps>(Rate::hz(250)));
+  }
+  for (auto _ : state) {
+    const auto begin = Clock::now();
+    std::vector<std::jthread> all;
+    for (const auto& one : steps) {
+      all.emplace_back([&] {
+        for (std::size_t i = 0; i < flights / threads; ++i) {
+          one->reset();
+          one->run();
+        }
+      });
+    }
+    all.clear();
+    const std::chrono::duration<double> took = Clock::now() - begin;
+    state.SetIterationTime(took.count() / static_cast<double>(flights));
+  }
+}
+
+void one_thread(benchmark::State& state) { bare_steps_in_threads(state, 1); }
+void two_threads(benchmark::State& state) { bare_steps_in_threads(state, 2); }
 
 // The preparation of a flight after the vehicle was loaded.
 void set_up(benchmark::State& state) {
@@ -137,6 +190,8 @@ BENCHMARK_CAPTURE(bare_steps, of_sweep, Rate::hz(250))
     ->Name("sweep/mj_step")
     ->UseManualTime()
     ->Iterations(64);
+BENCHMARK(one_thread)->Name("sweep/mj_step_one")->UseManualTime()->Iterations(1);
+BENCHMARK(two_threads)->Name("sweep/mj_step_two")->UseManualTime()->Iterations(1);
 BENCHMARK(set_up)->Name("plant/set_up");
 BENCHMARK(bare_set_up)->Name("mujoco/set_up");
 

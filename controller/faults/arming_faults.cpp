@@ -150,11 +150,14 @@ const Fault arming_list[] = {
      "stores the previous rates in a variable that all instances share", "a second instance",
      "static state",
      [](FaultyLaw& law) {
-       law.rate.derivative = [](const Vector&, const Vector& rates, float dt,
-                                const RateGains& gains) {
-         static Vector prev = Vector::Zero();
-         const Vector d = RateStages::Law::derivative(prev, rates, dt, gains);
-         prev = rates;
+       // Lives as long as an instance, so that a vector does not depend on the one before it.
+       static std::weak_ptr<Vector> of_living_instances;
+       auto prev = of_living_instances.lock();
+       if (!prev) of_living_instances = prev = std::make_shared<Vector>(Vector::Zero());
+       law.rate.derivative = [prev](const Vector&, const Vector& rates, float dt,
+                                    const RateGains& gains) {
+         const Vector d = RateStages::Law::derivative(*prev, rates, dt, gains);
+         *prev = rates;
          return d;
        };
      }},

@@ -1,9 +1,36 @@
 #include "harness/core/own_arena.hpp"
 
-#include <thread>
+#include <cstddef>
+
+#include <pthread.h>
 
 namespace attest {
+namespace {
 
-void in_own_arena(const std::function<void()>& work) { std::thread(work).join(); }
+// The usual limit of a main thread. The default for threads depends on `ulimit -s`: with a large
+// limit the stack counts in the limit of a port's memory, and without a limit it is 2 MiB.
+constexpr std::size_t stack_bytes = std::size_t{8} << 20;
+
+void* call(void* work) {
+  (*static_cast<const std::function<void()>*>(work))();
+  return nullptr;
+}
+
+}  // namespace
+
+void in_own_arena(const std::function<void()>& work) {
+  pthread_attr_t attributes;
+  ::pthread_attr_init(&attributes);
+  ::pthread_attr_setstacksize(&attributes, stack_bytes);
+  pthread_t thread{};
+  void* const argument = const_cast<std::function<void()>*>(&work);
+  const bool has_thread = ::pthread_create(&thread, &attributes, call, argument) == 0;
+  ::pthread_attr_destroy(&attributes);
+  if (has_thread) {
+    ::pthread_join(thread, nullptr);
+  } else {
+    work();
+  }
+}
 
 }  // namespace attest

@@ -6,12 +6,11 @@
 #include <string>
 #include <utility>
 
-#include <unistd.h>
-
 #include "harness/host/host_here.hpp"
 #include "harness/host/host_protocol.hpp"
 #include "harness/host/port_process.hpp"
 #include "harness/process/launcher.hpp"
+#include "harness/process/process.hpp"
 
 namespace attest {
 namespace {
@@ -67,6 +66,8 @@ class PortLauncher {
     return PortLauncher(*std::move(calls), *std::move(launcher));
   }
 
+  bool is_alive() const { return launcher_.is_alive(); }
+
   Result<PortChild> launch(const Served& served) {
     calls_->reset();
     std::string request(sizeof served, '\0');
@@ -85,23 +86,31 @@ class PortLauncher {
 };
 
 // Empty: this process has none.
-std::optional<Result<PortLauncher>>& port_launcher() {
-  static std::optional<Result<PortLauncher>> launcher;
+std::optional<PortLauncher>& port_launcher() {
+  static std::optional<PortLauncher> launcher;
   return launcher;
 }
 
 }  // namespace
 
-void start_port_launcher() {
+Result<void> start_port_launcher() {
   port_launcher().reset();
-  port_launcher() = PortLauncher::start();
+  auto launcher = PortLauncher::start();
+  if (!launcher) return tl::unexpected(launcher.error());
+  port_launcher().emplace(*std::move(launcher));
+  return {};
 }
+
+bool has_port_launcher() { return port_launcher().has_value(); }
 
 Result<PortChild> launch_port(const HostOptions& options, const Course& course) {
   const Served served{&options, course};
   if (auto& launcher = port_launcher()) {
-    return launcher->and_then([&](PortLauncher& one) { return one.launch(served); });
+    auto child = launcher->launch(served);
+    if (!launcher->is_alive()) launcher.reset();
+    return child;
   }
+  if (is_below_guard()) return fail("the worker has no launcher for the port's process");
   auto calls = shared_calls();
   if (!calls) return tl::unexpected(calls.error());
   return Child::spawn(Child::Runs::code_of_others,

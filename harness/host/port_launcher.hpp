@@ -15,8 +15,11 @@ struct HostOptions;
 
 // Starts the launcher of this process, and ends the one that it had. A worker calls this before it
 // reads data that ports must not read (Job::begin_worker()). It can then judge many ports, one
-// after the other. An error is returned by the next launch_port().
-void start_port_launcher();
+// after the other. Errors: a process cannot be started.
+Result<void> start_port_launcher();
+
+// False after the launcher has died: the worker must end, because it may have read such data.
+bool has_port_launcher();
 
 // A process that loads a port and serves requests (host_protocol.hpp).
 struct PortChild {
@@ -24,6 +27,7 @@ struct PortChild {
   std::shared_ptr<const PortCalls> calls;
 };
 
+// Errors: a process cannot be started, or the process is a worker without a launcher.
 // REQUIRES, if there is a launcher: it was started after `options` and the objects of `course` were
 // made, because only their addresses are sent; the process before has ended.
 Result<PortChild> launch_port(const HostOptions& options, const Course& course);

@@ -245,7 +245,8 @@ Result<PortDescription> describe_callable(const HostOptions& options,
   }
   static_cast<PortSays&>(description) = (*host)->says();
   for (const std::string& profile : profiles) {
-    if (!*host) host = start_process(options, {});
+    host->reset();  // one process of the port at a time
+    host = start_process(options, {});
     if (!host) return tl::unexpected(host.error());
     const bool supports = (*host)->supports(profile);
     if (const auto& fault = (*host)->fault()) {
@@ -261,7 +262,6 @@ Result<PortDescription> describe_callable(const HostOptions& options,
     } else {
       description.refusals[profile] = (*host)->last_words();
     }
-    host->reset();  // one process of the port at a time
   }
   return description;
 }

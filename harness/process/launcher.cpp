@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "harness/core/own_arena.hpp"
 #include "harness/process/process.hpp"
 
 namespace attest {
@@ -22,10 +21,10 @@ struct Launched {
 // In the launcher, until its owner closes the socket.
 void serve(Child::Runs runs, const Launcher::Work& work, MessageSocket& owner) {
   while (true) {
-    const Received request = owner.receive();
-    if (request.kind != Received::Kind::message) return;
     const std::vector<int> descriptors = owner.receive_descriptors();
     if (descriptors.size() != 3) return;
+    const Received request = owner.receive();
+    if (request.kind != Received::Kind::message) return;
     const ChildFiles files{descriptors[0], descriptors[1], descriptors[2]};
     Launched launched{};
     launched.child = fork_sibling([&] {
@@ -40,29 +39,31 @@ void serve(Child::Runs runs, const Launcher::Work& work, MessageSocket& owner) {
 }  // namespace
 
 Result<Launcher> Launcher::start(Child::Runs runs, const Work& work) {
-  auto process = Child::spawn(Child::Runs::our_code, [&](MessageSocket& owner) {
-    in_own_arena([&] { serve(runs, work, owner); });
-  });
+  auto process =
+      Child::spawn(Child::Runs::our_code, [&](MessageSocket& owner) { serve(runs, work, owner); });
   if (!process) return tl::unexpected(process.error());
   return Launcher(*std::move(process));
 }
 
 Result<Child> Launcher::launch(const std::string& request) {
-  bool has_died = false;
   const auto fork_there = [&](const ChildFiles& files) -> pid_t {
     const std::array descriptors{files.input, files.output, files.socket};
     Launched launched{};
-    has_died = !process_.socket().send(request) ||
-               !process_.socket().send_descriptors(descriptors) ||
-               process_.receive().kind != Received::Kind::message ||
-               process_.receive_blob(&launched, sizeof launched) != Received::Kind::message;
-    if (has_died) return -1;
+    if (!process_.socket().send_descriptors(descriptors)) {  // there are too many, for example
+      is_alive_ = errno != EPIPE && errno != ECONNRESET;
+      return -1;
+    }
+    is_alive_ = process_.socket().send(request) &&
+                process_.receive().kind == Received::Kind::message &&
+                process_.receive_blob(&launched, sizeof launched) == Received::Kind::message;
+    if (!is_alive_) return -1;
     errno = launched.reason;
     return launched.child;
   };
+  if (!is_alive_) return fail("the launcher process of attest has died");
   auto child = Child::adopt(
       [&](const ChildFiles& files) { return Process::adopt([&] { return fork_there(files); }); });
-  if (!has_died) return child;
+  if (is_alive_) return child;
   process_.kill();
   return fail(fmt::format("a launcher process of attest {}; please report this", process_.end()));
 }

@@ -11,9 +11,10 @@ namespace attest {
 
 // The children are copies of the launcher's memory, and the launcher is a copy of its owner's
 // memory at start(). So a child cannot read what the owner has read since then. It is a child of
-// the owner in all other respects.
+// the owner, and has the limits, the scheduling and the CPUs of the launcher.
 //
-// One thread at a time. REQUIRES: the owner is below a guard (Process).
+// The thread that calls start() must live as long as the launcher. One thread at a time. REQUIRES:
+// the owner is below a guard (Process).
 class Launcher {
  public:
   // Handles one request in a child.
@@ -24,11 +25,13 @@ class Launcher {
 
   // Errors: no child can be started, or the launcher has died.
   Result<Child> launch(const std::string& request);
+  bool is_alive() const { return is_alive_; }  // as far as the last launch() has seen
 
  private:
   explicit Launcher(Child process) : process_(std::move(process)) {}
 
   Child process_;
+  bool is_alive_ = true;
 };
 
 }  // namespace attest

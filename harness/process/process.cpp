@@ -20,10 +20,8 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sched.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -109,7 +107,7 @@ std::vector<pid_t> orphans() {
 
 // When an orphan ends, its own children become orphans.
 void end_orphans() {
-  // Most processes have no children at this point, and reading /proc costs 100 page faults.
+  // Without children, /proc need not be read, which costs 100 page faults.
   siginfo_t ignored{};
   if (::waitid(P_ALL, 0, &ignored, WEXITED | WNOHANG | WNOWAIT) != 0 && errno == ECHILD) return;
   const std::lock_guard lock(owned().mutex);
@@ -254,15 +252,32 @@ pid_t fork_sibling(const std::function<void()>& work) {
   const SignalsBlocked blocked;
   const std::lock_guard lock(owned().mutex);
   const pid_t owner = ::getppid();
-  // glibc has no function for CLONE_PARENT. Its fork() also restores locks that other threads hold.
-  const long forked =
-      ::syscall(SYS_clone, CLONE_PARENT | SIGCHLD, nullptr, nullptr, nullptr, nullptr);
-  if (forked == 0) {
-    own_nothing();
-    lead_group(owner, work);
+  std::array<int, 2> pipe{-1, -1};
+  if (::pipe2(pipe.data(), O_CLOEXEC) != 0) return -1;
+  const pid_t between = ::fork();
+  if (between == 0) {
+    const std::array<int, 2> forked{::fork(), errno};
+    if (forked[0] == 0) {
+      own_nothing();
+      for (const int end : pipe) ::close(end);
+      happens_within(time_to_die_s, [&] { return ::getppid() == owner; });
+      lead_group(owner, work);
+    }
+    static_cast<void>(!::write(pipe[1], &forked, sizeof forked));
+    ::_exit(EXIT_SUCCESS);
   }
-  return static_cast<pid_t>(forked);
+  std::array<int, 2> forked{between, errno};  // its number, and the reason if there is none
+  ::close(pipe[1]);
+  if (between > 0) {
+    if (::read(pipe[0], &forked, sizeof forked) != sizeof forked) forked = {-1, ECHILD};
+    ::waitpid(between, nullptr, 0);  // from here on the child process is the owner's
+  }
+  ::close(pipe[0]);
+  errno = forked[1];
+  return forked[0];
 }
+
+bool is_below_guard() { return is_guarded; }
 
 Process::Process(Process&& other) noexcept
     : pid_(std::exchange(other.pid_, -1)),

@@ -60,9 +60,13 @@ class Process {
   bool was_killed_ = false;
 };
 
-// Forks, as Process::start() does, but for another owner: the child process is a child of the
-// parent of this process, which adopts it. Returns its number; -1: errno has the reason.
-// REQUIRES: this process is below a guard, and its other threads hold no lock.
+// Forks, as Process::start() does, but for another owner, the parent of this process, which adopts
+// the child process. A process between the two forks it and ends, so that it becomes a child of the
+// owner, which is a subreaper. Returns its number; -1: errno has the reason. REQUIRES: this process
+// is below a guard, and its other threads hold no lock.
 pid_t fork_sibling(const std::function<void()>& work);
+
+// Whether an owner of this process has a guard, as that of a worker.
+bool is_below_guard();
 
 }  // namespace attest

@@ -126,13 +126,17 @@ class RowOrder {
   std::optional<Error> error_;
 };
 
-// Flies the samples of one piece of work. The launcher starts before the reference flies, so that
-// no process of the port has a flight of the reference in its memory.
+// Flies the samples of one piece of work. The launcher starts before the reference flies them, so
+// that no process of the port has these flights in its memory.
 void fly_piece(const FlightSampler& sampler, const SampleRange& piece,
                const FlightsOptions& options, const Work::Done& done) {
   std::vector<Result<SampledFlight>> samples;
   for (std::uint64_t i = piece.begin; i < piece.end; ++i) samples.push_back(sampler.sample(i));
-  if (options.with_port) start_port_launcher();
+  if (options.with_port) {
+    if (const auto started = start_port_launcher(); !started) {
+      return done(encode(Result<nlohmann::json>(tl::unexpected(started.error()))), piece.size());
+    }
+  }
   for (std::uint64_t i = piece.begin; i < piece.end; ++i) {
     const auto row = samples[i - piece.begin].and_then(
         [&](const SampledFlight& sample) { return fly_sample(sampler, sample, i, options); });

@@ -6,12 +6,13 @@
 
 namespace attest {
 
-// The launcher starts before the worker opens its first job. So no process of a port has a golden
-// or an output of the reference in its memory, also none of an earlier job.
+// The launcher starts before the worker opens its first job. So no process of a port has in its
+// memory what the worker has read: goldens and outputs of the reference.
 template <typename R>
 class PortJob : public Job<R> {
  public:
-  void begin_worker() final { start_port_launcher(); }
+  Result<void> begin_worker() final { return start_port_launcher(); }
+  bool ends_worker() const final { return !has_port_launcher(); }
 };
 
 }  // namespace attest

@@ -23,8 +23,11 @@ class Job {
   virtual std::size_t size() const = 0;  // tasks
 
   // Called in a worker process that begins with this job, before open(). The process runs other
-  // jobs of the same kind afterwards.
-  virtual void begin_worker() {}
+  // jobs of the same kind afterwards. After an error another worker runs the job, if there is one.
+  virtual Result<void> begin_worker() { return {}; }
+
+  // Called after close(). True if the worker cannot run other jobs.
+  virtual bool ends_worker() const { return false; }
 
   // Called before the first task. An error applies to all tasks, which are left out.
   virtual Result<void> open() { return {}; }
@@ -142,12 +145,13 @@ JobResults<R> run_jobs(const Jobs<R>& jobs, const JobOptions<R>& options) {
   if (options.in_process) return detail::run_here(jobs, options);
   std::vector<Work> work;
   for (const auto& job : jobs) {
-    work.push_back({job->size(), [&job] { job->begin_worker(); },
+    work.push_back({job->size(), [&job] { return job->begin_worker(); },
                     [&job](const Work::Done& done) {
                       detail::run_tasks(*job, [&](const Result<R>& result, std::size_t tasks) {
                         done(Codec<R>::encode(result), tasks);
                       });
-                    }});
+                    },
+                    [&job] { return job->ends_worker(); }});
   }
   detail::Collector<R> collector(jobs.size(), options);
   PoolOptions pool;

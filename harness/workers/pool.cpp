@@ -1,6 +1,8 @@
 #include "harness/workers/pool.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,7 +18,10 @@ namespace {
 class Pool {
  public:
   Pool(const std::vector<Work>& work, const PoolOptions& options)
-      : work_(work), options_(options), end_(work.size()) {}
+      : work_(work),
+        options_(options),
+        most_(static_cast<std::size_t>(std::max(options.processes, 1))),
+        end_(work.size()) {}
 
   std::size_t run() {
     for (start_workers(); !workers_.empty() && !options_.stop(); start_workers()) {
@@ -35,48 +40,69 @@ class Pool {
   };
 
   void start_workers() {
-    const auto most = static_cast<std::size_t>(std::max(options_.processes, 1));
-    while (workers_.size() < most && has_next() && !options_.stop()) {
+    while (workers_.size() < most_ && next_work() && !options_.stop()) {
       auto child = Child::spawn(Child::Runs::our_code, [this](MessageSocket& parent) {
         in_own_arena([&] { do_work(parent); });
       });
       if (child) {
         workers_.push_back({*std::move(child), 0, 0});
         give_work(workers_.back());
-      } else if (workers_.empty()) {
-        fail(next_++, child.error());
       } else {
-        return;  // the existing workers do the rest
+        cannot_begin(take_work(), child.error(), workers_.size());
       }
     }
   }
 
-  // Skips work without tasks.
-  bool has_next() {
+  // Work that a worker has given back, or else the next one with tasks. Empty: all is given.
+  std::optional<std::size_t> next_work() {
+    if (!given_back_.empty() && *given_back_.begin() < end_) return *given_back_.begin();
     while (next_ < end_ && work_[next_].tasks == 0) ++next_;
-    return next_ < end_;
+    return next_ < end_ ? std::optional(next_) : std::nullopt;
+  }
+
+  // REQUIRES: next_work().
+  std::size_t take_work() {
+    const std::size_t work = *next_work();
+    if (given_back_.erase(work) == 0) ++next_;
+    return work;
+  }
+
+  // A worker, or what it needs, cannot be started, perhaps because there are too many processes.
+  // The others, if there are any, do the work.
+  void cannot_begin(std::size_t work, const Error& error, std::size_t others) {
+    most_ = std::max<std::size_t>(others, 1);
+    if (others > 0) {
+      given_back_.insert(work);
+    } else {
+      fail(work, error);
+    }
   }
 
   // In a worker.
   void do_work(MessageSocket& parent) {
+    // An interrupt may come just before the fork. The work must not begin then: it would report the
+    // interrupt as a port that does not answer.
+    if (options_.stop()) return;
     bool has_begun = false;
     std::size_t index = 0;
     while (parent.receive().kind == Received::Kind::message &&
            parent.receive_blob(&index, sizeof index) == Received::Kind::message) {
-      // An interrupt may come just before this. The work must not begin then: it would report the
-      // interrupt as a port that does not answer.
-      if (options_.stop()) return;
       const Work& work = work_[index];
-      if (!std::exchange(has_begun, true)) work.begin_worker();
-      work.run([&](const std::string& answer, std::size_t tasks) {
+      const Work::Done send = [&](const std::string& answer, std::size_t tasks) {
         parent.send(answer, {{&tasks, sizeof tasks}});
-      });
+      };
+      if (!std::exchange(has_begun, true)) {
+        const auto begun = work.begin_worker();
+        if (!begun) return send(begun.error().to_string(), 0);
+      }
+      work.run(send);
+      if (work.ends_worker()) return;
     }
   }
 
-  // REQUIRES: has_next(). If the worker has died, the wait for its answer finds out how.
+  // REQUIRES: next_work(). If the worker has died, the wait for its answer finds out how.
   void give_work(Worker& worker) {
-    worker.work = next_++;
+    worker.work = take_work();
     worker.open_tasks = work_[worker.work].tasks;
     worker.child.socket().send("", {{&worker.work, sizeof worker.work}});
   }
@@ -109,10 +135,14 @@ class Pool {
     if (worker.child.receive_blob(&tasks, sizeof tasks) != Received::Kind::message) {
       return conclude(worker);
     }
+    if (tasks == 0) {
+      worker.over = true;
+      return cannot_begin(worker.work, {received.head}, workers_.size() - 1);
+    }
     if (!options_.on_answer(worker.work, received.head)) end_ = std::min(end_, worker.work + 1);
     worker.open_tasks -= std::min(tasks, worker.open_tasks);
     if (worker.open_tasks > 0) return;
-    if (has_next()) {
+    if (next_work()) {
       give_work(worker);
     } else {
       worker.over = true;
@@ -122,6 +152,12 @@ class Pool {
   void conclude(Worker& worker) {
     worker.over = true;
     const std::string how = worker.child.end(), words = worker.child.last_words();
+    // It has ended after the work before (Work::ends_worker), and did not receive this.
+    const bool is_untouched = worker.open_tasks == work_[worker.work].tasks;
+    if (worker.child.has_exited_well() && is_untouched && retried_.insert(worker.work).second) {
+      given_back_.insert(worker.work);
+      return;
+    }
     fail(worker.work, {fmt::format("a worker process of attest {}{}{}; please report this", how,
                                    words.empty() ? "" : ": ", words)});
   }
@@ -129,14 +165,16 @@ class Pool {
   const std::vector<Work>& work_;
   const PoolOptions& options_;
   std::vector<Worker> workers_;
-  std::size_t next_ = 0;  // to be started
+  std::size_t most_;      // workers at a time
+  std::size_t next_ = 0;  // to be given to a worker
   std::size_t end_;       // of the needed work
+  std::set<std::size_t> given_back_, retried_;
 };
 
 }  // namespace
 
 std::size_t run_in_workers(const std::vector<Work>& work, const PoolOptions& options) {
-  // Returns free memory to the system first: each worker that reused it would copy it page by page.
+  // Returns free memory to the system first, so that a fork has fewer pages.
   ::malloc_trim(0);
   return Pool(work, options).run();
 }

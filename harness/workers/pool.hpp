@@ -14,12 +14,15 @@ namespace attest {
 // Some tasks in a row for one process.
 struct Work {
   std::size_t tasks = 0;
-  // Called in a worker if this is its first piece of work, before `run`.
-  std::function<void()> begin_worker = [] {};
+  // Called in a worker if this is its first piece of work, before `run`. After an error another
+  // worker does the work, if there is one.
+  std::function<Result<void>()> begin_worker = [] { return Result<void>(); };
   // Sends an answer, and the number of tasks that it is for.
   using Done = std::function<void(const std::string& answer, std::size_t tasks)>;
   // Called in a worker: does the tasks in their order. The worker does other work afterwards.
   std::function<void(const Done& done)> run;
+  // Called after `run`: whether the worker must not do other work.
+  std::function<bool()> ends_worker = [] { return false; };
 };
 
 struct PoolOptions {

@@ -56,6 +56,18 @@ TEST(AnswersOfFaults, AreThoseOfEachFault) {
       << "no input distinguishes it from the law";
 }
 
+// A worker computes those of many vectors.
+TEST(AnswersOfFaults, DoNotDependOnTheVectorBefore) {
+  const FaultAnswers first = answers_of_faults(given(), subject);
+  const FaultAnswers second = answers_of_faults(given(), subject);
+  ASSERT_EQ(first.of_fault, second.of_fault);
+  for (std::size_t i = 0; i < first.distinct.size(); ++i) {
+    const Outputs &a = first.distinct[i], &b = second.distinct[i];
+    ASSERT_EQ(a.size(), b.size());
+    EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(Answer)), 0) << i;
+  }
+}
+
 TEST(AnswersOfFaults, ThatAreTheSameAreKeptOnce) {
   const FaultAnswers faults = answers_of_faults(given(), subject);
   EXPECT_THAT(faults.distinct, SizeIs(Lt(faults.of_fault.size())));

@@ -1,5 +1,6 @@
 #include "harness/process/launcher.hpp"
 
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <fstream>
@@ -8,6 +9,8 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <sched.h>
 #include <unistd.h>
 
 namespace attest {
@@ -100,12 +103,31 @@ TEST(Launcher, AChildIsTheOwnersAndLeadsAGroup) {
             "yes");
 }
 
+// The functions of glibc that name a thread use the number that fork() has noted.
+TEST(Launcher, TheThreadOfAChildHasItsOwnNumber) {
+  const auto pins_itself = [](const std::string&, MessageSocket& owner) {
+    cpu_set_t one, now;
+    CPU_ZERO(&one);
+    CPU_SET(static_cast<unsigned>(::sched_getcpu()), &one);
+    ::pthread_setaffinity_np(::pthread_self(), sizeof one, &one);
+    ::sched_getaffinity(0, sizeof now, &now);
+    owner.send(CPU_COUNT(&now) == 1 ? "pinned" : "not pinned");
+  };
+  EXPECT_EQ(with_launcher(pins_itself, [](Launcher& launcher) { return answer_of(launcher); }),
+            "pinned");
+}
+
 TEST(Launcher, TheDaemonsOfAChildEndWithIt) {
   const auto stays_with_a_daemon = [](const std::string&, MessageSocket& owner) {
+    std::array<int, 2> pipe{};
+    if (::pipe(pipe.data()) != 0) return;
     const pid_t daemon = ::fork();
+    char byte = 0;
     if (daemon == 0) {
       ::setsid();
+      static_cast<void>(!::write(pipe[1], &byte, 1));
     } else {
+      static_cast<void>(!::read(pipe[0], &byte, 1));
       owner.send(fmt::format("{}", daemon));
     }
     while (true) ::pause();
@@ -135,10 +157,11 @@ TEST(Launcher, OneThatWasKilledIsAnError) {
   EXPECT_EQ(with_launcher(kills,
                           [](Launcher& launcher) {
                             const std::string first = answer_of(launcher);
-                            return first + "; " + answer_of(launcher);
+                            const std::string second = answer_of(launcher);
+                            return first + "; " + second + "; " + answer_of(launcher);
                           }),
             "killed; a launcher process of attest was killed by signal 9 (Killed); please report "
-            "this");
+            "this; the launcher process of attest has died");
 }
 
 }  // namespace

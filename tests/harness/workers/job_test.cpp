@@ -40,7 +40,11 @@ class FakeJob final : public Job<std::string> {
   FakeJob(std::vector<Task> tasks, bool opens) : tasks_(std::move(tasks)), opens_(opens) {}
 
   std::size_t size() const override { return tasks_.size(); }
-  void begin_worker() override { worker_began_with = tasks_.size(); }
+  Result<void> begin_worker() override {
+    worker_began_with = tasks_.size();
+    return worker_begins();
+  }
+  bool ends_worker() const override { return tasks_.size() == ends_worker_after; }
   Result<void> open() override {
     if (!opens_) return fail("no golden");
     opened_ = true;
@@ -48,7 +52,7 @@ class FakeJob final : public Job<std::string> {
     return {};
   }
   Result<std::string> run(std::size_t task) override {
-    EXPECT_TRUE(opened_);
+    if (!opened_) return fail("not open");
     auto result = tasks_[task]();
     is_spent_ = result && *result == "spent";
     ++done_since_open_;
@@ -58,7 +62,10 @@ class FakeJob final : public Job<std::string> {
   bool is_spent() const override { return is_spent_; }
   void close() override { opened_ = false; }
 
-  static inline std::size_t worker_began_with = 0;  // the number of tasks of its first job
+  // Both are the number of tasks of a job.
+  static inline std::size_t worker_began_with = 0;
+  static inline std::size_t ends_worker_after = 1000;
+  static inline std::function<Result<void>()> worker_begins = [] { return Result<void>(); };
 
  private:
   std::vector<Task> tasks_;
@@ -121,6 +128,37 @@ TEST(Jobs, AWorkerRunsJobsOneAfterTheOther) {
   ASSERT_EQ(results.size(), 3u);
   EXPECT_THAT(results[0], testing::EndsWith("began with 1"));
   EXPECT_THAT(results, testing::Each(results[0]));
+}
+
+TEST(Jobs, AfterAJobThatEndsItsWorkerTheOthersHaveAnotherWorker) {
+  FakeJob::ends_worker_after = 1;
+  const Task says_where = process_and_first_job;
+  const auto outcome = run_jobs(
+      jobs_of({{says_where}, {says_where, says_where}, {says_where}, {says_where}}), with(1));
+  FakeJob::ends_worker_after = 1000;
+  EXPECT_THAT(outcome.errors, IsEmpty());
+  ASSERT_EQ(outcome.results.size(), 5u);
+  EXPECT_THAT(outcome.results[0], testing::EndsWith("began with 1"));
+  EXPECT_THAT(outcome.results[1], testing::EndsWith("began with 2"));
+}
+
+// It has no process for a launcher, for example.
+TEST(Jobs, TheOtherWorkersDoTheWorkOfOneThatCannotBegin) {
+  const TemporaryDirectory folder;
+  const auto first = folder.path() / "first";
+  FakeJob::worker_begins = [&]() -> Result<void> {
+    if (std::filesystem::create_directory(first)) return {};
+    return fail("too many processes");
+  };
+  const auto jobs = jobs_of({{slowly("a")}, {slowly("b")}, {slowly("c")}, {says("d")}});
+  const auto outcome = run_jobs(jobs, with(3));
+  EXPECT_THAT(outcome.results, ElementsAre("a", "b", "c", "d"));
+  EXPECT_THAT(outcome.errors, IsEmpty());
+  const auto alone = run_jobs(jobs, with(1));
+  FakeJob::worker_begins = [] { return Result<void>(); };
+  EXPECT_THAT(alone.results, IsEmpty());
+  ASSERT_EQ(alone.errors.size(), 4u);
+  EXPECT_EQ(alone.errors[0].message, "too many processes");
 }
 
 TEST(Jobs, AfterADeathTheOtherJobsHaveAnotherWorker) {
