@@ -36,10 +36,44 @@ bool is_sane(const Prefix& prefix) {
   return prefix.magic == magic && prefix.blobs <= most_blobs && prefix.head <= longest_head;
 }
 
-// Room for the descriptors of a message, in the form of the system.
-struct Control {
+// A message of the system that has descriptors. They do not travel without data, so it has a byte.
+class DescriptorMessage {
+ public:
+  DescriptorMessage() {
+    header_.msg_iov = &data_;
+    header_.msg_iovlen = 1;
+    header_.msg_control = control_.data();
+    header_.msg_controllen = control_.size();
+  }
+  DescriptorMessage(const DescriptorMessage&) = delete;
+  DescriptorMessage& operator=(const DescriptorMessage&) = delete;
+
+  bool send(int socket, std::span<const int> descriptors) {
+    header_.msg_controllen = CMSG_SPACE(descriptors.size_bytes());
+    cmsghdr* const head = CMSG_FIRSTHDR(&header_);
+    head->cmsg_level = SOL_SOCKET;
+    head->cmsg_type = SCM_RIGHTS;
+    head->cmsg_len = CMSG_LEN(descriptors.size_bytes());
+    std::memcpy(CMSG_DATA(head), descriptors.data(), descriptors.size_bytes());
+    return ::sendmsg(socket, &header_, MSG_NOSIGNAL) == sizeof byte_;
+  }
+
+  std::vector<int> receive(int socket) {
+    if (::recvmsg(socket, &header_, MSG_CMSG_CLOEXEC) != sizeof byte_) return {};
+    const cmsghdr* const head = CMSG_FIRSTHDR(&header_);
+    if (head == nullptr || head->cmsg_type != SCM_RIGHTS) return {};
+    std::vector<int> descriptors((head->cmsg_len - CMSG_LEN(0)) / sizeof(int));
+    std::memcpy(descriptors.data(), CMSG_DATA(head), descriptors.size() * sizeof(int));
+    return descriptors;
+  }
+
+ private:
   static constexpr std::size_t most_descriptors = 8;
-  alignas(cmsghdr) std::array<char, CMSG_SPACE(most_descriptors * sizeof(int))> bytes{};
+
+  char byte_ = 0;
+  iovec data_{&byte_, sizeof byte_};
+  alignas(cmsghdr) std::array<char, CMSG_SPACE(most_descriptors * sizeof(int))> control_{};
+  msghdr header_{};
 };
 
 // Waits until the descriptor is ready. Returns the reason if the waiting ended before that.
@@ -136,38 +170,11 @@ Kind MessageSocket::receive_blob(void* place, std::size_t size, const Patience& 
 }
 
 bool MessageSocket::send_descriptors(std::span<const int> descriptors) {
-  if (::getpid() != owner_) return false;
-  char byte = 0;  // descriptors do not travel without data
-  iovec data{&byte, sizeof byte};
-  Control control;
-  msghdr message{};
-  message.msg_iov = &data;
-  message.msg_iovlen = 1;
-  message.msg_control = control.bytes.data();
-  message.msg_controllen = CMSG_SPACE(descriptors.size_bytes());
-  cmsghdr* const head = CMSG_FIRSTHDR(&message);
-  head->cmsg_level = SOL_SOCKET;
-  head->cmsg_type = SCM_RIGHTS;
-  head->cmsg_len = CMSG_LEN(descriptors.size_bytes());
-  std::memcpy(CMSG_DATA(head), descriptors.data(), descriptors.size_bytes());
-  return ::sendmsg(descriptor_, &message, MSG_NOSIGNAL) == sizeof byte;
+  return ::getpid() == owner_ && DescriptorMessage().send(descriptor_, descriptors);
 }
 
 std::vector<int> MessageSocket::receive_descriptors() {
-  char byte = 0;
-  iovec data{&byte, sizeof byte};
-  Control control;
-  msghdr message{};
-  message.msg_iov = &data;
-  message.msg_iovlen = 1;
-  message.msg_control = control.bytes.data();
-  message.msg_controllen = control.bytes.size();
-  if (::recvmsg(descriptor_, &message, MSG_CMSG_CLOEXEC) != sizeof byte) return {};
-  const cmsghdr* const head = CMSG_FIRSTHDR(&message);
-  if (head == nullptr || head->cmsg_type != SCM_RIGHTS) return {};
-  std::vector<int> descriptors((head->cmsg_len - CMSG_LEN(0)) / sizeof(int));
-  std::memcpy(descriptors.data(), CMSG_DATA(head), descriptors.size() * sizeof(int));
-  return descriptors;
+  return DescriptorMessage().receive(descriptor_);
 }
 
 Received MessageSocket::receive(const Patience& patience) {
