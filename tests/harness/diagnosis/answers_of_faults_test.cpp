@@ -59,6 +59,8 @@ TEST(AnswersOfFaults, AreThoseOfEachFault) {
 // A worker computes those of many vectors.
 TEST(AnswersOfFaults, DoNotDependOnTheVectorBefore) {
   const FaultAnswers first = answers_of_faults(given(), subject);
+  answers_of_faults(stimulate(case_of("[control_state]\nroll_rate = -0.7\n"), Rate::hz(250)),
+                    subject);
   const FaultAnswers second = answers_of_faults(given(), subject);
   ASSERT_EQ(first.of_fault, second.of_fault);
   for (std::size_t i = 0; i < first.distinct.size(); ++i) {
