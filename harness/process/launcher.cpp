@@ -23,12 +23,13 @@ void serve(Child::Runs runs, const Launcher::Work& work, MessageSocket& owner) {
   while (true) {
     const std::vector<int> descriptors = owner.receive_descriptors();
     if (descriptors.size() != 3) return;
-    const Received request = owner.receive();
-    if (request.kind != Received::Kind::message) return;
     const ChildFiles files{descriptors[0], descriptors[1], descriptors[2]};
     Launched launched{};
     launched.child = fork_sibling([&] {
-      run_in_child(runs, files, [&](MessageSocket& socket) { work(request.head, socket); });
+      run_in_child(runs, files, [&](MessageSocket& socket) {
+        const Received request = socket.receive();
+        if (request.kind == Received::Kind::message) work(request.head, socket);
+      });
     });
     launched.reason = errno;
     for (const int descriptor : descriptors) ::close(descriptor);
@@ -53,8 +54,7 @@ Result<Child> Launcher::launch(const std::string& request) {
       is_alive_ = errno != EPIPE && errno != ECONNRESET;
       return -1;
     }
-    is_alive_ = process_.socket().send(request) &&
-                process_.receive().kind == Received::Kind::message &&
+    is_alive_ = process_.receive().kind == Received::Kind::message &&
                 process_.receive_blob(&launched, sizeof launched) == Received::Kind::message;
     if (!is_alive_) return -1;
     errno = launched.reason;
@@ -63,7 +63,12 @@ Result<Child> Launcher::launch(const std::string& request) {
   if (!is_alive_) return fail("the launcher process of attest has died");
   auto child = Child::adopt(
       [&](const ChildFiles& files) { return Process::adopt([&] { return fork_there(files); }); });
-  if (is_alive_) return child;
+  if (is_alive_) {
+    // Only now, when its owner has it: the child may kill the launcher. If the request cannot be
+    // sent, the child has died, and the caller learns that from its answer.
+    if (child) child->socket().send(request);
+    return child;
+  }
   process_.kill();
   return fail(fmt::format("a launcher process of attest {}; please report this", process_.end()));
 }
