@@ -44,10 +44,8 @@ std::optional<Diagnosis> diagnosed(const RunResult& run, const Examined& examine
     }
     return similarities;
   };
-  auto diagnosis = diagnose(vectors(nullptr));
-  if (diagnosis && wants_partner(*diagnosis)) {
-    add_partner(vectors(diagnosis->suspects.front().fault), *diagnosis);
-  }
+  auto diagnosis =
+      diagnose(vectors(nullptr), [&](const faults::Fault& fault) { return vectors(&fault); });
   if (!interrupted()) return diagnosis;
   // It would rest on some of the vectors only. The verdicts are complete.
   fmt::print(stderr, "attest: interrupted; the reports do not have the probable mistake\n");

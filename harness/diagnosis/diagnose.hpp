@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -24,8 +25,7 @@ struct Suspect {
 struct Diagnosis {
   std::size_t vectors = 0, failing = 0;
   std::size_t unexplained = 0;  // failing vectors that no suspect matches at every tick
-  // Best first. Each further suspect explains vectors that those before it do not. Empty when no
-  // fault of the catalogue explains a vector.
+  // Best first. Each explains at least a tenth of the failing vectors that those before it do not.
   std::vector<Suspect> suspects;
   // Of the first suspect; without a suspect, of `nearest`.
   faults::Stage stage = faults::Stage::input;
@@ -34,15 +34,13 @@ struct Diagnosis {
   double jaccard_index = 0;  // of the nearest, 0 .. 1: values at which both deviate / either does
 };
 
-// Empty when no vector fails.
-std::optional<Diagnosis> diagnose(const std::vector<VectorSimilarity>& vectors);
+// The same vectors, with each fault of the catalogue combined with this one.
+using CombinedWith = std::function<std::vector<VectorSimilarity>(const faults::Fault&)>;
 
-// Whether to search for a second mistake in addition to the first suspect: some failing vectors are
-// left that no suspect explains.
-bool wants_partner(const Diagnosis& diagnosis);
-
-// `vectors` are the same vectors, with each fault combined with the first suspect. Names the second
-// mistake if the two explain more than all suspects did alone.
-void add_partner(const std::vector<VectorSimilarity>& vectors, Diagnosis& diagnosis);
+// Empty when no vector fails. If some failing vectors have no suspect, `combined_with` is called
+// once, with the first suspect, to search for a second mistake of the port. It is named if the two
+// together explain more than all suspects do alone.
+std::optional<Diagnosis> diagnose(const std::vector<VectorSimilarity>& vectors,
+                                  const CombinedWith& combined_with = {});
 
 }  // namespace attest

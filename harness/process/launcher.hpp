@@ -23,7 +23,7 @@ class Launcher {
   // Forks the launcher.
   static Result<Launcher> start(Child::Runs runs, const Work& work);
 
-  // The child gets the request from its owner, after the fork: code of others may kill the launcher.
+  // The child gets the request after the fork, from its owner: it may kill the launcher.
   // Errors: no child can be started, or the launcher has died.
   Result<Child> launch(const std::string& request);
   bool is_alive() const { return is_alive_; }  // as far as the last launch() has seen

@@ -29,10 +29,10 @@ std::string suspect_text(const Suspect& suspect) {
 std::string diagnosis_text(const Diagnosis& diagnosis) {
   if (diagnosis.suspects.empty()) {
     return fmt::format(
-        "it looks like no fault of the catalogue; the deviations are most similar to a fault in "
-        "the stage {}\n  ({:.0f}% of the values in common with `{}`: {})\n",
-        name_of(diagnosis.stage), 100 * diagnosis.jaccard_index, diagnosis.nearest->id,
-        diagnosis.nearest->what);
+        "it looks like no fault of the catalogue; the nearest is `{}`\n"
+        "  ({}; in the stage {}), with {:.0f}% of the deviating values in common\n",
+        diagnosis.nearest->id, diagnosis.nearest->what, name_of(diagnosis.stage),
+        100 * diagnosis.jaccard_index);
   }
   std::string out = "it looks like:\n";
   for (const Suspect& suspect : diagnosis.suspects) out += suspect_text(suspect);

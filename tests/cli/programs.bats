@@ -71,7 +71,7 @@ HEADROOM
   grep -q 'thrust \* thrust' wrong/law.py
   run "$ATTEST" run --port "proc:$PYTHON wrong/port.py" --rate 250 --group tpa
   [ "$status" -eq 1 ]
-  has "to a fault in the stage TPA"
+  has "in the stage TPA"
 }
 
 @test "a program that cannot be started is an error before anything runs" {

@@ -1,77 +1,14 @@
-// Diagnoses of handmade similarities: vectors of 10 ticks, the failing ones first.
-#include <algorithm>
-
+// Diagnoses of handmade similarities.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/diagnosis/diagnose.hpp"
+#include "tests/harness/diagnosis/handmade.hpp"
 
 namespace attest {
 namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
-
-constexpr std::size_t ticks = 10;
-
-// Faults of three stages, in the order of the catalogue.
-const char* const tilt_fault = "tilt-in-world";
-const char* const yaw_fault = "yaw-weight-dropped";
-const char* const tpa_fault = "tpa-missing";
-
-std::size_t index_of(const char* id) {
-  const auto all = faults::catalogue();
-  const auto found = std::find(all.begin(), all.end(), faults::find_fault(id));
-  EXPECT_NE(found, all.end()) << id;
-  return static_cast<std::size_t>(found - all.begin());
-}
-
-class HandMade {
- public:
-  // At first no fault matches any tick.
-  HandMade(std::size_t failing, std::size_t passing) {
-    VectorSimilarity vector;
-    vector.ticks = ticks;
-    vector.similarities.resize(faults::catalogue().size());
-    vector.deviates = true;
-    vectors_.assign(failing, vector);
-    vector.deviates = false;
-    vectors_.insert(vectors_.end(), passing, vector);
-  }
-
-  Similarity& of(const char* id, std::size_t vector) {
-    return vectors_.at(vector).similarities[index_of(id)];
-  }
-  // The fault matches `matched` ticks in each of the vectors from `first` to before `end`.
-  HandMade& matches(const char* id, std::size_t first, std::size_t end,
-                    std::size_t matched = ticks) {
-    for (std::size_t vector = first; vector < end; ++vector) of(id, vector).matched = matched;
-    return *this;
-  }
-  // Numbers of values of a vector that deviate: in both port and fault, or in either.
-  HandMade& deviates(const char* id, std::size_t vector, std::size_t both, std::size_t either) {
-    of(id, vector).intersection = both;
-    of(id, vector).union_size = either;
-    return *this;
-  }
-
-  operator const std::vector<VectorSimilarity>&() const { return vectors_; }
-
- private:
-  std::vector<VectorSimilarity> vectors_;
-};
-
-std::vector<std::string_view> ids_of(const std::vector<const faults::Fault*>& faults) {
-  std::vector<std::string_view> ids;
-  for (const faults::Fault* fault : faults) ids.push_back(fault->id);
-  return ids;
-}
-
-std::vector<std::string_view> suspected(const Diagnosis& diagnosis) {
-  std::vector<const faults::Fault*> faults;
-  for (const Suspect& suspect : diagnosis.suspects) faults.push_back(suspect.fault);
-  return ids_of(faults);
-}
 
 TEST(Suspects, WhereNothingFailsThereIsNoDiagnosis) {
   EXPECT_FALSE(diagnose({}));
@@ -241,85 +178,6 @@ TEST(Suspects, TheFirstDecidesTheStageThoughAnotherIsNearer) {
   EXPECT_EQ(found->stage, faults::Stage::tpa);
   EXPECT_EQ(found->nearest->id, yaw_fault);
   EXPECT_EQ(found->jaccard_index, 1);
-}
-
-// ---- two mistakes -------------------------------------------------------------------------------
-
-// The suspects explain three of five vectors; the yaw fault explains the first two.
-HandMade alone() {
-  HandMade vectors(5, 20);
-  vectors.matches(yaw_fault, 0, 2).matches(tilt_fault, 2, 3);
-  for (const char* const id : {yaw_fault, tilt_fault}) vectors.matches(id, 5, 25);
-  return vectors;
-}
-
-// tpa_fault together with the first suspect: it explains `explained` failing vectors, and agrees
-// with `passes` passing ones.
-HandMade together(std::size_t explained, std::size_t passes) {
-  return HandMade(5, 20).matches(tpa_fault, 0, explained).matches(tpa_fault, 5, 5 + passes);
-}
-
-TEST(Partner, IsWantedWhereSuspectsLeaveAVector) {
-  Diagnosis found = diagnose(alone()).value();
-  ASSERT_THAT(suspected(found), ElementsAre(yaw_fault, tilt_fault));
-  EXPECT_EQ(found.unexplained, 2u);
-  EXPECT_TRUE(wants_partner(found));
-  found.unexplained = 1;
-  EXPECT_TRUE(wants_partner(found));
-  found.unexplained = 0;
-  EXPECT_FALSE(wants_partner(found));
-}
-
-TEST(Partner, IsNotWantedWithoutASuspect) {
-  EXPECT_FALSE(wants_partner(diagnose(HandMade(2, 1)).value()));
-}
-
-TEST(Partner, IsNamedWhereTheTwoExplainMoreThanAllSuspectsAlone) {
-  Diagnosis found = diagnose(alone()).value();
-  add_partner(together(4, 19), found);
-  ASSERT_THAT(suspected(found), ElementsAre(yaw_fault, tpa_fault));
-  const Suspect& second = found.suspects.back();
-  EXPECT_EQ(second.with->id, yaw_fault);
-  EXPECT_EQ(second.explained, 4u);
-  EXPECT_EQ(second.failing, 5u);
-  EXPECT_EQ(found.suspects.front().with, nullptr);
-  EXPECT_EQ(found.unexplained, 1u);
-  EXPECT_EQ(found.stage, faults::Stage::yaw);
-}
-
-TEST(Partner, ThatAddsNothingIsNotNamed) {
-  for (const std::size_t explained : {0u, 2u, 3u}) {
-    Diagnosis found = diagnose(alone()).value();
-    add_partner(together(explained, 20), found);
-    ASSERT_THAT(suspected(found), ElementsAre(yaw_fault, tilt_fault)) << explained;
-    EXPECT_EQ(found.unexplained, 2u);
-  }
-}
-
-TEST(Partner, ThatDeviatesWhereThePortDoesNotIsNotNamed) {
-  Diagnosis found = diagnose(alone()).value();
-  add_partner(together(5, 18), found);
-  ASSERT_THAT(suspected(found), ElementsAre(yaw_fault, tilt_fault));
-  EXPECT_EQ(found.unexplained, 2u);
-}
-
-TEST(Partner, IsTheOneThatExplainsMost) {
-  HandMade vectors = together(4, 20);
-  vectors.matches(tilt_fault, 0, 5).matches(tilt_fault, 5, 24);
-  Diagnosis found = diagnose(alone()).value();
-  add_partner(vectors, found);
-  ASSERT_THAT(suspected(found), ElementsAre(yaw_fault, tilt_fault));
-  EXPECT_EQ(found.suspects.back().with->id, yaw_fault);
-  EXPECT_EQ(found.unexplained, 0u);
-}
-
-TEST(Partner, HasAGroupOfThoseThatMatchAsWellTogetherWithTheFirst) {
-  HandMade vectors = together(5, 20);
-  vectors.matches(tilt_fault, 0, 5).matches(tilt_fault, 5, 25);
-  Diagnosis found = diagnose(alone()).value();
-  add_partner(vectors, found);
-  ASSERT_THAT(suspected(found), ElementsAre(yaw_fault, tilt_fault));
-  EXPECT_THAT(ids_of(found.suspects.back().ambiguity_group), ElementsAre(tpa_fault));
 }
 
 }  // namespace
