@@ -37,8 +37,7 @@ struct AttitudeTopics {
                                                           .is_vtol_tailsitter = 0};
   decltype(attest_attitude_inputs::vehicle_local_position) position{
       .unaided_heading = std::numeric_limits<float>::quiet_NaN(), .heading_good_for_control = 1};
-  decltype(attest_attitude_inputs::autotune_attitude_control_status) autotune{};
-  bool autotune_seen = false;
+  decltype(attest_attitude_inputs::autotune_attitude_control_status) autotune{};  // idle
   bool landed = true;
   bool spooled = false;  // judged when vehicle_status is latched
 };
@@ -113,7 +112,7 @@ struct AttitudeStepStages {
     const bool excites =
         autotune.state == 2 || autotune.state == 4 || autotune.state == 6 || autotune.state == 10;
     const bool recent = now_us - autotune.timestamp < 1000000;
-    if (!topics.autotune_seen || !excites || !recent) return rates;
+    if (!excites || !recent) return rates;
     return rates + vector_from<Scalar>(autotune.rate_sp);
   }
 

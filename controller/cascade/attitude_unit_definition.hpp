@@ -73,7 +73,6 @@ void AttitudeUnit<Scalar, Law>::latch_newest(const attest_attitude_inputs& in) {
   }
   if (updated(ATTEST_ATTITUDE_UPDATED_AUTOTUNE_ATTITUDE_CONTROL_STATUS)) {
     topics_.autotune = in.autotune_attitude_control_status;
-    topics_.autotune_seen = true;
   }
   if (traits_.follows_hover_estimate && updated(ATTEST_ATTITUDE_UPDATED_HOVER_THRUST_ESTIMATE)) {
     hover_estimate_ = stages_.hover_estimate(in.hover_thrust_estimate, gains_.sticks);

@@ -41,8 +41,9 @@ void autotune_of_new_sample(FaultyLaw& law) {
   also_before(law.attitude_unit, [is_new](AttitudeIn& in) {
     *is_new = (in.updated & ATTEST_ATTITUDE_UPDATED_AUTOTUNE_ATTITUDE_CONTROL_STATUS) != 0;
   });
-  change_autotune(law,
-                  [is_new](Topics& topics, std::uint64_t&) { topics.autotune_seen = *is_new; });
+  change_autotune(law, [is_new](Topics& topics, std::uint64_t&) {
+    if (!*is_new) topics.autotune.state = 0;
+  });
 }
 
 const Fault mode_list[] = {
@@ -200,7 +201,7 @@ const Fault mode_list[] = {
     {"cascade-autotune-ignored", "modes", Stage::autotune, "does not add the rates of autotune",
      "autotune", "a missing term",
      [](FaultyLaw& law) {
-       change_autotune(law, [](Topics& topics, std::uint64_t&) { topics.autotune_seen = false; });
+       change_autotune(law, [](Topics& topics, std::uint64_t&) { topics.autotune.state = 0; });
      }},
     {"cascade-autotune-replaces", "modes", Stage::autotune,
      "takes the rates of autotune instead of adding them", "autotune with an attitude error",
@@ -243,7 +244,7 @@ const Fault mode_list[] = {
      "drops autotune samples after 0.1 s", "a sample of 0.5 s ago", "a wrong timeout",
      [](FaultyLaw& law) {
        change_autotune(law, [](Topics& topics, std::uint64_t& now_us) {
-         if (now_us - topics.autotune.timestamp >= 100000) topics.autotune_seen = false;
+         if (now_us - topics.autotune.timestamp >= 100000) topics.autotune.state = 0;
        });
      }},
     {"cascade-autotune-once", "modes", Stage::latching,
