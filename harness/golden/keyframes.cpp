@@ -1,6 +1,7 @@
 #include "harness/golden/keyframes.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -20,8 +21,10 @@ void add_extremes(const Channel& channel, const Trace& flown, std::set<std::size
   std::size_t lowest = 0, highest = 0;
   for (std::size_t tick = 1; tick < flown.samples.size(); ++tick) {
     const float value = float_of(channel, flown.samples[tick]);
-    if (value < float_of(channel, flown.samples[lowest])) lowest = tick;
-    if (value > float_of(channel, flown.samples[highest])) highest = tick;
+    if (std::isnan(value)) continue;
+    // Also where the first value is NaN.
+    if (!(value >= float_of(channel, flown.samples[lowest]))) lowest = tick;
+    if (!(value <= float_of(channel, flown.samples[highest]))) highest = tick;
   }
   kept.insert({lowest, highest});
 }

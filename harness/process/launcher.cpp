@@ -39,27 +39,31 @@ void serve(Child::Runs runs, const Launcher::Work& work, MessageSocket& owner) {
 
 }  // namespace
 
-Result<Launcher> Launcher::start(Child::Runs runs, const Work& work) {
+Result<Launcher> Launcher::start(Child::Runs runs, const Work& work, double time_limit_s) {
   auto process =
       Child::spawn(Child::Runs::our_code, [&](MessageSocket& owner) { serve(runs, work, owner); });
   if (!process) return tl::unexpected(process.error());
-  return Launcher(*std::move(process));
+  return Launcher(*std::move(process), time_limit_s);
+}
+
+pid_t Launcher::fork_there(const ChildFiles& files) {
+  const std::array descriptors{files.input, files.output, files.socket};
+  if (!process_.socket().send_descriptors(descriptors)) {  // there are too many, for example
+    is_alive_ = errno != EPIPE && errno != ECONNRESET;
+    return -1;
+  }
+  const Patience patience = Patience::seconds(time_limit_s_);
+  Launched launched{};
+  const Received::Kind answered = process_.receive(patience).kind;
+  is_late_ = answered == Received::Kind::too_late;
+  is_alive_ = answered == Received::Kind::message &&
+              process_.receive_blob(&launched, sizeof launched) == Received::Kind::message;
+  if (!is_alive_) return -1;
+  errno = launched.reason;
+  return launched.child;
 }
 
 Result<Child> Launcher::launch(const std::string& request) {
-  const auto fork_there = [&](const ChildFiles& files) -> pid_t {
-    const std::array descriptors{files.input, files.output, files.socket};
-    Launched launched{};
-    if (!process_.socket().send_descriptors(descriptors)) {  // there are too many, for example
-      is_alive_ = errno != EPIPE && errno != ECONNRESET;
-      return -1;
-    }
-    is_alive_ = process_.receive().kind == Received::Kind::message &&
-                process_.receive_blob(&launched, sizeof launched) == Received::Kind::message;
-    if (!is_alive_) return -1;
-    errno = launched.reason;
-    return launched.child;
-  };
   if (!is_alive_) return fail("the launcher process of attest has died");
   auto child = Child::adopt(
       [&](const ChildFiles& files) { return Process::adopt([&] { return fork_there(files); }); });
@@ -70,7 +74,12 @@ Result<Child> Launcher::launch(const std::string& request) {
     return child;
   }
   process_.kill();
-  return fail(fmt::format("a launcher process of attest {}; please report this", process_.end()));
+  const std::string how = process_.end();
+  return fail(fmt::format(
+      "a launcher process of attest {}; please report this",
+      is_late_ ? fmt::format("did not answer within {} s: it was stopped, perhaps by the port",
+                             time_limit_s_)
+               : how));
 }
 
 }  // namespace attest

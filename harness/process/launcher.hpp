@@ -4,6 +4,8 @@
 #include <functional>
 #include <string>
 
+#include <sys/types.h>
+
 #include "harness/core/result.hpp"
 #include "harness/process/child.hpp"
 
@@ -20,8 +22,9 @@ class Launcher {
   // Handles one request in a child.
   using Work = std::function<void(const std::string& request, MessageSocket& owner)>;
 
-  // Forks the launcher.
-  static Result<Launcher> start(Child::Runs runs, const Work& work);
+  // Forks the launcher. One that does not answer in that time is killed: code of others may have
+  // stopped it.
+  static Result<Launcher> start(Child::Runs runs, const Work& work, double time_limit_s = 60);
 
   // The child gets the request after the fork, from its owner: it may kill the launcher.
   // Errors: no child can be started, or the launcher has died.
@@ -29,10 +32,15 @@ class Launcher {
   bool is_alive() const { return is_alive_; }  // as far as the last launch() has seen
 
  private:
-  explicit Launcher(Child process) : process_(std::move(process)) {}
+  Launcher(Child process, double time_limit_s)
+      : process_(std::move(process)), time_limit_s_(time_limit_s) {}
+
+  // The child process; its number is -1, with errno, if there is none.
+  pid_t fork_there(const ChildFiles& files);
 
   Child process_;
-  bool is_alive_ = true;
+  double time_limit_s_;
+  bool is_alive_ = true, is_late_ = false;
 };
 
 }  // namespace attest

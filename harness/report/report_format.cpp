@@ -33,7 +33,7 @@ std::span<const ReportFormat> report_formats() {
        with_diagnosis(code_quality_report)},
       {"--badge",
        "Write a badge (SVG): green when the port conforms to a profile, amber when the result is "
-       "partial, red when something fails",
+       "partial, red when something fails or nothing passes",
        of_verdicts(badge)},
       {"--write-expected",
        "Write the failures as a file for --expected-failures; fill in the reasons",

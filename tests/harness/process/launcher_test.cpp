@@ -36,9 +36,10 @@ std::string answer_of(Launcher& launcher, const std::string& request = "") {
 }
 
 std::string with_launcher(const Launcher::Work& work,
-                          const std::function<std::string(Launcher&)>& use) {
+                          const std::function<std::string(Launcher&)>& use,
+                          double time_limit_s = 60) {
   return in_worker([&] {
-    auto launcher = Launcher::start(Child::Runs::code_of_others, work);
+    auto launcher = Launcher::start(Child::Runs::code_of_others, work, time_limit_s);
     return launcher ? use(*launcher) : launcher.error().to_string();
   });
 }
@@ -142,16 +143,16 @@ TEST(Launcher, TheDaemonsOfAChildEndWithIt) {
 }
 
 // The launcher is such a process.
-void kill_the_other_children_of(pid_t owner) {
+void signal_the_other_children_of(pid_t owner, int signal) {
   std::ifstream children(fmt::format("/proc/{0}/task/{0}/children", owner));
   for (pid_t child = 0; children >> child;) {
-    if (child != ::getpid()) ::kill(child, SIGKILL);
+    if (child != ::getpid()) ::kill(child, signal);
   }
 }
 
 TEST(Launcher, OneThatWasKilledIsAnError) {
   const auto kills = [](const std::string&, MessageSocket& owner) {
-    kill_the_other_children_of(::getppid());
+    signal_the_other_children_of(::getppid(), SIGKILL);
     owner.send("killed");
   };
   EXPECT_EQ(with_launcher(kills,
@@ -162,6 +163,23 @@ TEST(Launcher, OneThatWasKilledIsAnError) {
                           }),
             "killed; a launcher process of attest was killed by signal 9 (Killed); please report "
             "this; the launcher process of attest has died");
+}
+
+TEST(Launcher, OneThatWasStoppedIsKilledAndAnError) {
+  const auto stops = [](const std::string&, MessageSocket& owner) {
+    signal_the_other_children_of(::getppid(), SIGSTOP);
+    owner.send("stopped");
+  };
+  EXPECT_EQ(with_launcher(
+                stops,
+                [](Launcher& launcher) {
+                  const std::string first = answer_of(launcher);
+                  const std::string second = answer_of(launcher);
+                  return first + "; " + second + "; " + answer_of(launcher);
+                },
+                0.5),
+            "stopped; a launcher process of attest did not answer within 0.5 s: it was stopped, "
+            "perhaps by the port; please report this; the launcher process of attest has died");
 }
 
 }  // namespace
