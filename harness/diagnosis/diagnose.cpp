@@ -137,17 +137,17 @@ void find_suspects(const std::vector<Record>& records, std::vector<std::size_t> 
   diagnosis.unexplained = left.size();
 }
 
-// Replaces the suspects by two that explain more together.
+// Replaces the suspects by two that explain more together, if there are such.
 void find_pair(const std::vector<Record>& records, const std::vector<std::size_t>& all,
                const CombinedWith& combined_with, Diagnosis& diagnosis) {
   const Record* const first = best_of(records, all);
   if (!first || first->explained.empty()) return;
   const faults::Fault* const fault = faults::catalogue()[first->fault];
   const std::vector<VectorSimilarity> together = combined_with(*fault);
-  const std::vector<std::size_t> failing = failing_of(together);
+  if (failing_of(together) != all) return;  // the port answered in another way, or not at all
   std::vector<Record> pairs = records_of(together);
-  drop_contradicted(together.size() - failing.size(), pairs);
-  const Record* const second = best_of(pairs, failing);
+  drop_contradicted(together.size() - all.size(), pairs);
+  const Record* const second = best_of(pairs, all);
   const std::size_t explained = second ? second->explained.size() : 0;
   const std::size_t alone = first->explained.size();
   if (explained <= std::max(alone, diagnosis.failing - diagnosis.unexplained) ||
@@ -155,9 +155,9 @@ void find_pair(const std::vector<Record>& records, const std::vector<std::size_t
     return;
   }
   diagnosis.suspects = {suspect_of(*first, records, all, diagnosis.failing),
-                        suspect_of(*second, pairs, failing, diagnosis.failing)};
+                        suspect_of(*second, pairs, all, diagnosis.failing)};
   diagnosis.suspects.back().with = fault;
-  diagnosis.unexplained = failing.size() - explained;
+  diagnosis.unexplained = all.size() - explained;
 }
 
 }  // namespace

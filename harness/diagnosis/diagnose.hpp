@@ -25,7 +25,8 @@ struct Suspect {
 struct Diagnosis {
   std::size_t vectors = 0, failing = 0;
   std::size_t unexplained = 0;  // failing vectors that no suspect matches at every tick
-  // Best first. Each explains at least a tenth of the failing vectors that those before it do not.
+  // Best first. Each explains at least a tenth of the failing vectors that those before it do not;
+  // if the second is `with` the first, the first may explain less alone.
   std::vector<Suspect> suspects;
   // Of the first suspect; without a suspect, of `nearest`.
   faults::Stage stage = faults::Stage::input;
@@ -37,9 +38,9 @@ struct Diagnosis {
 // The same vectors, with each fault of the catalogue combined with this one.
 using CombinedWith = std::function<std::vector<VectorSimilarity>(const faults::Fault&)>;
 
-// Empty when no vector fails. If some failing vectors have no suspect, `combined_with` is called
-// once, with the first suspect, to search for a second mistake of the port. It is named if the two
-// together explain more than all suspects do alone.
+// Empty when no vector fails. To search for a second mistake of the port, `combined_with` is called
+// with the fault that explains the most failing vectors, unless that fault explains all or none.
+// The two are named if they explain more together than all suspects do alone.
 std::optional<Diagnosis> diagnose(const std::vector<VectorSimilarity>& vectors,
                                   const CombinedWith& combined_with = {});
 

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t first_ticks = 4;
 constexpr std::size_t regular_ticks = 12;
 
-// A NaN is not taken as an extreme. If tick 0 has NaN, no extreme is found.
+// A NaN is not taken as an extreme.
 void add_extremes(const Channel& channel, const Trace& flown, std::set<std::size_t>& kept) {
   std::size_t lowest = 0, highest = 0;
   for (std::size_t tick = 1; tick < flown.samples.size(); ++tick) {

@@ -54,13 +54,22 @@ pid_t Launcher::fork_there(const ChildFiles& files) {
   }
   const Patience patience = Patience::seconds(time_limit_s_);
   Launched launched{};
-  const Received::Kind answered = process_.receive(patience).kind;
+  Received::Kind answered = process_.receive(patience).kind;
+  if (answered == Received::Kind::message) {
+    answered = process_.receive_blob(&launched, sizeof launched, patience);
+  }
+  is_alive_ = answered == Received::Kind::message;
   is_late_ = answered == Received::Kind::too_late;
-  is_alive_ = answered == Received::Kind::message &&
-              process_.receive_blob(&launched, sizeof launched) == Received::Kind::message;
   if (!is_alive_) return -1;
   errno = launched.reason;
   return launched.child;
+}
+
+std::string Launcher::why_it_died() {
+  if (is_late_) {
+    return fmt::format("did not answer within {} s; the port may have stopped it", time_limit_s_);
+  }
+  return process_.end() + "; please report this";
 }
 
 Result<Child> Launcher::launch(const std::string& request) {
@@ -68,18 +77,12 @@ Result<Child> Launcher::launch(const std::string& request) {
   auto child = Child::adopt(
       [&](const ChildFiles& files) { return Process::adopt([&] { return fork_there(files); }); });
   if (is_alive_) {
-    // Only now, when its owner has it: the child may kill the launcher. If the request cannot be
-    // sent, the child has died, and the caller learns that from its answer.
-    if (child) child->socket().send(request);
+    // If it cannot be sent, the child has died, and the caller learns that from its answer.
+    if (child) child->socket().send(request, {}, Patience::seconds(time_limit_s_));
     return child;
   }
   process_.kill();
-  const std::string how = process_.end();
-  return fail(fmt::format(
-      "a launcher process of attest {}; please report this",
-      is_late_ ? fmt::format("did not answer within {} s: it was stopped, perhaps by the port",
-                             time_limit_s_)
-               : how));
+  return fail("a launcher process of attest " + why_it_died());
 }
 
 }  // namespace attest

@@ -22,11 +22,10 @@ class Launcher {
   // Handles one request in a child.
   using Work = std::function<void(const std::string& request, MessageSocket& owner)>;
 
-  // Forks the launcher. One that does not answer in that time is killed: code of others may have
-  // stopped it.
+  // Forks the launcher. A launcher that does not answer within the time limit is killed.
   static Result<Launcher> start(Child::Runs runs, const Work& work, double time_limit_s = 60);
 
-  // The child gets the request after the fork, from its owner: it may kill the launcher.
+  // The owner sends the request after the fork, because the child may kill or stop the launcher.
   // Errors: no child can be started, or the launcher has died.
   Result<Child> launch(const std::string& request);
   bool is_alive() const { return is_alive_; }  // as far as the last launch() has seen
@@ -37,6 +36,7 @@ class Launcher {
 
   // The child process; its number is -1, with errno, if there is none.
   pid_t fork_there(const ChildFiles& files);
+  std::string why_it_died();
 
   Child process_;
   double time_limit_s_;

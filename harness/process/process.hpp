@@ -29,7 +29,8 @@ class Process {
   static Result<Process> start(const std::function<void()>& work);
 
   // Takes over a child process that `fork` makes without start(): it makes another process call
-  // fork_sibling(), and returns the number, or -1 with errno. The child process has no guard.
+  // fork_sibling(), and returns the number, or -1 with errno. The child process has no guard. Until
+  // `fork` returns, signals are blocked, and other threads cannot start processes.
   static Result<Process> adopt(const std::function<pid_t()>& fork);
 
   Process() = default;  // none, same as after end()

@@ -71,6 +71,7 @@ HEADROOM
   grep -q 'thrust \* thrust' wrong/law.py
   run "$ATTEST" run --port "proc:$PYTHON wrong/port.py" --rate 250 --group tpa
   [ "$status" -eq 1 ]
+  has "no fault of the catalogue; the nearest is"
   has "in the stage TPA"
 }
 

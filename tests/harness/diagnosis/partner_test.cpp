@@ -48,9 +48,9 @@ TEST(Partner, OfTheFirstSuspectIsSearchedWhereSuspectsLeaveAVector) {
 }
 
 TEST(Partner, IsNotSearchedWhereNoFaultExplainsAVector) {
-  const auto found = diagnose(HandMade(2, 1), [](const faults::Fault&) {
+  const auto found = diagnose(HandMade(2, 0), [](const faults::Fault&) {
     ADD_FAILURE();
-    return HandMade(2, 1);
+    return HandMade(2, 0);
   });
   EXPECT_TRUE(found);
 }
@@ -79,6 +79,14 @@ TEST(Partner, ThatAddsNothingIsNotNamed) {
 
 TEST(Partner, ThatDeviatesWhereThePortDoesNotIsNotNamed) {
   const auto found = diagnose(alone(), with(together(5, 18)));
+  ASSERT_TRUE(found);
+  EXPECT_THAT(suspected(*found), ElementsAre(yaw_fault, tilt_fault));
+  EXPECT_EQ(found->unexplained, 2u);
+}
+
+TEST(Partner, IsNotNamedWhereThePortFailsOtherVectorsTheSecondTime) {
+  const auto found =
+      diagnose(alone(), with(HandMade(6, 19).matches(tpa_fault, 0, 6).matches(tpa_fault, 6, 25)));
   ASSERT_TRUE(found);
   EXPECT_THAT(suspected(*found), ElementsAre(yaw_fault, tilt_fault));
   EXPECT_EQ(found->unexplained, 2u);
