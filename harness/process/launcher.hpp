@@ -22,7 +22,8 @@ class Launcher {
   // Handles one request in a child.
   using Work = std::function<void(const std::string& request, MessageSocket& owner)>;
 
-  // Forks the launcher. A launcher that does not answer within the time limit is killed.
+  // Forks the launcher. A launcher that does not answer within the time limit is killed. It forks
+  // in milliseconds, and takes seconds only on a machine that swaps.
   static Result<Launcher> start(Child::Runs runs, const Work& work, double time_limit_s = 60);
 
   // The owner sends the request after the fork, because the child may kill or stop the launcher.
