@@ -9,13 +9,13 @@
 namespace attest::bench {
 namespace {
 
-constexpr std::size_t ticks = 100'000;
+constexpr std::size_t trace_ticks = 100'000;
 
 Trace made() {
   Trace trace;
   trace.present = channels_of(Module::mc_att_control);
-  trace.samples.resize(ticks);
-  for (std::size_t i = 0; i < ticks; ++i) {
+  trace.samples.resize(trace_ticks);
+  for (std::size_t i = 0; i < trace_ticks; ++i) {
     Sample& sample = trace.samples[i];
     sample.in.timestamp = 5'000'000 + 4000 * i;
     sample.out.vehicle_rates_setpoint.roll = static_cast<float>(i % 1000) * 0.001f;
@@ -36,7 +36,7 @@ void bare_memcmp(benchmark::State& state) {
   one(), other();
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        std::memcmp(one().samples.data(), other().samples.data(), ticks * sizeof(Sample)));
+        std::memcmp(one().samples.data(), other().samples.data(), trace_ticks * sizeof(Sample)));
   }
 }
 

@@ -10,11 +10,12 @@
 namespace attest::bench {
 namespace {
 
-constexpr const char* file = ATTEST_SOURCE_DIR "/golden/recorded/px4-v1.5.5/extremes_250hz.csv";
+constexpr const char* recording =
+    ATTEST_SOURCE_DIR "/golden/recorded/px4-v1.5.5/extremes_250hz.csv";
 
 void bare_from_chars(benchmark::State& state) {
   for (auto _ : state) {
-    const std::string text = *read_file(file);
+    const std::string text = *read_file(recording);
     const char* cell = text.data() + text.find('\n') + 1;
     const char* const end = text.data() + text.size();
     while (cell < end) {
@@ -26,7 +27,7 @@ void bare_from_chars(benchmark::State& state) {
 }
 
 void whole_reader(benchmark::State& state) {
-  for (auto _ : state) benchmark::DoNotOptimize(read_csv(file, TraceNeed::inputs_and_outputs));
+  for (auto _ : state) benchmark::DoNotOptimize(read_csv(recording, TraceNeed::inputs_and_outputs));
 }
 
 BENCHMARK(bare_from_chars)->Name("csv/from_chars");

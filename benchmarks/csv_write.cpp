@@ -12,10 +12,10 @@
 namespace attest::bench {
 namespace {
 
-constexpr const char* file = ATTEST_SOURCE_DIR "/golden/recorded/px4-v1.5.5/extremes_250hz.csv";
+constexpr const char* written = ATTEST_SOURCE_DIR "/golden/recorded/px4-v1.5.5/extremes_250hz.csv";
 
 const Trace& trace() {
-  static const Trace read = *read_csv(file, TraceNeed::inputs_and_outputs);
+  static const Trace read = *read_csv(written, TraceNeed::inputs_and_outputs);
   return read;
 }
 

@@ -18,7 +18,7 @@
 namespace attest::bench {
 namespace {
 
-constexpr int jobs = 2;
+constexpr int suite_processes = 2;
 constexpr double bound_mb = 200;
 
 // Proportional set size (PSS) of a process, in kB: its private memory and its share of the shared
@@ -60,7 +60,7 @@ void whole_suite() {
   const auto suite_jobs = case_jobs(*cases, ATTEST_SOURCE_DIR "/golden", vehicle_models,
                                     {Level::numeric}, HostOptions());
   JobOptions<CaseResult> options;
-  options.processes = jobs;
+  options.processes = suite_processes;
   run_jobs(*suite_jobs, options);
 }
 
@@ -103,7 +103,7 @@ std::string memory_table(bool& met) {
       "|---|---|---|---|\n"
       "| whole suite, {} jobs, all processes together | {:.0f} MB | at most {:g} MB | {} |\n"
       "| two files compared, {} and {} ticks | {:.2f} and {:.2f} MB | the same | {} |\n",
-      jobs, suite, bound_mb, holds ? "met" : "MISSED", few, many, of_few, of_many,
+      suite_processes, suite, bound_mb, holds ? "met" : "MISSED", few, many, of_few, of_many,
       constant ? "met" : "MISSED");
 }
 

@@ -22,8 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t samples = 1'000'000, shards = 1'000;
-constexpr double bound_s = 10, bound_mb = 200;
+constexpr std::uint64_t planned_samples = 1'000'000, shards = 1'000;
+constexpr double bound_s = 10, plan_bound_mb = 200;
 
 constexpr const char* sweep = R"(schema = 1
 case = "px4-v1.5.5/flight/tilt_step_30"
@@ -93,8 +93,8 @@ void make_up_rows(const fs::path& folder, const std::vector<std::string>& column
   for (std::uint64_t shard = 1; shard <= shards; ++shard) {
     std::string text;
     for (const std::string& column : columns) text += (text.empty() ? "" : ",") + column;
-    const std::uint64_t end = samples * shard / shards;
-    for (std::uint64_t sample = samples * (shard - 1) / shards; sample < end; ++sample) {
+    const std::uint64_t end = planned_samples * shard / shards;
+    for (std::uint64_t sample = planned_samples * (shard - 1) / shards; sample < end; ++sample) {
       text += fmt::format("\n{}", sample);
       for (std::size_t i = 1; i < columns.size(); ++i) {
         const bool is_outcome = columns[i].ends_with(".outcome");
@@ -126,7 +126,7 @@ std::string shards_table(bool& met) {
     return scratch.error().to_string() + "\n";
   }
   const fs::path top = scratch->path(), plan = top / "plan";
-  std::ofstream(top / "sweep.toml") << fmt::format(fmt::runtime(sweep), samples);
+  std::ofstream(top / "sweep.toml") << fmt::format(fmt::runtime(sweep), planned_samples);
   const std::vector<std::string> command = {"-q", "sweep", top / "sweep.toml"};
   const auto with = [&](std::vector<std::string> more) {
     more.insert(more.begin(), command.begin(), command.end());
@@ -140,8 +140,8 @@ std::string shards_table(bool& met) {
   return fmt::format(
              "| {} samples in {} shards | time | peak memory | claimed | |\n"
              "|---|---|---|---|---|\n",
-             samples, shards) +
-         row_of("planned", planned, bound_mb, met) +
+             planned_samples, shards) +
+         row_of("planned", planned, plan_bound_mb, met) +
          row_of("merged, with the report; the rows are made up", merged, 0, met);
 }
 

@@ -16,7 +16,7 @@ target_compile_options(
                             # False alarms of gcc 12 about std::string (gcc bug 105651).
                             $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 
-# The presets ci and asan build from nothing, and compile several sources of a folder as one (a
+# The presets ci and asan build from nothing, and compile the sources of a folder as one or two (a
 # unity build), because most sources take less time to compile than the headers that they include.
 # The preset dev compiles each source separately, so that a missing include is found.
 # In a unity build gcc treats sources as headers, where -Wsubobject-linkage reports mistakes.
@@ -77,6 +77,9 @@ function(attest_unit_tests name)
                                         GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE ATTEST_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_compile_options(${name} PRIVATE ${ATTEST_TEST_OPTIONS})
+  # Smaller than in the rest: helpers of tests often have the same name, and the headers that take
+  # long are precompiled.
+  set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 8)
   get_target_property(sources ${name} SOURCES)
   if(NOT sources MATCHES "\\.c(;|$)") # the precompiled headers are C++
     target_precompile_headers(${name} REUSE_FROM attest_test_headers)
@@ -92,18 +95,21 @@ function(attest_unit_tests name)
   endif()
 endfunction()
 
-# attest_time_limits(): gives every test that the folder adds by add_test(), before or after this
-# call, the default time limit unless it sets its own.
-function(attest_time_limits)
-  cmake_language(DEFER CALL attest_set_time_limits)
+# attest_test_defaults(): applies to every test that the folder adds by add_test(), before or after
+# this call. The test has the default time limit unless it sets its own, and python3 is the
+# interpreter for which the packages of debian/control are installed (ATTEST_TEST_PATH).
+function(attest_test_defaults)
+  cmake_language(DEFER CALL attest_set_test_defaults)
 endfunction()
 
-function(attest_set_time_limits)
+function(attest_set_test_defaults)
   get_property(tests DIRECTORY PROPERTY TESTS)
   foreach(test IN LISTS tests)
     get_test_property(${test} TIMEOUT limit)
     if(NOT limit)
       set_tests_properties(${test} PROPERTIES TIMEOUT ${ATTEST_COMMAND_TEST_TIMEOUT})
     endif()
+    set_tests_properties(${test} PROPERTIES ENVIRONMENT_MODIFICATION
+                                            PATH=path_list_prepend:${ATTEST_TEST_PATH})
   endforeach()
 endfunction()

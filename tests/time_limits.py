@@ -30,7 +30,7 @@ def main() -> int:
     tests = json.loads(listed.stdout)["tests"]
     found = without_limit(tests)
     for name in found:
-        print(f"{name}: has no TIMEOUT: call attest_time_limits() in its folder")
+        print(f"{name}: has no TIMEOUT: call attest_test_defaults() in its folder")
     print(f"{len(tests)} tests, {len(found)} without a time limit")
     return 1 if found or not tests else 0
 

@@ -10,8 +10,6 @@ namespace {
 
 namespace ordered = reference::ordered;
 
-constexpr float pi = 3.14159265358979323846f;
-
 using Q = float[4];
 
 // Changes the quaternions of the state and of the setpoint.

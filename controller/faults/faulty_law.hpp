@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <string_view>
 
@@ -28,6 +29,8 @@ using RecoveryTilt = reference::RecoveryTilt<Scalar>;
 using reference::MotorLimits;
 using reference::Parameters;
 using reference::Topics;
+
+inline constexpr Scalar pi = std::numbers::pi_v<Scalar>;
 
 // Members are named and called as those of reference::AttitudeStages.
 struct AttitudeStages {

@@ -9,8 +9,6 @@ namespace {
 
 using Mode = decltype(Topics::mode);
 
-constexpr float pi = 3.14159265358979323846f;
-
 // The limit with another bound.
 template <typename Bound>
 void change_bound(FaultyLaw& law, Bound bound) {
@@ -160,7 +158,7 @@ const Fault limit_faults[] = {
 
 // The feed-forward with another addition to the yaw rate.
 template <typename Addition>
-void change_feed_forward(FaultyLaw& law, Addition addition) {
+void change_yaw_feed_forward(FaultyLaw& law, Addition addition) {
   law.attitude.yaw_feed_forward = [addition](float yaw, float move_rate, float weight,
                                              const AttitudeGains& gains) {
     return yaw + addition(move_rate, weight, gains.yaw_feed_forward);
@@ -170,33 +168,35 @@ void change_feed_forward(FaultyLaw& law, Addition addition) {
 const Fault feed_forward_faults[] = {
     {"yaw-ff-missing", "yaw_feed_forward", Stage::feed_forward, "feeds no yaw rate forward",
      "a commanded yaw rate", "missing feed-forward",
-     [](FaultyLaw& law) { change_feed_forward(law, [](float, float, float) { return 0.0f; }); }},
+     [](FaultyLaw& law) {
+       change_yaw_feed_forward(law, [](float, float, float) { return 0.0f; });
+     }},
     {"yaw-ff-reversed", "yaw_feed_forward", Stage::feed_forward,
      "has the feed-forward's sign wrong", "a commanded yaw rate", "a sign",
      [](FaultyLaw& law) {
-       change_feed_forward(law, [](float rate, float w, float k) { return -rate * w * k; });
+       change_yaw_feed_forward(law, [](float rate, float w, float k) { return -rate * w * k; });
      }},
     {"yaw-ff-unweighted", "yaw_feed_forward", Stage::feed_forward,
      "does not weigh the feed-forward", "a commanded yaw rate with a tilted setpoint",
      "wrong weight",
      [](FaultyLaw& law) {
-       change_feed_forward(law, [](float rate, float, float k) { return rate * k; });
+       change_yaw_feed_forward(law, [](float rate, float, float k) { return rate * k; });
      }},
     {"yaw-ff-weighted-twice", "yaw_feed_forward", Stage::feed_forward,
      "weighs the feed-forward twice", "a commanded yaw rate with a tilted setpoint", "wrong weight",
      [](FaultyLaw& law) {
-       change_feed_forward(law, [](float rate, float w, float k) { return rate * w * w * k; });
+       change_yaw_feed_forward(law, [](float rate, float w, float k) { return rate * w * w * k; });
      }},
     {"yaw-ff-whole", "yaw_feed_forward", Stage::feed_forward, "feeds the whole rate forward",
      "a commanded yaw rate", "a missing factor",
      [](FaultyLaw& law) {
-       change_feed_forward(law, [](float rate, float w, float) { return rate * w; });
+       change_yaw_feed_forward(law, [](float rate, float w, float) { return rate * w; });
      }},
     {"yaw-ff-in-degrees", "yaw_feed_forward", Stage::feed_forward,
      "treats the commanded yaw rate as deg/s", "a commanded yaw rate", "degrees",
      [](FaultyLaw& law) {
-       change_feed_forward(law,
-                           [](float rate, float w, float k) { return rate * w * k * pi / 180; });
+       change_yaw_feed_forward(
+           law, [](float rate, float w, float k) { return rate * w * k * pi / 180; });
      }},
     {"yaw-ff-instead", "yaw_feed_forward", Stage::feed_forward,
      "replaces the yaw rate by the feed-forward", "a yaw error and a commanded rate",

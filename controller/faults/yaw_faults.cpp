@@ -9,8 +9,6 @@ namespace {
 
 namespace ordered = reference::ordered;
 
-constexpr float pi = 3.14159265358979323846f;
-
 // R (I + by_sine K + by_square K K), its first column.
 template <typename Terms>
 void change_rodrigues(FaultyLaw& law, Terms terms) {

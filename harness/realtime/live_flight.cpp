@@ -17,12 +17,12 @@ namespace {
 constexpr int unit_priority = 80, attitude_unit_priority = 79, plant_priority = 78;
 constexpr auto settle_in = std::chrono::milliseconds(20);  // from the start of threads to time 0
 constexpr auto progress_every = std::chrono::milliseconds(100);
-constexpr std::size_t stack_bytes = 256 * 1024;  // what a step may use without a page fault
+constexpr std::size_t step_stack_bytes = 256 * 1024;  // what a step may use without a page fault
 
 // Touches the stack below, which is mapped page by page as it is first used.
 void touch_stack() {
-  volatile unsigned char pages[stack_bytes];
-  for (std::size_t at = 0; at < stack_bytes; at += 4096) pages[at] = 0;
+  volatile unsigned char pages[step_stack_bytes];
+  for (std::size_t at = 0; at < step_stack_bytes; at += 4096) pages[at] = 0;
   static_cast<void>(pages[0]);
 }
 
