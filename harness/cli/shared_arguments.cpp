@@ -112,7 +112,7 @@ void add_plant(CLI::App& command, std::string& vehicle, std::string& plant, cons
 void add_selection(CLI::App& command, SelectionOptions& options) {
   const auto add = [&](const char* name, std::vector<std::string>& values, const char* what,
                        const char* type) {
-    command.add_option(name, values, what)
+    return command.add_option(name, values, what)
         ->type_name(type)
         ->allow_extra_args(false)
         ->group(option_group::selection);
@@ -124,14 +124,20 @@ void add_selection(CLI::App& command, SelectionOptions& options) {
       "GLOB");
   add("--exclude", options.excludes, "Leave out the vectors whose id matches this shell pattern",
       "GLOB");
-  add("--group", options.groups, "Only this group of cases", "GROUP");
-  add("--profile", options.profiles, "Only this version of the law", "PROFILE");
+  add("--group", options.groups, "Only these groups of cases, separated by commas", "GROUP")
+      ->delimiter(',');
+  add("--profile", options.profiles, "Only these versions of the law, separated by commas",
+      "PROFILE")
+      ->delimiter(',');
   add_rates(command, options.rates,
             "Only these loop rates [Hz], separated by commas; v1.14 to v1.16 have pairs, such as "
             "250:1000")
       ->group(option_group::selection);
-  add("--vehicle", options.vehicles, "Only flights of this vehicle", "VEHICLE");
-  add("--plant", options.plants, "Only flights on this plant: `mujoco` or `ode`", "PLANT");
+  add("--vehicle", options.vehicles, "Only flights of these vehicles, separated by commas",
+      "VEHICLE")
+      ->delimiter(',');
+  add("--plant", options.plants, "Only flights on this plant: `mujoco` or `ode`", "PLANT")
+      ->delimiter(',');
 }
 
 void add_assumed(CLI::App& command, std::vector<std::string>& assumed) {

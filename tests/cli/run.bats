@@ -317,3 +317,12 @@ for line in excerpt:
         assert any(got == start or (is_start and got.startswith(start)) for got in report), line
 EXCERPT
 }
+
+@test "names of groups, profiles and vehicles may be separated by commas, as reports show them" {
+  "$ATTEST" list --group attitude,tpa --profile px4-v1.5.5,px4-v1.3.4 >commas
+  "$ATTEST" list --group attitude --group tpa --profile px4-v1.5.5 --profile px4-v1.3.4 >options
+  grep -q px4-v1.3.4/tpa/ commas
+  cmp commas options
+  "$ATTEST" list --vehicle hexa,crazyflie2 >commas
+  "$ATTEST" list --vehicle hexa --vehicle crazyflie2 | cmp commas
+}
