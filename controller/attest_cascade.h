@@ -22,8 +22,8 @@
  * Own publications: a setpoint that a unit publishes is also an input of that unit, as in the
  * firmware. The host does not pass it back, so the unit keeps it. The attitude unit in stabilized
  * mode publishes vehicle_attitude_setpoint; the rate unit in acro mode publishes
- * vehicle_rates_setpoint. This sample replaces a sample from outside that the unit has not copied
- * yet. It counts as new until the unit copies it.
+ * vehicle_rates_setpoint. The unit keeps it as the newest sample of that topic. It replaces a
+ * sample from outside that the unit has received and not used yet, and it is new at the next use.
  */
 #ifndef ATTEST_CASCADE_H
 #define ATTEST_CASCADE_H
@@ -83,7 +83,8 @@ typedef struct attest_attitude_inputs {
 
   struct {              /* topic autotune_attitude_control_status */
     uint64_t timestamp; /* [us] when it was published */
-    float rate_sp[3];   /* [rad/s] added to the rates setpoint in some values of `state` */
+    float rate_sp[3];   /* [rad/s] added to the rates setpoint if `state` is 2, 4, 6 or 10, and
+                           `timestamp` is less than 1 s ago */
     uint8_t state;
   } autotune_attitude_control_status;
 

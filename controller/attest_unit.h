@@ -59,7 +59,8 @@ extern "C" {
  *
  * `updated` has a bit for each topic, set if the topic was published since the previous step. A
  * topic whose bit is clear holds its last published sample, or zeros before its first publication.
- * A port copies a topic only when its bit is set. The law copies vehicle_attitude_setpoint only in
+ * A port copies a topic only if its bit is set in this step, or was set in an earlier one and the
+ * port has not copied the topic since. The law copies vehicle_attitude_setpoint only in
  * steps that control attitude, and vehicle_rates_setpoint only in offboard rates mode. In other
  * steps the port remembers the bit. It copies the topic at the next step that needs it.
  * control_state is new in every step and has no bit.

@@ -20,7 +20,7 @@
 
 namespace attest::cascade {
 
-// Copies of the topics that every step latches.
+// Copies of the topics that are latched in the step in which they arrive.
 struct RateTopics {
   decltype(attest_rate_inputs::vehicle_control_mode) mode{};
   decltype(attest_rate_inputs::vehicle_land_detected) land{.maybe_landed = 1, .landed = 1};
@@ -40,7 +40,7 @@ struct RateStepStages {
   using Vector = Vector3<Scalar>;
   using Sticks = decltype(attest_rate_inputs::manual_control_setpoint);
 
-  // A stage, so that a fault can take one trait from another profile.
+  // This function is a stage, so that a fault can replace it and take a trait of another profile.
   static ProfileTraits traits(Profile profile) { return traits_of(profile); }
 
   static RateUnitGains<Scalar> gains(const Parameters& parameters) {
@@ -74,17 +74,19 @@ struct RateStepStages {
   // Whether the unit's own rates setpoint replaces a pending external one.
   ATTEST_INLINE static bool supersedes_pending() { return true; }
 
-  // An external rate that is not finite holds the rate measured now.
+  // If a component of the setpoint is not finite when it is latched, the rate that is measured in
+  // this step replaces it.
   ATTEST_INLINE static Scalar commanded(Scalar rate_sp, Scalar rate) {
     return is_finite(rate_sp) ? rate_sp : rate;
   }
 
-  // While this is true, every step resets the integral to 0.
+  // While this is true, every step that controls the rates first resets the integral to 0.
   ATTEST_INLINE static bool resets_integral(const RateTopics& topics) {
     return topics.mode.flag_armed == 0 || !topics.is_rotary_wing;
   }
 
-  // A NaN stays in the filter permanently, and a time constant of 0 is not the identity.
+  // A NaN stays in the filter permanently, and with a time constant of 0 the filter still
+  // changes the torque.
   ATTEST_INLINE static Scalar filtered_yaw(LowPass<Scalar>& filter, Scalar torque, Scalar dt_s,
                                            const RateUnitGains<Scalar>& gains,
                                            const ProfileTraits& law) {

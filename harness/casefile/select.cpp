@@ -74,9 +74,10 @@ Result<void> check_groups(const std::vector<fs::path>& files, const Selection& s
 }
 
 // Whether a pattern can match a case of this file. Of `<profile>/<group>/<name>`, only group and
-// name are known here, from the path. The text between the pattern's last wildcard and its @ must
-// be an end of the known part, or end with it. A wildcard in a pattern without @ may match the @ of
-// a vector.
+// name are known here, from the path. Take the text from the pattern's last wildcard to the
+// pattern's @: either the known part must end with this text, or this text with the known part. A
+// pattern with a wildcard and without @ may match any file, because the wildcard may match the @ of
+// a vector and all that follows.
 bool may_match(const std::string& pattern, const fs::path& file) {
   const std::size_t at = pattern.find('@');
   const std::string id = pattern.substr(0, at);
@@ -98,7 +99,8 @@ bool may_be_selected(const fs::path& file, const Selection& selection) {
          });
 }
 
-// "1000" selects each loop whose motors are commanded at that rate, "250:1000" one pair.
+// "1000" selects the vectors of one unit at 1000 Hz, and each pair whose rate unit runs at 1000 Hz;
+// "250:1000" selects this pair only.
 bool is_meant(const LoopRate& asked, const LoopRate& rate) {
   return asked.attitude_unit ? asked == rate : asked.unit == rate.unit;
 }
@@ -253,12 +255,12 @@ Result<void> check_patterns(const Selection& selection, const std::set<std::stri
                           suggestion(idle.front(), names)));
 }
 
-// Of the cases in `files`.
+// Reads `files`, and returns what the selection selects.
 Result<std::vector<SelectedCase>> select_from(const std::vector<fs::path>& files,
                                               const Selection& selection) {
   std::vector<SelectedCase> selected;
   Known known;
-  std::set<std::string> matching;  // of the filters
+  std::set<std::string> matching;  // filters and exclusions that match a vector
   for (const fs::path& file : files) {
     auto parsed = parse_case(file);
     if (!parsed) return tl::unexpected(parsed.error());

@@ -13,9 +13,10 @@ namespace attest {
 Timeline timeline_of(const Case& the_case, const Rate& rate);
 
 // The times at which the unit's ticks begin, since the start of the case, with the case's jitter
-// and dropped ticks. With Case::unit.on_estimate: the times at which their samples are taken. On a
-// clock that is `faster` by this fraction each is at floor(t / (1 + faster)) ns, up to the end of
-// the case.
+// and dropped ticks. If the estimator triggers the unit (Case::unit.on_estimate), they are the
+// times at which the estimator takes its samples. `faster`: the fraction by which the clock of
+// these ticks is faster. A tick that would begin at t then begins at floor(t / (1 + faster)) ns.
+// There is no tick at or after the end of the case.
 std::vector<Nanoseconds> unit_ticks(const Case& the_case, const Rate& rate, double faster = 0);
 
 // The scripted inputs of a case, tick by tick. A sample holds the last published values of each

@@ -58,7 +58,9 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("F");
   add_plant(*command, options->vehicle, options->plant);
   command->get_option("--plant")->description(
-      "`mujoco` or `ode`; default: the case's first; `all`: the same flight on each, for --html");
+      "`mujoco` or `ode`; default: the first plant of the case; `all`: the same flight on each, "
+      "for "
+      "--html");
   add_port(*command, options->host.port);
   command
       ->add_option(

@@ -261,8 +261,8 @@ Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
   const auto planned =
       options.timing.empty() ? plan_cases(options, suite, plan) : plan_timed(options, suite, plan);
   if (!planned) return tl::unexpected(planned.error());
-  // After the port was loaded, because loading gives the better error for a file that is not a
-  // library.
+  // This comes after the port was loaded, because loading gives a better error for a file that is
+  // not a library.
   if (auto known = identify(options, suite, plan.run); !known) {
     return tl::unexpected(known.error());
   }

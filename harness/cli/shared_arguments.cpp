@@ -100,12 +100,13 @@ CLI::Option* add_rates(CLI::App& command, std::vector<std::string>& rates, const
       ->allow_extra_args(false);
 }
 
-void add_plant(CLI::App& command, std::string& vehicle, std::string& plant, const char* usual) {
+void add_plant(CLI::App& command, std::string& vehicle, std::string& plant,
+               const char* usual_vehicle, const char* usual_plant) {
   command
       .add_option("--vehicle", vehicle,
-                  fmt::format("One of `attest list --vehicles`; default: {}", usual))
+                  fmt::format("One of `attest list --vehicles`; default: {}", usual_vehicle))
       ->type_name("VEHICLE");
-  command.add_option("--plant", plant, fmt::format("`mujoco` or `ode`; default: {}", usual))
+  command.add_option("--plant", plant, fmt::format("`mujoco` or `ode`; default: {}", usual_plant))
       ->type_name("PLANT");
 }
 

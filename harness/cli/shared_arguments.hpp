@@ -44,7 +44,8 @@ void use_plain_flag_names(CLI::App& app);
 void add_selection(CLI::App& command, SelectionOptions& options);  // --filter and related
 CLI::Option* add_rates(CLI::App& command, std::vector<std::string>& rates, const char* what);
 void add_plant(CLI::App& command, std::string& vehicle, std::string& plant,
-               const char* usual = "the case's");
+               const char* usual_vehicle = "the lead vehicle of the case",
+               const char* usual_plant = "the first plant of the case");
 // A recorded port has outputs, but no functions: only `run` can judge it.
 enum class Ports { callable, any };
 void add_port(CLI::App& command, std::string& port, Ports accepted = Ports::callable);

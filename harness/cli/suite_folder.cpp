@@ -55,8 +55,9 @@ Result<SuiteFolder> named(const fs::path& folder, const char* by) {
                                               by));
 }
 
-// Adds the paths of TOML files in `name` of the suite `root`, relative to it, with their files.
-// Most files of a suite are traces, so this compares strings: a path takes longer.
+// For each TOML file in root/name, except in golden/recorded: adds its path relative to `root`, and
+// the file. Compares strings, because work with fs::path is slower, and most of the files are
+// traces, which are not wanted.
 Result<void> add_files(const fs::path& root, const fs::path& name,
                        std::map<std::string, fs::path>& files) {
   const fs::path folder = root / name, recorded = root / "golden" / "recorded";

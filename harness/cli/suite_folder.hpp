@@ -16,7 +16,8 @@ namespace attest::cli {
 // "profile/group" -> the number of vectors at each rate.
 using VectorsByGroup = std::map<std::string, std::map<LoopRate, std::size_t>>;
 
-// In the folder of a suite, names the suite whose cases it takes over.
+// The file of a suite that names another suite. The suite that has this file also has the cases of
+// the other one.
 inline constexpr const char* base_file = "BASE";
 
 struct SuiteFolder {
@@ -53,14 +54,14 @@ struct SuiteFolder {
   // SHA-256 of the lines that `sha256sum` prints for the case files and the provenance files of the
   // goldens, in the order of their paths: "<hash>  cases/px4-v1.5.5/tpa/each_axis.toml". The
   // hash covers all content that verdicts depend on: a case file has all inputs, a provenance file
-  // has the hashes of its traces and vehicles, and a run checks both. `ci/suite-hash` prints the
-  // same hash. Errors: a file that cannot be read.
+  // has the hashes of its traces and vehicles, and a run checks the traces and the vehicles against
+  // these hashes. `ci/suite-hash` prints the same hash. Errors: a file that cannot be read.
   Result<std::string> sha256() const;
 };
 
 // The data of this attest: share/attest of the installation that this program is in; else the
-// nearest folder above the program that has cases/ and golden/, which is the source tree of a build
-// in it. Empty: neither exists.
+// nearest folder above the program that has cases/ and golden/. That is the source tree, if the
+// build folder is inside it. Empty: neither exists.
 std::optional<std::filesystem::path> data_folder();
 
 // `given` if it is not empty; else $ATTEST_SUITE; else data_folder(). Errors: no such suite, or a

@@ -201,14 +201,14 @@ void add_sweep(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<SweepOptions>();
   CLI::App* command = app.add_subcommand(
       "sweep",
-      "Fly a case many times with dispersed values: the probability that a flight holds each "
-      "requirement, and whether a port flies like the reference");
+      "Fly a case many times with dispersed values. Estimates the probability that a flight meets "
+      "each requirement, and tests whether a port flies like the reference");
   command
       ->add_option("file", options->file,
                    "The sweep (TOML): case, dispersions, design, requirements")
       ->type_name("SWEEP.toml")
       ->required();
-  add_plant(*command, options->vehicle, options->plant, "that of the file");
+  add_plant(*command, options->vehicle, options->plant, "that of the file", "that of the file");
   add_port(*command, options->host.port);
   command
       ->add_option("--out", options->out,
@@ -219,9 +219,10 @@ void add_sweep(CLI::App& app, const Globals& globals, Action& action) {
       ->group(option_group::reports);
   add_sweep_parts(*command, *options);
   command
-      ->add_option("--hdf5", options->hdf5,
-                   "Write the results as columns in an HDF5 file, for large sweeps; needs about "
-                   "three times their size in memory")
+      ->add_option(
+          "--hdf5", options->hdf5,
+          "Write the results as columns in an HDF5 file, for large sweeps; needs memory of "
+          "about three times the size of the table, which has 8 bytes for each number")
       ->type_name("F.h5")
       ->group(option_group::reports);
   add_page(*command, options->html,

@@ -1,5 +1,6 @@
-// The allowed |got - want| of each value of a trace, which depends on the tick: near an attitude
-// error of 180 deg the tolerance of the rates setpoint is wider (Tolerances::widening).
+// The allowed |got - want| of each value of a trace, which depends on the tick: the tolerance
+// of the rates setpoint is wider near a tilt error of 180 deg in the controller, and near an
+// attitude error of 180 deg in the attitude unit (Tolerances::widening).
 #pragma once
 
 #include <cstddef>
@@ -21,9 +22,10 @@ class AllowedDeviation {
   // The next tick of the expected trace, with the parameters that it sets.
   void next(const Sample& want, std::span<const ParameterChange> changes);
 
-  // Of that tick. If the tolerance without widening is ample_headroom times the deviation of `got`,
-  // the result is that tolerance, because the widening takes time to compute. So a headroom
-  // (tolerance / deviation) below ample_headroom is exact, and a larger one is a lower bound.
+  // Of that tick. If the tolerance without widening is at least ample_headroom times the deviation
+  // of `got`, the result is the tolerance without widening, because the widening takes time to
+  // compute. So a headroom (tolerance / deviation) below ample_headroom is exact, and a larger one
+  // is a lower bound.
   static constexpr double ample_headroom = 16;
   double of(std::size_t channel, const Sample& tick, float got, float want) const;
 

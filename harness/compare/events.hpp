@@ -30,8 +30,9 @@ bool has_events(Module module);
 // True if a channel of `present` defines an event.
 bool tells_events(const ChannelSet& present);
 
-// The first tick at which only one of the traces is in a state: the other is not in it at that
-// tick, the tick before or the tick after. REQUIRES: as many ticks in both.
+// The first tick at which the traces differ: one is in a state, or is not in it, and the other is
+// the opposite at this tick and at both its neighbours. The first and the last tick never differ,
+// because they lack a neighbour. REQUIRES: as many ticks in both.
 std::optional<EventDifference> first_event_difference(const Trace& got, const Trace& want);
 
 }  // namespace attest

@@ -15,10 +15,10 @@
 //   values. With this floor, a correct controller in fixed point with 14 fraction bits passes the
 //   value check in every case whose events agree. With 11 bits it fails in 2 of 451.
 //
-// Values are not compared
+// These bounds are not applied (NaN and infinity are judged at every tick)
 // - at the first and the last tick
 // - where the reference, at one of the three ticks, does not publish the topic, or has NaN or
-//   infinity
+//   infinity; also where the port does not publish the topic at this tick
 // - where, at one of the three ticks, the law controls the attitude and the rotation between
 //   attitude and setpoint is within 11 deg of a half turn, so that a last bit decides the direction
 //   in which the law turns; also where, at such a tick, attitude or setpoint is zero or not finite.

@@ -25,8 +25,9 @@ struct Suspect {
 struct Diagnosis {
   std::size_t vectors = 0, failing = 0;
   std::size_t unexplained = 0;  // failing vectors that no suspect matches at every tick
-  // Best first. Each explains at least a tenth of the failing vectors that those before it do not;
-  // if the second is `with` the first, the first may explain less alone.
+  // Best first. Of the failing vectors that the suspects before it leave unexplained, each explains
+  // at least a tenth. If the `with` of the second is the first, the two are a pair, of which the
+  // first may explain less than a tenth alone.
   std::vector<Suspect> suspects;
   // Of the first suspect; without a suspect, of `nearest`.
   faults::Stage stage = faults::Stage::input;
@@ -40,7 +41,7 @@ using CombinedWith = std::function<std::vector<VectorSimilarity>(const faults::F
 
 // Empty when no vector fails. To search for a second mistake of the port, `combined_with` is called
 // with the fault that explains the most failing vectors, unless that fault explains all or none.
-// The two are named if they explain more together than all suspects do alone.
+// The two are named if they explain more vectors together than all suspects without them do.
 std::optional<Diagnosis> diagnose(const std::vector<VectorSimilarity>& vectors,
                                   const CombinedWith& combined_with = {});
 

@@ -49,8 +49,9 @@ struct FaultAnswers {
 FaultAnswers answers_of_faults(const Trace& given, const Subject& subject,
                                const faults::Fault* partner = nullptr);
 
-// For each of the distinct outputs, of a subject's module. Values are the same when they differ by
-// no more than the tolerances, without the widening of AllowedDeviation.
+// Compares the port's outputs with each of the distinct outputs, in the channels of `module`.
+// Values are the same when they differ by no more than the tolerances, without the widening of
+// AllowedDeviation.
 VectorSimilarity distinct_similarity(const Outputs& port, const Outputs& law,
                                      std::span<const Outputs> distinct,
                                      Module module = Module::mc_att_control,

@@ -24,8 +24,9 @@ using BranchAlternatives = std::map<std::string, Trace>;
 // so that the choice affects later ticks; no tick is on the threshold; the profile is unknown.
 Result<BranchAlternatives> branch_alternatives(const Case& the_case, const Trace& law);
 
-// `law`, with the outputs of another branch where `got` agrees with that branch at a tick and not
-// with the law, or is nearer to it. REQUIRES: the same number of samples in all.
+// A copy of `law`. At each tick at which `got` agrees with another branch and not with the law, it
+// has the outputs of that branch. If `got` agrees with none of them, the nearest counts. REQUIRES:
+// the same number of samples in all.
 Trace on_the_branch_of(const Trace& got, const Trace& law, const BranchAlternatives& others,
                        const Tolerances& tolerances);
 

@@ -22,7 +22,8 @@ enum class Decision {
   quaternion_norm,  // | |q| - 1 |: here a small distance is safe, and a large one not
   thrust_gate,      // thrust > 0.2
   // |u| < thrust, -0.3 < n < 0.3, -0.3 < u < 0.3 (u: control, n: next integral). If all hold, the
-  // distance is that of the nearest to failing, otherwise that of the farthest from holding.
+  // distance is that of the condition nearest to its limit. Otherwise it is that of the failed
+  // condition farthest from its limit.
   integrator_gate,
   rattitude,          // a stick against MC_RATT_TH
   shorter_rotation,   // * q_e.w >= 0, beyond 90 deg; of the cascade at any angle
@@ -33,7 +34,7 @@ enum class Decision {
   recovery_rotation,  // its q_e.w > 0
   // Of the mixer.
   mixer_limit,   // a rotor's share of roll, pitch and thrust against 0 and 1
-  mixer_branch,  // one end of 0..1 exceeded: its excess against the room at the other end
+  mixer_branch,  // beyond one end of 0..1 only: the excess against the room at the other end
   mixer_yaw,     // yaw against the rotors' limits, where its flag is set
   // Of the attitude unit.
   opposite_thrust,  // x or y of the tilt rotation against 1 - 1e-5
@@ -54,13 +55,14 @@ inline constexpr auto decision_count = static_cast<std::size_t>(Decision::overfl
 std::string_view name_of(Decision decision);  // "integrator gate"
 
 // The least distance that a vector may have, if it is compared numerically; for the norm, the
-// largest. It is several times the difference between correct builds in that quantity. Measured
-// over 10 s of open loop: 8e-7 on controls, 5e-7 on integrals (compare/tolerance.hpp), some 1e-6
-// rad on angles.
+// largest. It is several times the difference between correct builds in the value that is compared
+// with the threshold. Measured over 10 s of open loop: 8e-7 on controls, 5e-7 on integrals
+// (compare/tolerance.hpp), some 1e-6 rad on angles.
 double least_margin(Decision decision);
 
-// The same for a port in fixed point, if `fraction_bits` is given: at least `decision_lsb` of its
-// LSBs, the measured difference of its controls. Tolerances::control_lsb is the allowed difference.
+// The same. If `fraction_bits` is given, the port is in fixed point, and the result is at least
+// `decision_lsb` of its LSBs. That is the measured difference of the controls of such ports.
+// Tolerances::control_lsb is the allowed difference.
 inline constexpr double decision_lsb = 750;
 double least_margin(Decision decision, std::optional<int> fraction_bits);
 

@@ -18,7 +18,8 @@ struct HostOptions;
 // after the other. Errors: a process cannot be started.
 Result<void> start_port_launcher();
 
-// False after the launcher has died: the worker must end, because it may have read such data.
+// False after the launcher has died. The worker must then end: it may have read data that ports
+// must not read, and a new launcher would have them in its memory.
 bool has_port_launcher();
 
 // A process that loads a port and serves requests (host_protocol.hpp).
@@ -28,8 +29,8 @@ struct PortChild {
 };
 
 // Errors: a process cannot be started, or the process is a worker without a launcher.
-// REQUIRES, if there is a launcher: it was started after `options` and the objects of `course` were
-// made, because only their addresses are sent; the process before has ended.
+// REQUIRES, if there is a launcher: `options` and the objects of `course` were made before it was
+// started, because only their addresses are sent; the port's process before this one has ended.
 Result<PortChild> launch_port(const HostOptions& options, const Course& course);
 
 }  // namespace attest

@@ -1,5 +1,6 @@
-// A host in a process of its own. It is a fork (port_launcher.hpp), whose memory has the cases with
-// their tolerances, but no golden. A crash or hang of the port affects that process only.
+// A PortHost (a running port, port_host.hpp) in a process of its own. The process is a fork
+// (port_launcher.hpp). Its memory has the cases with their tolerances, but no golden. A crash or
+// hang of the port affects that process only.
 #pragma once
 
 #include <cstdint>
@@ -23,12 +24,13 @@ using StartHost =
 
 struct HostOptions {
   std::string port = "builtin";  // as for open_port
-  // The port's declarations before the run, which must stay the same; empty: those at loading.
+  // The declarations that the port made before the run. It must not change them. If empty, those
+  // that it makes when it is loaded are used.
   std::optional<PortSays> said = {};
   double timeout_s = default_timeout_s;
   bool in_process = false;  // for a debugger: no process of its own, no protection
-  // Set for a port that hung when it was loaded; it is not started again. The first request ends
-  // with this fault, and later requests with `not run`. Empty: start the port.
+  // The text of the fault, if the port hung when it was loaded. Such a port is not started again.
+  // The first request ends with this fault, and later requests with `not run`.
   std::string hangs = {};
   // Called while an answer is awaited; true: stop waiting, the answer is not needed any more.
   std::function<bool()> stop = [] { return false; };
@@ -55,10 +57,11 @@ struct PortDescription : PortSays {
   std::map<std::string, std::string> refusals;
 };
 
-// Includes those of `profiles` that the port supports. Each is requested in a process of its own. A
-// port that makes a single unit per process is thus distinguished from one that does not support
-// the second profile. After a fault of the port, the remaining profiles are not requested. Errors:
-// the port cannot be loaded, or its process ends while the port is being loaded.
+// The result lists, in PortSays::profiles, those of `profiles` that the port supports. Each is
+// requested in a process of its own. A port that makes a single unit per process is thus
+// distinguished from one that does not support the second profile. After a fault of the port, the
+// remaining profiles are not requested. Errors: the port cannot be loaded, or its process ends
+// while the port is being loaded.
 Result<PortDescription> describe_port(const HostOptions& options,
                                       const std::vector<std::string>& profiles = {});
 

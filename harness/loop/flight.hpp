@@ -23,7 +23,7 @@ struct Flown {
   std::optional<Divergence> divergence;  // early end; its time counts from the first tick
 };
 
-// The same for a whole flight.
+// The metric of a whole flight (measured() in metric.hpp).
 inline double measured(const Metric& metric, const Flown& flown) {
   return measured(metric, flown.trace, flown.attitude_trace ? &*flown.attitude_trace : nullptr);
 }
@@ -50,9 +50,9 @@ struct PortUnits {
   FlightUnits for_flight() const { return {*unit, attitude_unit.get()}; }
 };
 
-// A port of the cascade may have one of the two units; the other is then that of `other`. Faults:
-// the port has no unit that flies this, or makes none of the profile (Kind::profile); it makes both
-// units, but not at the same time (Kind::unsupported). REQUIRES: a flight.
+// A port of the cascade may have one of the two units; the other is then that of `other`. Faults,
+// Kind::profile: no unit of the port flies this case, or makes its profile; Kind::unsupported: the
+// port makes either unit, but not both at the same time. REQUIRES: a flight.
 tl::expected<PortUnits, PortFault> units_for(const Case& the_case, Port& port, Port& other);
 
 // Flies `the_case` with fresh units, at the times that the case schedules, or at those of

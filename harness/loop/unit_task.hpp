@@ -1,5 +1,5 @@
-// The work of the flight controller at a tick of a unit: the same in simulation and on a real
-// clock, for one thread.
+// The work of the flight controller at a tick of a unit. It is the same in simulation and on a real
+// clock. One thread uses a UnitTask.
 #pragma once
 
 #include <cstddef>

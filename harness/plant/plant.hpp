@@ -77,8 +77,8 @@ bool has_floor(PlantKind kind);            // ground contact
 Result<PlantKind> parse_plant_kind(std::string_view name);
 
 struct PlantOptions {
-  // MuJoCo's steps begin at multiples of this period, and at the times to which it is advanced. The
-  // ode plant chooses its own steps.
+  // How often MuJoCo steps. Its steps begin at multiples of 1 / physics, and at the times to which
+  // it is advanced. The ode plant chooses its own steps.
   Rate physics = Rate::hz(1000);
   bool floor = false;  // MuJoCo only: ground contact at z = 0
 };

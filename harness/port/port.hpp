@@ -1,5 +1,5 @@
-// The subject of the tests: a port is an implementation of one or more modules, a unit is one
-// running instance of a module.
+// The subject of the tests. A port implements one or more modules. A Unit is one running instance
+// of any module, also of a mixer or a battery estimate.
 //
 // The kinds of port are `builtin` (the reference), `lib:PATH` (a shared library with the ABI of
 // attest_unit.h), `proc:COMMAND` (a program, PROTOCOL.md), `recorded:DIR` (outputs in files, which
@@ -34,7 +34,8 @@ class PortBroke : public std::runtime_error {
   How how_;
 };
 
-// How a batch ended. If `result` is not ATTEST_OK, it is that of the step after the first `done`.
+// How a batch ended. `done` steps returned ATTEST_OK. If `result` is not ATTEST_OK, the next step
+// returned it.
 struct Batched {
   std::size_t done = 0;
   int result = 0;
@@ -61,9 +62,9 @@ class Unit {
 
   // How many steps batch() takes at most; 0: it takes none.
   virtual std::size_t max_batch() const { return 0; }
-  // The same as one step after the other, with set_timestamp_sample() before each. Before the call,
-  // the outputs of the first sample are those of the step before.
-  // REQUIRES: 1 <= samples.size() <= max_batch(), and a time for each.
+  // The same as one step after the other, with set_timestamp_sample() before each.
+  // REQUIRES: 1 <= samples.size() <= max_batch(), and a time for each; the outputs of the first
+  // sample are those of the last step before this batch.
   virtual Batched batch(std::span<Sample> /*samples*/,
                         std::span<const std::uint64_t> /*timestamp_samples_us*/) {
     return {0, ATTEST_UNSUPPORTED};
@@ -101,8 +102,9 @@ class Port {
 
   virtual ModuleSet modules() const { return only(Module::mc_att_control); }
 
-  // A unit in its power-on state; null when the port does not support the profile. `definition` is
-  // that of a mixer. The port must outlive the unit. REQUIRES: the port has the module.
+  // A unit in its power-on state; null when the port does not support the profile, or allows no
+  // further instance now. `definition` is that of a mixer. The port must outlive the unit.
+  // REQUIRES: the port has the module.
   virtual std::unique_ptr<Unit> create_unit(Module module, const std::string& profile,
                                             const std::string& definition) = 0;
   // A controller. REQUIRES: same as create_unit().
@@ -131,8 +133,8 @@ bool is_program(const std::string& specification);
 inline constexpr const char* callable_port_kinds =
     "`builtin`, `lib:PATH`, `proc:COMMAND`, `fault:ID`";
 
-// DIR of "recorded:DIR"; empty for other ports. open_port() does not open it, because it has no
-// functions to call: start_host() does.
+// DIR of "recorded:DIR"; empty for other ports. open_port() refuses such a port, because it has
+// no functions to call. start_host() opens it.
 std::optional<std::string> recorded_folder(const std::string& specification);
 
 // Opens a port of a kind in `callable_port_kinds`. Loading a library runs its code, and a program

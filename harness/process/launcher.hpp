@@ -26,7 +26,8 @@ class Launcher {
   // in milliseconds, and takes seconds only on a machine that swaps.
   static Result<Launcher> start(Child::Runs runs, const Work& work, double time_limit_s = 60);
 
-  // The owner sends the request after the fork, because the child may kill or stop the launcher.
+  // The launcher forks, and then the owner sends the request to the child itself. So the child does
+  // nothing before the owner has it, because what it does may kill or stop the launcher.
   // Errors: no child can be started, or the launcher has died.
   Result<Child> launch(const std::string& request);
   bool is_alive() const { return is_alive_; }  // as far as the last launch() has seen

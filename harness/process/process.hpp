@@ -28,8 +28,9 @@ class Process {
   // signal handlers and an empty signal mask, and leaves no core file. `work` must not throw.
   static Result<Process> start(const std::function<void()>& work);
 
-  // Takes over a child process that `fork` makes without start(): it makes another process call
-  // fork_sibling(), and returns the number, or -1 with errno. The child process has no guard. Until
+  // Takes over a child process that start() did not make. `fork` makes it: it lets another process
+  // call fork_sibling(), and returns the number of the new process, or -1 with errno. The child
+  // process has no guard. Until
   // `fork` returns, signals are blocked, and other threads cannot start processes.
   static Result<Process> adopt(const std::function<pid_t()>& fork);
 
@@ -62,12 +63,13 @@ class Process {
 };
 
 // Forks, as Process::start() does, but for another owner, the parent of this process, which adopts
-// the child process. A process between the two forks it and ends, so that it becomes a child of the
-// owner, which is a subreaper. Returns its number; -1: errno has the reason. REQUIRES: this process
+// the child process. This process forks a process in between, which forks the child process and
+// ends. Then the owner becomes the parent, because the owner is a subreaper. Returns the number of
+// the child process; -1: errno has the reason. REQUIRES: this process
 // is below a guard, and its other threads hold no lock.
 pid_t fork_sibling(const std::function<void()>& work);
 
-// Whether an owner of this process has a guard, as that of a worker.
+// Whether this process, or one above it, has a guard: so in a worker and in all processes below it.
 bool is_below_guard();
 
 }  // namespace attest

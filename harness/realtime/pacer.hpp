@@ -6,8 +6,8 @@
 namespace attest {
 
 struct Wait {
-  // Time before the release at which the sleep ends. The thread spins until the release: this
-  // trades CPU time for latency.
+  // The sleep ends this long before the release. Then the thread spins until the release, which
+  // takes more CPU time and makes the latency smaller.
   Nanoseconds spin{0};
 };
 

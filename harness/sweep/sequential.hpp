@@ -1,7 +1,8 @@
 // Statistics that are valid after every sample, so a sweep may end because of their values.
 //
-// The ratio of the likelihoods of a mixture of all probabilities (uniform) and of one probability
-// is a martingale under the latter (Robbins, Statistical methods related to the law of the iterated
+// Take two likelihoods of the samples: one if the probability is uniformly distributed on 0..1, one
+// if it has a fixed value. If that value is the true probability, the ratio of the first likelihood
+// to the second is a martingale (Robbins, Statistical methods related to the law of the iterated
 // logarithm, 1970). Let `level` be between 0 and 1. The probability that the ratio exceeds
 // 1 / level after any sample is at most `level` (Ville's inequality, 1939). An interval of Clopper
 // and Pearson has no such guarantee.
@@ -16,7 +17,7 @@ namespace attest {
 // The logarithm of that ratio. REQUIRES: 0 < probability < 1.
 double log_mixture_ratio(std::uint64_t held, std::uint64_t count, double probability);
 
-// True if the interval below does not contain the probability.
+// True if sequential_interval() does not contain the probability.
 bool excludes(std::uint64_t held, std::uint64_t count, double probability, double confidence);
 
 // With this confidence, the intervals after 1, 2, 3, ... samples all contain the probability.

@@ -19,7 +19,8 @@ struct Work {
   std::function<Result<void>()> begin_worker = [] { return Result<void>(); };
   // Sends an answer, and the number of tasks that it is for.
   using Done = std::function<void(const std::string& answer, std::size_t tasks)>;
-  // Called in a worker: does the tasks in their order. The worker does other work afterwards.
+  // Called in a worker: does the tasks in their order. The worker does other work afterwards,
+  // unless `ends_worker` returns true.
   std::function<void(const Done& done)> run;
   // Called after `run`: whether the worker must not do other work.
   std::function<bool()> ends_worker = [] { return false; };
@@ -28,11 +29,11 @@ struct Work {
 struct PoolOptions {
   int processes = 1;
   std::function<bool()> stop = [] { return false; };  // true: end soon, answers are not needed
-  // Called in the caller's process, in any order. False: do not begin the work after this piece.
+  // Called in the caller's process, in any order. False: begin no later piece.
   std::function<bool(std::size_t work, const std::string& answer)> on_answer;
-  // The rest of that piece is left out: no process can be started, or one died. The latter is a bug
-  // of attest, because the code of a port runs in processes of its own (host/port_process.hpp).
-  // Returns the same as on_answer.
+  // Called if no process can be started, or a process died. The rest of the piece is not done. A
+  // process that died is a bug of attest, because the code of a port runs in processes of its own
+  // (host/port_process.hpp). Returns the same as on_answer.
   std::function<bool(std::size_t work, const Error& error)> on_error;
 };
 
