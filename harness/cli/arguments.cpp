@@ -59,8 +59,7 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
   add_plant(*command, options->vehicle, options->plant);
   command->get_option("--plant")->description(
       "`mujoco` or `ode`; default: the first plant of the case; `all`: the same flight on each, "
-      "for "
-      "--html");
+      "for --html");
   add_port(*command, options->host.port);
   command
       ->add_option(

@@ -55,20 +55,17 @@ Result<SuiteFolder> named(const fs::path& folder, const char* by) {
                                               by));
 }
 
-// For each TOML file in root/name, except in golden/recorded: adds its path relative to `root`, and
-// the file. Compares strings, because work with fs::path is slower, and most of the files are
-// traces, which are not wanted.
-Result<void> add_files(const fs::path& root, const fs::path& name,
+// For each TOML file below `folder`, except in golden/recorded: adds its path relative to the suite
+// `root`, and the file.
+Result<void> add_files(const fs::path& root, const fs::path& folder,
                        std::map<std::string, fs::path>& files) {
-  const fs::path folder = root / name, recorded = root / "golden" / "recorded";
-  const std::size_t above = folder.native().size() - name.native().size();
   std::error_code error;
   if (!fs::is_directory(folder, error)) return {};  // a run reports the missing folder
   for (auto at = fs::recursive_directory_iterator(folder, error);
        at != fs::recursive_directory_iterator(); at.increment(error)) {
-    const std::string& path = at->path().native();
-    if (path == recorded.native()) at.disable_recursion_pending();
-    if (path.ends_with(".toml")) files[path.substr(above)] = path;
+    if (at->path() == root / "golden" / "recorded") at.disable_recursion_pending();
+    if (at->path().extension() != ".toml") continue;
+    files[at->path().lexically_relative(root)] = at->path();
   }
   if (error) return fail_at(folder.string(), error.message());
   return {};
@@ -128,12 +125,12 @@ VectorsByGroup SuiteFolder::vectors_by_group() const {
 Result<std::string> SuiteFolder::sha256() const {
   std::map<std::string, fs::path> files;
   if (base) {
-    if (auto added = add_files(*base, "cases", files); !added) {
+    if (auto added = add_files(*base, *base / "cases", files); !added) {
       return tl::unexpected(added.error());
     }
   }
-  for (const char* name : {"cases", "golden"}) {
-    if (auto added = add_files(root, name, files); !added) return tl::unexpected(added.error());
+  for (const fs::path& folder : {cases(), golden()}) {
+    if (auto added = add_files(root, folder, files); !added) return tl::unexpected(added.error());
   }
   std::string lines;
   for (const auto& [path, file] : files) {

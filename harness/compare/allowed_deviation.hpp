@@ -1,6 +1,6 @@
-// The allowed |got - want| of each value of a trace, which depends on the tick: the tolerance
-// of the rates setpoint is wider near a tilt error of 180 deg in the controller, and near an
-// attitude error of 180 deg in the attitude unit (Tolerances::widening).
+// The allowed |got - want| of each value of a trace, which depends on the tick: the tolerance of
+// the rates setpoint is wider near a tilt error of 180 deg in the controller, and near an attitude
+// error of 180 deg in the attitude unit (Tolerances::widening).
 #pragma once
 
 #include <cstddef>

@@ -30,8 +30,8 @@ class Process {
 
   // Takes over a child process that start() did not make. `fork` makes it: it lets another process
   // call fork_sibling(), and returns the number of the new process, or -1 with errno. The child
-  // process has no guard. Until
-  // `fork` returns, signals are blocked, and other threads cannot start processes.
+  // process has no guard. Until `fork` returns, signals are blocked, and other threads cannot start
+  // processes.
   static Result<Process> adopt(const std::function<pid_t()>& fork);
 
   Process() = default;  // none, same as after end()
@@ -65,8 +65,8 @@ class Process {
 // Forks, as Process::start() does, but for another owner, the parent of this process, which adopts
 // the child process. This process forks a process in between, which forks the child process and
 // ends. Then the owner becomes the parent, because the owner is a subreaper. Returns the number of
-// the child process; -1: errno has the reason. REQUIRES: this process
-// is below a guard, and its other threads hold no lock.
+// the child process; -1: errno has the reason. REQUIRES: this process is below a guard, and its
+// other threads hold no lock.
 pid_t fork_sibling(const std::function<void()>& work);
 
 // Whether this process, or one above it, has a guard: so in a worker and in all processes below it.
