@@ -74,7 +74,7 @@ struct MotorFailure {
 };
 
 // The limits for a run in real time. They are counts and percentiles: a single maximum depends on
-// the machine. README.md, Timing, defines the terms.
+// the machine. docs/timing.md defines the terms.
 struct RealtimeBudget {
   double misses_per_million = 500;     // deadline misses; the same limit for overruns
   double p99_latency_us = 100;         // wake-up latency that 1% may exceed

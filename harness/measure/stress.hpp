@@ -1,5 +1,5 @@
 // A port that flies in real time: the measurements, those of the idle machine, and the verdict. The
-// terms are those of the glossary in README.md, Timing.
+// terms are those of docs/timing.md.
 #pragma once
 
 #include <functional>

@@ -1,6 +1,6 @@
-// The times of one step of a unit on a clock. The terms are those of the glossary in README.md,
-// Timing. It follows Buttazzo, "Hard Real-Time Computing Systems" (3rd ed.), section 2.2, and Liu,
-// "Real-Time Systems", section 3.1.
+// The times of one step of a unit on a clock. The terms are those of docs/timing.md, which follow
+// Buttazzo, "Hard Real-Time Computing Systems" (3rd ed.), section 2.2, and Liu, "Real-Time
+// Systems", section 3.1.
 #pragma once
 
 #include <algorithm>

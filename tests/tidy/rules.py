@@ -237,6 +237,27 @@ def libraries_do_not_print(tree: Tree):
                 )
 
 
+_LINK = re.compile(r"\]\((?!\w+:)([^)#\s]*)(?:#([^)\s]*))?\)")
+
+
+def links_resolve(tree: Tree):
+    for path in (path for path in tree.paths() if path.endswith(".md")):
+        for number, line in enumerate(tree.text(path).splitlines(), 1):
+            for file, heading in _LINK.findall(line):
+                target = posixpath.normpath(posixpath.join(posixpath.dirname(path), file))
+                target = target if file else path
+                if not tree.has(target):
+                    yield Finding(path, number, f"link to {file}: the file does not exist")
+                elif heading and heading not in _anchors(tree.text(target)):
+                    yield Finding(path, number, f"link to #{heading}: {target} has no such heading")
+
+
+def _anchors(text: str) -> set[str]:
+    """Of the headings, as GitHub and GitLab write them."""
+    headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w -]", "", heading).lower().replace(" ", "-") for heading in headings}
+
+
 RULES = (
     line_length,
     function_length,
@@ -252,4 +273,5 @@ RULES = (
     header_shape,
     header_namespace,
     libraries_do_not_print,
+    links_resolve,
 )

@@ -132,6 +132,14 @@ EXAMPLES = {
             {"harness/loop/a.cpp": "// not std::cout\n"},
         ),
     ],
+    "links_resolve": [
+        ({"docs/a.md": "[b](b.md)\n", "b.md": ""}, {"docs/a.md": "[b](../b.md)\n", "b.md": ""}),
+        ({"a.md": "[b](docs/c)\n"}, {"a.md": "[b](docs)\n", "docs/b.md": "[c](https://c.d)\n"}),
+        (
+            {"a.md": "[b](b.md#one)\n", "b.md": "## One, two\n"},
+            {"a.md": "[b](b.md#one-two)\n", "b.md": "## One, two\n[b](#one-two)\n"},
+        ),
+    ],
 }
 
 

@@ -27,13 +27,20 @@ class Tree:
     """Paths with their text. `texts` replaces the repository in the self-test."""
 
     def __init__(self, texts: dict[str, str] | None = None):
-        self._texts = texts if texts is not None else dict(_texts())
+        files = repository.files() if texts is None else list(texts)
+        self._texts = dict(_texts(files)) if texts is None else texts
+        self._files = set(files)
+        self._folders = {str(f) for file in files for f in pathlib.PurePosixPath(file).parents}
 
     def text(self, path: str) -> str:
         return self._texts[path]
 
     def paths(self) -> list[str]:
         return list(self._texts)
+
+    def has(self, path: str) -> bool:
+        """Also for data and for folders."""
+        return path in self._files or path in self._folders
 
     def cxx(self, *under: str, suffixes: tuple[str, ...] = CXX) -> list[str]:
         """C and C++ files, all or those under one of the folders `under`."""
@@ -62,8 +69,8 @@ class Tree:
         ]
 
 
-def _texts():
-    for path in repository.files():
+def _texts(files: list[str]):
+    for path in files:
         if path.endswith(_DATA) or path.startswith("tests/baselines/"):
             continue
         content = (repository.ROOT / path).read_bytes()
