@@ -43,7 +43,7 @@ std::string encode(const Result<nlohmann::json>& result) {
 }
 
 Result<nlohmann::json> decode(const std::string& text) {
-  nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+  nlohmann::json json = json_from(text);
   if (json.is_object() && json.contains("result")) return std::move(json["result"]);
   if (json.is_object() && json.contains("error")) {
     auto error = error_from_json(json["error"]);

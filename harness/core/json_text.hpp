@@ -1,13 +1,19 @@
-// JSON as text. Bytes that are not UTF-8 are replaced by U+FFFD, so that every text is accepted:
-// the texts of a port may have any bytes.
+// JSON from and to text. The parser of nlohmann_json takes seconds to compile, so only
+// json_text.cpp uses it.
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include <nlohmann/json_fwd.hpp>
 
 namespace attest {
 
+// If the text is not JSON: a discarded value, which is no object.
+nlohmann::json json_from(std::string_view text);
+
+// Bytes that are not UTF-8 are replaced by U+FFFD, so that every text is accepted: the texts of a
+// port may have any bytes.
 std::string text_of(const nlohmann::json& value);              // one line, without its end
 std::string document_of(const nlohmann::ordered_json& value);  // indented, for a file
 

@@ -62,7 +62,7 @@ class Answerer {
       : question_(question), host_(host), judge_(judge) {}
 
   bool answer() {
-    const json head = json::parse(question_.head);
+    const json head = json_from(question_.head);
     const std::string what = head.at("do").get<std::string>();
     if (what == "drive") return drive(head);
     if (what == "fly") return fly(head);
@@ -131,7 +131,7 @@ class Answerer {
 // missing or of another type.
 template <typename Read>
 auto read_answer(const Arrived& arrived, Read read) -> decltype(read(json())) {
-  const json head = json::parse(arrived.head, nullptr, false);
+  const json head = json_from(arrived.head);
   if (!head.is_object()) return std::nullopt;
   try {
     if (head.at("request").get<std::uint64_t>() != arrived.request) return std::nullopt;

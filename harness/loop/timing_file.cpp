@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/core/file.hpp"
+#include "harness/core/json_text.hpp"
 
 namespace attest {
 namespace {
@@ -57,7 +58,7 @@ Result<LoopTiming> ticks_of(const json& values, const std::string& file) {
     if (!tick || !follows(*tick, ticks, last_commanded)) {
       return fail_at(file, fmt::format("tick {}: {} is not [sampled, begins, commanded] in "
                                        "nanoseconds up to 1e16, each at or after the one before it",
-                                       ticks.size(), value.dump()));
+                                       ticks.size(), text_of(value)));
     }
     last_commanded = tick->commanded.value_or(last_commanded);
     ticks.push_back(*tick);
@@ -89,7 +90,7 @@ Result<TimingFile> read_timing(const std::filesystem::path& path) {
   const std::string file = path.string();
   const auto text = read_file(path, most_bytes);
   if (!text) return tl::unexpected(text.error());
-  const json root = json::parse(*text, nullptr, false);
+  const json root = json_from(*text);
   const auto texts = {"case", "case_sha256", "rate", "vehicle", "plant"};
   bool complete = root.is_object() && root.contains("attest_timing") &&
                   root["attest_timing"] == format && root.contains("ticks_ns") &&
@@ -135,7 +136,7 @@ Result<void> write_timing(const TimingFile& timing, const std::filesystem::path&
   if (timing.configuration.rate.attitude_unit) {
     root[attitude_ticks] = ticks_json(timing.ticks.attitude_unit);
   }
-  return write_file(path, root.dump() + "\n");
+  return write_file(path, text_of(root) + "\n");
 }
 
 Case with_timing(Case the_case, const TimingFile& timing) {

@@ -274,7 +274,7 @@ class Listener {
   std::optional<Result<StressResults>> answer_of(const Received& received,
                                                  const Patience& patience) {
     heard_ = Clock::now();
-    const json head = json::parse(received.head, nullptr, false);
+    const json head = json_from(received.head);
     if (!head.is_object()) return forged();
     if (head.contains("error")) {
       auto error = error_from_json(head["error"]);

@@ -148,7 +148,7 @@ std::string greeting() {
 }
 
 Result<Hello> parse_hello(std::string_view line) {
-  const json object = json::parse(line, nullptr, false);
+  const json object = json_from(line);
   if (!object.is_object()) {
     return fail(
         fmt::format("its first line on stdout is {}, which is no JSON object; only the "

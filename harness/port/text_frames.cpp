@@ -126,7 +126,7 @@ class TextConversation final : public Conversation {
       broken(kind, fmt::format("has no end within {} bytes", max_line));
     }
     if (!line) ended(kind);
-    json answer = json::parse(*line, nullptr, false);
+    json answer = json_from(*line);
     if (!answer.is_object() || !answer.contains("sequence") || !answer.contains("result")) {
       broken(kind, fmt::format("is {}; it must be a JSON object with `sequence` and `result`",
                                in_backquotes(*line)));

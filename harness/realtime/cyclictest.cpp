@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "harness/core/json_text.hpp"
 #include "harness/process/program.hpp"
 
 namespace attest {
@@ -41,7 +42,7 @@ std::optional<std::map<std::int64_t, std::int64_t>> counts_of(const nlohmann::js
 std::optional<Cyclictest> parse_cyclictest(const std::string& text) {
   // The histogram as text follows the JSON.
   const std::size_t end = std::min(text.find("\n}"), text.size());
-  const auto json = nlohmann::json::parse(text.substr(0, end + 2), nullptr, false);
+  const auto json = json_from(text.substr(0, end + 2));
   const auto path = nlohmann::json::json_pointer("/thread/0");
   if (!json.is_object() || !json.contains(path) || !json[path].is_object()) return std::nullopt;
   const auto& thread = json[path];

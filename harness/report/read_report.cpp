@@ -8,6 +8,7 @@
 #include "harness/core/error_json.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/json_reader.hpp"
+#include "harness/core/json_text.hpp"
 #include "harness/trace/channels.hpp"
 #include "harness/verify/verdict_json.hpp"
 
@@ -114,7 +115,7 @@ void check_numbers(JsonReader reader, JsonReader totals, const RunResult& run) {
 Result<RunResult> read_report(const std::string& path) {
   const auto text = read_file(path);
   if (!text) return tl::unexpected(text.error());
-  const json report = json::parse(*text, nullptr, false);
+  const json report = json_from(*text);
   if (!report.is_object() || report.value("schema", json()) != "attest-report-1") {
     return fail_at(path, "is no report of `attest run --json` of this version of the format");
   }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/core/file.hpp"
+#include "harness/core/json_text.hpp"
 
 namespace attest {
 namespace {
@@ -61,14 +62,14 @@ std::string difference(const SweepIdentity& found, const SweepIdentity& expected
 std::string identity_text(const SweepIdentity& identity) {
   nlohmann::ordered_json json;
   for (const Named& named : identity_members) json[named.key] = identity.*named.member;
-  return json.dump(2) + "\n";
+  return document_of(json);
 }
 
 Result<SweepIdentity> read_identity(const fs::path& folder) {
   const fs::path file = folder / identity_file;
   const auto text = read_file(file);
   if (!text) return tl::unexpected(text.error());
-  const auto json = nlohmann::json::parse(*text, nullptr, false);
+  const auto json = json_from(*text);
   SweepIdentity identity;
   for (const Named& named : identity_members) {
     if (!json.is_object() || !json.contains(named.key) || !json[named.key].is_string()) {

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/core/json_text.hpp"
+
 namespace attest {
 namespace {
 
@@ -91,7 +93,7 @@ std::string summary_json(const SweepIdentity& identity, const SampleColumns& col
     if (one.sobol) out["metrics"].back()["sobol"] = json_of(*one.sobol, summary.dimensions);
   }
   if (summary.port) out["port_difference"] = json_of(*summary.port);
-  return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return document_of(out);
 }
 
 }  // namespace attest

@@ -25,7 +25,7 @@ namespace attest {
 // Text of the port stays as it is: text_of() and document_of() repair invalid UTF-8.
 nlohmann::json to_json(const CaseResult& result);
 
-// The inverse. Errors: a discarded value (json::parse without exceptions), a missing or wrong
+// The inverse. Errors: a discarded value (json_from), a missing or wrong
 // member, an unknown verdict, channel or rate. Unknown and derived members (id, stage) are ignored.
 Result<CaseResult> case_result_from_json(const nlohmann::json& json);
 
