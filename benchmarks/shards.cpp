@@ -30,7 +30,7 @@ case = "px4-v1.5.5/flight/tilt_step_30"
 vehicle = "iris"
 plant = "mujoco"
 rate = 250
-design = "sobol"
+design = "latin_hypercube"
 samples = {}
 
 [disperse.mass]
