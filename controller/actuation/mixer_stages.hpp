@@ -133,7 +133,8 @@ struct MixerStages {
     return clamp(idle + out * (1 - idle), idle, 1);
   }
 
-  // With a deadband, the first call is limited from 0. Without one, it is not limited.
+  // At the first call there is no previous output. With a deadband, slew() takes it as 0. Without
+  // one, the first output is not limited.
   static bool starts_at_0(Scalar idle) { return idle > Scalar(-1); }
 
   static Scalar slew(Scalar wanted, Scalar previous, Scalar delta_out_max) {

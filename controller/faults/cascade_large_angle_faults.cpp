@@ -55,7 +55,7 @@ const Fault half_turn_list[] = {
      }},
     {"cascade-opposite-positive-only", "large_angle", Stage::tilt,
      "sees opposite thrust directions only if the axis points forward or right",
-     "a half turn about the other axis", "a missing absolute value",
+     "a half turn about an axis that points backward or left", "a missing absolute value",
      [](FaultyLaw& law) {
        change_opposite(law, [](const Quat& r) { return r[1] > 0.99999f || r[2] > 0.99999f; });
      }},

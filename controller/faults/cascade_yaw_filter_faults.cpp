@@ -97,7 +97,8 @@ const Fault yaw_filter_list[] = {
            law, [](float cutoff) { return 1 / (6.28318548f * (cutoff > 1e-7f ? cutoff : 2.0f)); });
      }},
     {"cascade-yaw-filter-divides-by-0", "yaw_filter", Stage::yaw_filter,
-     "divides by a cutoff of 0: the yaw torque stays", "MC_YAW_TQ_CUTOFF 0", "a missing guard",
+     "divides by a cutoff of 0: the yaw torque never changes", "MC_YAW_TQ_CUTOFF 0",
+     "a missing guard",
      [](FaultyLaw& law) {
        change_yaw_tau(law, [](float cutoff) { return 1 / (6.28318548f * cutoff); });
      }},

@@ -23,8 +23,8 @@ namespace {
 
 constexpr const char* description =
     "Judges whether a port of PX4's multicopter attitude and rate control conforms to the\n"
-    "reference at every loop rate. It is a port of the controller of v1.5.5 and v1.3.4, or of\n"
-    "the attitude unit and the rate unit of v1.14 to v1.16. Reports the first deviation: its\n"
+    "reference at every loop rate. The port may be of the controller of v1.5.5 and v1.3.4, or\n"
+    "of the attitude unit and the rate unit of v1.14 to v1.16. Reports the first deviation: its\n"
     "tick, signal and stage of the law.\n";
 
 constexpr const char* footer =
@@ -53,8 +53,8 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("HZ");
   command
       ->add_option("--timing", options->timing,
-                   "Instead of a case and a rate: the flight of `stress --record-timing`, at the "
-                   "recorded times")
+                   "Instead of a case and a rate: the flight that `stress` or `schedule` wrote "
+                   "with `--record-timing`, at the recorded times")
       ->type_name("F");
   add_plant(*command, options->vehicle, options->plant);
   command->get_option("--plant")->description(

@@ -14,8 +14,9 @@ void add_strictness(CLI::App& command, RunOptions& options) {
   command
       .add_option("--level", options.level,
                   "How strictly: `exact` (float32 bits), `numeric` (a tolerance for each signal) "
-                  "or `events` (the same events, at most one tick apart, and values that "
-                  "differ by at most about half their size plus a small floor). "
+                  "or `events` (the outputs change state, for example a topic is published or an "
+                  "integral moves, at the same ticks or one tick apart, and values differ by at "
+                  "most about half their size plus a small floor). "
                   "Flights are judged the same way at each level")
       ->type_name("LEVEL")
       ->capture_default_str()
@@ -100,8 +101,8 @@ void add_run_command(CLI::App& app, const Globals& globals, Action& action) {
       ->group(option_group::selection);
   command
       ->add_option("--timing", options->timing,
-                   "Only the flight of `stress --record-timing`, replayed at the recorded times "
-                   "and compared with the reference at these times")
+                   "Only the flight that `stress` or `schedule` wrote with `--record-timing`, "
+                   "compared with the reference at the recorded times")
       ->type_name("F")
       ->group(option_group::selection);
   add_strictness(*command, *options);

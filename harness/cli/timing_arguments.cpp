@@ -69,7 +69,8 @@ void add_budgets(CLI::App& command, StressOptions& options) {
 void add_stress_reports(CLI::App& command, StressOptions& options) {
   command
       .add_option("--record-timing", options.record_timing,
-                  "Write the times of all ticks, for `run --timing`; one rate only")
+                  "Write the times of all ticks, for `run --timing` and `sim --timing`; one "
+                  "rate only")
       ->type_name("F")
       ->group(option_group::reports);
   add_page(command, options.html,

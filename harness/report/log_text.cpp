@@ -24,8 +24,8 @@ std::string deviations_text(const TopicAgreement& topic, const LogLimits& limits
   text += part_text(topic.within, topic, fmt::format("within {:g}", limits.within));
   if (topic.within == topic.paired) return text;
   text += part_text(topic.between_samples, topic,
-                    "between the reference's values for neighbouring samples, of which the log has "
-                    "not all");
+                    "explained: port and log are within the reference's values at this and the two "
+                    "neighbouring samples");
   text += part_text(topic.unexplained(), topic, "not explained");
   if (topic.missing > 0) text += part_text(topic.missing, topic, "not published by the port");
   if (topic.non_finite > 0)
@@ -36,7 +36,7 @@ std::string deviations_text(const TopicAgreement& topic, const LogLimits& limits
 std::string first_text(const LoggedUnit& log, const LoggedPair& pair) {
   const Channel& channel = channels()[pair.channel];
   return fmt::format(
-      "    first of these at tick {}, {:.3f} s after the first, in {}\n"
+      "    first one not explained: tick {}, {:.3f} s after tick 0, in {}\n"
       "      got    {}\n      logged {}\n",
       pair.tick, seconds_of(log, pair.tick), channel_with_unit(channel),
       value_text(channel, pair.got), value_text(channel, pair.logged));

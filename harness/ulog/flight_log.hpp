@@ -35,14 +35,15 @@ struct LoggedUnit {
   Module module = Module::mc_att_control;
   std::string step_topic;  // "control_state"
   // A tick for each sample of the step topic, at its timestamp. An input is the last sample logged
-  // before that time; in a log of attest, and of the controller of v1.5.5, also at that time. If
+  // before that time; in a log of attest, and of the controller of v1.5.5 and v1.3.4, also at that
+  // time. If
   // the log has an output of the tick, its `published` is 1. Otherwise the tick repeats the output
   // of the tick before. A field that the log's topic does not have is not in `trace.present`.
   Trace trace;
   std::vector<LoggedOutput> outputs;
   std::vector<Known> known;  // of each tick
-  // The log has every step of the unit and begins on the ground. For a log of v1.14 to v1.16, no
-  // input was assumed, either. Otherwise outputs that depend on earlier steps (the integral, the
+  // The log has every step of the unit. A log of v1.14 to v1.16 also begins on the ground, and no
+  // input was assumed. Otherwise outputs that depend on earlier steps (the integral, the
   // derivative) cannot be computed from the log.
   bool has_every_step = false;
   bool begins_in_flight = false;  // so the state of the unit at the first tick is not known
@@ -67,13 +68,15 @@ struct FlightLog {
 // v1.16. Its parameters are in the traces, those of other modules too.
 //
 // An output is paired with the step whose sample has its `timestamp_sample`, where the topic has
-// this field. Otherwise it is paired with the last step before it. A second output before the next
-// step is not paired. In a log of v1.14 to v1.16 this step must be at most 2 ms earlier, because
-// the log may lack the next one.
+// this field. Otherwise it is paired with the last step before it; in a log of v1.14 to v1.16 only
+// if that step is at most 2 ms before it, because the log may lack a later step. A second output
+// before the next step is not paired.
 //
-// In such a log, several modules publish the setpoints. A sample of vehicle_attitude_setpoint is an
-// output of the attitude unit if it made a setpoint of the sticks, and vehicle_rates_setpoint is an
-// output of the rate unit in acro mode. They are inputs otherwise. quat_reset_counter counts from
+// In such a log, several modules publish the setpoints, depending on the mode. Outputs of the
+// attitude unit are vehicle_rates_setpoint in modes with attitude control, and
+// vehicle_attitude_setpoint where the unit makes it from the sticks; otherwise the latter is an
+// input of the unit. vehicle_rates_setpoint is an output of the rate unit in acro mode, and
+// otherwise an input. quat_reset_counter counts from
 // the first sample on, because a unit that starts there knows of no earlier reset.
 //
 // `assumed` are some of assumption_words(); empty: those by default, none in a log of attest.

@@ -24,7 +24,7 @@ class PendingRows {
   }
 
   // Writes the last sample before the step at `time`, if it is newer than that of the call before.
-  // `last`: the step before, or that of the assumptions.
+  // `last`: the sample of the step before; at the first step, the assumed inputs.
   void advance_to(std::uint64_t time, const Sample& last, Sample& sample) {
     std::optional<std::size_t> newest;
     for (bool is_first = true; next_ < series_.size() && is_there(next_, time); is_first = false) {
@@ -170,8 +170,8 @@ class UnitOfLog {
     return static_cast<std::size_t>(found - all.begin());
   }
 
-  // Of a topic that other modules publish, too, depending on the mode at that time; or from before
-  // the log's first step.
+  // Whether another module published this sample: this unit does not publish the topic in the mode
+  // at that time. Also true before the log's first step.
   bool is_of_others(const LogSeries& output, std::size_t row) const {
     if (rules_ != LogRules::cascade) return false;
     const auto after = steps_.first_after(output.time(row));
