@@ -34,7 +34,8 @@ struct RatesSetpoint {
   Vector3<Scalar> thrust_B = Vector3<Scalar>::Zero();
 };
 
-// The stages of a step outside the rate law. Pure functions of their arguments.
+// The stages of a step outside the rate law. Pure functions of their arguments, except
+// filtered_yaw(), which changes the filter.
 template <typename Scalar>
 struct RateStepStages {
   using Vector = Vector3<Scalar>;
@@ -85,8 +86,8 @@ struct RateStepStages {
     return topics.mode.flag_armed == 0 || !topics.is_rotary_wing;
   }
 
-  // A NaN stays in the filter permanently, and with a time constant of 0 the filter still
-  // changes the torque.
+  // A NaN stays in the filter permanently. With a time constant of 0 the filter computes
+  // state + (torque - state), which may differ from the torque by rounding.
   ATTEST_INLINE static Scalar filtered_yaw(LowPass<Scalar>& filter, Scalar torque, Scalar dt_s,
                                            const RateUnitGains<Scalar>& gains,
                                            const ProfileTraits& law) {

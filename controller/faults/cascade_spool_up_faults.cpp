@@ -25,7 +25,7 @@ void change_thrust_min(FaultyLaw& law, Min min) {
 
 using Status = StepLaw::Status;
 
-// The limits of the thrust move in steps of stabilized mode only.
+// Updates the limits of the thrust only while the mode is stabilized.
 void move_limits_with_sticks(FaultyLaw& law) {
   auto used = std::make_shared<bool>(false);
   auto& unit = law.attitude_unit;
@@ -42,7 +42,7 @@ void move_limits_with_sticks(FaultyLaw& law) {
   };
 }
 
-// Applies the limits after they moved, one step early.
+// Applies the upper limit after it moved, one step early.
 void move_limits_before_use(FaultyLaw& law) {
   struct Seen {
     Scalar dt_s = 0, spooled = 0;

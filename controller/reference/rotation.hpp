@@ -67,7 +67,7 @@ Quaternion<Scalar> quaternion_of_half_turn(const Matrix3<Scalar>& D) {
   return {(D(k, j) - D(j, k)) * s, imaginary[0], imaginary[1], imaginary[2]};
 }
 
-// The quaternion of a rotation matrix, of either sign.
+// The quaternion of a rotation matrix: q or -q, which are the same rotation.
 template <typename Scalar>
 Quaternion<Scalar> quaternion_of(const Matrix3<Scalar>& D) {
   const Scalar trace = D(0, 0) + D(1, 1) + D(2, 2);

@@ -27,7 +27,7 @@ struct VectorTimes {
   CaseResult result;                       // a verdict other than pass: there are no times
   std::vector<Nanoseconds> steps;          // the quickest time of each
   std::optional<std::size_t> stack_bytes;  // the most that a step used
-  Module module = Module::mc_att_control;  // of which it is a step
+  Module module = Module::mc_att_control;  // whose steps were timed
 
   bool is_timed() const { return !steps.empty(); }
   // REQUIRES: is_timed().
@@ -38,7 +38,7 @@ struct VectorTimes {
 
 struct CorpusTimes {
   std::vector<VectorTimes> vectors;
-  Histogram steps;       // of all vectors; over its limit: over the budget
+  Histogram steps;       // of all vectors; its limit is the budget
   Nanoseconds clock{0};  // the time of reading the clock, already subtracted
 
   // Null: no vector was timed.

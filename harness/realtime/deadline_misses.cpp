@@ -5,10 +5,10 @@
 namespace attest {
 namespace {
 
-// The usual delay counts up to this part of the period: period / 10.
+// The usual delay is at most this part of the period: period / 10.
 constexpr int usual_part_of_period = 10;
 
-// When the thread was free for the next tick, in one of the timelines.
+// In one of the two timelines of deadline_misses.hpp.
 struct Course {
   Nanoseconds free = Nanoseconds::min();
   Nanoseconds start{0};
@@ -47,7 +47,7 @@ Nanoseconds usual_delay(const std::vector<Delay>& delays, const Rate& rate) {
   return std::min(*middle, rate.tick(1) / usual_part_of_period);
 }
 
-// The rule of the loop: a release is skipped when the next one is due.
+// A release is skipped if the thread is still busy when the next one is due.
 std::uint64_t skipped_by_port(const LiveTick& tick, const Rate& rate, Nanoseconds machines_finish,
                               Nanoseconds ports_finish) {
   std::uint64_t count = 0;

@@ -76,7 +76,7 @@ struct ModuleInfo {
   Module module;
   std::string_view name;   // "battery_status"
   std::string_view title;  // for messages: "battery estimate"
-  const char* extension;   // of attest_unit.h that has its functions; null for the controller
+  const char* extension;   // whose functions it has: ATTEST_EXTENSION_MIXER; null: the controller
   Block in, out;
   bool has_updated;  // its inputs begin like attest_inputs, with a bit for each new topic
 };
