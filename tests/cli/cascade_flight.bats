@@ -102,7 +102,7 @@ load common
   [ "$status" -eq 1 ]
   run "$ATTEST" schedule tasks.toml --case px4-v1.5.5/flight/tilt_step_30
   [ "$status" -eq 2 ]
-  has "has [task.attitude_unit], but px4-v1.5.5/flight/tilt_step_30 is a flight of the controller"
+  has "has [task.attitude_unit], but px4-v1.5.5/flight/tilt_step_30 is a flight of v1.5.5"
   sed -i '/attitude_unit/,/^$/d' tasks.toml
   run "$ATTEST" schedule tasks.toml --case px4-v1.16.0/flight/tilt_step_30
   [ "$status" -eq 2 ]
