@@ -14,16 +14,16 @@
  * What attest_unit.h says of frames, threads, memory, parameters, results, `updated` and
  * `published` holds here too. One more rule holds for time: `timestamp` is when the step runs, and
  * increases from step to step. It is the only clock. Timestamps inside topics are data: they may be
- * equal to it or older, and in the group `robustness` anything.
+ * equal to `timestamp` or older. In the group `robustness` they may have any value.
  *
- * Initial values: before the first sample of its topic, a field with the note "initially ..." has
- * this value for the unit. The input usually has 0 there until then, so the unit must not read it.
+ * Initial values: before the first sample of a topic, the unit uses the value in the note
+ * "initially ..." of a field. The field usually is 0 until then, so the unit must not read it.
  *
  * Own publications: a setpoint that a unit publishes is also an input of that unit, as in the
  * firmware. The host does not pass it back, so the unit keeps it. The attitude unit in stabilized
  * mode publishes vehicle_attitude_setpoint; the rate unit in acro mode publishes
- * vehicle_rates_setpoint. The unit keeps it as the newest sample of that topic. It replaces a
- * sample from outside that the unit has received and not used yet, and it is new at the next use.
+ * vehicle_rates_setpoint. The unit keeps this setpoint as the newest sample of that topic. The
+ * setpoint replaces a sample from outside that is not used yet. At its next use it counts as new.
  */
 #ifndef ATTEST_CASCADE_H
 #define ATTEST_CASCADE_H
@@ -57,8 +57,8 @@ typedef struct attest_attitude_inputs {
 
   struct {                      /* topic vehicle_attitude: new in every step, has no bit */
     uint64_t timestamp;         /* [us] when it was published */
-    uint64_t timestamp_sample;  /* [us] of the IMU data; the law's dt is the difference of two,
-                                 * limited to 0.2 .. 20 ms */
+    uint64_t timestamp_sample;  /* [us] of the IMU data; the law's dt is its change since the
+                                 * previous step, limited to 0.2 .. 20 ms */
     float q[4];                 /* body FRD to world NED */
     float delta_q_reset[4];     /* how far the estimator's last reset turned the attitude */
     uint8_t quat_reset_counter; /* counts these resets */
@@ -131,7 +131,7 @@ typedef struct attest_attitude_outputs {
     float q_d[4];           /* body FRD to world NED */
     float thrust_body[3];   /* [-1..1] along body x, y, z */
     float yaw_sp_move_rate; /* [rad/s] about world z */
-    uint8_t published;      /* its timestamp is that of the step */
+    uint8_t published;      /* the setpoint's timestamp is that of the step */
   } vehicle_attitude_setpoint;
 } attest_attitude_outputs;
 
@@ -164,8 +164,8 @@ typedef struct attest_rate_inputs {
   uint32_t reserved;  /* 0 */
 
   struct {                     /* topic vehicle_angular_velocity: new in every step, has no bit */
-    uint64_t timestamp_sample; /* [us] of the gyro; the law's dt is the difference of two,
-                                * limited to 0.125 .. 20 ms */
+    uint64_t timestamp_sample; /* [us] of the gyro; the law's dt is its change since the
+                                * previous step, limited to 0.125 .. 20 ms */
     float xyz[3];              /* [rad/s] about body x, y, z (FRD) */
     float xyz_derivative[3];   /* [rad/s^2] angular acceleration, filtered by the host */
   } vehicle_angular_velocity;
@@ -186,8 +186,8 @@ typedef struct attest_rate_inputs {
 
   struct {                            /* topic control_allocator_status */
     float unallocated_torque[3];      /* commanded torque minus the torque that motors give */
-    uint8_t torque_setpoint_achieved; /* flag: no axis is saturated; if set, the unit ignores the
-                                       * torques */
+    uint8_t torque_setpoint_achieved; /* flag: no axis is saturated; if set, the unit ignores
+                                       * unallocated_torque */
   } control_allocator_status;
 
   struct {             /* topic battery_status */

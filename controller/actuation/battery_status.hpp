@@ -117,7 +117,7 @@ class BasicBatteryStatus {
 
   // Takes one 100 Hz sample and returns the new scale, 1 .. 1.3.
   Scalar update(const BatterySample& sample) {
-    // Below 0 the filter has no value yet: the first sample initialises it.
+    // A value below 0 means that the filter has no value yet: the first sample initialises it.
     if (filtered_V_ < 0) filtered_V_ = Scalar(sample.voltage_V);
     filtered_V_ = stages_.low_passed(filtered_V_, Scalar(sample.voltage_V));
     const Scalar drop_V = stages_.load_drop_V(sample, options_);

@@ -26,7 +26,7 @@ struct MixerDefinition {
   float idle;  // command of a motor at an output of 0
 };
 
-// From one line of a mixer file, "R: <geometry> <roll> <pitch> <yaw> <deadband>", such as
+// Parses one line of a mixer file, "R: <geometry> <roll> <pitch> <yaw> <deadband>", such as
 // "R: 4x 10000 10000 10000 0". Geometries: 4x 4+ 6x 8x. The numbers are integers in 1/10000: scales
 // of the controls, and the fraction of the range in which a motor does not turn. The error
 // describes the mistake in the text.
@@ -46,8 +46,8 @@ class BasicMixer {
         has_previous_(stages_.starts_at_0(scales_.idle)) {}
 
   // One command for each rotor, valid until the next call. delta_out_max [1] limits the change of
-  // each command since the previous call; not positive: no limit. The first call is limited from 0,
-  // or not at all where the mixer has no deadband.
+  // each command since the previous call; not positive: no limit. In the first call it limits the
+  // change from 0, or nothing where the mixer has no deadband.
   std::span<const Scalar> mix(const Controls& controls, Scalar delta_out_max,
                               Saturation& saturation) {
     Controls c = stages_.scaled(controls, scales_);
@@ -75,7 +75,7 @@ class BasicMixer {
   MixerScales<Scalar> scales_;
   [[no_unique_address]] Stages stages_;
   std::array<Scalar, rotors_max> commands_{};
-  // `commands_` are those of a previous call, or the 0 from which the first call is limited.
+  // Whether `commands_` limit the next call: those of the previous call, or 0 in the first call.
   bool has_previous_;
 };
 

@@ -106,7 +106,8 @@ struct MixerStages {
   }
 
   // Goes through the rotors in order: where one is outside its limits, cuts yaw, and at the upper
-  // limit some thrust. The cut holds for the rotors after it, too. Returns whether yaw was cut.
+  // limit some thrust. Later rotors are tested with the new values, and the last values hold for
+  // all rotors. Returns whether yaw was cut.
   static bool yield_yaw(std::span<const Rotor> rotors, Controls& c, const Fit& fit) {
     bool cut = false;
     for (const Rotor& rotor : rotors) {

@@ -36,7 +36,7 @@ struct AttitudeStages {
     return shortest_rotation(z_axis(q_WB), z_axis(q_WD));
   }
 
-  // The thrust directions are opposite: the shortest rotation is arbitrary there.
+  // Whether the thrust directions are opposite: the shortest rotation is arbitrary there.
   ATTEST_INLINE static bool is_opposite(const Q& tilt) {
     constexpr float almost_one = 0.999989986f;  // 1 - 1e-5
     using std::abs;

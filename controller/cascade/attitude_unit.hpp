@@ -48,7 +48,7 @@ struct AttitudeStepStages {
   using Topics = AttitudeTopics;
   using Status = decltype(Topics::status);
 
-  // A stage, so that a fault can take one trait from another profile.
+  // This function is a stage, so that a fault can take one trait from another profile.
   static ProfileTraits traits(Profile profile) { return traits_of(profile); }
 
   static AttitudeUnitGains<Scalar> gains(const Parameters& parameters) {
@@ -67,7 +67,7 @@ struct AttitudeStepStages {
                              : gains.thrust_hover;
   }
 
-  // The motors have had time to reach their speed since arming.
+  // Whether the motors have had time to reach their speed since arming.
   ATTEST_INLINE static bool is_spooled(std::uint64_t now_us, const Status& status,
                                        Scalar spoolup_us) {
     return status.armed != 0 && Scalar(now_us - status.armed_time) > spoolup_us;
@@ -151,7 +151,7 @@ class AttitudeUnit {
 
   // Sets one parameter by its PX4 name. A value set before the first step holds from creation on. A
   // later value takes effect in the next step that has ATTEST_ATTITUDE_UPDATED_PARAMETER_UPDATE
-  // set. False: see set_parameter() in parameters.hpp.
+  // set. Returns false in the same cases as set_parameter() in parameters.hpp.
   bool set_parameter(std::string_view name, float value);
 
   // One step. Writes the fields of a topic only when it publishes the topic.
@@ -179,7 +179,7 @@ class AttitudeUnit {
   AttitudeLaw<Scalar, decltype(Law::attitude)> attitude_;
   AttitudeTopics topics_;
   AttitudeSetpoint<Scalar> newest_setpoint_;  // own or external
-  bool setpoint_pending_ = false;             // it has not been latched yet
+  bool setpoint_pending_ = false;             // newest_setpoint_ has not been latched yet
   std::uint64_t last_setpoint_us_ = 0;
   Vector3<Scalar> thrust_B_ = Vector3<Scalar>::Zero();
   ThrustLimits<Scalar> thrust_limits_;

@@ -174,7 +174,7 @@ void AttitudeUnit<Scalar, Law>::publish_rates(const attest_attitude_inputs& in,
   topic.published = 1;
 }
 
-// After use, in every step.
+// Runs in every step, after the sticks have used the limits.
 template <typename Scalar, typename Law>
 void AttitudeUnit<Scalar, Law>::move_thrust_limits() {
   ThrustLimits<Scalar>& limits = thrust_limits_;

@@ -1,4 +1,4 @@
-// What the law computes of its parameters whenever they are read: gains, limits in radians, stick
+// What the law computes from its parameters whenever they are read: gains, limits in radians, stick
 // curves.
 //
 // Vectors are in the order roll, pitch, yaw. Plain values; any thread.
@@ -76,13 +76,13 @@ Vector3<Scalar> radians_each(float roll_deg, float pitch_deg, float yaw_deg) {
 }
 
 // The yaw gain is divided by the weight, because the law multiplies the yaw error by the weight:
-// the product is MC_YAW_P again. Written so that a weight near 0 leaves the gain.
+// the product is MC_YAW_P again. A weight near 0 leaves the gain unchanged.
 template <typename Scalar>
 Scalar weighted_yaw_gain(Scalar gain, Scalar weight) {
   return weight > Scalar(1e-4f) ? gain / weight : gain;
 }
 
-// Of MPC_THR_CURVE, which may have any value.
+// The curve that MPC_THR_CURVE selects. The parameter may have any value.
 inline ThrottleCurve throttle_curve(float value) {
   if (value == 1.0f) return ThrottleCurve::straight;
   return value == 2.0f ? ThrottleCurve::through_hover_parameter

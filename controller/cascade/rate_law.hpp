@@ -29,7 +29,7 @@ struct RateInput {
   bool landed;
 };
 
-// Actuators give no more torque in that direction.
+// A flag is true if the actuators give no more torque about that axis in that direction.
 struct Saturation {
   std::array<bool, 3> positive{};
   std::array<bool, 3> negative{};
@@ -68,7 +68,7 @@ struct RateStages {
     return gains.feed_forward.cwiseProduct(rates_sp);
   }
 
-  // With the integral before this step's update.
+  // Uses the integral from before this step's update.
   ATTEST_INLINE static Vector torque(const Vector& p, const Vector& integral, const Vector& d,
                                      const Vector& ff) {
     return ((p + integral) - d) + ff;
@@ -78,8 +78,8 @@ struct RateStages {
     return !landed && !maybe_landed;
   }
 
-  // The error of one axis, without the direction that is saturated. If a direction is saturated, a
-  // NaN becomes 0.
+  // The error of one axis, or 0 if it points in a saturated direction. If a direction is saturated,
+  // a NaN becomes 0.
   ATTEST_INLINE static Scalar unsaturated(Scalar error, bool positive, bool negative) {
     if (positive) error = min(error, Scalar(0));
     if (negative) error = max(error, Scalar(0));

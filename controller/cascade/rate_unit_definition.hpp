@@ -5,7 +5,7 @@
 
 namespace attest::cascade {
 
-// Latched when the law uses them, which may be some steps after the sample arrived.
+// Topics that are latched when the law uses them, maybe some steps after they arrived.
 inline constexpr std::uint32_t latched_on_demand =
     ATTEST_RATE_UPDATED_VEHICLE_RATES_SETPOINT | ATTEST_RATE_UPDATED_MANUAL_CONTROL_SETPOINT |
     ATTEST_RATE_UPDATED_CONTROL_ALLOCATOR_STATUS | ATTEST_RATE_UPDATED_BATTERY_STATUS;

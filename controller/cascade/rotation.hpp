@@ -130,7 +130,7 @@ ATTEST_INLINE Quaternion<Scalar> shortest_rotation(const Vector3<Scalar>& a,
   return unit<Scalar>({w, axis[0], axis[1], axis[2]});
 }
 
-// A rotation by |{x, y}| [rad] about that horizontal axis.
+// A rotation by |{x, y}| [rad] about the horizontal axis {x, y, 0}.
 template <typename Scalar>
 ATTEST_INLINE Quaternion<Scalar> rotation_about(Scalar x, Scalar y) {
   using std::cos;

@@ -1,10 +1,10 @@
 // The scalar functions of the law: angles, limits, filters and stick curves.
 //
-// Each is one expression, in the order of the law, on which the last bit depends. Scalar is float
-// in the law; another type computes the same expressions with the same binary32 constants. NaN is
-// part of the law: which argument of a comparison comes first decides where it goes.
+// Each keeps the law's order of operations, on which the last bit depends. Scalar is float in the
+// law; another type computes the same expressions with the same binary32 constants. The results for
+// NaN are part of the law: they depend on the order of the arguments of a comparison.
 //
-// Pure functions, and two filters that are plain values; any thread.
+// Pure functions, and a filter and a line that are plain values; any thread.
 #pragma once
 
 #include <cmath>
@@ -76,7 +76,7 @@ ATTEST_INLINE Scalar slewed(Scalar value, Scalar rate, Scalar dt_s, Scalar targe
   return value + clamp(target - value, -step, step);
 }
 
-// A point of the straight line through (x0, y0) and (x1, y1), which is level outside.
+// The straight line from (x0, y0) to (x1, y1): y0 before x0, and y1 after x1.
 template <typename Scalar>
 struct Line {
   Scalar x0, x1, y0, y1;

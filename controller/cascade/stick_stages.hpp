@@ -20,8 +20,8 @@ struct ThrustLimits {
   Scalar hover = Scalar(0);
 };
 
-// The slow drift of the heading, measured against a heading of the gyros alone. While
-// the estimator converges to a new heading, the vehicle must not follow it.
+// How far the heading has moved since the estimator began to converge to a new heading, measured
+// against a heading of the gyros alone. The vehicle must not follow this movement.
 template <typename Scalar>
 struct YawCorrection {
   LowPass<Scalar> error;  // of the heading [rad]
@@ -93,7 +93,7 @@ struct StickStages {
   // The reset of the estimator turned the heading by `turn`. NaN stays NaN.
   ATTEST_INLINE static Scalar turned(Scalar angle, Scalar turn) { return wrap(angle + turn); }
 
-  // The sticks together give no more tilt than one of them. A rotation vector.
+  // The sticks together give no more tilt than one of them. Returns a rotation vector.
   ATTEST_INLINE static Vector limited_tilt(Scalar x, Scalar y, const Gains& gains) {
     const Vector v(x, y, Scalar(0));
     const Scalar angle = length(v);
@@ -112,7 +112,7 @@ struct StickStages {
     return shortest_rotation(up, z_axis(product(product(inverse(desired_yaw), yaw), tilt)));
   }
 
-  // First the tilt, then the yaw. Not normalised in the published sample.
+  // Applies first the tilt, then the yaw. The published quaternion is not normalised.
   ATTEST_INLINE static Q desired_attitude(const Q& yaw, const Q& tilt) {
     return product(yaw, tilt);
   }
@@ -123,7 +123,7 @@ struct StickStages {
     return runs || law.locks_yaw;
   }
 
-  // A stick of -1..1: straight, or in two parts that meet at the hover thrust.
+  // The thrust of a stick of -1..1: one straight line, or two that meet at the hover thrust.
   static Scalar throttle(Scalar stick, const Gains& gains, const ThrustLimits<Scalar>& limits) {
     const Scalar idle = -1, centre = 0, full = 1;
     if (gains.throttle_curve == ThrottleCurve::straight) {
@@ -139,8 +139,8 @@ struct StickStages {
     return min(thrust, limits.max);
   }
 
-  // v1.14.4: a stick of 0..1. The firmware's int(2 * stick) is undefined from 2^31 on and for NaN.
-  // Here these take the first part, as on x86-64.
+  // v1.14.4: the stick becomes a position of 0..1. The firmware's int(2 * position) is undefined
+  // from 2^31 on and for NaN. Here these values take the first part, as on x86-64.
   static Scalar uncentred_throttle(Scalar stick, const Gains& gains) {
     const Scalar idle = 0, full = 1, centre = Scalar(0.5f);
     const Scalar position = (stick + Scalar(1)) * Scalar(0.5f);

@@ -46,7 +46,7 @@ template <typename Scalar>
 using RateUnitTable =
     UnitTable<attest_rate_unit, RateUnit<Scalar>, attest_rate_inputs, attest_rate_outputs>;
 
-// extension() of a unit that has both.
+// extension() of a port that has both units.
 template <typename Scalar>
 const void* extension(const char* id) noexcept {
   if (id == nullptr) return nullptr;

@@ -6,7 +6,7 @@
 namespace attest::cascade {
 namespace {
 
-// The controller's table, with the extensions of both.
+// The controller's table, with the extensions of the controller and of the two units.
 template <const attest_unit* (*controller)(), const attest_unit* (*units)()>
 const attest_unit* whole() {
   static const attest_unit table = [] {

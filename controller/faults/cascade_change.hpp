@@ -54,7 +54,7 @@ void change_traits(Unit& unit, Change change) {
   };
 }
 
-// One bit of the traits, as in another profile.
+// Gives one trait the value that it has in another profile.
 template <bool CascadeTraits::*trait, bool value>
 void follow(FaultyLaw& law) {
   const auto change = [](CascadeTraits& traits) { traits.*trait = value; };
@@ -70,7 +70,7 @@ void read_from(FaultyLaw& law) {
   change_parameters(law.rate_unit, change);
 }
 
-// Before the first sample of a topic, as if one had come with these values. Set is void(Inputs&).
+// If the first step has no sample of `topic`, `set` makes one. Set is void(Inputs&).
 template <typename Unit, typename Set>
 void start_with(Unit& unit, std::uint32_t topic, Set set) {
   also_before(unit, [set, topic, is_first = true](typename Unit::Inputs& in) mutable {

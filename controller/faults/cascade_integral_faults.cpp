@@ -62,8 +62,8 @@ void change_may_integrate(FaultyLaw& law, May may) {
   law.rate_unit.rate.may_integrate = may;
 }
 
-// Sets the integral to 0 while `resets` is true, before the law, by landed flags that are seen in
-// the inputs.
+// Sets the integral to 0 before the law, while the newest vehicle_land_detected in the inputs has
+// landed or maybe_landed set.
 void reset_when_landed(FaultyLaw& law) {
   auto landed = std::make_shared<bool>(true);
   also_before(law.rate_unit, [landed](RateIn& in) {

@@ -17,10 +17,10 @@ void change_opposite(FaultyLaw& law, Test test) {
   law.attitude_unit.attitude.is_opposite = test;
 }
 
-// The sign of w only. The law takes the first component that is not 0.
+// Makes w positive. The law makes the first component that is not 0 positive.
 Quat with_positive_w(const Quat& q) { return q[0] < 0 ? Quat(-q) : q; }
 
-// between() with another axis for opposite directions. Axis is Vector(const Vector& a).
+// tilt_rotation() with another axis for opposite directions. Axis is Vector(const Vector& a).
 template <typename Axis>
 void change_half_turn_axis(FaultyLaw& law, Axis axis) {
   law.attitude_unit.attitude.tilt_rotation = [axis](const Quat& q_WB, const Quat& q_WD) {

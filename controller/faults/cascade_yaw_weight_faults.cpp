@@ -51,7 +51,7 @@ void limit_early(FaultyLaw& law) {
   stages.limit = [](const Vector& rates, const QuaternionGains&) { return rates; };
 }
 
-// The limits hold outside stabilized mode only: the limit of the older law was one of auto modes.
+// The limits do not hold in manual modes.
 void limit_without_sticks(FaultyLaw& law) {
   auto sticks = std::make_shared<bool>(false);
   law.attitude_unit.step.follows_sticks = [sticks](const cascade::AttitudeTopics& topics) {

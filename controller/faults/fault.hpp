@@ -62,7 +62,7 @@ class ProfileSet {
   constexpr ProfileSet(reference::ProfileSet profiles) : controller_(profiles) {}
   constexpr ProfileSet(cascade::ProfileRange profiles) : cascade_(profiles) {}
 
-  // False for the name of no profile.
+  // Returns false if no profile has that name.
   bool contains(std::string_view profile) const;
   // Whether the profile, in the set or not, is one of the same law.
   bool is_of_law_of(std::string_view profile) const;

@@ -42,7 +42,7 @@ class McAttControl {
 
   // Sets one parameter by its PX4 name. A value set before the first step takes effect in the first
   // step. A later value takes effect in the next step that has ATTEST_UPDATED_PARAMETER_UPDATE set.
-  // False: see set_parameter() in parameters.hpp.
+  // Returns false in the same cases as set_parameter() in parameters.hpp.
   bool set_parameter(std::string_view name, float value);
 
   // One step. Writes the fields of a topic only when it publishes the topic.
@@ -76,7 +76,7 @@ class McAttControl {
   bool first_step_ = true;
   bool recovery_enabled_ = false;  // decided at the first step
   bool status_seen_ = false;       // the first vehicle_status has arrived
-  bool is_vtol_ = false;           // of that first one: publishes on the virtual topics
+  bool is_vtol_ = false;           // is_vtol of the first vehicle_status: selects virtual topics
 };
 
 extern template class McAttControl<float>;

@@ -8,7 +8,7 @@
 
 namespace attest::reference {
 
-// Latched when the outer loop uses them, which may be some steps after the sample arrived.
+// Topics that are latched when the outer loop uses them, maybe some steps after they arrived.
 inline constexpr std::uint32_t latched_on_demand =
     ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT | ATTEST_UPDATED_VEHICLE_RATES_SETPOINT;
 
@@ -80,8 +80,8 @@ void McAttControl<Scalar, Law>::apply_parameters() {
   }
 }
 
-// Clears the flag in the latched copy. It stays cleared until vehicle_control_mode is updated, even
-// when the stick returns before that.
+// Clears the attitude flag in the latched copy. It stays cleared until vehicle_control_mode is
+// updated, even when the stick returns before that.
 template <typename Scalar, typename Law>
 ATTEST_INLINE void McAttControl<Scalar, Law>::apply_rattitude() {
   if (topics_.mode.flag_control_rattitude_enabled == 0) return;

@@ -23,7 +23,8 @@ struct ProfileTraits {
   bool feeds_forward_rates;             // the rates setpoint itself; else its change
   bool freezes_yaw_integral;            // while the mixer reports yaw at its limit
   bool limits_yaw_before_feed_forward;  // when weather-vaning; every profile limits it after, too
-  bool limits_rates_in_auto;            // in every auto mode; else in those with velocity control
+  bool limits_rates_in_auto;            // to the autonomous maximum, in every auto mode; else only
+                                        // in modes with velocity control
   bool has_landing_gear;
   bool scales_by_battery;
 };

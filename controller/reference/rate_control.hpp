@@ -39,7 +39,7 @@ struct RateInput {
   Scalar published_thrust_sp;  // thrust of the latest vehicle_rates_setpoint
   Scalar dt_s;
   MotorLimits limits;
-  bool flying;  // armed as a rotary wing; otherwise the integral starts from zero
+  bool flying;  // armed as a rotary wing; otherwise each step sets the integral to 0 first
 };
 
 // The stages of the law. Each is a pure function of its arguments.
@@ -61,7 +61,7 @@ struct RateStages {
     return gains.proportional.cwiseProduct(error * attenuation);
   }
 
-  // On the measured rates, so that a step of the setpoint gives no kick.
+  // D acts on the measured rates, so that a step of the setpoint gives no kick.
   ATTEST_INLINE static Vector derivative(const Vector& rates_prev, const Vector& rates, Scalar dt_s,
                                          const RateGains<Scalar>& gains) {
     return gains.derivative.cwiseProduct(rates_prev - rates) / dt_s;

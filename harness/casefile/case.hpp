@@ -62,7 +62,7 @@ struct AttitudeStimulus {
 
 struct TopicStimulus {
   std::string topic;
-  std::uint32_t updated_bit = 0;  // 0 for control_state, which is new at every tick
+  std::uint32_t updated_bit = 0;  // 0 for a topic without a bit, which is new at every tick
   Publication publication;
   std::vector<FieldStimulus> fields;
   std::vector<AttitudeStimulus> attitudes;

@@ -23,7 +23,7 @@ struct LogCase {
   std::string name;         // of the log and the part: "gust", "gust_1_5s_to_3s"
   std::string toml;         // the case file, as in SCHEMA.md
   std::string step_topic;   // "control_state"
-  std::size_t samples = 0;  // of it
+  std::size_t samples = 0;  // of the step_topic
   double duration_s = 0;
 };
 

@@ -50,7 +50,7 @@ struct SelectedCase {
       configurations;  // in the order of Case::configurations(), not empty
 };
 
-// The vectors with these ids (Case::id_at), in the same order. A case of which none is left is left
+// The vectors with these ids (Case::id_at), in the same order. A case without such a vector is left
 // out.
 std::vector<SelectedCase> keep_vectors(std::vector<SelectedCase> cases,
                                        const std::set<std::string>& ids);

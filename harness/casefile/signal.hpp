@@ -89,7 +89,7 @@ enum class Angles {
 // and norm.
 struct AttitudeSignal {
   Angles by = Angles::tilt_azimuth_yaw;
-  std::array<Signal, 3> angles_deg{};  // in the order of the name
+  std::array<Signal, 3> angles_deg{};  // in the order of the name of `by`
   double sign = 1;                     // -1: the antipodal quaternion, the same attitude
   double norm = 1;
 };
@@ -108,7 +108,7 @@ class Sampler {
   std::vector<Nanoseconds> times_;  // of Samples
 };
 
-// The attitude with these angles [deg], in the order of the name.
+// The attitude with these angles [deg], in the order of the name of `by`.
 Quaternion attitude_from(Angles by, const std::array<double, 3>& angles_deg);
 
 // False for constants.

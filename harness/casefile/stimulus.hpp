@@ -21,7 +21,7 @@ std::vector<Nanoseconds> unit_ticks(const Case& the_case, const Rate& rate, doub
 
 // The scripted inputs of a case, tick by tick. A sample holds the last published values of each
 // topic, as the ABI promises, and the updated bits of the topics published since the tick before.
-// The same case and rate give the same bits, for gcc and clang. The case must outlive it. A tick
+// The same case and rate give the same bits, for gcc and clang. The case must outlive this. A tick
 // allocates only when a parameter changes.
 class Stimulus {
  public:

@@ -90,8 +90,9 @@ void parse_trigger(const TomlTable& table, const std::string& name, TaskSet& set
   unit.rate = set.tasks[*set.estimator].rate;
 }
 
-// A task may have any name, but `unit` and `estimator` have a meaning. If `meant` is missing, a
-// name that is nearly the same is reported as a misspelling of it; then this returns true.
+// A task may have any name, but `unit`, `estimator` and `attitude_unit` have a meaning. If `meant`
+// is missing, a name that is nearly the same is reported as a misspelling of it; then this returns
+// true.
 bool is_misspelt(const TomlTable& tasks, const std::string& meant) {
   const std::vector<std::string> names = tasks.keys();
   if (std::find(names.begin(), names.end(), meant) != names.end()) return false;

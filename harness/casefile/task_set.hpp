@@ -19,7 +19,7 @@ struct TaskSet {
   // Index of the task `attitude_unit`, if there is one: `unit` is then the cascade's rate unit.
   std::optional<std::size_t> attitude_unit;
 
-  // Of `unit`, or of both units.
+  // The rate of the task `unit`, or the rates of both units of the cascade.
   LoopRate rate() const {
     const Rate& own = tasks[unit].rate;
     return attitude_unit ? LoopRate(tasks[*attitude_unit].rate, own) : LoopRate(own);

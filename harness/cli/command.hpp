@@ -109,7 +109,7 @@ int replay_command(const ReplayOptions& options, const Globals& globals);
 struct CompareOptions {
   std::string got, want;
   std::string level = "numeric";
-  bool by_time = false;     // of any signals, at equal times
+  bool by_time = false;     // compare any signals, at equal times
   double others = 0;        // the tolerance of signals that the level does not know
   std::string shift = "0";  // us, or "auto"
   std::string html;
@@ -219,7 +219,7 @@ struct VectorOptions {
   std::string format = "csv";
   std::string fixed_step;  // as text; empty: none
   bool lint = false;
-  // A case of this log, instead of the vectors of cases. Times since its first control_state.
+  // A case of this log, instead of the vectors of cases. Times since the unit's first step in it.
   std::string from_log;
   double from_s = 0;
   std::optional<double> to_s;        // empty: to the end

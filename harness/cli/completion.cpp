@@ -155,7 +155,7 @@ constexpr const char* registration = "complete -o default -F _attest attest\n";
 std::string bash_completion(const CLI::App& app) { return script_body(app) + registration; }
 
 std::string zsh_completion(const CLI::App& app) {
-  // The function path loads the file at the first completion, which must be answered, too.
+  // zsh loads the file at the first completion. The last line answers this completion, too.
   return "#compdef attest\nautoload -U +X bashcompinit && bashcompinit\n" + script_body(app) +
          registration +
          "[[ ${funcstack[1]-} != _attest ]] || _bash_complete -o default -F _attest\n";

@@ -47,7 +47,7 @@ std::optional<Diagnosis> diagnosed(const RunResult& run, const Examined& examine
   auto diagnosis =
       diagnose(vectors(nullptr), [&](const faults::Fault& fault) { return vectors(&fault); });
   if (!interrupted()) return diagnosis;
-  // It would rest on some of the vectors only. The verdicts are complete.
+  // This diagnosis rests on some of the vectors only. The verdicts are complete.
   fmt::print(stderr, "attest: interrupted; the reports do not have the probable mistake\n");
   return std::nullopt;
 }

@@ -5,7 +5,7 @@
 
 namespace attest::cli {
 
-// The share of the exchange in the times of a program. Empty for another kind of port.
+// Says how long one exchange with a program takes. Empty for another kind of port.
 std::string exchange_note(const std::string& port);
 
 }  // namespace attest::cli

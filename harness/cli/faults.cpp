@@ -104,7 +104,8 @@ int diagnose_all(const std::vector<SelectedCase>& cases, const std::string& prof
   return part >= enough ? exit_ok : exit_failed;
 }
 
-// Whether every fault that is detectable in the profile is caught, by its own group.
+// Prints which faults are caught. The exit code says whether each detectable fault is caught by its
+// own group, and no equivalent one is caught. With --diagnose: whether enough faults are named.
 Result<int> measure(const FaultOptions& options, const SuiteFolder& suite,
                     const std::string& profile, const std::vector<const Fault*>& faults) {
   const auto cases = open_loop_cases(suite, profile);

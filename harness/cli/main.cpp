@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
   open_standard_streams();
   // A write beyond `ulimit -f` fails then, and the error names the file.
   std::signal(SIGXFSZ, SIG_IGN);
-  // A parent may have left it ignored. The status of an ended process would then be lost.
+  // A parent may have left SIGCHLD ignored. The status of an ended process would then be lost.
   std::signal(SIGCHLD, SIG_DFL);
   if (!enough_descriptors()) {
     std::fputs("attest: error: too few files can be opened; raise the limit (`ulimit -n`)\n",

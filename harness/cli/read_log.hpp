@@ -10,9 +10,9 @@
 namespace attest::cli {
 
 // The log with the profile to use: `profile` if it is not empty, else that of the log, else that of
-// the release of PX4 that wrote it, else of a log of the old controller default_profile, with a
-// note. `assumed` and errors: see read_flight_log(). Also errors: no profile for a log of v1.14 to
-// v1.16; a profile without the units of the log.
+// the release of PX4 that wrote it. If there is none of these, a log of the old controller gets
+// default_profile, and a note. `assumed` and errors: see read_flight_log(). Also errors: no profile
+// for a log of v1.14 to v1.16; a profile without the units of the log.
 Result<FlightLog> read_log(const std::string& file, const std::vector<std::string>& assumed,
                            const std::string& profile);
 

@@ -151,7 +151,8 @@ class Replay {
     return is_log(file) ? replay_log(file) : replay_trace(file);
   }
 
-  // Before the recorded outputs are read: the port's process is a copy of this one.
+  // Call it before the recorded outputs are read: the port's process is a copy of this one, and
+  // must not have them.
   Result<void> start() { return ensure_host(host_, options_.host); }
 
   Result<void> replay_trace(const std::string& file) {

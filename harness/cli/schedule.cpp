@@ -23,14 +23,15 @@ FlightTiming timing_of(const TaskSet& set, const std::vector<std::vector<TaskJob
 
 Result<void> check_law(const ScheduleOptions& options, const TaskSet& set, const Case& the_case) {
   if (set.attitude_unit.has_value() == the_case.attitude_loop.has_value()) return {};
-  return fail_at(options.tasks,
-                 set.attitude_unit
-                     ? fmt::format("has [task.attitude_unit], but {} is a flight of v1.5.5 or v1.3.4, "
-                                   "whose controller is one unit: [task.unit]",
-                                   the_case.id())
-                     : fmt::format("needs [task.attitude_unit] too: {} is a flight of the cascade, "
-                                   "whose rate unit is [task.unit]",
-                                   the_case.id()));
+  return fail_at(
+      options.tasks,
+      set.attitude_unit
+          ? fmt::format("has [task.attitude_unit], but {} is a flight of v1.5.5 or v1.3.4, "
+                        "whose controller is one unit: [task.unit]",
+                        the_case.id())
+          : fmt::format("needs [task.attitude_unit] too: {} is a flight of the cascade, "
+                        "whose rate unit is [task.unit]",
+                        the_case.id()));
 }
 
 struct SchedulePlan {

@@ -131,7 +131,8 @@ void add_selection(CLI::App& command, SelectionOptions& options) {
       "PROFILE")
       ->delimiter(',');
   add_rates(command, options.rates,
-            "Only these loop rates [Hz], separated by commas; v1.14 to v1.16 have pairs, such as "
+            "Only these loop rates [Hz], separated by commas; flights of v1.14 to v1.16 have "
+            "pairs, such as "
             "250:1000")
       ->group(option_group::selection);
   add("--vehicle", options.vehicles, "Only flights of these vehicles, separated by commas",

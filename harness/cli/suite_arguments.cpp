@@ -115,7 +115,8 @@ void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
   command
       ->add_option("--fixed-step", options->fixed_step,
                    "For a port with a fixed sample time: only the vectors at this rate whose ticks "
-                   "are one period apart; the first tick is one period after zero")
+                   "are one period apart. Their timestamps are shifted: the first is one period, "
+                   "not 5 s")
       ->type_name("HZ")
       ->excludes(lint);
   add_selection(*command, options->select);

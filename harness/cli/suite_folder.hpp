@@ -29,7 +29,7 @@ struct SuiteFolder {
 
   std::filesystem::path cases() const { return root / "cases"; }
   CaseFolders case_folders() const;  // of the base, then cases() if it is there
-  // Without a folder models of its own, a suite uses that of its base.
+  // Without a folder `models` of its own, a suite uses that of its base.
   std::filesystem::path models() const;
   std::filesystem::path golden() const { return root / "golden"; }
   // What the firmware recorded. Without a folder of its own, a suite uses that of its base.

@@ -108,7 +108,7 @@ Result<void> write_columns(const PreparedSweep& sweep, const SweepOptions& optio
   return write_file(options.hdf5, *bytes);
 }
 
-// From the complete table of a folder: report, kept flights, the text on stdout.
+// Makes the report, the kept flights and the text on stdout from the complete table of a folder.
 Result<SweepSummary> report(const PreparedSweep& sweep, const SweepOptions& options,
                             const SuiteFolder& suite, std::uint64_t samples, bool quiet) {
   const fs::path folder = options.out;

@@ -62,7 +62,7 @@ Result<void> check(const TimeCommandOptions& options, const SuiteFolder& suite) 
                        suite);
 }
 
-// Those of the command, for a port that Ctrl-C stops.
+// The host options of the command; Ctrl-C then stops the port.
 Result<HostOptions> host_for(const TimeCommandOptions& options) {
   const auto port = describe_port(options.host);
   if (!port) return tl::unexpected(port.error());
@@ -78,7 +78,7 @@ Result<CorpusTimes> timed(const TimeCommandOptions& options, const HostOptions& 
   for (const SelectedCase& selected : cases) vectors += selected.configurations.size();
   Progress progress(vectors, Progress::on_stderr(quiet));
   TimeOptions measure = options.measure;
-  measure.stack = measure.stack && !is_program(host.port);  // it is in another process
+  measure.stack = measure.stack && !is_program(host.port);  // a program's is in another process
   auto times =
       time_corpus(cases, measure, host, [&](const CaseResult& result) { progress.add(result); });
   progress.finish();

@@ -49,7 +49,8 @@ void add_machine(CLI::App& command, StressOptions& options) {
 void add_budgets(CLI::App& command, StressOptions& options) {
   command
       .add_option("--misses-per-million", options.misses_per_million,
-                  "Deadline misses and overruns allowed; replaces the bound of the case")
+                  "Deadline misses allowed, and also overruns, counted separately; replaces "
+                  "the bound of the case")
       ->check(CLI::NonNegativeNumber)
       ->group(option_group::strictness);
   command

@@ -149,7 +149,7 @@ void add_compare(CLI::App& app, const Globals& globals, Action& action) {
   add_examples(*command, {{"attest compare flown.csv reference.csv",
                            "is the first the same as the second, within the tolerances?"},
                           {"attest compare flown.ulg reference.csv --tolerance 1e-3",
-                           "all signals at equal times; which of the two lags?"}});
+                           "all signals at equal times, and by how much one file is late"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return compare_command(*options, globals); };
   });

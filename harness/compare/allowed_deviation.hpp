@@ -22,7 +22,8 @@ class AllowedDeviation {
   // The next tick of the expected trace, with the parameters that it sets.
   void next(const Sample& want, std::span<const ParameterChange> changes);
 
-  // Of that tick. If the tolerance without widening is at least ample_headroom times the deviation
+  // The allowed deviation at that tick.
+  // If the tolerance without widening is at least ample_headroom times the deviation
   // of `got`, the result is the tolerance without widening, because the widening takes time to
   // compute. So a headroom (tolerance / deviation) below ample_headroom is exact, and a larger one
   // is a lower bound.

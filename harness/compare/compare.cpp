@@ -215,7 +215,7 @@ std::optional<Deviation> first_non_finite(const Trace& got, const Trace& want) {
   for (std::size_t tick = 0; tick < got.samples.size(); ++tick) {
     for (std::size_t i = judged._Find_first(); i < judged.size(); i = judged._Find_next(i)) {
       if (std::isfinite(float_of(channels()[i], got.samples[tick]))) continue;
-      // Shown next to it: the last row of `want` up to that time.
+      // The expected value is taken from the last row of `want` up to that time.
       const auto after = std::upper_bound(
           want.samples.begin(), want.samples.end(), got.samples[tick].in.timestamp,
           [](std::uint64_t time, const Sample& sample) { return time < sample.in.timestamp; });

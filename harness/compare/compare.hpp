@@ -57,8 +57,8 @@ struct Comparison {
 
 Comparison compare(const Trace& got, const Trace& want, const Tolerances& tolerances);
 
-// Of two traces of one flight, together: the first deviation is the earlier one, the worst is the
-// larger. REQUIRES: both were compared at the numeric level.
+// Combines the comparisons of two traces of one flight: the first deviation is the earlier one, the
+// worst is the larger. REQUIRES: both were compared at the numeric level.
 Comparison both(Comparison one, const Comparison& other);
 
 // The first NaN or Inf of `got` in a channel that is finite at all ticks of `want`. For flights,

@@ -28,7 +28,7 @@ bool is_within(float got, float want, const Tolerance& tolerance, bool by_bits) 
   return off <= std::max(tolerance.absolute, tolerance.relative * std::abs(want));
 }
 
-// Of values that deviate: NaN is infinitely far from all.
+// The distance of two values that deviate. NaN is infinitely far from all values.
 double distance(const SignalPair& pair) {
   const double off = std::abs(static_cast<double>(pair.got) - static_cast<double>(pair.want));
   return std::isnan(off) ? std::numeric_limits<double>::infinity() : off;
@@ -73,7 +73,7 @@ SignalComparison compare_signal(const TimedSignal& got, const TimedSignal& want,
   return found;
 }
 
-// Of the differences at equal times; empty with too few.
+// The root mean square of the differences at equal times; empty if there are too few.
 std::optional<double> rms_difference(const TimedSignal& got, const TimedSignal& want,
                                      std::int64_t shift_us) {
   std::size_t ignored = 0, count = 0;

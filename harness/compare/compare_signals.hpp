@@ -32,7 +32,7 @@ struct SignalComparison {
 // `got` lags by this time: a sample of `got` at t has the value that `want` has at t - us.
 struct TimeShift {
   std::int64_t us = 0;
-  std::string signal;                 // the one that it was estimated from
+  std::string signal;                 // the shift was estimated from this signal
   double rms = 0, rms_unshifted = 0;  // differences of that signal, root mean square
 };
 

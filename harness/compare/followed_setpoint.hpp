@@ -10,7 +10,7 @@ namespace attest {
 // Whether the module has an attitude law: the controller and the attitude unit.
 bool follows_attitude(Module module);
 
-// REQUIRES: follows_attitude(module), of the constructor and of both functions.
+// REQUIRES, for these two functions and for FollowedSetpoint: follows_attitude(module).
 AttitudeQuaternion attitude_at(const Sample& tick, Module module);
 // Whether the rates setpoint of the tick comes from the attitude law.
 bool uses_attitude_law(const Sample& tick, Module module);
@@ -19,7 +19,8 @@ class FollowedSetpoint {
  public:
   explicit FollowedSetpoint(Module module) : module_(module) {}
 
-  // The next tick of the expected trace: its setpoint from outside, or of the unit's own sticks.
+  // The next tick of the expected trace. Its setpoint is an input of the unit, or an output that
+  // the unit computes from the sticks.
   void next(const Sample& want);
   const AttitudeQuaternion& q_d() const { return q_d_; }
 

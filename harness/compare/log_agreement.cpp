@@ -123,7 +123,7 @@ class Agreement {
                      value_of(channel, logged_.samples[tick]));
   }
 
-  // Whatever the log lacks, the port was given numbers if the reference has one.
+  // If the reference's output is finite, so must be the port's, whatever the log lacks.
   void leave_out(std::size_t tick) {
     ++found_.left_out;
     const auto is_finite = [&](std::size_t field) {
@@ -140,7 +140,7 @@ class Agreement {
                        [&](std::size_t field) { return is_no_number(tick, field); });
   }
 
-  // Where the log has one.
+  // True if the log has a number here and the port has none.
   bool is_no_number(std::size_t tick, std::size_t field) const {
     const Channel& channel = channels()[field];
     return !std::isfinite(value_of(channel, got_.samples[tick])) &&

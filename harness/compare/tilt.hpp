@@ -1,5 +1,5 @@
 // The attitude error that a rates setpoint corrects. The tolerance of rates setpoints is wider
-// where it is near 180 deg.
+// where this error is near 180 deg.
 #pragma once
 
 #include <array>

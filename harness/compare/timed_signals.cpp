@@ -130,7 +130,7 @@ Result<TimedSignals> signals_of_log(const std::filesystem::path& path) {
   return signals;
 }
 
-// The names of channels in a log that attest writes of such a trace.
+// Channel -> its name in a log that attest writes of the trace.
 using NamesInLog = std::map<std::string_view, std::string>;
 
 NamesInLog names_in_log(const std::vector<std::string>& columns) {

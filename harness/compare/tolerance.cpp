@@ -30,7 +30,7 @@ Tolerance default_of(Quantity quantity) {
   }
 }
 
-// For a fixed-point port.
+// The least absolute tolerance for a fixed-point port, in LSBs.
 double lsb_of(Quantity quantity) {
   switch (quantity) {
     case Quantity::rate:

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string_view>
 
-// Outside of namespaces: the bytes of the file at `path`, with a zero behind them.
+// Declares the bytes of the file at `path`, with a zero behind them. Use it outside of namespaces.
 #define ATTEST_EMBED(name, path)       \
   asm(".section .rodata\n"             \
       ".global attest_embedded_" #name \
@@ -22,7 +22,7 @@
       ".previous\n");                  \
   extern "C" const char attest_embedded_##name[], attest_embedded_##name##_end[]
 
-// The same as a std::string_view.
+// The bytes of the file, without the zero, as a std::string_view.
 #define ATTEST_EMBEDDED(name) \
   ::attest::embedded_between(attest_embedded_##name, attest_embedded_##name##_end)
 

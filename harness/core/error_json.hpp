@@ -1,5 +1,6 @@
-// Converts an Error to JSON and back: {"message": ..., "file": ..., "line": 12, "column": 3}, empty
-// and 0 where unknown. Converts a value or an error to text: {"result": ...} or {"error": {...}}.
+// Converts an Error to JSON and back: {"message": ..., "file": ..., "line": 12, "column": 3}. An
+// unknown text is empty, an unknown number 0. Converts a value or an error to text: {"result": ...}
+// or {"error": {...}}.
 #pragma once
 
 #include <string>
@@ -18,7 +19,8 @@ Result<Error> error_from_json(const nlohmann::json& json);
 // Text that is not UTF-8 is repaired with U+FFFD.
 std::string encode(const Result<nlohmann::json>& result);
 
-// The inverse of encode(). Errors: the encoded one; text that is neither a result nor an error.
+// The inverse of encode(). Errors: the error that was encoded; text that is neither a result nor an
+// error.
 Result<nlohmann::json> decode(const std::string& text);
 
 }  // namespace attest

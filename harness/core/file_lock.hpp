@@ -1,4 +1,4 @@
-// A lock of processes on a file. The kernel releases it when its process ends in any way.
+// A lock that a process holds on a file. The kernel releases it when the process ends in any way.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +9,8 @@ namespace attest {
 // Makes the file if necessary. Does not wait. Returns -1 with errno: EWOULDBLOCK if another process
 // holds the lock; ENOLCK, ENOSYS or EOPNOTSUPP if the file system has no locks.
 //
-// The holder may rename or remove the file: the returned file has the name `file` after it was
-// locked.
+// The holder may rename or remove the file. So this function checks, once it has the lock, that
+// the locked file still has the name `file`. If not, it tries again.
 int open_locked(const std::filesystem::path& file);
 
 }  // namespace attest

@@ -108,7 +108,7 @@ Result<void> set_number(toml::table& root, const std::string& text, double value
   return {};
 }
 
-// As in a file: with quotes where it needs them.
+// The key as it is written in a file: with quotes where it needs them.
 std::string written_key(const std::string& key) {
   std::ostringstream text;
   text << toml::toml_formatter(toml::table{{key, 0}});

@@ -13,7 +13,7 @@
 
 namespace attest {
 
-// Of a value that was found: "an integer".
+// The kind of a value that was found: "an integer".
 constexpr std::string_view name_of(TomlKind kind) {
   constexpr std::array<std::string_view, 7> names = {
       "nothing", "a boolean", "an integer", "a floating point number",
@@ -21,7 +21,7 @@ constexpr std::string_view name_of(TomlKind kind) {
   return names.at(static_cast<std::size_t>(kind));
 }
 
-// Of the value that a key must have: "an array of numbers".
+// The kind of value that a key must have: "an array of numbers".
 template <typename T>
 constexpr std::string_view needed() {
   if constexpr (std::is_same_v<T, std::string>) return "text";

@@ -36,7 +36,7 @@ struct Diagnosis {
   double jaccard_index = 0;  // of the nearest, 0 .. 1: values at which both deviate / either does
 };
 
-// The same vectors, with each fault of the catalogue combined with this one.
+// The same vectors, with each fault of the catalogue combined with the given fault.
 using CombinedWith = std::function<std::vector<VectorSimilarity>(const faults::Fault&)>;
 
 // Empty when no vector fails. To search for a second mistake of the port, `combined_with` is called

@@ -12,8 +12,8 @@ namespace {
 using Q = cascade::Quaternion<double>;
 using TraitsOfLaw = cascade::ProfileTraits;
 
-// The angle [rad] between an axis and straight down, from where the shortest rotation to it is
-// arbitrary.
+// The angle [rad] between an axis and (0, 0, -1). At 0, the shortest rotation from (0, 0, 1) to the
+// axis is arbitrary.
 double from_opposite(const reference::Vector3<double>& axis) {
   return std::numbers::pi - std::atan2(std::hypot(axis[0], axis[1]), axis[2]);
 }
@@ -25,7 +25,8 @@ struct NotingAttitudeLaw : cascade::AttitudeStages<double> {
   using Law = cascade::AttitudeStages<double>;
   MarginNotes* notes;
 
-  // Opposite thrust directions are not tilted at all, so the axis matters only elsewhere.
+  // If the thrust directions are opposite, the law does not use the tilt. So the axis of the tilt
+  // matters only otherwise.
   bool is_opposite(const Q& tilt) const {
     constexpr double almost_one = 0.999989986f;
     const bool opposite = Law::is_opposite(tilt);

@@ -243,8 +243,8 @@ NewGolden::~NewGolden() {
   if (written_.empty()) return;
   std::error_code ignored;
   fs::remove_all(written_, ignored);
-  // Removes the folders of its group and profile, too, if they were made for it. Others are not
-  // empty.
+  // Removes the folders of its group and profile, too, if they were made for it. remove() keeps
+  // other folders, because they are not empty.
   fs::remove(written_.parent_path(), ignored);
   fs::remove(written_.parent_path().parent_path(), ignored);
 }

@@ -53,7 +53,7 @@ class Golden {
   Provenance provenance_;
 };
 
-// Of Provenance::metrics.
+// The key of a metric in Provenance::metrics.
 std::string metric_key(const RunConfiguration& configuration, const std::string& metric);
 
 std::filesystem::path golden_folder(const std::filesystem::path& golden_root, const Case& the_case);

@@ -63,8 +63,8 @@ Result<void> remove_what_is_left(const fs::path& golden_root) {
                      fmt::format("was left by a run that was killed, and cannot be removed: {}",
                                  error.message()));
     }
-    // Removes the folders of its group and profile, too, if they were made for it. Others are not
-    // empty.
+    // Removes the folders of its group and profile, too, if they were made for it. remove() keeps
+    // other folders, because they are not empty.
     fs::remove(folder.parent_path(), error);
     fs::remove(folder.parent_path().parent_path(), error);
   }

@@ -15,7 +15,8 @@ std::unique_ptr<MarginMeter> mixer_meter(const std::string& definition);
 std::unique_ptr<MarginMeter> attitude_unit_meter(const std::string& profile);
 std::unique_ptr<MarginMeter> rate_unit_meter(const std::string& profile);
 
-// Of a unit in double, whose law records its distances. `In` and `Out` are its structs.
+// The meter of a unit in double, whose law records its distances. `In` and `Out` are the structs of
+// the unit.
 template <typename Unit, typename NotingLaw, typename In, typename Out>
 class UnitMeter : public MarginMeter {
  public:

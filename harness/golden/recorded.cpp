@@ -19,7 +19,7 @@
 namespace attest {
 namespace {
 
-// A pipe has none: the folder's is of the files there.
+// A pipe has no provenance, because the provenance.toml of a folder describes the files in it.
 Result<Provenance> provenance_of(const std::filesystem::path& file) {
   std::error_code unknown;
   if (std::filesystem::is_fifo(file, unknown)) return Provenance{};

@@ -11,7 +11,8 @@
 
 namespace attest {
 
-// Of a log of the old controller that does not say which.
+// The profile of a log of the controller of v1.5.5 and v1.3.4, if the log does not show which of
+// the two it is.
 inline constexpr const char* default_profile = "px4-v1.5.5";
 
 struct Recorded {
@@ -21,10 +22,10 @@ struct Recorded {
   std::vector<std::string> notes;
 };
 
-// Reads inputs and outputs; of mixers also as mixer_csv.hpp. An empty `profile` or `mixer` is taken
-// from the provenance.toml in the folder of the file; a pipe has none. Without an entry there, the
-// profile is the newest that has the module (px4-v1.5.5 or px4-v1.16.0), and the mixer is the
-// unscaled geometry that the file is named after ("4x.csv").
+// Reads inputs and outputs. The file of a mixer may have the format of mixer_csv.hpp. An empty
+// `profile` or `mixer` is taken from the provenance.toml in the folder of the file; a pipe has
+// none. Without an entry there, the profile is the newest that has the module (px4-v1.5.5 or
+// px4-v1.16.0), and the mixer is the unscaled geometry that the file is named after ("4x.csv").
 // Parameters that the profile does not have are left out. A battery without BAT_N_CELLS has 3
 // cells, as in the recordings of the firmware. Errors: of reading, and a mixer trace whose
 // definition is missing, invalid, or of another number of rotors.

@@ -59,8 +59,8 @@ class PortHost {
   // Whether the port makes a unit of that profile; also false after a fault of the port.
   virtual bool supports(const std::string& profile) = 0;
 
-  // After a crash or a broken protocol: further requests need a new host. After a timeout the port
-  // gets no more requests, and each further request ends with that fault.
+  // True after a crash or a broken protocol: further requests need a new host. False after a
+  // timeout: the port gets no more requests, and each further request ends with that fault.
   virtual bool is_spent() const { return false; }
 };
 

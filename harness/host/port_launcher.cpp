@@ -17,7 +17,7 @@ namespace {
 
 using Kind = Received::Kind;
 
-// What a port's process serves: objects that it has in the memory that it is a copy of.
+// What a port's process serves. The process is a fork, so these objects are in its memory too.
 struct Served {
   const HostOptions* options;
   Course course;

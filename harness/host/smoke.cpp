@@ -155,7 +155,7 @@ class Smoke {
   const std::function<void(const SmokeFinding&)>& report_;
   std::unique_ptr<PortHost> host_;
   Trace inputs_, alone_;
-  std::string unsupported_;  // why the port does not support the trace before; empty if it does
+  std::string unsupported_;  // why the port does not support the last trace; empty if it does
 };
 
 }  // namespace

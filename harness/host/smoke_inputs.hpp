@@ -16,7 +16,7 @@ Trace shaken_vehicle(Module module, const Rate& rate, std::size_t steps);
 // The same with NaN and infinity in the floats of every topic that is new in each step.
 Trace without_numbers(Trace trace, Module module);
 
-// The topics that a unit publishes then, and a parameter that it has.
+// The topics that a unit publishes with these inputs, and a parameter that it has.
 std::vector<std::string> expected_topics(Module module);
 std::string known_parameter(Module module);
 

@@ -1,5 +1,5 @@
-// From the controls of the unit that commands the motors to the rotor speeds: mixer or allocator,
-// arming, battery voltage, motor failure. No allocation of memory after construction.
+// Computes the rotor speeds from the outputs of the unit that commands the motors: mixer or
+// allocator, arming, battery voltage, motor failure. No allocation of memory after construction.
 #pragma once
 
 #include <array>
@@ -16,12 +16,12 @@ namespace attest {
 
 class Actuators {
  public:
-  // For the unit of that module. REQUIRES: read_vehicle accepts the vehicle, which outlives this.
+  // For the unit of `module`. REQUIRES: read_vehicle accepts the vehicle, which outlives this.
   explicit Actuators(const Vehicle& vehicle, Module module = Module::mc_att_control);
 
-  // The outputs of a step. The mixer runs when the controller publishes its controls, the allocator
-  // when the rate unit publishes torque and thrust. Disarmed motors stop. The attitude unit has no
-  // actuators.
+  // Takes the outputs of a step. The mixer runs when the controller publishes its controls, the
+  // allocator when the rate unit publishes torque and thrust. Disarmed motors stop. The attitude
+  // unit has no actuators.
   void follow(const Sample& sample);
 
   const MotorCommands& commands() const { return commands_; }

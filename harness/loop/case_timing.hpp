@@ -16,8 +16,8 @@ namespace attest {
 //     drift: sampled = the estimator's last sample at or before begins - delay
 //     trigger = "estimator": sampled = the estimator's tick; begins = sampled + delay
 //
-// In both, commanded = begins + actuator delay. Of the cascade, delay and drift are those of the
-// attitude unit's samples, and the rate unit reads the gyro when its tick begins. The attitude
+// In all three, commanded = begins + actuator delay. Of the cascade, delay and drift are those of
+// the attitude unit's samples, and the rate unit reads the gyro when its tick begins. The attitude
 // unit's setpoint arrives AttitudeLoop::delay after its tick. REQUIRES: a flight, and the rate of
 // the unit of the case's module.
 LoopTiming case_timing(const Case& the_case, const Rate& rate);

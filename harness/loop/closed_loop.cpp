@@ -78,7 +78,8 @@ void append(const UnitTask& task, Trace& trace) {
   trace.samples.push_back(task.sample());
 }
 
-// Both units of the cascade count their ticks from 0.
+// Adds the name of the unit to its fault. Both units of the cascade count their ticks from 0, so
+// the tick alone does not identify the unit.
 std::optional<PortFault> named(std::optional<PortFault> fault, Module module) {
   if (fault) fault->what = fmt::format("{}: {}", info_of(module).title, fault->what);
   return fault;

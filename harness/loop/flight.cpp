@@ -43,7 +43,7 @@ void scale_thrusts(std::vector<TopicStimulus>& topics, const Vehicle& vehicle) {
   }
 }
 
-// With the throttle stick in the middle the vehicle then hovers.
+// Sets MPC_THR_HOVER, unless the case does, so that the vehicle hovers at a centred throttle stick.
 void add_hover_thrust(const Vehicle& vehicle, Case& the_case) {
   constexpr const char* name = "MPC_THR_HOVER";
   for (const ParameterStimulus& own : the_case.parameters) {
@@ -57,7 +57,7 @@ PortFault no_profile(const std::string& profile) {
           fmt::format("the port does not support profile {}", profile)};
 }
 
-// The rate unit is made first.
+// units_for() makes the rate unit first, so the attitude unit is the one that is missing.
 PortFault makes_one_at_a_time() {
   return {PortFault::Kind::unsupported, 0,
           "the port makes no attitude unit while it has a rate unit: create() returned NULL"};

@@ -32,7 +32,8 @@ inline double measured(const Metric& metric, const Flown& flown) {
 // Thrusts in units of hover thrust are scaled by the vehicle's hover thrust.
 Case bound_to_vehicle(const Case& the_case, const Vehicle& vehicle);
 
-// Errors, with the case's file: one rate for a flight of the cascade, or a pair for the controller.
+// Errors, with the case's file: `rate` is a single rate although the flight is of the cascade, or a
+// pair of rates although the flight is of the controller.
 Result<void> check_rate(const Case& the_case, const LoopRate& rate);
 
 // How often MuJoCo steps. REQUIRES: a flight.
@@ -51,8 +52,9 @@ struct PortUnits {
 };
 
 // A port of the cascade may have one of the two units; the other is then that of `other`. Faults,
-// Kind::profile: no unit of the port flies this case, or makes its profile; Kind::unsupported: the
-// port makes either unit, but not both at the same time. REQUIRES: a flight.
+// Kind::profile: the port makes no unit that the case needs, or `other` does not make the missing
+// one; Kind::unsupported: the port makes either unit, but not both at the same time. REQUIRES: a
+// flight.
 tl::expected<PortUnits, PortFault> units_for(const Case& the_case, Port& port, Port& other);
 
 // Flies `the_case` with fresh units, at the times that the case schedules, or at those of

@@ -7,8 +7,8 @@
 namespace attest {
 namespace {
 
-// The feet of the MuJoCo models: one sphere for each rotor. Below the hub it is at 0.35 arm, from
-// the centre of mass it is at 0.6 of the hub's distance, and its radius is 0.05 arm.
+// The feet of the MuJoCo models: for each rotor, one sphere of radius 0.05 arm. The centre of the
+// sphere is 0.35 arm below the rotor's hub. Its x and y are 0.6 times those of the hub.
 constexpr double foot_of_hub = 0.6;
 constexpr double foot_below_hub_of_arm = 0.35;
 constexpr double foot_radius_of_arm = 0.05;

@@ -14,8 +14,8 @@ using MotorCommands = std::array<float, rotors_max>;
 // Flags as the firmware sends them: bits of one mask, so any value but 0 is true.
 using MotorLimits = decltype(attest_inputs::multirotor_motor_limits);
 
-// Of the mixer's or the allocator's last run. The controller receives the limits, the rate unit the
-// torque.
+// What the actuators could not realise in the last run of the mixer or the allocator. The
+// controller receives the limits, the rate unit the torque.
 struct Saturation {
   MotorLimits limits{};
   std::array<float, 3> unallocated_torque{};

@@ -14,8 +14,8 @@ namespace attest {
 LoopTiming scheduled_timing(const std::vector<TaskJob>& unit,
                             const std::vector<TaskJob>* estimator);
 
-// Of the cascade: the estimator's samples are the attitude unit's, whose setpoint arrives when its
-// job finishes. The rate unit reads the gyro at the start of its job.
+// The same for the cascade. The attitude unit gets the estimator's samples. Its setpoint arrives
+// when its job finishes. The rate unit reads the gyro at the start of its job.
 FlightTiming scheduled_cascade(const std::vector<TaskJob>& rate_unit,
                                const std::vector<TaskJob>& attitude_unit,
                                const std::vector<TaskJob>* estimator);

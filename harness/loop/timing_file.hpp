@@ -4,9 +4,9 @@
 //      "vehicle": "iris", "plant": "mujoco", "duration_s": 10,
 //      "ticks_ns": [[0, 8113, 1000000], [0, 1009001, null], ...]}
 //
-// A tick is [sampled, begins, commanded] as in LoopTick; `commanded` is null where the command was
-// overtaken. A flight of the cascade has its pair as rate, "250:1000", and the ticks of its
-// attitude unit as "attitude_ticks_ns".
+// A tick is [sampled, begins, commanded] as in LoopTick; `commanded` is null where the outputs of
+// the tick were never used. A flight of the cascade has its pair as rate, "250:1000", and the ticks
+// of its attitude unit as "attitude_ticks_ns".
 #pragma once
 
 #include <filesystem>

@@ -37,11 +37,12 @@ struct Codec<RateSweepResult> {
   static Result<RateSweepResult> decode(const std::string& text);
 };
 
-// One vehicle on one plant. Task 0 searches for the lowest rate (of the cascade, that of the rate
-// unit, with the attitude unit at its usual rate or at the same one), task i for the largest delay
-// at rate i - 1. Each search begins at 1000 Hz, or without delay, and moves in steps until a flight
-// misses a bound. Then it bisects the last step. It tries no lower rate, and no longer delay, than
-// that of the first flight that missed a bound.
+// The searches for one vehicle on one plant. Task 0 searches for the lowest rate. In the cascade
+// this is the rate of the rate unit; the attitude unit has its usual rate, or that of the rate unit
+// if that is lower. Task i searches for the largest delay at `rates[i - 1]`. Each search begins at
+// 1000 Hz, or without delay, and moves in steps until a flight misses a bound. Then it bisects the
+// last step. It tries no lower rate, and no longer delay, than that of the first flight that missed
+// a bound.
 class RateSweepJob final : public PortJob<RateSweepResult> {
  public:
   RateSweepJob(Case the_case, PlantConfiguration plant_configuration, std::vector<LoopRate> rates,

@@ -56,8 +56,8 @@ struct StressResult {
   const Rate& unit_rate() const;                  // of the module
 };
 
-// In a flight of the cascade one for each unit of the port, that of the rate unit first. A unit
-// that the port does not have is the reference's, and is not judged.
+// A flight of the cascade has one result for each unit of the port, that of the rate unit first. A
+// unit that the port does not have is the reference's, and is not judged.
 using StressResults = std::vector<StressResult>;
 
 // One rate of a stress run.
@@ -97,8 +97,8 @@ Result<StressResults> run_stress(const StressTask& task, const std::string& port
                                  const std::function<bool()>& stop,
                                  const std::function<void(const StressProgress&)>& progress);
 
-// In the port's process. The idle machine is measured at the rate of the unit that commands the
-// motors. REQUIRES: the port does not decline the task (run_stress checks its declarations).
+// Runs in the port's process. The idle machine is measured at the rate of the unit that commands
+// the motors. REQUIRES: the port does not decline the task (run_stress checks its declarations).
 Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
                                        const std::function<bool()>& stop,
                                        const std::function<void(const StressProgress&)>& progress);

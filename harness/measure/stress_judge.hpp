@@ -14,7 +14,7 @@ namespace attest {
 // Compares the outputs with those of the reference for the same inputs at the same times: late and
 // missing ticks do not excuse wrong outputs. Adds a skip where the outputs cannot be judged: no
 // tick, ticks beyond those that were kept, a decision of the law at its threshold before or at the
-// first deviation. REQUIRES: a port without a fixed step. Takes the samples of `unit`.
+// first deviation. REQUIRES: a port without a fixed step. Moves the samples out of `unit`.
 void judge_outputs(const Case& the_case, Module module, LiveUnitRecord& unit,
                    std::optional<int> fraction_bits, CaseResult& result);
 
@@ -29,7 +29,7 @@ void judge_timing(const RealtimeBudget& budget, StressResult& stress);
 
 // All three, for one unit of the flight. `of_end`: whether the end of the flight counts for this
 // unit; it counts once. A flight that a fault of the other unit ended is a skip. REQUIRES: `stress`
-// has the measurements, and the identity of its result. Takes the samples of the unit.
+// has the measurements, and the identity of its result. Moves the unit's samples out of `flight`.
 void judge_unit(const StressTask& task, Module module, LiveFlight& flight, bool of_end,
                 StressResult& stress);
 

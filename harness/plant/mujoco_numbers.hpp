@@ -23,8 +23,8 @@ enum UserData : int { drag_at = 0, wind_at = 3, userdata_size = 6 };
 // the missing element.
 Result<ModelNumbers> numbers_of(const mjModel_& model, const std::filesystem::path& xml);
 
-// Sets all numbers that first_difference() compares. The caller updates what MuJoCo derives from
-// them (mj_setConst). REQUIRES: as many rotors as the vehicle has.
+// Sets those numbers that first_difference() compares and that depend on the vehicle. The caller
+// updates what MuJoCo derives from them (mj_setConst). REQUIRES: as many rotors as the vehicle has.
 void set_numbers(const Vehicle& vehicle, mjModel_& model);
 
 }  // namespace attest

@@ -108,7 +108,8 @@ Result<Model> compile(const std::filesystem::path& xml) {
 
 // ---- models for a flight ------------------------------------------------------------------------
 
-// Memory for the contacts of a few feet: four points on each of some geoms, up to four rows each.
+// Reserves memory for the contacts of a few feet, and enables contacts. The memory is for four
+// points on each of some geoms, with up to four constraint rows for each point.
 void enable_floor(mjModel& model) {
   constexpr int contacts = 64, rows_of_one = 4, stack_numbers = 200'000;
   model.nconmax = std::max(model.nconmax, contacts);

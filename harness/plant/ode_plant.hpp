@@ -12,7 +12,7 @@ namespace attest {
 
 struct OdeOptions {
   // Cash-Karp. Order 6 is broken in SUNDIALS 6.4.1. `ci/truth` takes order 8 at a fixed step as
-  // exact; its error falls as order 7 there.
+  // exact; the error of this method falls with the 7th power of the step.
   int order = 5;
   double relative_tolerance = 1e-9;
   double absolute_tolerance = 1e-10;

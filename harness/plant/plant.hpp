@@ -2,8 +2,9 @@
 // that are checked against each other and against exact solutions (models/README.md).
 //
 // Rotor speed w of each rotor follows its command u with a first-order lag, dw/dt = (u - w) / tau.
-// tau has one value for u > w and another for u < w. Thrust kf w^2 along -z body at the hub, drag
-// torque km w^2 about z against the rotation. Linear drag against the air. Gravity along +z world.
+// tau has one value for u > w and another for u < w. Each rotor has a thrust kf w^2 along -z body
+// at its hub, and a drag torque km w^2 about z against its rotation. The drag force is linear in
+// the velocity relative to the air. Gravity acts along +z world.
 // The spin of the rotors is not part of the body's angular momentum.
 //
 // Frames NED and FRD, SI units, time since reset() in integer nanoseconds. No clock, no allocation

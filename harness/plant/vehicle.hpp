@@ -19,7 +19,7 @@ namespace attest {
 
 inline constexpr std::size_t rotors_max = 8;
 
-// In the order of the mixer's outputs.
+// A vehicle has its rotors in the order of the mixer's outputs.
 struct VehicleRotor {
   Vector3 position_m;  // of the hub
   int turns = 1;       // +1 counter-clockwise seen from above, -1 clockwise

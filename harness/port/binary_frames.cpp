@@ -125,7 +125,7 @@ class BinaryConversation final : public Conversation {
     return answer;
   }
 
-  // Of an answer that has `rest` bytes after its result.
+  // Sends the request, and returns the result in the answer. `rest` bytes follow the result.
   int result_of_request(std::size_t rest) {
     const Header answer = exchange();
     check_size(answer, sizeof(std::uint32_t) + rest);

@@ -9,7 +9,8 @@ namespace attest {
 
 std::unique_ptr<Port> open_builtin();
 
-// The reference in double precision. Horizons of flights are measured with it.
+// The reference in double precision. It serves to measure the horizon of a flight: the time up to
+// which the flight is compared with its golden (docs/flights.md).
 std::unique_ptr<Port> open_builtin_in_double();
 
 }  // namespace attest

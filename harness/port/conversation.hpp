@@ -18,7 +18,7 @@
 
 namespace attest {
 
-// The kinds of requests, with their numbers in binary frames. Error messages have their names.
+// The kinds of requests, with their numbers in binary frames. Error messages name the kind.
 enum class Request : std::uint32_t { create = 1, destroy, set_parameter, step, batch };
 std::string_view name_of(Request request);  // "set_parameter"
 
@@ -38,7 +38,7 @@ struct ProgramStep {
 // a request and its answer. No other function locks it.
 class Conversation {
  public:
-  // Errors: it cannot be started, it ended, its answer to the handshake is not valid.
+  // Errors: the program cannot be started, it ended, its answer to the handshake is not valid.
   static Result<std::unique_ptr<Conversation>> begin(const std::vector<std::string>& command);
   static Result<std::unique_ptr<Conversation>> begin(PipedProgram program);
 
@@ -57,7 +57,8 @@ class Conversation {
                      const std::string& definition) = 0;
   virtual int destroy(std::uint32_t unit) = 0;
   virtual int set_parameter(std::uint32_t unit, const std::string& name, float value) = 0;
-  // Replaces the outputs. Text frames keep those that the program leaves out.
+  // Replaces the outputs. With text frames, a value that the program leaves out is kept, but a flag
+  // `published` becomes 0.
   virtual int step(std::uint32_t unit, Module module, ProgramStep& step) = 0;
   // REQUIRES: hello().has_batch, at most max_batch steps. `done`: the steps that have outputs.
   virtual int batch(std::uint32_t unit, Module module, std::span<ProgramStep> steps,

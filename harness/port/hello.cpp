@@ -49,7 +49,7 @@ class Members {
     if (error_.empty()) error_ = std::move(error);
   }
 
-  // Empty: there is none, and every member is known.
+  // Empty if there is no error and every member is known.
   std::string error() const {
     if (!error_.empty()) return error_;
     for (const auto& [name, value] : object_.items()) {

@@ -21,7 +21,7 @@ struct Hello {
   std::string name, version;
   std::vector<std::string> profiles;
   FrameForm frames = FrameForm::binary;
-  ModuleSet modules;  // with the controller, if a profile has one
+  ModuleSet modules;  // the controller is one of them if a profile has it
   bool has_batch = false;
   std::vector<std::string> unsupported_groups;
   std::optional<int> fraction_bits;

@@ -27,7 +27,7 @@ std::vector<ProfileInfo> make_profiles() {
   return all;
 }
 
-// Of a table whose rows say of which profiles they are.
+// The parameters of `profile` in a table whose rows name their profiles.
 template <typename Table, typename Profile>
 std::vector<Parameter> rows_of(const Table& table, Profile profile) {
   std::vector<Parameter> parameters;

@@ -38,7 +38,7 @@ struct Parameter {
   bool is_integer;
 };
 
-// Those of a module in a profile. In the order of the law's own table.
+// The parameters of a module in a profile, in the order of the law's own table.
 std::vector<Parameter> parameters_of(Module module, const ProfileInfo& profile);
 
 // True if the module has an integer parameter of that name in some profile.

@@ -36,7 +36,7 @@ bool is_complete(const Table& table) {
   return table.create && table.destroy && table.step && has_parameters;
 }
 
-// Of an extension that the port has; true if it has it not.
+// True if the extension's table is complete, or if the port does not have the extension.
 template <typename Table>
 bool is_complete(const attest_unit& unit, const char* id) {
   const auto* table = static_cast<const Table*>(unit.extension(id));
@@ -107,7 +107,7 @@ Result<std::unique_ptr<Port>> open_shared_library(const std::string& path) {
   if (!std::filesystem::is_regular_file(path, unreadable)) {
     return fail_at(path, "no such library; `--port lib:PATH` takes the path of a shared library");
   }
-  // Of an absolute path, the system does not search its folders of libraries.
+  // If the path is absolute, the system does not search its folders of libraries.
   const std::string absolute = std::filesystem::absolute(path).string();
   const auto library = DynamicLibrary::open(absolute);
   if (!library) {

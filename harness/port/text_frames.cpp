@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-// By the numbers of attest_unit.h.
+// The names of the results. The index of a name is the result's number in attest_unit.h.
 constexpr std::array<std::string_view, 4> results{"ok", "unsupported", "invalid", "failed"};
 
 json to_json(double value) {

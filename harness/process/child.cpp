@@ -143,7 +143,7 @@ class UntilDeath {
   UntilDeath(Process& process, const Patience& patience) : patience_(patience) {
     patience_.given_up = [this, &process, &patience] {
       if (has_died_) return true;
-      // Gives up at the next call only, because its last message may still be unread.
+      // Gives up only at the next call: the last message of a dead process may still be unread.
       has_died_ = process.ends_within(0);
       return patience.given_up();
     };

@@ -14,8 +14,8 @@ namespace attest {
 
 // The descriptors that a child keeps.
 struct ChildFiles {
-  int input;   // empty
-  int output;  // in memory
+  int input;   // for stdin; there is nothing to read
+  int output;  // for stdout and stderr; a file in memory
   int socket;  // the child's end
 };
 
@@ -28,7 +28,7 @@ class Child {
   enum class Runs { our_code, code_of_others };
   using Work = std::function<void(MessageSocket&)>;
 
-  // Forks; `work` runs in the child, a Process, which then ends. Its stdout and stderr are captured
+  // Forks a child (a Process), which runs `work` and then ends. Its stdout and stderr are captured
   // (last_words), its stdin is empty, and it has no descriptors of the parent. Code of others also
   // has limits: of memory, and of the size of each file that it writes, including its output.
   static Result<Child> spawn(Runs runs, const Work& work);

@@ -18,7 +18,7 @@ struct Launched {
   int reason;  // errno, if there is no child
 };
 
-// In the launcher, until its owner closes the socket.
+// Runs in the launcher: serves the owner until the owner closes the socket.
 void serve(Child::Runs runs, const Launcher::Work& work, MessageSocket& owner) {
   while (true) {
     const std::vector<int> descriptors = owner.receive_descriptors();
@@ -77,7 +77,7 @@ Result<Child> Launcher::launch(const std::string& request) {
   auto child = Child::adopt(
       [&](const ChildFiles& files) { return Process::adopt([&] { return fork_there(files); }); });
   if (is_alive_) {
-    // If it cannot be sent, the child has died, and the caller learns that from its answer.
+    // If the request cannot be sent, the child has died. The caller learns that from receive().
     if (child) child->socket().send(request, {}, Patience::seconds(time_limit_s_));
     return child;
   }

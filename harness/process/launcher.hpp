@@ -12,8 +12,8 @@
 namespace attest {
 
 // The children are copies of the launcher's memory, and the launcher is a copy of its owner's
-// memory at start(). So a child cannot read what the owner has read since then. It is a child of
-// the owner, and has the limits, the scheduling and the CPUs of the launcher.
+// memory at start(). So a child cannot read what the owner has read since then. The parent of a
+// child is the owner. A child has the limits, the scheduling and the CPUs of the launcher.
 //
 // The thread that calls start() must live as long as the launcher. One thread at a time. REQUIRES:
 // the owner is below a guard (Process).
@@ -26,8 +26,8 @@ class Launcher {
   // in milliseconds, and takes seconds only on a machine that swaps.
   static Result<Launcher> start(Child::Runs runs, const Work& work, double time_limit_s = 60);
 
-  // The launcher forks, and then the owner sends the request to the child itself. So the child does
-  // nothing before the owner has it, because what it does may kill or stop the launcher.
+  // The launcher forks a child, and then the owner itself sends the request to that child. So the
+  // child's work, which may kill or stop the launcher, begins only after the owner has the child.
   // Errors: no child can be started, or the launcher has died.
   Result<Child> launch(const std::string& request);
   bool is_alive() const { return is_alive_; }  // as far as the last launch() has seen
@@ -36,7 +36,7 @@ class Launcher {
   Launcher(Child process, double time_limit_s)
       : process_(std::move(process)), time_limit_s_(time_limit_s) {}
 
-  // The child process; its number is -1, with errno, if there is none.
+  // Returns the number of the child process, or -1 with errno if there is none.
   pid_t fork_there(const ChildFiles& files);
   std::string why_it_died();
 

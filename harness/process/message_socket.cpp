@@ -36,7 +36,8 @@ bool is_sane(const Prefix& prefix) {
   return prefix.magic == magic && prefix.blobs <= most_blobs && prefix.head <= longest_head;
 }
 
-// A message of the system that has descriptors. They do not travel without data, so it has a byte.
+// A message of sendmsg() that carries descriptors. It also has one byte of data, because the system
+// does not send descriptors without data.
 class DescriptorMessage {
  public:
   DescriptorMessage() {

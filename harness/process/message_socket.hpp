@@ -48,7 +48,7 @@ struct Received {
   };
   Kind kind = Kind::ended;
   std::string head = {};
-  std::vector<std::size_t> blobs = {};  // the size of each, which is to be read next
+  std::vector<std::size_t> blobs = {};  // the size of each; receive_blob() reads them next
 };
 
 // One end of the pair. Only the process that made this object can send: in its forks send() returns

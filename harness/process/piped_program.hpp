@@ -1,5 +1,5 @@
 // A program that reads requests on stdin and answers on stdout. Both are pipes to this process; its
-// stderr is that of this process. It can exchange frames in shared memory instead.
+// stderr is that of this process. share_memory() replaces the pipes by shared memory.
 #pragma once
 
 #include <chrono>
@@ -49,8 +49,8 @@ class PipedProgram {
   std::string_view unread() const { return {inbox_.data() + begin_, end_ - begin_}; }
 
   // How the program ended, after read() or read_line() has failed: "exited with status 1", "was
-  // killed by signal 11 (Segmentation fault)". A program that still runs is killed: "closed its
-  // stdout".
+  // killed by signal 11 (Segmentation fault)". A program that still runs is killed, and the text is
+  // "closed its stdout".
   std::string end();
 
  private:

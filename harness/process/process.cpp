@@ -57,7 +57,8 @@ Owned& owned() {
   return all;
 }
 
-// For a child: it owns no process, and it was forked while the lock was held.
+// Called in a new child, which owns no process. Its copy of the lock is locked: the parent held the
+// lock while it forked.
 void own_nothing() {
   owned().processes.clear();
   owned().mutex.unlock();
@@ -81,7 +82,7 @@ void reap(pid_t process, Ending& ending) {
   if (has_ended) ending.wait_status = status;
 }
 
-// Of `process`, a number or "self". Empty if it has ended.
+// The children of `process`, a number or "self". Empty if `process` has ended.
 std::vector<pid_t> children(const std::string& process) {
   std::vector<pid_t> found;
   std::error_code gone;
@@ -130,7 +131,7 @@ bool is_guarded = false;
 // SIGHUP: the owner asks for the end, or has died.
 constexpr int end_all = SIGHUP;
 
-// Waits for the end of `leader`. Empty: it must be ended.
+// Waits for the end of `leader`. Empty: `leader` still runs, and the caller must end it.
 std::optional<int> status_of(pid_t leader, pid_t owner) {
   sigset_t taken;
   ::sigemptyset(&taken);
@@ -179,7 +180,7 @@ std::optional<int> status_of(pid_t leader, pid_t owner) {
   const int reason = leader > 0 ? 0 : errno;
   if (leader > 0) ::setpgid(leader, leader);  // here too: the first of the two calls decides
   const bool is_told = ::write(ready, &reason, sizeof reason) == sizeof reason;
-  // It must not keep open a pipe whose end of file another process waits for.
+  // The guard must not keep open a pipe whose end of file another process waits for.
   ::close_range(0, ~0u, 0);
   if (leader < 0 || !is_told) ::_exit(EXIT_FAILURE);
   Ending ending;

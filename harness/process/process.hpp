@@ -69,7 +69,7 @@ class Process {
 // other threads hold no lock.
 pid_t fork_sibling(const std::function<void()>& work);
 
-// Whether this process, or one above it, has a guard: so in a worker and in all processes below it.
+// Whether this process, or one above it, has a guard: true in a worker and in all below it.
 bool is_below_guard();
 
 }  // namespace attest

@@ -1,4 +1,4 @@
-// The time that the exchange with a program takes at least: nothing to compute.
+// The least time that an exchange with a program takes: that of a program that computes nothing.
 #pragma once
 
 #include <cstddef>

@@ -39,8 +39,8 @@ class SharedFrames {
   bool write(std::string_view request);
 
   // Waits for the answer to the last request, and copies its next `size` bytes. Calls `has_ended`
-  // about every millisecond. False: it returned true and no answer came, or the memory has no room
-  // for an answer of that size.
+  // about every millisecond. False: `has_ended` returned true and no answer came, or the memory has
+  // no room for an answer of that size.
   bool read(void* place, std::size_t size, const std::function<bool()>& has_ended);
 
   // The memory itself, for tests, in which the other side is in this process.

@@ -5,7 +5,7 @@
 
 namespace attest {
 
-// Blocks all signals of this thread for as long as it exists. Between fork() and reset_signals(), a
+// Blocks all signals of this thread while the object exists. Between fork() and reset_signals(), a
 // handler of the parent must not run in the child.
 class SignalsBlocked {
  public:
@@ -18,7 +18,7 @@ class SignalsBlocked {
   sigset_t before_{};
 };
 
-// Called in the child: the default handlers, and an empty mask. The handlers of errors stay,
+// Called in the child: sets the default handlers and an empty mask. The handlers of errors stay,
 // because the sanitizers report errors with them.
 void reset_signals();
 

@@ -8,7 +8,8 @@ namespace {
 // The usual delay is at most this part of the period: period / 10.
 constexpr int usual_part_of_period = 10;
 
-// In one of the two timelines of deadline_misses.hpp.
+// A unit in one of the two timelines of deadline_misses.hpp: the start of its last step, and the
+// finish of that step, from which on it is free.
 struct Course {
   Nanoseconds free = Nanoseconds::min();
   Nanoseconds start{0};

@@ -43,7 +43,7 @@ namespace attest {
 struct DeadlineMisses {
   std::uint64_t late = 0;         // responses longer than the period
   std::uint64_t skipped = 0;      // skipped releases after the first tick
-  std::uint64_t by_port = 0;      // of both together
+  std::uint64_t by_port = 0;      // the port's misses, of late and skipped together
   std::uint64_t late_starts = 0;  // wake-up latencies above the limit
   // Late starts attributed to the port: the same two conditions, applied to the start instead of
   // the finish.

@@ -59,8 +59,9 @@ struct Links {
   TripleBuffer<LiveRatesSetpoint> rates_setpoints;
   std::atomic<int> flying{1};     // units that still fly; the last one that ends sets `stop`
   std::atomic<bool> stop{false};  // any thread may set it
-  // For a unit that the estimator triggers: released with each sample of the estimator that is in
-  // its `states`. `all_published` is set after the last sample of the plant's thread.
+  // For a unit that the estimator triggers: released when a new sample of the estimator is in its
+  // `states`, once for several samples, and once at the end. `all_published` is set after the last
+  // sample of the plant's thread.
   std::counting_semaphore<> published{0};
   std::atomic<bool> all_published{false};
 };

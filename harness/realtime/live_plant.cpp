@@ -47,8 +47,8 @@ void LivePlant::run() {
   if (record_.divergence) links_.stop.store(true, std::memory_order_relaxed);
 }
 
-// A unit that waits for the estimator is woken when its sample is in the state; only once when
-// several samples came due.
+// Wakes a unit that waits for the estimator when a new sample is in the state. Several samples that
+// came due together wake it once.
 void LivePlant::publish(Nanoseconds now) {
   write_state(now, clock_.now());
   if (!plan_.estimator) return;

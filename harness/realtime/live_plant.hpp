@@ -33,7 +33,7 @@ struct LivePlantPlan {
   std::size_t ticks = 0;                   // of the unit, at most
   std::vector<Nanoseconds> battery_times;  // of the battery's samples; empty: no battery
   std::optional<Rate> estimator;           // whose samples trigger the unit
-  // Of a flight of the cascade with a floor, and the times of its samples.
+  // The detector of a flight of the cascade with a floor, and the times of its samples.
   std::optional<LandDetector> land_detector;
   std::vector<Nanoseconds> landing_times;
 };

@@ -35,7 +35,7 @@ std::size_t events_wanted(std::size_t blocks) {
   return static_cast<std::size_t>(std::ceil(complete * static_cast<double>(blocks)));
 }
 
-// The tail of the null hypothesis: `hits` blocks or more have their event.
+// The upper bound of P(K >= hits) in rhythm.hpp. 1 if `hits` is below the mean plus one.
 double tail(const Examined& sample, std::size_t every, std::size_t hits) {
   const std::size_t end = sample.ticks / every * every;
   std::size_t events = 0, blocks = 0, last_block = sample.ticks;

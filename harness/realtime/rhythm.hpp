@@ -19,8 +19,8 @@
 // Claim. A rhythm is claimed if all of these hold:
 // - There are at least five blocks.
 // - At least four of five blocks have an event at their tick `first`.
-// - The tail times the number of all pairs (every, first) that could be tried is at most 1e-4
-//   (Bonferroni).
+// - This bound of P(K >= k) times the number of all pairs (every, first) that could be tried is at
+//   most 1e-4 (Bonferroni).
 #pragma once
 
 #include <cstddef>

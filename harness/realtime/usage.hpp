@@ -23,7 +23,7 @@ struct Usage {
 
 // Of the calling thread so far.
 Usage thread_usage();
-Nanoseconds thread_cpu_time();  // in nanoseconds; Usage::cpu is in microseconds
+Nanoseconds thread_cpu_time();  // resolves nanoseconds; Usage::cpu resolves microseconds
 std::int64_t thread_yields();   // Usage::yields alone
 
 }  // namespace attest

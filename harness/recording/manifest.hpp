@@ -32,7 +32,7 @@ struct Manifest {
   std::string port_version;
   std::vector<std::string> unsupported_groups;
   std::optional<int> fraction_bits;
-  std::optional<Rate> fixed_step;  // the inputs begin one period after zero
+  std::optional<Rate> fixed_step;  // if set, the first timestamp is one period
 
   // [outputs]
   std::string time = "us";                // unit of the column `timestamp`: "s", "ms" or "us"
@@ -53,13 +53,13 @@ Result<Manifest> read_manifest(const std::filesystem::path& folder);
 // Written aside and renamed. Errors: the file cannot be written.
 Result<void> write_manifest(const std::filesystem::path& folder, const Manifest& manifest);
 
-// Of all inputs and parameters of the trace, tick by tick.
+// The hash covers all inputs and parameters of the trace at all ticks.
 std::string sha256_of_inputs(const Trace& trace);
 
 // The file of a vector's inputs, relative to the folder: "px4-v1.5.5/attitude/roll_30/250hz.csv".
 std::filesystem::path input_file(const std::string& vector_id, TableFormat format);
 
-// The file of its outputs; empty if there is none. Errors: there are several.
+// The file of a vector's outputs; empty if there is none. Errors: there are several.
 struct OutputFile {
   std::filesystem::path path;
   TableFormat format;

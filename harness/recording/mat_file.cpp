@@ -51,7 +51,7 @@ Result<Matio> load_matio() {
       library->find("Mat_VarReadNext", matio.var_read_next) &&
       library->find("Mat_VarWrite", matio.var_write);
   if (!has_all) return fail(fmt::format("{} has not all functions of matio.h", matio_soname));
-  // libmatio prints what it finds; attest reports it as an error.
+  // This keeps libmatio from printing the errors that it finds, because attest reports them.
   matio.log_init_func("attest", [](int, char*) {});
   return matio;
 }
@@ -178,7 +178,7 @@ Result<Table> read_mat(const std::filesystem::path& path) {
 Result<void> write_mat(const std::filesystem::path& path, const Table& table) {
   const auto& matio = loaded_matio();
   if (!matio) return tl::unexpected(matio.error());
-  // libmatio writes to a path only: to that of a file in memory, so that nothing is left behind.
+  // libmatio writes to a path only. It gets that of a file in memory, so nothing is left behind.
   const int memory = ::memfd_create("attest.mat", MFD_CLOEXEC);
   if (memory < 0) return fail_at(path.string(), "no memory to write the file in");
   const std::string in_memory = fmt::format("/proc/self/fd/{}", memory);

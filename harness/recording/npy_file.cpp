@@ -70,7 +70,7 @@ class Literal {
   std::string_view text_;
 };
 
-// "<f4" -> f, 4. Byte order: little-endian, or of a single byte.
+// "<f4" -> f, 4. The byte order must be little-endian, native or irrelevant (`|`).
 std::optional<Element> element_of(const std::string& name, const std::string& descr) {
   Element element{name};
   if (descr.size() < 3 || (descr[0] != '<' && descr[0] != '|' && descr[0] != '=')) {

@@ -60,7 +60,7 @@ double shortest_period_us(const Trace& trace) {
   return shortest;
 }
 
-// The times of the rows against those of the ticks.
+// Compares the times of the rows with those of the ticks.
 class Times {
  public:
   Times(const std::vector<double>& column, const std::string& unit, const Trace& trace)
@@ -115,7 +115,7 @@ class Times {
     return std::nullopt;
   }
 
-  // The unit in which the first and the last row have the times of their ticks.
+  // The complaint if times in another unit (s, ms, us, ns) fit the first and the last tick.
   std::string other_unit() const {
     constexpr std::array units{std::pair{"s", 1e6}, std::pair{"ms", 1e3}, std::pair{"us", 1.0},
                                std::pair{"ns", 1e-3}};
@@ -215,7 +215,7 @@ Result<ChannelSet> present_in(const Table& table, const ColumnChannels& channel_
   return present;
 }
 
-// No outputs, but the flags that the manifest lists as not recorded are 1.
+// Clears the outputs, but sets each flag `published` that the manifest lists as not recorded to 1.
 void clear_outputs(const Manifest& manifest, Trace& trace) {
   const Module module = module_of(trace.present);
   for (Sample& sample : trace.samples) {

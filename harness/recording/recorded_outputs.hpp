@@ -13,14 +13,16 @@ namespace attest {
 
 // Replaces the outputs of `trace` by those of the table, row by row. Columns may be in any order,
 // and their names are compared as identifiers (identifier_of()), with or without `out/`. Columns of
-// outputs that the manifest lists as not recorded are not read; a `published` among them is 1.
+// outputs that the manifest lists as not recorded are not read; a flag `published` among them
+// becomes 1.
 // Errors, each with what to do: a missing or repeated output; fewer or more rows than ticks; times
-// that are not those of the ticks, because rows are missing or in another order, or because of
-// another unit; a value that the type of its channel cannot have. REQUIRES: the table has a column.
+// that are not those of the ticks, because rows are missing or in another order, or because the
+// column has another unit of time; a value that the type of its channel cannot have.
+// REQUIRES: the table has a column.
 Result<void> set_recorded_outputs(const Table& table, const Manifest& manifest,
                                   const std::string& file, Trace& trace);
 
-// keep_unpublished() at each tick.
+// Applies keep_unpublished() of output_topics.hpp to each tick.
 void keep_unpublished(Trace& trace);
 
 // The columns that are neither an output nor an input nor `timestamp`.

@@ -18,7 +18,7 @@ std::string_view name_of(TableFormat format);  // "csv", also the extension of i
 Result<TableFormat> parse_table_format(std::string_view name);
 
 // CSV: numbers in decimal. A column may have no name.
-// MAT: version 5, 7 or 7.3. Each vector of numbers is a column; the variable's name is its name.
+// MAT: version 5, 7 or 7.3. Each vector of numbers is a column; the column has the variable's name.
 // NPY: version 1 to 3. A structured array has names. In an array of two dimensions, rows are ticks,
 // and `names` are those of its columns.
 // Errors: the file cannot be read; columns of different lengths; no column; a value that is no real

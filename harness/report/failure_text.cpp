@@ -79,7 +79,7 @@ std::string first_deviation(const Deviation& deviation, Level level) {
   const Channel& channel = channels()[deviation.channel];
   return fmt::format(
       "  first at tick {}, timestamp {} us, in {}\n{}{}"
-      "  look first at the {}: the stages before it agree up to this tick\n",
+      "  look first at the {}: no output of an earlier stage deviates up to this tick\n",
       deviation.tick, deviation.timestamp_us, channel_with_unit(channel) + of_unit(channel),
       values(channel, deviation), indented_distance(deviation, level), name_of(channel.stage));
 }

@@ -17,8 +17,8 @@ inline constexpr std::size_t annotations_shown = 10;
 std::string github_annotations(const RunResult& run);
 
 // `text` between two lines that keep GitHub from running workflow commands in it: a port may have a
-// name such as "::stop-commands::x". The word of these lines is the hash of the text, so that no
-// line of it can be the second one.
+// name such as "::stop-commands::x". Both lines contain the hash of the text, so that no line of
+// the text can be the closing one.
 std::string without_commands(const std::string& text);
 
 // The job summary, in Markdown: a heading and render_summary() as preformatted text.

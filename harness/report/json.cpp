@@ -55,7 +55,7 @@ ordered_json results(const RunResult& run) {
   return out;
 }
 
-// What the results are of.
+// Which vectors were selected, and with which parameters and timing.
 ordered_json selection(const RunResult& run) {
   ordered_json parameters = ordered_json::array();
   for (const ParameterChange& change : run.parameters) {

@@ -3,10 +3,10 @@
 //
 // A group is a testsuite, a vector is a testcase, and the failure text is the content of
 // <failure> (fail, non-finite, xpass) or <error> (crash, timeout, protocol): GitLab shows content,
-// not `message`. Each has the diagnosis of the run. unsupported, skip and xfail are <skipped>.
-// GitLab drops all but the first of equal classname and name, so the name has the rate. Errors of
-// the environment are a testsuite of their own, "attest.environment". Times are those of the
-// vectors and their sums.
+// not `message`. For a vector with a first deviation, the content includes the run's diagnosis.
+// unsupported, skip and xfail are <skipped>. GitLab drops all but the first of equal classname and
+// name, so the name has the rate. Errors of the environment are a testsuite of their own,
+// "attest.environment". Times are those of the vectors and their sums.
 #pragma once
 
 #include <optional>

@@ -26,7 +26,7 @@ class Progress {
   // Visible when stderr is a terminal that can move its cursor and `quiet` is false.
   static Options on_stderr(bool quiet);
 
-  // `done`: the number of these that were done before.
+  // `done`: how many of `total` were done before.
   Progress(std::size_t total, Options options, std::size_t done = 0)
       : options_(options), total_(total), done_(done), done_before_(done) {}
   ~Progress() { finish(); }
@@ -46,7 +46,7 @@ class Progress {
   Options options_;
   std::size_t total_;
   std::size_t done_;
-  std::size_t done_before_;  // the first drawing, from which the time is counted
+  std::size_t done_before_;  // at the first add(), from which the time is counted
   std::size_t failed_ = 0;
   bool drawn_ = false;
   Clock::time_point last_drawn_{}, begin_{};

@@ -13,12 +13,12 @@ namespace attest {
 // marked.
 std::string render_tasks(const TaskSet& set, const std::vector<std::vector<TaskJob>>& jobs);
 
-// Of each unit: the delays after the release, until its start and until its command (its setpoint,
-// of the attitude unit), and the age of the sample at that time.
+// For each unit: the delays from the release to the start and to the command, and the age of the
+// sample at the command. The command of the attitude unit is its setpoint.
 std::string render_delays(const TaskSet& set, const std::vector<std::vector<TaskJob>>& jobs,
                           const FlightTiming& timing);
 
-// The metrics of a flight with that timing, compared with the same flight with every tick in time.
+// The metrics of the scheduled flight, compared with the same flight with every tick in time.
 std::string render_flights(const CaseResult& in_time, const CaseResult& scheduled);
 
 }  // namespace attest

@@ -95,7 +95,7 @@ std::string reason_of(const StressResult& stress) {
                                           : reason;
 }
 
-// The result of the flight, in which `all` has that of the units before.
+// Adds the result of a unit to `all`, the result of the flight from the units before.
 void add_unit(const StressResult& unit, CaseResult& all) {
   const std::string before = all.reason, reason = reason_of(unit);
   if (gravity(unit.result.verdict) > gravity(all.verdict)) all = unit.result;

@@ -47,9 +47,9 @@ enum class Failures {
 //
 //     PASS 715 of 715 vectors conform (px4-v1.5.5, exact, 11 rates) in 1.2 s
 //
-// PASS: no vector failed, no error occurred, and at least one vector was compared. NONE: the same,
-// but no vector was compared. `wall_s` is the time of the whole run. Lines are broken at the width
-// of the terminal, except commands to copy. Ends with a newline.
+// PASS: no vector failed, no error occurred, and at least one vector passed. NONE: the same, but no
+// vector passed. `wall_s` is the time of the whole run. Lines are broken at the width of the
+// terminal, except commands to copy. Ends with a newline.
 std::string render_summary(const RunResult& run, double wall_s, TerminalStyle style,
                            const std::optional<Diagnosis>& diagnosis = {},
                            Failures shown = Failures::first_of_each_group);

@@ -25,7 +25,7 @@ struct Queue {
     const Nanoseconds time = releasing ? next_finish() : task->phase + task->rate.tick(released);
     return time < duration ? time : never;
   }
-  // The time of the next release by the other task: `never` until that job has finished.
+  // The time of the next release by the other task: `never` until the releasing job has finished.
   Nanoseconds next_finish() const {
     const auto next = static_cast<std::size_t>(released);
     if (next >= releasing->size()) return never;

@@ -29,7 +29,7 @@ struct FlightTiming {
   FlightTiming(LoopTiming of_unit)  // NOLINT(google-explicit-constructor)
       : unit(std::move(of_unit)) {}
 
-  LoopTiming unit;           // that commands the motors
+  LoopTiming unit;           // of the unit that commands the motors
   LoopTiming attitude_unit;  // of a flight of the cascade
 
   friend bool operator==(const FlightTiming&, const FlightTiming&) = default;

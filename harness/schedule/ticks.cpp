@@ -12,8 +12,8 @@ namespace {
 // The least distance of two timestamps.
 constexpr Nanoseconds closest{1000};
 
-// In periods. It uses square root and division because they, unlike pow, give the same bits on
-// every platform.
+// The lateness in periods. It uses square root and division because they, unlike pow, give the same
+// bits on every platform.
 double lateness(const TickSchedule& schedule, Random& random) {
   const double uniform = random.uniform();
   if (!schedule.heavy_tail) return schedule.jitter * uniform;

@@ -41,7 +41,8 @@ struct TickSchedule {
 // arguments give the same ticks on every machine.
 std::vector<Nanoseconds> ticks(const TickSchedule& schedule, std::int64_t periods);
 
-// The times at which the samples of a topic are published: periodic, or given; both empty: never.
+// The times at which the samples of a topic are published: periodic (`rate`), or given (`times`).
+// If both are empty, no sample is published.
 // Release i is at phase + rate.tick(first + i * every). So releases counted in the unit's ticks are
 // at the same nanosecond as those ticks.
 struct ReleaseSchedule {

@@ -62,7 +62,8 @@ bool is_non_finite(const Flown& port, const Flown& reference) {
          first_non_finite(*port.attitude_trace, *reference.attitude_trace);
 }
 
-// A port with a fixed step flies from one period on, and so does the reference then.
+// A port with a fixed step flies the case with its first timestamp at one period. The reference
+// then flies the same case.
 SampledFlight for_reference(SampledFlight sample, const FlightsOptions& options) {
   const auto& said = options.host.said;
   if (options.with_port && said && has_fixed_step(*said, sample.the_case)) {

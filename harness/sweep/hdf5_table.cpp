@@ -96,7 +96,7 @@ Result<Hdf5Library> load_hdf5() {
   if (!find_all(*library, hdf5) || !find_identifiers(*library, hdf5) || hdf5.open() < 0) {
     return fail(fmt::format("{} has not all functions of HDF5 1.10", hdf5_soname));
   }
-  // It prints its errors; attest reports them.
+  // By default libhdf5 prints its errors. It must not, because attest reports them.
   hdf5.set_error_printer(H5E_DEFAULT, nullptr, nullptr);
   return hdf5;
 }

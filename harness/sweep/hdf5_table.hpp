@@ -1,10 +1,11 @@
 // The results of a sweep as columns in an HDF5 file.
 //
-// A dataset for each column of samples.csv, with its name: `sample` (uint64), dispersions and
-// metrics (float64, NaN where a flight was not done), outcomes (an enumeration). Attributes of a
-// dispersion: `keys`, the numbers that it changes, whose names have their units, and `as`; of a
-// metric: `measure`, whose name has its unit. Attributes of the file: those of identity.json, and
-// `case`, `rate`, `vehicle`, `plant`, `design`.
+// Each column of samples.csv is a dataset with the same name: `sample` (uint64), dispersions
+// (float64), metrics (float64, NaN where a flight was not done), outcomes (an enumeration). A
+// dispersion has two attributes: `keys`, the names of the numbers that it changes, and `as`, which
+// is "value", "factor" or "offset". A metric has the attribute `measure`. The names of numbers and
+// measures have their units. Attributes of the file: those of identity.json, and `case`, `rate`,
+// `vehicle`, `plant`, `design`.
 #pragma once
 
 #include <filesystem>

@@ -44,7 +44,7 @@ std::string first_difference(const SweepIdentity& found, const SweepIdentity& ex
   return "";
 }
 
-// What a kill may have left of the file, and the file itself, do not count.
+// The identity file, and what a kill may have left of it, do not count.
 bool has_other_files(const fs::path& folder) {
   std::error_code failed;
   for (fs::directory_iterator it(folder, failed), end; it != end && !failed; it.increment(failed)) {

@@ -17,7 +17,7 @@ namespace attest {
 // The table in the folder of a sweep.
 inline constexpr const char* sample_file = "samples.csv";
 
-// Consecutive samples; the shards differ by at most one sample.
+// The samples of a shard are consecutive. The sizes of the shards differ by at most one sample.
 SampleRange range_of(const Shard& shard, std::uint64_t samples);
 
 // "3,17-20": as ranges, the way that Slurm writes the indices of a job array.

@@ -8,7 +8,7 @@
 
 namespace attest {
 
-// Both record their errors in the table.
+// This function and parse_correlation() record their errors in the table.
 std::vector<Dispersion> parse_dispersions(const TomlTable& root, DesignKind design);
 
 // The matrix of all dimensions, row by row; empty if the file has no correlation. REQUIRES: the

@@ -182,7 +182,7 @@ Result<void> SampleTable::finish() {
   if (is_complete_) return {};
   if (::fsync(descriptor_) != 0) return tl::unexpected(table_error(part_, "cannot be written"));
   std::error_code failed;
-  // Another machine that has made the same table has removed this part.
+  // ENOENT: another machine has made the same table, and has removed this part.
   const bool is_made =
       ::rename(part_.c_str(), file_.c_str()) == 0 || (errno == ENOENT && fs::exists(file_, failed));
   if (!is_made) return tl::unexpected(table_error(file_, "cannot be written"));

@@ -42,7 +42,7 @@ class Blocks {
   std::uint64_t left_out_ = 0;
 };
 
-// The terms whose mean is the variance: of A and B together.
+// The variance of A and B together. It is the mean of `terms`, one for each block.
 struct Variance {
   double mean = 0, value = 0;
   std::vector<double> terms;

@@ -30,7 +30,7 @@ struct RequirementResult {
   std::vector<std::uint64_t> worst;  // samples, the worst first
 };
 
-// Of the flights that were done. Percentiles are empty where there are too few flights
+// A metric over the flights that were done. Percentiles are empty where there are too few flights
 // (supports_percentile()).
 struct MetricSummary {
   std::string name;

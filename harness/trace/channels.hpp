@@ -2,9 +2,9 @@
 // A channel is a member of Sample, found by its offset, so the table always agrees with the ABI
 // structs.
 //
-// Channels of two modules may have the same name, because a topic may go to both: a name is that of
-// a channel of one module. The units share the memory of their structs in Sample (module.hpp), so
-// only the channels of a sample's own module have a meaning.
+// Channels of two modules may have the same name, because a topic may go to both. So a name
+// identifies a channel only within a module. The units share the memory of their structs in Sample
+// (module.hpp), so only the channels of a sample's own module have a meaning.
 //
 // Names are `in/<topic>.<field>` and `out/<topic>.<field>`; `in/updated.<topic>` are the bits of
 // attest_inputs.updated. `timestamp` has no prefix. Parameters are not channels: they are the
@@ -90,7 +90,7 @@ Module module_of(const ChannelSet& channels);
 
 // The channels of that name, one for each module that has it.
 ChannelSet channels_named(std::string_view name);
-// Their names, each once.
+// The names of the channels of a set, each once.
 std::vector<std::string_view> names_of(const ChannelSet& set);
 
 // The module that has the most of these names, such as a file's columns; the first of several.

@@ -40,7 +40,7 @@ const char* parse_unusual_float(const char* first, const char* last, float& valu
 // REQUIRES: `cell` is not a value of that type.
 std::string cell_error(std::string_view cell, CellType type, std::string_view column);
 
-// For messages: between backquotes, shortened, as printable_part().
+// Prepares a text for a message: shortens it, applies printable_part(), and adds backquotes.
 std::string in_backquotes(std::string_view text);
 
 // The parsers below read a value at `first`, store it at `to`, and return its end, or null if there

@@ -31,7 +31,8 @@ struct Layout {
 // The firmware of the cascade publishes this topic too; attest_cascade.h says why the ABI lacks it.
 constexpr std::string_view left_out_of_the_abi = "out/actuator_controls_status.";
 
-// The file is a trace, and the column is not a misspelt one of attest's.
+// Whether an unknown column is ignored: the file is a trace to be replayed, and the name is not a
+// misspelt one of attest's.
 bool may_be_ignored(std::string_view name, const CsvRows& rows, const std::string& suggestion,
                     TraceNeed need) {
   const auto& header = rows.header();
@@ -123,7 +124,8 @@ class Base {
   ChannelSet own_;
 };
 
-// A file that has a base may have few columns of its own, whose names are those of several modules.
+// A file that has a base may have few columns of its own, and several modules may have their names.
+// So the base determines the module.
 Module module_of_file(const CsvRows& rows, const Provenance& provenance, const Base* base) {
   if (base) return module_of(base->present());
   std::vector<std::string> names(rows.header().begin(), rows.header().end());

@@ -20,10 +20,10 @@ std::span<const OutputTopic> output_topics(Module module);
 
 bool is_published(const OutputTopic& topic, const Sample& sample);
 
-// Gives the topics of `now` that are not published their values in `before`, the step before.
+// If `now` does not publish a topic, copies the topic from `before`, the previous step, to `now`.
 void keep_unpublished(Module module, const Sample& before, Sample& now);
 
-// As in a step that publishes nothing.
+// Clears the flags `published`, as in a step that publishes nothing.
 void clear_published(Module module, Sample& sample);
 
 }  // namespace attest

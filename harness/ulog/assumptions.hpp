@@ -10,7 +10,8 @@
 
 namespace attest {
 
-// The words of --assume, each once. `by_default`: those of this module that hold without --assume.
+// The words of --assume, each once: all, or those of a module. If `by_default` is true, only those
+// that hold without --assume.
 std::vector<std::string> assumption_words();
 std::vector<std::string> assumption_words(Module module, bool by_default);
 

@@ -64,13 +64,13 @@ std::string lacking(const ModuleContents& log, bool is_of_attest) {
   return "";
 }
 
-// The modules whose units the log may be of.
+// The modules whose units the log may have recorded.
 std::vector<ModuleContents*> candidates(LogContents& log) {
   ModuleContents& controller = log.of(Module::mc_att_control);
   ModuleContents& attitude = log.of(Module::attitude_unit);
   ModuleContents& rate = log.of(Module::rate_unit);
   if (controller.steps().size() > 0) return {&controller};
-  // The flight of a rate unit has vehicle_attitude, too: the true one.
+  // First the rate unit: attest also logs the true vehicle_attitude of a rate unit's flight.
   if (log.is_of_attest() && rate.steps().size() > 0) return {&rate};
   if (log.is_of_attest() && attitude.steps().size() > 0) return {&attitude};
   return {&attitude, &rate};

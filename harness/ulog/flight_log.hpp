@@ -27,8 +27,8 @@ struct LoggedOutput {
 // Whether the log shows the setpoint that the unit follows at a tick.
 enum class Known : std::uint8_t {
   all,            // yes
-  if_every_step,  // if it has every step: filters of the attitude unit make it from the sticks
-  nothing         // no: it has no setpoint up to this tick
+  if_every_step,  // if the log has every step: the unit filters the sticks to get the setpoint
+  nothing         // no: the log has no setpoint up to this tick
 };
 
 struct LoggedUnit {
@@ -60,7 +60,7 @@ struct FlightLog {
   std::string profile;                   // of the case, in a log of attest; else empty
   std::optional<ulog::Release> release;  // of the PX4 that wrote it, if the log says so
   bool is_of_attest = false;  // attest wrote the log: at each step, all that the unit received
-  // Of the log, assumptions and omissions: one line each.
+  // Remarks for the user, one line each: for example on damage, missing fields and assumptions.
   std::vector<std::string> notes;
 };
 
@@ -72,8 +72,8 @@ struct FlightLog {
 // if that step is at most 2 ms before it, because the log may lack a later step. A second output
 // before the next step is not paired.
 //
-// In such a log, several modules publish the setpoints, depending on the mode. Outputs of the
-// attitude unit are vehicle_rates_setpoint in modes with attitude control, and
+// In a log of v1.14 to v1.16, several modules publish the setpoints, depending on the mode. Outputs
+// of the attitude unit are vehicle_rates_setpoint in modes with attitude control, and
 // vehicle_attitude_setpoint where the unit makes it from the sticks; otherwise the latter is an
 // input of the unit. vehicle_rates_setpoint is an output of the rate unit in acro mode, and
 // otherwise an input. quat_reset_counter counts from

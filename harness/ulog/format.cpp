@@ -73,7 +73,7 @@ Result<const Format*> Formats::add(std::string_view definition) {
   return &formats_.emplace(format.name, format).first->second;
 }
 
-// A format in itself reaches the limit of the depth.
+// A format that contains itself reaches the limit of the depth.
 Result<const Format*> Formats::measure(std::string_view name, int depth_left) {
   const auto found = formats_.find(name);
   if (found == formats_.end()) return fail(fmt::format("format {} is not defined", name));

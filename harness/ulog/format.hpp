@@ -65,7 +65,7 @@ struct Format {
   std::string name;
   std::string text;  // "type field;..."
   std::vector<Field> fields;
-  // Of the data, once measured. A leaf is a field of a basic type that is no padding.
+  // Formats::measure() sets these members. A leaf is a field of a basic type that is no padding.
   std::vector<Field> leaves = {};
   std::uint32_t bytes = 0;        // 0: not measured
   std::uint32_t least_bytes = 0;  // without padding at the end

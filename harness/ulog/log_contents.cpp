@@ -60,7 +60,7 @@ class ContentsReader {
     }
   }
 
-  // A topic may be of several modules, an input and an output.
+  // A topic may belong to several modules, as an input of one and an output of another.
   void add(const Data& data) {
     const std::size_t index = data.subscription->index;
     if (index >= receivers_.size()) receivers_.resize(index + 1);
@@ -83,7 +83,7 @@ class ContentsReader {
     return found;
   }
 
-  // The old controller has a setpoint of others as the instance 1 in every log.
+  // Not for the old controller: in every log, its instance 1 of a setpoint is that of others.
   void accept_every_publisher() {
     for (ModuleContents& module : log_.modules) {
       if (module.module() == Module::mc_att_control) continue;

@@ -14,7 +14,7 @@
 
 namespace attest::ulog {
 
-// Of PX4: 1, 14, 3 is v1.14.3.
+// A release of PX4: 1, 14, 3 is v1.14.3.
 struct Release {
   int major = 0, minor = 0, patch = 0;
 
@@ -28,12 +28,12 @@ class ModuleContents {
   Module module() const { return module_; }
   std::vector<LogSeries>& series() { return series_; }
   const std::vector<LogSeries>& series() const { return series_; }
-  // Of the topic that triggers a step.
+  // The samples of the topic that triggers a step.
   const LogSeries& steps() const { return *input(step_topic_); }
   // Null if the module has no such topic.
   const LogSeries* input(std::string_view topic) const { return find(topic, false); }
   const LogSeries* output(std::string_view topic) const { return find(topic, true); }
-  // Samples of outputs, of fields that the log has.
+  // Whether an output topic has samples and at least one known field.
   bool has_outputs() const;
 
   std::vector<ParameterChange> parameters;  // the tick is the number of steps logged before it

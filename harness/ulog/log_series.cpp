@@ -13,7 +13,7 @@ std::optional<Column> find(const Reader& reader, const Subscription& subscriptio
   return column ? std::optional(*column) : std::nullopt;
 }
 
-// The same for a time, which must be an integer.
+// Finds the field of a time, which must be a u64.
 std::optional<Column> find_time(const Reader& reader, const Subscription& subscription,
                                 std::string_view field) {
   const auto column = find(reader, subscription, field);

@@ -22,11 +22,11 @@ class LogSeries {
   const std::string& name() const { return topic_.name; }
   bool is_output() const { return topic_.is_output; }
 
-  // Of the instance that the topic has in a log of attest.
+  // True for this topic, in the instance that it has in a log of attest.
   bool accepts(const Subscription& subscription) const {
     return subscription.multi_id == topic_.multi_id && subscription.topic == topic_.name;
   }
-  // The same as the topic's instance 0, where a log of PX4 has the samples of every publisher.
+  // From now on, accepts() is true for instance 0, where PX4 logs the samples of every publisher.
   void accept_every_publisher() { topic_.multi_id = 0; }
 
   // Finds the fields in the log, without samples yet. REQUIRES: accepts it.
@@ -37,7 +37,7 @@ class LogSeries {
 
   std::size_t size() const { return times_.size(); }
   std::size_t left_out() const { return left_out_; }
-  // The same, because the topic has no timestamp. Not counted in left_out().
+  // Samples left out because the topic has no timestamp. Not counted in left_out().
   std::size_t without_time() const { return without_time_; }
   std::uint64_t time(std::size_t row) const { return times_[row]; }  // us
   std::span<const std::uint64_t> times() const { return times_; }
@@ -58,7 +58,7 @@ class LogSeries {
   void copy(std::size_t row, Sample& to) const;
 
  private:
-  // Where a field is; `state`: the flag is true if the value is this.
+  // Where a field is. If there is a `state`, the field is a flag: true if the value is this state.
   struct Place {
     std::optional<Column> column;
     std::optional<std::uint8_t> state;
@@ -73,7 +73,7 @@ class LogSeries {
   std::optional<Column> time_, sample_time_;
   std::vector<Place> places_;  // of the topic's fields
   std::vector<std::uint64_t> times_, sample_times_;
-  std::vector<std::uint64_t> values_;  // of a sample after the other: integers, bits of floats
+  std::vector<std::uint64_t> values_;  // sample by sample: integers, bits of floats
   std::size_t left_out_ = 0, without_time_ = 0;
 };
 

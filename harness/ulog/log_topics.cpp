@@ -28,7 +28,7 @@ std::optional<LogState> state_of(const Channel& channel) {
   return found == std::end(states) ? std::nullopt : std::optional(found->state);
 }
 
-// A heading of the gyros alone is in the topic from v1.16 on. Not finite: there is none.
+// unaided_heading, of the gyros alone, is in the topic from v1.16 on. Not finite: there is none.
 float if_absent(std::string_view channel) {
   if (channel == "in/vehicle_local_position.unaided_heading") {
     return std::numeric_limits<float>::quiet_NaN();

@@ -27,16 +27,16 @@ struct LogField {
   std::optional<LogState> state = {};
   float if_absent = 0;  // what a unit receives if the log's topic does not have it
 
-  // "timestamp_published", whose name in a log of PX4 is "timestamp", and "timestamp_sample", which
-  // is about the same.
+  // True for "timestamp_published", whose name in a log of PX4 is "timestamp", and for
+  // "timestamp_sample", which is about the same time.
   bool is_time_of_topic() const;
 };
 
 struct LogTopic {
   std::string name;
   bool is_output = false;
-  // In a log of attest. Where a module publishes a topic that it also reads, the instance 0 is its
-  // own and the instance 1 that of others. PX4 has both in the instance 0.
+  // The instance in a log of attest. Where a module publishes a topic that it also reads, the
+  // instance 0 is its own and the instance 1 that of others. PX4 has both in the instance 0.
   std::uint8_t multi_id = 0;
   std::vector<LogField> fields = {};
   std::optional<std::size_t> is_new = {};  // channel of its bit or flag; empty: new at each step

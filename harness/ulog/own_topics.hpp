@@ -12,7 +12,7 @@ namespace attest::ulog {
 // that only this unit publishes, and for every topic of the controller of v1.5.5.
 bool publishes(Module module, std::string_view topic, const Sample& sample);
 
-// Whether the attitude unit makes its setpoint of the sticks: stabilized mode. It has filters.
+// Whether the attitude unit makes its setpoint from the sticks, with filters (stabilized mode).
 bool is_of_sticks(const Sample& sample);
 
 // Whether the vehicle is armed and off the ground, as far as the module knows.

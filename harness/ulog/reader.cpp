@@ -62,7 +62,7 @@ Result<Reader> Reader::open(const std::filesystem::path& path) {
   return reader;
 }
 
-// With the flag bits, the first message of version 1. If they are damaged, next() reports that.
+// Also reads the flag bits, the first message of version 1. next() reports damage to them.
 Result<void> Reader::read_header() {
   first_message_ = header_bytes;
   end_ = file_size_;
@@ -204,7 +204,7 @@ bool Reader::accept_data(std::string_view body, Message& message) {
   return true;
 }
 
-// A body is: M and Q a byte of flags, u8 length of the key, key "type name", value.
+// A body is: a byte of flags (M and Q only), u8 length of the key, key "type name", value.
 bool Reader::accept_value(char type, std::string_view body, Message& message) {
   const bool is_parameter = type == 'P' || type == 'Q';
   std::uint8_t flags = 0;

@@ -90,8 +90,8 @@ class Topics {
   }
 
   const std::vector<Topic>& all() const { return topics_; }
-  // The instances of a topic share its definition, so each gets the fields of the other. A unit's
-  // own topic is published at the time of the step.
+  // The instances of a topic share its definition, so one without times gets those of the other.
+  // Their value is the time of the step, at which a unit publishes its own topic.
   void complete_instances() {
     for (Topic& topic : topics_) {
       for (const Topic& other : topics_) {
@@ -157,10 +157,9 @@ void add_topic(const LogTopic& from, const Trace& trace, Topics& topics) {
   }
 }
 
-// A column of the plant as topic and field of a log. One without a topic is a topic with the field
-// `value`. What a unit of v1.14 to v1.16 receives is an estimate at its own times, so the true
-// state is a topic of its own where the unit has a topic of that name; PX4's simulators call it so,
-// too.
+// A column of the plant as topic and field of a log. A column without a topic becomes a topic with
+// the field `value`. A unit of v1.14 to v1.16 receives an estimate, at its own times. If the unit
+// has a topic of that name, the true state is the topic `..._groundtruth`, as in PX4's simulators.
 std::pair<std::string, std::string> plant_field(std::string_view path, Module module,
                                                 const std::vector<LogTopic>& layout) {
   const auto dot = path.find('.');
@@ -172,7 +171,7 @@ std::pair<std::string, std::string> plant_field(std::string_view path, Module mo
   return {topic, fmt::format("value{}", path.substr(std::min(path.find('['), path.size())))};
 }
 
-// Of the old controller, battery_status has a field of the inputs and one of the plant: it is
+// For the old controller, battery_status has a field of the inputs and one of the plant. So it is
 // logged at each tick.
 void add_plant(Module module, const std::vector<LogTopic>& layout, Topics& topics) {
   for (const PlantColumn& column : plant_columns()) {

@@ -41,7 +41,8 @@ class PendingRows {
     return series_.time(row) < time || (rules_ != LogRules::cascade && series_.time(row) == time);
   }
 
-  // The unit publishes once in a step, soon after the sample. `row`: the first after that step.
+  // Whether the unit itself published `row`, the first after the step of `last`. It publishes once
+  // in a step, soon after the sample.
   bool is_own(std::size_t row, const Sample& last) const {
     return rules_ == LogRules::cascade && last.in.timestamp > 0 &&
            series_.time(row) - last.in.timestamp <= latest_answer_us && is_shared() &&
@@ -219,7 +220,7 @@ class UnitOfLog {
   ModuleContents& log_;
   const LogSeries& steps_;
   LogRules rules_;
-  bool has_sample_times_;  // that increase
+  bool has_sample_times_;  // every step has one, and they do not decrease
   LoggedUnit unit_;
 };
 

@@ -5,10 +5,10 @@
 
 namespace attest::ulog {
 
-// Whose samples a log has, and when an input was there.
+// The rules of a log: whose samples it has, and from which time on a unit had an input.
 enum class LogRules : std::uint8_t {
   attest,      // instances tell publishers apart; an input was there at its timestamp
-  controller,  // PX4 of v1.5.5 and v1.3.4: the same
+  controller,  // PX4 of v1.5.5 and v1.3.4: as for attest
   cascade      // PX4 of v1.14 to v1.16: as in flight_log.hpp
 };
 

@@ -65,7 +65,7 @@ Result<void> Writer::write(char type, std::initializer_list<std::string_view> pa
   block_ += stored(static_cast<std::uint16_t>(size)) + type;
   for (const std::string_view part : parts) block_ += part;
   if (block_.size() < most_in_block) return {};
-  // Among the definitions, readers take it for the start of the data.
+  // Readers would take a sync message among the definitions for the start of the data.
   if (!subscribed_.empty()) block_ += sync_message;
   if (status_) status_ = file_.write(block_);
   block_.clear();

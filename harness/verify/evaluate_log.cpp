@@ -17,8 +17,8 @@
 namespace attest {
 namespace {
 
-// Of controller and attitude unit. Depends on one sample only, unless the sticks make the setpoint
-// (Known::if_every_step).
+// The output of the controller and of the attitude unit that depends on one sample only, unless the
+// sticks make the setpoint (Known::if_every_step).
 constexpr std::string_view memoryless = "vehicle_rates_setpoint";
 
 bool has_memory(Module module, const TopicAgreement& topic) {

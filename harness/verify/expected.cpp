@@ -21,7 +21,7 @@ bool matches(const std::string& pattern, const std::string& vector) {
          ::fnmatch(pattern.c_str(), of_case.c_str(), 0) == 0;
 }
 
-// The profile whose vectors all match, and that would match in any other group too: the pattern
+// The profile whose vectors all match, if vectors in any other group would match too. The pattern
 // would excuse every mistake of a port, including later ones. Empty for other patterns. A group
 // that the suite does not have stands for the others, because a suite may have a single group.
 std::string wholly_excused(const std::string& pattern, const std::vector<std::string>& suite) {
@@ -43,8 +43,8 @@ std::string wholly_excused(const std::string& pattern, const std::vector<std::st
   return found == all_match.end() ? "" : found->first;
 }
 
-// Those of "crash, timeout: reason". For a reason without verdicts, those that a difference from
-// the golden has.
+// The verdicts that a reason begins with, as in "crash, timeout: reason". If it begins with none,
+// the two verdicts of a difference from the golden.
 std::vector<Verdict> excused_by(std::string_view reason) {
   const std::vector<Verdict> differences{Verdict::fail, Verdict::non_finite};
   std::vector<Verdict> excused;
@@ -102,7 +102,7 @@ bool ExpectedFailures::expects(const CaseResult& result) const {
   });
 }
 
-// Marks the entries that match in `used`.
+// Marks in `used` the entries that match.
 void ExpectedFailures::expect(CaseResult& result, std::vector<bool>& used) const {
   const ExpectedFailure* entry = nullptr;  // the first that excuses the verdict, else the first
   for (std::size_t i = 0; i < entries_.size(); ++i) {

@@ -1,10 +1,10 @@
 // Cases for a port with a fixed sample time (ATTEST_EXTENSION_FIXED_STEP).
 //
-// The law computes dt from timestamps. The first timestamp of a case is 5 s, and the law's `last`
-// is 0 before it. The law limits this dt of 5 s to 20 ms. A port with a fixed step uses its period
-// instead, so it cannot agree. For such a port the cases begin one period after zero, so that each
-// dt is the period. A golden has the outputs for its own timestamps. The expected outputs therefore
-// come from the reference, after a check that the reference agrees with the golden.
+// The law computes dt from timestamps. The first timestamp of a case is 5 s, and the law takes the
+// previous one as 0. The law limits this dt of 5 s to 20 ms. A port with a fixed step uses its
+// period instead, so it cannot agree. For such a port the cases begin one period after zero, so
+// that each dt is the period. A golden has the outputs for its own timestamps. The expected outputs
+// therefore come from the reference, after a check that the reference agrees with the golden.
 //
 // The units of the cascade compute dt from the times of their samples, so these must be one period
 // apart too. A time of a topic that would be before zero, such as that of arming, becomes zero.

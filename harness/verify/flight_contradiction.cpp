@@ -31,7 +31,7 @@ struct Scripted {
 Scripted scripted_in(const Case& part) {
   Scripted scripted;
   for (const TopicStimulus& topic : part.topics) {
-    if (part.attitude_loop && topic.topic == rates_setpoint) continue;  // of the attitude unit, too
+    if (part.attitude_loop && topic.topic == rates_setpoint) continue;  // attitude unit sends it
     scripted.updated |= topic.updated_bit;
     for (const FieldStimulus& field : topic.fields) scripted.channels.push_back(field.channel);
     for (const AttitudeStimulus& attitude : topic.attitudes) {

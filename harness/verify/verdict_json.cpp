@@ -19,7 +19,7 @@ std::string float_bits(double value) {
   return fmt::format("0x{:08x}", std::bit_cast<std::uint32_t>(static_cast<float>(value)));
 }
 
-// The name of a channel, and its module if the name alone is that of an earlier one.
+// Writes the name of a channel, and its module if an earlier channel has the same name.
 void name_channel(std::size_t index, json& out) {
   const Channel& channel = channels()[index];
   out["channel"] = channel.name;

@@ -29,7 +29,7 @@ class Job {
   // Called after close(). True if the worker cannot run other jobs.
   virtual bool ends_worker() const { return false; }
 
-  // Called before the first task. An error applies to all tasks, which are left out.
+  // Called before the first task. An error applies to all tasks not yet run, which are left out.
   virtual Result<void> open() { return {}; }
 
   // REQUIRES: open() succeeded.
@@ -71,7 +71,7 @@ struct JobResults {
 
 namespace detail {
 
-// Calls `done` with each result and the number of its tasks.
+// Calls `done` with each result and the number of tasks that it is for.
 template <typename R, typename Done>
 void run_tasks(Job<R>& job, Done&& done) {
   for (std::size_t task = 0; task < job.size();) {

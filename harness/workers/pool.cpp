@@ -78,7 +78,7 @@ class Pool {
     }
   }
 
-  // In a worker.
+  // Runs in a worker: does the work that the parent asks for.
   void do_work(MessageSocket& parent) {
     // An interrupt may come just before the fork. The work must not begin then: it would report the
     // interrupt as a port that does not answer.
@@ -152,7 +152,7 @@ class Pool {
   void conclude(Worker& worker) {
     worker.over = true;
     const std::string how = worker.child.end(), words = worker.child.last_words();
-    // It has ended after the work before (Work::ends_worker), and did not receive this.
+    // A worker that ended after its previous work (Work::ends_worker) did not receive this work.
     const bool is_untouched = worker.open_tasks == work_[worker.work].tasks;
     if (worker.child.has_exited_well() && is_untouched && retried_.insert(worker.work).second) {
       given_back_.insert(worker.work);

@@ -46,7 +46,7 @@
       add(
         'stage',
         element('strong', {}, row.stage),
-        ': look here first. The stages before it agree up to this tick.'
+        ': look here first. No output of an earlier stage deviates up to this tick.'
       );
     }
     if (row.worst) add('worst', row.worst);

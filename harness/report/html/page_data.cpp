@@ -186,7 +186,7 @@ data row_to_data(const MatrixRow& row, const std::string& group,
   return out;
 }
 
-// Those that fail first.
+// Profiles with a failure come first.
 std::vector<std::string> profiles_of(const Matrix& matrix) {
   std::vector<std::string> profiles;
   for (const MatrixRow& row : matrix.rows) {

@@ -18,8 +18,9 @@ struct RateSweepRun {
   std::vector<RateSweepResult> results;  // of RateSweepJobs, in their order
 };
 
-// The limits as a table, each metric by rate with its bounds, and the largest delay by rate; a line
-// for each vehicle and plant. Also the bounds that are missed at the highest rate that misses any.
+// The page has a table of the limits, and a table of the bounds that are missed at the highest rate
+// that misses any. It plots each metric with its bounds, and the largest delay, over the rate. Each
+// vehicle and plant has a line.
 std::string rate_sweep_page(const RateSweepRun& run);
 
 }  // namespace attest

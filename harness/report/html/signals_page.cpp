@@ -192,7 +192,7 @@ PageTable table_of(const LoggedUnit& unit, const LogResult& result, const LogLim
   return table;
 }
 
-// A failure, else what was judged, else that of the first unit.
+// The first verdict that fails a run; else a pass if there is one; else that of the first unit.
 Verdict worst_of(const std::vector<LogResult>& results) {
   Verdict worst = results.front().result.verdict;
   for (const LogResult& one : results) {

@@ -15,8 +15,9 @@ namespace attest {
 std::string signals_page(const std::vector<TimedSignals>& sources,
                          const std::vector<std::string>& names);
 
-// The comparison of two sources by time; `got` was moved earlier by `shift_us`. It plots the
-// signals that deviate, at most most_plotted_signals, with their difference.
+// The comparison of two sources by time. `shift_us` is that of compare_signals(); the page moves
+// `got` earlier by it. It plots the signals that deviate, at most most_plotted_signals, with their
+// difference.
 inline constexpr std::size_t most_plotted_signals = 24;
 std::string comparison_page(const SignalsComparison& comparison, const TimedSignals& got,
                             const TimedSignals& want, std::int64_t shift_us);

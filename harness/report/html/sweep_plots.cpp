@@ -61,8 +61,8 @@ double reach_of(double first, double last) {
   return widths * (last > first ? last - first : std::max(std::abs(last), 1e-9));
 }
 
-// Continues the steps of a distribution to 0 on the left, and to the marks within its reach. The
-// texts of the other marks.
+// Continues the steps of a distribution to 0 on the left, and to the marks within its reach.
+// Returns the texts of the other marks.
 std::string extend(const std::vector<PlotMark>& marks, PlotSeries& series) {
   const double first = series.x.front(), last = series.x.back();
   const double reach = reach_of(first, last);

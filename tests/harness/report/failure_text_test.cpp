@@ -29,19 +29,20 @@ TEST(FailureText, TellsWhatIsWrongWhereAndHowToRunItAgain) {
   RunResult numeric = run;
   numeric.level = Level::numeric;
   numeric.port = "lib:./mine.so";
-  EXPECT_EQ(failure_text(result, numeric),
-            "px4-v1.5.5/attitude/roll_30@250hz\n"
-            "  fail: outputs differ\n"
-            "  first at tick 17, timestamp 68000 us, in out/vehicle_rates_setpoint.roll [rad/s]\n"
-            "    got   -1.5  0xbfc00000\n"
-            "    want  -1    0xbf800000\n"
-            "    off by 0.5 (4194304 ulp), allowed 0.125: 4.00 times the tolerance\n"
-            "  look first at the attitude law: the stages before it agree up to this tick\n"
-            "  2 of 500 ticks deviate\n"
-            "  case:      cases/px4-v1.5.5/attitude/roll_30.toml\n"
-            "  golden:    golden/px4-v1.5.5/attitude/roll_30/250hz.csv\n"
-            "  reproduce: attest run --port lib:./mine.so --filter "
-            "'px4-v1.5.5/attitude/roll_30@250hz'");
+  EXPECT_EQ(
+      failure_text(result, numeric),
+      "px4-v1.5.5/attitude/roll_30@250hz\n"
+      "  fail: outputs differ\n"
+      "  first at tick 17, timestamp 68000 us, in out/vehicle_rates_setpoint.roll [rad/s]\n"
+      "    got   -1.5  0xbfc00000\n"
+      "    want  -1    0xbf800000\n"
+      "    off by 0.5 (4194304 ulp), allowed 0.125: 4.00 times the tolerance\n"
+      "  look first at the attitude law: no output of an earlier stage deviates up to this tick\n"
+      "  2 of 500 ticks deviate\n"
+      "  case:      cases/px4-v1.5.5/attitude/roll_30.toml\n"
+      "  golden:    golden/px4-v1.5.5/attitude/roll_30/250hz.csv\n"
+      "  reproduce: attest run --port lib:./mine.so --filter "
+      "'px4-v1.5.5/attitude/roll_30@250hz'");
 }
 
 TEST(FailureText, TheShortestDecimalIsThatOfFloat32) {
@@ -107,7 +108,7 @@ TEST(FindingText, IsTheDifferenceWithoutTheCase) {
             "  first at tick 3, timestamp 12000 us, in out/actuator_controls_0.published\n"
             "    got   0\n"
             "    want  1\n"
-            "  look first at the rate law: the stages before it agree up to this tick\n"
+            "  look first at the rate law: no output of an earlier stage deviates up to this tick\n"
             "  2 of 500 ticks deviate\n");
   EXPECT_EQ(finding_text(passed("attitude", "roll_30", Rate::hz(250)), Level::numeric), "");
 }
