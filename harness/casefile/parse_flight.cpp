@@ -86,7 +86,7 @@ void parse_physics(const TomlTable& table, const std::vector<LoopRate>& rates, F
   flight.physics = *physics;
   if (!rates.empty() && *physics < rates.back().unit) {
     table.error(key, fmt::format("physics at {} Hz is slower than the loop at {} Hz; raise it, "
-                                 "leave it out, or give the slower `rates_hz`",
+                                 "leave it out, or set `rates_hz` to lower rates",
                                  physics->to_string(), rates.back().unit.to_string()));
   }
 }
@@ -127,7 +127,7 @@ Estimator parse_estimator(const TomlTable& flight) {
   if (table.has("drift")) {
     estimator.drift = table.number("drift");
     if (!(std::abs(*estimator.drift) < 1)) {
-      table.error("drift", "is a part of the loop rate: between -1 and 1");
+      table.error("drift", "is a fraction of the loop rate: between -1 (slower) and 1 (faster)");
     }
   }
   estimator.attitude_noise_deg = table.number("attitude_noise_deg", 0);

@@ -38,8 +38,8 @@ struct TimedFlight {
   std::shared_ptr<const VehicleModel> vehicle_model;
 };
 
-// Errors, with the file: it is not a timing file; its case is not in the suite, or has changed
-// since the recording.
+// Errors: the file is not a timing file; its case is not in the suite, or has changed since the
+// recording.
 Result<TimedFlight> find_timed_flight(const std::string& file, const SuiteFolder& suite);
 
 }  // namespace attest::cli

@@ -19,9 +19,9 @@
 // - at the first and the last tick
 // - where the reference, at one of the three ticks, does not publish the topic, or has NaN or
 //   infinity; also where the port does not publish the topic at this tick
-// - where, at one of the three ticks, the law controls the attitude and the rotation between
-//   attitude and setpoint is within 11 deg of a half turn, so that a last bit decides the direction
-//   in which the law turns; also where, at such a tick, attitude or setpoint is zero or not finite.
+// - where, at one of the three ticks, the law controls the attitude, and one of these holds: the
+//   rotation between attitude and setpoint is within 11 deg of a half turn, so that a last bit
+//   decides the direction in which the law turns; or attitude or setpoint is zero or not finite.
 #pragma once
 
 #include <optional>

@@ -33,7 +33,7 @@ struct Codec<FaultCatch> {
 
 class FaultJob final : public Job<FaultCatch> {
  public:
-  // `cases` are open loop, all of `profile`, and outlive this.
+  // REQUIRES: each case is in open loop and of `profile`; `cases` outlives this.
   FaultJob(const faults::Fault& fault, std::string profile, const std::vector<SelectedCase>& cases,
            std::filesystem::path golden_root, std::optional<int> fraction_bits)
       : fault_(fault),
@@ -44,8 +44,9 @@ class FaultJob final : public Job<FaultCatch> {
 
   std::size_t size() const override { return 1; }
 
-  // Cases of the fault's own group come first, and in each group 250 Hz. Cases on a threshold are
-  // judged at the exact level, the others at the numeric one.
+  // Cases of the fault's own group come first, at 250 Hz and then at other rates; then all other
+  // cases in the same way. Cases on a threshold of the law (Case::exact_only) are judged at the
+  // exact level, the others at the numeric one.
   Result<FaultCatch> run(std::size_t task) override;
 
  private:

@@ -25,7 +25,7 @@ struct Similarity {
 struct VectorSimilarity {
   std::size_t ticks = 0;
   bool deviates = false;                 // the port, from the law
-  std::vector<Similarity> similarities;  // of each fault of the catalogue, in its order
+  std::vector<Similarity> similarities;  // of each fault, or of each of `distinct`
 };
 
 // The outputs of a sample; those of other modules than the subject's are zero.
@@ -41,7 +41,7 @@ Outputs outputs_of(const Trace& trace);
 // The outputs of the faults of the catalogue. On one vector, most faults have the same outputs as
 // the law, so equal outputs are stored once.
 struct FaultAnswers {
-  std::vector<Outputs> distinct;      // empty for faults without the profile
+  std::vector<Outputs> distinct;      // empty where no unit could be made
   std::vector<std::size_t> of_fault;  // index into `distinct`, in the order of the catalogue
 };
 

@@ -24,8 +24,8 @@ std::vector<std::string> known_profile_names();
 // Null if there is none of that name.
 const ProfileInfo* find_profile(std::string_view name);
 
-// True if the port makes a unit of that profile: any unit, or a controller if attest does not know
-// the profile.
+// True if the port can make at least one unit of that profile. If attest does not know the profile,
+// only a controller is tried.
 bool makes_unit_of(Port& port, const std::string& profile);
 
 // A parameter of a module.

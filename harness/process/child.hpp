@@ -33,8 +33,8 @@ class Child {
   // has limits: of memory, and of the size of each file that it writes, including its output.
   static Result<Child> spawn(Runs runs, const Work& work);
 
-  // Same, for a process that `launch` starts. In that process, run_in_child() is called with the
-  // files, which remain the caller's.
+  // Same, for a process that `launch` starts. `launch` must make that process call run_in_child()
+  // with the files that it is given, and must not close them.
   static Result<Child> adopt(const std::function<Result<Process>(const ChildFiles&)>& launch);
 
   Child(Child&& other) noexcept;

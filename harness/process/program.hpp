@@ -1,4 +1,4 @@
-// External programs, used where they are installed.
+// External programs. Most are optional: attest uses them if they are installed.
 #pragma once
 
 #include <functional>

@@ -180,8 +180,11 @@ float float_of(const Channel& channel, const Sample& sample) {
 }
 
 bool same_bits(const Channel& channel, const Sample& a, const Sample& b) {
-  if (channel.type != ChannelType::f32) return value_of(channel, a) == value_of(channel, b);
-  return same_bits(float_of(channel, a), float_of(channel, b));
+  if (channel.type == ChannelType::f32) {
+    return same_bits(float_of(channel, a), float_of(channel, b));
+  }
+  if (channel.type == ChannelType::u64) return integer_of(channel, a) == integer_of(channel, b);
+  return value_of(channel, a) == value_of(channel, b);
 }
 
 std::uint64_t integer_of(const Channel& channel, const Sample& sample) {

@@ -31,7 +31,7 @@ enum class Quantity : std::uint8_t {
   time,                  // us
   flag,                  // 0 false, anything else true
   count,                 // 0..255: a counter, a state
-  quaternion,            // 1
+  quaternion,            // dimensionless
   angle,                 // rad
   rate,                  // rad/s
   angular_acceleration,  // rad/s^2
@@ -39,7 +39,7 @@ enum class Quantity : std::uint8_t {
   stick,                 // -1..1
   control,               // dimensionless actuator control, torque
   integral,              // dimensionless, of the rate law
-  scale,                 // 1
+  scale,                 // dimensionless
   motor,                 // -1 stopped .. 1 full
   voltage,               // V
   current,               // A
@@ -70,7 +70,7 @@ struct Channel {
   bool is_output() const { return stage != Stage::input; }
 };
 
-// All channels in column order, module by module: timestamp, inputs, freshness, outputs.
+// All channels in column order: timestamp, then module by module inputs, freshness bits, outputs.
 std::span<const Channel> channels();
 inline constexpr std::size_t max_channels = 212;
 using ChannelSet = std::bitset<max_channels>;  // by index into channels()

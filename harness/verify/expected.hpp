@@ -29,8 +29,8 @@ struct ExpectedFailure {
 class ExpectedFailures {
  public:
   // `suite`: the ids of all its open-loop vectors (CaseResult::id). Errors: unreadable, not TOML,
-  // an unknown key, an entry without a reason, an entry that excuses a whole profile: it matches
-  // all these vectors of the profile, and would also match vectors of a new group.
+  // an unknown key, an entry without a reason, an entry that excuses a whole profile. Such an entry
+  // matches each vector of the profile in `suite`, and would match those of a new group too.
   static Result<ExpectedFailures> read(const std::filesystem::path& file,
                                        const std::vector<std::string>& suite);
 

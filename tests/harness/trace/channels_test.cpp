@@ -1,6 +1,7 @@
 #include "harness/trace/channels.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -142,6 +143,21 @@ TEST(Channels, KeepNumbersThatAreNone) {
   EXPECT_TRUE(std::isnan(value_of(scale, sample)));
   set_value(scale, sample, -0.0);
   EXPECT_TRUE(std::signbit(value_of(scale, sample)));
+}
+
+TEST(Channels, AreComparedToTheBit) {
+  Sample a{}, b{};
+  const Channel& time = channel("timestamp");
+  constexpr std::uint64_t beyond_double = (std::uint64_t{1} << 53) + 1;
+  set_integer(time, a, beyond_double);
+  set_integer(time, b, beyond_double - 1);
+  EXPECT_FALSE(same_bits(time, a, b));
+  set_integer(time, b, beyond_double);
+  EXPECT_TRUE(same_bits(time, a, b));
+  const Channel& scale = channel("in/battery_status.scale");
+  set_value(scale, a, 0.0);
+  set_value(scale, b, -0.0);
+  EXPECT_FALSE(same_bits(scale, a, b));
 }
 
 TEST(Channels, HaveTheStageThatWritesThem) {
