@@ -64,8 +64,7 @@ const ParameterInfo* find_parameter(ParameterTable table, Profile profile, std::
 Parameters default_parameters(ParameterTable table, Profile profile);
 
 // Sets one value by name. Returns false and changes no value if the profile has no parameter of
-// that name, or if the parameter is an integer and the value is not a
-// whole number.
+// that name, or if the parameter is an integer and the value is not a whole number.
 bool set_parameter(Parameters& parameters, ParameterTable table, Profile profile,
                    std::string_view name, float value);
 

@@ -55,8 +55,7 @@ const ParameterInfo* find_parameter(std::string_view name);
 Parameters default_parameters();
 
 // Sets one value by name. Returns false and changes no value if the profile has no parameter of
-// that name, or if the parameter is an integer and the value is not a
-// whole number.
+// that name, or if the parameter is an integer and the value is not a whole number.
 bool set_parameter(Parameters& parameters, Profile profile, std::string_view name, float value);
 
 }  // namespace attest::reference

@@ -104,8 +104,8 @@ int diagnose_all(const std::vector<SelectedCase>& cases, const std::string& prof
   return part >= enough ? exit_ok : exit_failed;
 }
 
-// Prints which faults are caught. The exit code says whether each detectable fault is caught by its
-// own group, and no equivalent one is caught. With --diagnose: whether enough faults are named.
+// Prints which faults are caught. The run passes if each detectable fault fails in its own group,
+// and each fault that is equivalent to the law passes. With --diagnose: if enough faults are named.
 Result<int> measure(const FaultOptions& options, const SuiteFolder& suite,
                     const std::string& profile, const std::vector<const Fault*>& faults) {
   const auto cases = open_loop_cases(suite, profile);

@@ -22,11 +22,10 @@ class AllowedDeviation {
   // The next tick of the expected trace, with the parameters that it sets.
   void next(const Sample& want, std::span<const ParameterChange> changes);
 
-  // The allowed deviation at that tick.
-  // If the tolerance without widening is at least ample_headroom times the deviation
-  // of `got`, the result is the tolerance without widening, because the widening takes time to
-  // compute. So a headroom (tolerance / deviation) below ample_headroom is exact, and a larger one
-  // is a lower bound.
+  // The allowed deviation at that tick. If the tolerance without widening is at least
+  // ample_headroom times the deviation of `got`, the result is the tolerance without widening,
+  // because the widening takes time to compute. So a headroom (tolerance / deviation) below
+  // ample_headroom is exact, and a larger one is a lower bound.
   static constexpr double ample_headroom = 16;
   double of(std::size_t channel, const Sample& tick, float got, float want) const;
 

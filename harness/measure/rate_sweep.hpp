@@ -41,8 +41,8 @@ struct Codec<RateSweepResult> {
 // this is the rate of the rate unit; the attitude unit has its usual rate, or that of the rate unit
 // if that is lower. Task i searches for the largest delay at `rates[i - 1]`. Each search begins at
 // 1000 Hz, or without delay, and moves in steps until a flight misses a bound. Then it bisects the
-// last step. It tries no lower rate, and no longer delay, than that of the first flight that missed
-// a bound.
+// last step. It does not try rates below, or delays above, that of the first flight that missed a
+// bound.
 class RateSweepJob final : public PortJob<RateSweepResult> {
  public:
   RateSweepJob(Case the_case, PlantConfiguration plant_configuration, std::vector<LoopRate> rates,

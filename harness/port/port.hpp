@@ -103,8 +103,8 @@ class Port {
   virtual ModuleSet modules() const { return only(Module::mc_att_control); }
 
   // A unit in its power-on state; null when the port does not support the profile, or allows no
-  // further instance now. `definition` is that of the mixer, if the module is one. The port
-  // must outlive the unit. REQUIRES: the port has the module.
+  // further instance now. `definition` is that of the mixer, if the module is one. The port must
+  // outlive the unit. REQUIRES: the port has the module.
   virtual std::unique_ptr<Unit> create_unit(Module module, const std::string& profile,
                                             const std::string& definition) = 0;
   // A controller. REQUIRES: same as create_unit().

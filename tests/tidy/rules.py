@@ -100,6 +100,7 @@ _OWNED_BY_ONE = {
     "SUNDIALS": re.compile(r'\s*#\s*include\s*[<"](?:arkode|nvector|sun\w+)/'),
     "dlopen": re.compile(r".*\bdlopen\s*\("),
     "HDF5": re.compile(r'\s*#\s*include\s*[<"]hdf5\.h'),
+    "the parser of nlohmann_json": re.compile(r".*\bjson::parse\s*\("),
     "libmatio": re.compile(r'\s*#\s*include\s*[<"]matio\.h'),
     "zlib": re.compile(r'\s*#\s*include\s*[<"]zlib\.h'),
     "toml++": re.compile(r'\s*#\s*include\s*[<"]toml(?:\+\+|plusplus)?[./]'),
@@ -248,12 +249,13 @@ def links_resolve(tree: Tree):
                 target = target if file else path
                 if not tree.has(target):
                     yield Finding(path, number, f"link to {file}: the file does not exist")
-                elif heading and heading not in _anchors(tree.text(target)):
+                elif heading and heading not in _anchors(tree, target):
                     yield Finding(path, number, f"link to #{heading}: {target} has no such heading")
 
 
-def _anchors(text: str) -> set[str]:
-    """Of the headings, as GitHub and GitLab write them."""
+def _anchors(tree: Tree, document: str) -> set[str]:
+    """Of the headings, as GitHub and GitLab write them. Other files and folders have none."""
+    text = tree.text(document) if document.endswith(".md") else ""
     headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
     return {re.sub(r"[^\w -]", "", heading).lower().replace(" ", "-") for heading in headings}
 

@@ -66,6 +66,10 @@ EXAMPLES = {
             {"harness/port/a.cpp": "dlopen(p, 0);", "harness/loop/b.cpp": "// dlopen(p) does\n"},
         ),
         (
+            {"harness/core/a.cpp": "json::parse(t);", "harness/host/b.cpp": "json::parse(t);"},
+            {"harness/core/a.cpp": "nlohmann::json::parse(t);", "harness/host/b.cpp": ""},
+        ),
+        (
             {"harness/plant/a.hpp": "#include <arkode/arkode_erkstep.h>\n"},
             {"harness/plant/a.cpp": "#include <arkode/arkode_erkstep.h>\n"},
         ),
@@ -134,6 +138,7 @@ EXAMPLES = {
     ],
     "links_resolve": [
         ({"docs/a.md": "[b](b.md)\n", "b.md": ""}, {"docs/a.md": "[b](../b.md)\n", "b.md": ""}),
+        ({"a.md": "[b](docs#c)\n", "docs/b.md": ""}, {"a.md": "[b](docs)\n", "docs/b.md": ""}),
         ({"a.md": "[b](docs/c)\n"}, {"a.md": "[b](docs)\n", "docs/b.md": "[c](https://c.d)\n"}),
         (
             {"a.md": "[b](b.md#one)\n", "b.md": "## One, two\n"},
