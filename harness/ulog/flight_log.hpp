@@ -36,9 +36,9 @@ struct LoggedUnit {
   std::string step_topic;  // "control_state"
   // A tick for each sample of the step topic, at its timestamp. An input is the last sample logged
   // before that time; in a log of attest, and of the controller of v1.5.5 and v1.3.4, also at that
-  // time. If
-  // the log has an output of the tick, its `published` is 1. Otherwise the tick repeats the output
-  // of the tick before. A field that the log's topic does not have is not in `trace.present`.
+  // time. If the log has an output of the tick, its `published` is 1. Otherwise the tick repeats
+  // the output of the tick before. A field that the log's topic does not have is not in
+  // `trace.present`.
   Trace trace;
   std::vector<LoggedOutput> outputs;
   std::vector<Known> known;  // of each tick
@@ -76,8 +76,8 @@ struct FlightLog {
 // of the attitude unit are vehicle_rates_setpoint in modes with attitude control, and
 // vehicle_attitude_setpoint where the unit makes it from the sticks; otherwise the latter is an
 // input of the unit. vehicle_rates_setpoint is an output of the rate unit in acro mode, and
-// otherwise an input. quat_reset_counter counts from
-// the first sample on, because a unit that starts there knows of no earlier reset.
+// otherwise an input. quat_reset_counter counts from the first sample on, because a unit that
+// starts there knows of no earlier reset.
 //
 // `assumed` are some of assumption_words(); empty: those by default, none in a log of attest.
 // They apply to topics without a sample in the log. Errors: the file cannot be read or is no ULog;
