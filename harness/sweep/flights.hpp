@@ -24,6 +24,9 @@ SampleColumns columns_of(const FlightSampler& sampler, bool with_port);
 // samples, in this process. A vehicle that is lost and a fault of the port are results. Errors, of
 // the first sample that has one: a sample that is impossible, a flight that cannot be set up, a
 // port that does not fly this case; or that of `on_row`.
+//
+// The port has a process for each of its flights, because it may keep state from one flight to the
+// next. Results must not depend on shards, jobs and kills.
 Result<void> fly_samples(const FlightSampler& sampler, const SampleRange& range,
                          const FlightsOptions& options,
                          const std::function<Result<void>(const std::string& row)>& on_row);

@@ -116,7 +116,9 @@ struct SampleData {
   std::size_t samples() const { return pilots.front().outcomes.size(); }
 };
 
-// Errors: a line that is not of this table, or an incomplete last line.
+// Reads all rows into memory, because quantiles, ranks and indices need all values of a column.
+// They take 8 bytes for each number, and the text of each outcome. Errors: a line that is not of
+// this table, or an incomplete last line.
 Result<SampleData> read_samples(const std::filesystem::path& file, const SampleColumns& columns,
                                 const SampleRange& range);
 

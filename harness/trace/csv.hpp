@@ -10,7 +10,8 @@
 // columns are ignored, too, unless their names begin with in/ or out/ or resemble a channel's name.
 //
 // If there is a provenance.toml in the folder of the file, its constants count as columns, too, and
-// the file leaves them out (provenance.hpp).
+// the file leaves them out (provenance.hpp). If the provenance names a base, the columns that the
+// file lacks are read from there (Provenance::base).
 #pragma once
 
 #include <filesystem>
