@@ -148,7 +148,7 @@ int show_help(const CLI::App& app, const HelpOptions& options) {
     fmt::print("{}", is_bash ? bash_completion(app) : zsh_completion(app));
     return exit_ok;
   }
-  if (options.command.empty()) {  // app.help() would be that of this command
+  if (options.command.empty()) {  // app.help() would give the help of the command `help`
     fmt::print("{}",
                app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal));
     return exit_ok;
@@ -193,7 +193,8 @@ void add_commands(CLI::App& app, const Globals& globals, Action& action) {
   app.footer(footer);  // last: commands copy the footer that exists when they are added
 }
 
-// The exit code, if the command line is wrong or asks for help or the version only.
+// Returns the exit code if the command line is wrong, or only asks for help or the version. Empty:
+// the command must run.
 std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   const std::string word = argc > 1 ? argv[1] : "";
   if (!word.empty() && !word.starts_with('-')) {

@@ -1,5 +1,5 @@
 // The command line: which command, with which options. The sources of the commands do not include
-// CLI11, because it costs more to compile than all of them together.
+// CLI11, because CLI11 takes longer to compile than all of them together.
 #pragma once
 
 namespace attest::cli {

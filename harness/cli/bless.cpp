@@ -40,7 +40,7 @@ Result<void> check_reference(const SuiteFolder& suite) {
                   check->traces - check->conforming, check->traces, check->first_difference));
 }
 
-// The user must know which goldens no recording of the firmware confirms.
+// Prints the groups whose goldens no recording of the firmware confirms.
 Result<void> note_uncovered(const std::vector<SelectedCase>& cases, const SuiteFolder& suite) {
   const auto covered = covered_groups(suite.recorded());
   if (!covered) return tl::unexpected(covered.error());
@@ -136,7 +136,7 @@ Result<BlessingOptions> blessing_of(const BlessOptions& options,
   return blessing;
 }
 
-// `port`: description of the port that made them; empty: attest's reference did.
+// `port`: description of the port that made the goldens; empty: attest's reference made them.
 Result<void> replace_goldens(std::vector<NewGolden>& goldens, const std::string& port,
                              const SuiteFolder& suite) {
   if (!port.empty()) {

@@ -1,5 +1,5 @@
-// The commands: the options of each, with their defaults, and the function that does its work and
-// returns the exit code. One file a command.
+// The commands: for each its options with their defaults, and the function that does its work and
+// returns the exit code.
 #pragma once
 
 #include <cstddef>
@@ -20,18 +20,18 @@ namespace attest::cli {
 
 enum Exit : int {
   exit_ok = 0,
-  exit_failed = 1,        // at least one result does not conform
+  exit_failed = 1,        // a vector or check failed, or the user refused `bless`
   exit_usage = 2,         // wrong usage, no result, or the environment: files, ports, goldens
-  exit_interrupted = 130  // Ctrl-C, as a shell reports it
+  exit_interrupted = 130  // Ctrl-C or SIGTERM; the number that shells give after Ctrl-C
 };
 
 // The options of all commands.
 struct Globals {
   std::string suite;   // folder with cases/ and golden/; empty: find_suite() searches for it
-  bool quiet = false;  // no progress, no summary: failures, errors and the exit code only
+  bool quiet = false;  // print only failures and errors
 };
 
-// Prints "attest: error: <file:line: message>" on stderr, and returns the exit code for it.
+// Prints "attest: error: <file:line: message>" on stderr, and returns exit_usage.
 int report_error(const Error& error);
 
 // Errors: those of LoopRate::parse().
@@ -42,7 +42,7 @@ Result<std::vector<LoopRate>> parse_rates(const std::vector<std::string>& texts)
 struct SelectionOptions {
   std::vector<std::string> filters, excludes, groups, profiles, rates, vehicles, plants;
   std::string shard = "1/1";
-  std::string rerun_failed;  // a JSON report: only what failed in it; empty: not restricted
+  std::string rerun_failed;  // a JSON report: only vectors that failed in it; empty: no report
 
   bool selects_all() const {
     return filters.empty() && excludes.empty() && groups.empty() && profiles.empty() &&
@@ -50,12 +50,11 @@ struct SelectionOptions {
            rerun_failed.empty();
   }
 
-  // The options that select fewer than all vectors of a profile, except --shard: "--group tpa
-  // --rate 250".
+  // The given options as text, except --profile and --shard: "--group tpa --rate 250".
   std::string narrowing() const;
 
   // The selected cases below `folders`. Errors: those of select_cases; text that is not a rate or a
-  // shard; a file that is no report, or in which none of these vectors failed.
+  // shard; a --rerun-failed that is no report, or in which no selected vector failed.
   Result<std::vector<SelectedCase>> cases_in(const CaseFolders& folders) const;
 };
 
@@ -64,8 +63,8 @@ struct SelectionOptions {
 
 // The results of `run` and `merge` for people and for other programs.
 struct ReportOptions {
-  std::map<std::string, std::string> files;  // by ReportFormat::option; empty: not wanted
-  bool diagnose = true;                      // when something fails
+  std::map<std::string, std::string> files;  // file by ReportFormat::option; empty: no such report
+  bool diagnose = true;                      // name the probable mistake if a vector fails
   bool verbose = false;                      // the summary has every failing case
   bool github = false;                       // annotations and a job summary for GitHub Actions
 };
@@ -79,14 +78,14 @@ struct RunOptions {
   std::string level = "numeric";
   ReportOptions report;
   std::string expected_failures;
-  std::string timing;       // file; empty: the cases' own
+  std::string timing;       // file; empty: the times of the cases
   std::string save_traces;  // folder; empty: not saved
 };
 int run_command(const RunOptions& options, const Globals& globals);
 
 struct MergeOptions {
   std::vector<std::string> files;  // JSON reports
-  std::string port;                // asked for the diagnosis; empty: the one of the reports
+  std::string port;                // for the diagnosis; empty: the port that the reports name
   int jobs = 1;
   double timeout_s = default_timeout_s;
   ReportOptions report;
@@ -100,7 +99,7 @@ struct ReplayOptions {
   std::string level = "numeric";
   std::string mixer;
   std::vector<std::string> parameters;
-  std::vector<std::string> assumed;  // of a flight log
+  std::vector<std::string> assumed;  // assumption_words() for what a flight log lacks
   LogLimits log_limits;
   std::string html, json;  // files; empty: not wanted
 };
@@ -110,7 +109,7 @@ struct CompareOptions {
   std::string got, want;
   std::string level = "numeric";
   bool by_time = false;     // compare any signals, at equal times
-  double others = 0;        // the tolerance of signals that the level does not know
+  double others = 0;        // the tolerance of signals for which the level has none
   std::string shift = "0";  // us, or "auto"
   std::string html;
 };
@@ -118,14 +117,14 @@ int compare_command(const CompareOptions& options, const Globals& globals);
 
 struct PlotOptions {
   std::vector<std::string> files;
-  std::vector<std::string> signals;  // shell patterns; empty: the controller's outputs
-  std::string html;                  // empty: the name of the first file, with .html
+  std::vector<std::string> signals;  // shell patterns; empty: the outputs, or all if there are none
+  std::string html;  // empty: the name of the first file, with .html, in the working folder
   bool list = false;
 };
 int plot_command(const PlotOptions& options, const Globals& globals);
 
 struct SimOptions {
-  std::string case_name;  // this and `rate`, or `timing`
+  std::string case_name;  // with `rate`; empty with `timing`
   std::string rate;
   std::string vehicle, plant;  // empty: the lead vehicle and the first plant of the case
   std::string timing;
@@ -145,7 +144,7 @@ struct StressOptions {
   std::string policy = "fifo";
   int cpus = 2;
   double spin_us = 0;
-  // Empty: the case's.
+  // Empty: the budget of the case.
   std::optional<double> misses_per_million, p99_latency_us, execution_us;
   std::string html, json, junit, record_timing;
   bool cyclictest = true;
@@ -170,11 +169,11 @@ struct SweepOptions {
   std::uint64_t samples = 0;  // 0: those of the file
   std::string shard = "1/1";
   std::string out;                 // folder
-  std::string html, hdf5;          // files; empty: none
-  int keep_worst = 0;              // of each requirement
-  std::vector<std::string> merge;  // folders of shards; empty: fly
-  std::string plan;                // for which program; empty: fly
-  std::size_t shards = 0;          // of the plan
+  std::string html, hdf5;          // files; empty: not written
+  int keep_worst = 0;              // number of flights, of each requirement
+  std::vector<std::string> merge;  // folders of shards to join; empty: fly
+  std::string plan;                // the program that flies the shards; empty: fly here
+  std::size_t shards = 0;          // their number, for `plan`
 };
 int sweep_command(const SweepOptions& options, const Globals& globals);
 
@@ -191,7 +190,7 @@ struct TimeCommandOptions {
   SelectionOptions select;
   HostOptions host;
   TimeOptions measure;
-  int allowed = 0;  // steps over the budget
+  int allowed = 0;  // number of steps that may be over the budget
   bool instructions = false;
   std::string html, json;
 };
@@ -217,9 +216,10 @@ struct VectorOptions {
   SelectionOptions select;
   std::string folder;
   std::string format = "csv";
-  std::string fixed_step;  // as text; empty: none
+  std::string fixed_step;  // a rate [Hz]; empty: no fixed step
   bool lint = false;
-  // A case of this log, instead of the vectors of cases. Times since the unit's first step in it.
+  // If not empty: the command makes a case from this log. The times are from the first step in the
+  // log.
   std::string from_log;
   double from_s = 0;
   std::optional<double> to_s;        // empty: to the end
@@ -232,7 +232,7 @@ int lint_command(const VectorOptions& options, const Globals& globals);
 struct BlessOptions {
   SelectionOptions select;
   HostOptions host;
-  std::string port;  // the reference of the suite; empty: attest's own
+  std::string port;  // its outputs become the goldens; empty: those of attest's reference
   std::string reason;
   bool yes = false;
 };

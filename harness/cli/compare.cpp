@@ -27,7 +27,7 @@ CaseResult as_result(const Comparison& comparison) {
   return result;
 }
 
-// Outputs that only the first trace has.
+// A text about outputs that only the first trace has; empty: there is no such output.
 std::string not_compared(const ChannelSet& outputs, const std::string& want) {
   if (outputs.none()) return "";
   return fmt::format("; not compared, because {} does not have them: {}", want,
@@ -43,7 +43,7 @@ Result<TimedSignals> signals_in(const std::string& file) {
   return signals;
 }
 
-// The time of --shift. For "auto": the estimated one, 0 if there is none.
+// The time of --shift. For "auto": the estimated one, or 0 if it cannot be estimated.
 Result<std::int64_t> shift_of(const std::string& text, const TimedSignals& got,
                               const TimedSignals& want) {
   if (text == "auto") {

@@ -14,10 +14,10 @@
 namespace attest::cli {
 namespace {
 
-// Types whose values are the words in backquotes of the help.
+// Types of options whose values are the words in backquotes in their help.
 constexpr std::array fixed_types{"FORMAT", "KIND", "LANG", "LEVEL", "PLANT", "POLICY", "PORT"};
 
-// Types whose values the function _attest_values of the script prints.
+// Types of options whose values the function _attest_values of the script prints.
 constexpr std::array listed_types{"CASE", "GROUP", "HZ", "HZ,...", "PROFILE", "VEHICLE"};
 
 constexpr std::string_view functions = R"(# Completion for attest.
@@ -50,7 +50,8 @@ bool is_one_of(const std::string& type, const std::array<const char*, N>& types)
   return std::find(types.begin(), types.end(), type) != types.end();
 }
 
-// The words of the description between backquotes, without those with a placeholder: `lib:PATH`.
+// The words of the help between backquotes. Words with a space or a colon are left out, because
+// they have a placeholder: `lib:PATH`.
 std::vector<std::string> words_in_backquotes(const std::string& help) {
   std::vector<std::string> words;
   for (std::size_t at = help.find('`'); at != std::string::npos;) {
@@ -66,8 +67,8 @@ std::vector<std::string> words_in_backquotes(const std::string& help) {
   return words;
 }
 
-// Words as a text in the script, one in a line. They are names of the command line, so they need no
-// quotes.
+// Words as one quoted text of the script, one word in each line. They are names from the command
+// line, so no character in them must be escaped.
 std::string quoted_lines(const std::vector<std::string>& words) {
   return fmt::format("$'{}'", fmt::join(words, "\\n"));
 }
@@ -101,7 +102,8 @@ std::string value_lines(const CLI::App& command, const std::string& name) {
   return lines;
 }
 
-// What may follow in other places: an option, or the value of the first positional argument.
+// What may come elsewhere in the command line: an option, or the value of the first positional
+// argument.
 std::string other_line(const CLI::App& command, const std::string& name) {
   std::vector<std::string> options;
   std::string values;

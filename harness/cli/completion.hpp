@@ -9,8 +9,9 @@ class App;
 
 namespace attest::cli {
 
-// The script for bash. It completes commands, options, fixed values, and the names of groups,
-// cases, profiles and vehicles, for which it asks `attest list`. Anything else is a file.
+// The script for bash. It completes commands, options, fixed values, common rates, and the names of
+// groups, cases, profiles and vehicles, which `attest list` prints. For all else the shell
+// completes file names.
 std::string bash_completion(const CLI::App& app);
 
 // The same for zsh, as the file _attest of its function path.

@@ -26,7 +26,7 @@ Result<void> write_reports(std::vector<ReportFile>& reports, const Report& repor
   return {};
 }
 
-// The diagnosis of the failures. Its errors are printed and do not change verdicts.
+// The diagnosis of the failures. An error is printed and does not change verdicts.
 std::optional<Diagnosis> diagnosed(const RunResult& run, const Examined& examined) {
   JobOptions<VectorDiagnosis> options;
   options.processes = examined.jobs;
@@ -47,7 +47,7 @@ std::optional<Diagnosis> diagnosed(const RunResult& run, const Examined& examine
   auto diagnosis =
       diagnose(vectors(nullptr), [&](const faults::Fault& fault) { return vectors(&fault); });
   if (!interrupted()) return diagnosis;
-  // This diagnosis rests on some of the vectors only. The verdicts are complete.
+  // This diagnosis used only some of the vectors. The verdicts are complete.
   fmt::print(stderr, "attest: interrupted; the reports do not have the probable mistake\n");
   return std::nullopt;
 }
@@ -70,7 +70,7 @@ int exit_code(const RunResult& run) {
   return report_error({"no vector was compared: every selected vector was skipped or unsupported"});
 }
 
-// GitHub gives the file a job may append its summary to.
+// The environment variable GITHUB_STEP_SUMMARY names the file to which a job appends its summary.
 void write_for_github(const RunResult& run, double wall_s,
                       const std::optional<Diagnosis>& diagnosis) {
   fmt::print("{}", github_annotations(run));
@@ -104,7 +104,8 @@ int conclude(const RunResult& run, const Examined& examined, const ReportOptions
   } else if (options.diagnose && run.failed() && run.parameters.empty()) {
     diagnosis = diagnosed(run, examined);
   }
-  // Before the summary: if its reader closes the pipe early, SIGPIPE ends this process.
+  // Before the summary is printed: if the reader of stdout closes the pipe early, SIGPIPE ends this
+  // process.
   const auto written = write_reports(reports, {run, diagnosis, examined.traces});
   const int code = exit_code(run);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;

@@ -21,7 +21,7 @@ struct ReportFile {
 };
 Result<std::vector<ReportFile>> open_reports(const ReportOptions& options);
 
-// For the diagnosis: the port is asked again, for some of the vectors.
+// What the diagnosis needs to run the port again on some of the vectors.
 struct Examined {
   const std::vector<SelectedCase>& cases;  // those of the results
   const HostOptions& host;
@@ -30,8 +30,8 @@ struct Examined {
 };
 
 // `run` has all results. Prints errors on stderr, the summary on stdout, and writes the reports.
-// Returns the exit code: 0 requires that at least one vector passed, because a port without support
-// for any does not conform.
+// Returns the exit code: 0 requires that at least one vector passed, because a port that supports
+// no vector does not conform.
 int conclude(const RunResult& run, const Examined& examined, const ReportOptions& options,
              std::vector<ReportFile> reports, std::chrono::steady_clock::time_point begin,
              const Globals& globals);

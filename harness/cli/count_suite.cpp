@@ -16,7 +16,8 @@ int main(int count, char** arguments) {
   }
   const auto groups = suite.vectors_by_group();
   fmt::print("extern const char* const released_suite_vectors;\n");
-  // A suite with a malformed case has no groups. Then a run counts, and reports the case.
+  // If a case is malformed, there are no groups. With "none" instead of the hash, each run counts
+  // the vectors itself, and reports the malformed case.
   fmt::print("const char* const released_suite_vectors =\n\"{}\\n\"\n",
              groups.empty() ? "none" : *hash);
   for (const auto& [group, rates] : groups) {

@@ -19,7 +19,8 @@ class Examination {
   bool all_good_ = true;
 };
 
-// Starts the port, and lets units of each profile do their first steps (host/smoke.hpp).
+// Starts the port, and checks the first steps of its units in each profile that it supports
+// (host/smoke.hpp).
 void examine_port(const HostOptions& options, Examination& examination);
 
 }  // namespace attest::cli

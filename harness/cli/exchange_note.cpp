@@ -9,7 +9,7 @@ namespace attest::cli {
 
 std::string exchange_note(const std::string& port) {
   if (!is_program(port)) return "";
-  constexpr std::size_t frame_bytes = 144;  // of a step of the controller (PROTOCOL.md)
+  constexpr std::size_t frame_bytes = 144;  // a `step` request of the controller (PROTOCOL.md)
   const auto pipes = pipe_round_trip(frame_bytes);
   const auto memory = memory_round_trip(frame_bytes);
   if (!pipes || !memory) {

@@ -1,11 +1,11 @@
-// What `attest time` and `attest stress` add for a port that is a program.
+// A line that `attest time` and `attest stress` print for a port that is a program.
 #pragma once
 
 #include <string>
 
 namespace attest::cli {
 
-// Says how long one exchange with a program takes. Empty for another kind of port.
+// Measures how long one exchange with a program takes. Empty for another kind of port.
 std::string exchange_note(const std::string& port);
 
 }  // namespace attest::cli

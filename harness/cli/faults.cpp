@@ -104,8 +104,9 @@ int diagnose_all(const std::vector<SelectedCase>& cases, const std::string& prof
   return part >= enough ? exit_ok : exit_failed;
 }
 
-// Prints which faults are caught. The run passes if each detectable fault fails in its own group,
-// and each fault that is equivalent to the law passes. With --diagnose: if enough faults are named.
+// Prints which faults are caught. Returns exit_ok if a case of its own group catches each
+// detectable fault, and no case catches a fault that is not detectable in the profile. With
+// --diagnose: prints which faults are not named, and returns exit_ok if at least 95% are named.
 Result<int> measure(const FaultOptions& options, const SuiteFolder& suite,
                     const std::string& profile, const std::vector<const Fault*>& faults) {
   const auto cases = open_loop_cases(suite, profile);
@@ -128,14 +129,14 @@ Result<int> measure(const FaultOptions& options, const SuiteFolder& suite,
   return verdict(findings);
 }
 
-// Those of the profile's law. A diagnosis compares with all faults.
+// The faults of the profile's law.
 std::vector<const Fault*> of_law_of(const std::string& profile, std::vector<const Fault*> faults) {
   std::erase_if(faults,
                 [&](const Fault* fault) { return !fault->profiles->is_of_law_of(profile); });
   return faults;
 }
 
-// The requested profiles; by default those of the laws that the faults are of.
+// The requested profiles; by default all profiles of the laws to which the faults belong.
 Result<std::vector<std::string>> chosen_profiles(const FaultOptions& options,
                                                  const std::vector<const Fault*>& faults) {
   const std::vector<std::string> known = known_profile_names();
@@ -150,7 +151,7 @@ Result<std::vector<std::string>> chosen_profiles(const FaultOptions& options,
   return profiles;
 }
 
-// Those of `faults` that at least one of `profiles` can tell from the law.
+// The faults that differ from the law in at least one of `profiles`.
 std::vector<const Fault*> detectable(std::vector<const Fault*> faults,
                                      const std::vector<std::string>& profiles) {
   std::erase_if(faults, [&](const Fault* fault) {

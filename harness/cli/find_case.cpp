@@ -13,7 +13,7 @@
 namespace attest::cli {
 namespace {
 
-// Leaves those of the law that flies at `rate`, if there are any.
+// Keeps only the cases of the law that flies at `rate`. Keeps all cases if no case is of that law.
 void keep_law(const LoopRate& rate, std::vector<SelectedCase>& found) {
   const auto is_of_law = [&](const SelectedCase& one) {
     return one.the_case.attitude_loop.has_value() == rate.attitude_unit.has_value();
@@ -25,7 +25,8 @@ void keep_law(const LoopRate& rate, std::vector<SelectedCase>& found) {
 Result<Case> find_case(const std::string& name, const SuiteFolder& suite,
                        const std::optional<LoopRate>& rate) {
   std::error_code ignored;
-  // A folder may have the name of a case by chance. A pipe or device is refused when it is read.
+  // A folder may have the name of a case by chance, so it is not a case file. parse_case() refuses
+  // a pipe or device.
   const auto status = std::filesystem::status(name, ignored);
   if (std::filesystem::exists(status) && !std::filesystem::is_directory(status)) {
     return parse_case(name);
@@ -35,7 +36,7 @@ Result<Case> find_case(const std::string& name, const SuiteFolder& suite,
   auto found = select_cases(suite.case_folders(), selection);
   if (!found) return tl::unexpected(found.error());
   if (rate) keep_law(*rate, *found);
-  // A file with several profiles stands for its first.
+  // A file with several profiles gives the case of its first profile.
   std::set<std::filesystem::path> files;
   for (const SelectedCase& one : *found) files.insert(one.the_case.file);
   const Case& first = found->front().the_case;

@@ -1,4 +1,4 @@
-// The one flight that a command line names.
+// Finds the one case that a command line names.
 #pragma once
 
 #include <memory>
@@ -11,13 +11,13 @@
 
 namespace attest::cli {
 
-// `name` is a case file, or the name, pattern or id of exactly one. A file with several profiles
-// gives the case of its first profile, unless the id has another. If flights of both laws match, it
-// is that of the law that flies at `rate`: the cascade at a pair of rates, else the controller.
-// Errors: the case is not a flight; no case or several cases match.
+// `name` is a case file, or the name, pattern or id of exactly one case. A file with several
+// profiles gives the case of its first profile, unless `name` is an id with another profile. If
+// flights of both laws match, the law that flies at `rate` is chosen: the cascade at a pair of
+// rates, else the controller. Errors: the case is not a flight; no case or several cases match.
 Result<Case> find_flight(const std::string& name, const LoopRate& rate, const SuiteFolder& suite);
 
-// The same for a case in open loop.
+// The same for a case in open loop. Errors: the case is a flight; no case or several cases match.
 Result<Case> find_open_loop_case(const std::string& name, const SuiteFolder& suite);
 
 // The flight with its vehicle and plant. Empty texts select the case's lead vehicle and first

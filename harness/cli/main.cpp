@@ -48,9 +48,9 @@ int flushed(int code) {
 
 int main(int argc, char** argv) {
   open_standard_streams();
-  // A write beyond `ulimit -f` fails then, and the error names the file.
+  // With SIGXFSZ ignored, a write beyond `ulimit -f` fails, and the error names the file.
   std::signal(SIGXFSZ, SIG_IGN);
-  // A parent may have left SIGCHLD ignored. The status of an ended process would then be lost.
+  // The parent may have set SIGCHLD to ignored. Then the status of an ended process would be lost.
   std::signal(SIGCHLD, SIG_DFL);
   if (!enough_descriptors()) {
     std::fputs("attest: error: too few files can be opened; raise the limit (`ulimit -n`)\n",
@@ -60,7 +60,7 @@ int main(int argc, char** argv) {
   try {
     return flushed(attest::cli::run_command_line(argc, argv));
   } catch (const std::exception& error) {
-    // Out of memory, or a bug of ours.
+    // Out of memory, or a bug of attest.
     std::fputs(fmt::format("attest: error: {}\n", error.what()).c_str(), stderr);
     return attest::cli::exit_usage;
   }

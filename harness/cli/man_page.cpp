@@ -34,7 +34,7 @@ std::string roff(std::string_view text) {
     else
       out += c;
   }
-  // A line that begins so would be a request.
+  // A line that begins with `.` or `'` would be a request of roff.
   if (out.starts_with('.') || out.starts_with('\'')) out.insert(0, "\\&");
   return out;
 }
@@ -88,7 +88,8 @@ std::string options_text(const CLI::App& command) {
   return text;
 }
 
-// The footer of a command: a command line indented by 2, and its purpose indented by more.
+// Reads the footer that add_examples() makes: a command line indented by 2, and its purpose
+// indented by more.
 std::string examples_text(const CLI::App& command) {
   std::istringstream examples(command.get_footer());
   std::string text = ".SH EXAMPLES\n";

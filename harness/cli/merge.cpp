@@ -32,7 +32,8 @@ struct Part {
   RunResult run;
 };
 
-// What must be the same in all parts, as text for an error message.
+// A property that must be the same in all parts: its name, and its value as text for an error
+// message.
 using Property = std::pair<const char*, std::function<std::string(const RunResult&)>>;
 
 std::string parameters_of(const RunResult& run) {
@@ -43,7 +44,7 @@ std::string parameters_of(const RunResult& run) {
   return fmt::format("{}", fmt::join(texts, " "));
 }
 
-// What the port declared, except its name.
+// The port's declarations, except its name.
 std::string declarations_of(const RunResult& run) {
   return fmt::format("{} fraction bits, fixed step {}, {} outputs not recorded: {}",
                      run.fraction_bits.value_or(0),
@@ -130,8 +131,8 @@ Result<void> check_suite(const SuiteFolder& suite, const RunResult& run) {
                              *sha256, run.suite_sha256));
 }
 
-// The results in the order of the suite, which is that of a run without shards. Errors: a result
-// that the suite does not have, or one that is there twice.
+// Puts the results in the order of the suite, which is that of a run without shards. Errors: a
+// result of a vector that the suite does not have; two results of one vector.
 Result<void> put_in_order(const std::vector<SelectedCase>& cases, RunResult& run) {
   std::map<std::string, std::size_t> place;
   for (const SelectedCase& selected : cases) {
@@ -154,7 +155,8 @@ Result<void> put_in_order(const std::vector<SelectedCase>& cases, RunResult& run
   return {};
 }
 
-// REQUIRES: check_parts(). All other members are the same in all parts.
+// Joins the parts. Members that are not joined here are the same in all parts. REQUIRES:
+// check_parts().
 RunResult merged(std::vector<Part> parts) {
   RunResult run = std::move(parts.front().run);
   for (std::size_t i = 1; i < parts.size(); ++i) {
@@ -173,7 +175,8 @@ RunResult merged(std::vector<Part> parts) {
   return run;
 }
 
-// The port for the diagnosis, which runs it again. Empty: the port is missing, or is another one.
+// The port for the diagnosis. Empty: the port is missing or has another hash, and a note is
+// printed.
 std::optional<HostOptions> host_for(const MergeOptions& options, const RunResult& run) {
   HostOptions host;
   host.port = options.port.empty() ? run.port : options.port;

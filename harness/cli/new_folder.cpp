@@ -24,7 +24,7 @@ Result<void> make_new_folder(const std::string& given,
   fs::path folder = fs::path(given).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();  // "mine/"
   if (auto checked = check_new(folder); !checked) return checked;
-  // Made aside and renamed, so that no half of a folder is left.
+  // Filled under another name and then renamed, so that an error leaves no incomplete folder.
   const fs::path aside = folder.string() + fmt::format(".part-{}", ::getpid());
   std::error_code ignored;
   try {

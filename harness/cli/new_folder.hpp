@@ -9,8 +9,9 @@
 
 namespace attest::cli {
 
-// Makes a folder that is complete or missing: `fill` fills it under another name, and may throw
-// fs::filesystem_error. Errors: it exists and is not empty; it cannot be made; those of `fill`.
+// Makes the folder completely or not at all. `fill` fills it under a temporary name, and may throw
+// std::filesystem::filesystem_error. Errors: the folder exists and is not empty; it cannot be made;
+// those of `fill`.
 Result<void> make_new_folder(const std::string& folder,
                              const std::function<Result<void>(const std::filesystem::path&)>& fill);
 

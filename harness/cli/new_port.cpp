@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 struct Language {
   std::string_view name;   // also the folder of its starter
-  std::string_view title;  // "a port in C"
+  std::string_view title;  // for "a port in TITLE"
   const char* toolchain;   // the program that its `check` needs
   bool has_headers;        // it includes the ABI headers
 };
@@ -48,7 +48,7 @@ Result<Language> language_named(const std::string& name) {
                           fmt::join(names, ", ")));
 }
 
-// Where the parts of a new port are: in the source tree, or in an installation.
+// The folders from which a new port is copied: in the source tree, or in an installation.
 struct Parts {
   fs::path starter, headers, ci;
 };
@@ -63,7 +63,7 @@ Result<Parts> parts_of(const Language& language) {
                *data / (is_installed ? "ci" : "ci/examples")};
 }
 
-// What builds in a starter's folder leave there.
+// Files and folders that a build leaves in a starter's folder.
 bool is_build_result(const fs::path& path) {
   const std::string name = path.filename().string();
   return name == "build" || name == "target" || name == "__pycache__" || path.extension() == ".so";

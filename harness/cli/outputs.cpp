@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The same for each way to name a file; it need not exist.
+// The path of a file, the same for each way to name it. The file need not exist.
 fs::path identity(const fs::path& path) {
   if (path == "-") return identity("/dev/stdout");
   std::error_code failed;

@@ -41,7 +41,8 @@ std::vector<std::string> names_in(const std::vector<TimedSignals>& sources) {
   return {names.begin(), names.end()};
 }
 
-// Of the controller, or of the units of v1.14 to v1.16, whose outputs have other names.
+// True if `name` is a float output of the controller or, if `is_of_controller` is false, of the
+// attitude unit or the rate unit.
 bool is_output(const std::string& name, bool is_of_controller) {
   const auto all = modules();
   return std::any_of(all.begin(), all.end(), [&](const ModuleInfo& info) {
@@ -52,7 +53,8 @@ bool is_output(const std::string& name, bool is_of_controller) {
   });
 }
 
-// The values that the controller or its units publish; all signals if there are none.
+// The outputs of the controller or of the units of v1.14 to v1.16; all signals if there is no
+// output.
 std::vector<std::string> names_by_default(const std::vector<std::string>& all) {
   const bool is_of_controller = std::any_of(all.begin(), all.end(), [](const std::string& name) {
     return name.starts_with("actuator_controls_0.") || name.starts_with("control_state.");
@@ -71,7 +73,7 @@ Result<std::vector<std::string>> chosen(const std::vector<std::string>& all,
   for (const std::string& pattern : patterns) {
     const std::size_t before = names.size();
     for (const std::string& name : all) {
-      // A name with brackets is a pattern of another name, too.
+      // `==` is needed because the brackets of a name have a meaning in a pattern.
       if (name == pattern || ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0) names.insert(name);
     }
     if (names.size() == before) {

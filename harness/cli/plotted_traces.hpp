@@ -1,5 +1,6 @@
-// The traces that a report plots. A run with thousands of failures would need gigabytes for the
-// traces of all, so only those few vectors run again whose traces the report shows.
+// The traces that a report plots. The traces of thousands of failures would need gigabytes. So a
+// run without --save-traces saves no traces, and the few vectors whose traces the report shows run
+// again.
 #pragma once
 
 #include <filesystem>
@@ -21,12 +22,12 @@ class PlottedTraces {
   // Empty if no report plots traces.
   const std::filesystem::path& folder() const { return folder_; }
 
-  // The options with which the run is planned. The one flight of --timing saves its traces at once.
+  // `options` with the change that the flight of --timing saves its traces during the run.
   RunOptions planned(RunOptions options) const;
 
-  // Call it after the run `plan.run`. Unless the traces are in the folder already, runs
-  // vectors_to_plot() once more and saves theirs. Errors are printed: the report then has no plot
-  // of that vector.
+  // Call it after the run `plan.run`. Unless the run itself saved traces in the folder, runs
+  // vectors_to_plot() once more and saves their traces. The first error is printed. A vector
+  // without traces has no plot in the report.
   void save(const RunPlan& plan, const SuiteFolder& suite, const RunOptions& options) const;
 
  private:

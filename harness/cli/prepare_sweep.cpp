@@ -41,7 +41,7 @@ Result<FlightSampler> make_sampler(const SweepOptions& options, const SuiteFolde
        std::move(vehicle_model), *std::move(vehicle_text)});
 }
 
-// The port is asked once; each of its processes must say the same.
+// The port is asked for its declarations once. Each of its processes must declare the same.
 Result<FlightsOptions> flights_of(const SweepOptions& options) {
   FlightsOptions flights;
   flights.processes = options.jobs;

@@ -1,4 +1,4 @@
-// The sweep that a command line names, ready to fly. shard_plan.hpp has `--plan`.
+// Reads the sweep that a command line names, and prepares its flights.
 #pragma once
 
 #include <string>
@@ -22,8 +22,8 @@ struct PreparedSweep {
   std::uint64_t samples() const { return sampler.sweep().design.samples; }
 };
 
-// Errors: those of the sweep file, its case and its vehicle; an option that is no shard; the port
-// cannot be opened.
+// Errors: those of the sweep file, its case and its vehicle; a --shard that is no shard, or of more
+// shards than samples; the port cannot be opened.
 Result<PreparedSweep> prepare_sweep(const SweepOptions& options, const SuiteFolder& suite);
 
 }  // namespace attest::cli

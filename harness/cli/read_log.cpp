@@ -26,7 +26,8 @@ std::vector<std::string_view> profiles_for(const FlightLog& log) {
   return names;
 }
 
-// The law of that minor release: px4-v1.14.4 of v1.14.3.
+// The profile of the log's minor release: px4-v1.14.4 for a log of v1.14.3. Empty: there is no such
+// profile.
 std::string profile_of(const FlightLog& log) {
   if (!log.release) return "";
   const std::string prefix = fmt::format("px4-v{}.{}.", log.release->major, log.release->minor);
@@ -58,7 +59,7 @@ Result<void> choose_profile(const std::string& file, FlightLog& log) {
                                    fmt::join(profiles_for(log), ", ")));
 }
 
-// A profile that attest does not know may be of a port.
+// A profile that attest does not know is accepted, because a port may know it.
 Result<void> check_profile(const std::string& file, const FlightLog& log) {
   const ProfileInfo* const known = find_profile(log.profile);
   if (known == nullptr || has_units_of(log, *known)) return {};

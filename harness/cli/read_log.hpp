@@ -1,4 +1,4 @@
-// The log of a flight, as the commands that take one read it.
+// Reads the log of a flight, for the commands that take a log.
 #pragma once
 
 #include <string>
@@ -10,13 +10,14 @@
 namespace attest::cli {
 
 // The log with the profile to use: `profile` if it is not empty, else that of the log, else that of
-// the release of PX4 that wrote it. If there is none of these, a log of the old controller gets
-// default_profile, and a note. `assumed` and errors: see read_flight_log(). Also errors: no profile
-// for a log of v1.14 to v1.16; a profile without the units of the log.
+// the release of PX4 that wrote it. If none of these exists, a log of the controller of v1.5.5 and
+// v1.3.4 gets default_profile, and a note. For `assumed`, see read_flight_log(). Errors: those of
+// read_flight_log(); a log of v1.14 to v1.16 without such a profile; a profile without the units of
+// the log.
 Result<FlightLog> read_log(const std::string& file, const std::vector<std::string>& assumed,
                            const std::string& profile);
 
-// On stderr.
+// Prints the notes on stderr.
 void print_notes(const std::string& file, const std::vector<std::string>& notes);
 
 }  // namespace attest::cli

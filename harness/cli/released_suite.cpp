@@ -2,8 +2,8 @@
 
 #include <sstream>
 
-// The source that count_suite.cpp prints for the source tree. Its first word is the hash of what it
-// counted.
+// Defined in the source that count_suite.cpp prints for the suite of the source tree. The first
+// word is the hash of that suite.
 extern const char* const released_suite_vectors;
 
 namespace attest::cli {

@@ -67,7 +67,7 @@ Result<void> check_parameters(const ReplayOptions& options, const FlightLog& log
   return {};
 }
 
-// Those that the unit has. REQUIRES: checked.
+// The values of --param whose parameter the unit has. REQUIRES: check_parameters() succeeded.
 std::vector<ParameterChange> parameters_of(const ReplayOptions& options, const FlightLog& log,
                                            const LoggedUnit& unit) {
   std::vector<ParameterChange> changes;
@@ -80,7 +80,7 @@ std::vector<ParameterChange> parameters_of(const ReplayOptions& options, const F
   return changes;
 }
 
-// With the profile to replay it with.
+// The log, and in it the profile to replay it with.
 Result<FlightLog> log_in(const std::string& file, const ReplayOptions& options) {
   if (!options.mixer.empty()) return fail_at(file, "is no mixer trace; leave --mixer out");
   auto log = read_log(file, options.assumed, options.profile);
@@ -105,7 +105,8 @@ Result<void> check_reports(const ReplayOptions& options, const Globals& globals)
   return check_outputs({options.html, options.json}, inputs, globals.suite);
 }
 
-// One line per trace or unit, more if it differs. `judged_by`: the level, or "log".
+// One line per trace or unit, and a second one with the reason if it does not pass. `judged_by`:
+// the level, or "log".
 void print_result(const CaseResult& result, const std::string& title, std::string_view judged_by,
                   std::FILE* out) {
   fmt::print(out, "{:<12}{}  {}", name_of(result.verdict), title, result.profile);
@@ -151,8 +152,8 @@ class Replay {
     return is_log(file) ? replay_log(file) : replay_trace(file);
   }
 
-  // Call it before the recorded outputs are read: the port's process is a copy of this one, and
-  // must not have them.
+  // Starts the port's process unless there is one. Call it before the recorded outputs are read,
+  // because the port's process is a copy of this process, and must not contain them.
   Result<void> start() { return ensure_host(host_, options_.host); }
 
   Result<void> replay_trace(const std::string& file) {
@@ -187,7 +188,7 @@ class Replay {
     const auto log = log_in(file, options_);
     if (!log) return tl::unexpected(log.error());
     const LoggedUnit& first = log->units.front();
-    // A log of attest has the outputs of all steps, so it is a trace.
+    // A log that attest wrote has the outputs of all steps, so it is judged like a trace.
     if (log->is_of_attest && first.has_every_step) {
       Trace trace = first.trace;
       for (const ParameterChange& change : parameters_of(options_, *log, first)) {
@@ -230,7 +231,7 @@ class Replay {
     failed_ += fails_a_run(result.verdict) ? 1 : 0;
   }
 
-  // A log of v1.14 to v1.16 counts as two, one for each unit.
+  // A log of v1.14 to v1.16 counts once for each of its units.
   void conclude() const {
     if (globals_.quiet && failed_ == 0) return;
     const std::size_t apart = entries_.size() - passed_ - failed_;
@@ -250,7 +251,7 @@ class Replay {
   std::unique_ptr<PortHost> host_;
   std::size_t passed_ = 0;
   std::size_t failed_ = 0;
-  bool are_logs_ = false;  // judged by their statistics; they say nothing about conformance
+  bool are_logs_ = false;  // a file was a flight log, which cannot prove conformance
   std::vector<nlohmann::ordered_json> entries_;
 };
 

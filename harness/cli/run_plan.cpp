@@ -48,7 +48,8 @@ Result<void> ask_port(const std::vector<std::string>& profiles, RunPlan& plan) {
   return {};
 }
 
-// Of a recorded port: whether its outputs are for the inputs of these cases.
+// Of a recorded port: checks that its outputs are for the inputs of these cases, and prints how
+// many vectors have outputs.
 Result<void> check_recorded(const std::vector<SelectedCase>& cases, const RunPlan& plan) {
   const auto folder = recorded_folder(plan.host.port);
   if (!folder || !plan.host.said) return {};
@@ -94,8 +95,8 @@ Result<void> set_parameters(const RunOptions& options, const SuiteFolder& suite,
   return {};
 }
 
-// Of --rerun-failed. Errors: the report is of another level or of other parameters, with which
-// other vectors may fail.
+// Checks the report of --rerun-failed. Errors: its level or parameters differ from those of this
+// run, so other vectors may fail.
 Result<void> check_rerun(const RunOptions& options, const RunResult& run) {
   if (options.select.rerun_failed.empty()) return {};
   const auto earlier = read_report(options.select.rerun_failed);
@@ -113,9 +114,9 @@ Result<void> check_rerun(const RunOptions& options, const RunResult& run) {
                              options_of(*earlier), options_of(run)));
 }
 
-// Leaves out the profiles of which the port has no module: a port of the controller of v1.5.5 is
-// not given the cases of the cascade, unless --profile selects them. Keeps all if none would
-// remain.
+// Leaves out the cases of profiles of which the port has no module: a port of the controller of
+// v1.5.5 is not given the cases of the cascade, unless --profile selects them. Keeps all if none
+// would remain.
 void leave_out_other_laws(const RunPlan& plan, std::vector<SelectedCase>& cases) {
   if (!plan.host.said) return;
   const auto is_other = [&](const SelectedCase& one) {
@@ -165,7 +166,7 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
   return {};
 }
 
-// The one flight of a recorded timing.
+// Plans the one flight of a recorded timing.
 Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, RunPlan& plan) {
   if (!options.select.selects_all())
     return fail("--timing selects the flight; leave out all other selections");
@@ -184,7 +185,8 @@ Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, Run
   return {};
 }
 
-// The date in UTC. With SOURCE_DATE_EPOCH, reports do not depend on the day.
+// The date in UTC: that of SOURCE_DATE_EPOCH if it is set, so that reports do not depend on the
+// day; else today.
 Result<std::string> date_of_run() {
   std::time_t now = std::time(nullptr);
   if (const char* given = std::getenv("SOURCE_DATE_EPOCH"); given && *given) {
@@ -197,7 +199,7 @@ Result<std::string> date_of_run() {
   return fmt::format("{:%Y-%m-%d}", fmt::gmtime(now));
 }
 
-// Adds the subject of the conformance statement: suite, port and date.
+// Adds the suite, the port, the limits and the date to the run.
 Result<void> identify(const RunOptions& options, const SuiteFolder& suite, RunResult& run) {
   run.cases_version = suite.version_of(suite.cases());
   run.golden_version = suite.version_of(suite.golden());

@@ -23,12 +23,12 @@ struct RunPlan {
   Jobs<CaseResult> jobs;
 };
 
-// Asks the port for its declarations, and prints notes about it. Errors: wrong options; the port
-// cannot be opened; recorded outputs are for other inputs; a file that cannot be read.
+// Asks the port for its declarations, and prints notes about the port. Errors: wrong options; the
+// port cannot be opened; recorded outputs are for other inputs; a file that cannot be read.
 Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite);
 
-// SHA-256 of the port's file, or of the hashes of its files if it has several. Empty: the port is
-// part of attest. Errors: a file that cannot be read.
+// SHA-256 of the port's file, or of the hashes of its files if it has several. Empty: the port has
+// no file. Errors: a file that cannot be read.
 Result<std::string> sha256_of_port(const std::string& port);
 
 // Why a suite whose reference is a port has neither flights nor diagnosis.

@@ -14,7 +14,7 @@
 namespace attest::cli {
 namespace {
 
-// The times of the units' jobs.
+// The timing of a flight in which units and estimator run at the times of their simulated jobs.
 FlightTiming timing_of(const TaskSet& set, const std::vector<std::vector<TaskJob>>& jobs) {
   const std::vector<TaskJob>* estimator = set.estimator ? &jobs[*set.estimator] : nullptr;
   if (!set.attitude_unit) return scheduled_timing(jobs[set.unit], estimator);
@@ -37,7 +37,7 @@ Result<void> check_law(const ScheduleOptions& options, const TaskSet& set, const
 struct SchedulePlan {
   TaskSet set;
   std::vector<std::vector<TaskJob>> jobs;
-  Jobs<CaseResult> flights;  // in time, and as scheduled
+  Jobs<CaseResult> flights;  // two flights: with every tick in time, and as scheduled
   TimingFile scheduled;
 };
 

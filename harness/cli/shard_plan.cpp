@@ -49,11 +49,11 @@ using Quote = std::string (*)(std::string_view);
 
 struct Kind {
   const char* name;
-  Quote word;  // one word of a command in its files
+  Quote word;  // quotes a word of a command in its files
   std::vector<PlannedFile> files;
-  bool shares_folder;       // the machines have this machine's files
+  bool shares_folder;       // all machines have the files of this machine
   std::size_t most_shards;  // in a job array or a matrix
-  const char* next;         // what the user does, with {} for the folder
+  const char* next;         // what the user does; {0} is the folder
 };
 
 // A word of the shell. GitHub would evaluate `${{ ... }}` in it, so `${{` is escaped.
@@ -80,7 +80,7 @@ std::vector<Kind> kinds() {
         {"merge.sbatch", ATTEST_EMBEDDED(slurm_merge), false},
         {"submit", ATTEST_EMBEDDED(slurm_submit), true}},
        true,
-       4'000'000,  // the most that MaxArraySize of Slurm can be; most clusters allow 1000
+       4'000'000,  // the largest index that Slurm can allow (MaxArraySize); often 1000
        "{0}/submit submits them to Slurm, and a merge that writes {0}/results"},
       {"parallel",
        shell_word,
@@ -116,14 +116,14 @@ Result<Kind> kind_named(const std::string& name) {
                           fmt::join(names, ", ")));
 }
 
-// "--suite mine " as words of the shell, each with a space behind it.
+// The quoted words, each with a space behind it: "--suite mine ".
 std::string words(const std::vector<std::string>& all, Quote quote) {
   std::string text;
   for (const std::string& one : all) text += quote(one) + " ";
   return text;
 }
 
-// The words of the command `attest SUITE sweep SWEEP ...`.
+// The words of the command `attest SUITE sweep SWEEP`. `report` has the options of the merge.
 struct Command {
   std::vector<std::string> suite, sweep, report;
 };
@@ -165,7 +165,8 @@ Result<void> check_names(const std::vector<std::string>& names) {
   return {};
 }
 
-// A machine of a CI service has the repository as its work folder, and no other file of this one.
+// A machine of a CI service has the repository as its working folder, and no other file of this
+// machine.
 Result<void> check_relative(const std::string& path) {
   const fs::path normal = fs::path(path).lexically_normal();
   if (!normal.is_absolute() && *normal.begin() != "..") return {};
@@ -180,7 +181,7 @@ std::vector<std::string> indices_up_to(std::size_t count) {
   return indices;
 }
 
-// Where the scripts find things.
+// Absolute paths for the scripts.
 struct Places {
   std::string folder, work_folder, attest;
 };
@@ -212,7 +213,7 @@ data values_of(const Kind& kind, const PreparedSweep& sweep, const SweepOptions&
   values.set("indices", fmt::format("{}", fmt::join(indices, ", ")));
   values.set("each_shard", each_shard);
   std::string set_up(ATTEST_EMBEDDED(github_set_up));
-  set_up.pop_back();  // its last line break: the line of the tag has one
+  set_up.pop_back();  // its last line break, because the line of the tag has one
   values.set("set_up", kainjow::mustache::partial([set_up] { return set_up; }));
   return values;
 }
@@ -223,7 +224,8 @@ std::string filled(std::string_view content, const data& values, Quote quote) {
   return page.render(values);
 }
 
-// A flush for each file would take seconds for a thousand shards, so all are flushed at the end.
+// To flush each file alone would take seconds for a thousand shards, so all are flushed together at
+// the end.
 Result<void> make_shard_folders(const PreparedSweep& sweep, std::size_t count,
                                 const fs::path& folder) {
   SweepIdentity identity = sweep.identity;

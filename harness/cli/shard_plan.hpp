@@ -8,11 +8,11 @@
 
 namespace attest::cli {
 
-// Makes the folder options.out, and returns what to do with it, for people. For machines that share
-// the folder it also makes the folder of each shard, with the identity of its results: a machine
-// with another attest, sweep, vehicle or port is then refused before it flies. Errors: an unknown
-// kind of plan; more shards than samples or than the program allows; a path that the machines of a
-// CI service do not have; a name with a control character.
+// Makes the folder options.out, and returns a text that tells the user what to do with it. For
+// machines that share the folder it also makes the folder of each shard, with the identity of its
+// results: a machine with another attest, sweep, vehicle or port is then refused before it flies.
+// Errors: an unknown kind of plan; more shards than samples or than the program allows; a path that
+// the machines of a CI service do not have; a name with a control character.
 Result<std::string> plan_shards(const PreparedSweep& sweep, const SweepOptions& options,
                                 const Globals& globals);
 

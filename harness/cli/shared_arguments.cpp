@@ -26,7 +26,7 @@ class PlainFlagNames final : public CLI::Formatter {
   }
 };
 
-// Attitude unit and rate unit together.
+// The default assumptions for the attitude unit and the rate unit together.
 std::string assumed_by_default_of_units() {
   std::vector<std::string> words = assumption_words(Module::attitude_unit, true);
   for (const std::string& word : assumption_words(Module::rate_unit, true)) {

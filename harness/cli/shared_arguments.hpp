@@ -46,10 +46,10 @@ CLI::Option* add_rates(CLI::App& command, std::vector<std::string>& rates, const
 void add_plant(CLI::App& command, std::string& vehicle, std::string& plant,
                const char* usual_vehicle = "the lead vehicle of the case",
                const char* usual_plant = "the first plant of the case");
-// A recorded port has outputs, but no functions: only `run` can judge it.
+// `callable` refuses a recorded port, which has outputs but no functions; only `run` can judge it.
 enum class Ports { callable, any };
 void add_port(CLI::App& command, std::string& port, Ports accepted = Ports::callable);
-// --assume: what holds where a log of a flight lacks a topic.
+// --assume: assumptions that replace the topics that a flight log lacks.
 void add_assumed(CLI::App& command, std::vector<std::string>& assumed);
 void add_timeout(CLI::App& command, double& timeout_s);
 // --html: the file of a page; `what` describes the page.

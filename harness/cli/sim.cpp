@@ -23,7 +23,7 @@ namespace {
 constexpr std::string_view all_plants = "all";
 
 // The file of the attitude unit's trace, next to the rate unit's: "flown.attitude_unit.csv". Empty:
-// none is written; stdout is for one trace.
+// that trace is not written, because there is no --out, or --out is stdout, which takes one trace.
 std::string attitude_file(const std::string& out) {
   if (out.empty() || out == "-") return {};
   std::filesystem::path file = out;

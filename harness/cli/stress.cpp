@@ -22,14 +22,14 @@
 namespace attest::cli {
 namespace {
 
-// The idle machine is measured for as long as the flight, up to this.
+// The idle machine is measured for as long as the flight takes, but at most for this time.
 constexpr double idle_s_max = 5;
 
 Nanoseconds nanoseconds(double seconds) {
   return Nanoseconds(static_cast<std::int64_t>(seconds * 1e9));
 }
 
-// The unit runs on the second CPU, because the first serves most interrupts.
+// With two CPUs the unit runs on the second one, because the first one serves most interrupts.
 Result<LiveOptions> live_options(const StressOptions& options) {
   LiveOptions live;
   const std::vector<int> cpus = usable_cpus();
@@ -93,7 +93,8 @@ Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& su
   return plan;
 }
 
-// Prints a line per second on stderr. On a terminal each line replaces the previous one.
+// Prints each StressProgress on stderr, in flight about one a second. On a terminal each line
+// replaces the previous one.
 class StressProgressLine {
  public:
   StressProgressLine(bool visible, TerminalStyle style) : visible_(visible), style_(style) {}
@@ -136,7 +137,8 @@ Result<void> write_report(std::optional<AtomicFile>& file, const std::string& te
   return file->commit();
 }
 
-// Prints a note if cyclictest is installed but fails, because its row is then missing.
+// Empty: cyclictest gave no result. If it is installed, a note explains the missing row of the
+// report.
 std::optional<Cyclictest> idle_by_cyclictest(const StressTask& task) {
   auto idle =
       run_cyclictest(task.configuration.rate.unit, task.idle_duration, task.live, interrupted);
@@ -146,7 +148,7 @@ std::optional<Cyclictest> idle_by_cyclictest(const StressTask& task) {
   return idle;
 }
 
-// Each rate in turn: cyclictest, the idle machine, the flight.
+// Measures at each rate in turn: cyclictest, the idle machine, the flight.
 Result<void> run_all(const StressPlan& plan, const StressOptions& options, const Globals& globals,
                      StressRun& run) {
   const TerminalStyle style = terminal_style(stdout);

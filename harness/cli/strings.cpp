@@ -1,7 +1,7 @@
-// std::string for attest and the libraries that it loads. Each source of C++20 has functions of
-// std::string, and the linker keeps those of the first. Without this source they would be those of
-// arguments.cpp, which is not optimised, and the suite without flights would take 1.4 times as
-// long.
+// The functions of std::string, compiled with optimisation, for attest and the libraries that it
+// loads. Many objects contain these functions, and the linker keeps those of the first object.
+// Without this file that would be arguments.cpp, which is compiled without optimisation, and the
+// suite without flights would take 1.4 times as long.
 #include <string>
 
 template class std::basic_string<char>;

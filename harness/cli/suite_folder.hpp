@@ -1,4 +1,4 @@
-// Where the cases and goldens are.
+// The folder of a suite: where its cases, goldens and models are.
 #pragma once
 
 #include <filesystem>
@@ -16,31 +16,30 @@ namespace attest::cli {
 // "profile/group" -> the number of vectors at each rate.
 using VectorsByGroup = std::map<std::string, std::map<LoopRate, std::size_t>>;
 
-// The file of a suite that names another suite. The suite that has this file also has the cases of
-// the other one.
+// The file in a suite's folder that names its base: another suite, whose cases the suite also has.
 inline constexpr const char* base_file = "BASE";
 
 struct SuiteFolder {
   std::filesystem::path root;
-  // The suite whose cases this one takes over, as the file BASE in `root` names it: `released` for
+  // The suite whose cases this suite also has. The file BASE in `root` names it: `released` for
   // data_folder(), or else a path relative to `root`. A case in cases() replaces the one with the
   // same path in the base. The goldens are those of this suite only.
   std::optional<std::filesystem::path> base;
 
   std::filesystem::path cases() const { return root / "cases"; }
-  CaseFolders case_folders() const;  // of the base, then cases() if it is there
+  CaseFolders case_folders() const;  // those of the base, then cases() if it exists
   // Without a folder `models` of its own, a suite uses that of its base.
   std::filesystem::path models() const;
   std::filesystem::path golden() const { return root / "golden"; }
-  // What the firmware recorded. Without a folder of its own, a suite uses that of its base.
+  // The recordings of the firmware. Without a folder of its own, a suite uses that of its base.
   std::filesystem::path recorded() const;
 
   // The first word of the file VERSION in `folder`, which is cases() or golden(); else
   // "unversioned".
   std::string version_of(const std::filesystem::path& folder) const;
 
-  // The port whose outputs the goldens are, as `bless --port` wrote it to golden/REFERENCE. Empty:
-  // attest's own reference.
+  // The description of the port whose outputs are the goldens, as `bless --port` wrote it to
+  // golden/REFERENCE. Empty: the goldens are those of attest's own reference.
   std::string reference() const;
   std::filesystem::path reference_file() const { return golden() / "REFERENCE"; }
 
@@ -48,14 +47,17 @@ struct SuiteFolder {
   // them is malformed, which select_cases() reports.
   std::vector<std::string> groups() const;
 
-  // Reads the case files, same as groups().
+  // Reads the case files. Empty when one of them is malformed.
   VectorsByGroup vectors_by_group() const;
 
-  // SHA-256 of the lines that `sha256sum` prints for the case files and the provenance files of the
-  // goldens, in the order of their paths: "<hash>  cases/px4-v1.5.5/tpa/each_axis.toml". The
-  // hash covers all content that verdicts depend on: a case file has all inputs, a provenance file
-  // has the hashes of its traces and vehicles, and a run checks the traces and the vehicles against
-  // these hashes. `ci/suite-hash` prints the same hash. Errors: a file that cannot be read.
+  // SHA-256 of the lines that `sha256sum` prints for the case files (with those of the base) and
+  // the provenance files of the goldens, in the order of their paths:
+  //
+  //     <hash>  cases/px4-v1.5.5/tpa/each_axis.toml
+  //
+  // The hash covers all content that verdicts depend on: a case file has all inputs, a provenance
+  // file has the hashes of its traces and vehicles, and a run checks the traces and the vehicles
+  // against these hashes. `ci/suite-hash` prints the same hash. Errors: a file that cannot be read.
   Result<std::string> sha256() const;
 };
 
@@ -64,8 +66,8 @@ struct SuiteFolder {
 // build folder is inside it. Empty: neither exists.
 std::optional<std::filesystem::path> data_folder();
 
-// `given` if it is not empty; else $ATTEST_SUITE; else data_folder(). Errors: no such suite, or a
-// BASE that names none, or one that has a base itself.
+// `given` if it is not empty; else $ATTEST_SUITE; else data_folder(). Errors: there is no such
+// suite; its file BASE names no suite, or a suite that has a base itself.
 Result<SuiteFolder> find_suite(const std::string& given);
 
 }  // namespace attest::cli

@@ -55,7 +55,8 @@ Result<std::optional<SampleTable>> open_table(const SampleColumns& columns, cons
   return std::nullopt;
 }
 
-// Flies the samples that the table lacks. Returns the index after the last sample of the table.
+// Flies the samples that the table lacks. Returns the index after the last sample of the table,
+// also after an interrupt.
 Result<std::uint64_t> fly_missing(const PreparedSweep& sweep, const fs::path& folder, bool quiet) {
   const SampleRange range = range_of(sweep.shard, sweep.samples());
   const SampleColumns columns = sweep.columns();
@@ -70,7 +71,7 @@ Result<std::uint64_t> fly_missing(const PreparedSweep& sweep, const fs::path& fo
   }
   Progress progress(range.size(), Progress::on_stderr(quiet), table->next() - range.begin);
   const auto on_row = [&](const std::string& row) -> Result<void> {
-    if (early.is_decided()) return {};  // a worker had begun this sample
+    if (early.is_decided()) return {};  // a worker had begun this sample before the decision
     const std::uint64_t index = table->next();
     const std::string sample = fmt::format("sample {}", index);
     progress.add(row.find(fmt::format(",{}", outcome_diverged)) != std::string::npos, sample);
@@ -81,8 +82,8 @@ Result<std::uint64_t> fly_missing(const PreparedSweep& sweep, const fs::path& fo
   FlightsOptions flights = sweep.flights;
   flights.stop = [&] { return sweep.flights.stop() || early.is_decided(); };
   const SampleRange missing{table->next(), early.is_decided() ? table->next() : range.end};
-  // After the sample that decided, workers may or may not have begun an impossible one. Its error
-  // is ignored, so that the result is the same for any number of jobs.
+  // Workers may have begun a sample after the one that decided. If that sample cannot be flown, the
+  // error is ignored, so that the result is the same for any number of jobs.
   const auto flown = fly_samples(sweep.sampler, missing, flights, on_row);
   if (!flown && !early.is_decided()) {
     return tl::unexpected(flown.error());
@@ -108,7 +109,7 @@ Result<void> write_columns(const PreparedSweep& sweep, const SweepOptions& optio
   return write_file(options.hdf5, *bytes);
 }
 
-// Makes the report, the kept flights and the text on stdout from the complete table of a folder.
+// Makes the reports, the kept flights and the text on stdout from the complete table of the folder.
 Result<SweepSummary> report(const PreparedSweep& sweep, const SweepOptions& options,
                             const SuiteFolder& suite, std::uint64_t samples, bool quiet) {
   const fs::path folder = options.out;
@@ -154,7 +155,7 @@ bool is_in(const fs::path& file, const fs::path& folder) {
   return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
 }
 
-// A page must not replace the results that it is made from.
+// Errors: `file` is in a folder of results, which it could overwrite.
 Result<void> check_apart(const std::string& file, const SweepOptions& options) {
   std::vector<std::string> folders = options.merge;
   folders.push_back(options.out);
@@ -175,7 +176,7 @@ Result<void> check_options(const SweepOptions& options, const SuiteFolder& suite
   return check_outputs({options.html, options.hdf5}, {options.host.port, {options.file}}, suite);
 }
 
-// A shard is a part of the samples.
+// Errors: shards together with an option or key that needs all samples in one sweep.
 Result<void> check_shard(const PreparedSweep& sweep, const SweepOptions& options) {
   const bool is_part = sweep.shard.count > 1;
   for (const std::string& file : {options.html, options.hdf5}) {

@@ -20,8 +20,8 @@
 namespace attest::cli {
 namespace {
 
-// The open-loop cases of units. The steps of a flight cannot be repeated without flying it again,
-// and their inputs add no new kind of step.
+// The open-loop cases of units. Flights are left out: their steps cannot be repeated without a new
+// flight, and do not differ in kind from those in open loop.
 Result<std::vector<SelectedCase>> open_loop_cases(const TimeCommandOptions& options,
                                                   const SuiteFolder& suite) {
   auto cases = options.select.cases_in(suite.case_folders());
@@ -34,10 +34,11 @@ Result<std::vector<SelectedCase>> open_loop_cases(const TimeCommandOptions& opti
   return cases;
 }
 
-// Under callgrind, including its start; the measured factors are 50 to 100.
+// A bound for callgrind, including its start; measured factors are 50 to 100.
 constexpr double counting_is_slower_by = 100;
 
-// Runs this program again, once, on that vector only.
+// Runs this program again under callgrind, on the vector `id` only. Returns the instructions of
+// each step; empty: not counted.
 std::vector<std::uint64_t> counted(const TimeCommandOptions& options, const SuiteFolder& suite,
                                    const std::string& id) {
   std::error_code ignored;
@@ -78,7 +79,7 @@ Result<CorpusTimes> timed(const TimeCommandOptions& options, const HostOptions& 
   for (const SelectedCase& selected : cases) vectors += selected.configurations.size();
   Progress progress(vectors, Progress::on_stderr(quiet));
   TimeOptions measure = options.measure;
-  measure.stack = measure.stack && !is_program(host.port);  // a program's is in another process
+  measure.stack = measure.stack && !is_program(host.port);  // its stack is in another process
   auto times =
       time_corpus(cases, measure, host, [&](const CaseResult& result) { progress.add(result); });
   progress.finish();

@@ -30,7 +30,7 @@ void add_log_options(CLI::App& command, ReplayOptions& options) {
       ->group(option_group::logs);
 }
 
-// Under which law the port is judged.
+// Options that choose the law by which the port is judged.
 void add_law_options(CLI::App& command, ReplayOptions& options) {
   command
       .add_option(

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The law of attest, or a profile that the suite in `folder` has already.
+// Errors: the profile is neither one of attest nor one for which the suite in `folder` has cases.
 Result<void> check_profile(const std::string& profile, const fs::path& folder) {
   std::error_code ignored;
   if (find_profile(profile) != nullptr || fs::is_directory(folder / "cases" / profile, ignored))
@@ -39,7 +39,7 @@ Result<std::string> profile_in(const VectorOptions& options) {
   return profiles.empty() ? std::string() : profiles.front();
 }
 
-// A folder without cases becomes a suite that has those of the released one, too.
+// A folder that is not a suite becomes a suite whose base is the released suite.
 Result<void> make_suite(const fs::path& root, const fs::path& case_folder) {
   std::error_code failed;
   const bool is_suite = fs::exists(root / "cases", failed) || fs::exists(root / base_file, failed);
@@ -48,7 +48,8 @@ Result<void> make_suite(const fs::path& root, const fs::path& case_folder) {
   return is_suite ? Result<void>() : write_file(root / base_file, "released\n");
 }
 
-// The file is removed if it is not a case: the log has values that no case can have.
+// Errors: the file exists; the log has values that no case can have. In the second case the file is
+// removed again.
 Result<void> write_case(const fs::path& file, const LogCase& made) {
   std::error_code failed;
   if (fs::exists(fs::symlink_status(file, failed))) {
@@ -74,8 +75,8 @@ Result<void> check_folder(const std::string& folder) {
   return check_output_folder((fs::path(folder) / "cases").string(), {*released, {}});
 }
 
-// A case of each unit that can be computed from the log. The controller's outputs are compared with
-// a reference that starts at the same tick, so a log of it may lack steps.
+// A case of each unit whose inputs the log has. A log of the controller may lack steps, because the
+// golden of its case comes from a reference that starts at the same tick.
 Result<std::vector<LogCase>> cases_of(const VectorOptions& options, FlightLog& log) {
   std::vector<LogCase> cases;
   for (const LoggedUnit& unit : log.units) {

@@ -47,8 +47,8 @@ std::string unknown_option(const CLI::App& app, int argc, char** argv) {
 std::string wrong_value(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands()) {
     for (const CLI::Option* option : command->get_options()) {
-      // CLI11 adds the range of a number to the name of its type: "X:NONNEGATIVE". A range has no
-      // effect on NaN.
+      // CLI11 adds the range of a number to the name of its type: "X:NONNEGATIVE". Its range check
+      // accepts NaN.
       const std::string type = option->get_type_name();
       const bool is_number = type.starts_with("FLOAT") || type.find(':') != std::string::npos;
       for (const std::string& text : option->results()) {

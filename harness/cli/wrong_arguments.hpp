@@ -1,5 +1,5 @@
 // Errors of a command line for which CLI11's messages are too short. Each function returns one
-// line, empty if there is no error.
+// line; empty: no error.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ std::string unknown_command(const CLI::App& app, const std::string& word);
 // For a command line that CLI11 rejects: the first word that starts with `--` and is not an option.
 std::string unknown_option(const CLI::App& app, int argc, char** argv);
 
-// After parsing. Finds values that every option rejects: an empty text, for example from an unset
+// After parsing. Finds values that no option accepts: an empty text, for example from an unset
 // shell variable, and NaN and infinity, which pass the range checks of CLI11.
 std::string wrong_value(const CLI::App& app);
 

@@ -25,7 +25,7 @@
 namespace attest {
 namespace {
 
-// The output is in memory. A port that prints at every step must not use up the memory.
+// The file limit also applies to a child's output, which is a file in memory.
 constexpr rlim_t max_file_bytes = std::uint64_t{max_file_mib} << 20;
 constexpr rlim_t max_memory_bytes = std::uint64_t{max_memory_gib} << 30;
 
@@ -55,8 +55,8 @@ void limit_files() {
   ::signal(SIGXFSZ, SIG_IGN);  // a write past the limit then fails instead of killing the process
 }
 
-// Replaces the parent's input and output, and closes all files except the child's socket. The child
-// must not hold the reports and sockets that the parent has open.
+// Replaces the parent's input and output, and closes all other files except the child's socket. The
+// child must not hold the reports and sockets that the parent has open.
 void keep_only(const ChildFiles& files) {
   ::dup2(files.input, STDIN_FILENO);
   ::close(files.input);
@@ -143,7 +143,8 @@ class UntilDeath {
   UntilDeath(Process& process, const Patience& patience) : patience_(patience) {
     patience_.given_up = [this, &process, &patience] {
       if (has_died_) return true;
-      // Gives up only at the next call: the last message of a dead process may still be unread.
+      // The wait ends only at the next call, because the last message of a dead process may still
+      // be unread.
       has_died_ = process.ends_within(0);
       return patience.given_up();
     };

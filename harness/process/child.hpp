@@ -1,5 +1,5 @@
-// A child process that does some work and sends messages. It contains a crash, a hang, exit(),
-// output and a changed floating point mode: the parent is not affected.
+// A child process that does some work and exchanges messages with its parent. A crash, a hang,
+// exit(), output or a changed floating-point mode of the child does not affect the parent.
 #pragma once
 
 #include <functional>
@@ -14,9 +14,9 @@ namespace attest {
 
 // The descriptors that a child keeps.
 struct ChildFiles {
-  int input;   // for stdin; there is nothing to read
+  int input;   // for stdin: /dev/null
   int output;  // for stdout and stderr; a file in memory
-  int socket;  // the child's end
+  int socket;  // the child's end of the socket pair
 };
 
 // Limits of a child that runs code of others. A build with sanitizers does not limit the memory.
@@ -33,36 +33,37 @@ class Child {
   // has limits: of memory, and of the size of each file that it writes, including its output.
   static Result<Child> spawn(Runs runs, const Work& work);
 
-  // Same, for a process that `launch` starts. `launch` must make that process call run_in_child()
-  // with the files that it is given, and must not close them.
+  // Same as spawn(), but `launch` starts the process and makes it call run_in_child() with the
+  // given files. `launch` must not close these files.
   static Result<Child> adopt(const std::function<Result<Process>(const ChildFiles&)>& launch);
 
   Child(Child&& other) noexcept;
   Child& operator=(Child&& other) noexcept;
-  ~Child();  // kills and reaps
+  ~Child();  // kills and reaps the child
 
   // The socket to the child's `work`, for sending.
   MessageSocket& socket() { return socket_; }
 
-  // Same as in MessageSocket. Both also return `ended` when the child has died, because a process
-  // started by the child may keep the child's side of the socket open.
+  // Same as in MessageSocket, but both also return `ended` when the child has died. The socket
+  // alone does not show this: a process that the child started may keep the child's end open.
   Received receive(const Patience& patience = {});
   Received::Kind receive_blob(void* place, std::size_t size, const Patience& patience = {});
 
-  void kill() { process_.kill(); }  // with its process group
+  void kill() { process_.kill(); }
   bool was_killed() const { return process_.was_killed(); }
 
   void ask_to_stop() { process_.terminate(); }  // SIGTERM, for work that handles it
 
-  // Waits for the end, and returns the text of Ending::to_string(). After two seconds a child that
-  // still runs is killed, and the text reports that. REQUIRES: the child was killed, or its socket
-  // has ended.
+  // Waits up to two seconds for the end, and returns Ending::to_string(). A child that still runs
+  // then is killed, and the text is "closed the socket on which it answers, and went on". REQUIRES:
+  // the child was killed, or its socket has ended.
   std::string end();
 
-  // After end(): it exited by itself, with status 0.
+  // After end(): the child exited by itself, with status 0.
   bool has_exited_well() const { return has_exited_well_; }
 
-  // The last line that the child printed on stdout or stderr; empty when it printed nothing.
+  // The last line that the child printed on stdout or stderr, at most its last 400 bytes. Empty:
+  // the child printed nothing.
   std::string last_words() const;
   std::string last_printed() const;  // "; it last printed: LAST WORDS", or empty
 
@@ -76,7 +77,8 @@ class Child {
   bool has_exited_well_ = false;
 };
 
-// Called in the new child: keeps the files, closes all others, and does the work. Does not return.
+// Called in the new child: closes all files except `files`, limits code of others, does the work,
+// and ends the process.
 [[noreturn]] void run_in_child(Child::Runs runs, const ChildFiles& files, const Child::Work& work);
 
 }  // namespace attest

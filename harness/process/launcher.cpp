@@ -48,7 +48,7 @@ Result<Launcher> Launcher::start(Child::Runs runs, const Work& work, double time
 
 pid_t Launcher::fork_there(const ChildFiles& files) {
   const std::array descriptors{files.input, files.output, files.socket};
-  if (!process_.socket().send_descriptors(descriptors)) {  // there are too many, for example
+  if (!process_.socket().send_descriptors(descriptors)) {  // for example, too many are in transit
     is_alive_ = errno != EPIPE && errno != ECONNRESET;
     return -1;
   }
@@ -77,7 +77,7 @@ Result<Child> Launcher::launch(const std::string& request) {
   auto child = Child::adopt(
       [&](const ChildFiles& files) { return Process::adopt([&] { return fork_there(files); }); });
   if (is_alive_) {
-    // If the request cannot be sent, the child has died. The caller learns that from receive().
+    // A failure of send() is ignored here: the caller's receive() shows that the child has died.
     if (child) child->socket().send(request, {}, Patience::seconds(time_limit_s_));
     return child;
   }

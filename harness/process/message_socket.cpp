@@ -19,10 +19,10 @@ namespace {
 using Kind = Received::Kind;
 using Clock = std::chrono::steady_clock;
 
-// The first bytes of a message. No text begins with them.
+// The first bytes of a message. Valid UTF-8 never begins with them.
 constexpr std::uint32_t magic = 0xa77e57ff;
 constexpr std::size_t most_blobs = 8;
-// A head is short, or has the parameters of a trace.
+// A larger number is not the length of a head. The longest heads have the parameters of a trace.
 constexpr std::uint64_t longest_head = std::uint64_t{64} << 20;
 
 struct Prefix {
@@ -79,7 +79,7 @@ class DescriptorMessage {
 
 // Waits until the descriptor is ready. Returns the reason if the waiting ended before that.
 std::optional<Kind> wait_for(int descriptor, short what, const Patience& patience) {
-  constexpr double look_every_ms = 100;  // whether to give up
+  constexpr double look_every_ms = 100;  // period of the calls of given_up()
   while (true) {
     if (patience.given_up()) return Kind::given_up;
     double wait_ms = look_every_ms;

@@ -1,5 +1,5 @@
-// Messages between two processes of attest, over a pair of sockets. A message is a head, which is
-// text, and blobs of bytes behind it. Their content is not interpreted here.
+// Messages between two processes of attest, over a pair of sockets. A message is a head (text),
+// followed by blobs (bytes). The content of both is not interpreted here.
 #pragma once
 
 #include <chrono>
@@ -21,7 +21,7 @@ struct Blob {
   std::size_t size = 0;
 };
 
-// The objects of a vector as a blob. They must outlive its use.
+// The objects of a vector as a blob. The vector must outlive the blob.
 template <typename T>
 Blob blob_of(const std::vector<T>& objects) {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -31,7 +31,7 @@ Blob blob_of(const std::vector<T>& objects) {
 // How long to wait, and the condition that ends the waiting early.
 struct Patience {
   std::chrono::steady_clock::time_point until = std::chrono::steady_clock::time_point::max();
-  // Called several times a second.
+  // Called about every 100 ms while waiting; true ends the waiting.
   std::function<bool()> given_up = [] { return false; };
 
   static Patience seconds(double seconds);
@@ -44,15 +44,15 @@ struct Received {
     ended,      // the other process closed its end, or died, perhaps in the middle of a message
     too_late,   // no complete message in time
     given_up,   // Patience::given_up returned true
-    no_message  // bytes that are not a message: the socket cannot be read any more
+    no_message  // the bytes are no message; the socket must not be read any more
   };
   Kind kind = Kind::ended;
   std::string head = {};
   std::vector<std::size_t> blobs = {};  // the size of each; receive_blob() reads them next
 };
 
-// One end of the pair. Only the process that made this object can send: in its forks send() returns
-// false.
+// One end of a pair of sockets. Only the process that made this object can send: in its forks
+// send() and send_descriptors() return false.
 class MessageSocket {
  public:
   explicit MessageSocket(int descriptor);  // owned
@@ -63,20 +63,23 @@ class MessageSocket {
   // For poll(): readable when bytes arrived, or the other end was closed.
   int descriptor() const { return descriptor_; }
 
-  // REQUIRES: at most 8 blobs. False: the other end is closed, or did not read in time.
+  // REQUIRES: at most 8 blobs. False: not all was sent, because the other end is closed or
+  // `patience` ended.
   bool send(std::string_view head, const std::vector<Blob>& blobs = {},
             const Patience& patience = {});
 
-  // Receives the head. REQUIRES: the blobs of the message before were read.
+  // Receives the head of the next message. REQUIRES: all blobs of the previous message were read.
   Received receive(const Patience& patience = {});
 
-  // Receives the next blob of that message, which has `size` bytes, into `place`.
+  // Receives the next blob of the message into `place`. REQUIRES: `size` is its size in
+  // Received::blobs. Returns `message` if the blob is complete.
   Received::Kind receive_blob(void* place, std::size_t size, const Patience& patience = {});
 
   // Sends copies of at most 8 descriptors. The other end must then call receive_descriptors().
   bool send_descriptors(std::span<const int> descriptors);
 
-  // The caller owns the descriptors. Empty: they did not come.
+  // Waits for descriptors, which the caller then owns. Empty: the other end is closed, or sent
+  // something else.
   std::vector<int> receive_descriptors();
 
  private:

@@ -18,7 +18,7 @@ namespace attest {
 namespace {
 
 constexpr double time_to_end_s = 1;   // after its stdin was closed
-constexpr int look_again_ms = 100;    // period of the check whether it has ended
+constexpr int look_again_ms = 100;    // period of the check whether the program has ended
 constexpr std::size_t chunk = 65536;  // the capacity of a pipe
 
 void close_pipe(std::array<int, 2>& ends) {
@@ -111,7 +111,7 @@ bool PipedProgram::receive() {
       if (count > 0) end_ += static_cast<std::size_t>(count);
       if (count >= 0 || (errno != EAGAIN && errno != EINTR)) return count > 0;
     } else if (is_readable == 0) {
-      if (has_ended) return false;  // a process that it started may keep the pipe open
+      if (has_ended) return false;  // the program's children may keep the pipe open
       has_ended = process_.ends_within(0);
     }
   }

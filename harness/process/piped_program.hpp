@@ -1,5 +1,5 @@
-// A program that reads requests on stdin and answers on stdout. Both are pipes to this process; its
-// stderr is that of this process. share_memory() replaces the pipes by shared memory.
+// A program that reads requests on stdin and answers on stdout. Both are pipes to this process. The
+// program writes to the stderr of this process. share_memory() replaces the pipes by shared memory.
 #pragma once
 
 #include <chrono>
@@ -15,15 +15,16 @@
 
 namespace attest {
 
-// One thread at a time. Neither reading nor writing has a time limit. For a limit, use it in a
-// process that can be killed; the program ends with that process.
+// One thread at a time. Neither reading nor writing has a time limit. For a limit, use this class
+// in a process that can be killed; the program ends with that process.
 class PipedProgram {
  public:
-  // Ignores SIGPIPE in this process, so that a program that does not read is an error of write().
+  // Makes this process ignore SIGPIPE, so that write() returns false when the program has closed
+  // its stdin.
   static Result<PipedProgram> start(const std::vector<std::string>& command);
 
-  // For tests: recorded answers instead of a process. Takes both descriptors. The answers are a
-  // file, whose end is the end of the program.
+  // For tests, without a process: `answers` is a file with recorded answers. Its end counts as the
+  // end of the program. Takes ownership of both descriptors.
   static PipedProgram recorded(int requests, int answers);
 
   PipedProgram(PipedProgram&& other) noexcept;
@@ -31,14 +32,16 @@ class PipedProgram {
   ~PipedProgram();  // end()
 
   // From now on write() writes a frame to the shared memory, and read() reads the answer to it
-  // there. False: there is no memory, as with recorded answers.
+  // there. False: there is no shared memory, as after recorded().
   bool share_memory();
 
-  // Writes all. Keeps what the program writes meanwhile, so that neither waits for the other.
-  // False: the program does not read any more.
+  // Writes all bytes. While the pipe is full, reads and keeps what the program writes, so that the
+  // two processes do not block each other. False: the program has ended or closed a pipe, or the
+  // shared memory has no room for the bytes.
   bool write(std::string_view bytes);
 
-  // Reads exactly `size` bytes. False: the program has ended or closed its stdout before.
+  // Reads exactly `size` bytes. False: the program has ended or closed its stdout before, or the
+  // shared memory has no room for so many bytes.
   bool read(void* place, std::size_t size);
 
   // Reads until the next line feed, which is left out. Empty: the program has ended or closed its
@@ -48,9 +51,9 @@ class PipedProgram {
   // The bytes that the program has written and that no read() or read_line() has returned.
   std::string_view unread() const { return {inbox_.data() + begin_, end_ - begin_}; }
 
-  // How the program ended, after read() or read_line() has failed: "exited with status 1", "was
-  // killed by signal 11 (Segmentation fault)". A program that still runs is killed, and the text is
-  // "closed its stdout".
+  // Closes the pipes, waits up to one second for the end of the program, and returns how it ended:
+  // "exited with status 1", "was killed by signal 11 (Segmentation fault)". Kills a program that
+  // still runs then, and returns "closed its stdout". A second call returns "has ended".
   std::string end();
 
  private:
@@ -59,12 +62,12 @@ class PipedProgram {
 
   bool write_to_pipe(std::string_view bytes);
   bool read_from_pipe(void* place, std::size_t size);
-  bool receive();  // more bytes into the inbox; false: there are no more
+  bool receive();  // reads more bytes into inbox_; false: there are no more
 
   Process process_;
   int requests_, answers_;  // our ends of the pipes
   std::vector<char> inbox_;
-  std::size_t begin_ = 0, end_ = 0;  // of what was read from the pipe and not used yet
+  std::size_t begin_ = 0, end_ = 0;  // of the unused bytes in inbox_
   std::optional<SharedFrames> memory_;
   bool is_shared_ = false;
 };

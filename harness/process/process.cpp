@@ -45,8 +45,8 @@ bool happens_within(double seconds, Happened&& happened) {
   return true;
 }
 
-// The children that this process has started. All its other children are orphans: a process of this
-// list started them and ended before them. Locked while a child exists that is not in the list yet.
+// The children that this process has started. All its other children are orphans: descendants whose
+// parents have ended. `mutex` is locked while a started child is not in `processes` yet.
 struct Owned {
   std::mutex mutex;
   std::set<pid_t> processes;
@@ -67,7 +67,7 @@ void own_nothing() {
 [[noreturn]] void lead_group(pid_t parent, const std::function<void()>& work) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(EXIT_FAILURE);  // it died before the line above
+  if (::getppid() != parent) ::_exit(EXIT_FAILURE);  // the parent died before prctl()
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
   reset_signals();
@@ -94,7 +94,7 @@ std::vector<pid_t> children(const std::string& process) {
   return found;
 }
 
-// The orphans, and all that these have started.
+// The orphans and their descendants.
 std::vector<pid_t> orphans() {
   constexpr std::size_t enough = 10'000;  // a limit: processes may fork faster than this loop
   std::vector<pid_t> found = children("self");
@@ -106,9 +106,9 @@ std::vector<pid_t> orphans() {
   return found;
 }
 
-// When an orphan ends, its own children become orphans.
+// Kills the orphans repeatedly: when one ends, its own children become orphans.
 void end_orphans() {
-  // Without children, /proc need not be read, which costs 100 page faults.
+  // Reading /proc costs 100 page faults, and is not necessary without children.
   siginfo_t ignored{};
   if (::waitid(P_ALL, 0, &ignored, WEXITED | WNOHANG | WNOWAIT) != 0 && errno == ECHILD) return;
   const std::lock_guard lock(owned().mutex);
@@ -122,16 +122,16 @@ void end_orphans() {
 
 // ---- the guard ----------------------------------------------------------------------------------
 
-// True below a guard.
+// True in a process below a guard.
 bool is_guarded = false;
 
-// The guard is the parent of the process, and of all descendants that have lost their parents. It
-// has a group of its own, so that signals that the process sends to its group do not reach it. All
-// its signals are blocked. It takes these: SIGCHLD; SIGTERM, which it passes on to the group; and
-// SIGHUP: the owner asks for the end, or has died.
+// The guard is the parent of the child process, and of all descendants that have lost their
+// parents. It has a group of its own, so it does not get the signals that the child process sends
+// to its group. All signals of the guard are blocked. It waits for SIGCHLD, for SIGTERM, which it
+// passes on to the child's group, and for SIGHUP: the owner asks for the end, or has died.
 constexpr int end_all = SIGHUP;
 
-// Waits for the end of `leader`. Empty: `leader` still runs, and the caller must end it.
+// Waits for the end of `leader`, the child process. Empty: the caller must end `leader`.
 std::optional<int> status_of(pid_t leader, pid_t owner) {
   sigset_t taken;
   ::sigemptyset(&taken);
@@ -148,13 +148,13 @@ std::optional<int> status_of(pid_t leader, pid_t owner) {
   return std::nullopt;
 }
 
-// Ends as the process has ended, so that the owner sees how.
+// Ends the guard in the same way as its child process ended, so that the owner sees how.
 [[noreturn]] void end_as(const Ending& ending) {
   if (ending.wait_status && WIFEXITED(*ending.wait_status)) {
     ::_exit(WEXITSTATUS(*ending.wait_status));
   }
   const int signal = ending.wait_status ? WTERMSIG(*ending.wait_status) : SIGKILL;
-  ::prctl(PR_SET_DUMPABLE, 0);  // one core dump is enough
+  ::prctl(PR_SET_DUMPABLE, 0);  // the guard leaves no core file
   std::signal(signal, SIG_DFL);
   sigset_t only;
   ::sigemptyset(&only);
@@ -164,12 +164,12 @@ std::optional<int> status_of(pid_t leader, pid_t owner) {
   ::_exit(EXIT_FAILURE);  // not reached
 }
 
-// Writes the error of fork() to `ready`, 0 for none, when the process can be sent signals.
+// Writes to `ready` the errno of fork(), or 0 when the child process can be sent signals.
 [[noreturn]] void guard(pid_t owner, int ready, const std::function<void()>& work) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, end_all);
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
-  if (::getppid() != owner) ::_exit(EXIT_FAILURE);  // it died before the lines above
+  if (::getppid() != owner) ::_exit(EXIT_FAILURE);  // the owner died before prctl()
   std::signal(SIGCHLD, SIG_DFL);
   const pid_t self = ::getpid(), leader = ::fork();
   if (leader == 0) {
@@ -178,7 +178,7 @@ std::optional<int> status_of(pid_t leader, pid_t owner) {
     lead_group(self, work);
   }
   const int reason = leader > 0 ? 0 : errno;
-  if (leader > 0) ::setpgid(leader, leader);  // here too: the first of the two calls decides
+  if (leader > 0) ::setpgid(leader, leader);  // lead_group() does the same, perhaps later
   const bool is_told = ::write(ready, &reason, sizeof reason) == sizeof reason;
   // The guard must not keep open a pipe whose end of file another process waits for.
   ::close_range(0, ~0u, 0);
@@ -193,7 +193,7 @@ std::optional<int> status_of(pid_t leader, pid_t owner) {
   end_as(ending);
 }
 
-// Forks the guard, and waits until it has forked the process. -1: errno has the reason.
+// Returns the id of the guard when it has forked the child process. -1: errno has the reason.
 pid_t start_guarded(const std::function<void()>& work) {
   const pid_t owner = ::getpid();
   std::array<int, 2> ready{-1, -1};
@@ -240,7 +240,7 @@ Result<Process> Process::adopt(const std::function<pid_t()>& fork) {
   const pid_t started = fork();
   const int reason = errno;
   if (started > 0) {
-    ::setpgid(started, started);  // here too: the first of the two calls decides
+    ::setpgid(started, started);  // lead_group() does the same, perhaps later
     owned().processes.insert(started);
     return Process(started);
   }
@@ -267,11 +267,11 @@ pid_t fork_sibling(const std::function<void()>& work) {
     static_cast<void>(!::write(pipe[1], &forked, sizeof forked));
     ::_exit(EXIT_SUCCESS);
   }
-  std::array<int, 2> forked{between, errno};  // its number, and the reason if there is none
+  std::array<int, 2> forked{between, errno};  // the id of the child process or -1, and errno
   ::close(pipe[1]);
   if (between > 0) {
     if (::read(pipe[0], &forked, sizeof forked) != sizeof forked) forked = {-1, ECHILD};
-    ::waitpid(between, nullptr, 0);  // from here on the child process is the owner's
+    ::waitpid(between, nullptr, 0);  // now the owner is the parent of the child process
   }
   ::close(pipe[0]);
   errno = forked[1];
@@ -313,11 +313,11 @@ void Process::kill() {
   if (pid_ <= 0) return;
   was_killed_ = true;
   if (has_guard_) {
-    // Not SIGKILL: if we were killed just after the guard, a daemon would outlive us.
+    // Not SIGKILL: the guard must end daemons even if this process is killed now.
     ::kill(pid_, end_all);
   } else {
     ::kill(-pid_, SIGKILL);
-    ::kill(pid_, SIGKILL);  // it may have moved to another group
+    ::kill(pid_, SIGKILL);  // the process may have moved to another group
   }
 }
 
@@ -326,10 +326,10 @@ Ending Process::end(double patience_s) {
   if (pid_ <= 0) return ending;
   if (!ends_within(patience_s)) kill();
   ending.was_killed = was_killed_;
-  // Kills the group before reap(): until then no other process can get this number.
+  // Before reap(), because after it another process group may get this id.
   if (!has_guard_) ::kill(-pid_, SIGKILL);
   reap(pid_, ending);
-  if (!ending.wait_status) {  // a guard that was stopped does not end itself
+  if (!ending.wait_status) {  // a guard that was stopped (SIGSTOP) does not end itself
     ::kill(pid_, SIGKILL);
     reap(pid_, ending);
   }

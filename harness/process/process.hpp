@@ -11,9 +11,9 @@
 
 namespace attest {
 
-// The process leads a process group of its own. Its descendants end with it, also those in other
-// groups or sessions (daemons). No member function waits longer than its argument and a few
-// seconds.
+// The child process leads a process group of its own. Its descendants end with it, also those in
+// other groups or sessions (daemons). No member function waits more than about 15 s longer than its
+// argument.
 //
 // When the owner dies, even by SIGKILL, the child process and its descendants end too. That is the
 // work of a guard, a process of attest between the owner and the child process. The guard becomes
@@ -24,34 +24,37 @@ namespace attest {
 // Linux treats the end of that thread as the death of the parent.
 class Process {
  public:
-  // Forks. `work` runs in the child, which then exits with status 0. The child starts with default
-  // signal handlers and an empty signal mask, and leaves no core file. `work` must not throw.
+  // Forks. `work` runs in the child, which then exits with status 0. The child starts with an empty
+  // signal mask and default signal handlers (reset_signals()), and leaves no core file. `work` must
+  // not throw.
   static Result<Process> start(const std::function<void()>& work);
 
-  // Takes over a child process that start() did not make. `fork` makes it: it lets another process
-  // call fork_sibling(), and returns the number of the new process, or -1 with errno. The child
-  // process has no guard. Until `fork` returns, signals are blocked, and other threads cannot start
+  // Takes over a child process that start() did not make. `fork` lets another process call
+  // fork_sibling(), and returns the id of the new process, or -1 with errno. The new process has no
+  // guard of its own. Until `fork` returns, signals are blocked, and other threads cannot start
   // processes.
   static Result<Process> adopt(const std::function<pid_t()>& fork);
 
-  Process() = default;  // none, same as after end()
+  Process() = default;  // no process, same as after end()
   Process(Process&& other) noexcept;
   Process& operator=(Process&& other) noexcept;
   ~Process();  // kills
 
   pid_t pid() const { return pid_; }  // of the guard, if there is one; -1 after end()
 
-  // True if it has ended by itself, or does so in that time. end() then still returns how.
+  // Waits up to `seconds`. True: the process has ended, or there is none. A later end() still
+  // returns how it ended.
   bool ends_within(double seconds);
 
   void terminate();  // sends SIGTERM to the group
-  void kill();       // sends SIGKILL to the process and its descendants
+  void kill();       // kills the process; its descendants end at the latest in end()
   bool was_killed() const { return was_killed_; }
 
-  // Waits up to `patience_s` for it to end by itself, then kills it with its descendants.
+  // Waits up to `patience_s` for the process to end, then kills it. Kills its descendants in both
+  // cases.
   Ending end(double patience_s);
 
-  // Sends SIGTERM, and kills it after the grace period.
+  // Sends SIGTERM, then does the same as end(grace_s).
   Ending stop(double grace_s);
 
  private:
@@ -62,11 +65,11 @@ class Process {
   bool was_killed_ = false;
 };
 
-// Forks, as Process::start() does, but for another owner, the parent of this process, which adopts
-// the child process. This process forks a process in between, which forks the child process and
-// ends. Then the owner becomes the parent, because the owner is a subreaper. Returns the number of
-// the child process; -1: errno has the reason. REQUIRES: this process is below a guard, and its
-// other threads hold no lock.
+// Forks a child process for another owner: the parent of this process, which takes it over with
+// Process::adopt(). This process forks a process in between, which forks the child process and
+// ends. The owner is a subreaper, so it then becomes the parent of the child process. Returns the
+// id of the child process; -1: errno has the reason. REQUIRES: this process is below a guard, and
+// its other threads hold no lock.
 pid_t fork_sibling(const std::function<void()>& work);
 
 // Whether this process, or one above it, has a guard: true in a worker and in all below it.

@@ -20,7 +20,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t max_output_bytes = 16u << 20;
 constexpr double grace_s = 1;      // between SIGTERM and SIGKILL
-constexpr int look_every_ms = 20;  // period of the check for its end, or for a request to stop
+constexpr int look_every_ms = 20;  // period of the checks whether it has ended or must stop
 
 constexpr int cannot_be_executed = 127;  // the exit status that shells use
 
@@ -29,7 +29,7 @@ bool may_be_executed(const std::string& file) {
   return std::filesystem::is_regular_file(file, ignored) && ::access(file.c_str(), X_OK) == 0;
 }
 
-// REQUIRES: in a child.
+// Replaces the calling child process by the program.
 [[noreturn]] void become(const std::vector<char*>& arguments, const ProgramFiles& files) {
   const int nothing = ::open("/dev/null", O_RDWR);
   const auto given = [&](int descriptor) { return descriptor >= 0 ? descriptor : nothing; };
@@ -52,7 +52,8 @@ double seconds_until(Clock::time_point deadline) {
   return std::max(std::chrono::duration<double>(deadline - Clock::now()).count(), 0.0);
 }
 
-// Reads until the program has closed the pipe, or has ended: its children may keep the pipe open.
+// Reads until the program has closed the pipe or has ended, because its children may keep the pipe
+// open. Empty: the program did not stay within the limits.
 std::optional<std::string> read_all(int pipe, Process& program, Clock::time_point deadline,
                                     const ProgramLimits& limits) {
   std::string text;

@@ -12,7 +12,7 @@
 namespace attest {
 
 // The file that would be executed: `program` itself if it has a slash, or else a file in a folder
-// of PATH. Empty: there is none that may be executed.
+// of PATH. Empty: no such file may be executed.
 std::optional<std::string> find_program(const std::string& program);
 bool is_installed(const std::string& program);
 
@@ -22,14 +22,14 @@ struct ProgramFiles {
   int fourth = -1;  // descriptor 3 of the program; -1: it has none
 };
 
-// Starts a program of PATH. It has no other descriptors. The process exits with status 127 when the
-// program cannot be executed.
+// Starts the program command[0], which is searched in PATH. It gets no descriptors other than
+// `files`. The process exits with status 127 if the program cannot be executed.
 Result<Process> start_program(const std::vector<std::string>& command,
                               const ProgramFiles& files = {});
 
 struct ProgramLimits {
   double timeout_s = 10;
-  std::function<bool()> stop = [] { return false; };  // true: its output is not needed any more
+  std::function<bool()> stop = [] { return false; };  // true: stop the program
 };
 
 // Runs a program to its end without input. Returns its stdout. Empty when it failed, printed more

@@ -8,10 +8,12 @@
 
 namespace attest {
 
-// The median time in which `cat` sends `bytes` bytes back. Errors: a program cannot be started.
+// The median time in which `cat` sends `bytes` bytes back. Errors: `cat` cannot be started, or does
+// not answer.
 Result<Nanoseconds> pipe_round_trip(std::size_t bytes);
 
-// The median time in which a thread answers in shared memory. Errors: there is no memory.
+// The median time in which a thread answers a frame of `bytes` bytes in shared memory. Errors:
+// there is no shared memory, or the frame does not fit into it.
 Result<Nanoseconds> memory_round_trip(std::size_t bytes);
 
 }  // namespace attest

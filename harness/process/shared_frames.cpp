@@ -17,11 +17,12 @@
 namespace attest {
 namespace {
 
-// How often the counter is read before the next, slower way to wait: first without a pause, for
-// about 100 us, then with a chance for other processes in between, for about 1 ms.
+// Waiting has three phases. It reads the counter looks_alone times with pause() between the reads
+// (about 100 us), then looks_between_others times with sched_yield() (about 1 ms). Then it sleeps
+// between the reads.
 constexpr unsigned looks_alone = 4096, looks_between_others = 1024;
 constexpr auto nap = std::chrono::microseconds(50);
-constexpr unsigned naps_until_asked = 20;  // 1 ms
+constexpr unsigned naps_until_asked = 20;  // naps between two calls of has_ended()
 
 std::atomic_ref<std::uint32_t> counter(std::byte* memory, std::size_t at) {
   return std::atomic_ref(*reinterpret_cast<std::uint32_t*>(memory + at));
@@ -37,7 +38,7 @@ void pause() {
 
 Result<SharedFrames> SharedFrames::make() {
   const int file = ::memfd_create("attest", MFD_CLOEXEC | MFD_ALLOW_SEALING);
-  // A program that shortens the memory would kill its readers.
+  // The seals fix the size: if a program shortened the memory, a read would kill attest (SIGBUS).
   const bool is_ready = file >= 0 && ::ftruncate(file, SharedLayout::size) == 0 &&
                         ::fcntl(file, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW) == 0;
   void* const memory =

@@ -18,8 +18,8 @@ class SignalsBlocked {
   sigset_t before_{};
 };
 
-// Called in the child: sets the default handlers and an empty mask. The handlers of errors stay,
-// because the sanitizers report errors with them.
+// Called in the child: sets the default handlers and an empty mask. The handlers of error signals,
+// such as SIGSEGV, stay: the sanitizers report errors with them.
 void reset_signals();
 
 }  // namespace attest

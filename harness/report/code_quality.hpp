@@ -10,7 +10,7 @@
 namespace attest {
 
 // A JSON array with an entry for each failing case and verdict, at its first failing vector. The
-// fingerprint is that of case and verdict, so that GitLab recognises a known failure.
+// fingerprint is the hash of case and verdict, so that GitLab recognises a known failure.
 std::string code_quality_report(const RunResult& run, const std::optional<Diagnosis>& diagnosis);
 
 }  // namespace attest

@@ -11,7 +11,7 @@ namespace attest {
 enum class Conclusion {
   pass,  // no vector failed, no error occurred, and at least one vector passed
   fail,
-  none  // as pass, but no vector passed: skipped, unsupported or expected failures
+  none  // no failure and no error, but no vector passed
 };
 
 Conclusion conclusion_of(const RunResult& run);

@@ -68,7 +68,7 @@ std::string indented_distance(const Deviation& deviation, Level level) {
   return text.empty() ? text : fmt::format("    {}\n", text);
 }
 
-// In a flight both units of the cascade have ticks, and outputs of the same name.
+// Names the unit of the cascade: in a flight both units have ticks, and outputs of the same name.
 std::string of_unit(const Channel& channel) {
   const bool is_of_cascade =
       channel.module == Module::attitude_unit || channel.module == Module::rate_unit;

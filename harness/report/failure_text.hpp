@@ -1,6 +1,6 @@
-// The text about a failing result, shared by the terminal and JUnit. A CI log may be all that its
-// reader has. So the text has the error, the first deviation, the stage of the law to look at, and
-// the command that runs this vector again.
+// The text about a failing result, shared by the terminal and JUnit. The reader of a CI log may
+// have no other file. So the text has the error, the first deviation, the stage of the law to look
+// at, and the command that runs this vector again.
 #pragma once
 
 #include <string>
@@ -13,15 +13,15 @@ namespace attest {
 std::string failure_headline(const CaseResult& result);
 
 // Several lines, the first of which is the id; no newline at the end. `run` gives the port and the
-// level for the command to reproduce it.
+// level for the command that reproduces the failure.
 std::string failure_text(const CaseResult& result, const RunResult& run);
 
-// The first deviation and the number of deviating ticks, without id and commands: for traces
-// outside the suite. Empty when only the verdict is known.
+// The first deviation, the worst one and the number of deviating ticks, without id and commands:
+// for traces outside the suite. Empty if the result has no deviation.
 std::string finding_text(const CaseResult& result, Level level);
 
-// "tick 412, in out/...: off by 0.3, 1500 times the tolerance". Empty if it is the first
-// deviation, or unknown.
+// "tick 412, in out/...: off by 0.3, 1500 times the tolerance". The worst deviation; empty if that
+// is the first deviation, or unknown.
 std::string worst_text(const CaseResult& result);
 
 // "at most 1.2", "at least 0", "0 to 3".
@@ -33,18 +33,18 @@ std::string reproduce_command(const CaseResult& result, const RunResult& run);
 // The command that writes the trace of a flight. REQUIRES: a plant configuration.
 std::string sim_command(const CaseResult& result, const RunResult& run);
 
-// The reason on one line, or what the verdict means.
+// The reason on one line; without a reason, the meaning of the verdict.
 std::string reason_text(const CaseResult& result);
 
 // "out/vehicle_rates_setpoint.roll [rad/s]"
 std::string channel_with_unit(const Channel& channel);
 
-// "-6.7663884 0xc0d88641": the shortest decimal that reads back as the same value, and the bits. A
-// flag has no bits.
+// "-6.7663884 0xc0d88641": the shortest decimal that reads back as the same value, and the bits.
+// Without the bits for a flag.
 std::string value_text(const Channel& channel, double value);
 
 // "off by 8.71 (2161195450 ulp), allowed 0.000201: 43273 times the tolerance". Empty for flags,
-// which have no distance.
+// which have no distance, and at the level `events`.
 std::string distance_text(const Deviation& deviation, Level level);
 
 }  // namespace attest

@@ -1,4 +1,4 @@
-// The worth of a suite: which faults of the catalogue it catches.
+// Which faults of the catalogue a suite catches, as a table.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct FaultFinding {
   FaultCatch found;
   bool by_hover = false, by_random_attitudes = false;
 
-  // Does an input exist in the profile for which the fault differs from the law?
+  // Whether an input exists in the profile for which the fault differs from the law.
   bool is_detectable() const;
   bool is_caught() const { return found.is_caught(); }
   bool is_caught_by_own_group() const;
@@ -25,7 +25,7 @@ struct FaultSummary {
   std::size_t detectable = 0, caught = 0, by_hover = 0, by_random_attitudes = 0, by_naive = 0;
   std::vector<const FaultFinding*> survivors;     // detectable, not caught
   std::vector<const FaultFinding*> not_by_own;    // caught, but not by a case of their group
-  std::vector<const FaultFinding*> false_alarms;  // equivalent to the law, but caught
+  std::vector<const FaultFinding*> false_alarms;  // not detectable in the profile, but caught
 };
 FaultSummary summary_of(const std::vector<FaultFinding>& findings);
 

@@ -15,7 +15,8 @@
 namespace attest {
 namespace {
 
-// The data of a workflow command: GitHub decodes these. `also` has further characters to encode.
+// Percent-encodes %, CR, LF and the characters in `also` for a workflow command. GitHub decodes
+// them.
 std::string encoded(std::string_view text, std::string_view also = "") {
   std::string out;
   for (const char c : text) {
@@ -68,7 +69,7 @@ std::string github_annotations(const RunResult& run) {
     out += fmt::format("::error title=attest::{}\n",
                        encoded(printable(run.errors.front().to_string())));
   }
-  // A warning: GitHub has a limit of its own for these.
+  // This is a warning, because GitHub has a separate limit for warnings.
   if (failing.size() > annotations_shown) {
     out += fmt::format("::warning title=attest::{} not shown here; the job summary has more\n",
                        counted(failing.size() - annotations_shown, "more failing vector") +

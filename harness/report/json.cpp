@@ -39,7 +39,7 @@ ordered_json errors(const RunResult& run) {
   return out;
 }
 
-// In an order for reading, and without the elapsed times.
+// The members in an order that is easy to read, without the elapsed times.
 ordered_json results(const RunResult& run) {
   ordered_json out = ordered_json::array();
   for (const CaseResult& result : run.results) {

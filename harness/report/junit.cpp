@@ -130,8 +130,8 @@ std::string suite_name(const CaseResult& result) {
   return one_line(result.profile + "." + result.group);
 }
 
-// With the diagnosis in each failure: on the page of one test, CI servers do not show the rest of
-// the run.
+// Each failure contains the diagnosis, because on the page of one test CI servers do not show the
+// rest of the run.
 std::string failure_content(const CaseResult& result, const RunResult& run,
                             const std::optional<Diagnosis>& diagnosis) {
   const std::string text = failure_text(result, run);

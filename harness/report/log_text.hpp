@@ -8,11 +8,11 @@
 
 namespace attest {
 
-// Of one unit. Several lines, with a newline at the end: the topics, their deviations and how they
-// are explained.
+// The agreement of one unit. Several lines, with a newline at the end: the topics, and how many of
+// their deviations are explained.
 std::string log_text(const LoggedUnit& log, const LogResult& result, const LogLimits& limits);
 
-// "flight.ulg", of a unit of v1.14 to v1.16 "flight.ulg: attitude unit".
+// "flight.ulg"; for a unit of v1.14 to v1.16 "flight.ulg: attitude unit".
 std::string title_of(const LoggedUnit& log);
 
 }  // namespace attest

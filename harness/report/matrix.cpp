@@ -8,8 +8,8 @@
 namespace attest {
 namespace {
 
-// The verdict that a reader must see first has the largest number. A vector that was not judged
-// says less about a group than one that passed.
+// The gravest verdict has the largest number. The smallest numbers are those of vectors that were
+// not judged: they say less about a group than vectors that passed.
 int severity(Verdict verdict) {
   switch (verdict) {
     case Verdict::skip:

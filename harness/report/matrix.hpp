@@ -15,15 +15,15 @@ struct MatrixCell {
   std::size_t passed = 0;
   std::size_t failed = 0;
   std::size_t apart = 0;           // unsupported, skip, xfail
-  std::optional<Verdict> worst;    // of those that were judged, if any; empty: no result
-  std::optional<double> headroom;  // the smallest of those that passed; empty: equal bits
+  std::optional<Verdict> worst;    // the gravest verdict (matrix.cpp); empty: no result
+  std::optional<double> headroom;  // the smallest; empty: no passed vector differs in bits
 
   std::size_t all() const { return passed + failed + apart; }
   MatrixCell& operator+=(const MatrixCell& other);
 };
 
-// "12" when all passed; "10/12" when two of twelve failed; "5+1" with one that was counted apart;
-// "-" without a result.
+// "12": all 12 passed; "10/12": two of 12 failed; "5+1": five passed and one was counted apart;
+// "-": no result.
 std::string text_of(const MatrixCell& cell);
 
 struct MatrixRow {
@@ -39,7 +39,7 @@ struct Matrix {
 
 Matrix matrix_of(const RunResult& run);
 
-// The sum of the rows, of all or of one profile. Its group is "total".
+// The sum of all rows, or of those of one profile. The group of the sum is "total".
 MatrixRow total_of(const Matrix& matrix, const std::optional<std::string>& profile = {});
 
 }  // namespace attest

@@ -10,8 +10,8 @@
 
 namespace attest {
 
-// Used from one thread. The destructor erases the line, so that the next output starts on a clean
-// line; finish() erases it earlier.
+// Used from one thread. finish() and the destructor erase the line, so that the next output starts
+// on a clean line.
 class Progress {
  public:
   using Clock = std::chrono::steady_clock;
@@ -33,8 +33,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // Counts one more result. Draws at most once per interval; from the second drawing on with the
-  // results per second and the remaining time.
+  // Counts one more result. Draws at most once per redraw_interval. From the second drawing on, the
+  // line has the results per second and the remaining time.
   void add(const CaseResult& result, Clock::time_point now = Clock::now());
   void add(bool failed, const std::string& latest, Clock::time_point now = Clock::now());
   void finish();
@@ -46,7 +46,7 @@ class Progress {
   Options options_;
   std::size_t total_;
   std::size_t done_;
-  std::size_t done_before_;  // at the first add(), from which the time is counted
+  std::size_t done_before_;  // after the first add(), when the time count begins
   std::size_t failed_ = 0;
   bool drawn_ = false;
   Clock::time_point last_drawn_{}, begin_{};

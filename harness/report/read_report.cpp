@@ -91,8 +91,8 @@ void read_results(JsonReader& reader, RunResult& run) {
   }
 }
 
-// Errors: totals that are not those of the results, or another number of results than vectors that
-// were selected.
+// Errors: the totals are not those of the results, or the number of results contradicts the number
+// of selected vectors.
 void check_numbers(JsonReader reader, JsonReader totals, const RunResult& run) {
   for (int i = 0; i < verdict_count; ++i) {
     const auto verdict = static_cast<Verdict>(i);

@@ -1,7 +1,7 @@
 // The results of `attest replay` for machines:
 //
-//     {"schema": "attest-replay-1", "attest_version": "0.1.0", "port": "builtin", "level":
-//     "numeric",
+//     {"schema": "attest-replay-1", "attest_version": "0.1.0", "port": "builtin",
+//      "level": "numeric",
 //      "log_limits": {"within": 1e-4, "least_part_within": 0.85, "most_unexplained": 0.02},
 //      "results": [
 //        {"file": "flight.ulg", "kind": "log", "module": "attitude_unit", "profile": "px4-v1.16.0",
@@ -33,11 +33,11 @@
 namespace attest {
 
 nlohmann::ordered_json json_of_trace(const CaseResult& result, Module module);
-// REQUIRES: the result is that of this unit of the log.
+// REQUIRES: `result` is that of `unit`, which is a unit of `log`.
 nlohmann::ordered_json json_of_unit(const FlightLog& log, const LoggedUnit& unit,
                                     const LogResult& result, const LogLimits& limits);
 
-// `results`: of the two functions above.
+// `results`: values of json_of_trace() and json_of_unit().
 std::string replay_json(const std::string& port, std::string_view level, const LogLimits& limits,
                         const std::vector<nlohmann::ordered_json>& results);
 

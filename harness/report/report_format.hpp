@@ -1,5 +1,5 @@
-// The reports that a run can write to a file. The options of `attest run` and the writing of files
-// both use this list.
+// The reports that a run can write to a file. The options of `run` and `merge` are made from this
+// list.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@ struct ReportFormat {
   std::string option;  // of `attest run`: "--junit"
   std::string help;
   std::function<std::string(const Report&)> render;
-  bool plots_traces = false;  // it reads Report::traces
+  bool plots_traces = false;  // the report reads Report::traces
 };
 
 std::span<const ReportFormat> report_formats();

@@ -20,7 +20,7 @@ std::string spread(std::string_view name, std::vector<Nanoseconds> times) {
                      human_time(times[times.size() / 2]), human_time(times.back()));
 }
 
-// `result`: what follows from a job, "command".
+// `result`: the name of the output of a job, "command".
 std::string delays(std::string_view unit, std::string_view result, const std::vector<TaskJob>& jobs,
                    const LoopTiming& timing) {
   std::vector<Nanoseconds> begins, results, ages;

@@ -9,12 +9,12 @@
 
 namespace attest {
 
-// One row per task: analysed and simulated longest response. A response longer than the period is
-// marked.
+// One row per task, with its longest response as analysed and as simulated. A simulated response
+// longer than the period is marked.
 std::string render_tasks(const TaskSet& set, const std::vector<std::vector<TaskJob>>& jobs);
 
 // For each unit: the delays from the release to the start and to the command, and the age of the
-// sample at the command. The command of the attitude unit is its setpoint.
+// sample at the command. For the attitude unit, the setpoint takes the place of the command.
 std::string render_delays(const TaskSet& set, const std::vector<std::vector<TaskJob>>& jobs,
                           const FlightTiming& timing);
 

@@ -7,8 +7,8 @@
 
 namespace attest {
 
-// Several lines, with a newline at the end: a row for each signal that deviates, what only one of
-// the two has, and the time by which one lags.
+// Several lines, with a newline at the end: a row for each signal that deviates, the signals and
+// samples that only one trace has, and the time by which one trace lags.
 std::string signals_text(const SignalsComparison& comparison);
 
 }  // namespace attest

@@ -84,8 +84,8 @@ std::string subject_of(const RunResult& run) {
   return out;
 }
 
-// "px4-v1.5.5 numeric, fixed point": the last profile to which the port conforms. If it conforms to
-// no profile, the last one that it passes in part.
+// "px4-v1.5.5 numeric, fixed point": the last profile to which the port conforms. If the port
+// conforms to no profile, the last profile with a claim.
 std::string on_the_badge(const RunResult& run, Standing standing) {
   std::string profile;
   for (const Claim& claim : claims_of(run)) {

@@ -8,14 +8,15 @@
 
 namespace attest {
 
-// The claim for each profile. `subject` is suite, port and date, or empty if no claim is made.
+// The claim for each profile, or the reason why there is no claim. `subject`: suite, port and date;
+// empty if there is no claim.
 struct Statement {
   std::vector<std::string> claims;
   std::string subject;
 };
 Statement statement_of(const RunResult& run);
 
-// The same as one line: the claim for each profile, then suite, port and date:
+// The statement as one line: the claim for each profile, then suite, port and date:
 //
 //     conformant: px4-v1.5.5, numeric, 11 rates, all groups; cases 1.4, golden 1.4 (released suite
 //     a8370e8fe0dc), port 5f1d2c3b4a59, 2026-03-31
@@ -23,8 +24,8 @@ Statement statement_of(const RunResult& run);
 //     none: px4-v1.5.5, 3 groups fail (attitude, modes, tpa); ...
 std::string conformance_statement(const RunResult& run);
 
-// A badge as an SVG file: green for a profile to which the port conforms, amber with the word
-// "partial", red.
+// A badge as the text of an SVG file: green if the port conforms to a profile, amber with the word
+// "partial" if it passes in part, else red.
 std::string badge(const RunResult& run);
 
 }  // namespace attest

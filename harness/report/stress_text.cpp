@@ -16,7 +16,7 @@
 namespace attest {
 namespace {
 
-// A percentile with too few samples is left out; the maximum is always present.
+// "-" for a percentile that is left out because it has too few samples beyond it.
 std::string percentile(const std::optional<Nanoseconds>& time) {
   return time ? human_time(*time) : "-";
 }
@@ -81,7 +81,7 @@ std::string slow_steps(const SlowTicks& slow) {
 
 std::string_view title_of(const StressResult& stress) { return info_of(*stress.module).title; }
 
-// The result of the rate unit is the first of a flight.
+// The result of the rate unit comes before that of the attitude unit of the same flight.
 bool is_of_same_flight(const StressResult& before, const StressResult& next) {
   return before.module == Module::rate_unit && next.module == Module::attitude_unit &&
          before.result.rate == next.result.rate;
@@ -95,7 +95,7 @@ std::string reason_of(const StressResult& stress) {
                                           : reason;
 }
 
-// Adds the result of a unit to `all`, the result of the flight from the units before.
+// Adds the result of a unit to `all`, the result of the flight so far.
 void add_unit(const StressResult& unit, CaseResult& all) {
   const std::string before = all.reason, reason = reason_of(unit);
   if (gravity(unit.result.verdict) > gravity(all.verdict)) all = unit.result;

@@ -55,7 +55,7 @@ std::size_t column_width(const Table& table, std::size_t column) {
   return width + 2;
 }
 
-// The columns [begin, result) fit next to the labels; always at least one.
+// Returns `end`: the columns [begin, end) fit next to the labels. At least one column is taken.
 std::size_t last_that_fits(const Table& table, std::size_t begin, std::size_t labels, int limit) {
   std::size_t used = labels + column_width(table, begin);
   std::size_t end = begin + 1;
@@ -78,7 +78,8 @@ std::string block(const Table& table, std::size_t begin, std::size_t end, std::s
     out += fmt::format("{:<{}}", row.label, labels);
     for (std::size_t column = begin; column < end; ++column) {
       const std::string text = text_of(row.cells[column]);
-      // Padded outside the colour: a padded field would count the escape codes.
+      // The padding is added apart from the coloured text, because a field width would count the
+      // escape codes.
       out += std::string(column_width(table, column) - text.size(), ' ');
       out += painted(text, colour_of(row.cells[column]), style);
     }

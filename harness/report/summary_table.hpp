@@ -6,8 +6,8 @@
 //     total       17+1  16/18       6  39/41+1
 //     n/m: n of m vectors passed; +k: k counted apart
 //
-// A cell is the number of vectors that passed; "10/12" when two of twelve failed; "5+1" with one
-// that was counted apart (unsupported, skip, xfail); "-" without a result.
+// A cell is the number of vectors that passed. "10/12": two of twelve failed; "5+1": one more was
+// counted apart (unsupported, skip, xfail); "-": no result.
 #pragma once
 
 #include <string>
@@ -17,8 +17,8 @@
 
 namespace attest {
 
-// Broken into several blocks of columns when it is wider than the style allows. Rows are prefixed
-// by the profile when there are several. Empty when there are no results.
+// A table wider than `style` allows is broken into several blocks of columns. If there are several
+// profiles, the label of a row has the profile. Empty without results.
 std::string render_table(const RunResult& run, TerminalStyle style);
 
 }  // namespace attest

@@ -26,7 +26,8 @@ namespace {
 // Results that are shown together, in the order of the run.
 using Together = std::vector<const CaseResult*>;
 
-// Groups the results for which `wanted` is true. The members of a group are `equal`.
+// Groups the results for which `wanted` is true. Two results for which `equal` is true are in the
+// same group.
 template <typename Wanted, typename Equal>
 std::vector<Together> grouped(const RunResult& run, Wanted wanted, Equal equal) {
   std::vector<Together> groups;
@@ -56,7 +57,7 @@ std::string header(const RunResult& run) {
   return out;
 }
 
-// The other vectors of a case with the same verdict: their rates, or the number of flights.
+// The vectors of `group` after the first one: their rates, or the number of flights.
 std::string others(const Together& group) {
   if (group.front()->plant_configuration) return "in " + counted(group.size() - 1, "more flight");
   std::vector<std::string> rates;
@@ -156,8 +157,8 @@ Quantity quantity_of(const CaseResult& result) {
   return channels()[result.tightest->channel].quantity;
 }
 
-// A result stores its tightest channel only. So a quantity is listed only if it is the tightest of
-// some vector, and the first line is the tightest of all.
+// A result stores its tightest channel only. So a quantity is listed only if a channel of it is the
+// tightest of some vector. The first line is the tightest of all vectors.
 std::string headroom(const RunResult& run) {
   if (run.level != Level::numeric || run.count(Verdict::pass) == 0) return {};
   const auto groups = grouped(
@@ -188,7 +189,8 @@ std::string headroom(const RunResult& run) {
   return out + "\n";
 }
 
-// A golden that is missing is missing at every rate: equal errors are shown once.
+// Equal errors are shown once with their number: a missing golden, for example, is an error at
+// every rate.
 std::string errors(const RunResult& run, TerminalStyle style) {
   std::vector<std::pair<std::string, std::size_t>> distinct;
   for (const Error& error : run.errors) {
@@ -257,7 +259,7 @@ std::string painted(std::string_view text, Colour colour, TerminalStyle style) {
 
 namespace {
 
-// A line, or a line for each profile.
+// One line for a single claim; else a line for each claim, and one with suite, port and date.
 std::string conformance(const RunResult& run) {
   const auto [claims, subject] = statement_of(run);
   if (claims.size() == 1) return fmt::format("conformance: {}\n", conformance_statement(run));

@@ -25,7 +25,7 @@ std::size_t columns_of(std::string_view text) {
   return columns;
 }
 
-// "  reproduce: attest run ...", "  also at 250 Hz: --filter ..."
+// True for lines such as "reproduce: attest run ..." and "also at 250 Hz: --filter ...".
 bool has_command(std::string_view line) {
   for (const std::string_view begin : {"attest ", "--filter "}) {
     const std::size_t at = line.find(begin);
@@ -45,7 +45,7 @@ std::string broken_line(std::size_t width, std::string_view line) {
     const std::size_t end = std::min(line.find(' ', begin), line.size());
     const std::string_view word = line.substr(begin, end - begin);
     const bool is_first = begin == indent;
-    // A word that fits on no line stays where it is.
+    // A word that is too long for the next line also stays on this line.
     const bool fits_below = indent + 4 + columns_of(word) <= width;
     if (!is_first && fits_below && used + 1 + columns_of(word) > width) {
       out += "\n" + std::string(indent + 4, ' ');

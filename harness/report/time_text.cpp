@@ -96,7 +96,7 @@ ordered_json modules_json(const CorpusTimes& times) {
   return out;
 }
 
-// A row for each module, because their steps are of different tasks.
+// A row for each module, because steps of different modules are not comparable.
 std::string table(const CorpusTimes& times) {
   constexpr int title_width = 15;
   std::string out = fmt::format("{:<{}}", "", title_width);

@@ -16,19 +16,20 @@ struct TimeRun {
   std::optional<double> budget_us;
   CorpusTimes times;
   std::vector<std::uint64_t> instructions;  // of the slowest vector's steps; empty: not counted
-  std::uint64_t allowed = 0;                // steps over the budget
+  std::uint64_t allowed = 0;                // number of steps that may be over the budget
 };
 
 // REQUIRES: at least one vector was timed.
 std::string render_times(const TimeRun& run);
 
-// A line for each vector that fails a run. Consecutive vectors with the same reason are counted in
-// one line. Empty if no vector fails.
+// A line for each failing vector. If failing vectors with the same reason follow, one more line has
+// their number. Empty if no vector fails.
 std::string what_went_wrong(const TimeRun& run);
 
 // {"schema": "attest-time-1", "attest_version": ..., "port": ..., "repeats": 5, "budget_us": null,
 //  "all": {figures}, "modules": {"rate_unit": {figures}}, "slowest": id, "instructions": [...],
 //  "vectors": [{"id": ..., "module": "rate_unit", figures}, ...]}
+// figures: members such as "max_ns" and "steps". A vector that was not timed has no figures.
 std::string time_json(const TimeRun& run);
 
 }  // namespace attest

@@ -1,4 +1,4 @@
-// Shared by the reports in XML.
+// A helper of the reports in XML.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// A job: tasks in a row, each with a result of the job's own type. Jobs run in a chosen number of
-// worker processes, and the results are the same for any number.
+// A job: tasks in a row, each with a result of the type R. Jobs run in a chosen number of worker
+// processes, and the results are the same for any number of processes.
 #pragma once
 
 #include <cstddef>
@@ -22,14 +22,16 @@ class Job {
 
   virtual std::size_t size() const = 0;  // tasks
 
-  // Called in a worker process that begins with this job, before open(). The process runs other
-  // jobs of the same kind afterwards. After an error another worker runs the job, if there is one.
+  // Called before open() in a worker process whose first job this is. The process may run other
+  // jobs of the same kind afterwards. After an error another worker runs the job; if there is no
+  // other worker, the error becomes an error of the job. Not called with JobOptions::in_process.
   virtual Result<void> begin_worker() { return {}; }
 
-  // Called after close(). True if the worker cannot run other jobs.
+  // Called after the last close(). True if the worker must not run other jobs.
   virtual bool ends_worker() const { return false; }
 
-  // Called before the first task. An error applies to all tasks not yet run, which are left out.
+  // Called before the first task, and again after is_spent(). An error applies to all tasks not yet
+  // run, which are left out.
   virtual Result<void> open() { return {}; }
 
   // REQUIRES: open() succeeded.
@@ -38,7 +40,7 @@ class Job {
   // Called after a task. True if the job must be closed and opened again before the next task.
   virtual bool is_spent() const { return false; }
 
-  // Called after the last task, or after an open() that failed. Undoes open().
+  // Undoes open(). Called after the last task, when is_spent(), and after an open() that failed.
   virtual void close() {}
 };
 
@@ -92,7 +94,7 @@ class Collector {
  public:
   Collector(std::size_t jobs, const JobOptions<R>& options) : options_(options), of_jobs_(jobs) {}
 
-  // Both return false if the jobs after this one are not needed.
+  // fail() and take() return false if the jobs after `job` are not needed.
   bool fail(std::size_t job, const Error& error) {
     of_jobs_[job].errors.push_back(error);
     return !options_.fail_fast;

@@ -35,7 +35,7 @@ class Pool {
   struct Worker {
     Child child;
     std::size_t work;
-    std::size_t open_tasks;  // of this work
+    std::size_t open_tasks;  // of `work`, without an answer yet
     bool over = false;
   };
 
@@ -53,7 +53,8 @@ class Pool {
     }
   }
 
-  // Work that a worker has given back, or else the next one with tasks. Empty: all is given.
+  // Work that a worker has given back, or else the next work with tasks. Empty: no needed work is
+  // left to give.
   std::optional<std::size_t> next_work() {
     if (!given_back_.empty() && *given_back_.begin() < end_) return *given_back_.begin();
     while (next_ < end_ && work_[next_].tasks == 0) ++next_;
@@ -67,8 +68,8 @@ class Pool {
     return work;
   }
 
-  // A worker, or what it needs, cannot be started, perhaps because there are too many processes.
-  // The others, if there are any, do the work.
+  // A worker, or a process that it needs, cannot be started, perhaps because there are too many
+  // processes. `others` is the number of other workers: if there are any, they do the work.
   void cannot_begin(std::size_t work, const Error& error, std::size_t others) {
     most_ = std::max<std::size_t>(others, 1);
     if (others > 0) {
@@ -100,7 +101,8 @@ class Pool {
     }
   }
 
-  // REQUIRES: next_work(). If the worker has died, the wait for its answer finds out how.
+  // REQUIRES: next_work(). A failure of send() is ignored, because serve() notices that the worker
+  // has died.
   void give_work(Worker& worker) {
     worker.work = take_work();
     worker.open_tasks = work_[worker.work].tasks;
@@ -166,7 +168,7 @@ class Pool {
   const PoolOptions& options_;
   std::vector<Worker> workers_;
   std::size_t most_;      // workers at a time
-  std::size_t next_ = 0;  // to be given to a worker
+  std::size_t next_ = 0;  // the next work for a worker
   std::size_t end_;       // of the needed work
   std::set<std::size_t> given_back_, retried_;
 };

@@ -14,10 +14,10 @@ namespace attest {
 // Some tasks in a row for one process.
 struct Work {
   std::size_t tasks = 0;
-  // Called in a worker if this is its first piece of work, before `run`. After an error another
-  // worker does the work, if there is one.
+  // Called before `run` in a worker whose first piece of work this is. After an error another
+  // worker does the work; if there is no other worker, on_error is called.
   std::function<Result<void>()> begin_worker = [] { return Result<void>(); };
-  // Sends an answer, and the number of tasks that it is for.
+  // Sends an answer, and the number of tasks to which it applies.
   using Done = std::function<void(const std::string& answer, std::size_t tasks)>;
   // Called in a worker: does the tasks in their order. The worker does other work afterwards,
   // unless `ends_worker` returns true.
@@ -29,11 +29,12 @@ struct Work {
 struct PoolOptions {
   int processes = 1;
   std::function<bool()> stop = [] { return false; };  // true: end soon, answers are not needed
-  // Called in the caller's process, in any order. False: begin no later piece.
+  // Called in the caller's process, in any order of the pieces. Returns false if the pieces after
+  // `work` are not needed.
   std::function<bool(std::size_t work, const std::string& answer)> on_answer;
-  // Called if no process can be started, or a process died. The rest of the piece is not done. A
-  // process that died is a bug of attest, because the code of a port runs in processes of its own
-  // (host/port_process.hpp). Returns the same as on_answer.
+  // Called if no worker can begin the piece, or if its worker died. The rest of the piece is not
+  // done. The death of a worker is a bug of attest, because the code of a port runs in processes of
+  // its own (host/port_process.hpp). Returns the same as on_answer.
   std::function<bool(std::size_t work, const Error& error)> on_error;
 };
 

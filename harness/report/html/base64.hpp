@@ -9,7 +9,7 @@ namespace attest {
 
 std::string base64(std::string_view bytes);
 
-// Of the bytes of the numbers, least significant byte first.
+// Base64 of the bytes of the numbers, least significant byte first.
 std::string base64(std::span<const float> numbers);
 
 }  // namespace attest

@@ -72,7 +72,7 @@
     ];
   };
 
-  // `row` is an entry of the list; null: the details are empty.
+  // `row`: an entry of the list; null empties the details.
   attest.showDetails = (place, row) => {
     removePlots();
     if (!row) return place.replaceChildren();

@@ -1,11 +1,11 @@
-// The files of the page, which are part of the attest binary.
+// The files of the pages, which are part of the attest binary.
 #pragma once
 
 #include <string_view>
 
 namespace attest {
 
-// The page without data (mustache), its style and its scripts: files of this folder.
+// The page of `run --html`: its template (mustache), its styles and its scripts.
 std::string_view page_template();
 std::string_view page_style();
 std::string_view results_style();

@@ -19,8 +19,8 @@ std::string plant_of(const SimulatedFlight& flight) {
   return configuration ? std::string(name_of(configuration->plant)) : "";
 }
 
-// The port of one flight may fail before there are metrics, so the rows are those of the flight
-// that has most.
+// A flight in which the port fails may have no metrics, so the rows are those of the flight with
+// the most metrics.
 PageTable metrics_table(const std::vector<SimulatedFlight>& flights) {
   const auto most = std::max_element(flights.begin(), flights.end(),
                                      [](const SimulatedFlight& a, const SimulatedFlight& b) {

@@ -9,7 +9,7 @@
 
 namespace attest {
 
-// Several flights are those of one case on several plants: they are in the same plots, with the
+// Several flights must be those of one case on several plants. They are in the same plots, with the
 // names of the plants. A flight without a tick has no plots. REQUIRES: at least one flight.
 std::string flight_page(const std::vector<SimulatedFlight>& flights, const PortSays& port);
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t most_frames = 2000;  // of the animation
 
-// The column of that name: a channel, or one of the plant.
+// The values of the column `name`: of a channel, or else of the plant.
 std::vector<float> column(const Trace& flown, std::string_view name) {
   std::vector<float> values;
   if (const auto channel = find_channel(module_of(flown.present), name)) {
@@ -40,8 +40,8 @@ Quaternions quaternions(const Trace& flown, const std::string& name) {
   return out;
 }
 
-// Roll, pitch and yaw [deg] of the rotation from body to world, in this order of the axes: yaw,
-// then pitch, then roll (as the class Euler of PX4).
+// Roll, pitch and yaw [deg] of the rotation from body to world. The intrinsic rotations are yaw,
+// then pitch, then roll, as in the class Euler of PX4.
 std::array<float, 3> euler_deg(float w, float x, float y, float z) {
   const float degrees = 180 / std::numbers::pi_v<float>;
   const float sin_pitch = std::clamp(2 * (w * y - z * x), -1.0f, 1.0f);
@@ -86,12 +86,13 @@ std::vector<double> seconds(const Trace& flown) {
   return out;
 }
 
-// The signals of each flight; the setpoints that they should follow, of the first flight only.
+// Returns the columns to plot of a flight.
 using ColumnsOf = std::function<Columns(const Flown&)>;
 
 Plot plot_of(const std::vector<NamedFlight>& flights, Plot plot, const ColumnsOf& signals,
              const ColumnsOf& setpoints = {}) {
-  // Flights that agree lie on each other. A dark dotted line on a coloured one is still seen.
+  // The lines of flights that agree coincide. A dark dotted line on a coloured line remains
+  // visible.
   constexpr int dark = 5;
   const auto add = [&](const NamedFlight& flight, const Columns& columns, LinePattern pattern) {
     const std::string suffix = flight.name.empty() ? "" : " (" + flight.name + ")";
@@ -113,7 +114,7 @@ ColumnsOf named(std::vector<std::string> names) {
   return [names = std::move(names)](const Flown& flown) { return columns_of(flown.trace, names); };
 }
 
-// The columns of the motors that this vehicle has.
+// The columns of the motors that turn during the flight, and of motor 0.
 Columns motors(const Flown& flight) {
   const Trace& flown = flight.trace;
   std::vector<std::string> names;
@@ -150,7 +151,7 @@ ReplayVehicle replay_of(const NamedFlight& flight) {
   return vehicle;
 }
 
-// The names of what the law of a flight puts out.
+// The names of the columns with the outputs of the law.
 struct LawColumns {
   std::vector<std::string> rates_setpoint, controls, integrals;
   const char* saturation;  // title of its plot

@@ -53,7 +53,7 @@ Plot histogram_plot(std::string title, const std::vector<NamedHistogram>& histog
     }
   }
   if (first > last) return plot;
-  // A mark near the samples is in the plot.
+  // The plot extends to marks within two decades of the samples.
   constexpr int near = static_cast<int>(2 * bars_per_decade);
   const int from = first - near, to = last + near;
   for (const PlotMark& mark : plot.marks) {

@@ -16,9 +16,10 @@ struct NamedHistogram {
 
 double microseconds(Nanoseconds time);
 
-// Bars of equal ratio, 20 for a factor of ten, over the time [us]: the share of the samples [%] of
-// each histogram. Both axes are logarithmic, so that one slow sample of many is seen. Histograms
-// without samples are left out; without any histogram the plot has no series.
+// The share of the samples [%] of each histogram, as bars over the time [us]. A factor of ten has
+// 20 bars of equal width on the logarithmic axis. Both axes are logarithmic, so that a single slow
+// sample among many is visible. Histograms without samples are left out; without any histogram the
+// plot has no series.
 Plot histogram_plot(std::string title, const std::vector<NamedHistogram>& histograms,
                     std::vector<PlotMark> marks);
 

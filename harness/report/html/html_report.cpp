@@ -9,8 +9,8 @@
 namespace attest {
 
 std::string html_report(const Report& report) {
-  // The last place with these characters is in the template: mustache writes the quotes and `>` in
-  // the texts of a port as entities.
+  // The last occurrence of these characters is that of the template, because mustache escapes the
+  // quotes and `>` in the texts of a port.
   constexpr std::string_view begin_of_plots = R"(id="plots">)";
   std::string page = filled_page(report);
   const std::size_t left = most_page_bytes - std::min(most_page_bytes, page.size());

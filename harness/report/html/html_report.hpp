@@ -9,7 +9,7 @@
 
 namespace attest {
 
-// The plots get the bytes that the results leave free.
+// The plots get the bytes that the rest of the page leaves free.
 inline constexpr std::size_t most_page_bytes = 4'900'000;
 
 // Text of the port (name, reasons) is escaped. A content security policy admits only the scripts of

@@ -3,7 +3,7 @@
 'use strict';
 (() => {
   const element = attest.element;
-  const rowHeight = 28; // as in page.css
+  const rowHeight = 28; // as in results.css
   const table = document.getElementById('results');
   const columns = [...table.tHead.rows[0].cells].map((cell) => cell.dataset.name);
   const verdicts = [...document.querySelectorAll('#verdicts span')].map((span) => span.dataset);
@@ -30,7 +30,7 @@
   let shown = rows;
   let selected = null;
 
-  // A group is "profile/group", or a profile for all its groups.
+  // chosen.group is "profile/group", or a profile for all its groups.
   const isInGroup = (row) =>
     !chosen.group || row.group === chosen.group || row.group.startsWith(`${chosen.group}/`);
   const matches = (row) =>
@@ -259,7 +259,8 @@
   };
   const usualStage = commonStage();
 
-  // A typical failure among the rows that are shown, if possible with plots.
+  // A typical failure among the shown rows: one with plots, and of the usual stage, if there is
+  // one.
   const firstToShow = () => {
     const failed = shown.filter((row) => failing.has(row.verdict));
     const plotted = failed.filter((row) => attest.plotsOf(row.id));

@@ -112,7 +112,7 @@ void add_diagnosis(const std::optional<Diagnosis>& found, data& page) {
   page.set("diagnosis", diagnosis);
 }
 
-// Names and values; a row without a value is left out.
+// Names and values. add_facts() leaves out an empty value.
 std::vector<std::pair<std::string, std::string>> facts_of(const RunResult& run) {
   std::vector<std::string> rates;
   for (const LoopRate& rate : run.rates) rates.push_back(rate.to_string());
@@ -156,7 +156,7 @@ void add_verdicts(data& page) {
   page.set("verdicts", list);
 }
 
-// `group` and `rate` are those of the results in the cell. `group` is "profile/group", or the
+// `group` and `rate` select the results of the cell in the list. `group` is "profile/group", or the
 // profile in the row of totals; `rate` is a label, or empty in the column of totals.
 data cell_to_data(const MatrixCell& cell, const std::string& group, const std::string& rate) {
   data out;

@@ -10,8 +10,8 @@
 namespace attest {
 namespace {
 
-// Runs before the body is shown, so that a browser does not lay out the table of all results, which
-// page.js replaces by a list.
+// Runs before the body is shown. The class `scripted` hides the table of all results, so that a
+// browser does not lay it out; page.js replaces it by a list.
 constexpr std::string_view boot_script = "document.documentElement.classList.add('scripted')";
 
 // 'sha256-...' of a script, as a content security policy names it.

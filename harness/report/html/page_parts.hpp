@@ -1,4 +1,4 @@
-// What the pages have in common: their files, the symbols of verdicts, data for mustache.
+// Functions for all pages: their styles and scripts, the symbols of verdicts, data for mustache.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ using kainjow::mustache::data;
 
 data text(std::string_view value);
 
-// An empty value stays absent: mustache shows a section for each text, empty ones too.
+// Does not set an empty value, because mustache shows a section also for an empty text.
 void set_text(data& out, const char* name, std::string_view value);
 
 template <typename Items, typename ToData>
@@ -28,7 +28,7 @@ data list_of(const Items& items, ToData to_data) {
 
 std::string_view symbol_of(Verdict verdict);  // one character
 
-// Adds the styles, dygraphs, the shared script and these scripts, by the names in the template, and
+// Adds the styles, dygraphs, the shared script and `scripts` under their names in the template, and
 // the hashes of all scripts for the content security policy.
 void add_files(data& page, const std::vector<std::pair<const char*, std::string_view>>& scripts);
 

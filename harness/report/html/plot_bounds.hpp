@@ -11,7 +11,8 @@ struct DrawnBounds {
   float low, high;
 };
 
-// A bound that is infinite is drawn at the outermost value of the series.
+// An infinite bound is drawn at the outermost value of the series, or at the other bound if that is
+// farther out.
 DrawnBounds drawn_bounds(double min, double max, const std::vector<PlotSeries>& series);
 
 }  // namespace attest

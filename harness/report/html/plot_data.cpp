@@ -18,10 +18,10 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t most_plot_points = 2000;  // of a plot; it is about 1000 pixels wide
+constexpr std::size_t most_plot_points = 2000;  // of a plot, which is about 1000 pixels wide
 
-// Everything in a plot that has the same x values, and the ticks at which it is drawn. So equal
-// signals of two traces are drawn at the same ticks, and the page has these x values once.
+// All values of a plot that share the same x values, and the ticks at which they are drawn. So
+// signals with equal x values are drawn at the same ticks, and the page has these x values once.
 struct Grid {
   const std::vector<double>* x;
   std::vector<std::vector<float>> values;

@@ -1,10 +1,10 @@
-// A page with a conclusion, facts, tables and plots. `attest run --html` has a page of its own; the
-// pages of all other commands are a PlotPage:
+// A page with a conclusion, facts, tables and plots. `run --html` and `merge --html` have another
+// page (html_report.hpp); the pages of all other commands are a PlotPage:
 //
 //     PlotPage page;
-//     page.conclusion = {Verdict::fail, "differ", "got.csv and want.csv", "3 of 28 signals
-//     differ"}; page.facts = {{"tolerance", "1e-4"}}; page.tables = {{"Signals", {"signal",
-//     "deviating", "worst"},
+//     page.conclusion = {Verdict::fail, "differ", "got.csv and want.csv", "3 of 28 differ"};
+//     page.facts = {{"tolerance", "1e-4"}};
+//     page.tables = {{"Signals", {"signal", "deviating", "worst"},
 //                     {{"out/vehicle_rates_setpoint.roll", "17", "0.2"}}}};
 //     Plot roll{"out/vehicle_rates_setpoint.roll", "rad/s"};
 //     roll.series = {{"got.csv", got_s, got_values}, {"want.csv", want_s, want_values}};
@@ -52,8 +52,8 @@ struct PageCell {
   std::string small;
 };
 
-// The first cell of a row is its header. A column is aligned to the right if all its cells begin
-// with a number or are empty. Scripts are not needed to read it.
+// The first cell of a row is its header. Another column is aligned to the right if each of its
+// cells begins with a number, is empty or is "-". The table can be read without scripts.
 struct PageTable {
   std::string caption;
   std::vector<std::string> header;
@@ -63,17 +63,18 @@ struct PageTable {
 enum class LinePattern { solid, dashed, dotted };
 
 // Values over x, in the order of increasing x. A NaN is a gap in the line. Each series may have x
-// values of its own. They are written as float32, so use times from the beginning of a trace, in
-// seconds. REQUIRES: x and y have equal sizes.
+// values of its own. All values are written as float32, so use times from the beginning of a trace,
+// in seconds. REQUIRES: x and y have equal sizes.
 struct PlotSeries {
   std::string name;
   std::vector<double> x;
   std::vector<float> y;
   LinePattern pattern = LinePattern::solid;
-  std::optional<int> colour = {};  // 0..5 in the palette, 5: dark; absent: the place in the plot
+  std::optional<int> colour = {};  // index in the palette, 5: dark; absent: the index of the series
 };
 
-// An area between two lines, behind the series: a tolerance. REQUIRES: three equal sizes.
+// An area between two lines, behind the series: a tolerance. REQUIRES: x, low and high have equal
+// sizes.
 struct PlotBand {
   std::string name;
   std::vector<double> x;
@@ -83,12 +84,12 @@ struct PlotBand {
 enum class PlotShape {
   line,
   steps,    // a value holds until the next x
-  bars,     // a filled step down to the axis; the last y of a series only ends the last bar
+  bars,     // filled down to the axis; the last x ends the last bar, and its y is not drawn
   points,   // a symbol for each series
-  scatter,  // the same, but dots for the first series, and without the value 0
+  scatter,  // as points, but dots for the first series; the y axis need not include 0
 };
 
-// A vertical line: the first deviation, a budget.
+// A vertical line with a text: the first deviation, a budget.
 struct PlotMark {
   double x = 0;
   std::string text;
@@ -96,16 +97,16 @@ struct PlotMark {
 
 struct Plot {
   std::string title;
-  std::string unit = {};  // of y; may be empty
+  std::string unit = {};  // the unit of y; may be empty
   std::string note = {};  // small, next to the title; may be empty
   std::vector<PlotSeries> series = {};
   std::optional<PlotBand> band = {};
   std::vector<PlotMark> marks = {};
   PlotShape shape = PlotShape::line;
-  bool logarithmic_x = false, logarithmic_y = false;  // values up to 0 are not drawn
+  bool logarithmic_x = false, logarithmic_y = false;  // values <= 0 are not drawn
 };
 
-// Plots over the same x. Cursor and zoom in x are common to all plots of a group.
+// Plots over the same quantity x. All plots of a group have the same cursor and the same zoom in x.
 struct PlotGroup {
   std::string title;    // may be empty
   std::string x_label;  // with its unit: "time from the first tick [s]"
@@ -118,13 +119,13 @@ struct PlotPage {
   std::vector<PageFact> facts;  // a fact without a value is left out
   std::vector<PageTable> tables;
   std::vector<PlotGroup> groups;
-  std::vector<ReplayVehicle> replay;  // follows the cursor of the first group; empty: none
+  std::vector<ReplayVehicle> replay;  // follows the cursor of the first group; empty: no animation
 };
 
-// One file that needs no other file and no network. All texts are escaped, and control characters
-// in them removed (one_line()). A content security policy admits only the scripts of the page.
-// Long series are drawn at the samples of extreme_ticks(), at most about 2000 for each plot, so
-// that no spike is lost. Deterministic.
+// Returns a page that needs no other file and no network. All texts are escaped, and control
+// characters in them removed (one_line()). A content security policy admits only the scripts of the
+// page. Long series are drawn at the samples of extreme_ticks(), at most about 2000 for each plot,
+// so that no spike is lost. Deterministic.
 std::string plot_page(const PlotPage& page);
 
 }  // namespace attest

@@ -1,4 +1,4 @@
-// The plots of a PlotPage. `attest.plotGroups` lets the animation move the cursor and follow it.
+// The plots of a PlotPage. The animation moves and follows the cursor through `attest.plotGroups`.
 'use strict';
 (() => {
   const {element, floats, colour, nearest, shown, styledAxes} = attest;
@@ -8,7 +8,7 @@
 
   const isOfPoints = (shape) => shape === 'points' || shape === 'scatter';
 
-  // A sixth series has the first colour again, so its line is dashed.
+  // The seventh series has the first colour again, so its line is dashed.
   const styleOf = ({colour: number, pattern}) => ({
     colour: colour(palette[number % palette.length]),
     pattern: pattern === 'solid' && number >= palette.length ? [7, 3] : patterns[pattern],
@@ -33,7 +33,8 @@
     return {...plot, series, band};
   };
 
-  // dygraphs needs one x for all series: null is "no sample here", and the line goes on.
+  // dygraphs needs the same x for all series. null: the series has no sample at this x, and its
+  // line goes on.
   const rowsOf = ({series, band, logarithmic_x}) => {
     const lines = series.map(({x, y}) => ({x, y}));
     if (band) lines.push({x: band.x, y: band.low}, {x: band.x, y: band.high});
@@ -146,7 +147,7 @@
     }
   };
 
-  // Many dots: where they are dense, the colour is dark.
+  // The dots are translucent, so that dense places look darker.
   const drawDots = ({style}) => ({drawingContext: context, points}) => {
     context.fillStyle = style.colour;
     context.globalAlpha = 0.45;
@@ -168,7 +169,7 @@
     return options;
   };
 
-  // The lowest bar of a logarithmic axis would have no height.
+  // With the default range of a logarithmic axis, the lowest bar would have no height.
   const valueRange = ({shape, logarithmic_y, series}) => {
     if (shape !== 'bars' || !logarithmic_y) return null;
     const values = series.flatMap(({y}) => y).filter((value) => value > 0);
@@ -193,7 +194,7 @@
       drawPoints: plot.shape === 'line' && !isLong,
       pointSize: 2.5,
       includeZero: (plot.shape === 'bars' || plot.shape === 'points') && !plot.logarithmic_y,
-      xRangePad: plot.logarithmic_x ? 0 : options.xRangePad, // it may reach below 0
+      xRangePad: plot.logarithmic_x ? 0 : options.xRangePad, // the padding may reach below 0
       valueRange: valueRange(plot),
       logscale: plot.logarithmic_y,
       underlayCallback: underlay(plot),
@@ -218,7 +219,7 @@
     return key;
   };
 
-  // A button for each series, which hides the series; it also shows the value at the cursor.
+  // A button for each series, which hides or shows the series. It also has the value at the cursor.
   const legendOf = (plot, toggle) => {
     const values = plot.series.map(() => element('span', {className: 'at-cursor'}));
     const buttons = plot.series.map((series, i) => {
@@ -284,7 +285,7 @@
       this.data = data;
       this.cursor = null;
       this.plots = [];
-      this.onCursor = () => {}; // called when the user has moved it
+      this.onCursor = () => {}; // called when the user moves the cursor
       this.place = element('div', {className: 'group'});
     }
 

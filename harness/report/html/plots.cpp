@@ -21,7 +21,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t most_signals = 8;    // of a vector
-constexpr std::size_t most_points = 1200;  // of a curve; a plot is about 600 pixels wide
+constexpr std::size_t most_points = 1200;  // of a curve (approximate); a plot has about 600 pixels
 
 struct Traces {
   Trace got, want;
@@ -98,7 +98,7 @@ json vector_to_json(const Traces& traces, const Deviation& first) {
 
 std::vector<const CaseResult*> vectors_to_plot(const RunResult& run, std::size_t most) {
   struct Candidate {
-    std::size_t round;     // how many rates of its group come before it
+    std::size_t round;     // number of rates of the same group before it
     std::size_t position;  // in the results
   };
   std::map<std::pair<std::string, std::string>, std::vector<LoopRate>> seen;

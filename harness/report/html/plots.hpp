@@ -12,15 +12,17 @@ namespace attest {
 
 inline constexpr std::size_t most_plotted_vectors = 100;
 
-// The failing vectors that the page plots: of each group, the first failing vector at each rate.
-// If these are more than `most`, every group has its first rates. A vector without a first
-// deviation (a crash, a metric of a flight) is left out. In the order of the results.
+// The failing vectors that the page plots, in the order of the results: of each group, the first
+// failing vector at each rate. If these are more than `most`, the first rates of every group are
+// taken before the further ones. A vector without a first deviation (a crash, a metric of a flight)
+// is left out.
 std::vector<const CaseResult*> vectors_to_plot(const RunResult& run,
                                                std::size_t most = most_plotted_vectors);
 
-// Reads the traces of vectors_to_plot() in `folder` (saved_traces.hpp). A vector without traces
-// there is left out, and so is one that would make the text longer than `most_bytes`. The result is
-// an object by the ids of the vectors; `<` is escaped, so that it can stand in a <script>:
+// Reads the traces of vectors_to_plot() in `folder` (saved_traces.hpp). A vector without traces in
+// `folder` is left out, and so is a vector that would make the text longer than `most_bytes`. The
+// keys are the ids of the vectors. `<` is escaped, so that the text can be the content of a
+// <script>:
 //
 //     {"px4-v1.5.5/tpa/each_axis@250hz":
 //      {"ticks": 5000, "repeated": true, "hidden": 0, "signals": [{
@@ -28,10 +30,10 @@ std::vector<const CaseResult*> vectors_to_plot(const RunResult& run,
 //       "deviating": 48, "first_tick": 17,
 //       "tick": "...", "time": "...", "got": "...", "want": "...", "allowed": "..."}]}}
 //
-// The last five are base64 of float32; time is in seconds from the first tick. `allowed` is a
-// number if it is constant, and absent if the level has no tolerances. `repeated` is false if the
+// The texts "..." are base64 of float32; time is in seconds from the first tick. `allowed` is a
+// number if it is constant, and absent if the tolerances are not known. `repeated` is false if the
 // traces do not have the first deviation of the result: then the port gave other outputs when it
-// ran again for its traces. `hidden` counts further deviating signals.
+// ran again for its traces. `hidden` is the number of deviating signals that are not plotted.
 std::string plots_json(const RunResult& run, const std::filesystem::path& folder,
                        std::size_t most_bytes);
 

@@ -93,7 +93,7 @@
   const key = (name, text) =>
     element('span', {}, element('span', {className: `key ${name}`}), text);
 
-  // What the cursor points at, in place of the legend of dygraphs.
+  // The values at the cursor, in place of the legend of dygraphs.
   const reading = (curves, i) => {
     if (i < 0) {
       const parts = [key('want', 'expected'), '\u2003'];

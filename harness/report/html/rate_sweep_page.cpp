@@ -21,9 +21,9 @@ namespace {
 
 constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
 
-// A row of the table with the flights without further delay, by their rate [Hz].
+// A row of the table, and the flights of its vehicle and plant without further delay, by rate [Hz].
 struct Line {
-  int vehicle = 0;  // its number
+  int vehicle = 0;  // number of the vehicle, for the colour
   RateSweepRow row;
   std::map<double, RateSweepTrial> flights;
 
@@ -52,7 +52,8 @@ std::vector<Line> lines_of(const RateSweepRun& run) {
   return lines;
 }
 
-// A vehicle has a colour. Its second plant has a dark dotted line, because both often coincide.
+// Each vehicle has a colour. On plants other than the first of plant_kinds its line is dark and
+// dotted, because the lines of two plants often coincide.
 PlotSeries empty_series(const Line& line) {
   constexpr int dark = 5;
   const bool is_first = line.row.plant_configuration.plant == plant_kinds.front();

@@ -11,16 +11,16 @@
 namespace attest {
 
 struct RateSweepRun {
-  std::string port;  // as given
+  std::string port;  // the value of --port
   PortSays says;
   Case the_case;
   std::vector<LoopRate> rates;
-  std::vector<RateSweepResult> results;  // of RateSweepJobs, in their order
+  std::vector<RateSweepResult> results;  // of the RateSweepJobs, in their order
 };
 
-// The page has a table of the limits, and a table of the bounds that are missed at the highest rate
-// that misses any. It plots each metric with its bounds, and the largest delay, over the rate. Each
-// vehicle and plant has a line.
+// The page has a table of the limits. For each vehicle and plant, a second table has the highest
+// rate at which a bound is missed, and the missed bounds. It plots each metric with its bounds, and
+// the largest delay, over the rate. Each vehicle on each plant has a line.
 std::string rate_sweep_page(const RateSweepRun& run);
 
 }  // namespace attest

@@ -1,5 +1,4 @@
-// The animation of a flight: the attitude at the time to which the slider or the pointer in a plot
-// points.
+// The animation of a flight: the attitude at the time of the slider or of the cursor in a plot.
 'use strict';
 (() => {
   const place = document.querySelector('.replay');
@@ -16,7 +15,7 @@
     ];
   };
 
-  // Seen from behind, from the left and from above.
+  // An oblique view from behind, from the right and from above.
   const projected = ([north, east, down], size) => {
     const scale = size * 0.36;
     return [size / 2 + scale * (east + 0.35 * north), size / 2 + scale * (down - 0.35 * north)];
@@ -80,7 +79,7 @@
   const clock = element('output', {className: 'reading'});
   const play = element('button', {type: 'button'}, 'Play');
 
-  // The second vehicle has one colour and thin lines.
+  // `quiet` is for the setpoint. The second vehicle has one colour and thin lines.
   const quiet = {front: 'quiet', back: 'quiet', up: 'quiet', width: 1.5, pattern: [5, 4]};
   const solid = [
     {front: 'got', back: 'expected', up: 'pass', width: 3, pattern: []},

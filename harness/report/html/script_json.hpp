@@ -7,7 +7,8 @@
 
 namespace attest {
 
-// On one line. "</script" and "<!--" would end or change the element, so `<` is written as \u003c.
+// The JSON on one line. "</script" and "<!--" would end or change the element, so `<` is written as
+// \u003c.
 std::string script_json(const nlohmann::json& value);
 
 }  // namespace attest

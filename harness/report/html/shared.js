@@ -1,4 +1,4 @@
-// What the scripts of all pages share: the object `attest`.
+// The object `attest`, with the functions that the scripts of all pages share.
 'use strict';
 const attest = {};
 
@@ -44,7 +44,7 @@ const attest = {};
     },
   });
 
-  // The index of the time next to `time`: plots may be drawn at different ticks.
+  // The index of the time nearest to `time`, because plots may be drawn at different ticks.
   const nearest = (times, time) => {
     let low = 0,
       high = times.length - 1;
@@ -56,7 +56,7 @@ const attest = {};
     return times[high] - time < time - times[low] ? high : low;
   };
 
-  // `draw` draws all plots anew in other colours.
+  // Sets the function that draws all plots again when the colours have changed.
   let redraw = () => {};
   const onColoursChanged = (draw) => {
     redraw = draw;

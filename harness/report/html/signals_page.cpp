@@ -56,7 +56,7 @@ PlotSeries series_of(const TimedSignal& signal, const std::string& name, const S
   return series;
 }
 
-// The difference where both have a sample.
+// The difference at the times at which both signals have a sample.
 PlotSeries difference_of(const TimedSignal& got, const TimedSignal& want, const SecondsOf& clock,
                          std::int64_t shift_us) {
   PlotSeries series{"got - want", {}, {}};
@@ -72,7 +72,7 @@ PlotSeries difference_of(const TimedSignal& got, const TimedSignal& want, const 
   return series;
 }
 
-// Two plots: both signals, and below their difference.
+// Adds two plots: both signals, and their difference.
 void add_pair(const TimedSignal& got, const TimedSignal& want, const SecondsOf& clock,
               std::int64_t shift_us, PlotGroup& group) {
   const std::string unit = unit_of_signal(want.name);
@@ -100,7 +100,7 @@ std::vector<PageCell> row_of(const SignalComparison& signal) {
           value(signal.worst)};
 }
 
-// Those that differ come first.
+// Signals that differ come first.
 PageTable table_of(const SignalsComparison& comparison) {
   PageTable table{"Signals that both have",
                   {"signal", "", "samples", "deviating", "first [us]", "largest difference"}};
@@ -116,7 +116,7 @@ std::string joined(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-// One output: both at each tick that published it.
+// One output in both traces, each at the ticks that published the output.
 Plot plot_of_output(std::size_t index, const Channel& published, const Trace& want,
                     const Trace& got, const char* name_of_want) {
   const Channel& channel = channels()[index];
@@ -136,7 +136,7 @@ Plot plot_of_output(std::size_t index, const Channel& published, const Trace& wa
   return plot;
 }
 
-// The outputs that `want` has, of topics with a flag `published`.
+// The float32 outputs that `want` has, of topics with a flag `published`.
 PlotGroup plots_of_outputs(const Trace& want, const Trace& got, const char* name_of_want,
                            std::string caption = "Outputs") {
   PlotGroup group{std::move(caption), time_label, {}};

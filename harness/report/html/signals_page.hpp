@@ -10,25 +10,25 @@
 
 namespace attest {
 
-// These signals of all sources, a plot for each name. Times count from the first sample of all.
-// REQUIRES: each name is in at least one source.
+// The signals `names` of all sources, a plot for each name. Times count from the first sample of
+// all sources. REQUIRES: each name is in at least one source.
 std::string signals_page(const std::vector<TimedSignals>& sources,
                          const std::vector<std::string>& names);
 
-// The comparison of two sources by time. `shift_us` is that of compare_signals(); the page moves
-// `got` earlier by it. It plots the signals that deviate, at most most_plotted_signals, with their
-// difference.
+// The comparison of two sources by time. `shift_us` is that of compare_signals(); the page draws
+// `got` earlier by this time. It plots the signals that deviate, at most most_plotted_signals, and
+// their differences.
 inline constexpr std::size_t most_plotted_signals = 24;
 std::string comparison_page(const SignalsComparison& comparison, const TimedSignals& got,
                             const TimedSignals& want, std::int64_t shift_us);
 
-// A port against a log: for each unit, the agreement of each topic and got against logged for each
-// output. REQUIRES: a result for each unit.
+// A port compared with a log: for each unit, the agreement of each topic, and a plot of each output
+// of port and log. REQUIRES: a result for each unit.
 std::string log_page(const FlightLog& log, const std::vector<LogResult>& results,
                      const LogLimits& limits, const std::string& port);
 
-// A port against a trace: the first and the worst deviation, and got against want
-// for each output.
+// A port compared with a trace: the first and the worst deviation, and a plot of each output of
+// port and trace.
 std::string trace_page(const Trace& want, const Trace& got, const CaseResult& result,
                        const std::string& port);
 

@@ -7,8 +7,8 @@
 
 namespace attest {
 
-// Per rate: verdict and reason, the distributions of the times with those of the idle machine, and
-// a timeline of the flight.
+// For each rate and unit: verdict and reason, the distributions of the times, with the wake-up
+// latency of the idle machine, and a timeline of the flight.
 std::string stress_page(const StressRun& run);
 
 }  // namespace attest

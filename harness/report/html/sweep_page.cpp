@@ -14,7 +14,7 @@
 namespace attest {
 namespace {
 
-// The table of the worst flights stays readable.
+// More columns would make the table of the worst flights hard to read.
 constexpr std::size_t most_shown_dispersions = 12;
 
 std::string figure(double value) { return fmt::format("{:.4g}", value); }

@@ -16,11 +16,12 @@ struct SweepRun {
   const SampleData& data;
   const SweepSummary& summary;
   const SweepIdentity& identity;
-  std::filesystem::path kept;  // the folder of keep_flights(); empty: none are kept
+  std::filesystem::path kept;  // the folder of keep_flights(); empty: no flight was kept
 };
 
 // Requirements, metrics, differences from the reference, sensitivities and worst flights as tables;
-// distributions, and metrics over dispersions, as plots. A few megabytes for any number of samples.
+// distributions, and metrics over dispersions, as plots. The page has a few megabytes, with any
+// number of samples.
 std::string sweep_page(const SweepRun& run);
 
 }  // namespace attest

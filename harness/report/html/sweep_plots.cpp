@@ -20,7 +20,7 @@ namespace {
 constexpr float not_drawn = std::numeric_limits<float>::quiet_NaN();
 constexpr int colour_of_worst = 2;
 
-// The places in `count` sorted values at which a distribution is drawn.
+// The indices in `count` sorted values at which a distribution is drawn.
 std::vector<std::size_t> drawn_ranks(std::size_t count) {
   std::vector<std::size_t> ranks;
   const std::size_t middle = most_drawn_quantiles;
@@ -37,7 +37,7 @@ std::vector<std::size_t> drawn_ranks(std::size_t count) {
   return ranks;
 }
 
-// The share of `flights` [%] with at most this value. Empty: no value is finite.
+// The share of `flights` [%] with at most the value x. Empty: no value is finite.
 PlotSeries cumulative(std::string name, const std::vector<double>& values, std::size_t flights) {
   PlotSeries series{std::move(name), {}, {}};
   std::vector<double> sorted;
@@ -55,14 +55,15 @@ PlotSeries cumulative(std::string name, const std::vector<double>& values, std::
   return series;
 }
 
-// Up to which distance from the values a bound is drawn: a bound far away would squeeze them.
+// The distance from the values up to which a bound is drawn. A bound farther away would compress
+// the values in the plot.
 double reach_of(double first, double last) {
   constexpr double widths = 4;
   return widths * (last > first ? last - first : std::max(std::abs(last), 1e-9));
 }
 
-// Continues the steps of a distribution to 0 on the left, and to the marks within its reach.
-// Returns the texts of the other marks.
+// Extends a distribution on the left with the share 0, and on both sides to the marks within
+// reach_of(). Returns the texts of the other marks.
 std::string extend(const std::vector<PlotMark>& marks, PlotSeries& series) {
   const double first = series.x.front(), last = series.x.back();
   const double reach = reach_of(first, last);
@@ -141,7 +142,7 @@ Plot difference_of(const SampleColumns& columns, const SampleData& data, std::si
   return plot;
 }
 
-// A group of its own for each plot, because each has other values on the x axis.
+// Each plot is a group of its own, because each plot has another quantity on the x axis.
 void add_distributions(const SweepFile& sweep, const SampleColumns& columns, const SampleData& data,
                        std::vector<PlotGroup>& groups) {
   const std::size_t first = groups.size();
@@ -173,7 +174,7 @@ std::vector<Pair> pairs_of(const SweepFile& sweep, const SweepSummary& summary) 
   return pairs;
 }
 
-// The strongest pairs, in the order of the file.
+// The pairs with the strongest correlation, in the order of the sweep file.
 std::vector<Pair> strongest(std::vector<Pair> pairs) {
   if (pairs.size() <= most_scatter_plots) return pairs;
   std::stable_sort(pairs.begin(), pairs.end(),
@@ -193,7 +194,8 @@ std::set<std::uint64_t> worst_of(const SweepSummary& summary) {
   return worst;
 }
 
-// A permutation chooses: a regular step could coincide with the levels of a grid.
+// A permutation chooses the samples, because a regular step could coincide with the levels of a
+// grid.
 std::set<std::uint64_t> drawn_samples(std::uint64_t samples, const std::set<std::uint64_t>& worst) {
   const SampleStream stream("the samples that a page draws");
   std::set<std::uint64_t> drawn = worst;
@@ -204,7 +206,8 @@ std::set<std::uint64_t> drawn_samples(std::uint64_t samples, const std::set<std:
   return drawn;
 }
 
-// A bound that is out of reach is not drawn.
+// Draws the bounds of the first requirement on the metric. A bound beyond reach_of() counts as
+// infinite.
 void add_band(const std::string& metric, const SweepFile& sweep, Plot& plot) {
   const auto& all = sweep.requirements;
   const auto one = std::find_if(all.begin(), all.end(),
@@ -220,7 +223,7 @@ void add_band(const std::string& metric, const SweepFile& sweep, Plot& plot) {
                        std::vector(x.size(), high)};
 }
 
-// All series have the same x, so that samples with equal numbers are drawn, too.
+// Both series have the same x. With different x, plot_page.js would merge samples with equal x.
 Plot scatter_of(const Pair& pair, const SweepFile& sweep, const SampleColumns& columns,
                 const SampleData& data, const std::set<std::uint64_t>& drawn,
                 const std::set<std::uint64_t>& worst) {

@@ -1,4 +1,4 @@
-// The plots of a dispersed sweep. What is drawn does not grow with the number of samples.
+// The plots of a dispersed sweep. The number of points does not grow with the number of samples.
 #pragma once
 
 #include <cstddef>
@@ -9,22 +9,23 @@
 
 namespace attest {
 
-// A distribution with more than most_drawn_quantiles + 2 * drawn_tail values is drawn as quantiles,
-// and each value of its tails is drawn.
+// A distribution with more than most_drawn_quantiles + 2 * drawn_tail values is drawn at
+// most_drawn_quantiles quantiles, and at each value of its tails.
 inline constexpr std::size_t most_drawn_quantiles = 900;
-inline constexpr std::size_t drawn_tail = 50;  // values at each end
-// Of a scatter plot: a random choice of the samples, and the worst ones.
+inline constexpr std::size_t drawn_tail = 50;  // number of values at each end
+// A scatter plot draws at most so many samples, chosen at random, and the worst samples in
+// addition.
 inline constexpr std::size_t most_drawn_samples = 1000;
-// On the page: those of the pairs with the strongest rank correlation.
+// The page has at most so many scatter plots, for the pairs with the strongest rank correlation.
 inline constexpr std::size_t most_scatter_plots = 48;
 
 struct SweepPlots {
   std::vector<PlotGroup> groups;
-  std::size_t scatter_plots = 0;  // without the limit; most_scatter_plots are drawn
+  std::size_t scatter_plots = 0;  // number of pairs; at most most_scatter_plots are drawn
 };
 
-// For each metric its cumulative distribution, and that of the difference between port and
-// reference; then metrics over dispersions.
+// For each metric its cumulative distribution and, with a port, that of the difference between port
+// and reference; then metrics over dispersions.
 SweepPlots sweep_plots(const SweepFile& sweep, const SampleColumns& columns, const SampleData& data,
                        const SweepSummary& summary);
 
