@@ -68,7 +68,7 @@ double baseline_in_flight(const Channel& channel) {
 }
 
 std::optional<double> baseline_of_hover(const Channel& channel) {
-  // For the controller a fraction 0..1 of the motors' full thrust, for the cascade along body z.
+  // The controller's thrust is positive upwards, the cascade's along body z, which points down.
   const auto is = [&](Module module, std::string_view name) {
     return channel.module == module && channel.name == name;
   };

@@ -10,11 +10,11 @@ namespace attest {
 // REQUIRES: an input.
 double baseline(const Channel& channel);
 
-// In a flight a vehicle was armed 5 s before the first tick, so that its motors have spooled up.
+// The baseline in a flight: the vehicle was armed 5 s before time 0, so its motors have spooled up.
 double baseline_in_flight(const Channel& channel);
 
-// Of a thrust: its baseline in a flight, in units of the vehicle's hover thrust. Empty for other
-// channels.
+// The baseline of a thrust or throttle stick in a flight, in units of the vehicle's hover thrust.
+// Empty for other channels.
 std::optional<double> baseline_of_hover(const Channel& channel);
 
 }  // namespace attest

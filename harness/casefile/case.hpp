@@ -1,7 +1,8 @@
-// A case: a situation that a controller must handle like the reference, as plain data.
+// A case as plain data: a situation that a controller must handle like the reference.
 //
-// parse.hpp reads it from cases/<profile>/<group>/<name>.toml (SCHEMA.md). stimulus.hpp makes it
-// into the inputs of a unit at one loop rate. A file that names several profiles is a case of each.
+// parse.hpp reads it from cases/<profile>/<group>/<name>.toml (SCHEMA.md). stimulus.hpp computes
+// from it the inputs of a unit at one loop rate. A file that names several profiles is a case of
+// each.
 #pragma once
 
 #include <array>
@@ -22,7 +23,7 @@ namespace attest {
 // When the samples of a topic are published.
 struct Publication {
   enum class When {
-    automatic,  // every tick if a field varies, else at the first tick
+    automatic,  // every tick if a field varies or the topic has no bit; else once, at time 0
     every_tick,
     periodic,  // `period` or `rate`, from `phase` on
     at_times,
@@ -33,9 +34,9 @@ struct Publication {
   Span period;
   Span phase;
   std::vector<Span> times;
-  // For all of these: the unit sees a sample `delay` after its release.
+  // With any `when`: the unit sees a sample `delay` after its release.
   Span delay{0, Span::In::seconds};
-  // periodic: releases are late by up to this fraction of a period, and `drops` are left out.
+  // Only periodic: releases are late by up to this fraction of a period, and `drops` are left out.
   double jitter = 0;
   std::uint64_t seed = 1;
   std::vector<std::int64_t> drops;  // indices of releases, from 0
@@ -56,7 +57,7 @@ struct FieldStimulus {
 };
 
 struct AttitudeStimulus {
-  std::size_t channel;  // of q[0]; q[1..3] follow
+  std::size_t channel;  // index of q[0] in channels(); q[1..3] follow
   AttitudeSignal attitude;
 };
 
@@ -75,7 +76,7 @@ struct ParameterStimulus {
   Signal signal;
 };
 
-// Other work holds the processor, as in Stall (schedule/ticks.hpp).
+// Other work holds the processor for `length`, as in Stall (schedule/ticks.hpp).
 struct UnitStall {
   Span every, length;
   bool catches_up = false;
@@ -91,8 +92,8 @@ struct UnitTiming {
   std::vector<std::int64_t> drop_ticks;
   std::int64_t drop_every = 0;
   std::optional<UnitStall> stall;
-  // Flights only: these times are those of the estimator's samples, and a tick begins when its
-  // sample arrives.
+  // Only in flights of the controller: these times are those of the estimator's samples, and a tick
+  // begins when its sample arrives.
   bool on_estimate = false;
 };
 
@@ -106,12 +107,12 @@ struct AttitudeLoop {
 };
 
 struct ToleranceOverride {
-  std::string channels;  // prefix without "out/"
+  std::string channels;  // beginning of their names, without "out/"
   Tolerance tolerance;
 };
 
-// Ties of the attitude law that a case reaches: both directions of rotation are equally correct.
-// At such a tick a port's outputs may be those of either branch.
+// The ties of the attitude law that a case reaches: there both directions of rotation are equally
+// correct. At such a tick a port's outputs may be those of either branch.
 struct EitherBranch {
   bool yaw_wrap = false;          // a yaw error of 180 deg
   bool shorter_rotation = false;  // beyond 90 deg of tilt, a direct rotation of 180 deg
@@ -119,17 +120,17 @@ struct EitherBranch {
   bool any() const { return yaw_wrap || shorter_rotation; }
 };
 
-// The life of another instance of the port, relative to the judged one.
+// The life of another instance of the port, relative to the judged instance.
 enum class Instances : std::uint8_t {
   one,
-  again,     // another one ran to its end and was destroyed before
-  together,  // another one is stepped alternately with this one, with other inputs
-  crossed,   // another one was made before this one; it ran and was destroyed after this was made
+  again,     // the other ran to its end and was destroyed before the judged one was made
+  together,  // both are stepped alternately, with different inputs
+  crossed,   // the other is made first; it runs and is destroyed before the judged one is stepped
 };
 
 struct Case {
   std::filesystem::path file;
-  std::string sha256;                 // of the file: a golden of another version is stale
+  std::string sha256;                 // of the file; a golden with another hash is stale
   std::string profile;                // version of the law that this is a case of: "px4-v1.5.5"
   std::vector<std::string> profiles;  // of the file; the first is that of its folder
   std::string group;
@@ -151,7 +152,7 @@ struct Case {
   EitherBranch either_branch;
   Instances instances = Instances::one;
   std::optional<Flight> flight;               // empty: open loop, every input is scripted
-  std::optional<AttitudeLoop> attitude_loop;  // of a flight of the cascade
+  std::optional<AttitudeLoop> attitude_loop;  // only in a flight of the cascade
   Module module = Module::mc_att_control;     // the module under test
   std::string mixer;                          // for Module::mixer: its definition
 
@@ -160,24 +161,24 @@ struct Case {
   std::vector<RunConfiguration> configurations() const;
 
   std::string id() const { return profile + "/" + group + "/" + name; }
-  // Of a vector, as reports and filters call it: "px4-v1.5.5/flight/hover@250hz-iris-ode".
+  // The id of a vector in reports and filters: "px4-v1.5.5/flight/hover@250hz-iris-ode".
   std::string id_at(const RunConfiguration& configuration) const {
     return id() + "@" + configuration.label();
   }
 
-  // The golden of the first profile holds all columns; those of the others hold what differs. The
-  // inputs and most outputs are the same in all profiles of a file.
+  // The golden of the first profile has all columns, those of the other profiles only what differs
+  // from it. The inputs and most outputs are the same in all profiles of a file.
   bool is_of_first_profile() const { return profiles.empty() || profile == profiles.front(); }
 
-  // The same case of another profile of its file.
+  // The same case for another profile of its file.
   Case in_profile(const std::string& other) const;
 
-  // What this flight scripts for one of its units: its module, timing, topics and parameters.
-  // REQUIRES: a unit of this flight.
+  // The case of one unit of this flight: with the module, timing, topics and parameters of that
+  // unit. REQUIRES: a unit of this flight.
   Case of_module(Module unit_of_flight) const;
 
-  // The same case with its first timestamp at one period, so that each dt is the period. For ports
-  // with a fixed step.
+  // The same case with its first timestamp at one period, so that the first dt is the period, too.
+  // For ports with a fixed step.
   Case from_one_period_on() const;
 };
 

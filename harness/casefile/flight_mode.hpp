@@ -14,11 +14,12 @@ struct FlightMode {
   std::string_view name;
   std::array<std::uint8_t, 6> flags;  // in the order of flag_names()
 
-  // The flags while a VTOL is in transition: AUTO_* then does not control the velocity.
+  // The flags while a VTOL is in transition: AUTO_* then does not control the velocity. REQUIRES: a
+  // mode of the controller.
   std::array<std::uint8_t, 6> flags_in_transition() const;
 };
 
-// The flags of vehicle_control_mode that depend on the mode, of the law of a unit.
+// The flags of vehicle_control_mode that depend on the mode, in the profiles of this module.
 const std::array<std::string_view, 6>& flag_names(Module module);
 
 // The modes, with the flags that the firmware sets for a multicopter: for the controller those of

@@ -41,19 +41,19 @@ struct Ticks {
 
   std::size_t size() const { return end - begin; }
   const Sample& operator[](std::size_t tick) const { return log.samples[tick]; }
-  // Since the first tick.
+  // Since the tick `begin`.
   std::uint64_t time_us(std::size_t tick) const {
     return log.samples[tick].in.timestamp - log.samples[begin].in.timestamp;
   }
   double time_s(std::size_t tick) const { return seconds(time_us(tick)); }
-  // One mean period longer than from the first tick to the last. REQUIRES: two ticks.
+  // The time from the first tick to the last, plus one mean period. REQUIRES: two ticks.
   std::uint64_t duration_us() const {
     const std::uint64_t whole = time_us(end - 1);
     return whole + (whole + size() - 2) / (size() - 1);
   }
 };
 
-// A value that changes at some times.
+// The values of a field or a parameter over time. Repeated values are left out.
 class History {
  public:
   void add(double time_s, double value) {
@@ -80,7 +80,7 @@ class History {
   std::vector<double> values_;
 };
 
-// The ticks at which the topic was new.
+// The ticks at which the topic was new; also the first tick, if the topic was new before it.
 std::vector<std::size_t> releases(const Ticks& ticks, std::uint32_t bit) {
   const auto is_new = [&](const Sample& sample) { return (sample.in.updated & bit) != 0; };
   const auto first = ticks.log.samples.begin();
@@ -100,7 +100,6 @@ std::vector<std::size_t> all_of(const Ticks& ticks) {
   return all;
 }
 
-// A signed difference of two times [s].
 double seconds_from(std::uint64_t from_us, std::uint64_t time_us) {
   return static_cast<double>(static_cast<std::int64_t>(time_us - from_us)) / us_per_s;
 }
@@ -121,7 +120,7 @@ double case_value(const Ticks& ticks, std::size_t tick, const Channel& channel) 
   return static_cast<std::uint8_t>(since_begin);  // modulo 256, as the counter
 }
 
-// True if each field is constant.
+// Writes the fields of a topic. Returns whether each field is constant.
 bool write_fields(const Ticks& ticks, std::string_view topic,
                   const std::vector<std::size_t>& released, TomlWriter& toml) {
   bool is_constant = true;
@@ -158,7 +157,7 @@ void write_topics(const Ticks& ticks, TomlWriter& toml) {
   }
 }
 
-// For a profile that attest does not know: the default of attest's first profile.
+// If attest does not know the profile: the default of attest's first profile.
 std::optional<float> default_of_parameter(Module module, const std::string& profile,
                                           std::string_view name) {
   const auto* const known = find_profile(profile);
@@ -202,7 +201,7 @@ std::string case_name(const Trace& log, const LogPart& part) {
   std::string name = std::filesystem::path(log.source).stem().string();
   if (part.from_s > 0) name += fmt::format("_from_{}s", part.from_s);
   if (std::isfinite(part.to_s)) name += fmt::format("_to_{}s", part.to_s);
-  // A log of the cascade makes a case of each unit.
+  // A log of the cascade becomes one case for each unit, so the name has the unit.
   const Module module = module_of(log.present);
   if (module != Module::mc_att_control) name += fmt::format("_{}", name_of(module));
   return identifier(name);

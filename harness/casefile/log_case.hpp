@@ -28,15 +28,15 @@ struct LogCase {
 };
 
 // `log` has a tick for each step of the unit (ulog/flight_log.hpp). The case begins at the first
-// tick of the part, with the timestamp of that tick, and ends one mean period after the last
-// tick. A sample of another topic is published at the tick that first received it in the log;
-// what the unit knew before the part is published at the first tick. At the times of the log's
+// tick of the part, with the timestamp of that tick, and ends one mean period after the last tick.
+// A sample of a topic other than step_topic is published at the tick that first received it in the
+// log. Samples received before the part are published at the first tick. At the times of the log's
 // ticks, a unit receives the values of the log, to the bit. Parameters that `profile` does not have
-// are left out. quat_reset_counter counts from the first tick of the part. `notes` are added to
-// the reason of the case.
+// are left out. quat_reset_counter counts from the first tick of the part. `notes` are added to the
+// case's `why`.
 //
-// Errors: a part with fewer than two ticks, one that is not in the log, one with too many ticks
-// for a case (max_ticks) at the fastest rate.
+// Errors: a log or a part with fewer than two ticks; a part that is empty or not in the log; a part
+// with too many ticks for a case (max_ticks) at the fastest rate.
 Result<LogCase> case_of_log(const Trace& log, const std::string& profile, const LogPart& part,
                             const std::vector<std::string>& notes);
 

@@ -55,7 +55,6 @@ Instances parse_instances(const TomlTable& root) {
   return Instances::one;
 }
 
-// The module must be one of each known profile of the case.
 void check_module(const TomlTable& root, const Case& parsed) {
   for (const std::string& name : parsed.profiles) {
     const ProfileInfo* const profile = find_profile(name);
@@ -83,7 +82,7 @@ void parse_module_of_flight(const TomlTable& root, Case& parsed) {
 }
 
 // `[mixer]`, `[battery]` or `module` names the module under test. Without them it is the
-// controller.
+// controller, or in a flight of the cascade the rate unit.
 void parse_module(const TomlTable& root, Case& parsed) {
   constexpr const char* key = "module";
   for (const char* other : {"mixer", "battery"}) {
@@ -116,7 +115,7 @@ void parse_module(const TomlTable& root, Case& parsed) {
 
 void check_parameter_name(const TomlTable& table, const std::string& name, const Case& parsed) {
   for (const std::string& profile : parsed.profiles) {
-    if (!find_profile(profile)) continue;  // of a law that has its own parameters
+    if (!find_profile(profile)) continue;  // its parameters are not known, either
     std::vector<std::string> known = parameter_names(parsed.module, profile);
     if (parsed.attitude_loop) {
       const auto others = parameter_names(Module::attitude_unit, profile);
@@ -164,7 +163,7 @@ void parse_tolerances(const TomlTable& root, Case& parsed) {
   }
 }
 
-// A file is a case of each of its profiles. Its folder is that of the first.
+// A file is a case of each of its profiles. Its folder has the name of the first one.
 void parse_profiles(const TomlTable& root, const std::string& folder, Case& parsed) {
   constexpr const char* key = "profiles";
   parsed.profiles = root.texts(key);
@@ -179,7 +178,7 @@ void parse_profiles(const TomlTable& root, const std::string& folder, Case& pars
   }
   const std::set<std::string> distinct(parsed.profiles.begin(), parsed.profiles.end());
   if (distinct.size() != parsed.profiles.size()) root.error(key, "names a profile twice");
-  // The first profile may be unknown here: a suite may have its own, which ports may support.
+  // The first profile may be unknown to attest: a suite may define a profile that only ports know.
   for (auto profile = parsed.profiles.begin() + 1; profile != parsed.profiles.end(); ++profile) {
     if (find_profile(*profile)) continue;
     root.error(key, fmt::format("`{}` is no profile{}", *profile,
@@ -207,7 +206,7 @@ void parse_identity(const TomlTable& root, const fs::path& file, Case& parsed) {
   if (root.has("why") && parsed.why.empty()) root.error("why", "must say why the case exists");
 }
 
-// At the fastest rate; 0 without a rate, which is an error of its own.
+// The number of ticks at the fastest rate; 0 without a rate, which parse_rates() reports.
 std::int64_t most_ticks(const Case& parsed) {
   return parsed.rates.empty() ? 0 : tick_count(parsed.duration, parsed.rates.back().unit);
 }

@@ -12,12 +12,13 @@
 
 namespace attest {
 
-// The version of the format of case files. A file with another version is for another attest.
+// The version of the format of case files.
 inline constexpr std::int64_t schema_version = 1;
 
-// Reads cases/<profile>/<group>/<name>.toml as a case of the first of its profiles. Errors, all
-// reported together with file:line: syntax, unknown keys (with the nearest known one), values out
-// of range, a first profile or a group that differs from the folder's.
+// Reads cases/<profile>/<group>/<name>.toml as a case of the first of its profiles. Errors: the
+// file cannot be read; syntax; unknown keys (with the nearest known one); values out of range; a
+// first profile or a group that differs from the folder's. All errors of the content are reported
+// together, with file:line.
 Result<Case> parse_case(const std::filesystem::path& file);
 // The same for the text of a file, which need not exist.
 Result<Case> parse_case_text(std::string_view text, const std::filesystem::path& file);
@@ -25,8 +26,8 @@ Result<Case> parse_case_text(std::string_view text, const std::filesystem::path&
 // Folders with case files. A file replaces the one with the same path below an earlier folder.
 using CaseFolders = std::vector<std::filesystem::path>;
 
-// The case files below the folders, in the order of their paths below them. Errors: no such folder,
-// a folder without cases.
+// The case files below the folders, in the order of their paths relative to their folder. Errors:
+// no such folder, a folder without cases.
 Result<std::vector<std::filesystem::path>> find_case_files(const CaseFolders& folders);
 
 }  // namespace attest

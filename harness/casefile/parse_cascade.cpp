@@ -30,7 +30,7 @@ std::optional<EstimatorReset> parse_reset(const TomlTable& flight) {
   return EstimatorReset{parse_span(table, "at"), attitude_from(by, angles_deg)};
 }
 
-// [flight] floor: the plant knows whether the vehicle has landed.
+// With a floor the plant determines vehicle_land_detected, so the case must not script it.
 void leave_out_land_detection(const TomlTable& root, Case& parsed) {
   constexpr const char* topic = "vehicle_land_detected";
   if (root.has(topic)) {

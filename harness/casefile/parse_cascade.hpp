@@ -1,5 +1,5 @@
-// Reads what only a flight of the cascade has: the topic between the units, the allocator's task,
-// resets of the estimator.
+// Reads what only a flight of the cascade has: the delay between the units, the allocator's task,
+// resets of the estimator. Also reads any periodic task.
 #pragma once
 
 #include "harness/casefile/case.hpp"
@@ -7,11 +7,12 @@
 
 namespace attest {
 
-// A periodic task: rate, phase, jitter, delay, dropped ticks. `timing` has the defaults.
+// Reads rate, phase, jitter, delay and dropped ticks. `timing` has the defaults.
 TaskTiming parse_timing(const TomlTable& table, TaskTiming timing);
 
-// REQUIRES: the flight of `parsed` is read. In a flight with a floor, vehicle_land_detected comes
-// from the plant and is removed from the topics. Errors are recorded in the tables.
+// REQUIRES: `parsed` has an attitude_loop, and the floor and estimator of its flight are read. With
+// a floor, vehicle_land_detected comes from the plant and is removed from the topics. Errors are
+// recorded in the tables.
 void parse_cascade_flight(const TomlTable& root, const TomlTable& flight, Case& parsed);
 
 }  // namespace attest

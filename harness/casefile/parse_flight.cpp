@@ -15,8 +15,8 @@ namespace {
 
 constexpr const char* default_lead = "iris";
 
-// For the vehicles other than the lead: a slow rate, one that does not divide a second evenly, and
-// a fast one; of the cascade, the usual pair.
+// For the vehicles other than the lead: a slow rate, one whose period is not a whole number of
+// nanoseconds, and a fast one; of the cascade, the usual pair.
 std::vector<LoopRate> default_other_rates(bool is_cascade) {
   if (is_cascade) return {LoopRate(Rate::hz(250), Rate::hz(1000))};
   return {Rate::hz(100), Rate::hz(333), Rate::hz(1000)};

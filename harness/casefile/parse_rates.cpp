@@ -9,8 +9,8 @@
 namespace attest {
 namespace {
 
-// A mixer has no clock. The firmware measures the battery 100 times a second. The estimator makes
-// 50 to 1000 attitudes a second.
+// A mixer has no clock, so one rate is enough. The firmware measures the battery 100 times a
+// second. The estimator publishes 50 to 1000 attitudes a second.
 std::vector<LoopRate> default_rates(Module module) {
   switch (module) {
     case Module::mixer:
@@ -26,7 +26,7 @@ std::vector<LoopRate> default_rates(Module module) {
   return {};
 }
 
-// Attitude unit and rate unit, as they are flown.
+// Common pairs of rates [Hz]: attitude unit, rate unit.
 std::vector<LoopRate> cascade_rates() {
   std::vector<LoopRate> rates;
   for (const auto& [attitude, rate] :

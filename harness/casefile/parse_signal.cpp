@@ -10,7 +10,7 @@
 namespace attest {
 namespace {
 
-// One of two alternative keys: the one that is present. A key names the unit of its value.
+// Of two alternative keys, the one that is present. They give the same value in different units.
 struct Spelled {
   std::string key;
   bool first = true;
@@ -27,8 +27,8 @@ std::optional<Spelled> spelled(const TomlTable& table, const std::string& first,
   return Spelled{has_first ? first : second, has_first};
 }
 
-// The number of ticks of the longest case, and their duration at the slowest rate (0.001 Hz). So
-// all times fit into 64 bits of nanoseconds.
+// The longest case has 1e6 ticks. At the slowest rate (0.001 Hz) they last 1e9 s. So all times fit
+// into 64 bits of nanoseconds.
 constexpr double longest_in_ticks = 1e6;
 constexpr double longest_in_seconds = 1e9;
 

@@ -11,7 +11,7 @@ namespace attest {
 
 // `<stem>_ticks = 20` or `<stem>_s = 0.5`.
 Span parse_span(const TomlTable& table, const std::string& stem);  // required
-// The key of the two that is present, for messages; empty when both are absent.
+// The present key, `<stem>_ticks` or `<stem>_s`, for messages; empty when both are absent.
 std::string span_key(const TomlTable& table, const std::string& stem);
 std::optional<Span> parse_optional_span(const TomlTable& table, const std::string& stem);
 
@@ -21,7 +21,7 @@ std::vector<Span> parse_spans(const TomlTable& table, const std::string& stem);
 // `key = 1.5`, `key = true`, or `key = { signal = "sine", ... }`.
 Signal parse_signal(const TomlTable& table, const std::string& key);
 
-// The kind of angles that a table gives, and their keys. Errors: angles of both kinds.
+// The kind of angles that a table has, and their keys. Error: it has keys of both kinds.
 struct AngleKeys {
   Angles by;
   std::array<const char*, 3> keys;

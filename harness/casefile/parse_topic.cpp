@@ -92,7 +92,6 @@ std::vector<std::string> mode_names(Module module) {
   return names;
 }
 
-// In addition to the mode: whether a VTOL is in transition.
 std::optional<Signal> parse_in_transition(const TomlTable& table) {
   constexpr const char* key = "in_transition";
   if (!table.has(key)) return std::nullopt;
@@ -105,7 +104,6 @@ struct ModeSequence {
   std::vector<Span> times;
   std::vector<const FlightMode*> modes;  // each from its time on
 
-  // The signal of a value that each mode has.
   template <typename ValueOf>
   Signal signal_of(const ValueOf& value_of) const {
     if (modes.size() == 1) return Constant{static_cast<double>(value_of(*modes[0]))};
@@ -165,8 +163,6 @@ void parse_flight_mode(const TomlTable& table, Module module, TopicStimulus& top
   }
 }
 
-// Reads `delay`, `jitter` and `drop_samples`: samples that arrive late, are released late, or are
-// missing.
 void parse_irregularity(const TomlTable& table, Publication& publication) {
   if (const auto delay = parse_optional_span(table, "delay")) publication.delay = *delay;
   publication.jitter = table.number("jitter", 0);
@@ -224,7 +220,6 @@ Publication parse_publication(const TomlTable& table) {
   return publication;
 }
 
-// The topic with its baseline values.
 TopicStimulus baseline_topic(Module module, std::string_view name, std::uint32_t updated_bit,
                              bool is_flight) {
   TopicStimulus topic{std::string(name), updated_bit, {}, {}, {}};
@@ -311,7 +306,7 @@ void parse_topic(const TomlTable& table, TopicStimulus& topic) {
   if (topic.updated_bit != 0) topic.publication = parse_publication(table);
 }
 
-// What a flight computes: the plant, the actuators, and for the rate unit the attitude unit.
+// Whether the plant or the actuators compute the topic in a flight.
 bool is_computed(const std::string& topic) {
   constexpr std::array<std::string_view, 5> computed{control_state, "multirotor_motor_limits",
                                                      "vehicle_attitude", "vehicle_angular_velocity",
@@ -321,7 +316,8 @@ bool is_computed(const std::string& topic) {
 
 void leave_out_computed(const TomlTable& root, Module module, std::vector<TopicStimulus>& topics) {
   std::erase_if(topics, [&](const TopicStimulus& topic) {
-    // The rate unit receives the attitude unit's setpoints, and those of the case if it has any.
+    // The rate unit receives the attitude unit's setpoints and, if the file has this topic, the
+    // file's.
     const bool is_own = module == Module::rate_unit && topic.topic == "vehicle_rates_setpoint";
     if (is_own) return !root.has(topic.topic);
     if (!is_computed(topic.topic)) return false;

@@ -8,9 +8,10 @@
 
 namespace attest {
 
-// Every topic of a module's inputs. A topic that the file does not mention has the values of a
-// vehicle that hovers level, armed (SCHEMA.md). In a flight the baseline thrust is the vehicle's
-// hover thrust. The topics that plant, actuators and the other unit compute are then left out.
+// Returns every topic of a module's inputs. A topic that the file does not mention has the values
+// of a vehicle that hovers level, armed (SCHEMA.md). In a flight the baseline thrust is the
+// vehicle's hover thrust. Topics that the plant or the actuators compute are then left out, and so
+// is the rate unit's vehicle_rates_setpoint if the file does not have it.
 std::vector<TopicStimulus> parse_topics(const TomlTable& root, Module module, bool is_flight);
 
 }  // namespace attest

@@ -64,7 +64,7 @@ void check_unit(const TomlTable& root, const char* name, const UnitTiming& unit,
   const TomlTable table = root.table(name);
   const auto [slowest_at, fastest_at] = std::minmax_element(rates.begin(), rates.end());
   const Rate &slowest = *slowest_at, &fastest = *fastest_at;
-  // Jitter reduces the time between ticks, and timestamps (us) must increase.
+  // Jitter reduces the time between ticks, and timestamps must increase by at least 1 us.
   if (!unit.heavy_tail && unit.jitter > 0 && (1 - unit.jitter) * fastest.period_s() < 1e-6) {
     table.error("jitter",
                 fmt::format("leaves less than 1 us between ticks at {} Hz", fastest.to_string()));

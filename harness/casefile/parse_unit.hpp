@@ -7,7 +7,7 @@
 
 namespace attest {
 
-// Returns the defaults where there is no table of that name. Errors are recorded in the table.
+// Returns the defaults if there is no table `name`. Errors are recorded in the table.
 UnitTiming parse_unit(const TomlTable& root, const char* name = "unit");
 
 // Checks jitter, stalls and dropped ticks against the slowest and the fastest rate and the

@@ -10,10 +10,12 @@
 namespace attest {
 namespace {
 
-// The rates at which the further profiles of a file fly. Of the controller's rates above 500 Hz
-// only the fastest is kept: there the law uses dt = 2 ms, so that its arithmetic is the same at
-// each rate. Of the cascade's the slowest and the fastest are kept: what differs between its
-// profiles does not depend on the rate. REQUIRES: `rates` ascend.
+// The rates at which the lead vehicle flies in the further profiles of a file. REQUIRES: `rates`
+// ascend.
+// - Controller: of the rates above 500 Hz only the fastest. At all of them the law uses dt = 2 ms,
+//   so its arithmetic is the same.
+// - Cascade: the slowest and the fastest. What differs between its profiles does not depend on the
+//   rate.
 std::vector<LoopRate> distinct_time_steps(const std::vector<LoopRate>& rates) {
   if (!rates.empty() && rates.front().attitude_unit) {
     return rates.size() < 2 ? rates : std::vector{rates.front(), rates.back()};

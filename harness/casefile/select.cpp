@@ -77,7 +77,7 @@ Result<void> check_groups(const std::vector<fs::path>& files, const Selection& s
 // name are known here, from the path. Take the text from the pattern's last wildcard to the
 // pattern's @: either the known part must end with this text, or this text with the known part. A
 // pattern with a wildcard and without @ may match any file, because the wildcard may match the @ of
-// a vector and all that follows.
+// a vector and all that follows. Patterns with [ or \ are not examined: they may match any file.
 bool may_match(const std::string& pattern, const fs::path& file) {
   const std::size_t at = pattern.find('@');
   const std::string id = pattern.substr(0, at);
@@ -152,7 +152,7 @@ struct Known {
   }
 };
 
-// Each requested rate must be that of a vector.
+// At least one vector in the files must have each requested rate.
 Result<void> check_rates(const std::vector<LoopRate>& asked, const std::set<LoopRate>& known) {
   for (const LoopRate& rate : asked) {
     const auto means = [&](const LoopRate& other) { return is_meant(rate, other); };
@@ -192,7 +192,7 @@ double cost_ms(const SelectedCase& selected) {
   return sum;
 }
 
-// The longest case first, each to the part that is shortest so far (Graham, 1969).
+// Assigns the cases, longest first, each to the part that is shortest so far (Graham, 1969).
 std::vector<SelectedCase> part_of(std::vector<SelectedCase> all, const Shard& shard) {
   if (shard.count == 1) return all;
   std::vector<std::size_t> order(all.size());
@@ -215,7 +215,6 @@ std::vector<SelectedCase> part_of(std::vector<SelectedCase> all, const Shard& sh
   return part;
 }
 
-// A file is a case of each of its profiles.
 void add_selected(const Case& parsed, const Selection& selection, std::set<std::string>& matching,
                   std::vector<SelectedCase>& selected) {
   for (const std::string& profile : parsed.profiles) {
@@ -255,7 +254,6 @@ Result<void> check_patterns(const Selection& selection, const std::set<std::stri
                           suggestion(idle.front(), names)));
 }
 
-// Reads `files`, and returns what the selection selects.
 Result<std::vector<SelectedCase>> select_from(const std::vector<fs::path>& files,
                                               const Selection& selection) {
   std::vector<SelectedCase> selected;
@@ -334,8 +332,8 @@ Result<std::vector<SelectedCase>> select_cases(const CaseFolders& folders,
   auto files = find_case_files(folders);
   if (!files) return tl::unexpected(files.error());
   if (auto known = check_groups(*files, selection); !known) return tl::unexpected(known.error());
-  // Only files that a pattern can match are read first. If there is an error, all files of the
-  // groups are read, because the error names what there is in them.
+  // Only files that a pattern can match are read first. If this gives an error, all files of the
+  // groups are read, because the error message lists what they contain.
   std::erase_if(*files,
                 [&](const fs::path& file) { return !contains(selection.groups, group_of(file)); });
   std::vector<fs::path> likely = *files;

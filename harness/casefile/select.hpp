@@ -39,7 +39,7 @@ struct Selection {
   std::vector<std::string> groups;
   std::vector<std::string> profiles;
   std::vector<LoopRate> rates;
-  std::vector<std::string> vehicles;  // these two select flights only
+  std::vector<std::string> vehicles;  // if this or `plants` is not empty, only flights are selected
   std::vector<std::string> plants;
   Shard shard;
 };
@@ -50,8 +50,7 @@ struct SelectedCase {
       configurations;  // in the order of Case::configurations(), not empty
 };
 
-// The vectors with these ids (Case::id_at), in the same order. A case without such a vector is left
-// out.
+// Keeps the vectors with these ids (Case::id_at), in the same order. Other cases are removed.
 std::vector<SelectedCase> keep_vectors(std::vector<SelectedCase> cases,
                                        const std::set<std::string>& ids);
 
@@ -60,9 +59,9 @@ std::vector<std::string> as_options(
     std::initializer_list<std::pair<const char*, const std::vector<std::string>&>> lists);
 
 // Reads the case files below `folders` that can match and keeps the selected ones, in the order of
-// their ids. Errors: a malformed case file; an unknown group, profile, rate, vehicle or plant, with
-// the known ones; a filter or an exclusion that matches no case; an empty selection; two files of
-// one case.
+// their ids. Errors: those of find_case_files(); a malformed case file; an unknown group, profile,
+// rate, vehicle or plant, with the known ones; a filter or an exclusion that matches no vector; an
+// empty selection or shard; two files with the same case id.
 Result<std::vector<SelectedCase>> select_cases(const CaseFolders& folders,
                                                const Selection& selection);
 

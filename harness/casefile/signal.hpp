@@ -61,7 +61,7 @@ struct Chirp {  // a sine whose frequency goes linearly from `from` to `to` over
   double mean = 0, amplitude = 0;
   Frequency from, to;
 };
-struct RandomWalk {  // moves by a uniform +-step each `every`, reflected at the bounds
+struct RandomWalk {  // each `every` moves by a uniform number up to +-step, reflected at the bounds
   std::uint64_t seed = 1;
   double start = 0, step = 0, min = 0, max = 0;
   Span every;
@@ -94,7 +94,6 @@ struct AttitudeSignal {
   double norm = 1;
 };
 
-// A signal on a timeline, to be sampled at any time of the case.
 class Sampler {
  public:
   Sampler(const Signal& signal, const Timeline& timeline);
@@ -111,7 +110,7 @@ class Sampler {
 // The attitude with these angles [deg], in the order of the name of `by`.
 Quaternion attitude_from(Angles by, const std::array<double, 3>& angles_deg);
 
-// False for constants.
+// False only for a Constant.
 bool varies(const Signal& signal);
 
 }  // namespace attest

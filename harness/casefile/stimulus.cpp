@@ -20,7 +20,6 @@ bool is_whole_ticks(const Span& span) {
   return span.in == Span::In::ticks && span.amount == std::floor(span.amount);
 }
 
-// One topic on a timeline: publishes into a sample.
 class Publisher {
  public:
   // `start`: the timestamp at time 0 of the case.
@@ -75,7 +74,7 @@ class Publisher {
       set_value(what, sample, what.type == ChannelType::u64 ? time_us(value, time) : value);
     }
 
-    // A time is given in seconds after the publication, armed_time in seconds after the first tick.
+    // `seconds` is after the publication; of armed_time it is after time 0 of the case.
     double time_us(double seconds, Nanoseconds published) const {
       const bool of_start = channels()[channel].name.ends_with(".armed_time");
       const Nanoseconds from = of_start ? start : start + published;
@@ -109,7 +108,7 @@ class Publisher {
     using When = Publication::When;
     switch (publication.when) {
       case When::automatic:
-        // A topic that never changes is published once, when the first tick begins.
+        // A topic that never changes is published once, at time 0 of the case.
         every_tick_ = varies_ || topic_.updated_bit == 0;
         if (!every_tick_) releases_.times = {Nanoseconds(0)};
         break;
@@ -129,8 +128,8 @@ class Publisher {
     }
   }
 
-  // A period of n whole ticks becomes every n-th tick of the unit. So also at 333 Hz a release and
-  // its tick are at the same nanosecond.
+  // A period of n whole ticks becomes every n-th tick of the unit. So a release and its tick are at
+  // the same nanosecond, even if the period is not a whole number of nanoseconds, as at 333 Hz.
   void plan_periodic(const Publication& publication) {
     const Rate& unit_rate = timeline_.rate;
     const auto& [rate, period, phase] =
@@ -180,7 +179,6 @@ class Publisher {
   std::optional<Nanoseconds> published_;
 };
 
-// The parameters in force, and their changes.
 class ParameterPublisher {
  public:
   ParameterPublisher(const std::vector<ParameterStimulus>& parameters, const Timeline& timeline) {
@@ -278,7 +276,7 @@ void Stimulus::tick(std::size_t tick, Nanoseconds now, Sample& sample,
 
 namespace {
 
-// A mixer has one output for each of its rotors.
+// Without the outputs beyond the number of the mixer's rotors.
 ChannelSet channels_of(const Case& the_case) {
   ChannelSet channels = attest::channels_of(the_case.module);
   if (the_case.module != Module::mixer) return channels;

@@ -12,17 +12,18 @@ namespace attest {
 
 Timeline timeline_of(const Case& the_case, const Rate& rate);
 
-// The times at which the unit's ticks begin, since the start of the case, with the case's jitter
-// and dropped ticks. If the estimator triggers the unit (Case::unit.on_estimate), they are the
-// times at which the estimator takes its samples. `faster`: the fraction by which the clock of
-// these ticks is faster. A tick that would begin at t then begins at floor(t / (1 + faster)) ns.
-// There is no tick at or after the end of the case.
+// The times at which the unit's ticks begin, since the start of the case, with the case's jitter,
+// stalls and dropped ticks. If the estimator triggers the unit (Case::unit.on_estimate), they are
+// the times at which the estimator takes its samples. `faster` is the fraction by which the clock
+// of these ticks is faster: a tick that would begin at t begins at floor(t / (1 + faster)) ns, and
+// there is no tick at or after the end of the case. With `faster` 0, a stall or jitter with a heavy
+// tail may delay ticks beyond the end.
 std::vector<Nanoseconds> unit_ticks(const Case& the_case, const Rate& rate, double faster = 0);
 
 // The scripted inputs of a case, tick by tick. A sample holds the last published values of each
-// topic, as the ABI promises, and the updated bits of the topics published since the tick before.
-// The same case and rate give the same bits, for gcc and clang. The case must outlive this. A tick
-// allocates only when a parameter changes.
+// topic, as the ABI promises, and the updated bits of the topics that were published since the last
+// tick. The same case and rate give the same bits, with gcc and clang. The case must outlive this.
+// A tick allocates memory only when a parameter changes.
 class Stimulus {
  public:
   Stimulus(const Case& the_case, const Rate& rate);
@@ -30,7 +31,8 @@ class Stimulus {
   ~Stimulus();
 
   // Updates the inputs of `sample` for the tick at `now`, and appends the parameters that change at
-  // it. REQUIRES: `sample` is that of the tick before; times increase; `tick` counts from 0.
+  // it to `changes`. REQUIRES: `sample` is that of the last tick, at tick 0 all zero; `now`
+  // increases; `tick` counts from 0.
   void tick(std::size_t tick, Nanoseconds now, Sample& sample,
             std::vector<ParameterChange>& changes);
 

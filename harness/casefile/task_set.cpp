@@ -32,7 +32,6 @@ std::vector<Nanoseconds> parse_execution(const TomlTable& table) {
   return execution;
 }
 
-// Rate and phase of the releases. `released_by` is not set here.
 void parse_release(const TomlTable& table, ScheduledTask& task) {
   const auto rate = Rate::parse(fmt::format("{}", table.number("rate_hz")));
   if (!rate && table.has("rate_hz")) table.error("rate_hz", rate.error().message);
@@ -69,7 +68,7 @@ std::optional<std::size_t> find_task(const std::vector<ScheduledTask>& tasks,
   return static_cast<std::size_t>(found - tasks.begin());
 }
 
-// `trigger = "estimator"` of the unit that takes the estimate, instead of a rate.
+// Reads `trigger = "estimator"`: it replaces the rate of the unit that receives the estimate.
 void parse_trigger(const TomlTable& table, const std::string& name, TaskSet& set) {
   constexpr const char* key = "trigger";
   if (!table.has(key)) return;

@@ -1,4 +1,4 @@
-// The file that describes the tasks of a flight controller (SCHEMA.md): the unit's task, the other
+// The file that describes the tasks of a flight controller (SCHEMA.md): the units' tasks, the other
 // tasks, and their execution times.
 #pragma once
 
@@ -19,14 +19,14 @@ struct TaskSet {
   // Index of the task `attitude_unit`, if there is one: `unit` is then the cascade's rate unit.
   std::optional<std::size_t> attitude_unit;
 
-  // The rate of the task `unit`, or the rates of both units of the cascade.
   LoopRate rate() const {
     const Rate& own = tasks[unit].rate;
     return attitude_unit ? LoopRate(tasks[*attitude_unit].rate, own) : LoopRate(own);
   }
 };
 
-// Errors, with file and line: no task `unit`; values out of range.
+// Errors, with the file and, if known, the line: syntax, unknown keys, values out of range; no task
+// `unit`; a `trigger` where SCHEMA.md does not allow it; a rate unit slower than its attitude unit.
 Result<TaskSet> read_task_set(const std::filesystem::path& path);
 
 }  // namespace attest

@@ -24,8 +24,8 @@ double AllowedDeviation::widening(const Sample& tick) const {
     return tolerances_.widening(error, gain_.value());
   }
   // The law of the cascade computes yaw from the error that remains after the tilt correction, so
-  // its noise is larger: float and double differ by 1.3e-4 rad/s at 179 deg, and by 1.5e-3 at 179.9
-  // (measured on random attitudes).
+  // its noise is larger than that of the controller: float and double differ by 1.3e-4 rad/s at 179
+  // deg, and by 1.5e-3 at 179.9 (measured on random attitudes).
   constexpr double noise = 10.0 / 3;
   const double error = attitude_error(attitude_at(tick, module_), setpoint_.q_d());
   return tolerances_.widening(error, noise * gain_.value());
@@ -38,7 +38,8 @@ double AllowedDeviation::of(std::size_t channel, const Sample& tick, float got, 
   const double difference = std::abs(static_cast<double>(got) - w);
   if (difference * ample_headroom <= tolerance || !widens(channel, tick)) return tolerance;
   const double wider = widening(tick);
-  // Not finite without an attitude, or with a time constant of zero: then nothing is added.
+  // The widening is not finite if an attitude is zero or not finite, or a time constant is zero.
+  // Then the tolerance is not widened.
   return std::isfinite(wider) ? tolerance + wider : tolerance;
 }
 

@@ -12,20 +12,18 @@
 
 namespace attest {
 
-// Follows the setpoint and the gains of a trace, tick by tick.
 class AllowedDeviation {
  public:
   // REQUIRES: the tolerances outlive this.
   AllowedDeviation(const Tolerances& tolerances, Module module)
       : tolerances_(tolerances), module_(module), setpoint_(module), gain_(module) {}
 
-  // The next tick of the expected trace, with the parameters that it sets.
+  // Takes the next tick of the expected trace, with the parameters that it sets.
   void next(const Sample& want, std::span<const ParameterChange> changes);
 
-  // The allowed deviation at that tick. If the tolerance without widening is at least
-  // ample_headroom times the deviation of `got`, the result is the tolerance without widening,
-  // because the widening takes time to compute. So a headroom (tolerance / deviation) below
-  // ample_headroom is exact, and a larger one is a lower bound.
+  // The allowed deviation at that tick. The widening takes time to compute. It is left out if the
+  // tolerance without it is at least ample_headroom times the deviation of `got`. So a headroom
+  // (tolerance / deviation) below ample_headroom is exact, and a larger one is a lower bound.
   static constexpr double ample_headroom = 16;
   double of(std::size_t channel, const Sample& tick, float got, float want) const;
 
@@ -39,8 +37,8 @@ class AllowedDeviation {
   AttitudeGain gain_;
 };
 
-// The times of `want`, and at each tick the allowed deviation of each float32 output in place of
-// its value. Flags have 0.
+// Returns a trace with the times of `want` and, in place of each float32 output, its allowed
+// deviation. Flags, and outputs that are not finite, have 0.
 Trace allowed_deviations(const Trace& want, const Tolerances& tolerances);
 
 }  // namespace attest

@@ -37,7 +37,8 @@ bool outputs_differ(const Sample& a, const Sample& b) {
   return !std::ranges::equal(a.outputs(), b.outputs());
 }
 
-// How far a value is outside, to find the worst. 0: it has no distance (a flag, NaN, infinity).
+// How far a value is outside its tolerance, to find the worst. 0 for a flag, NaN and infinity,
+// which have no distance.
 double excess(const Deviation& deviation) {
   if (!std::isfinite(deviation.got) || !std::isfinite(deviation.want)) return 0;
   if (deviation.tolerance <= 0) return static_cast<double>(deviation.ulp);
@@ -130,7 +131,6 @@ bool TickComparer::channel_agrees(std::size_t channel, const Sample& got, const 
   const bool both_finite = std::isfinite(g) && std::isfinite(w);
   const double tolerance = both_finite ? allowed_.of(channel, want, g, w) : 0;
   const double difference = std::abs(static_cast<double>(g) - static_cast<double>(w));
-  // Written so that a NaN difference is outside.
   if (level_ == Level::numeric && both_finite && difference <= tolerance) {
     note_headroom(channel, difference, tolerance);
     return true;
@@ -168,7 +168,6 @@ Deviation deviation_at(std::size_t tick, std::size_t channel, const Trace& got,
           0};
 }
 
-// The comparison at the level events: it also searches the neighbouring ticks.
 void compare_events(const Trace& got, const Trace& want, Comparison& result) {
   if (!tells_events(want.present)) {
     result = {};

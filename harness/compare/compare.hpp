@@ -27,12 +27,12 @@ struct Deviation {
   std::size_t channel = 0;  // index into channels()
   double got = 0;
   double want = 0;
-  std::int64_t ulp = 0;  // distance in float32 steps; 0 where it is not defined (flags, NaN)
-  double tolerance = 0;  // allowed |got - want|; 0 at the exact level
+  std::int64_t ulp = 0;  // distance in float32 steps; 0 for flags and NaN, and at the events level
+  double tolerance = 0;  // allowed |got - want|; 0 at the levels exact and events
 };
 
-// How near a passing channel came to failing: tolerance / |got - want|; 1 is the limit. Infinite
-// when only the sign of a zero differed. Absent when all values have the same bits.
+// How near a passing channel came to failing: ratio = tolerance / |got - want|; 1 is the limit.
+// Infinite when only the sign of a zero differed.
 struct Headroom {
   double ratio = 0;
   std::size_t tick = 0;
@@ -40,13 +40,13 @@ struct Headroom {
 };
 
 struct Comparison {
-  std::size_t ticks = 0;  // compared
+  std::size_t ticks = 0;  // that were compared
   std::size_t deviating_ticks = 0;
   std::optional<Deviation> first;  // lowest tick, then the order of channels()
   // The largest difference in units of its tolerance, or in ulp at the exact level, among finite
   // floats; the first of equal ones. Empty at the events level.
   std::optional<Deviation> worst;
-  std::optional<Headroom> tightest;  // numeric level, among the values within tolerance
+  std::optional<Headroom> tightest;  // numeric level; empty if no passing value differs
   std::string mismatch;              // why the traces cannot be compared; empty if they can
   std::string event;                 // at the events level: the difference at the first deviation
   ChannelSet only_got;               // outputs that only `got` has: they are not compared
@@ -57,8 +57,8 @@ struct Comparison {
 
 Comparison compare(const Trace& got, const Trace& want, const Tolerances& tolerances);
 
-// Combines the comparisons of two traces of one flight: the first deviation is the earlier one, the
-// worst is the larger. REQUIRES: both were compared at the numeric level.
+// Combines the comparisons of two traces of one flight: takes the earlier first deviation and the
+// larger worst one. REQUIRES: both were compared at the numeric level.
 Comparison both(Comparison one, const Comparison& other);
 
 // The first NaN or Inf of `got` in a channel that is finite at all ticks of `want`. For flights,
@@ -84,16 +84,16 @@ class TickComparer {
   void note_headroom(std::size_t channel, double difference, double tolerance);
 
   Level level_;
-  std::vector<std::size_t> chosen_;  // channels that both have and that are compared
+  std::vector<std::size_t> chosen_;  // outputs that both have; these are compared
   // The message if outputs of `want` are missing in `got`, or `want` has no output; else empty.
   std::string not_recorded_;
-  std::size_t tick_ = 0;  // the next
+  std::size_t tick_ = 0;  // the next one to add
   AllowedDeviation allowed_;
   Comparison result_;
 };
 
-// Index of the first tick whose inputs differ by bits (in/..., parameters in force, timestamp);
-// empty when all agree.
+// Index of the first tick whose inputs differ by bits (in/..., parameters in force, timestamp). If
+// only the lengths differ, the shorter length; empty when all agree.
 std::optional<std::size_t> first_input_difference(const Trace& a, const Trace& b);
 
 }  // namespace attest

@@ -8,7 +8,6 @@
 namespace attest {
 namespace {
 
-// A file, its current tick, and the number of ticks read.
 struct Side {
   TraceReader reader;
   Sample sample{};

@@ -21,7 +21,7 @@ std::size_t tick_at(const Trace& trace, std::uint64_t timestamp) {
   return static_cast<std::size_t>(found - trace.samples.begin());
 }
 
-// Adds the changes of the flight, with rows instead of ticks.
+// Adds the parameter changes of the flight, with the index of the row instead of the tick.
 void take_parameters(const Trace& flown, Rows& rows) {
   for (const ParameterChange& change : flown.parameters) {
     const auto row = std::lower_bound(rows.ticks.begin(), rows.ticks.end(), change.tick);

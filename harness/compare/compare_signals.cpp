@@ -10,15 +10,15 @@ namespace {
 
 constexpr std::int64_t most_periods = 250;
 constexpr double least_gain = 10;
-constexpr std::size_t least_overlap = 16;  // samples; fewer may agree by chance
+constexpr std::size_t least_overlap = 16;  // samples; fewer samples may agree by chance
 
 Tolerance tolerance_of(const std::string& name, const Tolerances& tolerances, double others) {
   const ChannelSet outputs = channels_named("out/" + name);
   return outputs.any() ? tolerances.of(outputs._Find_first()) : Tolerance{others, 0};
 }
 
-// `by_bits`: -0 is not 0. A number never agrees with infinity, whose relative tolerance would be
-// infinite.
+// `by_bits`: -0 differs from 0. A number never agrees with infinity, although the relative
+// tolerance of an infinite value would be infinite.
 bool is_within(float got, float want, const Tolerance& tolerance, bool by_bits) {
   if (std::isnan(got) && std::isnan(want)) return true;
   if (by_bits) return std::bit_cast<std::uint32_t>(got) == std::bit_cast<std::uint32_t>(want);
@@ -73,7 +73,7 @@ SignalComparison compare_signal(const TimedSignal& got, const TimedSignal& want,
   return found;
 }
 
-// The root mean square of the differences at equal times; empty if there are too few.
+// The root mean square of the differences at equal times; empty if there are too few of them.
 std::optional<double> rms_difference(const TimedSignal& got, const TimedSignal& want,
                                      std::int64_t shift_us) {
   std::size_t ignored = 0, count = 0;
@@ -99,7 +99,7 @@ std::int64_t period_of(const TimedSignal& signal) {
   return *middle;
 }
 
-// The pair of signals with the most samples that differ; null: none differs.
+// The pair of signals with the most samples that differ; null if no sample differs.
 std::pair<const TimedSignal*, const TimedSignal*> most_different(const TimedSignals& got,
                                                                  const TimedSignals& want) {
   std::pair<const TimedSignal*, const TimedSignal*> found{};

@@ -41,8 +41,8 @@ std::optional<double> step_of(const Trace& trace, std::size_t tick, const Channe
          static_cast<double>(float_of(channel, trace.samples[tick - 1]));
 }
 
-// An integral moves if its step is above a fraction of the integrals' tolerance. That tolerance is
-// the total deviation allowed over the run.
+// An integral moves if its step is above this noise, a fraction of the integrals' tolerance: that
+// tolerance is the deviation that may add up over the whole run.
 State above_noise(double step) {
   constexpr double still = 1e-6, surely = 4e-6;
   if (step > surely) return State::yes;

@@ -2,9 +2,10 @@
 // with coarse numbers.
 //
 // Events are the changes of states of outputs; the table in events.cpp has those of each module.
-// - All: a topic is published; a rates setpoint is finite.
-// - Controller: an integral moves; the control of roll, pitch or yaw is larger than that of thrust,
-//   in absolute value.
+// States:
+// - All units: a topic is published; a rates setpoint is finite.
+// - Controller: an integral moves; |control| of roll, pitch or yaw is larger than the thrust
+//   control.
 // - Attitude unit and rate unit: the thrust is finite.
 // - Rate unit: an integral rises; an integral falls. Landing, a saturation flag, disarming or a
 //   limit stops an integral.
@@ -30,9 +31,9 @@ bool has_events(Module module);
 // True if a channel of `present` defines an event.
 bool tells_events(const ChannelSet& present);
 
-// The first tick at which the traces differ: one is in a state, or is not in it, and the other is
-// the opposite at this tick and at both its neighbours. The first and the last tick never differ,
-// because they lack a neighbour. REQUIRES: as many ticks in both.
+// The first tick at which the traces differ: there a state is true, or is false, in one trace, and
+// the other trace has the opposite at this tick and at both its neighbours. The first and the last
+// tick never differ, because they lack a neighbour. REQUIRES: as many ticks in both.
 std::optional<EventDifference> first_event_difference(const Trace& got, const Trace& want);
 
 }  // namespace attest

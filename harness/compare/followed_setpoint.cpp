@@ -5,7 +5,7 @@ namespace {
 
 AttitudeQuaternion quaternion(const float (&q)[4]) { return {q[0], q[1], q[2], q[3]}; }
 
-// The attitude setpoint that is new at this tick; null if there is none.
+// The setpoint, if it is new at this tick or this is the first tick; otherwise null.
 const float (*new_setpoint(const Sample& tick, Module module, bool is_first))[4] {
   if (module == Module::mc_att_control) {
     const bool is_new = (tick.in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;

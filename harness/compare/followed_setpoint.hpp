@@ -1,5 +1,5 @@
-// The attitude and the attitude setpoint that a unit uses at each tick. The direction of the
-// rotation between them is undefined at a half turn, so comparisons allow more near it.
+// The attitude and the attitude setpoint that a unit uses at each tick. Near a half turn between
+// them the direction of the rotation is undefined, so comparisons allow larger deviations.
 #pragma once
 
 #include "harness/compare/tilt.hpp"
@@ -19,15 +19,15 @@ class FollowedSetpoint {
  public:
   explicit FollowedSetpoint(Module module) : module_(module) {}
 
-  // The next tick of the expected trace. Its setpoint is an input of the unit, or an output that
-  // the unit computes from the sticks.
+  // Takes the next tick of the expected trace. Its setpoint is an input of the unit, or an output
+  // that the unit computes from the sticks.
   void next(const Sample& want);
   const AttitudeQuaternion& q_d() const { return q_d_; }
 
  private:
   Module module_;
   bool is_first_ = true;
-  AttitudeQuaternion q_d_{};  // the last new one
+  AttitudeQuaternion q_d_{};  // the last setpoint that was new
 };
 
 }  // namespace attest

@@ -14,7 +14,7 @@
 namespace attest {
 namespace {
 
-// The floor of the slack. By default integrals are limited to 0.3, controls and thrust to 1.
+// The floor of the slack. For comparison: by default integrals are limited to 0.3, controls to 1.
 double floor_of(Quantity quantity) {
   switch (quantity) {
     case Quantity::rate:
@@ -30,7 +30,6 @@ bool is_float_output(const Channel& channel) {
   return channel.is_output() && channel.type == ChannelType::f32;
 }
 
-// Channels that both traces have, in the order of the table.
 std::vector<std::size_t> float_outputs_of(const Trace& got, const Trace& want) {
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < channels().size(); ++i) {
@@ -39,8 +38,8 @@ std::vector<std::size_t> float_outputs_of(const Trace& got, const Trace& want) {
   return chosen;
 }
 
-// The ticks near a half turn, where the direction of rotation changes, and those at which attitude
-// or setpoint is zero or not finite. Only ticks at which the law controls the attitude.
+// Marks the ticks at which the law controls the attitude and either the error is near a half turn,
+// where the direction of rotation changes, or attitude or setpoint is zero or not finite.
 std::vector<bool> half_turns_in(const Trace& want) {
   constexpr double near_rad = 0.2;  // 11 deg short of a half turn
   const Module module = module_of(want.present);

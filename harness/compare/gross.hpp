@@ -33,8 +33,8 @@ namespace attest {
 // The first value outside these bounds. REQUIRES: both have the same number of ticks.
 std::optional<EventDifference> first_gross_difference(const Trace& got, const Trace& want);
 
-// The first NaN or Inf where `want` is finite at that tick, the tick before and the tick after.
-// REQUIRES: as above.
+// The first NaN or Inf of `got` where `want` is finite at that tick, the tick before and the tick
+// after. REQUIRES: both have the same number of ticks.
 std::optional<EventDifference> first_non_finite_event(const Trace& got, const Trace& want);
 
 }  // namespace attest

@@ -7,7 +7,6 @@
 namespace attest {
 namespace {
 
-// A topic of outputs: its flag `published` and its values.
 struct Topic {
   std::string_view name;
   const Channel* published = nullptr;
@@ -43,12 +42,11 @@ double deviation(double got, double logged) {
   return std::isnan(off) ? std::numeric_limits<double>::infinity() : off;
 }
 
-// The reference's values of a field at a tick and its neighbours, numbers only.
+// The range of the reference's finite values of a field at a tick and its neighbours.
 struct Range {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
 
-  // False for NaN and infinity.
   bool has(double value, double tolerance) const {
     return std::isfinite(value) && value >= low - tolerance && value <= high + tolerance;
   }
@@ -123,7 +121,8 @@ class Agreement {
                      value_of(channel, logged_.samples[tick]));
   }
 
-  // If the reference's output is finite, so must be the port's, whatever the log lacks.
+  // Also at a tick that is left out, the port's output must be finite if those of reference and log
+  // are.
   void leave_out(std::size_t tick) {
     ++found_.left_out;
     const auto is_finite = [&](std::size_t field) {

@@ -1,5 +1,5 @@
-// How well a port's outputs agree with those of a flight log. A log is no golden: it has only some
-// of the controller's steps, so some of its outputs answer a sample that it does not have.
+// How well a port's outputs agree with those of a flight log. A log is not a golden: it lacks
+// samples, so some of its outputs were computed from samples that it does not have.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,6 @@ struct LogLimits {
   double most_unexplained = 0.02;
 };
 
-// A value of the port and of the log.
 struct LoggedPair {
   std::size_t tick;
   std::size_t channel;  // index into channels()
@@ -33,10 +32,10 @@ struct LoggedPair {
 // One topic. Its deviation at a tick is the largest of its fields. NaN agrees with NaN only.
 struct TopicAgreement {
   std::string_view topic;
-  std::string not_judged;    // why it is only reported; empty: it is judged
+  std::string not_judged;    // why it is reported but not judged; empty: it is judged
   std::size_t left_out = 0;  // ticks whose logged output cannot be computed from the log
   std::size_t paired = 0;    // the other ticks with an output in the log
-  std::size_t missing = 0;   // of these: the port published nothing
+  std::size_t missing = 0;   // paired ticks at which the port did not publish
   // Ticks at which log and port have an output, and the port has NaN or infinity where the log has
   // a number. A tick that is left out counts too, if the reference is finite there. One is enough
   // for the port not to agree.
@@ -44,10 +43,10 @@ struct TopicAgreement {
   // Deviations at the paired ticks at which the port published. Nearest rank; 0 without such ticks.
   double median = 0, p90 = 0, p99 = 0, largest = 0;
   std::size_t within = 0;
-  // Not within, but the log and the port are, in every field, between the reference's smallest and
-  // largest value at the tick and its two neighbours. The logged output may then be that of a
-  // sample between these, which the log lacks. The range is the reference's, because a port with
-  // wild values would widen its own.
+  // Ticks that are not within, where log and port are, in every field that deviates, between the
+  // reference's smallest and largest value at the tick and its two neighbours. The logged output
+  // may then be that of a sample between these ticks, which the log lacks. The range is the
+  // reference's, because a port with wild values would widen its own.
   std::size_t between_samples = 0;
   std::optional<LoggedPair> first_unexplained;
 
@@ -59,7 +58,7 @@ struct TopicAgreement {
 
 // The topics that the log has, in the order of the channels. `reference`: the reference's outputs
 // for the inputs of the log. `got`, `logged` and `reference` have the same ticks. `leaves_out`: the
-// ticks to leave out, in every topic; empty: none.
+// ticks to leave out, in every topic; if empty, no tick is left out.
 std::vector<TopicAgreement> agreement_with_log(const Trace& got, const Trace& logged,
                                                const Trace& reference, const LogLimits& limits,
                                                const std::vector<bool>& leaves_out = {});

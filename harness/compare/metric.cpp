@@ -30,7 +30,7 @@ constexpr std::array<std::pair<Measure, std::string_view>, 8> names = {{
 
 double square(double value) { return value * value; }
 
-// As std::max, but a NaN in `b` stays: std::max would drop it.
+// Same as std::max, except that a NaN in `b` is kept: std::max would drop it.
 double larger(double a, double b) { return std::isnan(b) || b > a ? b : a; }
 
 // The angle between two attitudes, independent of the signs and norms of their quaternions. It uses
@@ -57,7 +57,6 @@ std::array<float, 3> rates_of(const Topic& topic) {
   return {topic.roll, topic.pitch, topic.yaw};
 }
 
-// The rates setpoint in force.
 std::array<float, 3> wanted_rates(Module module, const Sample& sample) {
   if (module == Module::rate_unit) {
     const auto& mode = sample.rate_in.vehicle_control_mode;
@@ -79,7 +78,7 @@ double squared_rate_error(Module module, const Sample& sample, const PlantSample
   return sum;
 }
 
-// The setpoint that a step followed. The attitude unit follows the sticks in stabilized mode.
+// The setpoint that a step followed. In stabilized mode the attitude unit makes it from the sticks.
 const float (&attitude_setpoint(const Sample& sample, bool is_attitude_unit))[4] {
   if (!is_attitude_unit) return sample.in.vehicle_attitude_setpoint.q_d;
   const attest_attitude_inputs& in = sample.attitude_in;

@@ -1,5 +1,6 @@
-// Metrics judge a flight as a whole: one number each, over a window of its time. Two correct
-// controllers differ in the last bits, and a flight may amplify that. Metrics stay nearly the same.
+// Metrics judge a flight as a whole: each is one number, over a window of the flight. Two correct
+// controllers differ in the last bits. A flight may amplify this difference, but metrics stay
+// nearly the same.
 #pragma once
 
 #include <array>
@@ -19,7 +20,7 @@ namespace attest {
 enum class Measure {
   settling_time_s,         // from the window's start until the attitude error stays within the band
   overshoot_deg,           // largest attitude error after it was first within the band
-  rms_attitude_error_deg,  //
+  rms_attitude_error_deg,  // over all ticks of the window
   rms_rate_error_rad_s,    // of the three axes together, against the rates setpoint in force
   peak_rate_rad_s,         // largest |body rate|
   saturation_duty,         // fraction of the ticks with the mixer or allocator in saturation, 0..1
@@ -41,7 +42,7 @@ struct Metric {
   Measure measure = Measure::settling_time_s;
   Window window;
   double band_deg = 2;           // settling and overshoot: attitude error that counts as arrived
-  std::optional<Window> versus;  // the value is divided by that of this window
+  std::optional<Window> versus;  // the value is divided by the value in this window
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
 };
@@ -49,10 +50,11 @@ struct Metric {
 // The attitude setpoint in force at each tick of `flown`. `attitude` as for measured().
 std::vector<std::array<float, 4>> attitude_setpoints(const Trace& flown, const Trace* attitude);
 
-// Infinite when the flight does not settle. NaN when the window has no tick, or a measured value is
-// NaN. `flown` is the trace of the unit that commands the motors. `attitude`: of a flight of the
-// cascade the trace of its attitude unit, which has the attitude setpoint; else null. REQUIRES:
-// flown traces.
+// Infinite: a settling time if the error does not stay within the band; an overshoot if the error
+// is never within the band. NaN: the window has no tick, `attitude` has no tick, or a measured
+// value is NaN. `flown` is the trace of the unit that commands the motors. `attitude`: in a flight
+// of the cascade the trace of its attitude unit, which has the attitude setpoint; otherwise null.
+// REQUIRES: flown traces.
 double measured(const Metric& metric, const Trace& flown, const Trace* attitude = nullptr);
 
 }  // namespace attest

@@ -72,7 +72,8 @@ constexpr std::array units{
     Unit{-1, "the expected values with the other sign"},
 };
 
-// The large signals of a topic that do not agree, and whether a factor makes them agree.
+// Names the signals of a topic that do not agree, if all of them are large and one factor makes
+// them agree.
 std::string other_unit(const std::string& topic, const std::vector<Signal>& signals) {
   for (const Unit& unit : units) {
     std::vector<std::string> wrong;
@@ -90,7 +91,7 @@ std::string other_unit(const std::string& topic, const std::vector<Signal>& sign
   return "";
 }
 
-// "out/vehicle_rates_setpoint.roll has the values expected of .pitch"
+// "out/vehicle_rates_setpoint.roll has the values expected of out/vehicle_rates_setpoint.pitch"
 std::string exchanged(const std::vector<Signal>& signals) {
   std::vector<std::string> pairs;
   for (const Signal& signal : signals) {
@@ -104,7 +105,8 @@ std::string exchanged(const std::vector<Signal>& signals) {
   return fmt::format("{}", fmt::join(pairs, ", "));
 }
 
-// Whether every signal agrees when tick `i` of the recording is compared with tick `want_of(i)`.
+// Whether every signal agrees when tick `i` of the recording is compared with tick `want_of(i)`,
+// and at least one signal does not agree without this.
 bool fits_at(const Topics& topics, const std::function<std::size_t(std::size_t)>& want_of) {
   bool is_shown = false;
   for (const auto& [topic, signals] : topics) {
@@ -137,7 +139,7 @@ std::string other_order(const Topics& topics, std::size_t ticks) {
 
 std::string misrecording(const Trace& got, const Trace& want) {
   const Topics topics = topics_of(got, want);
-  // With one or two ticks, a shift agrees with anything.
+  // With few ticks, a shift may agree by chance.
   constexpr std::size_t enough_ticks = 4;
   if (got.samples.size() >= enough_ticks) {
     if (std::string order = other_order(topics, got.samples.size()); !order.empty()) return order;

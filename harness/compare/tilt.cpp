@@ -55,7 +55,6 @@ double AttitudeGain::value() const {
   if (module_ == Module::mc_att_control) {
     return std::max(std::abs(roll_p_ * 0.2 / roll_tc_), std::abs(pitch_p_ * 0.2 / pitch_tc_));
   }
-  // The yaw gain is divided by the weight of yaw.
   const double weight = std::clamp(yaw_weight_, 0.0, 1.0);
   const double yaw = weight > 1e-4 ? yaw_p_ / weight : yaw_p_;
   return std::max({std::abs(roll_p_), std::abs(pitch_p_), std::abs(yaw)});

@@ -15,10 +15,11 @@ using AttitudeQuaternion = std::array<double, 4>;  // w, x, y, z, of any norm
 double tilt_error(const AttitudeQuaternion& q, const AttitudeQuaternion& q_d);
 
 // Angle [rad] of the rotation between two attitudes: near 180 deg if the tilt error or the yaw
-// error is. NaN as above.
+// error is. NaN when a quaternion is zero or not finite.
 double attitude_error(const AttitudeQuaternion& q, const AttitudeQuaternion& q_d);
 
-// The largest attitude gain [1/s] of a module, without its sign. It follows the parameter changes.
+// The largest attitude gain [1/s], without its sign: of roll and pitch in the controller, also of
+// yaw in the cascade. set() takes each change of a parameter.
 class AttitudeGain {
  public:
   explicit AttitudeGain(Module module);
@@ -27,7 +28,8 @@ class AttitudeGain {
 
  private:
   Module module_;
-  // Defaults of PX4 v1.5.5, MC_{ROLL,PITCH}_P and MC_{ROLL,PITCH}_TC, and of the cascade.
+  // The defaults of PX4: roll and pitch are those of v1.5.5 and of the cascade, yaw is of the
+  // cascade.
   double roll_p_ = 6.5, roll_tc_ = 0.2, pitch_p_ = 6.5, pitch_tc_ = 0.2;
   double yaw_p_ = 2.8, yaw_weight_ = 0.4;
 };

@@ -18,7 +18,6 @@
 namespace attest {
 namespace {
 
-// Samples that are not in the signals.
 struct LeftOut {
   std::size_t not_later = 0, too_late = 0, without_time = 0;
 
@@ -33,7 +32,7 @@ struct LeftOut {
   }
 };
 
-// Appends a sample of signals, `value(i)`, unless it is left out.
+// Appends value(i) to each signal i, unless the sample is left out.
 template <typename Signals, typename Value>
 void add_sample(Signals& signals, std::uint64_t time_us, LeftOut& left_out, Value value) {
   if (time_us > static_cast<std::uint64_t>(latest_us)) {
@@ -51,7 +50,6 @@ void add_sample(Signals& signals, std::uint64_t time_us, LeftOut& left_out, Valu
   }
 }
 
-// The numbers of a subscription's topic.
 struct TimedTopic {
   std::optional<ulog::Column> time;
   std::vector<ulog::Column> columns;
@@ -130,7 +128,7 @@ Result<TimedSignals> signals_of_log(const std::filesystem::path& path) {
   return signals;
 }
 
-// Channel -> its name in a log that attest writes of the trace.
+// Channel -> its name in the log that attest writes for a trace.
 using NamesInLog = std::map<std::string_view, std::string>;
 
 NamesInLog names_in_log(const std::vector<std::string>& columns) {
@@ -154,14 +152,14 @@ std::string name_in_log(std::string_view column, const NamesInLog& in_log) {
     if (column.starts_with(prefix)) column.remove_prefix(prefix.size());
   }
   std::string name(column);
-  // "rotor_speed[0]": a topic with the field `value`.
+  // "rotor_speed[0]" becomes "rotor_speed.value[0]": a topic with the field `value`.
   if (is_of_plant && name.find('.') == std::string::npos) {
     name.insert(std::min(name.find('['), name.size()), ".value");
   }
   return name;
 }
 
-// Times and the values of the other columns of a row, as CsvRows writes them.
+// A row as CsvRows writes it: the time, then the values of the other columns.
 struct Row {
   static constexpr std::size_t time = 0, first = sizeof(std::uint64_t);
   std::vector<char> bytes;

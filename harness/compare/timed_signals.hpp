@@ -10,7 +10,7 @@
 
 namespace attest {
 
-// The latest time of a sample, so that times can be subtracted and shifted by as much in 64 bits.
+// The limit of sample times. Differences of such times, and shifts by as much, fit into 64 bits.
 inline constexpr std::int64_t latest_us = (std::int64_t{1} << 62) - 1;
 
 struct TimedSignal {
@@ -22,21 +22,25 @@ struct TimedSignal {
 struct TimedSignals {
   std::string source;
   std::vector<TimedSignal> all;    // by name
-  std::vector<std::string> notes;  // what is damaged or left out: one line each
+  std::vector<std::string> notes;  // what is damaged or left out; one line for each
 
   const TimedSignal* find(const std::string& name) const;
 };
 
-// Reads a ULog if the name ends with .ulg or .ulog, else a CSV file with a column `timestamp` in
-// us.
+// Reads a ULog if is_log(path) (the name ends with .ulg or .ulog), otherwise a CSV file with a
+// column `timestamp` in us. Memory: all signals.
 //
-// A signal of a log is a number of a topic; a topic's further instances have their number in
-// brackets. Columns `in/...` and `out/...` of a trace have the name that the signal has in a log of
-// attest (trace_log.hpp): without this prefix, and `vehicle_rates_setpoint[1]` for an input that
-// the module also publishes. Left out, counted in `notes`: a sample whose time is not after the one
-// before, or after latest_us; a topic without a timestamp; of signals with the same name, all but
-// the first. Memory: all signals. Errors: the file cannot be read; a cell is no number; no column
-// `timestamp`; no signal.
+// Names: a signal of a log is a number of a topic; further instances of a topic have their number
+// in brackets. Columns `in/...` and `out/...` of a trace have the name that the signal has in a log
+// of attest (trace_log.hpp): without this prefix, and `vehicle_rates_setpoint[1]` for an input that
+// the module also publishes.
+//
+// Left out, and counted in `notes`:
+// - samples whose time is not later than that of the sample before, or is later than latest_us
+// - samples of a topic without a timestamp
+// - signals with the name of an earlier signal
+//
+// Errors: the file cannot be read; a cell is no number; no column `timestamp`; no signal.
 Result<TimedSignals> read_timed_signals(const std::filesystem::path& path);
 
 }  // namespace attest

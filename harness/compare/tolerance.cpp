@@ -122,8 +122,8 @@ double Tolerances::widening(double error_rad, double gain) const {
   // Measured with correct builds: 3e-6 rad/s at one radian from 180 deg with the default gain.
   constexpr double noise_rad_s = 3e-6;
   constexpr double default_gain = 6.5;
-  // 0.1 deg: there the widening is as large as the smallest error of a wrong port. Vectors nearer
-  // to 180 deg belong to the exact level.
+  // 0.1 deg. There the widening is as large as the smallest error of a wrong port, so it does not
+  // grow further. Vectors nearer to 180 deg belong to the exact level.
   constexpr double nearest_rad = 1.7e-3;
   const double distance = std::max(std::numbers::pi - error_rad, nearest_rad);
   return scale_ * noise_rad_s * (gain / default_gain) / distance;

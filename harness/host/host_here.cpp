@@ -59,7 +59,7 @@ Result<StepTimes> HostHere::time_steps(const Subject& subject, const Trace& inpu
   times.fault = ports_.run([&]() -> std::optional<PortFault> {
     const auto unit = make_unit(*port_, subject);
     if (!unit) return held(unit.error(), subject.profile);
-    // The note is outside of what is timed.
+    // `timed` is inside of the noted unit, so the time of a step does not include the note.
     std::unique_ptr<Unit> timed = std::make_unique<TimedUnit>(**unit, *clock_, times.steps);
     if (calls_) timed = calls_->noted(std::move(timed));
     return held(attest::drive(*timed, trace, subject.module), subject.profile);
@@ -99,7 +99,7 @@ bool HostHere::supports(const std::string& profile) {
 Result<std::unique_ptr<PortHost>> open_host_here(const std::string& port,
                                                  std::optional<PortSays> said, Course course,
                                                  const PortCalls* calls) {
-  const DefaultFloatEnvironment callers;  // which a library may change when it is loaded
+  const DefaultFloatEnvironment callers;  // a library may change it when it is loaded
   auto opened = open_port(port);
   if (!opened) return tl::unexpected(opened.error());
   return std::make_unique<HostHere>(*std::move(opened), std::move(said), course, calls);

@@ -13,9 +13,9 @@ namespace attest {
 
 class HostHere final : public PortHost {
  public:
-  // `said`: the port's declarations before the run, which must stay the same; empty: its
-  // declarations now. `calls`: where the port's calls are noted, which must outlive this; null:
-  // they are not noted.
+  // `said`: the port's declarations before the run, which must stay the same. Empty: its
+  // declarations now. `calls`: where the port's calls are noted; outlives this. Null: the calls are
+  // not noted.
   HostHere(std::unique_ptr<Port> port, std::optional<PortSays> said = {}, Course course = {},
            const PortCalls* calls = nullptr);
 
@@ -27,14 +27,15 @@ class HostHere final : public PortHost {
   bool supports(const std::string& profile) override;
 
  private:
-  // The fault of a request, or a fault of kind protocol if the port's declarations have changed.
+  // Returns `fault`, or a fault of kind protocol if the port's declarations have changed. Throws
+  // PortBroke if a program broke the protocol in destroy().
   std::optional<PortFault> held(std::optional<PortFault> fault, const std::string& profile) const;
   Port& driven() { return noted_ ? *noted_ : *port_; }
   Result<void> measure_stack(const Subject& subject, Trace trace, StepTimes& times);
 
   std::unique_ptr<Port> port_;
   const PortCalls* calls_;
-  std::unique_ptr<Port> noted_;  // port_, with its calls noted; null: they are not
+  std::unique_ptr<Port> noted_;  // port_, with its calls noted; null without calls_
   PortFloatEnvironment ports_;
   PortSays says_;
   Course course_;
@@ -42,8 +43,9 @@ class HostHere final : public PortHost {
   std::optional<PaintedStack> stack_;
 };
 
-// Opens the port (open_port); a change that it makes to the floating point environment does not
-// reach the caller. The other arguments are those of HostHere. Errors: those of open_port().
+// Opens the port with open_port(). A change that the port makes to the floating point environment
+// while it is loaded does not reach the caller. The other arguments are those of HostHere. Errors:
+// those of open_port().
 Result<std::unique_ptr<PortHost>> open_host_here(const std::string& port,
                                                  std::optional<PortSays> said = {},
                                                  Course course = {},

@@ -143,7 +143,7 @@ auto read_answer(const Arrived& arrived, Read read) -> decltype(read(json())) {
   }
 }
 
-// The trace of one unit of a flight that had so many ticks.
+// Reads the trace of one unit of a flight, which must have `ticks` ticks.
 std::optional<Trace> flown_trace(const Arrived& arrived, const json& head, Module module,
                                  std::size_t ticks) {
   auto samples = arrived.blobs.read<Sample>(ticks);

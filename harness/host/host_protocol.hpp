@@ -1,26 +1,28 @@
 // The messages between a judge and the process of a port (message_socket.hpp): a head in JSON, and
-// structs as they are in memory. Both processes are forks of one process, so the structs have
-// the same layout.
+// structs as they are in memory. Both processes are forks of one process, so the structs have the
+// same layout. In this list, the structs stand on the right. "fault" and "divergence" are present
+// only if there was one.
 //
 //     process -> {"request": 0, "says": {...}}              once, when the port is loaded
 //     judge   -> {"do": "drive", "subject": ..., ...}       samples, with inputs only
 //     process -> {"request": 1, "fault": {...}}             the same samples with outputs
 //     judge   -> {"do": "fly", "rate": "250", ...}          LoopTicks of the unit, those of the
-//                                                           attitude unit (none: no cascade)
-//     process -> {"request": 2, "fault", "divergence", "parameters"}
+//                                                           attitude unit (empty: no cascade)
+//     process -> {"request": 2, "fault", "divergence", "parameters", ...}
 //                                                           samples, plant samples
 //                of the cascade also "attitude_ticks", "attitude_parameters"
 //                                                           and the attitude unit's samples
-//     judge   -> {"do": "time", "profile": ..., ...}        samples, with inputs only
-//     process -> {"request": 3, "fault", "clock_ns"}        nanoseconds of each step, stack bytes
+//     judge   -> {"do": "time", "subject": ..., ...}        samples, with inputs only
+//     process -> {"request": 3, "fault", "clock_ns", "steps", "stack"}
+//                                                           nanoseconds of each step
 //     judge   -> {"do": "supports", "profile": ...}
 //     process -> {"request": 4, "supports": true}
 //
-// {"request": n, "fault": {...}} alone is the answer to any request if a program ended, or broke
-// its protocol, outside of a step.
+// "request" counts the requests, which may come in any order. {"request": n, "fault": {...}} alone
+// is the answer to any request if a program ended, or broke its protocol, outside of a step.
 //
 // {"request": n, "error": {...}} replaces the greeting if the port cannot be loaded, and the answer
-// to "fly" or "time" if that cannot be done. The port's code runs in that process, so the judge
+// to "fly" or "time" if attest cannot do that. The port's code runs in that process, so the judge
 // does not trust its messages. A message that does not answer its request, is incomplete or has the
 // wrong size counts as no answer.
 #pragma once
@@ -50,8 +52,9 @@ struct Arrived {
   bool of_program = false;  // the port is a program, which may end while its host goes on
 };
 
-// Empty: no valid answer to that request. A valid answer has all `ticks` ticks. A flight or a
-// timing may have fewer, if the answer has the fault or divergence that ended it.
+// The readers return an empty optional if the message is not a valid answer to that request. A
+// valid answer has all `ticks` ticks. A flight or a timing may have fewer, if the answer has the
+// fault or divergence that ended it.
 struct Driven {
   std::vector<Sample> samples;
   std::optional<PortFault> fault;
@@ -60,7 +63,7 @@ std::optional<Driven> read_driven(const Arrived& arrived, std::size_t ticks);
 std::optional<Result<Flown>> read_flown(const Arrived& arrived, const FlightPlan& plan);
 std::optional<Result<StepTimes>> read_times(const Arrived& arrived, std::size_t ticks);
 std::optional<bool> read_supports(const Arrived& arrived);
-// The fault of a port that answers nothing else.
+// Reads an answer that consists of a fault only.
 std::optional<PortFault> read_fault(const Arrived& arrived);
 std::optional<Result<PortSays>> read_greeting(const Arrived& arrived);
 

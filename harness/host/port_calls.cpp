@@ -28,7 +28,7 @@ enum class Call : std::uint32_t {
 
 struct RunningCall {
   std::atomic<Call> call{Call::none};
-  std::atomic<std::uint64_t> tick{0};  // of the instance whose step() runs
+  std::atomic<std::uint64_t> tick{0};  // of the unit whose step() runs, from 0
 };
 
 struct PortCalls::Now {
@@ -40,7 +40,7 @@ struct PortCalls::Now {
     return module == Module::attitude_unit ? of_attitude_unit : running;
   }
 };
-// Shared by two processes.
+// Two processes share these, so they must not contain a lock.
 static_assert(std::atomic<Call>::is_always_lock_free);
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
@@ -48,7 +48,6 @@ namespace {
 
 using Now = PortCalls::Now;
 
-// Notes a call for as long as it exists.
 class Noted {
  public:
   Noted(Now& now, Module module, Call call) : running_(now.of(module)) {

@@ -1,6 +1,6 @@
 // The call of the port that runs now, in memory that the port's process shares with its judge.
 // After a crash or a timeout the judge reads there in which call, and at which tick, the port was.
-// While it waits for a program, the judge sees there whether the program still answers.
+// While the judge waits for a program, it sees there whether the program still answers.
 #pragma once
 
 #include <cstdint>
@@ -21,15 +21,15 @@ class PortCalls {
   void reset() const;
 
   // " in step() at tick 17", " in create()"; empty between the calls. In a live flight of the
-  // cascade two calls may run at the same time. A port can write there, so only messages may depend
-  // on it.
+  // cascade two calls may run at the same time. The port can overwrite this memory, so only
+  // messages may depend on it.
   std::string current() const;
 
   // How many calls have begun so far.
   std::uint64_t count() const;
 
-  // The port, with create() and each call of its units noted. Used in the port's process. This and
-  // `port` must outlive the result.
+  // Returns `port`, with create() and each call of its units noted. For use in the port's process.
+  // This object and `port` must outlive the result. A single `unit` is noted as a controller.
   std::unique_ptr<Port> noted(Port& port) const;
   std::unique_ptr<Unit> noted(std::unique_ptr<Unit> unit) const;
 

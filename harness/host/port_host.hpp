@@ -1,5 +1,5 @@
 // A running port, and the requests to it: take a trace, fly, be timed. A judge uses a port through
-// this interface only, in whichever process it runs.
+// this interface only: in another process, in its own process, or recorded in files.
 #pragma once
 
 #include <cstddef>
@@ -20,14 +20,12 @@ struct Course {
   const VehicleModel* vehicle_model = nullptr;
 };
 
-// One flight of a course.
 struct FlightPlan {
   RunConfiguration configuration;
   FlightTiming timing;
   bool from_one_period_on = false;  // Case::from_one_period_on()
 };
 
-// How long each step of a trace took.
 struct StepTimes {
   std::vector<Nanoseconds> steps;          // without the time of reading the clock
   Nanoseconds clock{0};                    // the time of reading the clock
@@ -48,11 +46,11 @@ class PortHost {
   // Same as drive() of open_loop.hpp, with a fresh instance.
   virtual std::optional<PortFault> drive(const Subject& subject, Trace& trace) = 0;
 
-  // Same as fly() of flight.hpp, with a fresh unit. REQUIRES: the host was started with a course.
+  // Same as fly() of flight.hpp, with fresh units. REQUIRES: the host was started with a course.
   virtual Result<Flown> fly(const FlightPlan& plan) = 0;
 
-  // Same as drive(), without the outputs and without another instance. Errors: no memory for the
-  // stack.
+  // Same as drive(), but measures each step, discards the outputs, and ignores subject.instances.
+  // Errors: no memory for the stack.
   virtual Result<StepTimes> time_steps(const Subject& subject, const Trace& inputs,
                                        bool with_stack) = 0;
 
@@ -60,7 +58,8 @@ class PortHost {
   virtual bool supports(const std::string& profile) = 0;
 
   // True after a crash or a broken protocol: further requests need a new host. False after a
-  // timeout: the port gets no more requests, and each further request ends with that fault.
+  // timeout: the port gets no more requests, and each further request ends with a fault of kind
+  // timeout.
   virtual bool is_spent() const { return false; }
 };
 

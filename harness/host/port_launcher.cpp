@@ -23,7 +23,7 @@ struct Served {
   Course course;
 };
 
-// In the port's process.
+// Runs in the port's process.
 void serve(const Served& served, const PortCalls& calls, MessageSocket& judge) {
   auto host = open_host_here(served.options->port, served.options->said, served.course, &calls);
   if (!host) {
@@ -39,7 +39,7 @@ void serve(const Served& served, const PortCalls& calls, MessageSocket& judge) {
     });
     try {
       goes_on = answer({question.head, blobs, request}, **host, judge);
-    } catch (const PortBroke& broke) {  // a program broke the protocol in its answer to `create`
+    } catch (const PortBroke& broke) {  // a program ended or broke its protocol outside of a step
       goes_on = give_fault(fault_of(broke), request, judge);
     }
   }
@@ -85,7 +85,7 @@ class PortLauncher {
   Launcher launcher_;
 };
 
-// Empty: this process has none.
+// The launcher of this process; empty if there is none.
 std::optional<PortLauncher>& port_launcher() {
   static std::optional<PortLauncher> launcher;
   return launcher;

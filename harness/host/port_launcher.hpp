@@ -14,12 +14,12 @@ namespace attest {
 struct HostOptions;
 
 // Starts the launcher of this process, and ends the one that it had. A worker calls this before it
-// reads data that ports must not read (Job::begin_worker()). It can then judge many ports, one
-// after the other. Errors: a process cannot be started.
+// reads data that ports must not read (Job::begin_worker()). The launcher can then start the
+// processes of many ports, one after the other. Errors: a process cannot be started.
 Result<void> start_port_launcher();
 
-// False after the launcher has died. The worker must then end: it may have read data that ports
-// must not read, and a new launcher would have them in its memory.
+// False before the first start, and after a launch found the launcher dead. A worker must then end:
+// it may have read data that ports must not read, and a new launcher would have them in its memory.
 bool has_port_launcher();
 
 // A process that loads a port and serves requests (host_protocol.hpp).

@@ -115,14 +115,14 @@ class PortProcess final : public PortHost {
     }
     ++request_;
     const Patience limit = patience();
-    // If this fails, the wait for the answer finds out why.
+    // If the request cannot be sent, the wait for the answer finds out why.
     port_->child.socket().send(question, blobs, limit);
     return answer_from("", limit, std::move(read));
   }
 
   // The time limit of a library is for a whole trace. A program may take longer for a trace, so its
-  // limit is for each call. The program cannot write to the memory in which its calls are counted,
-  // so it cannot extend the limit.
+  // limit is for each call. The calls are counted in memory that the program cannot write, so it
+  // cannot extend the limit.
   Patience patience() const {
     Patience limit = Patience::seconds(options_.timeout_s);
     limit.given_up = options_.stop;
@@ -137,7 +137,7 @@ class PortProcess final : public PortHost {
     return limit;
   }
 
-  // With the last line that a program printed before it ended or broke the protocol.
+  // Adds the last line that a program printed before it ended or broke the protocol.
   std::optional<PortFault> with_words(std::optional<PortFault> fault) const {
     if (fault && is_program(options_.port) &&
         (fault->kind == PortFault::Kind::crash || fault->kind == PortFault::Kind::protocol)) {
@@ -194,7 +194,7 @@ class PortProcess final : public PortHost {
   std::optional<PortChild> port_;
   PortSays says_;
   std::uint64_t request_ = 0;
-  bool was_asked_ = false;          // a request was made: after a timeout the next is `not run`
+  bool was_asked_ = false;          // by a request; after a timeout, later ones are `not run`
   std::optional<PortFault> fault_;  // permanent
 };
 
@@ -232,7 +232,6 @@ Result<void> ensure_host(std::unique_ptr<PortHost>& host, const HostOptions& opt
 
 namespace {
 
-// Of a port that can be called.
 Result<PortDescription> describe_callable(const HostOptions& options,
                                           const std::vector<std::string>& profiles) {
   PortDescription description;

@@ -15,7 +15,7 @@
 
 namespace attest {
 
-// The time limit of each answer of a port [s]. Answers take milliseconds.
+// The time limit of each answer of a port [s]. An answer usually takes milliseconds.
 inline constexpr double default_timeout_s = 10;
 
 struct HostOptions;
@@ -24,44 +24,45 @@ using StartHost =
 
 struct HostOptions {
   std::string port = "builtin";  // as for open_port
-  // The declarations that the port made before the run. It must not change them. If empty, those
-  // that it makes when it is loaded are used.
+  // The declarations that the port made before the run. It must not change them. Empty: those that
+  // it makes when it is loaded.
   std::optional<PortSays> said = {};
   double timeout_s = default_timeout_s;
   bool in_process = false;  // for a debugger: no process of its own, no protection
   // The text of the fault, if the port hung when it was loaded. Such a port is not started again.
   // The first request ends with this fault, and later requests with `not run`.
   std::string hangs = {};
-  // Called while an answer is awaited; true: stop waiting, the answer is not needed any more.
+  // Called while an answer is awaited. True: stop waiting, because the answer is not needed any
+  // more.
   std::function<bool()> stop = [] { return false; };
-  // Makes a host of another kind in place of a process; empty: a process, or `in_process`.
-  // describe_port() ignores it.
+  // Makes the host, if set; start_host() then calls only this. describe_port() ignores it.
   StartHost start = {};
 };
 
-// Starts a process, which loads the port and waits for requests. REQUIRES: those of launch_port();
-// without a launcher the process is a copy of the caller's memory, which must have no data that the
-// port must not read. Errors: the port cannot be opened, a process cannot be started. A port that
-// crashes or hangs when it is loaded is no error: each request ends with that fault.
+// Starts a host. Without `start` and `in_process`, this is a process that loads the port and waits
+// for requests, or for `recorded:DIR` a reader of its files. REQUIRES, for a process: those of
+// launch_port(); without a launcher it is a copy of the caller's memory, which must have no data
+// that the port must not read. Errors: the port cannot be opened, a process cannot be started. A
+// port that crashes or hangs when it is loaded is no error: then each request ends with a fault.
 Result<std::unique_ptr<PortHost>> start_host(const HostOptions& options, const Course& course = {});
 
-// Replaces `host` by a new one without a course if it is null or spent (PortHost::is_spent(): after
-// a crash or broken protocol, not after a timeout). Errors as start_host().
+// If `host` is null or spent (PortHost::is_spent(): after a crash or broken protocol, not after a
+// timeout), replaces it by a new one without a course. Errors: those of start_host().
 Result<void> ensure_host(std::unique_ptr<PortHost>& host, const HostOptions& options);
 
 // The declarations of a port, read in a process of its own.
 struct PortDescription : PortSays {
-  std::string hangs;       // the fault, if it did not answer in time when it was loaded
-  std::string goes_wrong;  // its fault when it made a unit; empty: no fault
+  std::string hangs;       // the fault, if the port did not answer in time when it was loaded
+  std::string goes_wrong;  // its first fault when it was asked for a profile; empty: no fault
   // Profile -> what the port last printed when it made no unit of it; empty if it printed nothing.
   std::map<std::string, std::string> refusals;
 };
 
-// The result lists, in PortSays::profiles, those of `profiles` that the port supports. Each is
-// requested in a process of its own. A port that makes a single unit per process is thus
-// distinguished from one that does not support the second profile. After a fault of the port, the
-// remaining profiles are not requested. Errors: the port cannot be loaded, or its process ends
-// while the port is being loaded.
+// The result has in PortSays::profiles those of `profiles` that the port supports; of a recorded
+// port, all profiles of its vectors. Each profile is requested in a process of its own: so a port
+// that makes a single unit per process is not mistaken for one that supports only the first
+// profile. After a fault of the port, the remaining profiles are not requested. Errors: the port
+// cannot be loaded, or its process ends while the port is being loaded.
 Result<PortDescription> describe_port(const HostOptions& options,
                                       const std::vector<std::string>& profiles = {});
 

@@ -17,20 +17,21 @@ struct PortSays {
   std::optional<int> fraction_bits;  // of a port in fixed point
   std::optional<Rate> fixed_step;    // of a port with a fixed sample time
   ModuleSet modules;
-  std::vector<std::string> profiles;  // of which it made a unit; empty unless requested
+  std::vector<std::string> profiles;  // that it supports; empty unless requested
   bool is_recorded = false;           // its outputs are files; it cannot be called
-  ChannelSet not_recorded = {};       // outputs that these files do not have: not judged
+  ChannelSet not_recorded = {};       // outputs that its files lack; they are not judged
 
-  // Of a port that is loaded; the profiles stay empty.
+  // Asks a loaded port. The result has no profiles.
   static PortSays asked(const Port& port);
 };
 
-// "its attest.arithmetic is `fixed:20`, it was `none` when the port was asked first; ..."; empty
-// when both say the same. The profiles are not compared.
+// "its attest.arithmetic is `fixed:20`, it was `none` when the port was asked first; ...": the
+// first difference; empty when there is none. The profiles are not compared.
 std::string change(const PortSays& said, const PortSays& now);
 
-// The fault of a port whose create(profile) returned NULL: it does not support the profile, or it
-// breaks the rules of the ABI, because it made a unit of that profile when it was asked first.
+// The fault of a port whose create(profile) returned NULL. Kind::profile: it does not support the
+// profile. Kind::protocol: the profile is in `said.profiles`, so an earlier create() did not return
+// NULL.
 PortFault no_unit_of(const std::string& profile, const PortSays& said);
 
 }  // namespace attest

@@ -87,7 +87,7 @@ class RecordedHost final : public PortHost {
 bool has_outputs(const std::filesystem::path& folder, const Manifest& manifest) {
   return std::any_of(manifest.vectors.begin(), manifest.vectors.end(), [&](const auto& vector) {
     const auto file = find_output_file(folder, vector.first);
-    return !file || *file;  // several files are outputs, too
+    return !file || *file;  // several files, an error here, are outputs too
   });
 }
 

@@ -1,4 +1,4 @@
-// A host of recorded outputs: it answers with what the files of a folder say.
+// A host that answers with the recorded outputs in the files of a folder.
 #pragma once
 
 #include <filesystem>
@@ -9,14 +9,14 @@
 
 namespace attest {
 
-// The folder of `attest vectors`, with outputs (recording/manifest.hpp). The host identifies a
-// vector by Trace::source, its id. Requests:
+// `folder` was made by `attest vectors`, and outputs were added (recording/manifest.hpp). The host
+// identifies a vector by its id, Trace::source. Requests:
 //
-//     drive         the outputs of the vector's file. A vector without a file, or with several
-//                   instances of the port, is unanswered. A file that cannot be used is a fault of
-//                   kind protocol
-//     fly           unanswered
-//     time_steps    unanswered
+//     drive         the outputs in the vector's file. Fault Kind::unanswered: the vector has no
+//                   file, is not in the manifest, or needs several instances of the port.
+//                   Fault Kind::protocol: its file cannot be used
+//     fly           fault Kind::unanswered
+//     time_steps    fault Kind::unanswered
 //     supports      true if the manifest has a vector of the profile
 //
 // No code of a port runs. Errors: no folder or manifest; the manifest is malformed; no vector has

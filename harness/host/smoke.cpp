@@ -16,8 +16,8 @@
 namespace attest {
 namespace {
 
-// "out/vehicle_rates_setpoint.roll at tick 3 is 1, it was 2"; empty when the outputs have the same
-// bits, or both are NaN.
+// "out/vehicle_rates_setpoint.roll at tick 3 is 1, it was 2"; empty when all outputs are equal. NaN
+// equals NaN.
 std::string difference(const Trace& now, const Trace& before, Module module) {
   const ChannelSet outputs = channels_of(module, "out/");
   for (std::size_t tick = 0; tick < now.samples.size(); ++tick) {
@@ -52,7 +52,7 @@ class Smoke {
     if (!steps()) return false;
     if (!unsupported_.empty()) return true;
     if (!outputs() || !repeatable()) return false;
-    // All of them, although one is bad.
+    // All three checks run, even if one is bad.
     const bool parameters_are_good = parameters(), instances_are_good = instances();
     const bool takes_nan = nan();
     return parameters_are_good && instances_are_good && takes_nan;
@@ -65,8 +65,8 @@ class Smoke {
     return wrong.empty();
   }
 
-  // "step at tick 3 returned ATTEST_FAILED"; empty when the port took the whole trace, or does not
-  // support it.
+  // "step at tick 3 returned ATTEST_FAILED"; empty when the port made all steps, or does not
+  // support the trace: then unsupported_ has the reason.
   std::string fault_with(Trace& trace, Instances instances = Instances::one) {
     if (auto ensured = ensure_host(host_, options_); !ensured) return ensured.error().to_string();
     Subject subject = subject_;
@@ -92,7 +92,7 @@ class Smoke {
     return find("outputs", fmt::format("{} of {}", fmt::join(topics, ", "), name_), wrong);
   }
 
-  // "vehicle_rates_setpoint is not published although ..."; empty if it is, with numbers.
+  // "vehicle_rates_setpoint is not published although ..."; empty if it is published, with numbers.
   std::string wrong_topic(const std::string& topic) {
     const Sample& last = alone_.samples.back();
     const ChannelSet fields = channels_of(subject_.module, fmt::format("out/{}.", topic));

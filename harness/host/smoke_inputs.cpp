@@ -18,7 +18,6 @@ bool is_new_in_every_step(const Channel& channel) {
                      [&](std::string_view topic) { return channel.name.starts_with(topic); });
 }
 
-// Any motion that changes the state of every axis.
 double shaking(std::size_t tick, std::size_t channel) {
   const std::size_t period = 3 + channel % 5;
   const auto half = static_cast<double>(period - 1) / 2;

@@ -14,12 +14,12 @@ namespace attest {
 // The shortest time between two readings of the clock.
 Nanoseconds time_of_clock();
 
-// A step that other programs can find: valgrind counts the instructions in it.
+// The symbol of the function that makes each step of a TimedUnit: valgrind counts its instructions.
 inline constexpr const char* counted_step_symbol = "attest_counted_step";
 
 class TimedUnit final : public Unit {
  public:
-  // Appends the time of each step to `times`, less that of the clock. All outlive this.
+  // Appends the time of each step, minus `clock`, to `times`. `unit` and `times` outlive this.
   TimedUnit(Unit& unit, Nanoseconds clock, std::vector<Nanoseconds>& times)
       : unit_(unit), clock_(clock), times_(times) {}
 
@@ -37,7 +37,7 @@ class TimedUnit final : public Unit {
   std::vector<Nanoseconds>& times_;
 };
 
-// Steps on a stack of its own.
+// Steps `unit` on `stack`. Both outlive this.
 class UnitOnStack final : public Unit {
  public:
   UnitOnStack(Unit& unit, PaintedStack& stack) : unit_(unit), stack_(stack) {}

@@ -1,6 +1,6 @@
-// Traces in messages between a fork and its parent (host_protocol.hpp): structs as they are in
-// memory, and all other data in the JSON of the head. Functions that read a head throw
-// nlohmann::json::exception where a member is missing or of another type.
+// Parts of the messages between a process and a fork of it (host_protocol.hpp): structs are sent as
+// they are in memory, all other data in the JSON of the head. Functions that read a head throw
+// nlohmann::json::exception if a member is missing or of another type.
 #pragma once
 
 #include <cstddef>
@@ -20,12 +20,13 @@
 
 namespace attest {
 
-// Values as bits: JSON has no NaN.
+// The values are sent as bits, because JSON has no NaN.
 nlohmann::json changes_json(const std::vector<ParameterChange>& changes);
 std::vector<ParameterChange> changes_from(const nlohmann::json& list);
 
-// How a port's outputs, or its flight, ended. A process cannot report its own crash or timeout:
-// such a fault is read as one of kind protocol. It can report the crash of a program.
+// Writes and reads how a port's outputs, or its flight, ended. A process cannot report its own
+// crash or timeout: if it does, the fault is read as one of kind protocol. If the port is a program
+// (`of_program`), the process can report the program's crash.
 void set_end(const std::optional<PortFault>& fault, const std::optional<Divergence>& lost,
              nlohmann::json& head);
 std::optional<PortFault> fault_from(const nlohmann::json& head, bool of_program);
@@ -34,14 +35,15 @@ std::optional<Divergence> divergence_from(const nlohmann::json& head);
 // Reads the blobs that follow a head, one after the other.
 class BlobReader {
  public:
-  // `read` fills the given memory; false: it failed.
+  // `read` fills the given memory; it returns false if it failed.
   BlobReader(std::vector<std::size_t> sizes, std::function<bool(void*, std::size_t)> read)
       : sizes_(std::move(sizes)), read_(std::move(read)) {}
 
   std::size_t left() const { return sizes_.size() - next_; }
 
-  // The next blob. Empty when it does not arrive, or does not have `count` objects. REQUIRES:
-  // memory for `count` objects. An untrusted process must not choose `count`.
+  // The next blob. Empty when it does not arrive, or does not have the size of `count` objects.
+  // REQUIRES: there is memory for `count` objects, so the caller must not take `count` from an
+  // untrusted process.
   template <typename T>
   std::optional<std::vector<T>> read(std::size_t count) {
     static_assert(std::is_trivially_copyable_v<T>);

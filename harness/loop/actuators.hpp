@@ -16,20 +16,20 @@ namespace attest {
 
 class Actuators {
  public:
-  // For the unit of `module`. REQUIRES: read_vehicle accepts the vehicle, which outlives this.
+  // For the outputs of `module`. REQUIRES: read_vehicle accepts the vehicle, which outlives this.
   explicit Actuators(const Vehicle& vehicle, Module module = Module::mc_att_control);
 
   // Takes the outputs of a step. The mixer runs when the controller publishes its controls, the
-  // allocator when the rate unit publishes torque and thrust. Disarmed motors stop. The attitude
-  // unit has no actuators.
+  // allocator when the rate unit publishes torque and thrust. Disarmed, all motors stop and neither
+  // of them runs. Outputs of the attitude unit are ignored.
   void follow(const Sample& sample);
 
   const MotorCommands& commands() const { return commands_; }
-  const Saturation& saturation() const { return saturation_; }  // of the last run
+  const Saturation& saturation() const { return saturation_; }  // of the last mixing or allocation
 
-  // The speeds [rad/s] for `commands`, one per rotor, valid until the next call. They are linear in
-  // the command, times the `supply` ratio of the battery, and 0 for the `failed` rotor. Empty when
-  // a command is not finite.
+  // The speeds [rad/s] for `commands`, one per rotor, valid until the next call. Each is linear in
+  // its command, and is multiplied by `supply`, the battery's ratio. The `failed` rotor has speed
+  // 0. Empty if a command is not finite.
   std::span<const double> speeds(const MotorCommands& commands, double supply,
                                  const std::optional<std::size_t>& failed);
 
@@ -40,13 +40,13 @@ class Actuators {
   const Vehicle& vehicle_;
   Module module_;
   actuation::Mixer mixer_;
-  std::optional<ControlAllocator> allocator_;  // of the rate unit
+  std::optional<ControlAllocator> allocator_;  // only for the rate unit
   MotorCommands commands_{};
   Saturation saturation_;
   std::array<double, rotors_max> speeds_{};
 };
 
-// The flag that arms the motors, in the inputs of a module.
+// The flag that arms the motors, in the inputs of a module; false for a module without this flag.
 bool is_armed(Module module, const Sample& sample);
 
 }  // namespace attest

@@ -13,8 +13,8 @@ std::optional<AngularAcceleration::Biquad> AngularAcceleration::biquad(const Rat
                                                                        double cutoff_hz) {
   const bool exists = cutoff_hz > 0 && cutoff_hz < sampling.hertz() / 2;
   if (!exists) return std::nullopt;
-  // The last bit of tan() depends on the C library. In float32 it is the same everywhere, and the
-  // cutoff changes by less than 1e-6 of its value.
+  // The last bit of tan() depends on the C library. Rounded to float32 it is the same everywhere.
+  // This changes the cutoff by less than 1e-6 of its value.
   const double tangent = std::tan(std::numbers::pi * cutoff_hz * sampling.period_s());
   const double k = static_cast<double>(static_cast<float>(tangent));
   const double a0 = 1 + std::numbers::sqrt2 * k + k * k;

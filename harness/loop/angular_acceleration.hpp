@@ -2,8 +2,8 @@
 // two samples divided by the time between them, then a second-order Butterworth low-pass.
 //
 // The low-pass is a biquad for samples at the nominal rate, by the bilinear transform with its
-// cutoff prewarped: its gain is sqrt(1/2) exactly at the cutoff. With samples at other times the
-// difference uses the true time, and the low-pass still assumes the nominal period.
+// cutoff prewarped: its gain is sqrt(1/2) at the cutoff. The difference always uses the true time
+// between samples. The low-pass assumes the nominal period, even if samples come at other times.
 //
 // Body axes FRD. No allocation; one thread at a time.
 #pragma once
@@ -20,11 +20,11 @@ class AngularAcceleration {
  public:
   static constexpr double default_cutoff_hz = 30;  // the default of IMU_DGYRO_CUTOFF
 
-  // Without the low-pass if the cutoff is not above 0 and below half of the sampling rate.
+  // There is a low-pass only if 0 < cutoff_hz < half of the sampling rate.
   explicit AngularAcceleration(const Rate& sampling, double cutoff_hz = default_cutoff_hz);
 
-  // The angular acceleration [rad/s^2] at `now`. The first sample gives 0. A sample that is not
-  // later than the one before is ignored: the result is the same as before.
+  // Returns the angular acceleration [rad/s^2] at `now`, which is 0 at the first sample. A sample
+  // that is not later than the one before is ignored, and the last result is returned again.
   const Vector3& sample(Nanoseconds now, const Vector3& rate_rad_s);
 
  private:

@@ -9,7 +9,7 @@
 namespace attest {
 namespace {
 
-// The estimator's last sample by `time`, on a clock that drifts from the loop's.
+// The estimator's last sample at or before `time`, on a clock that drifts from the loop's.
 Nanoseconds drifted(Nanoseconds time, const Rate& rate, double drift) {
   const double period_ns = rate.period_s() * 1e9 / (1 + drift);
   const double samples = std::floor(static_cast<double>(time.count()) / period_ns);
@@ -21,12 +21,12 @@ Nanoseconds until_result(const Case& the_case, const Rate& rate) {
   return (is_attitude ? the_case.attitude_loop->delay : the_case.flight->actuator_delay).on(rate);
 }
 
-// The rate unit reads the gyro itself.
+// The rate unit reads the gyro itself, so the estimator's delay and drift do not apply.
 Estimator estimator_of(const Case& the_case) {
   return the_case.module == Module::rate_unit ? Estimator{} : the_case.flight->estimator;
 }
 
-// The estimator samples on its clock, and the unit runs when the sample arrives.
+// The estimator samples on its own clock, and each arriving sample starts a tick of the unit.
 LoopTiming timing_on_estimate(const Case& the_case, const Rate& rate) {
   const Flight& flight = *the_case.flight;
   const Nanoseconds before = flight.estimator.delay.on(rate);

@@ -33,7 +33,7 @@ Nanoseconds sampled(const LoopTick& tick) { return tick.sampled; }
 Nanoseconds begins(const LoopTick& tick) { return tick.begins; }
 Nanoseconds commanded(const LoopTick& tick) { return tick.commanded.value_or(tick.begins); }
 
-// The largest number of ticks that are between their `from` and their `to` at the same time.
+// The largest number of ticks whose intervals from(tick) to to(tick) overlap at one time.
 template <typename From, typename To>
 std::size_t most_between(const LoopTiming& timing, const From& from, const To& to) {
   std::size_t most = 0, passed = 0;
@@ -44,7 +44,7 @@ std::size_t most_between(const LoopTiming& timing, const From& from, const To& t
   return most;
 }
 
-// How many messages of a task can be on their way, jitter included.
+// The largest number of a task's messages that are on their way at one time, with jitter.
 std::size_t messages(Nanoseconds delay, const Rate& rate) {
   return static_cast<std::size_t>(rate.ticks_in(delay)) + 2;
 }

@@ -1,4 +1,5 @@
-// The units of a flight controller fly a plant. Events at the same instant happen in this order:
+// Flies a plant with the units of a flight controller. Events at the same instant happen in this
+// order:
 //
 //     the plant is advanced to t
 //     disturbances    wind, centre of mass and motor failure change
@@ -6,19 +7,20 @@
 //     saturation      takes what the mixer or the allocator reported at its last run, before t
 //     land detector   of the cascade, if there is a floor: takes its sample of the plant
 //     estimators      take their samples of the plant, one for each unit
-//     the unit        that commands the motors: the controller, or the cascade's rate unit.
+//     rate unit       of the cascade, or the controller: the unit that commands the motors.
 //                     Stimulus; messages; step; mixer or allocator
 //     attitude unit   of the cascade: stimulus; messages; step
 //     actuators       take the commands that have arrived, and hold them until the next ones
 //
-// In the firmware the rate unit has the higher priority, so it runs before the attitude unit of the
-// same instant, and receives that unit's setpoint at its next tick.
+// In the firmware the rate unit has the higher priority. So here it runs before the attitude unit
+// of the same instant, and receives that unit's new setpoint at the next tick at the earliest.
 //
-// Each task has its own times. A task's result arrives after the task's delay; without a delay, at
-// the unit's tick of the same instant. The FlightTiming has the times of the units' ticks, of each
-// tick's sample and of its result. It comes from the case or from a run on a real clock. Samples
-// before t = 0 do not exist. Until the first estimate arrives, a unit gets the state of the
-// flight's start. Until the first command arrives, the rotors turn as at the start.
+// Each task has its own times, and its result arrives after its delay. A tick of a unit receives
+// the results that have arrived by then, also those of earlier events of the same instant.
+// FlightTiming has the times of each unit's ticks, of their samples and of their results. It comes
+// from the case or from a run on a real clock. The plant is not sampled before t = 0. Until the
+// first estimate arrives, a unit receives the exact state of the flight's start. Until the first
+// command arrives, the rotors turn as at the start.
 #pragma once
 
 #include <cstddef>
@@ -58,21 +60,21 @@ struct FlightUnits {
 struct FlightTraces {
   FlightTraces(Trace* of_motors = nullptr, Trace* attitude = nullptr)  // NOLINT
       : unit(of_motors), attitude_unit(attitude) {}
-  Trace* unit;           // with Trace::plant
-  Trace* attitude_unit;  // of a flight of the cascade
+  Trace* unit;           // including Trace::plant
+  Trace* attitude_unit;  // only in a flight of the cascade
 };
 
 class ClosedLoop {
  public:
-  // REQUIRES: a flight, which bound_to_vehicle() made (flight.hpp); a fresh plant and units, one or
-  // both as the case says. All outlive this.
+  // REQUIRES: a flight that bound_to_vehicle() made (flight.hpp); units in their power-on state,
+  // both if the flight is of the cascade. All references outlive this.
   ClosedLoop(const Case& the_case, const LoopRate& rate, FlightTiming timing,
              const Vehicle& vehicle, Plant& plant, FlightUnits units);
   ClosedLoop(const ClosedLoop&) = delete;
   ClosedLoop& operator=(const ClosedLoop&) = delete;
 
-  // Flies to the end and records every tick. Allocates only for the traces and for parameters that
-  // change. Call once.
+  // Flies to the end and records every tick. Allocates memory only for the traces and for
+  // parameters that change. Call once.
   FlightEnd run(FlightTraces traces);
 
  private:

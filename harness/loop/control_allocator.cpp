@@ -9,15 +9,15 @@
 namespace attest {
 namespace {
 
-// Columns of the mix.
 constexpr Eigen::Index roll_column = 0, pitch_column = 1, yaw_column = 2, thrust_column = 3;
 
-// The most by which thrust is lowered to make room for yaw, as a part of full thrust. The mixer has
-// the same limit.
+// The largest decrease of thrust that makes room for yaw, as a fraction of full thrust. The mixer
+// has the same limit.
 constexpr double thrust_for_yaw = 0.15;
 
 // Torque about x, y, z and upward thrust of each rotor at full speed, in any common unit. A rotor
-// that turns counter-clockwise turns the body clockwise: positive about z, which points down.
+// that turns counter-clockwise, seen from above, turns the body clockwise: positive about z, which
+// points down.
 using Effectiveness = Eigen::Matrix<double, 4, Eigen::Dynamic>;
 using Mix = Eigen::Matrix<double, Eigen::Dynamic, 4>;
 
@@ -31,7 +31,7 @@ Effectiveness effectiveness_of(const Vehicle& vehicle) {
   return effectiveness;
 }
 
-// The pseudo-inverse. Entries that only rounding makes different from 0 become 0.
+// Returns the pseudo-inverse. Entries that only rounding makes different from 0 become 0.
 Mix mix_of(const Effectiveness& effectiveness) {
   constexpr double rounding = 1e-6;
   Mix mix = effectiveness.completeOrthogonalDecomposition().pseudoInverse();
@@ -55,8 +55,8 @@ double size_of(const Mix& mix, Eigen::Index axis) {
   return std::sqrt(squares / (entries / 2));
 }
 
-// The divisor of each column of the mix. Not 0, because each vehicle that read_vehicle accepts can
-// turn about all axes.
+// The divisor of each column of the mix. It is not 0, because each vehicle that read_vehicle
+// accepts can turn about all axes.
 std::array<double, 4> scales_of(const Mix& mix) {
   const double roll_pitch = std::max(size_of(mix, roll_column), size_of(mix, pitch_column));
   double thrust = 0;
@@ -65,7 +65,8 @@ std::array<double, 4> scales_of(const Mix& mix) {
   return {roll_pitch, roll_pitch, mix.col(yaw_column).cwiseAbs().maxCoeff(), thrust / rotors};
 }
 
-// The largest number from 0 to `wanted` with slope * number <= room. A negative room is rounding.
+// The largest number from 0 to `wanted` with slope * number <= room. A negative room comes from
+// rounding, and counts as 0.
 double limited(double wanted, double slope, double room) {
   const double possible = std::max(room, 0.0);
   return slope * wanted > possible ? possible / slope : wanted;
@@ -139,12 +140,13 @@ ControlAllocator::Speeds ControlAllocator::roll_pitch_turns(double roll, double 
   return turns;
 }
 
-// The largest part of roll and pitch, in their proportion, that fits with this thrust or a lower
-// one; then the largest thrust that fits with it. The rotors are between stopped and full if
+// Finds the largest part (0..1) of the roll and pitch changes `turns` that fits with this thrust or
+// a lower one; then the largest thrust, up to `thrust`, that fits with this part. Each rotor i is
+// between stopped and full if
 //
-//     0 <= part * turn_i + thrust <= full_i        for each rotor i
+//     0 <= part * turn_i + thrust <= full_i
 //
-// The lowest thrust that is possible is part * lowest, where lowest = max(-turn_i).
+// So the lowest possible thrust is part * lowest, where lowest = max(0, -turn_i) over all rotors.
 ControlAllocator::Speeds ControlAllocator::with_roll_pitch(Speeds turns, double thrust) const {
   double lowest = 0;
   for (std::size_t i = 0; i < count_; ++i) lowest = std::max(lowest, -turns[i]);
@@ -158,7 +160,7 @@ ControlAllocator::Speeds ControlAllocator::with_roll_pitch(Speeds turns, double 
   return turns;
 }
 
-// Adds the largest part of the yaw torque that fits, then lowers the thrust as far as needed.
+// Adds the largest part of the yaw torque that fits, then lowers the thrust as far as it requires.
 ControlAllocator::Speeds ControlAllocator::with_yaw(double yaw, Speeds speeds) const {
   Speeds turns{};
   for (std::size_t i = 0; i < count_; ++i) {

@@ -3,7 +3,7 @@
 //
 // Body FRD. Torque and thrust are in the normalised unit of the cascade: thrust 1 is every rotor at
 // full speed. A rotor's thrust and torque are taken as linear in its speed, same as in the mixer.
-// allocate() has no state and does not allocate memory; any thread.
+// allocate() has no state and does not allocate memory. Threads may share a ControlAllocator.
 #pragma once
 
 #include <array>
@@ -14,7 +14,6 @@
 
 namespace attest {
 
-// The result for one setpoint.
 struct Allocation {
   MotorCommands commands{};                   // -1 where the vehicle has no rotor
   std::array<float, 3> unallocated_torque{};  // the setpoint minus the torque of the commands
@@ -23,7 +22,7 @@ struct Allocation {
 
 class ControlAllocator {
  public:
-  // An error of torque up to this size is rounding, and counts as 0.
+  // A torque error of at most this size is taken as rounding, and counts as 0.
   static constexpr float torque_resolution = 1e-6f;
 
   // REQUIRES: read_vehicle accepts the vehicle. The vehicle is not kept.
@@ -39,12 +38,13 @@ class ControlAllocator {
  private:
   // One rotor in the mix. Speed 1 is full speed.
   //
-  // The numbers are float32, because the last bits of a decomposition depend on the compiler. They
-  // are stored as float, because gcc 12 at -O3 left out casts from double to float and back.
+  // The members are rounded to float32, because the last bits of the pseudo-inverse depend on the
+  // compiler. They are stored as float, because gcc 12 at -O3 left out casts from double to float
+  // and back.
   struct Rotor {
-    float roll = 0, pitch = 0, yaw = 0;  // its speed for one unit of torque
-    float thrust = 1;                    // its speed for one unit of collective thrust
-    std::array<float, 3> torque{};       // that it gives at full speed
+    float roll = 0, pitch = 0, yaw = 0;  // speed for one unit of torque
+    float thrust = 1;                    // speed for one unit of collective thrust
+    std::array<float, 3> torque{};       // at full speed
   };
 
   // Speeds, or changes of them, each divided by Rotor::thrust: in this unit, a change of the

@@ -15,14 +15,14 @@ class Disturbances {
  public:
   Disturbances(const Flight& flight, const Vehicle& vehicle, const Timeline& timeline);
 
-  // When they change: at t = 0 only, or 100 times a second for signals that vary, which is fast
-  // compared with any vehicle here. In addition, when the motor fails.
+  // The times to call apply(): t = 0, and the time of the motor failure. If a signal varies, also
+  // 100 times a second, which is fast compared with the motion of the vehicles.
   const std::vector<Nanoseconds>& times() const { return times_; }
 
-  // REQUIRES: times increase.
+  // REQUIRES: `now` increases.
   void apply(Nanoseconds now, Plant& plant);
 
-  // Empty before it fails.
+  // The rotor whose motor has failed; empty before the failure.
   const std::optional<std::size_t>& failed_rotor() const { return failed_; }
 
  private:
@@ -31,7 +31,7 @@ class Disturbances {
   static std::optional<Samplers> samplers(const std::array<Signal, 3>& signals,
                                           const Timeline& timeline);
 
-  std::optional<Samplers> wind_m_s_, centre_of_mass_of_arm_;  // empty: zero throughout
+  std::optional<Samplers> wind_m_s_, centre_of_mass_of_arm_;  // empty: always 0
   double arm_m_;
   std::optional<MotorFailure> failure_;
   Nanoseconds failure_at_{0};

@@ -6,7 +6,7 @@
 namespace attest {
 namespace {
 
-// q turned by the small rotation `half_angle` (half its angle, about the body axes).
+// q followed by a small rotation about the body axes. `half_angle`: half its rotation vector [rad].
 Quaternion turned(const Quaternion& q, const Vector3& half_angle) {
   const auto [x, y, z] = half_angle;
   const double scale = 1 / std::sqrt(1 + x * x + y * y + z * z);
@@ -88,8 +88,9 @@ Estimate UnitEstimator::sample(Nanoseconds now, const PlantState& state) {
   return estimate;
 }
 
-// The sum of twelve uniform numbers has variance 1 and is close enough to normal, within +-6
-// standard deviations. It needs no logarithm or cosine, whose bits differ between platforms.
+// The sum of twelve uniform numbers has variance 1, and is close enough to a normal distribution.
+// It stays within +-6 standard deviations. It needs no logarithm or cosine, whose bits differ
+// between platforms.
 Vector3 NoisyEstimator::normal(double deviation) {
   Vector3 noise{};
   for (double& component : noise) {

@@ -16,20 +16,20 @@ namespace attest {
 
 using ControlState = decltype(attest_inputs::control_state);
 
-// A sample of the plant, with its time since the start of the case.
+// An estimate of the plant's state. `sampled`: the time of that state, since the start of the case.
 struct Estimate {
   Nanoseconds sampled{0};
   ControlState state{};
-  std::array<float, 3> acceleration_rad_s2{};  // angular, for the rate unit
-  // The estimator's last reset, for the attitude unit: the number of resets, and the turn.
+  std::array<float, 3> acceleration_rad_s2{};  // angular acceleration, for the rate unit
+  // For the attitude unit: the number of resets of the estimator, and the rotation of the last one.
   std::uint8_t resets = 0;
   std::array<float, 4> delta_q_reset{1, 0, 0, 0};
 };
 
-// Without noise.
+// The exact state, in float32.
 ControlState control_state_of(const PlantState& state);
 
-// Noise of one seed is the same for every plant, on every platform. No allocation.
+// The same seed gives the same noise for every plant, on every platform. No allocation.
 class NoisyEstimator {
  public:
   explicit NoisyEstimator(const Estimator& options) : options_(options), random_(options.seed) {}
@@ -43,13 +43,13 @@ class NoisyEstimator {
   Random random_;
 };
 
-// The samples of one unit: the attitude estimate with its resets for the attitude unit, the gyro
-// with its derivative for the rate unit, attitude and rates for the controller. The noise of the
-// cascade's gyro has the estimator's seed plus 1. No allocation.
+// Takes the samples of one unit: the attitude estimate with its resets for the attitude unit, the
+// gyro with its derivative for the rate unit, attitude and rates for the controller. The noise of
+// the cascade's gyro uses the estimator's seed plus 1. No allocation.
 class UnitEstimator {
  public:
-  // `own` is the rate of the unit of the case's module, `timeline` that of the flight. REQUIRES: a
-  // flight.
+  // `own` is the rate of the unit of the case's module, `timeline` that of the unit that commands
+  // the motors. REQUIRES: a flight.
   UnitEstimator(const Case& the_case, const Rate& own, const Rate& timeline);
 
   Estimate sample(Nanoseconds now, const PlantState& state);

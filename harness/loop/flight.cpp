@@ -11,8 +11,8 @@
 namespace attest {
 namespace {
 
-// Fast compared with the rotors' lag and the body's rates. At this rate MuJoCo's Runge-Kutta errs
-// by less than the float32 of the unit's inputs (models/README.md).
+// Fast compared with the rotors' lag and the body's rates. At this rate the error of MuJoCo's
+// Runge-Kutta is below the rounding of the unit's inputs to float32 (models/README.md).
 const Rate slowest_physics = Rate::hz(1000);
 
 Result<void> check(const Case& the_case, const RunConfiguration& configuration,
@@ -43,7 +43,7 @@ void scale_thrusts(std::vector<TopicStimulus>& topics, const Vehicle& vehicle) {
   }
 }
 
-// Sets MPC_THR_HOVER, unless the case does, so that the vehicle hovers at a centred throttle stick.
+// Sets MPC_THR_HOVER, unless it is set, so that the vehicle hovers at a centred throttle stick.
 void add_hover_thrust(const Vehicle& vehicle, Case& the_case) {
   constexpr const char* name = "MPC_THR_HOVER";
   for (const ParameterStimulus& own : the_case.parameters) {

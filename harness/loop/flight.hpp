@@ -1,4 +1,4 @@
-// One case in, one flown trace out.
+// Flies a case with the units of a port, and returns the recorded traces.
 #pragma once
 
 #include <memory>
@@ -16,51 +16,53 @@
 namespace attest {
 
 struct Flown {
-  // Every tick up to the end: of the unit that commands the motors, with Trace::plant.
+  // All finished ticks of the unit that commands the motors, with Trace::plant.
   Trace trace;
   std::optional<Trace> attitude_trace;   // of the attitude unit, in a flight of the cascade
-  std::optional<PortFault> fault;        // of the port: the ticks before it are valid
-  std::optional<Divergence> divergence;  // early end; its time counts from the first tick
+  std::optional<PortFault> fault;        // of the port; the traces end before it
+  std::optional<Divergence> divergence;  // early end; its time is since the start of the case
 };
 
-// The metric of a whole flight (measured() in metric.hpp).
+// Same as measured() of metric.hpp, with both traces of the flight.
 inline double measured(const Metric& metric, const Flown& flown) {
   return measured(metric, flown.trace, flown.attitude_trace ? &*flown.attitude_trace : nullptr);
 }
 
-// The case bound to this vehicle: parameters that the case does not set get the vehicle's values.
-// Thrusts in units of hover thrust are scaled by the vehicle's hover thrust.
+// Returns the case bound to this vehicle: parameters that the case does not set get the vehicle's
+// values. In a flight of the cascade MPC_THR_HOVER, if it is not set, is the vehicle's hover
+// thrust. Thrusts in units of hover thrust are scaled by the vehicle's hover thrust.
 Case bound_to_vehicle(const Case& the_case, const Vehicle& vehicle);
 
-// Errors, with the case's file: `rate` is a single rate although the flight is of the cascade, or a
-// pair of rates although the flight is of the controller.
+// Errors, with the case's file: one rate for a flight of the cascade, or two rates for a flight of
+// the controller. REQUIRES: a flight.
 Result<void> check_rate(const Case& the_case, const LoopRate& rate);
 
-// How often MuJoCo steps. REQUIRES: a flight.
+// The rate of MuJoCo's steps. `loop`: the rate of the unit that commands the motors. REQUIRES: a
+// flight.
 Rate physics_of(const Case& the_case, const Rate& loop);
 
-// The plant of a configuration. REQUIRES: the case is a flight. Errors: those of fly().
+// Makes the plant of a configuration. REQUIRES: a flight. Errors: those of fly().
 Result<std::unique_ptr<Plant>> plant_for(const Case& the_case,
                                          const RunConfiguration& configuration,
                                          const VehicleModel& vehicle_model);
 
-// The units of a port for one flight.
 struct PortUnits {
   std::unique_ptr<Unit> unit, attitude_unit;
 
   FlightUnits for_flight() const { return {*unit, attitude_unit.get()}; }
 };
 
-// A port of the cascade may have one of the two units; the other is then that of `other`. Faults,
-// Kind::profile: the port makes no unit that the case needs, or `other` does not make the missing
-// one; Kind::unsupported: the port makes either unit, but not both at the same time. REQUIRES: a
-// flight.
+// Makes the units of a flight by `port`. A port of the cascade may have only one of the two units:
+// then `other` makes the missing one. REQUIRES: a flight. Faults:
+// - Kind::profile: `port` makes no unit that the case needs, or `other` does not make the missing
+//   one
+// - Kind::unsupported: `port` makes each of the two units, but not both at the same time
 tl::expected<PortUnits, PortFault> units_for(const Case& the_case, Port& port, Port& other);
 
-// Flies `the_case` with fresh units, at the times that the case schedules, or at those of
-// `timing`. REQUIRES: the case is a flight. Errors, with the case's file: physics slower than the
-// loop, a rotor that the vehicle does not have; one rate for the cascade, or a pair of rates for
-// the controller.
+// Flies `the_case`, at the times that the case schedules, or at those of `timing`. REQUIRES: a
+// flight; units in their power-on state. Errors, with the case's file: those of check_rate();
+// physics slower than the loop; a motor failure of a rotor that the vehicle does not have; a floor
+// for a plant without ground contact.
 Result<Flown> fly(const Case& the_case, const RunConfiguration& configuration,
                   const VehicleModel& vehicle_model, FlightUnits units);
 Result<Flown> fly(const Case& the_case, const RunConfiguration& configuration,

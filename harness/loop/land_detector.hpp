@@ -5,9 +5,10 @@
 //     maybe_landed     at rest for 0.25 s
 //     landed           0.3 s later, if still at rest
 //
-// Both become false with the first sample that is not at rest. A disarmed vehicle on the floor is
-// landed at once, also while it moves. A flight that starts at rest starts landed. Without a floor
-// a vehicle never lands. models/README.md has the reasons for the numbers.
+// Both become false with the first sample that is not at rest, with one exception: a disarmed
+// vehicle on the floor is landed at once, also while it moves. A flight that starts at rest on the
+// floor starts landed. Without a floor a vehicle never lands. models/README.md has the reasons for
+// the numbers.
 //
 // No allocation; one thread at a time.
 #pragma once
@@ -38,14 +39,15 @@ class LandDetector {
   static constexpr Nanoseconds landed_after{550'000'000};
   static constexpr double height_limit_of_arm = 0.1;
   static constexpr double vertical_speed_limit_m_s = 0.25;
-  static constexpr double rate_limit_rad_s = 0.35;  // about 20 deg/s, of the whole vector
+  static constexpr double rate_limit_rad_s = 0.35;  // about 20 deg/s; norm of the body rate
   static constexpr double thrust_limit_of_hover = 0.3;
 
   // The vehicle is not kept.
   LandDetector(const Vehicle& vehicle, bool floor);
 
-  // `thrust` is the collective thrust that is commanded, 0..1, positive upwards: the cascade's
-  // -vehicle_thrust_setpoint.xyz[2]. NaN is not a low thrust. REQUIRES: times do not decrease.
+  // `thrust` is the commanded collective thrust, 0..1, positive upwards: the cascade's
+  // -vehicle_thrust_setpoint.xyz[2]. With NaN the vehicle is not at rest. REQUIRES: times do not
+  // decrease.
   LandDetected sample(Nanoseconds now, const PlantState& state, float thrust, bool armed);
 
  private:
@@ -55,7 +57,7 @@ class LandDetector {
   bool floor_;
   std::vector<Vector3> feet_m_;  // centres of their spheres, FRD, from the centre of mass
   double foot_radius_m_, height_limit_m_, thrust_limit_;
-  std::optional<Nanoseconds> at_rest_since_ = -landed_after;  // before the flight
+  std::optional<Nanoseconds> at_rest_since_ = -landed_after;  // at the start: at rest for long
 };
 
 }  // namespace attest

@@ -14,7 +14,6 @@
 namespace attest {
 namespace {
 
-// A unit on its way through a trace.
 class Drive {
  public:
   Drive(Unit& unit, Module module, Trace& trace)
@@ -31,7 +30,7 @@ class Drive {
     return fault;
   }
 
-  // As many steps as the unit takes at once: up to the next change of a parameter.
+  // Makes one step, or a batch: at most max_batch steps, up to the next change of a parameter.
   std::optional<PortFault> advance() {
     if (max_batch_ == 0) return step();
     const auto due = changes_.take_until(tick_);
@@ -59,13 +58,14 @@ class Other {
         trace_(other_inputs(judged, subject.module, subject.profile)),
         drive_(unit, subject.module, trace_) {}
 
-  // The first step begins with set_parameter(), after the judged instance has read its parameters.
+  // The first call also sets the parameters of this instance, after the judged instance's first
+  // step.
   std::optional<PortFault> step() {
     if (auto fault = set_defaults()) return fault;
     return drive_.step();
   }
 
-  // All steps. After a fault, the judged trace has no outputs.
+  // Makes all steps. A fault gets tick 0, because the judged instance has not made a step yet.
   std::optional<PortFault> run() {
     auto fault = set_defaults();
     while (!fault && !drive_.is_over()) fault = drive_.advance();
@@ -77,7 +77,7 @@ class Other {
   std::optional<PortFault> set_defaults() {
     try {
       for (const ParameterChange& change : std::exchange(defaults_, {})) {
-        (void)unit_.set_parameter(change.name, change.value);  // may be refused
+        (void)unit_.set_parameter(change.name, change.value);  // the port may refuse it
       }
     } catch (const PortBroke& broke) {
       return fault_of(broke);
@@ -91,8 +91,8 @@ class Other {
   Drive drive_;
 };
 
-// The other instance makes each step after the judged one. So it also takes its first step, with
-// its parameters and topics, after the judged one has taken its own.
+// Each step of the other instance follows the judged one's. So the other instance also sets its
+// first parameters and topics after the judged one has received its own.
 std::optional<PortFault> drive_alternately(Drive judged, Other& other) {
   while (!judged.is_over()) {
     if (auto fault = judged.step()) return fault;
@@ -112,7 +112,7 @@ PortFault makes_no_other() {
       "create() returned NULL after the first instance was destroyed; create() is always legal"};
 }
 
-// `create` makes a fresh instance.
+// `create` makes another instance of the subject; null if the port refuses.
 template <typename Create>
 std::optional<PortFault> drive_in_company(std::unique_ptr<Unit> first, Create create,
                                           const Subject& subject, Trace& trace) {
@@ -140,7 +140,7 @@ PortFault no_profile(const Subject& subject) {
           fmt::format("the port does not support profile {}", subject.profile)};
 }
 
-// A port that has no module of a profile does not support the profile.
+// A port without any module of a profile does not support the profile.
 PortFault lacks_module(const Port& port, const Subject& subject) {
   const ModuleInfo& info = info_of(subject.module);
   const ProfileInfo* const profile = find_profile(subject.profile);
@@ -150,8 +150,8 @@ PortFault lacks_module(const Port& port, const Subject& subject) {
           fmt::format("the port has no {} (extension {})", info.title, info.extension)};
 }
 
-// Whether the port makes another unit of the subject's profile. Then it supports the profile, but
-// not the subject's module.
+// Whether the port makes a unit of another module of the subject's profile. Then it supports the
+// profile, but not the subject's module.
 bool makes_another(Port& port, const Subject& subject) {
   const ProfileInfo* const profile = find_profile(subject.profile);
   if (!profile) return false;

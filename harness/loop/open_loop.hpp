@@ -1,4 +1,4 @@
-// One trace in, one trace out: a unit is given the inputs of a trace and its outputs are recorded.
+// Steps a unit with the inputs of a trace, and records the unit's outputs in the trace.
 #pragma once
 
 #include <memory>
@@ -12,26 +12,27 @@
 
 namespace attest {
 
-// Replaces the outputs of `trace` by those of a fresh `unit` of `module`. On a fault the samples
-// before it are valid.
+// Replaces the outputs of `trace` by those of `unit`. After a fault, the samples before
+// PortFault::tick have the unit's outputs. REQUIRES: a unit of `module` in its power-on state.
 std::optional<PortFault> drive(Unit& unit, Trace& trace, Module module = Module::mc_att_control);
 
-// The part of a port that receives a trace.
+// The module of a port that is stepped, and how it is created.
 struct Subject {
   std::string profile;
   Module module = Module::mc_att_control;
-  std::string mixer = {};  // definition of a Module::mixer: "R: 4x 10000 10000 10000 0"
+  std::string mixer = {};  // only for Module::mixer: "R: 4x 10000 10000 10000 0"
   Instances instances = Instances::one;
 };
 
 Subject subject_of(const Case& the_case);
 
-// A fresh unit of the subject's module, or why the port makes none. The port must outlive it.
+// Makes a unit of the subject's module, in its power-on state. The port must outlive the unit.
+// Faults, at tick 0: Kind::profile, Kind::unsupported.
 tl::expected<std::unique_ptr<Unit>, PortFault> make_unit(Port& port, const Subject& subject);
 
-// Steps a fresh instance of the subject's module through the trace. `Instances` says which other
-// instance of the port exists before it or at the same time. A port that cannot make a second
-// instance while one exists does not support such a subject.
+// Steps a fresh instance of the subject's module through the trace. `subject.instances` says which
+// other instance of the port exists before it or at the same time. Kind::unsupported: the port
+// cannot make the second instance while the first one exists.
 std::optional<PortFault> drive(Port& port, const Subject& subject, Trace& trace);
 
 }  // namespace attest

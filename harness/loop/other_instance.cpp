@@ -13,7 +13,8 @@ std::vector<Parameter> parameters_of(Module module, const std::string& profile) 
   return known ? attest::parameters_of(module, *known) : std::vector<Parameter>{};
 }
 
-// An integer is a switch: the law distinguishes its bounds, but not always the values between.
+// An integer parameter is a switch: the law distinguishes its bounds, but not always values
+// between.
 float other_value(const Parameter& parameter, float value) {
   if (parameter.is_integer) return value == parameter.max ? parameter.min : parameter.max;
   return value == 0 ? 0.25f : 0.75f * value;
@@ -28,7 +29,7 @@ void change_parameters(Trace& trace, const std::vector<Parameter>& known) {
 }
 
 double other_value(const Channel& channel, double value, bool is_even_tick) {
-  constexpr double later_us = 1000;  // shorter than most periods, so that a shared time changes dt
+  constexpr double later_us = 1000;  // if the time is shared, the judged dt is wrong by this
   switch (channel.quantity) {
     case Quantity::time:
       return value + later_us;

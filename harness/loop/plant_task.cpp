@@ -8,7 +8,6 @@
 namespace attest {
 namespace {
 
-// A vehicle without velocity, in the attitude and at the body rate of the start.
 PlantState start_of(const FlightStart& start, const Vehicle& vehicle) {
   PlantState state;
   state.position_m[2] = -(start.on_floor ? height_on_floor_m(vehicle) : start.height_m);
@@ -31,7 +30,7 @@ PlantTask::PlantTask(const Case& the_case, const Rate& rate, const Vehicle& vehi
 
 std::optional<Divergence> PlantTask::disturb(Nanoseconds now) {
   disturbances_.apply(now, plant_);
-  return hold(now);  // a motor that fails changes its speed at once
+  return hold(now);  // the commanded speed of a motor that fails becomes 0 now
 }
 
 std::optional<Divergence> PlantTask::command(Nanoseconds now, const MotorCommands& commands) {

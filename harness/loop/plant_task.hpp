@@ -1,5 +1,5 @@
 // The plant with its disturbances, supply and actuators: the same in simulation and on a real
-// clock, for one thread.
+// clock. One thread at a time uses a PlantTask.
 #pragma once
 
 #include <optional>
@@ -15,20 +15,20 @@ namespace attest {
 
 class PlantTask {
  public:
-  // Resets the plant to the start of the flight. REQUIRES: same as ClosedLoop.
+  // Resets the plant to the start of the flight. REQUIRES: same as ClosedLoop (closed_loop.hpp).
   PlantTask(const Case& the_case, const Rate& rate, const Vehicle& vehicle, Plant& plant);
 
-  // When disturb() is due.
+  // The times at which disturb() must be called.
   const std::vector<Nanoseconds>& disturbance_times() const { return disturbances_.times(); }
 
   std::optional<Divergence> advance(Nanoseconds to) { return plant_.advance(to); }
 
-  // Sets wind, centre of mass and motor failure to their values from `now` on. REQUIRES: `now` is
-  // reached.
+  // Sets wind, centre of mass and motor failure to their values at `now`. REQUIRES: the plant was
+  // advanced to `now`.
   std::optional<Divergence> disturb(Nanoseconds now);
 
-  // The motors follow `commands` from `now` on. Before the first command they turn as at the start.
-  // A command that is not finite ends the flight.
+  // The motors follow `commands` from `now` on, until the next call. Before the first call they
+  // turn as at the start. Returns a Divergence if a command is not finite.
   std::optional<Divergence> command(Nanoseconds now, const MotorCommands& commands);
 
   // Same as Supply::sample.

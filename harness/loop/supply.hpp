@@ -20,10 +20,10 @@ class Supply {
   // battery; times do not decrease.
   float sample(Nanoseconds now, const PlantState& state, float throttle, bool armed);
 
-  // The factor on the rotors' speed, from the last sample; 1 with an ideal source.
+  // The factor on the rotors' speed, at the last sample; 1 with an ideal source.
   double ratio() const { return battery_ ? battery_->supply_ratio() : 1; }
 
-  double voltage_V() const { return battery_ ? battery_->voltage_V() : 0; }
+  double voltage_V() const { return battery_ ? battery_->voltage_V() : 0; }  // 0: ideal source
 
  private:
   const Vehicle& vehicle_;

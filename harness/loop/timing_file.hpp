@@ -26,13 +26,13 @@ struct TimingFile {
   FlightTiming ticks;
 };
 
-// Errors, with the file: it cannot be read or written; it is not a timing file; its times go
-// backwards (with the tick).
+// Errors, with the file: it cannot be read or written; it is not a timing file; its times decrease
+// (with the tick).
 Result<TimingFile> read_timing(const std::filesystem::path& path);
 Result<void> write_timing(const TimingFile& timing, const std::filesystem::path& path);
 
 // The case as the recorded flight flew it: with the duration of the timing, and without metrics
-// whose windows begin later. REQUIRES: the case is the timing's.
+// whose windows begin after it. REQUIRES: `timing` was recorded with this case.
 Case with_timing(Case the_case, const TimingFile& timing);
 
 }  // namespace attest

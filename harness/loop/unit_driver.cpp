@@ -29,8 +29,8 @@ std::optional<PortFault> fault_of(int code, std::size_t tick, const std::string&
   }
 }
 
-// Runs `work`. The end of a program, or an answer that breaks the rules, is a fault at `tick`. In a
-// batch it may belong to a later tick.
+// Runs `work`, and turns a PortBroke into a fault at `tick`. In a batch a later tick may have
+// caused it: `or_later` is the text that says so.
 template <typename Work>
 std::optional<PortFault> unless_broken(std::size_t tick, std::string_view or_later, Work work) {
   try {

@@ -14,46 +14,47 @@
 
 namespace attest {
 
-// The port itself failed, or declared that it does not support this. Wrong values are found by the
-// comparison.
+// The port itself failed, or does not support the request. Wrong outputs are not a PortFault: the
+// comparison finds them.
 struct PortFault {
   enum class Kind {
     profile,      // the profile is not supported
-    unsupported,  // ATTEST_UNSUPPORTED, or a module that the port does not have
+    unsupported,  // ATTEST_UNSUPPORTED; a module or an instance that it does not make
     failed,       // ATTEST_FAILED, ATTEST_INVALID
     protocol,     // broke the rules of the ABI
-    crash,        // its process died
+    crash,        // its process, or the program, ended
     timeout,      // no answer in time
-    unanswered,   // by a recorded port, which cannot be called
+    unanswered,   // a recorded port has no outputs for the request
   };
   Kind kind = Kind::failed;
-  std::size_t tick = 0;  // of the judged trace: the ticks before it have outputs
+  std::size_t tick = 0;  // in the judged trace; all earlier ticks have outputs
   std::string what;      // one line
 };
 
-// A crash or a broken protocol, at tick 0.
+// Kind::crash or Kind::protocol, at tick 0.
 PortFault fault_of(const PortBroke& broke);
 
 class UnitDriver {
  public:
-  // REQUIRES: the unit is one of `module`, in its power-on state, and outlives this.
+  // REQUIRES: `unit` is of `module`, in its power-on state, and outlives this.
   explicit UnitDriver(Unit& unit, Module module = Module::mc_att_control);
 
-  // One tick:
+  // Makes one step:
   //
   //     parameters that change at this tick -> set_parameter
-  //     the time of the control_state       -> set_timestamp_sample
-  //     inputs of the sample                -> step
-  //     outputs                             -> the sample; kept as the next step's starting point
+  //     the time of the unit's estimate     -> set_timestamp_sample
+  //     inputs of `sample`                  -> step
+  //     outputs of the step                 -> `sample`
   //
-  // `timestamp_sample_us` is when control_state was taken; empty: at the sample's timestamp.
-  // On a fault the sample's outputs are not written.
+  // The outputs struct holds the outputs of the last step when step is called. Without
+  // `timestamp_sample_us`, the time of the estimate is the sample's timestamp. After a fault, the
+  // outputs of `sample` are unchanged.
   std::optional<PortFault> step(std::size_t tick, std::span<const ParameterChange> changes,
                                 Sample& sample,
                                 std::optional<std::uint64_t> timestamp_sample_us = std::nullopt);
 
-  // The same for several ticks from `tick` on, of which only the first changes parameters. Samples
-  // before the fault have outputs. REQUIRES: 1 <= samples.size() <= Unit::max_batch().
+  // The same for several ticks from `tick` on. `changes` are set before the first one. Samples
+  // before PortFault::tick have outputs. REQUIRES: 1 <= samples.size() <= Unit::max_batch().
   std::optional<PortFault> batch(std::size_t tick, std::span<const ParameterChange> changes,
                                  std::span<Sample> samples);
 
@@ -69,8 +70,8 @@ class UnitDriver {
 
   Unit& unit_;
   const ModuleInfo& info_;
-  // The unit's inputs and outputs, each followed by bytes that must not change. A port compiled
-  // with another layout writes there first.
+  // The unit's inputs and outputs, each followed by `margin` bytes that a step must not change. A
+  // port compiled with larger structs would write there.
   struct Exchange {
     alignas(8) std::array<unsigned char, sizeof(Sample) + margin> in{};
     alignas(8) std::array<unsigned char, sizeof(Sample) + margin> out{};

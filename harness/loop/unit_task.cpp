@@ -54,7 +54,7 @@ void UnitTask::take(const Arrivals& arrivals, attest_inputs& in) {
   }
 }
 
-// The estimate is published when it arrives, which is now.
+// vehicle_attitude is published at each tick, with the last estimate that has arrived.
 void UnitTask::take(const Arrivals& arrivals, attest_attitude_inputs& in) {
   in.vehicle_attitude.timestamp = in.timestamp;
   in.vehicle_attitude.timestamp_sample = stimulus_.timestamp_us(estimate_.sampled);

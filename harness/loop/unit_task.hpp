@@ -1,5 +1,5 @@
-// The work of the flight controller at a tick of a unit. It is the same in simulation and on a real
-// clock. One thread uses a UnitTask.
+// The work of the flight controller at a tick of a unit: the same in simulation and on a real
+// clock. One thread at a time uses a UnitTask.
 #pragma once
 
 #include <cstddef>
@@ -23,10 +23,10 @@ namespace attest {
 // What the attitude unit sends to the rate unit.
 using RatesSetpoint = decltype(attest_rate_inputs::vehicle_rates_setpoint);
 
-// Empty: it published none at this tick.
+// Empty if the attitude unit did not publish vehicle_rates_setpoint at this tick.
 std::optional<RatesSetpoint> rates_setpoint_of(const attest_attitude_outputs& outputs);
 
-// The messages that have arrived since the last tick.
+// The latest message of each kind that has arrived since the last tick.
 struct Arrivals {
   std::optional<Estimate> estimate;
   std::optional<float> battery_scale;
@@ -37,17 +37,19 @@ struct Arrivals {
 
 class UnitTask {
  public:
-  // A unit of the case's module. `start`: the estimate of time 0, used until the first one arrives.
-  // REQUIRES: same as ClosedLoop.
+  // `the_case` comes from Case::of_module(). `rate` is that of the unit that commands the motors.
+  // `start`: the estimate used until the first one arrives. REQUIRES: `unit` is of the case's
+  // module; otherwise same as ClosedLoop (closed_loop.hpp).
   UnitTask(const Case& the_case, const Rate& rate, const Vehicle& vehicle, Unit& unit,
            const Estimate& start);
 
-  // Stimulus and arrivals -> the unit's step -> the actuators. Allocates only for parameters that
-  // change. REQUIRES: `tick` counts from 0, times increase.
+  // Fills the inputs from stimulus and arrivals, steps the unit, and gives its outputs to the mixer
+  // or the allocator. Allocates memory only for parameters that change. REQUIRES: `tick` counts
+  // from 0, `now` increases.
   std::optional<PortFault> tick(std::size_t tick, Nanoseconds now, const Arrivals& arrivals);
 
-  // The two halves of tick(): fill the inputs; step the unit and mix. Callers can measure the
-  // second alone.
+  // The two halves of tick(), for callers that measure step() alone: prepare() fills the inputs,
+  // step() does the rest.
   void prepare(std::size_t tick, Nanoseconds now, const Arrivals& arrivals);
   std::optional<PortFault> step(std::size_t tick);
 
@@ -59,7 +61,7 @@ class UnitTask {
   const MotorCommands& commands() const { return actuators_.commands(); }
   const Saturation& saturation() const { return actuators_.saturation(); }
   bool is_armed() const { return attest::is_armed(module_, sample_); }
-  float throttle() const;  // the collective thrust, 0..1 upwards
+  float throttle() const;  // collective thrust, 0..1 upwards; not for the attitude unit
 
  private:
   void take(const Arrivals& arrivals, attest_inputs& in);
