@@ -11,21 +11,21 @@ namespace attest {
 
 class DynamicLibrary {
  public:
-  // A path, or a name without a slash that the system searches in its folders of libraries. All
-  // symbols are resolved here, not in the middle of a call. Errors: the text of the loader.
+  // `path`: a path, or a name without a slash, which the loader searches in the system's folders.
+  // Symbols are resolved here (RTLD_NOW), not at the first call of a function. Errors: dlerror().
   static Result<DynamicLibrary> open(const std::string& path);
 
   // The address of an exported symbol; null if there is none.
   void* find(const char* symbol) const;
 
-  // Stores the address in `function`. False if there is no such symbol.
+  // Stores the address in `function`, or null if there is no such symbol. True if there is.
   template <typename Function>
   bool find(const char* symbol, Function*& function) const {
     function = reinterpret_cast<Function*>(find(symbol));
     return function != nullptr;
   }
 
-  // Keeps the library loaded.
+  // The library stays loaded as long as a copy of this handle exists.
   std::shared_ptr<void> handle() const { return handle_; }
 
  private:

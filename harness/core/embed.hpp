@@ -1,11 +1,12 @@
-// Files that are parts of the binary; the assembler includes them. The function attest_embed() of
-// CMake defines their paths.
+// Files that are parts of the binary; the assembler includes them. The CMake function
+// attest_embed() defines a macro with the path of each.
 #pragma once
 
 #include <cstddef>
 #include <string_view>
 
-// Declares the bytes of the file at `path`, with a zero behind them. Use it outside of namespaces.
+// Puts the bytes of the file at `path` into the binary, with a zero behind them, and declares them.
+// Use it outside of namespaces.
 #define ATTEST_EMBED(name, path)       \
   asm(".section .rodata\n"             \
       ".global attest_embedded_" #name \

@@ -1,6 +1,6 @@
-// Converts an Error to JSON and back: {"message": ..., "file": ..., "line": 12, "column": 3}. An
-// unknown text is empty, an unknown number 0. Converts a value or an error to text: {"result": ...}
-// or {"error": {...}}.
+// Converts an Error to JSON and back: {"message": ..., "file": ..., "line": 12, "column": 3}. When
+// it is read, a missing `file` becomes empty, a missing `line` or `column` 0. Converts a value or
+// an error to text: {"result": ...} or {"error": {...}}.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ nlohmann::json to_json(const Error& error);
 // Errors: not an object, or an object without a message.
 Result<Error> error_from_json(const nlohmann::json& json);
 
-// Text that is not UTF-8 is repaired with U+FFFD.
+// Bytes that are not UTF-8 are replaced by U+FFFD.
 std::string encode(const Result<nlohmann::json>& result);
 
 // The inverse of encode(). Errors: the error that was encoded; text that is neither a result nor an

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The limit that caused the error; the text of errno does not name it.
+// Names the limit that caused the error, because the system's message does not.
 std::string_view limit_of(int error) {
   if (error == EFBIG) return " (`ulimit -f` limits the size of files)";
   if (error == EMFILE) return " (`ulimit -n` limits how many are open)";
@@ -56,7 +56,7 @@ class Descriptor {
   int descriptor_;
 };
 
-// Calls use(block) for each block of the file, until it returns an error.
+// Calls use(block) for each block of the file, until a call returns an error.
 template <typename Use>
 Result<void> for_each_block(const fs::path& path, Use use) {
   const auto opened = open_regular_file(path);
@@ -102,7 +102,8 @@ class Sha256 {
   std::unique_ptr<EVP_MD_CTX, Free> context_{EVP_MD_CTX_new()};
 };
 
-// Everything that this process prints later goes to stderr, so that stdout has the file alone.
+// Returns a descriptor of stdout for the file, or -1 with errno. All that the process prints to
+// stdout later goes to stderr, so that the file alone is written to stdout.
 int take_stdout() {
   std::fflush(stdout);
   const int file = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
@@ -161,8 +162,9 @@ Result<std::string> sha256_of_file(const fs::path& path) {
 
 namespace {
 
-// True if `path` must be written to directly: a terminal, pipe or device. Also /dev/stdout, which
-// may lead to an ordinary file: a rename would take that file away from its other writers.
+// True if `path` must be written to directly: a terminal, pipe or device. Also any file named in
+// /dev or /proc: /dev/stdout may lead to a regular file, and a rename would take that file away
+// from its other writers.
 bool is_written_in_place(const fs::path& path, const struct stat& status) {
   if (!S_ISREG(status.st_mode)) return true;
   std::error_code ignored;
@@ -180,8 +182,8 @@ std::string random_suffix() {
 
 constexpr mode_t new_file_mode = 0644;  // the umask applies, as for any new file
 
-// Calls `create` with names in the folder of `target` until one is free. Returns the result of
-// `create`, or -1 with errno.
+// Calls `create` with random names in the folder of `target` until one is free, at most 100 times.
+// Stores the name in `temporary`. Returns the result of `create`, or -1 with errno.
 template <typename Create>
 int with_free_name(const fs::path& target, fs::path& temporary, Create create) {
   constexpr int attempts = 100;
@@ -194,9 +196,9 @@ int with_free_name(const fs::path& target, fs::path& temporary, Create create) {
   return -1;
 }
 
-// Creates a new file in the folder of `target`. Returns its descriptor, or -1 with errno. It has no
-// name, so that it disappears when this process is killed. If the file system does not support
-// that, the file gets the name `temporary`.
+// Creates a new file in the folder of `target`. Returns its descriptor, or -1 with errno. The file
+// has no name, so that it disappears when this process is killed. If the file system does not
+// support this, the file gets a name, which is stored in `temporary`.
 int create_in_folder_of(const fs::path& target, fs::path& temporary) {
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   const int nameless = ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, new_file_mode);
@@ -206,13 +208,15 @@ int create_in_folder_of(const fs::path& target, fs::path& temporary) {
   });
 }
 
-// Gives a file without a name this name. Returns -1 with errno, EEXIST if the name is taken.
+// Gives a file without a name the name `name`. Returns 0, or -1 with errno (EEXIST if the name is
+// taken).
 int give_name(int file, const fs::path& name) {
   const std::string source = fmt::format("/proc/self/fd/{}", file);
   return ::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW);
 }
 
-// Gives a file without a name a name in the folder of `target`.
+// Gives a file without a name a random name in the folder of `target`, and stores it in
+// `temporary`. Returns 0, or -1 with errno.
 int name_in_folder_of(int file, const fs::path& target, fs::path& temporary) {
   return with_free_name(target, temporary,
                         [&](const fs::path& name) { return give_name(file, name); });
@@ -284,8 +288,8 @@ Result<void> AtomicFile::commit() {
     return system_failure(path_, "cannot write the file");
   }
   const bool has_no_name = !in_place && temporary_.empty();
-  // A new file gets its name at once. Only the replacement of an old file has another name before,
-  // which a kill at that moment would leave behind.
+  // If there is no old file, a nameless file gets the name `target_` directly. Otherwise it gets a
+  // temporary name, and is then renamed. A kill between these steps leaves the temporary file.
   const bool is_in_place = in_place || (has_no_name && give_name(descriptor_, target_) == 0);
   if (has_no_name && !is_in_place && name_in_folder_of(descriptor_, target_, temporary_) != 0) {
     temporary_.clear();

@@ -10,12 +10,13 @@
 
 namespace attest {
 
-// Opens a regular file for reading; the caller closes the descriptor. All files that attest reads
-// are opened here. Errors: other kinds of file, which may have no end (a device), no writer (a
-// pipe) or no bytes (a directory). Opening never waits.
+// Opens a regular file for reading; the caller closes the descriptor. Never waits. Errors: the file
+// cannot be opened, or is not regular, because a device may have no end, a pipe may have no writer,
+// and a directory has no bytes.
 Result<int> open_regular_file(const std::filesystem::path& path);
 
-// More than any text that a person writes. A file written by a program may need a higher limit.
+// The default limit of read_file(): more than any text that a person writes. For a file written by
+// a program, the caller may need a higher limit.
 inline constexpr std::uintmax_t most_text_bytes = std::uintmax_t{64} << 20;
 
 // Reads the whole file. Errors: those of open_regular_file(), unreadable, more than `most_bytes`.
@@ -26,11 +27,11 @@ Result<std::string> read_file(const std::filesystem::path& path,
 std::string sha256(std::string_view bytes);
 Result<std::string> sha256_of_file(const std::filesystem::path& path);
 
-// A file that is written in the same folder as its target and renamed at commit(). Open it early,
-// to find an unwritable path before the work. Without commit() it leaves no file behind. If the
-// file system supports files without a name, this is also so when the process is killed. Other
-// kinds of file (/dev/stdout, /dev/null, a pipe) are written to directly. `-` is stdout; all that
-// the process prints there after open() goes to stderr.
+// A file that gets its name at commit(), when it is complete. Until then it is a temporary file in
+// the same folder. Open it early, to find an unwritable path before the work. Without commit() the
+// destructor removes it. If the file system supports files without a name (O_TMPFILE), it also
+// disappears when the process is killed before commit(). /dev/stdout, devices and pipes are written
+// to directly. `-` is stdout; all that the process prints there after open() goes to stderr.
 class AtomicFile {
  public:
   static Result<AtomicFile> open(const std::filesystem::path& path);
@@ -39,18 +40,19 @@ class AtomicFile {
   ~AtomicFile();
 
   const std::filesystem::path& path() const { return path_; }
-  // REQUIRES, for both: not committed yet.
+  // REQUIRES, for write() and commit(): commit() was not called before.
   Result<void> write(std::string_view bytes);
-  // Flushes to disk and renames. Errors (disk full, directory gone) leave the old file as it was.
+  // Flushes the file to disk and gives it its name. Errors (disk full, directory gone) leave the
+  // old file as it was. A file that is written to directly is only closed.
   Result<void> commit();
 
  private:
   AtomicFile(std::filesystem::path path, std::filesystem::path target,
              std::filesystem::path temporary, int descriptor);
 
-  std::filesystem::path path_;       // as given, for messages
-  std::filesystem::path target_;     // with symbolic links followed; empty: written directly
-  std::filesystem::path temporary_;  // its name until commit(); empty: it has no name
+  std::filesystem::path path_;       // as given, or "stdout"; for messages
+  std::filesystem::path target_;     // path_ with links followed; empty: written directly
+  std::filesystem::path temporary_;  // name until commit(); empty if the file has none
   int descriptor_;                   // -1 once committed
 };
 

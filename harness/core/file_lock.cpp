@@ -12,7 +12,8 @@ namespace {
 
 constexpr mode_t lock_mode = 0644;  // less the umask
 
-// The process that held the lock before may have removed the file between our open() and flock().
+// False if the previous holder of the lock removed or renamed the file between our open() and
+// flock().
 bool is_still_there(int descriptor, const std::filesystem::path& file) {
   struct stat opened, there;
   return ::fstat(descriptor, &opened) == 0 && ::stat(file.c_str(), &there) == 0 &&

@@ -1,6 +1,6 @@
 // A port may change the floating point environment of its process: a library linked with
 // -ffast-math sets flush-to-zero when it is loaded. The harness computes and compares in the
-// default environment and restores that of the port for its calls.
+// default environment, and restores the port's environment for the calls of the port.
 #pragma once
 
 #include <cfenv>
@@ -21,8 +21,8 @@ class DefaultFloatEnvironment {
   std::fenv_t saved_;
 };
 
-// Keeps the environment of a port between single calls of it, with computation of the harness
-// between them.
+// Keeps the environment of a port between its calls, while the harness computes in another one. It
+// begins with the environment in which this object is made.
 class PortFloatEnvironment {
  public:
   PortFloatEnvironment() { std::fegetenv(&ports_); }

@@ -7,8 +7,8 @@ namespace {
 
 constexpr double half_root = std::numbers::sqrt2 / 2;
 
-// (0, r, r, 0) q (0, 1, 0, 0) with r = sqrt(1/2), written out. Both factors square to -1, so the
-// mapping is its own inverse.
+// The product (0, r, r, 0) q (0, 1, 0, 0), r = sqrt(1/2): the turns of world and body. The square
+// of each of these two turns is -1, so the mapping is its own inverse.
 Quaternion turned(const Quaternion& q) {
   return {half_root * (-q.w - q.z), half_root * (-q.x - q.y), half_root * (q.y - q.x),
           half_root * (q.z - q.w)};

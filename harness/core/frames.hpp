@@ -1,6 +1,6 @@
-// All conversions between frames. The harness uses FRD (body: forward, right, down) and NED (world:
-// north, east, down). Only mujoco_plant uses FLU (forward, left, up) and ENU (east, north, up)
-// inside. Double precision; no allocation.
+// Conversions between the frames of attest and MuJoCo. The harness uses FRD (body: forward, right,
+// down) and NED (world: north, east, down). Only the MuJoCo plant uses FLU (forward, left, up) and
+// ENU (east, north, up). Double precision; no allocation.
 #pragma once
 
 #include <array>

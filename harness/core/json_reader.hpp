@@ -12,23 +12,24 @@ namespace attest {
 
 class JsonReader {
  public:
-  // `error` receives the first message. Both references must outlive this.
+  // `error` receives the first error message, unless it is not empty already. REQUIRES: `object`
+  // and `error` outlive this.
   JsonReader(const nlohmann::json& object, std::string& error);
 
   bool has(const char* key) const;
 
-  // Of a missing member: null.
+  // A missing member is an error; the result is then null.
   const nlohmann::json& member(const char* key);
   JsonReader object(const char* key) { return {member(key), error_}; }
 
-  // Of a member that is missing or of another type: empty, 0 or false.
+  // A member that is missing or of another type is an error; the result is then empty, 0 or false.
   const nlohmann::json& list(const char* key);
   std::string text(const char* key);
   std::vector<std::string> texts(const char* key);
   std::uint64_t count(const char* key);
   std::int64_t integer(const char* key);
   bool flag(const char* key);
-  double real(const char* key);  // also the texts "nan", "inf" and "-inf"
+  double real(const char* key);  // accepts the texts "nan", "inf" and "-inf", too
 
   void wrong(std::string message);
 

@@ -9,12 +9,11 @@
 
 namespace attest {
 
-// If the text is not JSON: a discarded value, which is no object.
+// If the text is not JSON, returns a discarded value (is_discarded()), which is not an object.
 nlohmann::json json_from(std::string_view text);
 
-// Bytes that are not UTF-8 are replaced by U+FFFD, so that every text is accepted: the texts of a
-// port may have any bytes.
-std::string text_of(const nlohmann::json& value);              // one line, without its end
+// Bytes that are not UTF-8 are replaced by U+FFFD, because the texts of a port may have any bytes.
+std::string text_of(const nlohmann::json& value);              // one line, without a newline
 std::string document_of(const nlohmann::ordered_json& value);  // indented, for a file
 
 }  // namespace attest

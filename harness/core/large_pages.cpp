@@ -7,7 +7,7 @@
 namespace attest {
 namespace {
 
-// Gives the advice for the pages of this size that lie wholly in the memory.
+// Calls madvise() for the pages of size `page` that lie wholly in the memory.
 void advise(void* begin, std::size_t bytes, std::uintptr_t page, int advice) {
   const auto address = reinterpret_cast<std::uintptr_t>(begin);
   const std::uintptr_t first = (address + page - 1) / page * page;

@@ -7,8 +7,9 @@
 namespace attest {
 namespace {
 
-// The usual limit of a main thread. The default for threads depends on `ulimit -s`: with a large
-// limit the stack counts in the limit of a port's memory, and without a limit it is 2 MiB.
+// The usual stack of a main thread. The default for other threads depends on `ulimit -s`. A large
+// limit gives a large stack, which counts in the limit of a port's memory. Without a limit the
+// default is only 2 MiB.
 constexpr std::size_t stack_bytes = std::size_t{8} << 20;
 
 void* call(void* work) {

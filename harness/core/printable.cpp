@@ -8,7 +8,8 @@
 namespace attest {
 namespace {
 
-// The length in bytes of the UTF-8 character that `text` begins with, 0 when it is not one.
+// The length in bytes of the UTF-8 character at the beginning of `text`; 0 if `text` begins with
+// bytes that are not UTF-8. REQUIRES: not empty.
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [text](std::size_t i) { return static_cast<std::uint8_t>(text[i]); };
   const std::uint8_t lead = byte(0);
@@ -32,7 +33,7 @@ bool harmless(std::string_view character) {
   return character != "\xef\xbf\xbe" && character != "\xef\xbf\xbf";
 }
 
-// `kept`: control characters that stay.
+// `kept`: the control characters that are not escaped.
 std::string escaped(std::string_view text, std::string_view kept) {
   std::string out;
   while (!text.empty()) {

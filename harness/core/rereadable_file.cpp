@@ -20,7 +20,8 @@ constexpr std::size_t most_bytes = std::size_t{1} << 30;
 
 using Clock = std::chrono::steady_clock;
 
-// Without a writer, read() returns 0 at once. With one that is idle, it returns EAGAIN.
+// Stores the first bytes of the pipe in `begin`, if there are any. If an empty pipe has no writer,
+// read() returns 0; if its writer is idle, read() fails with EAGAIN.
 bool has_writer(int pipe, std::string& begin) {
   std::array<char, 4096> block;
   const ssize_t count = ::read(pipe, block.data(), block.size());
@@ -28,13 +29,13 @@ bool has_writer(int pipe, std::string& begin) {
   return count != 0;
 }
 
-// Returns the error; empty: all is copied.
+// Copies `begin`, then the rest of the pipe. Returns the error; empty if all is copied.
 std::string copy_all(int pipe, int copy, std::string begin) {
   ::fcntl(pipe, F_SETFL, ::fcntl(pipe, F_GETFL) & ~O_NONBLOCK);
   std::string block = std::move(begin);
   std::size_t copied = 0;
   while (copied <= most_bytes) {
-    // A file in memory takes all bytes or fails.
+    // write() to a file in memory takes all bytes or fails.
     const ssize_t written = ::write(copy, block.data(), block.size());
     if (written < 0) return std::strerror(errno);
     copied += block.size();
@@ -51,7 +52,7 @@ std::string copy_all(int pipe, int copy, std::string begin) {
 
 std::string copy_from(const std::filesystem::path& path, int copy,
                       std::chrono::milliseconds writer_within) {
-  // Without O_NONBLOCK, opening waits for a writer.
+  // Without O_NONBLOCK, open() would wait for a writer without a limit.
   const int pipe = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
   if (pipe < 0) return std::strerror(errno);
   const auto end = Clock::now() + writer_within;

@@ -9,12 +9,13 @@
 
 namespace attest {
 
-// A file that can be read more than once: a regular file itself, or a copy of all that comes
-// from a pipe. The copy is in memory and ends with this object.
+// A file that can be opened more than once: the file itself, or a copy of all that comes from a
+// pipe. The copy is in memory, and is freed with this object.
 class RereadableFile {
  public:
-  // Reads a pipe to its end, and waits for its writer. Opens nothing else. Errors: the pipe has no
-  // writer and no data within that time; it has more than 1 GiB.
+  // For a pipe: waits until it has a writer, and copies it to its end. Other files are not opened
+  // here. Errors: the pipe has neither writer nor data within `writer_within`; it cannot be read;
+  // it has more than 1 GiB.
   static Result<RereadableFile> open(
       const std::filesystem::path& path,
       std::chrono::milliseconds writer_within = std::chrono::seconds(5));
@@ -23,13 +24,13 @@ class RereadableFile {
   ~RereadableFile();
 
   bool is_copy() const { return copy_ >= 0; }
-  const std::filesystem::path& path() const { return path_; }  // to open it by
+  const std::filesystem::path& path() const { return path_; }  // of the file or of its copy
 
  private:
   RereadableFile(std::filesystem::path path, int copy) : path_(std::move(path)), copy_(copy) {}
 
   std::filesystem::path path_;
-  int copy_;  // descriptor of the copy; -1: the file itself
+  int copy_;  // descriptor; -1 if there is no copy
 };
 
 }  // namespace attest

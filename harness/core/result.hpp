@@ -27,7 +27,7 @@ template <typename T>
 using Result = tl::expected<T, Error>;
 
 // For the return statement: `return fail("no such group");`. The message may quote a file or a
-// port, so it becomes printable().
+// port, so printable() is applied to it.
 tl::unexpected<Error> fail(const std::string& message);
 tl::unexpected<Error> fail_at(std::string file, const std::string& message, int line = 0,
                               int column = 0);

@@ -1,4 +1,4 @@
-// Whether two floats are the same number.
+// Compares two floats by their bits.
 #pragma once
 
 #include <bit>
@@ -7,7 +7,7 @@
 
 namespace attest {
 
-// Compares bits; every NaN equals every NaN.
+// -0 differs from 0; every NaN equals every NaN.
 inline bool same_bits(float a, float b) {
   if (std::isnan(a) || std::isnan(b)) return std::isnan(a) && std::isnan(b);
   return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);

@@ -1,5 +1,5 @@
-// Whether this is a build with the address or thread sanitizer. They reserve terabytes of address
-// space, and add memory around each variable.
+// Whether this is a build with the address or thread sanitizer. Such a program reserves terabytes
+// of address space, so a limit of memory cannot be applied to it.
 #pragma once
 
 namespace attest {

@@ -10,8 +10,8 @@ namespace {
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-// The number of edits that turn `a` into `b`: insertions, deletions, substitutions, swaps of two
-// neighbours. Ignores case, so that mc_roll_p suggests MC_ROLL_P.
+// The least number of edits that turn `a` into `b`: insertions, deletions, substitutions, swaps of
+// two neighbours. Ignores case, so that mc_roll_p suggests MC_ROLL_P.
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> two_above(b.size() + 1);
   std::vector<std::size_t> above(b.size() + 1);
@@ -35,15 +35,14 @@ std::size_t distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string suggestion(std::string_view unknown, const std::vector<std::string>& candidates) {
-  // Longer names may have more edits. Text of more than 200 bytes is not a name; the file is
-  // probably of another kind.
+  // A text of more than 200 bytes is not a misspelt name, but comes from a file of another kind.
   constexpr std::size_t longest_name = 200;
   if (unknown.size() > longest_name) return "";
   const std::size_t allowed = (unknown.size() + 1) / 3;
   const std::string* best = nullptr;
   std::size_t best_distance = allowed + 1;
   for (const std::string& candidate : candidates) {
-    // The distance is at least the difference of the lengths.
+    // Saves time: the distance is at least the difference of the lengths.
     const std::size_t longer = std::max(unknown.size(), candidate.size());
     if (2 * longer - unknown.size() - candidate.size() >= best_distance) continue;
     const std::size_t d = distance(unknown, candidate);

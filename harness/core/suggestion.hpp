@@ -7,7 +7,8 @@
 
 namespace attest {
 
-// "; did you mean `thrust`?"; empty when no candidate is near enough.
+// For example "; did you mean `thrust`?". Empty if no candidate is near enough, or if `unknown` is
+// longer than 200 bytes.
 std::string suggestion(std::string_view unknown, const std::vector<std::string>& candidates);
 
 }  // namespace attest

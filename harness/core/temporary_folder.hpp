@@ -8,10 +8,11 @@
 
 namespace attest {
 
-// A new folder in TMPDIR that only the user can read. The destructor removes it with its content.
+// A new folder in TMPDIR (default: /tmp) that only the user can read. The destructor removes it
+// with its content.
 class TemporaryFolder {
  public:
-  // `purpose` is a part of its name. Errors: it cannot be made.
+  // `purpose` becomes a part of the folder's name. Errors: the folder cannot be made.
   static Result<TemporaryFolder> make(std::string_view purpose);
   TemporaryFolder(TemporaryFolder&& other) noexcept;
   TemporaryFolder& operator=(TemporaryFolder&&) = delete;

@@ -6,13 +6,14 @@
 
 namespace attest {
 
-// int64 on every platform of attest: +-292 years.
+// 64 bits on every platform of attest, enough for +-292 years.
 using Nanoseconds = std::chrono::nanoseconds;
 
 // For printing, and for computations in seconds.
 constexpr double in_seconds(Nanoseconds time) { return static_cast<double>(time.count()) * 1e-9; }
 
 // The `timestamp` of a sample: microseconds, rounded down, as the firmware's clock gives them.
+// REQUIRES: time >= 0.
 constexpr std::uint64_t timestamp_us(Nanoseconds time) {
   return static_cast<std::uint64_t>(time.count() / 1000);
 }

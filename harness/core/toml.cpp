@@ -42,7 +42,7 @@ using Names = std::set<std::string, std::less<>>;
 
 struct Asked {
   Names read;  // read, or with a recorded error
-  Names seen;  // only looked at: a known key, but without effect
+  Names seen;  // looked at by kind() or has(); has no effect if it is never read
 };
 
 TomlKind kind_of(const toml::node& node) {
@@ -87,7 +87,7 @@ struct TomlFile::Document {
 
   void complain(Place place, const std::string& message) {
     const Complaint complaint{place, printable_part(message)};
-    // The same key may be read twice.
+    // If a key is read twice, its error is recorded once.
     const auto same = std::find(complaints.begin(), complaints.end(), complaint);
     if (same == complaints.end()) complaints.push_back(complaint);
   }
@@ -114,7 +114,7 @@ std::vector<Complaint> TomlFile::Document::unread_keys() const {
 
 struct TomlTable::Impl {
   std::shared_ptr<TomlFile::Document> document;
-  const toml::table* node;  // null stands for a table that is missing, which was an error already
+  const toml::table* node;  // null: the table is missing or no table; the error is recorded
   Place place;
 
   const toml::node* find(std::string_view key) const { return node ? node->get(key) : nullptr; }
@@ -145,7 +145,7 @@ struct TomlTable::Impl {
     mismatch(place_of_key(key), fmt::format("`{}`", key), need, found);
   }
 
-  // Null, with an error, when the key is absent.
+  // Null if the key is absent; this is an error, unless the table itself is missing.
   const toml::node* require(std::string_view key, std::string_view need) const {
     const toml::node* value = read(key);
     if (!value && node) {

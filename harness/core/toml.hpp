@@ -1,5 +1,5 @@
 // Strict reading of TOML files: each key of a file must be read, and each error names file, line
-// and column. Only toml.cpp uses toml++.
+// and column.
 //
 // Errors are collected, so that the reading code need not stop at each one and a file's author sees
 // all errors together:
@@ -9,7 +9,7 @@
 //     const TomlTable root = file->root();
 //     const std::string why = root.text("why");      // required: its absence is an error
 //     const double thrust = root.number("thrust", 0.5);
-//     if (auto done = file->finish(); !done) ...     // first error, or the first unknown key
+//     if (auto done = file->finish(); !done) ...     // all errors, and unknown keys
 #pragma once
 
 #include <cstdint>
@@ -29,8 +29,8 @@ enum class TomlKind { absent, boolean, integer, number, text, array, table };
 // A view of one table. All views of the same table share the record of the keys that were read.
 class TomlTable {
  public:
-  // A date or time without quotes counts as text, so that text() can report the error. kind() and
-  // has() do not count as reading: a key that was only looked at is an error in finish().
+  // kind() is `text` for a date or time without quotes, so that text() can report the error. kind()
+  // and has() do not count as reading: a key that only they looked at is an error in finish().
   TomlKind kind(std::string_view key) const;
   bool has(std::string_view key) const { return kind(key) != TomlKind::absent; }
 
@@ -40,9 +40,9 @@ class TomlTable {
   // Keys in the order of the file. Does not count as reading.
   std::vector<std::string> keys() const;
 
-  // Required keys. A key that is absent or of another type is an error, and the value is empty. An
-  // absent table() is an empty table, whose own missing keys are not reported again.
-  // number() accepts an integer; nan and inf are numbers.
+  // Required keys. A key that is absent or of another type is an error; the value is then empty or
+  // 0. The missing keys of an absent table are not reported in addition. number() accepts an
+  // integer; nan and inf are numbers.
   std::string text(std::string_view key) const;
   double number(std::string_view key) const;
   std::int64_t integer(std::string_view key) const;
@@ -51,7 +51,8 @@ class TomlTable {
   std::vector<std::int64_t> integers(std::string_view key) const;
   TomlTable table(std::string_view key) const;
 
-  // Optional keys: an absent key gives the fallback.
+  // Optional keys: an absent key gives the fallback. A key of another type is an error, and gives
+  // the fallback, too.
   std::string text(std::string_view key, std::string fallback) const;
   double number(std::string_view key, double fallback) const;
   std::int64_t integer(std::string_view key, std::int64_t fallback) const;
@@ -75,7 +76,7 @@ class TomlFile {
 
   TomlTable root() const;
 
-  // The first error in file order, of those recorded and of keys that were not read ("unknown key
+  // Returns the first error in file order. Keys that were not read are errors, too ("unknown key
   // `thurst`; did you mean `thrust`?"). Later errors are appended to its message, one per line,
   // each with its own place. For a table that was not read, only the table is listed, not its keys.
   Result<void> finish() const;
@@ -95,14 +96,14 @@ class TomlWriter {
   TomlWriter(const TomlWriter&) = delete;
   TomlWriter& operator=(const TomlWriter&) = delete;
 
-  // `table` is empty for the root.
+  // Sets `key` of the table named `table`; an empty `table` is the root.
   void set(std::string_view table, std::string_view key, std::string_view value);
   void set(std::string_view table, std::string_view key, double value);
   void set(std::string_view table, std::string_view key, std::int64_t value);
   void set(std::string_view table, std::string_view key, const std::vector<std::string>& values);
 
   void set(std::string_view table, std::string_view key, const std::vector<double>& values);
-  // In the table `inner` of `table`.
+  // Sets `key` of the table `inner`, which is in `table`.
   void set(std::string_view table, std::string_view inner, std::string_view key,
            std::string_view value);
   void set(std::string_view table, std::string_view inner, std::string_view key,

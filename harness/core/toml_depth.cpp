@@ -14,7 +14,7 @@ std::size_t or_end(std::size_t found, std::string_view text) {
   return std::min(found, text.size());
 }
 
-// The offset of the first unescaped `closing` from `at` on.
+// The offset of the first unescaped `closing` from `at` on; the end of the text if there is none.
 std::size_t find_unescaped(std::string_view text, std::string_view closing, std::size_t at) {
   while (at < text.size() && !text.substr(at).starts_with(closing)) {
     at += text[at] == '\\' ? 2 : 1;
@@ -33,7 +33,7 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
     return or_end(find(triple.substr(0, 1), begin + 1) + 1, text);
   }
   std::size_t end = or_end(find(triple, begin + triple.size()) + triple.size(), text);
-  // Up to two quotes before the closing ones belong to the text.
+  // A multi-line string may end in up to five quotes: the last three close it, the others are text.
   for (int i = 0; i < 2 && end < text.size() && text[end] == quote; ++i) ++end;
   return end;
 }
@@ -68,7 +68,7 @@ Result<void> check_depth(std::string_view text, const std::string& name) {
   const auto deep = find_too_deep(text);
   if (!deep) return {};
   const std::string_view before = text.substr(0, *deep);
-  const std::string_view line = before.substr(before.rfind('\n') + 1);  // npos + 1 is 0
+  const std::string_view line = before.substr(before.rfind('\n') + 1);  // no newline: npos + 1 is 0
   // The column is in characters, as in toml++: a UTF-8 sequence is one.
   const auto is_first_byte = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; };
   return fail_at(

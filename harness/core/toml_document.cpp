@@ -41,7 +41,8 @@ Path parse_path(const std::string& text) {
   return path;
 }
 
-// Errors: a value that is no table. Null: no such table.
+// The table that holds the last key of the path. If a table of the path is missing, it is made if
+// `make` is set; otherwise the result is null. Errors: a value on the way is not a table.
 Result<toml::table*> find_table(toml::table& root, const Path& path, bool make) {
   toml::table* table = &root;
   for (const std::string& name : path.tables) {
@@ -56,7 +57,7 @@ Result<toml::table*> find_table(toml::table& root, const Path& path, bool make) 
   return table;
 }
 
-// A key may itself end in brackets: "q[1]".
+// If the table has a key that itself ends in brackets, such as "q[1]", the path means this key.
 void prefer_literal_key(const toml::table& table, Path& path) {
   if (!path.index) return;
   const std::string literal = fmt::format("{}[{}]", path.key, *path.index);
@@ -65,7 +66,8 @@ void prefer_literal_key(const toml::table& table, Path& path) {
   path.index.reset();
 }
 
-// The number's node; null if there is no such key.
+// The number's node; null if there is no such key. Errors: the value is not a number; the path has
+// an index, and there is no such array or element.
 Result<toml::node*> find_number(toml::table& table, const Path& path) {
   toml::node* node = table.get(path.key);
   if (path.index) {
@@ -108,7 +110,7 @@ Result<void> set_number(toml::table& root, const std::string& text, double value
   return {};
 }
 
-// The key as it is written in a file: with quotes where it needs them.
+// The key as it is written in a file: with quotes if it needs them.
 std::string written_key(const std::string& key) {
   std::ostringstream text;
   text << toml::toml_formatter(toml::table{{key, 0}});
@@ -116,7 +118,8 @@ std::string written_key(const std::string& key) {
   return assignment.substr(0, assignment.rfind(" = "));
 }
 
-// In the order of the original; the new ones come last.
+// The keys of `table` in the order of `original`, the same table in the parsed file (null if the
+// table is new). New keys come last.
 std::vector<std::string> keys_in_order(const toml::table& table, const toml::table* original) {
   using LineAndColumn = std::pair<toml::source_index, toml::source_index>;
   constexpr toml::source_index behind_all = std::numeric_limits<toml::source_index>::max();
@@ -137,7 +140,8 @@ bool holds_tables(const toml::table& table) {
                      [](const auto& entry) { return entry.second.is_table(); });
 }
 
-// The formatter of toml++ sorts the keys of a table, and the order of metrics and rotors matters.
+// Writes each key itself, because the formatter of toml++ would sort the keys of a table. The order
+// of metrics and rotors matters.
 void write_table(const toml::table& table, const toml::table* original, const std::string& path,
                  std::ostream& out) {
   std::vector<std::pair<std::string, const toml::table*>> inner;

@@ -7,7 +7,7 @@ namespace attest {
 
 inline constexpr const char* version = ATTEST_VERSION;
 
-// "gcc 12.2.0" or "clang 14.0.6".
+// For example "gcc 12.2.0" or "clang 14.0.6".
 std::string compiler();
 
 }  // namespace attest

@@ -1,4 +1,4 @@
-// The attitude unit with stages that record how near its decisions are.
+// The attitude unit with stages that record its distances from decisions.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -18,15 +18,15 @@ double from_opposite(const reference::Vector3<double>& axis) {
   return std::numbers::pi - std::atan2(std::hypot(axis[0], axis[1]), axis[2]);
 }
 
-// The distance [rad] of an angle from +-pi.
+// The distance [rad] of an angle from the nearer of pi and -pi.
 double from_half_turn(double angle) { return std::abs(std::numbers::pi - std::abs(angle)); }
 
 struct NotingAttitudeLaw : cascade::AttitudeStages<double> {
   using Law = cascade::AttitudeStages<double>;
   MarginNotes* notes;
 
-  // If the thrust directions are opposite, the law does not use the tilt. So the axis of the tilt
-  // matters only otherwise.
+  // If the thrust directions are opposite, the law does not use the tilt, so the axis of the tilt
+  // does not matter.
   bool is_opposite(const Q& tilt) const {
     constexpr double almost_one = 0.999989986f;
     const bool opposite = Law::is_opposite(tilt);
@@ -98,7 +98,7 @@ struct NotingSticks : cascade::StickStages<double> {
                 from_opposite(cascade::z_axis(cascade::product(to_desired, tilt))));
     return Law::tilt_for_yaw_error(tilt, desired_yaw, q_WB);
   }
-  // The quaternion of a yaw at +-pi has another sign on the other side.
+  // The quaternion of a yaw changes its sign where the yaw wraps at +-pi.
   Q desired_attitude(const Q& yaw, const Q& tilt) const {
     notes->note(Decision::heading_wrap, 2 * std::abs(std::asin(yaw[0])));
     return Law::desired_attitude(yaw, tilt);
@@ -118,8 +118,8 @@ struct NotingAttitudeStep : cascade::AttitudeStepStages<double> {
   }
   bool is_spooled(std::uint64_t now_us, const Status& status, double spoolup_us) const {
     const double armed_us = double(now_us - status.armed_time);
-    // The time since arming is whole microseconds, so a limit of exactly 0 is the same in every
-    // port.
+    // The time since arming is an integer [us], so every port compares it with a limit of exactly 0
+    // in the same way.
     if (status.armed != 0 && spoolup_us != 0) {
       notes->note(Decision::spool_up, std::abs(armed_us - spoolup_us) * 1e-6);
     }

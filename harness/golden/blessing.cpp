@@ -20,7 +20,8 @@ struct Blessing {
   VehicleModels vehicle_models;
 };
 
-// A case file in all its profiles: the goldens of the others are based on that of the first.
+// Makes and writes the goldens of a case file in all its profiles. The golden of the first profile
+// is the base of the others.
 Result<void> write_goldens_of_file(const Case& first, Blessing& blessing, PendingGoldens& pending) {
   MadeGolden of_first;
   std::filesystem::path base_folder = golden_folder(blessing.options.golden, first);

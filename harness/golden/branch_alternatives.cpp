@@ -45,7 +45,7 @@ struct LawOnOtherBranch {
   reference::RecoveryStages<float> recovery;
 };
 
-// Compares the bits of the values, because the bytes between the members of a topic have no
+// Compares outputs value by value, because the padding between the members of a topic has no
 // meaning.
 bool is_same(std::string_view prefix, const Sample& a, const Sample& b) {
   const ChannelSet chosen = channels_of(Module::mc_att_control, prefix);
@@ -58,7 +58,7 @@ bool is_same(std::string_view prefix, const Sample& a, const Sample& b) {
   return true;
 }
 
-// One tick alone, with the parameters in force at it.
+// Compares one tick alone, with the parameters that are in force at it.
 bool agrees(const Trace& got, const Trace& want, std::size_t tick, const Tolerances& tolerances) {
   const auto& all = want.parameters;
   const auto later = std::find_if(
@@ -68,7 +68,7 @@ bool agrees(const Trace& got, const Trace& want, std::size_t tick, const Toleran
   return comparer.finish(1, 1).agrees();
 }
 
-// Null when `got` agrees with none of them.
+// The trace that `got` agrees with at this tick, `law` first; null if there is none.
 const Trace* branch_of(const Trace& got, const Trace& law, const BranchAlternatives& others,
                        std::size_t tick, const Tolerances& tolerances) {
   if (agrees(got, law, tick, tolerances)) return &law;

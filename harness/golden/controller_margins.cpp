@@ -1,4 +1,4 @@
-// The controller of v1.5.5 and v1.3.4 with stages that record how near its decisions are.
+// The controller of v1.5.5 and v1.3.4 with stages that record its distances from decisions.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -30,7 +30,7 @@ struct NotingStep : reference::StepStages<double> {
   float battery_factor(const Topics& topics, const reference::Gains<double>& gains,
                        reference::Profile profile) const {
     const double scale = std::abs(double(topics.battery_scale));
-    // A scale of exactly 0 means no scaling in every port.
+    // Every port takes a scale of exactly 0 as no scaling.
     if (gains.battery_scaling && scale != 0) notes->note(Decision::battery_scale, scale);
     return reference::StepStages<double>::battery_factor(topics, gains, profile);
   }
@@ -65,7 +65,7 @@ struct NotingAttitude : reference::AttitudeStages<double> {
   }
 };
 
-// The distance of `value` from the ends of (-bound, bound): negative when it is outside.
+// The distance of `value` from the nearer end of (-bound, bound): negative if `value` is outside.
 double inside(double value, double bound) { return bound - std::abs(value); }
 
 struct NotingRate : reference::RateStages<double> {
@@ -80,7 +80,8 @@ struct NotingRate : reference::RateStages<double> {
   }
   double integrate_axis(double integral, double control, double thrust_sp, double growth,
                         bool frozen) const {
-    // A step of the integral below this is far within its tolerance, so its gates do not matter.
+    // A step of the integral below this is far within the integral's tolerance, so the gates do not
+    // matter.
     constexpr double negligible = 2e-6;
     if (!frozen && std::abs(growth) > negligible) {
       const double bound = double(reference::integral_limit);

@@ -12,19 +12,19 @@ struct DecisionTraits {
   double least_margin;
 };
 
-constexpr double of_input = 1e-6;  // an input differs by a port's number format only
+constexpr double of_input = 1e-6;  // inputs differ only by the port's number format
 constexpr double of_law = 1e-5;
 constexpr double of_ratio = 1e-4;
 
 // In the order of the enumerators.
 constexpr std::array<DecisionTraits, decision_count> all_traits{{
-    {Decision::quaternion_norm, "norm of quaternions", 1e-6},  // of float32, within 1e-7 of 1
+    {Decision::quaternion_norm, "norm of quaternions", 1e-6},  // float32 norms are within 1e-7 of 1
     {Decision::thrust_gate, "thrust gate", of_input},
     {Decision::integrator_gate, "integrator gate", of_law},
     {Decision::rattitude, "rattitude", of_input},
     {Decision::shorter_rotation, "shorter rotation", of_law},
     {Decision::yaw_wrap, "yaw at +-180 deg", of_law},
-    {Decision::tilt_axis, "tilt at 180 deg", 1.7e-3},  // where the tolerance stops widening
+    {Decision::tilt_axis, "tilt at 180 deg", 1.7e-3},  // where Tolerances::widening ends
     {Decision::battery_scale, "battery scale", of_input},
     {Decision::recovery_latch, "recovery's latch", of_law},
     {Decision::recovery_rotation, "recovery's rotation", of_law},
@@ -33,9 +33,9 @@ constexpr std::array<DecisionTraits, decision_count> all_traits{{
     {Decision::mixer_yaw, "mixer yaw", of_law},
     {Decision::opposite_thrust, "opposite thrust", of_input},
     {Decision::yaw_weight, "yaw weight", of_input},
-    {Decision::spool_up, "spool-up time", 2e-6},  // of float32 at 30 s, the longest time
+    {Decision::spool_up, "spool-up time", 2e-6},  // float32's resolution at the longest, 30 s
     {Decision::lowest_throttle, "lowest throttle", of_input},
-    {Decision::heading_pole, "heading's pole", 3e-4},  // rounding turns the pitch by 1e-4 there
+    {Decision::heading_pole, "heading's pole", 3e-4},  // rounding changes the pitch there by 1e-4
     {Decision::heading_wrap, "heading at +-180 deg", of_law},
     {Decision::convergence, "heading's convergence", of_law},
     {Decision::yaw_lock, "yaw lock", of_ratio},

@@ -1,12 +1,11 @@
-// The decisions of the laws, and how near a vector comes to them. Two correct ports differ in their
-// last bits. Where a decision depends on these bits, a numeric comparison would fail one of the
-// two.
+// The decisions of the laws, and how near a vector (a case at one rate) comes to them. A decision
+// is a comparison with a threshold at which outputs jump. Two correct ports differ in their last
+// bits. If a decision depends on these bits, a numeric comparison would fail one of the two.
 //
-// Clamps and blends are not decisions where they pass from one branch to the other without a jump:
-// both branches give the same output there. Examples are dt, the limits of rates and integrals, the
-// deadzone, the hover thrust at a centred throttle, and the tilt error at 90 deg of v1.5.5. Flags
-// and comparisons of times in whole microseconds are no decisions either, because every port gets
-// the same integers.
+// Clamps and blends without a jump are not decisions, because both branches give the same output at
+// the threshold. Examples are dt, the limits of rates and integrals, the deadzone, the hover thrust
+// at a centred throttle, and the tilt error at 90 deg of v1.5.5. Flags, and comparisons between two
+// times in whole microseconds, are no decisions either, because every port gets the same integers.
 #pragma once
 
 #include <array>
@@ -19,23 +18,23 @@ namespace attest {
 
 enum class Decision {
   // Of the controller of v1.5.5 and v1.3.4; those with * of the cascade, too.
-  quaternion_norm,  // | |q| - 1 |: here a small distance is safe, and a large one not
+  quaternion_norm,  // | |q| - 1 |: here a small distance is safe, a large one unsafe
   thrust_gate,      // thrust > 0.2
   // |u| < thrust, -0.3 < n < 0.3, -0.3 < u < 0.3 (u: control, n: next integral). If all hold, the
   // distance is that of the condition nearest to its limit. Otherwise it is that of the failed
   // condition farthest from its limit.
   integrator_gate,
   rattitude,          // a stick against MC_RATT_TH
-  shorter_rotation,   // * q_e.w >= 0, beyond 90 deg; of the cascade at any angle
+  shorter_rotation,   // * q_e.w >= 0; of the controller only beyond 90 deg of tilt
   yaw_wrap,           // * the yaw error at +-pi
   tilt_axis,          // * the tilt error at 180 deg, where its axis is arbitrary
   battery_scale,      // * scale > 0
-  recovery_latch,     // the tailsitter's 30 and 5 deg
-  recovery_rotation,  // its q_e.w > 0
+  recovery_latch,     // tilt against 30 deg, then 5 deg: a tailsitter's recovery
+  recovery_rotation,  // q_e.w > 0 in the recovery
   // Of the mixer.
-  mixer_limit,   // a rotor's share of roll, pitch and thrust against 0 and 1
-  mixer_branch,  // beyond one end of 0..1 only: the excess against the room at the other end
-  mixer_yaw,     // yaw against the rotors' limits, where its flag is set
+  mixer_limit,   // a rotor's output without yaw against 0 and 1
+  mixer_branch,  // if outputs exceed only one end of 0..1: excess against room at the other end
+  mixer_yaw,     // a rotor's output with yaw against 0 and 1, beyond which the yaw flag is set
   // Of the attitude unit.
   opposite_thrust,  // x or y of the tilt rotation against 1 - 1e-5
   yaw_weight,       // MC_YAW_WEIGHT > 1e-4
@@ -43,7 +42,7 @@ enum class Decision {
   lowest_throttle,  // throttle < -0.9
   heading_pole,     // pitch against 0.001 rad from +-90 deg
   heading_wrap,     // at +-pi: the yaw of the sticks' setpoint, the error of the heading
-  convergence,      // the change of that error against 1 deg
+  convergence,      // the change of the heading's error against 1 deg
   yaw_lock,         // |yaw rate| > FLT_EPSILON, as a ratio
   // Of the rate unit.
   saturation_flag,  // |unallocated torque| > FLT_EPSILON, as a ratio
@@ -54,15 +53,15 @@ inline constexpr auto decision_count = static_cast<std::size_t>(Decision::overfl
 
 std::string_view name_of(Decision decision);  // "integrator gate"
 
-// The least distance that a vector may have, if it is compared numerically; for the norm, the
-// largest. It is several times the difference between correct builds in the value that is compared
-// with the threshold. Measured over 10 s of open loop: 8e-7 on controls, 5e-7 on integrals
-// (compare/tolerance.hpp), some 1e-6 rad on angles.
+// The least distance that a vector may have, if it is compared numerically; for quaternion_norm,
+// the largest. It is several times the difference between correct builds in the value that is
+// compared with the threshold. Differences measured over 10 s of open loop: 8e-7 on controls, 5e-7
+// on integrals (compare/tolerance.hpp), about 1e-6 rad on angles.
 double least_margin(Decision decision);
 
-// The same. If `fraction_bits` is given, the port is in fixed point, and the result is at least
-// `decision_lsb` of its LSBs. That is the measured difference of the controls of such ports.
-// Tolerances::control_lsb is the allowed difference.
+// The same. `fraction_bits` is given for a port in fixed point; the result is then at least
+// decision_lsb times its LSB, 2^-fraction_bits. The number is the measured difference of the
+// controls of such ports. Tolerances::control_lsb is the allowed difference.
 inline constexpr double decision_lsb = 750;
 double least_margin(Decision decision, std::optional<int> fraction_bits);
 
@@ -71,11 +70,11 @@ struct Margin {
   std::size_t tick = 0;
 };
 
-// Whether `one` is nearer to the decision than `other`: the smaller distance; of the norm, the
-// larger. False if `one` was never measured.
+// Whether `one` is nearer to the decision than `other`: its distance is smaller; for
+// quaternion_norm, larger. False if `one` was never measured.
 bool is_nearer(Decision decision, const Margin& one, const Margin& other);
 
-// The nearest of each decision.
+// The nearest margin of each decision.
 struct Margins {
   std::array<Margin, decision_count> of{};
 
@@ -84,7 +83,7 @@ struct Margins {
   }
   bool is_safe(Decision decision) const;
 
-  // Keeps `distance` if it is the nearest of its decision. One that is NaN never counts.
+  // Keeps `distance` if it is the nearest of its decision. A NaN is ignored.
   void note(Decision decision, double distance, std::size_t tick);
 };
 

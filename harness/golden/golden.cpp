@@ -30,8 +30,8 @@ std::string how_to_bless(const Case& the_case) {
   return fmt::format("`attest bless --filter '{}' --reason \"...\"` makes it", the_case.id());
 }
 
-// Keyframes have no parameters and no freshness, also where the same case keeps every tick at
-// slower rates.
+// Writes those of `columns` that the trace has. Keyframes have no parameters and no in/updated
+// bits; `columns` has them if the same case keeps every tick at slower rates.
 Result<std::string> write_trace(const fs::path& path, const Trace& trace, CsvColumns columns) {
   if (trace.parameters.empty()) columns.parameters.clear();
   columns.channels &= trace.present;
@@ -50,7 +50,7 @@ std::vector<Trace> samples_of(const std::vector<GoldenTrace>& traces) {
   return samples;
 }
 
-// The provenance identifies the base by its folder and by the bytes that it has now.
+// Notes the folder of the base, and the SHA-256 of its files as they are now.
 Result<void> note_base(const GoldenBase& base, const Case& the_case, Provenance& provenance) {
   const fs::path above = fs::path("..") / ".." / "..";
   provenance.base = (above / the_case.profiles.front() / the_case.group / the_case.name).string();
@@ -191,7 +191,7 @@ Result<Trace> Golden::read_file(const std::string& name) const {
     }
   }
   return open_trace(path,
-                    TraceNeed::outputs);  // inputs are compared with those that the case makes
+                    TraceNeed::outputs);  // the case makes all inputs, so the file may lack some
 }
 
 Result<void> Golden::check_bytes(const fs::path& path, const std::string& blessed) const {
@@ -243,8 +243,8 @@ NewGolden::~NewGolden() {
   if (written_.empty()) return;
   std::error_code ignored;
   fs::remove_all(written_, ignored);
-  // Removes the folders of its group and profile, too, if they were made for it. remove() keeps
-  // other folders, because they are not empty.
+  // Removes the folders of the group and the profile, too, if they are empty now; remove() keeps a
+  // folder that is not empty.
   fs::remove(written_.parent_path(), ignored);
   fs::remove(written_.parent_path().parent_path(), ignored);
 }

@@ -1,7 +1,7 @@
 // The golden traces of a case: golden/<profile>/<group>/<name>/<configuration>.csv and one
-// provenance.toml, which records their origin. The golden of a flight keeps keyframes; its
-// provenance has the horizon and the metrics. The golden of a long open-loop case keeps keyframes
-// too (keeps_every_tick).
+// provenance.toml, which records their origin. The golden of a flight keeps only some ticks
+// (keyframes.hpp); its provenance has the horizon and the metrics. The golden of a long open-loop
+// case keeps keyframes too (keeps_every_tick).
 //
 // A case file can have several profiles. The golden of the first profile is then the base: the
 // goldens of the others hold only their differences from it. Goldens of keyframes have no base:
@@ -25,8 +25,8 @@ namespace attest {
 // The golden of one case, open for reading.
 class Golden {
  public:
-  // Errors: the golden is missing, was made from another version of the case file, or has an edited
-  // provenance. The message names the remedy.
+  // Errors: the golden is missing, was made from another version of the case file, or its
+  // provenance or that of its base was edited. The message names the remedy.
   static Result<Golden> open(const std::filesystem::path& golden_root, const Case& the_case);
 
   // Errors: no trace for that configuration, bytes that differ from the blessed ones, a broken CSV.
@@ -36,8 +36,8 @@ class Golden {
   // read().
   Result<BranchAlternatives> read_branch_alternatives(const RunConfiguration& configuration) const;
 
-  // The rows, horizon and metrics of a flight. Errors: those of read(), and a vehicle whose files
-  // have changed since.
+  // The rows, horizon and metrics of a flight. Errors: those of read(); a file of the vehicle is
+  // new or has changed since the golden was made; no horizon.
   Result<ReferenceFlight> read_flight(const RunConfiguration& configuration,
                                       const Vehicle& vehicle) const;
 
@@ -58,11 +58,11 @@ std::string metric_key(const RunConfiguration& configuration, const std::string&
 
 std::filesystem::path golden_folder(const std::filesystem::path& golden_root, const Case& the_case);
 
-// Whether a golden of this number of ticks keeps them all. A longer one keeps keyframes, so that it
-// fits into a repository.
+// Whether an open-loop golden of this number of ticks keeps them all. A longer one keeps keyframes,
+// so that it fits into a repository.
 bool keeps_every_tick(std::size_t ticks);
 
-// Whether this is an open-loop case whose golden keeps keyframes.
+// Whether this is an open-loop case whose golden keeps keyframes at its fastest rate.
 bool is_long(const Case& the_case);
 
 // One trace of a new golden.
@@ -78,7 +78,7 @@ struct GoldenTrace {
 // The golden of a case's first profile: the base of the goldens of its other profiles.
 struct GoldenBase {
   const std::vector<GoldenTrace>& traces;
-  std::filesystem::path folder;  // where its files are now, perhaps not yet in place
+  std::filesystem::path folder;  // of its files: in place, or still NewGolden::written()
 };
 
 // What the provenance of a new golden says about its making.
@@ -100,10 +100,11 @@ class NewGolden {
                                  const Making& making, const GoldenBase* base = nullptr);
   NewGolden(NewGolden&& other) noexcept;
   NewGolden& operator=(NewGolden&&) = delete;
-  ~NewGolden();  // removes the golden that is not in place: this one, or the one it replaced
+  ~NewGolden();  // removes what is not in place: this golden, or the one it replaced
 
-  // A complete golden exists at each moment, even if the process is killed. It is in its place if
-  // the file system can exchange two folders; otherwise it is in its place or in `*.old`.
+  // If there is an old golden, a complete golden exists at each moment, even if the process is
+  // killed. It is in its place if the file system can exchange two folders; otherwise it is in its
+  // place or in `*.old`.
   Result<void> put_in_place();
 
   const std::filesystem::path& written() const { return written_; }

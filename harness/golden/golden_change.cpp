@@ -26,13 +26,14 @@ bool differ(double a, double b) {
   return a != b || std::signbit(a) != std::signbit(b);
 }
 
-// Infinite where one of them is NaN.
+// Infinite if one value is NaN.
 double deviation(double a, double b) {
   const double difference = std::abs(a - b);
   return std::isnan(difference) ? HUGE_VAL : difference;
 }
 
-// Of every channel, inputs included, over the ticks that both have.
+// Compares every channel, inputs included, at the ticks that both traces have. Each further tick
+// counts as changed.
 Change change_between(const Trace& old_trace, const Trace& new_trace) {
   Change change;
   const std::size_t common = std::min(old_trace.samples.size(), new_trace.samples.size());
@@ -78,7 +79,7 @@ Measured measured_in(const MadeGolden& made) {
   return all;
 }
 
-// All traces of a case.
+// The sum of the changes of all traces of a case.
 class Changes {
  public:
   void add(const Trace& old_trace, const Trace& trace) {

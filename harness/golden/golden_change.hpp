@@ -9,8 +9,9 @@
 namespace attest {
 
 // One line: the number of traces, ticks and channels that differ from `made`, and the largest
-// deviation. Values are compared as at the exact level. If no value differs, the line says whether
-// the case, the vehicle's files, metrics or horizons changed. Empty when the golden is up to date.
+// deviation; or that the golden is new or replaced as a whole. Values are compared as at the exact
+// level. If no value differs, the line says whether the case file, the vehicle's files, metrics or
+// horizons changed. Empty if the golden is up to date.
 std::string change_of_golden(const Case& the_case, const MadeGolden& made,
                              const std::filesystem::path& golden_root);
 

@@ -29,7 +29,7 @@ Result<int> lock(const fs::path& file) {
                                             std::generic_category().message(errno)));
 }
 
-// The folders <profile>/<group>/<name>, where goldens stand and are written.
+// The folders <profile>/<group>/<name>: the goldens in place, and *.new and *.old.
 Result<std::vector<fs::path>> folders_of_cases(const fs::path& golden_root) {
   constexpr int depth_of_cases = 2;
   std::error_code error;
@@ -63,8 +63,8 @@ Result<void> remove_what_is_left(const fs::path& golden_root) {
                      fmt::format("was left by a run that was killed, and cannot be removed: {}",
                                  error.message()));
     }
-    // Removes the folders of its group and profile, too, if they were made for it. remove() keeps
-    // other folders, because they are not empty.
+    // Removes the folders of the group and the profile, too, if they are empty now; remove() keeps
+    // a folder that is not empty.
     fs::remove(folder.parent_path(), error);
     fs::remove(folder.parent_path().parent_path(), error);
   }
@@ -81,7 +81,7 @@ GoldenLock::GoldenLock(GoldenLock&& other) noexcept
 
 GoldenLock::~GoldenLock() {
   if (descriptor_ < 0) return;
-  ::unlink(file_.c_str());  // while it is locked, so that no other process has locked it
+  ::unlink(file_.c_str());  // before it is unlocked, so that no other process has locked it
   ::close(descriptor_);
 }
 

@@ -1,4 +1,4 @@
-// Only one process at a time writes goldens. It first cleans up after a process that was killed.
+// Lets only one process at a time write goldens. Cleans up after a process that was killed.
 #pragma once
 
 #include <filesystem>
@@ -7,19 +7,20 @@
 
 namespace attest {
 
-// Held from take() to its destruction. It is an flock of a file in the golden root. The kernel
-// releases it when the process ends in any way.
+// The lock is held from take() until this object is destroyed. It is an flock of a file in the
+// golden root. The kernel releases it when the process ends in any way.
 class GoldenLock {
  public:
-  // Makes the root if necessary. Removes the folders `*.new` of a killed process. Moves `*.old`, a
-  // golden that this process had moved away, back to its place if that is empty. Does not wait,
-  // because the process that holds the lock may be waiting for its user. Errors: another process
-  // holds the lock; the root or a folder in it cannot be written.
+  // Makes the root if necessary. Removes the folders `*.new` of a killed process. A folder `*.old`
+  // is a golden that the killed process moved away: moves it back to its place, or removes it if
+  // the place has a golden. Does not wait, because the process that holds the lock may be waiting
+  // for its user. Errors: another process holds the lock; the root or a folder in it cannot be
+  // written.
   static Result<GoldenLock> take(const std::filesystem::path& golden_root);
 
   GoldenLock(GoldenLock&& other) noexcept;
   GoldenLock& operator=(GoldenLock&&) = delete;
-  ~GoldenLock();  // removes the file
+  ~GoldenLock();  // removes the locked file
 
  private:
   GoldenLock(std::filesystem::path file, int descriptor);

@@ -16,21 +16,21 @@ namespace {
 constexpr std::size_t first_ticks = 4;
 constexpr std::size_t regular_ticks = 12;
 
-// A NaN is not taken as an extreme.
+// Adds the ticks of the smallest and the largest value to `kept`. NaNs are passed over.
 void add_extremes(const Channel& channel, const Trace& flown, std::set<std::size_t>& kept) {
   std::size_t lowest = 0, highest = 0;
   for (std::size_t tick = 1; tick < flown.samples.size(); ++tick) {
     const float value = float_of(channel, flown.samples[tick]);
     if (std::isnan(value)) continue;
-    // Also where the first value is NaN.
+    // The negated comparisons are also true if the value at `lowest` or `highest`, tick 0, is NaN.
     if (!(value >= float_of(channel, flown.samples[lowest]))) lowest = tick;
     if (!(value <= float_of(channel, flown.samples[highest]))) highest = tick;
   }
   kept.insert({lowest, highest});
 }
 
-// The samples of `all` at the ticks of `kept`, with the channels of `kept` only; fewer samples
-// where a tick of `kept` is not in `all`.
+// The samples of `all` at the timestamps of `kept`, with the channels of `kept` only. Ends before
+// the first timestamp of `kept` that `all` does not have.
 Trace at_ticks_of(const Trace& kept, const Trace& all) {
   Trace chosen;
   chosen.source = all.source;
@@ -42,14 +42,14 @@ Trace at_ticks_of(const Trace& kept, const Trace& all) {
     });
     if (sample == all.samples.end()) break;
     chosen.samples.push_back(*sample);
-    chosen.samples.back().in.updated = 0;  // freshness is not kept
+    chosen.samples.back().in.updated = 0;  // as without_history() does in `kept`
   }
   return chosen;
 }
 
-// Without parameters and freshness, because both describe changes since the previous tick. The
-// provenance of a golden may still have them as constants, for slower rates at which the same case
-// keeps every tick.
+// Removes parameters and in/updated bits, because both describe changes since the previous tick.
+// They may come from constants in the provenance of a golden, which are for slower rates at which
+// the same case keeps every tick.
 Trace without_history(Trace rows) {
   rows.parameters.clear();
   rows.present &= ~channels_of(module_of(rows.present), "in/updated.");

@@ -20,7 +20,7 @@ bool does_not_have_it(const PortFault& fault) {
   return fault.kind == PortFault::Kind::unsupported || fault.kind == PortFault::Kind::profile;
 }
 
-// Empty, with the reason in `left_out`: the reference does not support the case.
+// Empty if the reference is a port that does not support the case; `left_out` is then the reason.
 Result<std::optional<GoldenTrace>> open_loop_trace(const Case& the_case,
                                                    const RunConfiguration& configuration,
                                                    Reference& reference, std::string& left_out) {
@@ -79,7 +79,6 @@ Result<MadeGolden> make_golden(const Case& the_case, Reference& reference,
     return made;
   }
   std::set<std::filesystem::path> files;
-  // One provenance covers all configurations.
   for (const RunConfiguration& configuration : the_case.configurations()) {
     if (stop()) return fail("interrupted");
     if (!configuration.plant_configuration) {

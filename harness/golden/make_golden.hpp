@@ -13,9 +13,9 @@
 
 namespace attest {
 
-// The controller whose outputs become goldens: attest's own, or a port that is the reference of a
-// suite of its own. A port runs in processes of its own, and twice, because its outputs must be the
-// same each time.
+// The controller whose outputs become goldens: attest's own, or a port that a user's suite has as
+// its reference. A port runs twice, in two processes of its own, because its outputs must be
+// the same both times.
 class Reference {
  public:
   static Reference own();
@@ -34,14 +34,15 @@ class Reference {
 
 struct MadeGolden {
   std::vector<GoldenTrace> traces;  // one for each of the case's configurations, in that order
-  std::vector<std::filesystem::path> vehicle_files;  // that its flights depend on
-  std::string left_out = {};  // why the case has no golden of this reference; empty: it has one
+  std::vector<std::filesystem::path> vehicle_files;  // on which its flights depend
+  std::string left_out = {};  // why there is no golden of this case; empty if there is one
 };
 
-// The golden of a port keeps every tick and has no branch alternatives, which only attest's own law
-// can compute. It has no flights, which are compared with that law at each tick. `stop` is called
-// before each configuration. Errors: `stop` returned true; the reference refuses the case, or gives
-// other outputs the second time; those of reference_flight() and branch_alternatives().
+// The golden of a port keeps every tick, and has no branch alternatives, which only attest's own
+// law can compute. A port gets no goldens of flights, because flights are compared with attest's
+// own law at each tick. If a port does not support the case, `left_out` is set. `stop` is called
+// before each configuration. Errors: `stop` returned true; the reference fails, or gives other
+// outputs the second time; those of reference_flight() and branch_alternatives().
 Result<MadeGolden> make_golden(const Case& the_case, Reference& reference,
                                VehicleModels& vehicle_models, const std::function<bool()>& stop);
 

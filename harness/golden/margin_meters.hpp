@@ -9,14 +9,14 @@
 
 namespace attest {
 
-// Null: see margin_meter().
+// Null if the profile is unknown or the definition is wrong.
 std::unique_ptr<MarginMeter> controller_meter(const std::string& profile);
 std::unique_ptr<MarginMeter> mixer_meter(const std::string& definition);
 std::unique_ptr<MarginMeter> attitude_unit_meter(const std::string& profile);
 std::unique_ptr<MarginMeter> rate_unit_meter(const std::string& profile);
 
-// The meter of a unit in double, whose law records its distances. `In` and `Out` are the structs of
-// the unit.
+// The meter of a unit: steps the unit in double, with a law that records its distances. `In` and
+// `Out` are the ABI structs of the unit.
 template <typename Unit, typename NotingLaw, typename In, typename Out>
 class UnitMeter : public MarginMeter {
  public:

@@ -1,7 +1,7 @@
 // The margins of a vector: its distances from the decisions of the law (decisions.hpp).
 //
-// The distances are measured in double, on the law itself: its stages are policies, and the stages
-// of a meter record the distances.
+// The distances are measured in double, on the law itself. Its stages are template parameters, and
+// a meter replaces them by stages that record the distances.
 #pragma once
 
 #include <cstddef>
@@ -16,18 +16,18 @@ namespace attest {
 
 // Where the stages of a meter record their distances.
 struct MarginNotes {
-  Margins margins;  // of this tick
+  Margins margins;  // of tick `tick` alone
   std::size_t tick = 0;
 
   void note(Decision decision, double distance) { margins.note(decision, distance, tick); }
 };
 
-// The margins of a module at each tick, one tick after the other, from its power-on state on.
+// Measures the margins of a module tick by tick, from its power-on state on.
 class MarginMeter {
  public:
   virtual ~MarginMeter() = default;
 
-  // Of the next tick alone; valid until the next call.
+  // The margins of the next tick alone; valid until the next call.
   const Margins& step(std::span<const ParameterChange> changes, const Sample& sample);
 
  protected:
@@ -42,7 +42,7 @@ class MarginMeter {
 // have the profile, or if the definition of the mixer is wrong.
 std::unique_ptr<MarginMeter> margin_meter(const Subject& subject);
 
-// The nearest margins of all ticks of `given`, which `meter` has not stepped yet.
+// The nearest margins of all ticks of `given`. REQUIRES: `meter` has made no step yet.
 Margins margins(const Trace& given, MarginMeter& meter);
 
 }  // namespace attest

@@ -1,4 +1,4 @@
-// The mixer with stages that record how near its decisions are.
+// The mixer with stages that record its distances from decisions.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,7 +21,7 @@ struct NotingMixer : actuation::MixerStages<double> {
     if (one_end) notes->note(Decision::mixer_branch, std::abs(min_out + max_out - 1));
     return Law::fit(min_out, max_out, thrust);
   }
-  // The rotor that is furthest out sets the flag, in any order of the rotors.
+  // Whether the flag is set depends on the rotor that is furthest out, not on the rotors' order.
   bool yield_yaw(std::span<const actuation::Rotor> rotors, Controls& c, const Fit& fit) const {
     double beyond = -std::numeric_limits<double>::infinity();
     for (const actuation::Rotor& rotor : rotors) {

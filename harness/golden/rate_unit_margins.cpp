@@ -1,4 +1,4 @@
-// The rate unit with stages that record how near its decisions are.
+// The rate unit with stages that record its distances from decisions.
 #include <cmath>
 #include <limits>
 
@@ -13,7 +13,8 @@ double from_epsilon(double value) {
   return std::abs(std::abs(value) / double(cascade::epsilon) - 1);
 }
 
-// A value beyond the largest float is finite in double only.
+// The law treats non-finite values differently. A value beyond the largest float is finite in
+// double, but not in a float port.
 void note_overflow(double value, MarginNotes& notes) {
   constexpr double largest = std::numeric_limits<float>::max();
   notes.note(Decision::overflow, std::abs(std::abs(value) / largest - 1));
@@ -53,7 +54,7 @@ struct NotingRateStep : cascade::RateStepStages<double> {
   }
   double battery_scale(double before,
                        const decltype(attest_rate_inputs::battery_status)& sample) const {
-    // A scale of exactly 0 means no scaling in every port.
+    // Every port takes a scale of exactly 0 as no scaling.
     if (sample.connected != 0 && sample.scale != 0) {
       notes->note(Decision::battery_scale, std::abs(double(sample.scale)));
     }

@@ -61,7 +61,8 @@ std::string newest_profile_of(Module module) {
   return std::string(found == all.end() ? default_profile : found->name);
 }
 
-// A trace of one version of the law may have been written with the columns of another.
+// Removes parameters that only other profiles have: a trace of one version of the law may have been
+// written with the columns of another version.
 void leave_out_foreign_parameters(Recorded& recorded) {
   const Subject& subject = recorded.subject;
   const auto own = parameter_names(subject.module, subject.profile);
@@ -77,7 +78,8 @@ void leave_out_foreign_parameters(Recorded& recorded) {
                                        subject.profile, fmt::join(foreign, ", ")));
 }
 
-// Without a number of cells the estimate stays 1. A recording that does not state the number had 3.
+// Without a number of cells the battery's scale would stay 1. Recordings of the firmware that do
+// not state the number had 3.
 void give_cells(Recorded& recorded) {
   constexpr const char* name = "BAT_N_CELLS";
   constexpr float usual_cells = 3;

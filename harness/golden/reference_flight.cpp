@@ -11,7 +11,8 @@
 namespace attest {
 namespace {
 
-// Other correct builds may deviate ten times as much as float32 and double do, and still pass.
+// Up to the horizon, another correct build may differ from float32 by ten times as much as double
+// does, and still pass.
 constexpr double part_of_tolerance = 0.1;
 
 Result<Flown> flown_by(Port& port, const Case& the_case, const RunConfiguration& configuration,

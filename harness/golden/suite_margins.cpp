@@ -5,7 +5,7 @@
 namespace attest {
 namespace {
 
-// The case is at this tie on purpose, and both branches are correct.
+// Whether the case is at this tie on purpose, so that both branches are correct.
 bool stands_on(const EitherBranch& branches, Decision decision) {
   return (branches.yaw_wrap && decision == Decision::yaw_wrap) ||
          (branches.shorter_rotation && decision == Decision::shorter_rotation);

@@ -1,4 +1,5 @@
-// The margins of the numeric vectors of a suite: their distances from the decisions of the law.
+// The margins of a suite's numeric vectors (cases that are compared with a tolerance, at one rate):
+// their distances from the decisions of the law.
 #pragma once
 
 #include <array>
@@ -10,7 +11,6 @@
 
 namespace attest {
 
-// A margin, with its vector and tick.
 struct VectorMargin {
   const Case* the_case = nullptr;  // null: no vector reaches that decision
   RunConfiguration configuration{};
@@ -19,15 +19,15 @@ struct VectorMargin {
 };
 
 struct SuiteMargins {
-  std::size_t vectors = 0;
+  std::size_t vectors = 0;                             // measured
   std::size_t not_measured = 0;                        // numeric vectors without a MarginMeter
   std::array<VectorMargin, decision_count> nearest{};  // by decision
-  std::vector<VectorMargin> too_near;                  // in the order of the cases
+  std::vector<VectorMargin> too_near;                  // unsafe; in the order of the cases
 };
 
-// Of the open-loop cases that are not for the exact level only, at each of their rates. Decisions
-// at which a case is at a tie on purpose (Case::either_branch) are left out. Valid as long as
-// `cases` is.
+// Measures the selected open-loop cases, without those for the exact level only. A decision at
+// which a case is at a tie on purpose (Case::either_branch) is left out for this case. The result
+// is valid as long as `cases`.
 SuiteMargins suite_margins(const std::vector<SelectedCase>& cases);
 
 }  // namespace attest

@@ -8,19 +8,19 @@
 
 namespace attest {
 
-// For one thread. Times never decrease. They count from the same origin for all clocks of a run.
+// Used by one thread. Times never decrease, and count from the same origin for all clocks of a run.
 class Clock {
  public:
   virtual ~Clock() = default;
 
   virtual Nanoseconds now() = 0;
 
-  // Waits until `deadline`, or returns at once when it has passed. Returns now(), which may be
-  // later.
+  // Waits until `deadline`, or returns at once if it has passed. Returns now(), which may be later
+  // than `deadline`.
   virtual Nanoseconds wait_until(Nanoseconds deadline) = 0;
 };
 
-// Wakes up exactly at each deadline.
+// wait_until() does not wait: it sets the time to the deadline, unless this has passed.
 class SimulatedClock final : public Clock {
  public:
   Nanoseconds now() override { return now_; }

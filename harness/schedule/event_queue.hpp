@@ -17,17 +17,17 @@ class EventQueue {
  public:
   struct Event {
     std::size_t task;
-    std::size_t index;  // of the task's times, from 0
+    std::size_t index;  // of `time` among the task's times, from 0
     Nanoseconds time;
   };
 
-  // `times`: the times at which each task runs, by its number. REQUIRES: no task's times decrease.
+  // `times[i]`: the times at which task i runs. REQUIRES: no task's times decrease.
   explicit EventQueue(std::vector<std::vector<Nanoseconds>> times);
 
   // The number of times that a task runs.
   std::size_t size(std::size_t task) const { return tasks_[task].times.size(); }
 
-  // The next event; empty when there are no more. No allocation.
+  // The next event; empty after the last one. No allocation.
   std::optional<Event> next();
 
  private:

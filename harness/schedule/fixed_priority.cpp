@@ -16,16 +16,16 @@ constexpr Nanoseconds never = Nanoseconds::max();
 struct Queue {
   const ScheduledTask* task;
   std::vector<TaskJob>* jobs;
-  const std::vector<TaskJob>* releasing;  // the jobs that release it; null: its rate does
-  std::int64_t released = 0;              // jobs so far
+  const std::vector<TaskJob>* releasing;  // jobs that release this task; null: its rate does
+  std::int64_t released = 0;              // jobs released so far
   std::size_t finished = 0;
-  Nanoseconds remaining{0};  // of the job that runs, or runs next; 0: it has not begun
+  Nanoseconds remaining{0};  // execution time of job `finished`; 0: it has not begun
 
   Nanoseconds next_release(Nanoseconds duration) const {
     const Nanoseconds time = releasing ? next_finish() : task->phase + task->rate.tick(released);
     return time < duration ? time : never;
   }
-  // The time of the next release by the other task: `never` until the releasing job has finished.
+  // The time at which the releasing task's next job finished; `never` if it has not finished yet.
   Nanoseconds next_finish() const {
     const auto next = static_cast<std::size_t>(released);
     if (next >= releasing->size()) return never;
@@ -53,7 +53,7 @@ class Cpu {
   }
 
  private:
-  // Releases all jobs that are due by `now`. Returns the time of the next release.
+  // Releases all jobs that are due by `now`. Returns the time of the next release, or `never`.
   Nanoseconds release_until(Nanoseconds now) {
     Nanoseconds next = never;
     for (Queue& queue : queues_) {
@@ -73,7 +73,8 @@ class Cpu {
     return found == queues_.end() ? nullptr : &*found;
   }
 
-  // Runs the job until it finishes or another one is released. Returns that time.
+  // Runs the first unfinished job of `queue` from `now` until it finishes or until `release`, the
+  // next release on this CPU. Returns the end of this run.
   static Nanoseconds work(Queue& queue, Nanoseconds now, Nanoseconds release) {
     TaskJob& job = (*queue.jobs)[queue.finished];
     if (queue.remaining == Nanoseconds(0)) {
@@ -99,7 +100,7 @@ std::set<int> cpus_of(const std::vector<ScheduledTask>& tasks) {
   return cpus;
 }
 
-// A CPU with a task that releases another comes first, because the other needs its finish times.
+// The CPU of a releasing task comes first, because the released task needs its finish times.
 std::vector<int> cpus_in_order(const std::vector<ScheduledTask>& tasks) {
   const std::set<int> cpus = cpus_of(tasks);
   std::vector<int> order(cpus.begin(), cpus.end());

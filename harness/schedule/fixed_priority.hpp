@@ -1,13 +1,14 @@
-// Simulates tasks on one or two CPUs exactly, under preemptive fixed-priority scheduling. It shows
-// how a loop is delayed by the other tasks of a flight controller.
+// Simulates tasks on CPUs exactly, under preemptive fixed-priority scheduling. The simulation shows
+// how the other tasks of a flight controller delay a loop.
 //
 // Each task stays on its CPU. Of the jobs that are ready on a CPU the one with the highest priority
 // runs. A job of higher priority preempts it at once. Switching takes no time; add its cost to the
-// execution times. Jobs of one task run in the order of their releases. Every release is served:
-// one that comes while another job of the task waits or runs must wait.
+// execution times. Jobs of one task run in the order of their releases. Every release makes a job;
+// if an earlier job of the task has not finished, the new job waits for it.
 //
-// A task is released at phase + k / rate, or by another task: when job k of that task finishes, job
-// k of this one is released. All jobs that are ready at that instant compete by priority.
+// A task is released at phase + k / rate, or by another task: when job k of the releasing task
+// finishes, job k of the released task is released. All jobs that are ready at that instant compete
+// by priority.
 #pragma once
 
 #include <cstddef>
@@ -27,8 +28,8 @@ struct ScheduledTask {
   std::vector<Nanoseconds> execution;  // job k uses element k modulo size; not empty, positive
   int priority = 0;                    // higher runs first; unique on a CPU
   int cpu = 0;
-  // Index of the task that releases this one; empty: its rate does. REQUIRES: `rate` is that of the
-  // releasing task; at most one task of a set has this, and it does not release itself.
+  // Index of the task that releases this one; empty if its rate does. REQUIRES: `rate` is that of
+  // the releasing task; at most one task of a set has a releasing task; no task releases itself.
   std::optional<std::size_t> released_by = std::nullopt;
 
   Nanoseconds worst_execution() const;
@@ -37,7 +38,7 @@ struct ScheduledTask {
 // Times since the start of the simulation.
 struct TaskJob {
   Nanoseconds release{0};
-  Nanoseconds start{0};  // it first ran
+  Nanoseconds start{0};  // when it first ran
   Nanoseconds finish{0};
 
   Nanoseconds response() const { return finish - release; }

@@ -11,10 +11,11 @@
 
 namespace attest {
 
-// "1000": the rate of one unit. "250:1000": of a cascade, the attitude unit's and the rate unit's.
+// As text [Hz]: "1000" for a controller of one unit; "250:1000" for the attitude unit and the rate
+// unit of a cascade.
 struct LoopRate {
-  Rate unit = Rate::hz(1);  // of the unit that commands the motors
-  std::optional<Rate> attitude_unit = std::nullopt;
+  Rate unit = Rate::hz(1);                           // of the unit that commands the motors
+  std::optional<Rate> attitude_unit = std::nullopt;  // empty for a controller of one unit
 
   LoopRate() = default;
   LoopRate(const Rate& of_unit) : unit(of_unit) {}  // NOLINT(google-explicit-constructor)
@@ -30,7 +31,7 @@ struct LoopRate {
   std::string to_string() const;  // "1000" or "250:1000"
   std::string label() const;      // for file names: "1000hz" or "250-1000hz"
 
-  // By the unit's rate, then by the attitude unit's.
+  // Ordered by `unit`, then by `attitude_unit`.
   friend auto operator<=>(const LoopRate&, const LoopRate&) = default;
   friend bool operator==(const LoopRate&, const LoopRate&) = default;
 };

@@ -14,7 +14,7 @@ class Random {
   // Uniform in [0, 1), a multiple of 2^-53.
   double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
 
-  // Uniform in [low, high).
+  // Uniform in [low, high); rounding may give `high`.
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
 
  private:

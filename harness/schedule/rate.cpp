@@ -12,10 +12,10 @@ namespace {
 __extension__ using Int128 = __int128;
 
 constexpr std::int64_t ns_per_s = 1'000'000'000;
-// Timestamps are in microseconds: two ticks of a faster loop would have the same one.
+// Timestamps are in microseconds: two ticks of a faster loop could have the same timestamp.
 constexpr std::int64_t max_hz = 1'000'000;
 constexpr std::int64_t min_millihertz = 1;
-// Keeps products of two rates inside 64 bits.
+// Of numerator and denominator, so that the product of two such numbers fits into 64 bits.
 constexpr std::size_t max_digits = 9;
 
 std::optional<std::int64_t> parse_digits(std::string_view digits) {
@@ -89,8 +89,8 @@ std::int64_t Rate::ticks_in(Nanoseconds duration) const {
   if (duration <= Nanoseconds(0)) return 0;
   const Int128 product = Int128{duration.count()} * numerator_;
   const Int128 divisor = Int128{ns_per_s} * denominator_;
-  // Tick k is at floor(x). As `duration` is whole, floor(x) >= duration exactly where x >=
-  // duration.
+  // Tick k is at floor(x), x = k / rate in ns. `duration` is an integer, so floor(x) >= duration if
+  // and only if x >= duration.
   return static_cast<std::int64_t>((product + divisor - 1) / divisor);
 }
 

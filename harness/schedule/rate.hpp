@@ -14,8 +14,8 @@ namespace attest {
 
 class Rate {
  public:
-  // "250", "333", "1000/3", "62.5" [Hz]. Errors: not a positive number, above 1 MHz (the timestamps
-  // are microseconds), below 1 mHz.
+  // "250", "333", "1000/3", "62.5" [Hz]. Errors: not a positive number; more than 9 digits; above
+  // 1 MHz (the timestamps are microseconds); below 1 mHz.
   static Result<Rate> parse(std::string_view text);
 
   // REQUIRES: numerator and denominator positive.
@@ -52,8 +52,9 @@ class Rate {
   std::int64_t denominator_;
 };
 
-// The default rates of a case; a case with other rates gives the reason. They lie on both sides of
-// the limits of the law's dt (500 Hz and 50 Hz). One, 333 Hz, does not divide a second evenly.
+// The default rates of a case, 50 Hz to 8 kHz; a case with other rates gives the reason. The
+// controller of v1.5.5 limits dt to 2..20 ms (500 Hz and 50 Hz), and several rates have a smaller
+// period. The period of 333 Hz is not a whole number of nanoseconds.
 const std::vector<Rate>& standard_rates();
 
 }  // namespace attest

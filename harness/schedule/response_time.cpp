@@ -33,7 +33,7 @@ std::optional<Nanoseconds> response_time(const std::vector<ScheduledTask>& tasks
       }
       const auto jitter = release_jitter(tasks, other);
       if (!jitter) return std::nullopt;
-      // The number of releases in [0, R + J) of a task with releases at 0, T, 2T, ...
+      // ticks_in(): the releases in [0, R + J) of a task with releases at 0, T, 2T, ...
       next += other.rate.ticks_in(response + *jitter) * other.worst_execution();
     }
     if (next + *own_jitter > own.rate.tick(1)) return std::nullopt;

@@ -9,11 +9,11 @@ namespace attest {
 
 namespace {
 
-// The least distance of two timestamps.
+// Timestamps are in microseconds, so two ticks must be at least this far apart.
 constexpr Nanoseconds closest{1000};
 
-// The lateness in periods. It uses square root and division because they, unlike pow, give the same
-// bits on every platform.
+// The lateness in periods. Square root and division give the same bits on every platform; pow does
+// not.
 double lateness(const TickSchedule& schedule, Random& random) {
   const double uniform = random.uniform();
   if (!schedule.heavy_tail) return schedule.jitter * uniform;

@@ -31,8 +31,8 @@ constexpr Channel time(std::string_view name, Module module, std::size_t offset)
   return {name, ChannelType::u64, Quantity::time, module, Stage::input, offset, 0};
 }
 
-// MODULE is the module of the rows that follow; INPUTS and OUTPUTS are its members of Sample. A
-// name is made from the member: "in/" #member at offsetof(Sample, INPUTS.member).
+// MODULE is the module of the rows that follow; INPUTS and OUTPUTS are its members of Sample. Each
+// macro makes a channel with the name "in/member" or "out/member" and the offset of that member.
 #define IN(member, quantity)                                              \
   number("in/" #member, Quantity::quantity, Module::MODULE, Stage::input, \
          offsetof(Sample, INPUTS.member))

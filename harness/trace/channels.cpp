@@ -24,7 +24,7 @@ void store(Sample& sample, std::size_t offset, T value) {
   std::memcpy(reinterpret_cast<char*>(&sample) + offset, &value, sizeof value);
 }
 
-// timestamp, the first, belongs to every module.
+// The first channel, timestamp, belongs to every module.
 bool is_of(Module module, std::size_t index) {
   return index == 0 || channel_table[index].module == module;
 }

@@ -1,14 +1,14 @@
 // The only table of signals. CSV columns, case keys and report lines all take their names from it.
-// A channel is a member of Sample, found by its offset, so the table always agrees with the ABI
-// structs.
+// A channel is a member of Sample (or one bit of it), found by its offset, so the table always
+// agrees with the ABI structs.
 //
 // Channels of two modules may have the same name, because a topic may go to both. So a name
-// identifies a channel only within a module. The units share the memory of their structs in Sample
-// (module.hpp), so only the channels of a sample's own module have a meaning.
+// identifies a channel only within a module. Units share memory in Sample (module.hpp), so only the
+// channels of a sample's own module have a meaning.
 //
 // Names are `in/<topic>.<field>` and `out/<topic>.<field>`; `in/updated.<topic>` are the bits of
-// attest_inputs.updated. `timestamp` has no prefix. Parameters are not channels: they are the
-// columns `in/parameter.<NAME>` (trace.hpp).
+// `updated`, a member of the units' inputs. `timestamp` has no prefix. Parameters are not channels:
+// they are the columns `in/parameter.<NAME>` (trace.hpp).
 #pragma once
 
 #include <bitset>
@@ -30,14 +30,14 @@ enum class ChannelType : std::uint8_t { u64, f32, u8, bit };
 enum class Quantity : std::uint8_t {
   time,                  // us
   flag,                  // 0 false, anything else true
-  count,                 // 0..255: a counter, a state
+  count,                 // 0..255: a counter or a state
   quaternion,            // dimensionless
   angle,                 // rad
   rate,                  // rad/s
   angular_acceleration,  // rad/s^2
   thrust,                // 0..1; -1..1 where it is a vector
   stick,                 // -1..1
-  control,               // dimensionless actuator control, torque
+  control,               // dimensionless: actuator control, torque or thrust
   integral,              // dimensionless, of the rate law
   scale,                 // dimensionless
   motor,                 // -1 stopped .. 1 full
@@ -45,8 +45,8 @@ enum class Quantity : std::uint8_t {
   current,               // A
 };
 
-// The stage of the law that writes an output, in the order of the data flow. The first stage that
-// deviates is the one to examine.
+// The stage of the law that writes an output, in the order of the data flow; `input` for an input.
+// If the outputs of several stages deviate, the first of these stages is the one to examine.
 enum class Stage : std::uint8_t {
   input,
   sticks,
@@ -62,15 +62,16 @@ struct Channel {
   std::string_view name;  // with its prefix
   ChannelType type;
   Quantity quantity;
-  Module module;  // timestamp belongs to all
+  Module module;  // timestamp belongs to all modules, although it has mc_att_control here
   Stage stage;
   std::size_t offset;  // of the member in Sample [bytes]
-  std::uint32_t bit;   // for ChannelType::bit, its ATTEST_UPDATED_... mask; 0 for the others
+  std::uint32_t bit;   // for ChannelType::bit, its mask in `updated`; 0 for other types
 
   bool is_output() const { return stage != Stage::input; }
 };
 
-// All channels in column order: timestamp, then module by module inputs, freshness bits, outputs.
+// All channels in column order: timestamp, then for each module its inputs, its in/updated bits and
+// its outputs.
 std::span<const Channel> channels();
 inline constexpr std::size_t max_channels = 212;
 using ChannelSet = std::bitset<max_channels>;  // by index into channels()
@@ -78,25 +79,27 @@ using ChannelSet = std::bitset<max_channels>;  // by index into channels()
 // Index into channels(); empty when the module has no such name.
 std::optional<std::size_t> find_channel(Module module, std::string_view name);
 
-// "in/parameter.MC_ROLL_P" <-> "MC_ROLL_P"; empty for other names.
 inline constexpr std::string_view parameter_prefix = "in/parameter.";
+// "MC_ROLL_P" for "in/parameter.MC_ROLL_P"; empty for other names.
 std::optional<std::string_view> parameter_of(std::string_view column);
 
-// The channels of a module (with timestamp) whose name begins with `prefix`, for example "out/".
+// The channels of a module whose name begins with `prefix`, for example "out/". Without a prefix:
+// all channels of the module, and timestamp.
 ChannelSet channels_of(Module module, std::string_view prefix = "");
 
-// The module of the first of these channels after timestamp, which belongs to all modules.
+// The module of the first of these channels, without timestamp; mc_att_control if there is none.
 Module module_of(const ChannelSet& channels);
 
-// The channels of that name, one for each module that has it.
+// The channels of that name, one for each module that has it. There is only one timestamp.
 ChannelSet channels_named(std::string_view name);
 // The names of the channels of a set, each once.
 std::vector<std::string_view> names_of(const ChannelSet& set);
 
-// The module that has the most of these names, such as a file's columns; the first of several.
+// The module that has the most of these names, for example of a file's columns. At a tie, the first
+// module; mc_att_control if no module has any.
 Module module_with(std::span<const std::string> names);
 
-// The topics that have a freshness bit, in bit order: "vehicle_attitude_setpoint", ...
+// The topics that have a bit in `updated`, in column order: "vehicle_attitude_setpoint", ...
 std::vector<std::string_view> updated_topics(Module module);
 
 std::string_view unit_of(Quantity quantity);  // "rad/s"; empty for dimensionless
@@ -110,7 +113,7 @@ bool same_bits(const Channel& channel, const Sample& a, const Sample& b);
 void set_value(const Channel& channel, Sample& sample, double value);
 float float_of(const Channel& channel, const Sample& sample);            // REQUIRES: type f32
 std::uint64_t integer_of(const Channel& channel, const Sample& sample);  // REQUIRES: type u64
-// Stores every u64 exactly. REQUIRES: type u64; or type u8, and `value` at most 255.
+// REQUIRES: type u64, or type u8 with `value` at most 255.
 void set_integer(const Channel& channel, Sample& sample, std::uint64_t value);
 
 }  // namespace attest

@@ -2,16 +2,17 @@
 // decimal form that reads back to the same bits. `nan`, `inf` and `-inf` are numbers; CRLF is
 // accepted.
 //
-// A flown trace may have columns `plant/...` with the true state of the vehicle at each tick, for
-// people and their plots. They are written, but not read, so their cells may have any text
-// (plant_columns.hpp).
+// The trace of a simulated flight may have columns `plant/...` with the true state of the vehicle
+// at each tick, for people and their plots (plant_columns.hpp). They are written, but not read, so
+// their cells may have any text.
 //
-// In a trace to be replayed (TraceNeed::inputs_and_outputs), which other programs write, unknown
-// columns are ignored, too, unless their names begin with in/ or out/ or resemble a channel's name.
+// Other programs may write a trace to be replayed (TraceNeed::inputs_and_outputs). Its unknown
+// columns are ignored, too, with one exception: a name that begins with in/ or out/, or resembles a
+// channel's name, is an error. PX4's out/actuator_controls_status.* is ignored.
 //
 // If there is a provenance.toml in the folder of the file, its constants count as columns, too, and
-// the file leaves them out (provenance.hpp). If the provenance names a base, the columns that the
-// file lacks are read from there (Provenance::base).
+// must not be columns of the file. If the provenance names a base, the columns that the file lacks
+// are read from there (provenance.hpp).
 #pragma once
 
 #include <filesystem>
@@ -24,13 +25,13 @@
 
 namespace attest {
 
-// Reads the whole trace, with the constants of a provenance.toml in the same folder.
-// Parameter columns become changes. At tick 0 all are changes, after those of the constants. Later,
-// at each tick with in/updated.parameter_update, a value that differs from the one last set is a
-// change (by bits, NaN = NaN).
-// Errors, each as file:line:column with what to do: unreadable file, no header, unknown or repeated
-// column, missing channel, short or long row, a cell that is not a number of its channel's type,
-// timestamps that do not increase, no rows.
+// Reads the whole trace, with the constants of a provenance.toml in the same folder. Parameter
+// columns become changes. At tick 0 all are changes, after those of the constants. Later, at each
+// tick with in/updated.parameter_update, a value that differs from the one last set is a change (by
+// bits, NaN = NaN). A trace with a base has the parameters of the base. Errors, each as
+// file:line:column with what to do: unreadable file, no header, unknown or repeated column, missing
+// channel, short or long row, a cell that is not a number of its channel's type, timestamps that do
+// not increase, no rows, a wrong provenance.toml or base.
 Result<Trace> read_csv(const std::filesystem::path& path, TraceNeed need);
 
 // Reads a trace tick by tick, in memory that does not grow with the length of the trace.
@@ -42,10 +43,10 @@ class TraceReader {
 
   const std::string& file() const;
   const ChannelSet& present() const;
-  const std::vector<std::string>& ignored() const;  // as Trace::ignored_columns
+  const std::vector<std::string>& ignored() const;  // see Trace::ignored_columns
 
-  // Reads the next tick. Replaces `changes` by the parameters that change at it. Returns false
-  // after the last tick.
+  // Reads the next tick. Replaces `changes` by the changes of parameters at this tick. Returns
+  // false after the last tick. Errors: those of read_csv().
   Result<bool> next(Sample& sample, std::vector<ParameterChange>& changes);
 
  private:
@@ -54,20 +55,20 @@ class TraceReader {
   std::unique_ptr<Impl> impl_;
 };
 
-// The columns to write. Constant channels go to the provenance instead.
+// The columns to write.
 struct CsvColumns {
   ChannelSet channels;                  // in the order of channels()
   std::vector<std::string> parameters;  // names, written after the inputs
-  bool plant = false;                   // plant/ columns, last. REQUIRES: a flown trace
+  bool plant = false;                   // plant/ columns, last. REQUIRES: the trace has `plant`
 };
 
 // All channels and parameters of the trace, parameters in the order in which they are first set.
 // Without plant/ columns.
 CsvColumns all_columns(const Trace& trace);
 
-// Writes to a temporary file and renames it. Errors: the file cannot be written; a parameter that a
-// column cannot represent, because its first value is later than tick 0 or because it changes at a
-// tick without in/updated.parameter_update.
+// Writes with AtomicFile, so the file appears when it is complete. Errors: the file cannot be
+// written; a parameter that a column cannot represent, because it has no value at tick 0, or
+// because it changes at a tick without in/updated.parameter_update.
 Result<void> write_csv(const std::filesystem::path& path, const Trace& trace,
                        const CsvColumns& columns);
 

@@ -9,8 +9,8 @@
 namespace attest {
 namespace {
 
-// The place of the first digit that is not zero, relative to the point: 1 for 1.5, -2 for 0.001;
-// the exponent is added. Far from 0 where the exponent overflows 64 bits.
+// The place of the first digit that is not zero, relative to the point: 1 for 1.5, -2 for 0.001. An
+// exponent is added; one that overflows 64 bits counts as +-2^62.
 std::int64_t magnitude(std::string_view number) {
   const std::size_t e = number.find_first_of("eE");
   std::int64_t exponent = 0;

@@ -36,7 +36,7 @@ inline CellType cell_type(ChannelType type) {
 // or if that number is too large for 32 bits.
 const char* parse_unusual_float(const char* first, const char* last, float& value);
 
-// "`1.2.3` is not a number for in/battery_status.scale; write a decimal number, nan, inf or -inf".
+// For example "`1.2.3` is not a number for in/battery_status.scale; write a decimal number, ...".
 // REQUIRES: `cell` is not a value of that type.
 std::string cell_error(std::string_view cell, CellType type, std::string_view column);
 
@@ -68,7 +68,7 @@ inline const char* parse_float(const char* first, const char* last, void* to) {
   } else {
     const auto parsed = std::from_chars(first, last, value);
     end = parsed.ec == std::errc() ? parsed.ptr : parse_unusual_float(first, last, value);
-    if (value != value) value = std::numeric_limits<float>::quiet_NaN();  // one NaN, one sign
+    if (value != value) value = std::numeric_limits<float>::quiet_NaN();  // without sign
   }
   std::memcpy(to, &value, sizeof value);
   return end;
@@ -111,7 +111,7 @@ inline const char* parse_integer(const char* first, const char* last, void* to) 
   return parsed.ec == std::errc() ? parsed.ptr : nullptr;
 }
 
-// Inlining is forced: clang would call the function, which costs 5 % of the reading time.
+// Inlining is forced, because clang would otherwise call the function: 5% of the reading time.
 [[gnu::always_inline]] inline const char* parse_cell(const char* first, const char* last,
                                                      const CsvColumn& column, char* row) {
   char* const to = row + column.offset;

@@ -31,8 +31,8 @@ struct Layout {
 // The firmware of the cascade publishes this topic too; attest_cascade.h says why the ABI lacks it.
 constexpr std::string_view left_out_of_the_abi = "out/actuator_controls_status.";
 
-// Whether an unknown column is ignored: the file is a trace to be replayed, and the name is not a
-// misspelt one of attest's.
+// Whether an unknown column is ignored: only in a trace to be replayed, and only if its name cannot
+// be a misspelt one of attest's. `suggestion`: a similar known name, or empty.
 bool may_be_ignored(std::string_view name, const CsvRows& rows, const std::string& suggestion,
                     TraceNeed need) {
   const auto& header = rows.header();
@@ -99,7 +99,8 @@ class Base {
   void set_own(const ChannelSet& own) { own_ = own; }
 
   // Reads the base's next tick, and fills in the channels that the trace itself does not have.
-  // `more`: the trace has a next sample, which is `sample`. Parameters are those of the base.
+  // `more`: whether the trace has a next sample, which is then `sample`. `changes` becomes the
+  // changes of the base.
   Result<void> complete(bool more, Sample& sample, std::vector<ParameterChange>& changes,
                         const CsvRows& rows) {
     const Sample own = sample;
@@ -124,8 +125,8 @@ class Base {
   ChannelSet own_;
 };
 
-// A file that has a base may have few columns of its own, and several modules may have their names.
-// So the base determines the module.
+// A file that has a base may have few columns of its own, with names that several modules have. So
+// the base determines the module.
 Module module_of_file(const CsvRows& rows, const Provenance& provenance, const Base* base) {
   if (base) return module_of(base->present());
   std::vector<std::string> names(rows.header().begin(), rows.header().end());
@@ -200,7 +201,7 @@ class ParameterColumns {
 
  private:
   std::vector<std::string> names_;
-  std::vector<std::optional<std::uint32_t>> values_;  // last set
+  std::vector<std::optional<std::uint32_t>> values_;  // bits of the values last set
 };
 
 }  // namespace

@@ -14,7 +14,7 @@
 namespace attest {
 namespace {
 
-// About the size of a first-level cache. It is also the length limit of a line.
+// About the size of a first-level cache. A line must fit into the buffer.
 constexpr std::size_t buffer_size = std::size_t{64} * 1024;
 
 std::vector<std::string_view> split(std::string_view line) {
@@ -27,7 +27,7 @@ std::vector<std::string_view> split(std::string_view line) {
   }
 }
 
-// A UTF-8 sequence is one character.
+// Counts a UTF-8 sequence as one character.
 int characters(std::string_view text) {
   const auto is_first_byte = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; };
   return static_cast<int>(std::count_if(text.begin(), text.end(), is_first_byte));

@@ -1,9 +1,8 @@
-// Rows of numbers, streamed from a CSV file into structs. Only the readers of traces (csv.hpp) and
-// of mixer traces (mixer_csv.hpp) use it; other code reads through them.
+// Rows of numbers, streamed from a CSV file into structs.
 //
 //     auto rows = CsvRows::open(path);             // reads the header
 //     rows->set_columns(...);                      // where each column of rows->header() goes
-//     while (auto more = rows->next(&sample)) {    // an Error when false
+//     while (auto more = rows->next(&sample)) {    // ends at an Error
 //       if (!*more) break;                         // end of file
 //       ...
 //     }
@@ -27,8 +26,9 @@ namespace attest {
 
 class CsvRows {
  public:
-  // A column of row numbers may have no name, if `unnamed` allows it. Errors: unreadable file, no
-  // header, a repeated column, a column without a name.
+  // `unnamed`: whether one column may be without a name, as row numbers often are. Errors:
+  // unreadable file, no header, a repeated column, a NUL byte in a name, a column without a name if
+  // refused.
   enum class Unnamed { refused, allowed };
   static Result<CsvRows> open(const std::filesystem::path& path,
                               Unnamed unnamed = Unnamed::refused);
@@ -39,9 +39,9 @@ class CsvRows {
   // REQUIRES: one for each name of header(), in the same order.
   void set_columns(std::vector<CsvColumn> columns) { columns_ = std::move(columns); }
 
-  // Writes the next row's values to `row`. Returns false at the end of the file. Every NaN becomes
-  // the same quiet NaN. Errors: a cell that is not a value of its column's type, a short or long
-  // row, an empty line before the last row, a line that is too long for a trace.
+  // Writes the next row's values to `row`. Returns false at the end of the file. Every NaN of type
+  // f32 becomes the same quiet NaN. Errors: a cell that is not a value of its column's type, a
+  // short or long row, an empty line before the last row, a line that is longer than 64 KiB.
   Result<bool> next(void* row);
 
   // An error at the column's name in the header, or at its cell in the row last read.

@@ -31,7 +31,8 @@ class CsvText {
   // Longer than any number: 20 digits of a u64.
   static constexpr std::size_t longest_number = 32;
 
-  // Returns where the cell starts, with room for a number. end_cell() takes the cell's end.
+  // Returns where the cell starts, with room for a number. The caller writes the cell and passes
+  // its end to end_cell().
   char* begin_cell();
   void end_cell(const char* end) { used_ = static_cast<std::size_t>(end - block_.data()); }
   void append(std::string_view text);

@@ -38,7 +38,7 @@ constexpr std::array<Named, 16> mixer_columns = {{
 
 bool is_out(std::string_view name) { return name.starts_with("out["); }
 
-// The columns of a mixer with that many rotors, in file order.
+// The columns of a mixer with that many rotors.
 std::vector<Named> columns_for(std::size_t rotors) {
   std::vector<Named> columns;
   std::size_t outs = 0;

@@ -12,9 +12,9 @@
 
 namespace attest {
 
-// Returns a trace of Module::mixer; its timestamps count the rows. Errors as in csv.hpp: unreadable
-// file, no header, unknown, repeated or missing column, a number of out[] columns other than 4, 6
-// and 8, a bad row or cell, no rows.
+// Returns a trace of Module::mixer; its timestamps count the rows from 0. Errors: unreadable file,
+// no header, unknown, repeated or missing column, a number of out[] columns other than 4, 6 and 8,
+// a bad row or cell, no rows.
 Result<Trace> read_mixer_csv(const std::filesystem::path& path);
 
 // True if the header has a column that only mixer traces have. False for a file that has no header

@@ -24,7 +24,7 @@ constexpr std::array<ModuleInfo, module_count> infos{{
 
 #undef BLOCK
 
-// Outputs follow inputs, so the outputs of all modules are one range of bytes.
+// In Sample, all outputs follow all inputs, so the outputs of all modules are one range of bytes.
 constexpr std::size_t outputs_begin = sizeof(Sample) - outputs_size;
 static_assert(offsetof(attest_attitude_inputs, updated) == offsetof(attest_inputs, updated) &&
               offsetof(attest_rate_inputs, updated) == offsetof(attest_inputs, updated));

@@ -15,7 +15,7 @@
 
 namespace attest {
 
-// What is stepped: the controller of attest_unit.h, or an extension of it.
+// What a port steps: the controller of attest_unit.h, or one of its extensions.
 enum class Module : std::uint8_t {
   mc_att_control,
   mixer,
@@ -30,10 +30,12 @@ inline bool contains(const ModuleSet& set, Module module) {
   return set[static_cast<std::size_t>(module)];
 }
 
-// The inputs and outputs of one step of a module. Those of the other modules are zero.
+// The inputs and outputs of one step of one module. Those of the other modules are zero, except the
+// timestamp in `in`.
 //
-// The units share the memory of their structs, because a sample is of one unit. Their inputs begin
-// with the same members, so `in.timestamp` and `in.updated` are those of every unit.
+// The units (controller, attitude unit, rate unit) share the memory of their structs, because a
+// sample is of one unit. Their inputs begin with the same members, so `in.timestamp` and
+// `in.updated` are valid for each of them.
 struct Sample {
   union {
     attest_inputs in;  // its timestamp is that of mixer and battery estimate, too
@@ -62,7 +64,7 @@ struct Sample {
 
 inline constexpr std::size_t outputs_size = sizeof(Sample) - offsetof(Sample, out);
 
-// Where in a Sample an ABI struct is.
+// The place of an ABI struct in a Sample.
 struct Block {
   std::size_t offset, size;  // [bytes]
 
@@ -76,9 +78,9 @@ struct ModuleInfo {
   Module module;
   std::string_view name;   // "battery_status"
   std::string_view title;  // for messages: "battery estimate"
-  const char* extension;   // whose functions it has: ATTEST_EXTENSION_MIXER; null: the controller
+  const char* extension;   // the id that has it: ATTEST_EXTENSION_MIXER; null: controller
   Block in, out;
-  bool has_updated;  // its inputs begin like attest_inputs, with a bit for each new topic
+  bool has_updated;  // its inputs have `updated`: a bit for each topic that is new
 };
 
 // In the order of Module.

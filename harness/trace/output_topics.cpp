@@ -14,7 +14,8 @@ std::string_view topic_of(std::string_view name) {
   return name.substr(output_prefix.size(), name.find('.') - output_prefix.size());
 }
 
-// In the ABI a topic is a struct that ends with its flag `published`.
+// The topic whose flag is channel `flag`. In the ABI a topic is a struct that ends with
+// `published`.
 OutputTopic topic_with_flag(std::size_t flag) {
   const Channel& published = channels()[flag];
   OutputTopic topic{topic_of(published.name), flag, {published.offset, 1}};

@@ -1,5 +1,5 @@
 // The topics that a module publishes, and the rule of attest_unit.h for them: in a step that does
-// not publish a topic, its other fields keep the values last published.
+// not publish a topic, its fields other than `published` keep the values last published.
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@ namespace attest {
 
 struct OutputTopic {
   std::string_view name;  // "vehicle_rates_setpoint"
-  std::size_t published;  // index into channels(), of the flag
-  Block block;            // the topic in a Sample
+  std::size_t published;  // index into channels() of its flag
+  Block block;            // its place in a Sample, with the flag
 };
 
 // In column order. Empty for a module whose outputs are new in every step.
@@ -20,7 +20,8 @@ std::span<const OutputTopic> output_topics(Module module);
 
 bool is_published(const OutputTopic& topic, const Sample& sample);
 
-// If `now` does not publish a topic, copies the topic from `before`, the previous step, to `now`.
+// For each topic that `now` does not publish, copies its fields other than `published` from
+// `before`, the previous step.
 void keep_unpublished(Module module, const Sample& before, Sample& now);
 
 // Clears the flags `published`, as in a step that publishes nothing.

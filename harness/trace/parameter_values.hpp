@@ -16,7 +16,8 @@ class ParameterValues {
   ParameterValues(const Trace& trace, const std::vector<std::string>& names)
       : names_(names), pending_(trace.parameters), values_(names.size()) {}
 
-  // In the order of the names. REQUIRES: no earlier tick than in the call before.
+  // The values at `tick` in the order of the names; 0 if not set yet. REQUIRES: `tick` does not
+  // decrease from call to call.
   const std::vector<float>& at(std::size_t tick) {
     for (const ParameterChange& change : pending_.take_until(tick)) {
       const auto name = std::find(names_.begin(), names_.end(), change.name);

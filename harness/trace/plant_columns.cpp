@@ -10,7 +10,7 @@ namespace {
 
 using Read = float (*)(const PlantSample&, std::size_t);
 
-// One column for each name of `fields`.
+// Adds one column for each name of `fields`.
 void add(std::vector<PlantColumn>& columns, std::string_view topic,
          std::initializer_list<std::string_view> fields, std::string_view unit, Read read) {
   std::size_t index = 0;

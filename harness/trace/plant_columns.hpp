@@ -1,5 +1,5 @@
-// The columns of a flown trace with the true state of the vehicle. Each is named after PX4's topic
-// if there is one: `plant/vehicle_local_position.x`.
+// The columns with the true state of the vehicle, in the trace of a simulated flight. Each is named
+// after PX4's topic if there is one: `plant/vehicle_local_position.x`.
 #pragma once
 
 #include <span>

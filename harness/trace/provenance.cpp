@@ -22,7 +22,7 @@ bool is_integer_up_to(double value, double highest) {
   return value >= 0 && value <= highest && value == std::floor(value);
 }
 
-// The type of a channel follows from its name, whatever the module.
+// One channel of that name; those of all modules have the same type.
 std::optional<std::size_t> any_channel(std::string_view name) {
   const ChannelSet set = channels_named(name);
   return set.any() ? std::optional(set._Find_first()) : std::nullopt;
@@ -92,7 +92,8 @@ std::map<std::string, double> read_tolerances(const TomlTable& root) {
   return tolerances;
 }
 
-// Distinguishes the same values as a trace file: -0 and 0 differ, all NaN are equal.
+// Two values have the same canonical bits if they are the same in a trace file: -0 and 0 differ,
+// all NaN are equal.
 std::uint64_t canonical_bits(double value) {
   return std::bit_cast<std::uint64_t>(std::isnan(value) ? std::numeric_limits<double>::quiet_NaN()
                                                         : value);

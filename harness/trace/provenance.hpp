@@ -1,5 +1,5 @@
 // provenance.toml: the origin of the traces of a folder, and the values that are the same in all of
-// them. Each trace together with this file is complete.
+// them, which the traces leave out.
 #pragma once
 
 #include <filesystem>
@@ -23,19 +23,19 @@ struct Provenance {
   std::map<std::string, double> constants;  // channel or in/parameter.<NAME> -> value
   std::map<std::string, std::string>
       mixers;  // stem of a mixer trace -> "R: 4x 8000 9000 5000 1500"
-  // Stem of a trace -> absolute tolerance of its outputs, where their bits depend on the platform's
-  // transcendental functions, not on the law.
+  // Stem of a trace -> absolute tolerance of its outputs. Only for traces whose last bits depend on
+  // the platform's transcendental functions.
   std::map<std::string, double> tolerances;
   std::map<std::string, std::string> sha256;  // file name -> hash
-  // A folder of other traces, relative to this one. A trace here takes the columns and constants
-  // that it lacks from the trace of the same name there. Empty: each trace here has all itself.
+  // A folder of other traces, as a path relative to this folder; empty if there is no base. A trace
+  // here takes the columns and constants that it lacks from the trace of the same name there.
   std::string base;
-  std::map<std::string, std::string> base_sha256;  // file name there -> hash
+  std::map<std::string, std::string> base_sha256;  // file name in the base -> hash
   // For flights: stem of a trace -> its horizon [s], how long two correct controllers agree.
   std::map<std::string, double> horizon_s;
   // "<stem>.<metric>" -> the value in the reference's flight.
   std::map<std::string, double> metrics;
-  std::map<std::string, std::string> models;  // file name -> SHA-256 of the vehicle's files
+  std::map<std::string, std::string> models;  // name of a vehicle's file -> SHA-256
 };
 
 inline constexpr const char* provenance_name = "provenance.toml";
@@ -45,13 +45,14 @@ inline constexpr const char* provenance_name = "provenance.toml";
 // not a value of its channel, a negative tolerance.
 Result<Provenance> read_provenance(const std::filesystem::path& file);
 
-// The provenance of a folder; an empty one if the folder has no such file. Errors: as above.
+// The provenance of a folder; an empty one if the folder has no such file. Errors: those of
+// read_provenance().
 Result<Provenance> provenance_in(const std::filesystem::path& folder);
 
 std::string to_toml(const Provenance& provenance);
 
-// Adds the profile, and the mixers of traces by their stems, to the folder's provenance. Errors: as
-// above; it cannot be written.
+// Sets the profile in the folder's provenance, and adds `mixers` to it (as Provenance::mixers).
+// Errors: those of read_provenance(); the file cannot be written.
 Result<void> add_origin(const std::filesystem::path& folder, const std::string& profile,
                         const std::map<std::string, std::string>& mixers);
 
@@ -63,18 +64,18 @@ Result<void> check_seal(const std::filesystem::path& file);
 
 // Divides the columns of traces that will be in one folder. A channel that has the same value in
 // every sample of all traces (by bits, NaN = NaN) goes to `constants`. So does a parameter that has
-// the same value from tick 0 on in all of them. The rest, and timestamp, stay columns. REQUIRES:
-// each trace has a sample; all have the same channels; all have the parameter names of the first,
-// except that keyframes may have no parameters.
+// the same value from tick 0 on in all traces that have parameters. The other channels and
+// parameters, and timestamp, stay columns. REQUIRES: each trace has a sample; all have the same
+// channels; each has no parameters, or those of the first trace.
 struct Division {
   CsvColumns columns;
   std::map<std::string, double> constants;
 };
 Division divide(const std::vector<Trace>& traces);
 
-// The same for traces that have a base (Provenance). A channel that has the same values there,
-// sample by sample, is left out, and so are all parameters. REQUIRES: as above; `base` has as many
-// traces, of the same lengths, with the same parameters.
+// The same for traces that have a base (Provenance::base). A channel that has the same values in
+// the base, sample by sample, is neither column nor constant, and neither are the parameters.
+// REQUIRES: as above; `base` has as many traces, of the same lengths, with the same parameters.
 Division divide(const std::vector<Trace>& traces, const std::vector<Trace>& base);
 
 }  // namespace attest

@@ -1,4 +1,4 @@
-// A recorded run: the inputs and outputs of the unit at each tick.
+// A recorded run: the inputs and outputs of one module at each tick.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,8 @@ class PendingChanges {
  public:
   explicit PendingChanges(std::span<const ParameterChange> changes) : pending_(changes) {}
 
-  // The changes up to `tick` that no earlier call returned. Valid as long as the trace.
+  // The changes up to `tick` that no earlier call returned. The result is valid as long as the
+  // changes of the trace.
   std::span<const ParameterChange> take_until(std::size_t tick) {
     std::size_t count = 0;
     while (count < pending_.size() && pending_[count].tick <= tick) ++count;
@@ -48,15 +49,15 @@ class PendingChanges {
 };
 
 // The true state of the vehicle at a tick; the unit receives an estimate of it. For metrics and for
-// people (plant_columns.hpp names its columns). Never compared. NED and FRD, SI units.
+// people (plant_columns.hpp names its columns). Not compared with a golden. World NED, body FRD.
 struct PlantSample {
-  std::array<float, 3> position_m;    // of the centre of mass
-  std::array<float, 3> velocity_m_s;  // of the centre of mass
-  std::array<float, 4> q;             // body to world
-  std::array<float, 3> rate_rad_s;    // of the body
+  std::array<float, 3> position_m;    // NED, of the centre of mass
+  std::array<float, 3> velocity_m_s;  // NED, of the centre of mass
+  std::array<float, 4> q;             // FRD to NED, scalar first
+  std::array<float, 3> rate_rad_s;    // FRD
   std::array<float, 8> motor;         // commands of mixer or allocator, -1 stopped .. 1 full
   std::array<float, 8> rotor_rad_s;   // speeds
-  float voltage_V;                    // of the battery; 0 without one
+  float voltage_V;                    // of the battery; 0 without a battery
   std::uint8_t saturated;             // 1: mixer or allocator was in saturation at this tick
 };
 
@@ -71,11 +72,11 @@ struct Trace {
   std::string source;                          // file or case, for messages
   std::vector<Sample> samples;                 // one per tick, timestamps strictly increasing
   std::vector<ParameterChange> parameters;     // by tick, then in the order of their setting
-  ChannelSet present;                          // the channels that were recorded; the others are 0
-  std::vector<PlantSample> plant;              // of a flown trace: one per sample; else empty
-  std::vector<std::string> ignored_columns{};  // of its file: names that attest does not have
+  ChannelSet present;                          // the channels that have values; the others are 0
+  std::vector<PlantSample> plant;              // of a simulated flight: one per sample; else empty
+  std::vector<std::string> ignored_columns{};  // columns of its file that attest does not know
 
-  // Drops all ticks but the first `ticks`, with their parameter changes.
+  // Removes all ticks after the first `ticks`, and the parameter changes at them.
   void keep_first(std::size_t ticks) {
     samples.resize(std::min(ticks, samples.size()));
     plant.resize(std::min(ticks, plant.size()));

@@ -1,4 +1,4 @@
-// Traces in files of any format that attest reads.
+// Reads a trace from a CSV file of a unit or of a mixer.
 #pragma once
 
 #include <filesystem>
@@ -8,11 +8,12 @@
 
 namespace attest {
 
-// True if TraceReader (csv.hpp) can read the file tick by tick.
+// False for a mixer trace (mixer_csv.hpp), which TraceReader (csv.hpp) cannot read.
 bool is_streamed(const std::filesystem::path& path);
 
-// Reads the whole trace, from a pipe too. A CSV whose header names columns of a mixer trace is read
-// as one (mixer_csv.hpp), any other file as in csv.hpp. Errors: those of the two readers.
+// Reads the whole trace, from a pipe too. A file whose header has a column of mixer traces is read
+// by read_mixer_csv(), any other file by read_csv(). Errors: those of these two functions, and of
+// RereadableFile::open().
 Result<Trace> open_trace(const std::filesystem::path& path, TraceNeed need);
 
 }  // namespace attest

@@ -29,8 +29,8 @@ constexpr Assumption of_controller[] = {
     {"velocity", "in/vehicle_control_mode.flag_control_velocity_enabled", 1, false},
 };
 
-// By default the setpoints of both units come from outside, as in a mission: then they do not
-// depend on earlier steps.
+// By default the setpoints of both units come from other modules, as in a mission. Setpoints from
+// the sticks would depend on earlier steps.
 constexpr Assumption of_attitude_unit[] = {
     {"armed", "in/vehicle_status.armed", 1, true},
     {"rotary_wing", "in/vehicle_status.is_rotary_wing", 1, true},

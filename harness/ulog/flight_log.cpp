@@ -16,14 +16,14 @@ using ulog::LogRules;
 using ulog::LogSeries;
 using ulog::ModuleContents;
 
-constexpr const char* fastest_rate = "IMU_GYRO_RATEMAX";  // Hz, of the rate unit
+constexpr const char* fastest_rate = "IMU_GYRO_RATEMAX";  // of the rate unit [Hz]
 
-// What a log must have of a module, in addition to its steps and outputs.
+// The topic that a log must have for a module, in addition to steps and outputs.
 std::string setpoint_of(Module module) {
   return module == Module::rate_unit ? "vehicle_rates_setpoint" : "vehicle_attitude_setpoint";
 }
 
-// The topics with values of outputs, to name in a message.
+// The output topics of a module, for a message.
 std::string outputs_of(Module module) {
   switch (module) {
     case Module::attitude_unit:
@@ -43,7 +43,7 @@ bool is_optional(std::string_view field) {
          std::find(std::begin(optional), std::end(optional), field) != std::end(optional);
 }
 
-// What the log lacks of a module; empty if it can be given to a port.
+// What the log lacks to replay a module; empty if it has enough.
 std::string lacking(const ModuleContents& log, bool is_of_attest) {
   const LogSeries& steps = log.steps();
   if (steps.size() == 0) return fmt::format("no sample of the topic {}", steps.name());
@@ -70,7 +70,7 @@ std::vector<ModuleContents*> candidates(LogContents& log) {
   ModuleContents& attitude = log.of(Module::attitude_unit);
   ModuleContents& rate = log.of(Module::rate_unit);
   if (controller.steps().size() > 0) return {&controller};
-  // First the rate unit: attest also logs the true vehicle_attitude of a rate unit's flight.
+  // The rate unit comes first: in its flights, attest logs the true vehicle_attitude, too.
   if (log.is_of_attest() && rate.steps().size() > 0) return {&rate};
   if (log.is_of_attest() && attitude.steps().size() > 0) return {&attitude};
   return {&attitude, &rate};
@@ -134,7 +134,7 @@ void add_missing(const LogSeries& series, std::vector<std::string>& notes) {
                               series.is_output() ? "not compared" : "0", fmt::join(missing, ", ")));
 }
 
-// A topic of several modules is noted once.
+// Adds a note once, because several modules may have the same topic.
 void add_once(std::string note, std::vector<std::string>& notes) {
   if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
 }
@@ -242,7 +242,7 @@ class LogReading {
   const std::filesystem::path& path_;
   LogContents& log_;
   const std::vector<std::string>& assumed_;
-  std::vector<std::string> used_;  // of the words
+  std::vector<std::string> used_;  // words that had an effect
   FlightLog flight_;
 };
 

@@ -18,7 +18,8 @@ constexpr std::string_view type_names[] = {"int8_t",   "uint8_t", "int16_t",  "u
                                            "bool",     "char",    ""};
 constexpr std::uint32_t type_bytes[] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8, 1, 1, 0};
 
-// Splits "q[3]" into "q" and 3, and "q" into "q" and 1. Without a number in its brackets: none.
+// Splits "q[3]" into "q" and 3, and "q" into "q" and 1. If the brackets have no number, the number
+// is empty.
 std::pair<std::string_view, std::optional<std::uint32_t>> split_brackets(std::string_view text) {
   const auto open = text.rfind('[');
   if (open == text.npos || !text.ends_with(']')) return {text, 1};

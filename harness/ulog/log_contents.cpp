@@ -14,7 +14,7 @@ std::string text_of(const KeyValue& value) {
   return std::string(printable_part(value.bytes.substr(0, end)));
 }
 
-// 0x010e03ff: a byte each for major, minor and patch, then the kind of release.
+// For example 0x010e03ff: a byte each for major, minor and patch, then the kind of release.
 Release release_of(std::uint32_t version) {
   const auto byte = [&](int shift) { return static_cast<int>(version >> shift & 0xffU); };
   return {byte(24), byte(16), byte(8)};
@@ -68,7 +68,7 @@ class ContentsReader {
     for (LogSeries* series : *receivers_[index]) series->add(reader_, data);
   }
 
-  // The name of the system comes before the first data.
+  // At the first call the name of the system is known, because it comes before the first data.
   std::vector<LogSeries*> receivers_of(const Subscription& subscription) {
     if (!knows_system_) {
       knows_system_ = true;
@@ -83,7 +83,8 @@ class ContentsReader {
     return found;
   }
 
-  // Not for the old controller: in every log, its instance 1 of a setpoint is that of others.
+  // The controller of v1.5.5 and v1.3.4 is left out: in its logs, too, other modules publish the
+  // instance 1 of a setpoint.
   void accept_every_publisher() {
     for (ModuleContents& module : log_.modules) {
       if (module.module() == Module::mc_att_control) continue;

@@ -30,13 +30,13 @@ class ModuleContents {
   const std::vector<LogSeries>& series() const { return series_; }
   // The samples of the topic that triggers a step.
   const LogSeries& steps() const { return *input(step_topic_); }
-  // Null if the module has no such topic.
+  // The input or output topic of that name; null if the module has none.
   const LogSeries* input(std::string_view topic) const { return find(topic, false); }
   const LogSeries* output(std::string_view topic) const { return find(topic, true); }
   // Whether an output topic has samples and at least one known field.
   bool has_outputs() const;
 
-  std::vector<ParameterChange> parameters;  // the tick is the number of steps logged before it
+  std::vector<ParameterChange> parameters;  // `tick`: the number of steps logged before the change
 
  private:
   const LogSeries* find(std::string_view topic, bool is_output) const;
@@ -47,17 +47,18 @@ class ModuleContents {
 };
 
 struct LogContents {
-  std::vector<ModuleContents> modules;   // those with a step topic
+  std::vector<ModuleContents> modules;   // controller, attitude unit, rate unit
   std::string system, firmware, source;  // sys_name, ver_sw, attest_source
   std::optional<Release> release;        // ver_sw_release
   std::size_t dropouts = 0;              // times that the logger lost messages
   std::vector<std::string> damage;       // one line each
 
-  bool is_of_attest() const { return system == "attest"; }  // as trace_log.cpp writes it
+  bool is_of_attest() const { return system == "attest"; }  // written by write_trace()
   ModuleContents& of(Module module);
 };
 
-// Errors: the file cannot be read or is no ULog. Memory: the samples of the modules' topics.
+// Reads the whole log. Keeps the samples of the modules' topics in memory. Errors: the file cannot
+// be read or is not a ULog.
 Result<LogContents> read_contents(const std::filesystem::path& path);
 
 }  // namespace attest::ulog

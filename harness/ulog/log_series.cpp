@@ -25,7 +25,7 @@ T value_in(const Data& data, const Column& column) {
   return load_as<T>(column.type, data.bytes.data() + column.offset);
 }
 
-// A flag of any type as a byte that is true if the flag is.
+// Keeps an integer from 0 to 255. Any other value, as a flag of another type, is true: 1.
 std::uint8_t flag_of(float value) {
   const bool is_byte = value >= 0 && value <= 255 && value == std::floor(value);
   return is_byte ? static_cast<std::uint8_t>(value) : 1;

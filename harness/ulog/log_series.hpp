@@ -22,17 +22,18 @@ class LogSeries {
   const std::string& name() const { return topic_.name; }
   bool is_output() const { return topic_.is_output; }
 
-  // True for this topic, in the instance that it has in a log of attest.
+  // True for this topic in the instance LogTopic::multi_id, as in a log of attest.
   bool accepts(const Subscription& subscription) const {
     return subscription.multi_id == topic_.multi_id && subscription.topic == topic_.name;
   }
-  // From now on, accepts() is true for instance 0, where PX4 logs the samples of every publisher.
+  // From now on, accepts() is true only for instance 0, where PX4 logs the samples of every
+  // publisher.
   void accept_every_publisher() { topic_.multi_id = 0; }
 
-  // Finds the fields in the log, without samples yet. REQUIRES: accepts it.
+  // Finds the fields of the topic in the subscription's format. REQUIRES: accepts(subscription).
   void locate(const Reader& reader, const Subscription& subscription);
-  // Leaves out a sample without a timestamp, or whose timestamp is not after the one before.
-  // REQUIRES: accepts it.
+  // Adds a sample. Leaves it out if it has no timestamp, or if its timestamp is not after that of
+  // the sample before. REQUIRES: accepts() its subscription.
   void add(const Reader& reader, const Data& data);
 
   std::size_t size() const { return times_.size(); }
@@ -41,7 +42,8 @@ class LogSeries {
   std::size_t without_time() const { return without_time_; }
   std::uint64_t time(std::size_t row) const { return times_[row]; }  // us
   std::span<const std::uint64_t> times() const { return times_; }
-  // `timestamp_sample`, of the sample that an output answers; empty if the topic has no such field.
+  // The field `timestamp_sample`: the time of the sensor sample behind this sample. Empty if the
+  // topic has no such field.
   std::optional<std::uint64_t> sample_time(std::size_t row) const;
   std::span<const std::uint64_t> sample_times() const { return sample_times_; }
   // Index of the first sample after that time; size() if there is none.
@@ -51,14 +53,15 @@ class LogSeries {
   bool is_located() const { return located_.has_value(); }
   // The fields that the log's topic does not have. REQUIRES: is_located().
   std::vector<const LogField*> missing_fields() const;
-  // The channels of the fields that it has. REQUIRES: is_located().
+  // The channels of the fields that the log's topic has. REQUIRES: is_located().
   std::vector<std::size_t> logged_channels() const;
 
-  // Writes the channels of a sample. A field that the log does not have is `if_absent`.
+  // Writes the values of sample `row`. A field that the log does not have is LogField::if_absent.
   void copy(std::size_t row, Sample& to) const;
 
  private:
-  // Where a field is. If there is a `state`, the field is a flag: true if the value is this state.
+  // Where a field is in the log; without `column`, the log does not have it. With `state`, the
+  // field is a flag, which is true if the column's value is this state.
   struct Place {
     std::optional<Column> column;
     std::optional<std::uint8_t> state;
@@ -69,7 +72,7 @@ class LogSeries {
   std::uint64_t bits_of(const Data& data, std::size_t field) const;
 
   LogTopic topic_;
-  std::optional<std::size_t> located_;  // subscription of the places below
+  std::optional<std::size_t> located_;  // index of the subscription of these places
   std::optional<Column> time_, sample_time_;
   std::vector<Place> places_;  // of the topic's fields
   std::vector<std::uint64_t> times_, sample_times_;

@@ -14,21 +14,22 @@ struct StateOfChannel {
   LogState state;
 };
 
-// Of the message vehicle_status in the documentation of PX4 v1.14 to v1.16.
+// Source: the message vehicle_status in the documentation of PX4 v1.14 to v1.16.
 constexpr StateOfChannel states[] = {
     {"in/vehicle_status.armed", {"arming_state", 2, 1}},
     {"in/vehicle_status.is_rotary_wing", {"vehicle_type", 1, 0}},
 };
 
 std::optional<LogState> state_of(const Channel& channel) {
-  if (channel.module == Module::mc_att_control) return std::nullopt;  // there both are fields
+  if (channel.module == Module::mc_att_control) return std::nullopt;  // has both flags
   const auto* const found =
       std::find_if(std::begin(states), std::end(states),
                    [&](const StateOfChannel& one) { return one.channel == channel.name; });
   return found == std::end(states) ? std::nullopt : std::optional(found->state);
 }
 
-// unaided_heading, of the gyros alone, is in the topic from v1.16 on. Not finite: there is none.
+// unaided_heading (from the gyros alone) is in the topic from v1.16 on; NaN means that there is no
+// such heading.
 float if_absent(std::string_view channel) {
   if (channel == "in/vehicle_local_position.unaided_heading") {
     return std::numeric_limits<float>::quiet_NaN();

@@ -1,5 +1,5 @@
-// Which samples of a log a unit of PX4 v1.14 to v1.16 published itself. Other modules publish
-// vehicle_attitude_setpoint and vehicle_rates_setpoint, too, depending on the mode.
+// Tells which samples of a log a unit of PX4 v1.14 to v1.16 published itself. Depending on the
+// mode, other modules publish vehicle_attitude_setpoint and vehicle_rates_setpoint.
 #pragma once
 
 #include <string_view>
@@ -9,13 +9,15 @@
 namespace attest::ulog {
 
 // Whether the unit itself publishes the topic in a step with these inputs. Always true for a topic
-// that only this unit publishes, and for every topic of the controller of v1.5.5.
+// that only this unit publishes, and for every topic of the controller of v1.5.5 and v1.3.4.
 bool publishes(Module module, std::string_view topic, const Sample& sample);
 
 // Whether the attitude unit makes its setpoint from the sticks, with filters (stabilized mode).
+// REQUIRES: a sample of the attitude unit.
 bool is_of_sticks(const Sample& sample);
 
-// Whether the vehicle is armed and off the ground, as far as the module knows.
+// Whether the vehicle is armed and off the ground, according to the module's inputs. False for the
+// controller of v1.5.5 and v1.3.4, which has no such inputs.
 bool is_in_flight(Module module, const Sample& sample);
 
 }  // namespace attest::ulog

@@ -24,8 +24,9 @@ constexpr std::size_t head_bytes = 3;  // of a message: u16 size of its body, ty
 constexpr std::size_t flag_bits_bytes = 40;
 constexpr std::uint64_t has_appended_data = 1;  // bit of incompatible_flags
 
-// The size with head of the message that starts with these bytes, which may be cut off; 0: they are
-// no message. All types are letters, no body is empty, and those of known types have a least size.
+// The size, with its head, of the message that starts with these bytes, which may be cut off. 0 if
+// they are not a message: all types are letters, no body is empty, and a known type has a least
+// size of its body.
 std::size_t size_of_message(std::string_view bytes) {
   constexpr std::string_view known = "BFIMPQARDLCOS";
   constexpr std::size_t least[] = {flag_bits_bytes, 1, 1, 2, 1, 2, 4, 2, 2, 9, 11, 2, 8};
@@ -33,7 +34,7 @@ std::size_t size_of_message(std::string_view bytes) {
   const std::size_t body_bytes = load<std::uint16_t>(bytes.data());
   const char type = bytes[2];
   const bool is_letter = (type >= 'A' && type <= 'Z') || (type >= 'a' && type <= 'z');
-  const auto found = type == 'D' ? 8 : known.find(type);  // nearly all are data
+  const auto found = type == 'D' ? 8 : known.find(type);  // D, first because nearly all are
   return is_letter && body_bytes >= (found == known.npos ? 1 : least[found])
              ? head_bytes + body_bytes
              : 0;
@@ -62,7 +63,8 @@ Result<Reader> Reader::open(const std::filesystem::path& path) {
   return reader;
 }
 
-// Also reads the flag bits, the first message of version 1. next() reports damage to them.
+// Also reads the flag bits, the first message of version 1. If they are damaged, they are not read
+// here, and next() counts the damage.
 Result<void> Reader::read_header() {
   first_message_ = header_bytes;
   end_ = file_size_;
@@ -93,7 +95,7 @@ Result<void> Reader::read_header() {
                                     header_.incompatible_flags));
 }
 
-// Goes to the first message. open() does so twice.
+// Goes to the first message. open() calls this again when it has read up to the first data.
 void Reader::start() {
   damage_ = {};
   unknown_messages_ = 0;
@@ -258,8 +260,9 @@ bool Reader::refuse(DamageKind kind, const std::string& why) {
   return false;
 }
 
-// Goes on after the first sync message from offset_ on. `is_cut_off`: the message there leads past
-// the end of the section. If a sync message follows, its length was wrong.
+// Sets position_ after the first sync message from offset_ on; to the end of the section if there
+// is none. `is_cut_off`: the message at offset_ leads past that end. It counts as cut off only if
+// no sync message follows; otherwise its length was wrong (garbage).
 void Reader::resynchronise(bool is_cut_off) {
   bool is_found = false;
   for (position_ = offset_; position_ < end_ && !is_found;) {

@@ -4,15 +4,15 @@
 //     auto reader = ulog::Reader::open(path);
 //     const auto roll = reader->find("vehicle_rates_setpoint", 0, "roll");
 //     ulog::Message message;
-//     while (auto more = reader->next(message)) {  // an Error when false
+//     while (auto more = reader->next(message)) {  // ends at an Error
 //       if (!*more) break;                         // end of file
 //       const auto* data = std::get_if<ulog::Data>(&message);
 //       if (data && roll->is_in(*data)) use(roll->of(*data));
 //     }
 //
-// The reader counts damage and reads all intact messages. A message with a wrong body is skipped by
-// its length if another message seems to follow. Otherwise reading continues after the next sync
-// message. If there is none, the rest of the file is not read.
+// The reader counts damage and goes on with the next intact message. A message with a wrong body is
+// skipped by its length if another message seems to follow. Otherwise reading continues after the
+// next sync message. If there is none, the rest of the log (or of an appended part) is not read.
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ struct Subscription {
   std::uint8_t multi_id;  // instance, from 0
   std::string topic;      // also the name of its format
   std::size_t index;      // in Reader::subscriptions()
-  const Format* format;   // with its sizes; null: cannot be used, so its data are skipped
+  const Format* format;   // measured; null: unusable, so the data are skipped
 };
 
 // Messages. Their views are valid until the reader's next call, their pointers as long as the
@@ -60,7 +60,8 @@ struct Subscribed {
 // I, M, P and Q: a value with a name.
 struct KeyValue {
   char kind;  // I: information, M: one of several with this name, P: parameter, Q: its default
-  // M: 1 continues the value before it. Q: bit 0, of the system; bit 1, of this vehicle.
+  // M: 1 continues the value of the message before. Q: bit 0, default of the system; bit 1, default
+  // of this vehicle. Otherwise 0.
   std::uint8_t flags;
   std::string_view name;
   Type type;  // P and Q: i32 or f32
@@ -86,7 +87,7 @@ struct Sync {};
 
 using Message = std::variant<Data, Defined, Subscribed, KeyValue, LogLine, Dropout, Sync>;
 
-// A number in the data of one subscription. Reading it looks up no name.
+// The place of a number in the data of one subscription.
 struct Column {
   const Subscription* subscription;
   Type type;
@@ -111,7 +112,7 @@ struct Damage {
 
   std::array<std::uint64_t, 6> counts{};  // by kind
   std::vector<Finding> first;             // the first most_findings
-  std::uint64_t skipped_bytes = 0;        // not read as messages
+  std::uint64_t skipped_bytes = 0;        // skipped to find the next sync message
   std::uint64_t count(DamageKind kind) const { return counts[static_cast<std::size_t>(kind)]; }
   std::uint64_t total() const { return std::accumulate(counts.begin(), counts.end(), 0ULL); }
 };
@@ -119,16 +120,16 @@ struct Damage {
 struct Header {
   std::uint8_t version = 0;
   std::uint64_t start_us = 0;  // since the start of the system
-  // Of the flag bits message, which files of version 0 do not have.
+  // From the flag bits message. Files of version 0 do not have it, so these are 0.
   std::uint64_t compatible_flags = 0, incompatible_flags = 0;
   std::array<std::uint64_t, 3> appended_offsets{};  // in the file; 0: unused
 };
 
 class Reader {
  public:
-  // Also reads the messages before the first data, so that find() works at once. next() returns
-  // these messages again. Errors: unreadable, not a ULog, another version, incompatible flags that
-  // attest does not know.
+  // Also reads the messages up to the first data, so that find() works at once. next() nevertheless
+  // begins with the first message. Errors: unreadable, not a ULog, another version, incompatible
+  // flags that attest does not know.
   static Result<Reader> open(const std::filesystem::path& path);
 
   const Header& header() const { return header_; }
@@ -140,8 +141,8 @@ class Reader {
   // Reads the next valid message. False: after the last one. Errors: the file cannot be read.
   Result<bool> next(Message& message);
 
-  // Of the message last read: its place in the file, and whether it is in a part that was appended
-  // when the log had ended, such as the report of a crash.
+  // The place of the last message in the file, and whether it is in a part that was appended after
+  // the end of the log, such as the report of a crash.
   std::uint64_t offset() const { return offset_; }
   bool is_appended() const { return section_ > 0; }
 
@@ -153,10 +154,11 @@ class Reader {
   Reader() = default;
   Result<void> read_header();
   void start();
-  // The bytes of the file from `offset` on: `count` or more, at most 1 MiB; fewer only at end_.
+  // The bytes of the file from `offset` on: `count` or more, at most 1 MiB; fewer only up to end_.
   std::string_view bytes_at(std::uint64_t offset, std::size_t count);
   void fill_buffer(std::uint64_t offset);
-  // Each sets `message` and returns true, or counts the damage and returns false.
+  // Each sets `message` and returns true, or counts the damage and returns false. accept() also
+  // returns false for a message of unknown type.
   bool accept(char type, std::string_view body, Message& message);
   bool accept_data(std::string_view body, Message& message);
   bool accept_value(char type, std::string_view body, Message& message);

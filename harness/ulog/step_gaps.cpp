@@ -14,7 +14,8 @@ constexpr double us_per_s = 1e6, us_per_ms = 1e3;
 // The slowest rates of PX4: IMU_GYRO_RATEMAX is at least 100 Hz, and the laws limit dt to 20 ms.
 double slowest_hz(Module module) { return module == Module::rate_unit ? 100 : 50; }
 
-// A rate unit of 1 kHz may have samples 1.1 ms apart.
+// The median may exceed the period by this factor: a rate unit of 1 kHz may have samples 1.1 ms
+// apart.
 constexpr double slack = 1.25;
 
 constexpr double most_missing = 0.01;
@@ -35,7 +36,7 @@ StepGaps step_gaps(std::span<const std::uint64_t> times_us) {
   std::nth_element(gaps.begin(), middle, gaps.end());
   found.median_us = static_cast<double>(*middle);
   for (const std::uint64_t gap : gaps) {
-    // Any time may be in a damaged log.
+    // The limit prevents an overflow below: a damaged log may have any times.
     const double periods = std::min(std::round(static_cast<double>(gap) / found.median_us), 1e12);
     if (periods > 1) found.missing += static_cast<std::size_t>(periods) - 1;
     found.longest_us = std::max(found.longest_us, gap);
@@ -65,8 +66,8 @@ std::string too_sparse(Module module, const StepGaps& gaps, std::optional<double
       static_cast<double>(gaps.longest_us) / us_per_ms, memory);
 }
 
-// A log that has every fourth sample of all topics has no gaps. So the rate of a rate unit must be
-// known.
+// A log with only every fourth step has equal intervals, so step_gaps() finds no missing step. The
+// rate of a rate unit must therefore be known.
 bool may_be_complete(Module module, const StepGaps& gaps, std::optional<double> fastest_hz) {
   if (gaps.missing > 0) return false;
   if (module != Module::rate_unit) return true;

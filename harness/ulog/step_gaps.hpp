@@ -1,4 +1,4 @@
-// Which steps of a unit a log lacks, as far as the times of its samples show.
+// Estimates from the times of a log's samples how many steps of a unit the log lacks.
 #pragma once
 
 #include <cstddef>
@@ -15,21 +15,22 @@ struct StepGaps {
   std::size_t steps = 0;  // in the log
   double median_us = 0;   // of the times between them; 0 with fewer than two steps
   std::uint64_t longest_us = 0;
-  std::size_t missing = 0;  // an estimate: each gap of n medians, rounded, lacks n - 1 steps
+  std::size_t missing = 0;  // estimate: a gap of n medians (rounded) lacks n - 1 steps
 
-  double part_missing() const;  // 0..1
+  double part_missing() const;  // missing / (steps + missing), 0..1
 };
 
 // REQUIRES: increasing times.
 StepGaps step_gaps(std::span<const std::uint64_t> times_us);
 
 // Why outputs that depend on earlier steps cannot be computed from a log with these gaps. Empty if
-// they can be computed approximately: at most 1% of the steps are missing, and a loop of PX4 may be
-// as slow as the samples of the log. `fastest_hz`: the loop rate in the parameters of the log.
+// they can be computed approximately: at most 1% of the steps are missing, and PX4 can run this
+// loop as slowly as the median of the gaps says. `fastest_hz`: IMU_GYRO_RATEMAX in the log, for the
+// text.
 std::string too_sparse(Module module, const StepGaps& gaps, std::optional<double> fastest_hz);
 
-// Whether the log may have every step: none is missing, and a rate unit is about as fast as the
-// log's parameters allow.
+// Whether the log may have every step: no step is missing, and a rate unit is about as fast as
+// `fastest_hz` allows. False for a rate unit without `fastest_hz`.
 bool may_be_complete(Module module, const StepGaps& gaps, std::optional<double> fastest_hz);
 
 }  // namespace attest

@@ -19,7 +19,7 @@ namespace {
 
 using Bytes = std::string;
 
-// The elements of a field, for one tick.
+// A field, with the functions that append its elements at a tick.
 struct Field {
   std::string name;
   const char* type;
@@ -63,7 +63,7 @@ void append(T value, Bytes& bytes) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-// "q" of "q[0]".
+// The field of an element: "q" for "q[0]". Adds it if it is not there yet.
 Field& field_in(std::vector<Field>& fields, std::string_view path, const char* type) {
   const std::string name(path.substr(0, path.find('[')));
   const auto known =
@@ -90,8 +90,9 @@ class Topics {
   }
 
   const std::vector<Topic>& all() const { return topics_; }
-  // The instances of a topic share its definition, so one without times gets those of the other.
-  // Their value is the time of the step, at which a unit publishes its own topic.
+  // The instances of a topic share its definition. So an instance without `integers` (times) gets
+  // those of the other instance, with the time of the step, at which a unit publishes its own
+  // topic.
   void complete_instances() {
     for (Topic& topic : topics_) {
       for (const Topic& other : topics_) {
@@ -157,9 +158,10 @@ void add_topic(const LogTopic& from, const Trace& trace, Topics& topics) {
   }
 }
 
-// A column of the plant as topic and field of a log. A column without a topic becomes a topic with
-// the field `value`. A unit of v1.14 to v1.16 receives an estimate, at its own times. If the unit
-// has a topic of that name, the true state is the topic `..._groundtruth`, as in PX4's simulators.
+// The topic and the field for a column of the plant. A column without a topic becomes a topic with
+// the field `value`. A unit of v1.14 to v1.16 receives an estimate of the true state at other
+// times. So if the unit has a topic of that name, the true state is in the topic `..._groundtruth`,
+// as in PX4's simulators.
 std::pair<std::string, std::string> plant_field(std::string_view path, Module module,
                                                 const std::vector<LogTopic>& layout) {
   const auto dot = path.find('.');
@@ -171,8 +173,8 @@ std::pair<std::string, std::string> plant_field(std::string_view path, Module mo
   return {topic, fmt::format("value{}", path.substr(std::min(path.find('['), path.size())))};
 }
 
-// For the old controller, battery_status has a field of the inputs and one of the plant. So it is
-// logged at each tick.
+// A topic with a field of the plant is logged at each tick. For the controller of v1.5.5 and
+// v1.3.4, this includes battery_status, which also has a field of the inputs.
 void add_plant(Module module, const std::vector<LogTopic>& layout, Topics& topics) {
   for (const PlantColumn& column : plant_columns()) {
     const std::string_view path = std::string_view(column.name).substr(plant_prefix.size());
@@ -239,7 +241,7 @@ Result<void> write_log(const std::filesystem::path& path, const Trace& trace) {
   const std::uint64_t start = trace.samples.empty() ? 0 : trace.samples.front().in.timestamp;
   auto writer = ulog::Writer::open(path, start);
   if (!writer) return tl::unexpected(writer.error());
-  const std::vector<LogTopic> layout = log_topics(module);  // outlives the topics
+  const std::vector<LogTopic> layout = log_topics(module);  // the topics refer to it
   const Topics topics = topics_of(trace, layout);
   if (auto set = writer->info("sys_name", "attest"); !set) return set;
   if (!trace.source.empty()) {

@@ -1,4 +1,4 @@
-// Traces as logs of PX4, for the tools that show flights.
+// Writes traces as logs of PX4, for the tools that show flights.
 #pragma once
 
 #include <filesystem>
@@ -13,10 +13,10 @@ namespace attest {
 //
 // In the ULog, topics and fields have the names of log_topics.hpp, which are PX4's. `timestamp` is
 // the time of the step in every topic. A topic is logged at the ticks at which it is new: the topic
-// that triggers the step (control_state, vehicle_attitude, vehicle_angular_velocity) and the state
-// of the vehicle at every tick, other inputs when they are updated, outputs when they are
-// published. Of a topic that the module reads and publishes, the instance 0 is its own, the
-// instance 1 that of others. Parameters are logged with their first values, and again when they
+// that triggers the step (control_state, vehicle_attitude, vehicle_angular_velocity) and the true
+// state of the vehicle at every tick, other inputs when they are updated, outputs when they are
+// published. If the module reads and publishes a topic, its own samples are in instance 0, those of
+// other modules in instance 1. Parameters are logged with their first values, and again when they
 // change. Errors: the file cannot be written; a ULog of a mixer or battery estimate.
 Result<void> write_trace(const std::filesystem::path& path, const Trace& trace);
 

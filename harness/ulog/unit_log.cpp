@@ -10,11 +10,11 @@
 namespace attest::ulog {
 namespace {
 
-// An attitude unit runs at up to 250 Hz, and publishes a fraction of a millisecond after its
-// sample.
+// An output that is more than this after a step does not belong to it. An attitude unit runs at up
+// to 250 Hz, and publishes a fraction of a millisecond after its sample.
 constexpr std::uint64_t latest_answer_us = 2000;
 
-// The samples of an input, in the order of the steps.
+// Gives each step the samples of one input topic.
 class PendingRows {
  public:
   PendingRows(const LogSeries& series, Module module, LogRules rules)
@@ -23,8 +23,9 @@ class PendingRows {
     updated_ = channels()[*bit].bit;
   }
 
-  // Writes the last sample before the step at `time`, if it is newer than that of the call before.
-  // `last`: the sample of the step before; at the first step, the assumed inputs.
+  // Copies the last sample of the topic before the step at `time` to `sample`, if it is newer than
+  // that of the previous call. `last`: the sample of the previous step; at the first step, the
+  // sample before it.
   void advance_to(std::uint64_t time, const Sample& last, Sample& sample) {
     std::optional<std::size_t> newest;
     for (bool is_first = true; next_ < series_.size() && is_there(next_, time); is_first = false) {
@@ -41,8 +42,8 @@ class PendingRows {
     return series_.time(row) < time || (rules_ != LogRules::cascade && series_.time(row) == time);
   }
 
-  // Whether the unit itself published `row`, the first after the step of `last`. It publishes once
-  // in a step, soon after the sample.
+  // Whether the unit itself published `row`, the first sample after the step of `last`. The unit
+  // publishes once in a step, soon after the step's time.
   bool is_own(std::size_t row, const Sample& last) const {
     return rules_ == LogRules::cascade && last.in.timestamp > 0 &&
            series_.time(row) - last.in.timestamp <= latest_answer_us && is_shared() &&
@@ -87,7 +88,8 @@ class UnitOfLog {
  private:
   Trace& trace() { return unit_.trace; }
 
-  // In a log of attest, a topic without samples was not published.
+  // Whether the trace has this output. In a log of attest, a topic without samples counts, too: the
+  // unit never published it.
   bool is_logged(const LogSeries& output) const {
     if (!output.is_located() || output.logged_channels().empty()) return false;
     return output.size() > 0 || rules_ == LogRules::attest;
@@ -152,7 +154,7 @@ class UnitOfLog {
     unit_.outputs.push_back(std::move(logged));
   }
 
-  // The tick that the output answers.
+  // The tick of the step that published the output; empty if it is not known.
   std::optional<std::size_t> tick_of(const LogSeries& output, std::size_t row) const {
     const auto sampled = output.sample_time(row);
     if (sampled && has_sample_times_) return tick_sampled_at(*sampled);
@@ -171,15 +173,15 @@ class UnitOfLog {
     return static_cast<std::size_t>(found - all.begin());
   }
 
-  // Whether another module published this sample: this unit does not publish the topic in the mode
-  // at that time. Also true before the log's first step.
+  // Whether another module published this sample, because this unit does not publish the topic in
+  // the mode at that time. Also true before the log's first step.
   bool is_of_others(const LogSeries& output, std::size_t row) const {
     if (rules_ != LogRules::cascade) return false;
     const auto after = steps_.first_after(output.time(row));
     return after == 0 || !publishes(log_.module(), output.name(), unit_.trace.samples[after - 1]);
   }
 
-  // Ticks that do not publish get the values of the tick before, as the ABI has it.
+  // Ticks that do not publish get the values of the tick before, as the ABI requires.
   void hold_unpublished(const LogSeries& output, const Channel& published) {
     for (std::size_t tick = 1; tick < trace().samples.size(); ++tick) {
       Sample& sample = trace().samples[tick];
@@ -220,7 +222,7 @@ class UnitOfLog {
   ModuleContents& log_;
   const LogSeries& steps_;
   LogRules rules_;
-  bool has_sample_times_;  // every step has one, and they do not decrease
+  bool has_sample_times_;  // every step has a timestamp_sample; these do not decrease
   LoggedUnit unit_;
 };
 

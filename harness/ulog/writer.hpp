@@ -7,7 +7,8 @@
 //     writer->commit();
 //
 // Formats start with `uint64_t timestamp`, have fields of descending sizes, and are not nested, so
-// they need no padding, which some readers misread. A sync message follows about every 64 KiB.
+// they need no padding, which some readers misread. After the first subscription, a sync message is
+// written about every 64 KiB.
 #pragma once
 
 #include <initializer_list>
@@ -20,22 +21,23 @@
 namespace attest::ulog {
 
 // Errors of all functions: the file cannot be written; then commit() fails, too. Two more errors
-// have no effect on the file: a message beyond 65535 bytes, and a name with characters other than
-// letters, digits and _ (for topics also - and /).
+// have no effect on the file: a message of more than 65535 bytes, and a name with characters other
+// than letters, digits and _ (for topics also - and /).
 class Writer {
  public:
   // `start_us`: since the start of the system.
   static Result<Writer> open(const std::filesystem::path& path, std::uint64_t start_us);
 
-  Result<void> info(std::string_view name, std::string_view text);  // also an error: no text
+  Result<void> info(std::string_view name, std::string_view text);  // also an error: empty text
   Result<void> parameter(std::string_view name, std::variant<std::int32_t, float> value);
 
-  // "topic:uint64_t timestamp;float[4] q;". Also errors: fields that are not as described above, or
-  // start with _; defined before; after a subscription.
+  // `definition`: "topic:uint64_t timestamp;float[4] q;". Also errors: fields that are not as
+  // described above, or start with _; the topic is defined already; there is a subscription
+  // already.
   Result<void> define(std::string_view definition);
-  // Returns the msg_id. Also errors: not defined; this instance is subscribed.
+  // Returns the msg_id. Also errors: not defined; this instance is subscribed already.
   Result<std::uint16_t> subscribe(std::string_view topic, std::uint8_t multi_id = 0);
-  // Also errors: unknown msg_id; not as many bytes as the fields have.
+  // Also errors: unknown msg_id; another number of bytes than the fields have.
   Result<void> data(std::uint16_t msg_id, std::string_view bytes);
   // `level`: '0' (emergency) to '7' (debug); others are an error.
   Result<void> log(char level, std::uint64_t timestamp_us, std::string_view text);
@@ -49,7 +51,7 @@ class Writer {
   Result<void> write_value(char type, std::string_view key, std::string_view value);
 
   AtomicFile file_;
-  Result<void> status_;  // of all writes: an incomplete file must not appear
+  Result<void> status_;  // the first error of a write; commit() then fails
   std::string block_;    // not written yet
   Formats formats_;
   std::vector<const Format*> subscribed_;  // by msg_id
