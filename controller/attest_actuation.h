@@ -28,14 +28,14 @@ typedef struct attest_mixer_inputs {
     float control[4]; /* roll, pitch, yaw [-1..1] about body x, y, z (FRD); thrust [0..1] */
   } actuator_controls_0;
   struct {
-    float delta_out_max; /* largest change of an output since the previous call; 0: no limit */
+    float delta_out_max; /* largest change of an output since the previous call; no limit if 0 */
   } mixer;
 } attest_mixer_inputs;
 
 /* The host passes the same struct to every call, zeroed before the first. */
 typedef struct attest_mixer_outputs {
   struct {
-    float output[ATTEST_MIXER_ROTORS_MAX]; /* -1 stopped .. 1 full; as many as there are rotors */
+    float output[ATTEST_MIXER_ROTORS_MAX]; /* -1 stopped .. 1 full; one for each rotor */
   } actuator_outputs;
   struct {               /* topic multirotor_motor_limits; any value but 0 is true */
     uint8_t lower_limit; /* a motor is at its minimum */
@@ -50,7 +50,7 @@ typedef struct attest_mixer {
    * with numbers in 1/10000, such as "R: 4x 10000 10000 10000 0". It is valid during the call only.
    * With a deadband of 0, delta_out_max does not limit the first step, because there is no previous
    * output. With another deadband the previous output is 0, and delta_out_max limits the first step
-   * too. NULL: not supported; its cases are then counted as unsupported. */
+   * too. Returns NULL if the mixer is not supported. Its cases are then counted as unsupported. */
   void* (*create)(const char* profile, const char* definition);
   void (*destroy)(void* self);
   int (*step)(void* self, const attest_mixer_inputs* in, attest_mixer_outputs* out);
@@ -77,13 +77,12 @@ typedef struct attest_battery_outputs {
 } attest_battery_outputs;
 
 typedef struct attest_battery_status {
-  /* A new estimate, before its first sample. NULL: profile not supported. */
+  /* A new estimate, before its first sample. Returns NULL if the profile is not supported. */
   void* (*create)(const char* profile);
   void (*destroy)(void* self);
   /* Sets BAT_N_CELLS, BAT_V_EMPTY, BAT_V_CHARGED, BAT_V_LOAD_DROP or BAT_R_INTERNAL (negative:
-   * unknown). Called before the first step only.
-   * Their defaults are 0, 3.4 V, 4.05 V, 0.3 V and -1. With 0 cells, the
-   * firmware's default, the estimate is not finite and the scale stays 1. */
+   * unknown). Called before the first step only. Their defaults are those of the firmware:
+   * 0, 3.4 V, 4.05 V, 0.3 V and -1. With 0 cells the estimate is not finite, and the scale is 1. */
   int (*set_parameter)(void* self, const char* name, float value);
   /* Takes one sample. The samples are 10 ms apart (100 Hz). */
   int (*step)(void* self, const attest_battery_inputs* in, attest_battery_outputs* out);

@@ -4,8 +4,9 @@
  * computes a rates setpoint from the attitude, and the rate unit, which computes torque from rates.
  *
  * Each unit is an extension of attest_unit.h, a table of functions that a port returns from its
- * extension(). A port may have one of them or both. A port that has nothing else may leave create,
- * destroy, set_parameter and step of its attest_unit NULL. Compiles as C11 and as C++17.
+ * extension(). A port may have one unit or both. If it has no controller of attest_unit.h, it may
+ * leave create, destroy, set_parameter and step of its attest_unit NULL. Compiles as C11 and as
+ * C++17.
  *
  * The host (attest) steps the attitude unit once for each vehicle_attitude sample, and the rate
  * unit once for each vehicle_angular_velocity sample, each at its own rate. The units share nothing
@@ -16,14 +17,15 @@
  * increases from step to step. It is the only clock. Timestamps inside topics are data: they may be
  * equal to `timestamp` or older. In the group `robustness` they may have any value.
  *
- * Initial values: before the first sample of a topic, the unit uses the value in the note
- * "initially ..." of a field. The field usually is 0 until then, so the unit must not read it.
+ * Initial values: before the first sample of a topic, the unit uses the value that the comment of a
+ * field gives as "initially ...". Such a field usually is 0 until then, so the unit must not read
+ * it.
  *
  * Own publications: a setpoint that a unit publishes is also an input of that unit, as in the
  * firmware. The host does not pass it back, so the unit keeps it. The attitude unit in stabilized
  * mode publishes vehicle_attitude_setpoint; the rate unit in acro mode publishes
- * vehicle_rates_setpoint. The unit keeps this setpoint as the newest sample of that topic. The
- * setpoint replaces a sample from outside that is not used yet. At its next use it counts as new.
+ * vehicle_rates_setpoint. The unit keeps this setpoint as the newest sample of that topic. It
+ * replaces an external sample that the unit has not used yet. At its first use it counts as new.
  */
 #ifndef ATTEST_CASCADE_H
 #define ATTEST_CASCADE_H
@@ -60,11 +62,11 @@ typedef struct attest_attitude_inputs {
     uint64_t timestamp_sample;  /* [us] of the IMU data; the law's dt is its change since the
                                  * previous step, limited to 0.2 .. 20 ms */
     float q[4];                 /* body FRD to world NED */
-    float delta_q_reset[4];     /* how far the estimator's last reset turned the attitude */
+    float delta_q_reset[4];     /* rotation of the attitude by the estimator's last reset */
     uint8_t quat_reset_counter; /* counts these resets */
   } vehicle_attitude;
 
-  struct {                  /* topic vehicle_attitude_setpoint, from outside */
+  struct {                  /* topic vehicle_attitude_setpoint, external samples only */
     uint64_t timestamp;     /* [us] when it was published; the unit drops a sample that is not
                              * newer than the last one that it used */
     float q_d[4];           /* desired attitude, body FRD to world NED */
@@ -96,7 +98,7 @@ typedef struct attest_attitude_inputs {
   } manual_control_setpoint;
 
   struct {                            /* topic vehicle_local_position */
-    float unaided_heading;            /* [rad] of the gyros alone; used if finite; initially NaN */
+    float unaided_heading;            /* [rad] from gyros alone; used if finite; initially NaN */
     uint8_t heading_good_for_control; /* flag; initially true */
   } vehicle_local_position;
 
@@ -123,7 +125,7 @@ typedef struct attest_attitude_outputs {
     float roll;           /* [rad/s] about body x */
     float pitch;          /* [rad/s] about body y */
     float yaw;            /* [rad/s] about body z */
-    float thrust_body[3]; /* [-1..1] of the attitude setpoint, passed through */
+    float thrust_body[3]; /* [-1..1] thrust_body of the attitude setpoint in use */
     uint8_t published;
   } vehicle_rates_setpoint;
 
@@ -155,7 +157,7 @@ enum {
   ATTEST_RATE_UPDATED_VEHICLE_LAND_DETECTED = 1 << 4,
   ATTEST_RATE_UPDATED_CONTROL_ALLOCATOR_STATUS = 1 << 5,
   ATTEST_RATE_UPDATED_BATTERY_STATUS = 1 << 6,
-  ATTEST_RATE_UPDATED_PARAMETER_UPDATE = 1 << 8 /* the same bit in every unit; 1 << 7 is free */
+  ATTEST_RATE_UPDATED_PARAMETER_UPDATE = 1 << 8 /* same bit in every unit; 1 << 7 is unused */
 };
 
 typedef struct attest_rate_inputs {
@@ -170,8 +172,8 @@ typedef struct attest_rate_inputs {
     float xyz_derivative[3];   /* [rad/s^2] angular acceleration, filtered by the host */
   } vehicle_angular_velocity;
 
-  struct {                /* topic vehicle_rates_setpoint, of the attitude unit or from outside */
-    float roll;           /* [rad/s] about body x; not finite: hold the rate measured now */
+  struct {                /* topic vehicle_rates_setpoint, of the attitude unit or external */
+    float roll;           /* [rad/s] about body x; if not finite, the unit uses the measured rate */
     float pitch;          /* [rad/s] about body y, likewise */
     float yaw;            /* [rad/s] about body z, likewise */
     float thrust_body[3]; /* [-1..1] along body x, y, z */
@@ -185,13 +187,13 @@ typedef struct attest_rate_inputs {
   } manual_control_setpoint;
 
   struct {                            /* topic control_allocator_status */
-    float unallocated_torque[3];      /* commanded torque minus the torque that motors give */
+    float unallocated_torque[3];      /* commanded torque minus torque that the motors give */
     uint8_t torque_setpoint_achieved; /* flag: no axis is saturated; if set, the unit ignores
                                        * unallocated_torque */
   } control_allocator_status;
 
   struct {             /* topic battery_status */
-    float scale;       /* [1] factor on torque and thrust; compensates a low voltage */
+    float scale;       /* [1] factor on torque and thrust if MC_BAT_SCALE_EN is not 0 */
     uint8_t connected; /* flag */
   } battery_status;
 
@@ -216,7 +218,7 @@ typedef struct attest_rate_inputs {
  * over about half a second. The control loop does not read it, so this ABI does not have it. */
 typedef struct attest_rate_outputs {
   struct {        /* topic vehicle_torque_setpoint */
-    float xyz[3]; /* about body x, y, z (FRD); usually in [-1..1], not limited */
+    float xyz[3]; /* about body x, y, z (FRD); limited to [-1..1] only by battery scaling */
     uint8_t published;
   } vehicle_torque_setpoint;
 

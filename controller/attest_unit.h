@@ -2,9 +2,9 @@
 /*
  * attest_unit.h - the C ABI of ports that are shared libraries.
  *
- * Such a port of the multicopter attitude controller exports one symbol, attest_unit_v1(), which
- * returns a table of functions. Its author needs to read this header only. It compiles as C11 and
- * as C++17. Ports that are programs do not need it.
+ * A port of the multicopter attitude controller that is a shared library exports one symbol,
+ * attest_unit_v1(), which returns a table of functions. The author of such a port needs to read
+ * this header only. It compiles as C11 and as C++17. Ports that are programs do not need it.
  *
  * Life cycle, in the order in which the host (attest) calls:
  *
@@ -19,8 +19,8 @@
  *     unit->destroy(self);
  *
  * Frames: world is NED, body is FRD. Quaternions are Hamilton, scalar first {w, x, y, z}, and
- * rotate body into world: v_NED = R(q) v_FRD. Angles are radians, rates rad/s, unless a parameter's
- * own unit says degrees. Names are those of the PX4 topics and fields that carry the signal.
+ * rotate body into world: v_NED = R(q) v_FRD. Angles are in rad, rates in rad/s; some parameters
+ * are in degrees. Names are those of the PX4 topics and fields that carry the signal.
  *
  * Time: `timestamp` is the only clock. A unit must not read another one.
  *
@@ -59,14 +59,14 @@ extern "C" {
  *
  * `updated` has a bit for each topic, set if the topic was published since the previous step. A
  * topic whose bit is clear holds its last published sample, or zeros before its first publication.
- * A port copies a topic only if its bit is set in this step, or was set in an earlier one and the
- * port has not copied the topic since. The law copies vehicle_attitude_setpoint only in
- * steps that control attitude, and vehicle_rates_setpoint only in offboard rates mode. In other
- * steps the port remembers the bit. It copies the topic at the next step that needs it.
- * control_state is new in every step and has no bit.
+ * A port copies a topic only if its bit is set in this step, or was set in an earlier step and the
+ * port has not copied the topic since. The law copies vehicle_attitude_setpoint only in steps that
+ * control attitude, and vehicle_rates_setpoint only in offboard rates mode. In other steps the port
+ * remembers the bit, and copies the topic at the next step that needs it. control_state is new in
+ * every step and has no bit.
  *
- * Flags are bytes: zero is false and ANY other value is true (multirotor_motor_limits arrives as
- * bit masks 1, 2, 4).
+ * Flags are bytes: zero is false and ANY other value is true (a flag of multirotor_motor_limits may
+ * arrive as 1, 2 or 4).
  */
 enum {
   ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT = 1 << 0,
@@ -77,7 +77,7 @@ enum {
   ATTEST_UPDATED_VEHICLE_STATUS = 1 << 5,
   ATTEST_UPDATED_MULTIROTOR_MOTOR_LIMITS = 1 << 6,
   ATTEST_UPDATED_BATTERY_STATUS = 1 << 7,
-  ATTEST_UPDATED_PARAMETER_UPDATE = 1 << 8 /* set_parameter() was called for each change */
+  ATTEST_UPDATED_PARAMETER_UPDATE = 1 << 8 /* parameters changed: see set_parameter() */
 };
 
 typedef struct attest_inputs {
@@ -88,7 +88,7 @@ typedef struct attest_inputs {
   uint32_t updated;   /* ATTEST_UPDATED_... bits */
 
   struct {            /* topic control_state: the estimate that this step uses */
-    float q[4];       /* attitude, body FRD to world NED; norm 1 except in robustness cases */
+    float q[4];       /* attitude, body FRD to world NED; a few cases have a norm other than 1 */
     float roll_rate;  /* [rad/s] about body x (forward) */
     float pitch_rate; /* [rad/s] about body y (right) */
     float yaw_rate;   /* [rad/s] about body z (down) */
@@ -101,7 +101,7 @@ typedef struct attest_inputs {
     float thrust;                   /* [0..1] collective thrust along -z body */
     float yaw_sp_move_rate;         /* [rad/s] yaw rate commanded by the pilot, fed forward */
     float landing_gear;             /* [-1..1] passed through to control[7] */
-    uint8_t disable_mc_yaw_control; /* flag: weather-vane, the wind may turn the nose */
+    uint8_t disable_mc_yaw_control; /* flag: in autonomous modes the wind may turn the nose */
   } vehicle_attitude_setpoint;
 
   struct {        /* topic vehicle_rates_setpoint: from outside, used in offboard rates mode */
@@ -119,10 +119,10 @@ typedef struct attest_inputs {
   } manual_control_setpoint;
 
   struct {       /* topic battery_status */
-    float scale; /* [1] factor on roll, pitch, yaw and thrust; compensates a low voltage */
+    float scale; /* [1] factor on roll, pitch, yaw and thrust if MC_BAT_SCALE_EN is not 0 */
   } battery_status;
 
-  struct { /* topic vehicle_control_mode: flags, see above */
+  struct { /* topic vehicle_control_mode: flags */
     uint8_t flag_control_manual_enabled;
     uint8_t flag_control_auto_enabled;
     uint8_t flag_control_rates_enabled;
@@ -137,7 +137,7 @@ typedef struct attest_inputs {
 
   struct {                  /* topic vehicle_status */
     uint8_t is_rotary_wing; /* before the first sample, the unit takes it as true */
-    uint8_t is_vtol;        /* the first sample selects the topics of the outputs, see below */
+    uint8_t is_vtol;        /* selects the topics of the outputs: see attest_outputs */
   } vehicle_status;
 
   struct {               /* topic multirotor_motor_limits: saturation reported by the mixer */
@@ -149,9 +149,10 @@ typedef struct attest_inputs {
 
 /* ---- outputs ---------------------------------------------------------------------------------
  *
- * `published` is a flag, as above: not 0 in a step that publishes the topic, otherwise 0. With 0
- * the other fields keep what was last published. The host passes the same struct to every step,
- * zeroed before the first. So a unit only has to write the topics it publishes, and `published`.
+ * `published` is a flag: not 0 in a step that publishes the topic, otherwise 0. If it is 0, the
+ * other fields of the topic keep what was last published. The host passes the same struct to every
+ * step, zeroed before the first. So a unit has to write `published` of every topic, and the other
+ * fields only of the topics that it publishes.
  *
  * Topics: a unit publishes vehicle_rates_setpoint and actuator_controls_0 only after its first
  * sample of vehicle_status, which selects the topics for the life of the instance. If is_vtol is
@@ -160,16 +161,16 @@ typedef struct attest_inputs {
  * needs no vehicle_status.
  *
  * Own publications: the unit has one copy of vehicle_rates_setpoint. Its own result overwrites an
- * external sample in that copy. If it publishes on the same topic, an external sample that it has
- * not copied yet is lost, too. A VTOL publishes on the virtual topic, so there the external sample
- * waits until offboard rates mode copies it.
+ * external sample in that copy. If the unit publishes on vehicle_rates_setpoint, an external sample
+ * that it has not copied yet is lost, too. A VTOL publishes on the virtual topic, so its external
+ * sample waits until offboard rates mode copies it.
  */
 typedef struct attest_outputs {
-  struct {        /* topic vehicle_rates_setpoint: result of the attitude loop */
+  struct {        /* topic vehicle_rates_setpoint: of the attitude loop, or of the sticks in acro */
     float roll;   /* [rad/s] about body x */
     float pitch;  /* [rad/s] about body y */
     float yaw;    /* [rad/s] about body z */
-    float thrust; /* [0..1] passed through */
+    float thrust; /* [0..1] of the attitude setpoint or of the throttle stick */
     uint8_t published;
   } vehicle_rates_setpoint;
 
@@ -198,44 +199,45 @@ enum {
 typedef struct attest_unit {
   uint32_t abi_version; /* ATTEST_UNIT_ABI_VERSION of the header the port was compiled with */
   const char* name;     /* short and stable, for reports: "acme-fc-rust" */
-  const char* version;  /* of the port */
+  const char* version;  /* version of the port */
 
   /* A new instance in its power-on state with default parameters. `profile` names the version of
-   * the law, such as "px4-v1.5.5". NULL: profile not supported, its cases are skipped. A profile
-   * that was supported once must stay supported. A port that allows only one instance returns NULL
-   * while that instance exists. After destroy() it must create another. Legal at any time, also
-   * while other instances exist. May allocate. */
+   * the law, such as "px4-v1.5.5". Returns NULL if the port does not support the profile; the cases
+   * of the profile are then skipped. A profile that was supported once must stay supported. A port
+   * that allows only one instance returns NULL while that instance exists. After destroy() it must
+   * create another. Legal at any time, also while other instances exist. May allocate. */
   void* (*create)(const char* profile);
 
   /* Frees an instance. Called once per successful create(), as the last call for the instance. */
   void (*destroy)(void* self);
 
-  /* Sets one parameter by its PX4 name. Integer parameters arrive as the float of the same value.
-   * Legal before the first step, and before a step that has ATTEST_UPDATED_PARAMETER_UPDATE set.
-   * A value set before the first step holds from creation: it also controls decisions that the law
-   * makes once, such as tailsitter recovery. A later value takes effect in the step that follows.
-   * Parameters never set have the default of the law: `attest list --parameters` prints them all.
-   * In px4-v1.3.4 MC_TPA_BREAK, MC_TPA_SLOPE and MC_BAT_SCALE_EN do not exist: the host does not
-   * set them there, and a port may return ATTEST_INVALID. Same thread as step(). */
+  /* Sets one parameter by its PX4 name. Returns ATTEST_OK, or ATTEST_INVALID for an unknown name or
+   * a value that is not allowed. Integer parameters arrive as the float of the same value. Legal
+   * before the first step, and before a step that has ATTEST_UPDATED_PARAMETER_UPDATE set. A value
+   * set before the first step holds from creation: it also controls decisions that the law makes
+   * once, such as tailsitter recovery. A later value takes effect in the step that follows.
+   * Parameters never set have the law's default: `attest list --parameters` prints all defaults. In
+   * px4-v1.3.4 MC_TPA_BREAK, MC_TPA_SLOPE and MC_BAT_SCALE_EN do not exist: the host does not set
+   * them there, and a port may return ATTEST_INVALID. Same thread as step(). */
   int (*set_parameter)(void* self, const char* name, float value);
 
-  /* One control step. Must work for every input, NaN and infinities included. `in` and `out` are
-   * valid during the call only; `in` must not be written. */
+  /* One control step. Returns ATTEST_OK or another of the results above. Must work for every input,
+   * NaN and infinities included. `in` must not be written. */
   int (*step)(void* self, const attest_inputs* in, attest_outputs* out);
 
   /* Extends the ABI without breaking it: returns a pointer to the interface named `id`, or NULL.
-   * Must return the same each time, before create() too. The function pointer itself may be NULL
-   * when a port has no extensions. */
+   * Must return the same pointer for an `id` each time, before create() too. The function pointer
+   * itself may be NULL if a port has no extensions. */
   const void* (*extension)(const char* id);
 } attest_unit;
 
 /* Extension: const char*, the groups of cases that the port does not support, separated by commas:
- * "tailsitter,robustness". They are counted separately, never as conformant. */
+ * "tailsitter,robustness". Their cases are counted separately, never as conformant. */
 #define ATTEST_EXTENSION_UNSUPPORTED_GROUPS "attest.unsupported_groups"
 
 /* Extension: const char*, the arithmetic of a port in fixed point: "fixed:22" when its signals have
  * 22 fraction bits; 20 to 32 are allowed. The numeric level then allows, in addition to the
- * tolerances for floats, some multiples of the last bit (LSB). Every report says so. */
+ * tolerances for floats, some multiples of the last bit (LSB). Every report says that. */
 #define ATTEST_EXTENSION_ARITHMETIC "attest.arithmetic"
 
 /* Extension: const char*, the rate in Hz of a port that has a fixed sample time and ignores
@@ -259,7 +261,7 @@ typedef struct attest_timestamp_sample {
    * step's `timestamp` and never decreases. It repeats when two steps use the same sample. It
    * equals `timestamp` where no delay is modelled, as in scripted cases. In a flight, a step before
    * the arrival of the first sample gets the state at the start of the flight, and the time of that
-   * state. Returns ATTEST_OK or another of the results. */
+   * state. Returns ATTEST_OK or another of the results of step(). */
   int (*set_timestamp_sample)(void* self, uint64_t timestamp_sample);
 } attest_timestamp_sample;
 

@@ -2,9 +2,9 @@
 // discharge.
 //
 // The estimate of PX4 v1.5.5 systemlib Battery. The cell voltage, corrected for the drop under
-// load, gives a measured charge. Filtered by a low-pass, this is the remaining charge, from which
-// the voltage of the cell at rest follows. The order of the operations is part of the estimate:
-// golden/recorded/battery-v1.5.5 is matched to the bit.
+// load, gives a measured charge. Low-pass filtered, it is the remaining charge, which gives the
+// voltage of the cell at rest. The order of the operations is part of the estimate: the results
+// have the same bits as golden/recorded/battery-v1.5.5.
 //
 // Voltages [V], currents [A], throttle [0..1]. No clock: one update is one sample at 100 Hz. No
 // allocation; one thread at a time.
@@ -25,7 +25,7 @@ struct BatteryOptions {
   float empty_cell_V = 3.4f;
   float full_cell_V = 4.05f;
   float load_drop_V = 0.3f;  // of one cell at full throttle
-  // Of one cell; used instead of load_drop_V where known.
+  // Of one cell. If it is known, it is used instead of load_drop_V.
   std::optional<float> internal_resistance_ohm = std::nullopt;
 };
 
@@ -39,8 +39,8 @@ struct BatteryParameter {
 // The PX4 parameters that set the options.
 std::span<const BatteryParameter> battery_parameters();
 
-// Returns false and keeps the options when no parameter has that name, or when the value is not
-// allowed: BAT_N_CELLS is a whole number from 0 to 100.
+// Returns false and keeps the options if no parameter has that name, or if the value is not
+// allowed: BAT_N_CELLS must be a whole number from 0 to 100.
 bool set_battery_parameter(BatteryOptions& options, std::string_view name, float value);
 
 struct BatterySample {
@@ -74,7 +74,7 @@ struct BatteryStages {
     return isfinite(next) ? next : kept;
   }
 
-  // Of one cell.
+  // Returns the drop of one cell.
   static Scalar load_drop_V(const BatterySample& sample, const BatteryOptions& options) {
     if (options.internal_resistance_ohm) {
       return Scalar(sample.current_A) * Scalar(*options.internal_resistance_ohm);
@@ -96,7 +96,7 @@ struct BatteryStages {
     return std::clamp(low_passed(before, measured), Scalar(0), Scalar(1));
   }
 
-  // The rest voltage of a full cell divided by that of this cell.
+  // The rest voltage of a full cell divided by that of this cell, limited to 1 .. 1.3.
   static Scalar scale(Scalar remaining, const BatteryOptions& options) {
     const Scalar factor =
         Scalar(options.full_cell_V) / (Scalar(options.empty_cell_V) + range_V(options) * remaining);

@@ -6,7 +6,7 @@
 namespace attest::actuation {
 namespace {
 
-// The next word of `text`, which is consumed; empty at the end.
+// Removes the next word from `text` and returns it; an empty word at the end.
 std::string_view next_word(std::string_view& text) {
   constexpr std::string_view blank = " \t\r\n";
   const std::size_t start = std::min(text.find_first_not_of(blank), text.size());

@@ -46,8 +46,8 @@ class BasicMixer {
         has_previous_(stages_.starts_at_0(scales_.idle)) {}
 
   // One command for each rotor, valid until the next call. delta_out_max [1] limits the change of
-  // each command since the previous call; not positive: no limit. In the first call it limits the
-  // change from 0, or nothing where the mixer has no deadband.
+  // each command since the previous call, if it is positive. In the first call it limits the change
+  // from 0; without a deadband it does not limit the first call.
   std::span<const Scalar> mix(const Controls& controls, Scalar delta_out_max,
                               Saturation& saturation) {
     Controls c = stages_.scaled(controls, scales_);
@@ -75,7 +75,7 @@ class BasicMixer {
   MixerScales<Scalar> scales_;
   [[no_unique_address]] Stages stages_;
   std::array<Scalar, rotors_max> commands_{};
-  // Whether `commands_` limit the next call: those of the previous call, or 0 in the first call.
+  // Whether delta_out_max limits the next call's change from `commands_`, which start at 0.
   bool has_previous_;
 };
 

@@ -105,9 +105,9 @@ struct MixerStages {
     return {};
   }
 
-  // Goes through the rotors in order: where one is outside its limits, cuts yaw, and at the upper
-  // limit some thrust. Later rotors are tested with the new values, and the last values hold for
-  // all rotors. Returns whether yaw was cut.
+  // Goes through the rotors in order. At a rotor outside its limits it cuts yaw, and at the upper
+  // limit first some thrust. Later rotors are tested with the new values, and the last values hold
+  // for all rotors. Returns whether yaw was cut.
   static bool yield_yaw(std::span<const Rotor> rotors, Controls& c, const Fit& fit) {
     bool cut = false;
     for (const Rotor& rotor : rotors) {
@@ -134,8 +134,8 @@ struct MixerStages {
     return clamp(idle + out * (1 - idle), idle, 1);
   }
 
-  // At the first call there is no previous output. With a deadband, slew() takes it as 0. Without
-  // one, the first output is not limited.
+  // At the first call there is no previous output. With a deadband, slew() then starts from 0.
+  // Without a deadband (idle is -1), the first output is not limited.
   static bool starts_at_0(Scalar idle) { return idle > Scalar(-1); }
 
   static Scalar slew(Scalar wanted, Scalar previous, Scalar delta_out_max) {

@@ -2,7 +2,7 @@
 //
 // Tilt and yaw are separated. The tilt is corrected by the shortest rotation of the thrust axis. Of
 // the remaining yaw error only a share (MC_YAW_WEIGHT) is corrected, because yaw is slow. The rates
-// are proportional to the quaternion error of that reduced target.
+// are proportional to the quaternion error between the attitude and this reduced target.
 //
 // Frames: W world NED, B body FRD, D desired body. q_WB maps body into world. Rates [rad/s]. The
 // state is the setpoint. No clock, no allocation; one thread at a time.
@@ -23,7 +23,7 @@ struct AttitudeStages {
   using Vector = Vector3<Scalar>;
   using Q = Quaternion<Scalar>;
 
-  // The setpoint is normalised. The attitude is not normalised anywhere.
+  // Normalises the setpoint. The attitude is not normalised anywhere.
   ATTEST_INLINE static Q setpoint(const Q& given) { return unit(given); }
 
   // The setpoint after a reset of the estimator by the rotation `delta`.
@@ -52,12 +52,12 @@ struct AttitudeStages {
     return canonical(product(inverse(tilted), q_WD));
   }
 
-  // Limits the component, because rounding may leave the domain of acos and asin.
+  // Limits the component, because rounding may take it out of the domain of acos and asin.
   ATTEST_INLINE static Scalar in_domain(Scalar component) {
     return clamp(component, Scalar(-1), Scalar(1));
   }
 
-  // The share of the yaw that is corrected.
+  // The rotation by the share of the yaw error that is corrected.
   ATTEST_INLINE static Q weighted_yaw(Scalar w, Scalar z, Scalar weight) {
     using std::acos;
     using std::asin;
@@ -85,7 +85,7 @@ struct AttitudeStages {
     return rates + z_W_B * yaw_rate;
   }
 
-  // The limit includes the feed-forward.
+  // Limits the sum with the feed-forward.
   ATTEST_INLINE static Vector limit(const Vector& rates, const AttitudeGains<Scalar>& gains) {
     const Vector& max = gains.rate_max_rad_s;
     return {clamp(rates[0], -max[0], max[0]), clamp(rates[1], -max[1], max[1]),
@@ -101,7 +101,8 @@ class AttitudeLaw {
 
   void set_gains(const AttitudeGains<Scalar>& gains) { gains_ = gains; }
 
-  // q_d is of any norm but 0; the yaw rate [rad/s] is about the world's z axis.
+  // q_d may have any norm; norm 0 makes the setpoint NaN. The yaw rate [rad/s] is about the world's
+  // z axis.
   void set_setpoint(const Quaternion<Scalar>& q_d, Scalar yaw_rate) {
     q_WD_ = stages_.setpoint(q_d);
     yaw_rate_ = yaw_rate;

@@ -39,7 +39,7 @@ struct AttitudeTopics {
       .unaided_heading = std::numeric_limits<float>::quiet_NaN(), .heading_good_for_control = 1};
   decltype(attest_attitude_inputs::autotune_attitude_control_status) autotune{};  // idle
   bool landed = true;
-  bool spooled = false;  // judged when vehicle_status is latched
+  bool spooled = false;  // computed only when vehicle_status is latched
 };
 
 // The stages of a step outside the attitude law and the sticks. Pure functions of their arguments.
@@ -48,14 +48,14 @@ struct AttitudeStepStages {
   using Topics = AttitudeTopics;
   using Status = decltype(Topics::status);
 
-  // This function is a stage, so that a fault can take one trait from another profile.
+  // This function is a stage, so that a fault can replace it and take a trait of another profile.
   static ProfileTraits traits(Profile profile) { return traits_of(profile); }
 
   static AttitudeUnitGains<Scalar> gains(const Parameters& parameters) {
     return attitude_unit_gains<Scalar>(parameters);
   }
 
-  // dt [s], limited to 0.2 .. 20 ms. The difference is rounded before it is scaled.
+  // dt [s], limited to 0.2 .. 20 ms. The difference is rounded to Scalar before it is scaled.
   ATTEST_INLINE static Scalar step_time(std::uint64_t sample_us, std::uint64_t last_us) {
     return clamp(Scalar(sample_us - last_us) * Scalar(1e-6f), Scalar(0.0002f), Scalar(0.02f));
   }
@@ -154,7 +154,7 @@ class AttitudeUnit {
   // set. Returns false in the same cases as set_parameter() in parameters.hpp.
   bool set_parameter(std::string_view name, float value);
 
-  // One step. Writes the fields of a topic only when it publishes the topic.
+  // One step. Writes `published` of every topic, and the other fields only of published topics.
   void step(const attest_attitude_inputs& in, attest_attitude_outputs& out);
 
  private:

@@ -1,4 +1,4 @@
-// The definitions of AttitudeUnit: include it to instantiate another law.
+// The definitions of AttitudeUnit, for code that instantiates it with another law.
 #pragma once
 
 #include "controller/cascade/attitude_unit.hpp"
@@ -59,7 +59,8 @@ void AttitudeUnit<Scalar, Law>::read_parameters() {
   if (!is_finite(hover_estimate_)) thrust_limits_.hover = gains_.sticks.thrust_hover;
 }
 
-// The topics whose newest sample counts, whenever the law comes to use it.
+// Stores the newest samples of the attitude setpoint and of autotune, which the law may use in a
+// later step, and updates the hover thrust estimate.
 template <typename Scalar, typename Law>
 void AttitudeUnit<Scalar, Law>::latch_newest(const attest_attitude_inputs& in) {
   const auto updated = [&in](std::uint32_t topic) { return (in.updated & topic) != 0; };
@@ -128,7 +129,7 @@ void AttitudeUnit<Scalar, Law>::publish_attitude_setpoint(const AttitudeSetpoint
   topic.published = 1;
 }
 
-// A pending sample that is not newer than the last one is dropped.
+// A pending sample that is not newer than the last setpoint in use is dropped.
 template <typename Scalar, typename Law>
 void AttitudeUnit<Scalar, Law>::take_attitude_setpoint() {
   if (!setpoint_pending_) return;

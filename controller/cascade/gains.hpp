@@ -1,5 +1,5 @@
-// What the law computes from its parameters whenever they are read: gains, limits in radians, stick
-// curves.
+// The gains, limits in radians and stick curves. The law computes them whenever it reads the
+// parameters.
 //
 // Vectors are in the order roll, pitch, yaw. Plain values; any thread.
 #pragma once
@@ -76,13 +76,13 @@ Vector3<Scalar> radians_each(float roll_deg, float pitch_deg, float yaw_deg) {
 }
 
 // The yaw gain is divided by the weight, because the law multiplies the yaw error by the weight:
-// the product is MC_YAW_P again. A weight near 0 leaves the gain unchanged.
+// the product is MC_YAW_P again. A weight of at most 1e-4 leaves the gain unchanged.
 template <typename Scalar>
 Scalar weighted_yaw_gain(Scalar gain, Scalar weight) {
   return weight > Scalar(1e-4f) ? gain / weight : gain;
 }
 
-// The curve that MPC_THR_CURVE selects. The parameter may have any value.
+// The curve that MPC_THR_CURVE selects. Values other than 1 and 2 mean the same as 0.
 inline ThrottleCurve throttle_curve(float value) {
   if (value == 1.0f) return ThrottleCurve::straight;
   return value == 2.0f ? ThrottleCurve::through_hover_parameter

@@ -1,9 +1,9 @@
 // The parameters of the cascade: a table for each unit with names, defaults, bounds, units and
 // meanings, and the raw values.
 //
-// Names, defaults and bounds are those of PX4 v1.14.4, v1.15.4 and v1.16.0. Angles and
-// angular rates of parameters are in degrees; everything computed from them is in radians
-// (gains.hpp). The law accepts any value: the bounds are those of the ground station.
+// Names, defaults and bounds are those of PX4 v1.14.4, v1.15.4 and v1.16.0. Angles and angular
+// rates of parameters are in degrees; everything computed from them is in radians (gains.hpp). The
+// law does not enforce the bounds, which are those of the ground station.
 //
 // The tables are static and constant; `Parameters` is a plain value. Any thread.
 #pragma once
@@ -16,7 +16,7 @@
 namespace attest::cascade {
 
 // Raw values, as set. Integer parameters are stored as the float of the same value. A unit uses
-// those of its own table only.
+// only the parameters of its own table.
 struct Parameters {
   // attitude unit
   float mc_roll_p, mc_pitch_p, mc_yaw_p, mc_yaw_weight;
@@ -42,25 +42,25 @@ struct ParameterInfo {
   float Parameters::*member;
   float default_value;
   float min;
-  float max;              // infinity when there is none
+  float max;              // infinity if there is no upper bound
   std::string_view unit;  // "1" when dimensionless
   ParameterType type;
   std::string_view description;
-  ProfileRange profiles = all_profiles;  // versions of the law that this row is of
+  ProfileRange profiles = all_profiles;  // versions of the law to which this row applies
 
   bool is_int() const { return type == ParameterType::integer; }
 };
 
-// Every parameter of a unit, in a fixed order. Where default or bounds differ between profiles, the
-// name has a row for each; find_parameter() and default_parameters() select by profile.
+// Every parameter of a unit, in a fixed order. If default or bounds of a parameter differ between
+// profiles, it has several rows; find_parameter() and default_parameters() select by profile.
 using ParameterTable = std::span<const ParameterInfo>;
 ParameterTable attitude_parameters();
 ParameterTable rate_parameters();
 
-// The row of that name for that profile, or nullptr.
+// The row of that name for that profile, or nullptr if the profile has no such parameter.
 const ParameterInfo* find_parameter(ParameterTable table, Profile profile, std::string_view name);
 
-// The values of a new unit. Those that are not in the table of the profile are 0.
+// The values of a new unit. Parameters that the profile does not have in this table are 0.
 Parameters default_parameters(ParameterTable table, Profile profile);
 
 // Sets one value by name. Returns false and changes no value if the profile has no parameter of

@@ -19,15 +19,17 @@ inline constexpr std::array<Profile, 3> every_profile{Profile::px4_v1_16_0, Prof
 struct ProfileTraits {
   std::string_view name;
   bool filters_yaw_torque;           // a low-pass after the rate law
-  bool follows_hover_estimate;       // hover thrust of the sticks; else MPC_THR_HOVER
-  bool locks_yaw;                    // on the heading, corrected by the unaided heading; else the
-                                     // yaw stick is integrated
-  bool spools_up;                    // thrust of the sticks has limits that follow arming and
-                                     // landing; else it has none, and the stick counts from 0 to 1
-  bool latches_in_every_step;        // attitude setpoint and estimator reset, ahead of the modes
-  bool flies_own_setpoint_directly;  // the sticks' setpoint does not pass through its topic
-  bool squares_heading;              // R00 of the heading is a sum of four squares
-  bool weighs_low_pass;              // (1 - a) s + a x; else s + a (x - s)
+  bool follows_hover_estimate;       // the throttle curve can use the estimated hover thrust; else
+                                     // it uses MPC_THR_HOVER
+  bool locks_yaw;                    // a centred yaw stick holds the heading, corrected by the
+                                     // unaided heading; else the yaw stick is integrated
+  bool spools_up;                    // arming and landing move the limits of the throttle stick's
+                                     // thrust; else they are fixed, and the stick is mapped to 0..1
+  bool latches_in_every_step;        // every step takes the attitude setpoint and the estimator's
+                                     // reset, before the modes; else only if attitude is controlled
+  bool flies_own_setpoint_directly;  // the law uses the sticks' setpoint at once; else by its topic
+  bool squares_heading;              // R00 in heading() is ww + xx - yy - zz; else 1 - 2 (yy + zz)
+  bool weighs_low_pass;              // LowPass: (1 - a) s + a x; else s + a (x - s)
 };
 
 // A new profile needs its traits here: the compiler warns if it has none.

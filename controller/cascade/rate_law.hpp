@@ -2,8 +2,8 @@
 //
 // P, I and D with a feed-forward of the setpoint. D acts on the angular acceleration, which the
 // host filters. The larger the error, the smaller the share of it that is integrated. The integral
-// does not move in a direction in which the actuators are saturated. On the ground it does not
-// change.
+// does not move in a direction in which the actuators are saturated. While landed or maybe_landed
+// is set, update() does not change it.
 //
 // Body axes FRD, in the order roll, pitch, yaw; rates [rad/s], acceleration [rad/s^2], time [s].
 // The state is the integral and the saturation. No clock, no allocation; one thread at a time.
@@ -29,7 +29,7 @@ struct RateInput {
   bool landed;
 };
 
-// A flag is true if the actuators give no more torque about that axis in that direction.
+// A flag is true if the actuators cannot give more torque about that axis in that direction.
 struct Saturation {
   std::array<bool, 3> positive{};
   std::array<bool, 3> negative{};
@@ -99,7 +99,6 @@ struct RateStages {
     return integral + ((factor * gain) * error) * dt_s;
   }
 
-  // An integral that is not finite is dropped.
   ATTEST_INLINE static Scalar limited(Scalar next, Scalar before, Scalar max) {
     return is_finite(next) ? clamp(next, -max, max) : before;
   }
@@ -113,7 +112,7 @@ class RateLaw {
 
   explicit RateLaw(Stages stages = {}) : stages_(std::move(stages)) {}
 
-  // Keeps the integral.
+  // Does not change the integral.
   void set_gains(const RateGains<Scalar>& gains) { gains_ = gains; }
 
   void set_saturation(const Allocation& status) { saturation_ = stages_.saturation(status); }

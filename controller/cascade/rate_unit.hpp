@@ -2,7 +2,7 @@
 //
 //     parameters, dt of the samples, latch the topics that were updated
 //     acro: a new stick sample publishes a rates setpoint
-//     else: latch the rates setpoint
+//     other modes: latch the rates setpoint
 //     if rates are controlled: rate law, low-pass of the yaw torque, battery scaling, publish
 //
 // Frames: world NED, body FRD. Units are those of attest_cascade.h. No clock, no allocation after
@@ -48,7 +48,7 @@ struct RateStepStages {
     return rate_unit_gains<Scalar>(parameters);
   }
 
-  // dt [s], limited to 0.125 .. 20 ms. The difference is rounded before it is scaled.
+  // dt [s], limited to 0.125 .. 20 ms. The difference is rounded to Scalar before it is scaled.
   ATTEST_INLINE static Scalar step_time(std::uint64_t sample_us, std::uint64_t last_us) {
     return clamp(Scalar(sample_us - last_us) * Scalar(1e-6f), Scalar(0.000125f), Scalar(0.02f));
   }
@@ -67,7 +67,7 @@ struct RateStepStages {
     return {curve.cwiseProduct(gains.rate_max_rad_s), {Scalar(0), Scalar(0), thrust}};
   }
 
-  // Bits of topics: a sample stays pending until the law uses it.
+  // The bits of the pending topics. A sample stays pending until the law uses it.
   ATTEST_INLINE static std::uint32_t pending(std::uint32_t before, std::uint32_t updated) {
     return before | updated;
   }
@@ -106,7 +106,7 @@ struct RateStepStages {
     return sample.connected != 0 && sample.scale > 0.0f ? Scalar(sample.scale) : before;
   }
 
-  // A control is clamped here only, so without battery scaling it is not clamped.
+  // Torque and thrust are clamped here only, so without battery scaling they are not clamped.
   ATTEST_INLINE static Scalar scaled(Scalar control, Scalar battery_scale) {
     return clamp(control * battery_scale, Scalar(-1), Scalar(1));
   }
@@ -124,10 +124,10 @@ class RateUnit {
  public:
   explicit RateUnit(Profile profile, const Law& law = {});
 
-  // As AttitudeUnit::set_parameter(), with ATTEST_RATE_UPDATED_PARAMETER_UPDATE.
+  // Same as AttitudeUnit::set_parameter(), but with ATTEST_RATE_UPDATED_PARAMETER_UPDATE.
   bool set_parameter(std::string_view name, float value);
 
-  // One step. Writes the fields of a topic only when it publishes the topic.
+  // One step. Writes `published` of every topic, and the other fields only of published topics.
   void step(const attest_rate_inputs& in, attest_rate_outputs& out);
 
  private:
@@ -151,7 +151,7 @@ class RateUnit {
   RateTopics topics_;
   RatesSetpoint<Scalar> newest_setpoint_;  // own or external
   RatesSetpoint<Scalar> setpoint_;         // the one in use
-  Scalar battery_scale_ = Scalar(0);       // 0: none known
+  Scalar battery_scale_ = Scalar(0);       // 0 before the first valid sample
   std::uint64_t last_sample_us_ = 0;
   std::uint32_t pending_ = 0;  // ATTEST_RATE_UPDATED_... bits of topics not yet latched
   bool first_step_ = true;

@@ -1,11 +1,11 @@
-// The definitions of RateUnit: include it to instantiate another law.
+// The definitions of RateUnit, for code that instantiates it with another law.
 #pragma once
 
 #include "controller/cascade/rate_unit.hpp"
 
 namespace attest::cascade {
 
-// Topics that are latched when the law uses them, maybe some steps after they arrived.
+// Topics that are latched when the law uses them, which may be some steps after they arrive.
 inline constexpr std::uint32_t latched_on_demand =
     ATTEST_RATE_UPDATED_VEHICLE_RATES_SETPOINT | ATTEST_RATE_UPDATED_MANUAL_CONTROL_SETPOINT |
     ATTEST_RATE_UPDATED_CONTROL_ALLOCATOR_STATUS | ATTEST_RATE_UPDATED_BATTERY_STATUS;
@@ -73,7 +73,7 @@ bool RateUnit<Scalar, Law>::take_pending(std::uint32_t topic) {
   return was_pending;
 }
 
-// Only a new stick sample makes a setpoint.
+// Only a new stick sample makes a setpoint. Without one, the old setpoint stays.
 template <typename Scalar, typename Law>
 void RateUnit<Scalar, Law>::follow_sticks(const attest_rate_inputs& in, attest_rate_outputs& out) {
   if (!take_pending(ATTEST_RATE_UPDATED_MANUAL_CONTROL_SETPOINT)) return;
@@ -130,7 +130,7 @@ void RateUnit<Scalar, Law>::control_rates(const attest_rate_inputs& in, Scalar d
   out.vehicle_thrust_setpoint.published = 1;
 }
 
-// Battery samples stay pending while scaling is off.
+// Not called while scaling is off: battery samples then stay pending.
 template <typename Scalar, typename Law>
 void RateUnit<Scalar, Law>::scale_by_battery(const attest_rate_inputs& in, Vector3<Scalar>& torque,
                                              Vector3<Scalar>& thrust) {

@@ -1,8 +1,8 @@
 // Vectors and rotations, with the expressions of the law.
 //
-// Quaternions are Hamilton, {w, x, y, z}, and rotate body FRD into world NED. No function but
-// unit() normalises. The result of the law for a quaternion of another norm is defined by exactly
-// these expressions, and so is the sign of a zero.
+// Quaternions are Hamilton, {w, x, y, z}, and rotate body FRD into world NED. Only unit() and
+// shortest_rotation() normalise. Exactly these expressions define the law's result for a quaternion
+// whose norm is not 1, and the sign of a zero.
 //
 // Pure functions; any thread.
 #pragma once
@@ -53,7 +53,8 @@ ATTEST_INLINE Scalar squared_norm(const Quaternion<Scalar>& q) {
 }
 
 // Computed by component: Eigen's q * factor takes all four as one vector, so components that were
-// just computed pass through memory. With it a step of the attitude unit was a tenth slower.
+// just computed pass through memory. With Eigen's product a step of the attitude unit was a tenth
+// slower.
 template <typename Scalar>
 ATTEST_INLINE Quaternion<Scalar> scaled(const Quaternion<Scalar>& q, Scalar factor) {
   return {q[0] * factor, q[1] * factor, q[2] * factor, q[3] * factor};
@@ -81,7 +82,7 @@ ATTEST_INLINE Quaternion<Scalar> inverse(const Quaternion<Scalar>& q) {
   return {q[0] / n, -q[1] / n, -q[2] / n, -q[3] / n};
 }
 
-// q or -q, which are the same rotation: the first component that is not 0 becomes positive.
+// q or -q, which are the same rotation: the first component beyond +-epsilon becomes positive.
 template <typename Scalar>
 ATTEST_INLINE Quaternion<Scalar> canonical(const Quaternion<Scalar>& q) {
   using std::abs;
@@ -104,7 +105,7 @@ ATTEST_INLINE Vector3<Scalar> cross(const Vector3<Scalar>& a, const Vector3<Scal
   return {a[1] * b[2] - a[2] * b[1], (-a[0]) * b[2] + a[2] * b[0], a[0] * b[1] - a[1] * b[0]};
 }
 
-// The coordinate axis that is farthest from the direction of v. At a tie, the last axis is used.
+// The coordinate axis farthest from the direction of v. At a tie, the last of the tied axes.
 template <typename Scalar>
 ATTEST_INLINE Vector3<Scalar> farthest_axis(const Vector3<Scalar>& v) {
   using std::abs;
@@ -151,7 +152,7 @@ ATTEST_INLINE Quaternion<Scalar> yaw_rotation(Scalar yaw) {
   return {cos(yaw / Scalar(2)), Scalar(0), Scalar(0), sin(yaw / Scalar(2))};
 }
 
-// 1 with the nose straight up, -1 straight down, 0 elsewhere.
+// 1 if the nose points straight up, -1 if straight down, within 0.001 rad; otherwise 0.
 template <typename Scalar>
 int pole_at(Scalar R20) {
   constexpr float half_pi = 1.57079637f, near_pole = 0.001f;
@@ -170,7 +171,8 @@ Scalar heading(const Quaternion<Scalar>& q, const ProfileTraits& law) {
   using std::atan2;
   const Scalar two = 2;
   const Scalar R20 = two * (q[1] * q[3] - q[0] * q[2]);
-  // asin(0.99) is 0.14 rad short of a pole, and asin is expensive. NaN also takes this branch.
+  // asin is expensive, so pole_at() is called only near a pole: asin(0.99) is 0.14 rad short of it.
+  // NaN also takes this branch.
   constexpr float surely_far = 0.99f;
   if (!(abs(R20) < Scalar(surely_far))) {
     const Scalar R12 = two * (q[2] * q[3] - q[0] * q[1]);

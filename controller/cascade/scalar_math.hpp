@@ -16,7 +16,7 @@ namespace attest::cascade {
 
 inline constexpr float epsilon = 1.1920929e-7f;  // FLT_EPSILON
 
-// Degrees to rad. One multiplication, unlike the older law, which divides by 180 first.
+// Degrees to rad. One multiplication; the law of v1.5.5 divides by 180 first.
 template <typename Scalar>
 ATTEST_INLINE constexpr Scalar radians(Scalar degrees) {
   return degrees * Scalar(0.0174532924f);
@@ -28,7 +28,7 @@ ATTEST_INLINE constexpr Scalar clamp(Scalar value, Scalar low, Scalar high) {
   return value < low ? low : (value > high ? high : value);
 }
 
-// With NaN as an argument, the result is b.
+// min() and max() return b if an argument is NaN.
 template <typename Scalar>
 ATTEST_INLINE constexpr Scalar min(Scalar a, Scalar b) {
   return a < b ? a : b;
@@ -54,7 +54,7 @@ ATTEST_INLINE Scalar wrap(Scalar angle) {
   return angle - Scalar(turn) * floor((angle - low) * Scalar(turns_each_rad));
 }
 
-// First-order low-pass. The weight stays while time constant and step are both 0.
+// First-order low-pass. The weight keeps its value if tau_s + dt_s is at most epsilon.
 template <typename Scalar>
 struct LowPass {
   Scalar state = Scalar(0);
@@ -106,7 +106,7 @@ ATTEST_INLINE Scalar superexpo(Scalar stick, Scalar share, Scalar steepness) {
   return (expo(x, share) * (Scalar(1) - steeper)) / (Scalar(1) - abs(x) * steeper);
 }
 
-// 0 around the centre, and from there on straight to 1 at the end.
+// 0 within `zone` of the centre, and from there a straight line to +-1 at the ends.
 template <typename Scalar>
 ATTEST_INLINE Scalar deadzone(Scalar stick, Scalar zone) {
   using std::abs;

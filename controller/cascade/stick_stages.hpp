@@ -24,7 +24,7 @@ struct ThrustLimits {
 // against a heading of the gyros alone. The vehicle must not follow this movement.
 template <typename Scalar>
 struct YawCorrection {
-  LowPass<Scalar> error;  // of the heading [rad]
+  LowPass<Scalar> error;  // heading minus unaided heading [rad]
   Scalar reference = Scalar(0);
   Scalar value = Scalar(0);
   bool converging = false;
@@ -47,7 +47,8 @@ struct StickStages {
     return throttle < Scalar(-0.9f) && !gains.yaws_at_lowest_throttle;
   }
 
-  // Returns whether the locked yaw must be released: the estimator has converged.
+  // Updates `state`. Returns true if the estimator has just converged: the locked yaw must then be
+  // released.
   static bool correct_yaw(YawCorrection<Scalar>& state, Scalar heading, Scalar unaided, Scalar dt_s,
                           const ProfileTraits& law) {
     if (!is_finite(unaided)) {
@@ -66,7 +67,7 @@ struct StickStages {
     return was_converging && !state.converging;
   }
 
-  // v1.16.0: with a deadzone and an expo, before the low-pass.
+  // v1.16.0: the commanded yaw rate, with a deadzone and an expo, before the low-pass.
   ATTEST_INLINE static Scalar shaped_yaw_rate(Scalar stick, const Gains& gains) {
     return expo(deadzone(stick, gains.yaw_deadzone), gains.yaw_expo) * gains.yaw_rate_max_rad_s;
   }
@@ -75,8 +76,8 @@ struct StickStages {
     return stick * gains.yaw_rate_max_rad_s;
   }
 
-  // v1.16.0: while a yaw rate is commanded, no yaw is held. After that the heading at that time is
-  // held. The held yaw moves with the correction.
+  // v1.16.0: while a yaw rate is commanded, no yaw is held. The first step without a yaw rate takes
+  // the heading, which is then held. The held yaw moves with the correction.
   ATTEST_INLINE static Scalar locked_yaw(Scalar yaw_sp, Scalar rate, Scalar heading,
                                          Scalar old_correction, Scalar correction) {
     using std::abs;
@@ -85,15 +86,16 @@ struct StickStages {
     return wrap((yaw_sp - old_correction) + correction);
   }
 
-  // Until v1.15.4.
+  // Until v1.15.4: the yaw setpoint is the integral of the commanded yaw rate.
   ATTEST_INLINE static Scalar integrated_yaw(Scalar yaw_sp, Scalar rate, Scalar dt_s) {
     return wrap(yaw_sp + rate * dt_s);
   }
 
-  // The reset of the estimator turned the heading by `turn`. NaN stays NaN.
+  // The angle after a reset of the estimator that turned the heading by `turn`. NaN stays NaN.
   ATTEST_INLINE static Scalar turned(Scalar angle, Scalar turn) { return wrap(angle + turn); }
 
-  // The sticks together give no more tilt than one of them. Returns a rotation vector.
+  // Roll and pitch stick together give no more tilt than one stick alone. Returns a rotation
+  // vector.
   ATTEST_INLINE static Vector limited_tilt(Scalar x, Scalar y, const Gains& gains) {
     const Vector v(x, y, Scalar(0));
     const Scalar angle = length(v);
@@ -117,8 +119,8 @@ struct StickStages {
     return product(yaw, tilt);
   }
 
-  // Whether a step in another mode clears the low-pass of the tilt. `runs`: the unit controls the
-  // attitude in this step.
+  // Whether a step outside stabilized mode clears the low-pass of the tilt. `runs`: the unit
+  // controls the attitude in this step.
   ATTEST_INLINE static bool clears_tilt(bool runs, const ProfileTraits& law) {
     return runs || law.locks_yaw;
   }
@@ -140,7 +142,7 @@ struct StickStages {
   }
 
   // v1.14.4: the stick becomes a position of 0..1. The firmware's int(2 * position) is undefined
-  // from 2^31 on and for NaN. Here these values take the first part, as on x86-64.
+  // from 2^31 on and for NaN. Here these values use the lower line, as on x86-64.
   static Scalar uncentred_throttle(Scalar stick, const Gains& gains) {
     const Scalar idle = 0, full = 1, centre = Scalar(0.5f);
     const Scalar position = (stick + Scalar(1)) * Scalar(0.5f);

@@ -1,7 +1,8 @@
-// The stabilized mode: an attitude setpoint of the sticks.
+// The stabilized mode: an attitude setpoint from the sticks.
 //
-// Roll and pitch stick are a tilt, the yaw stick is a yaw rate about the world's z axis, throttle
-// is thrust. With a centred yaw stick v1.16.0 holds the heading; older profiles integrate the rate.
+// Roll and pitch stick command a tilt, the yaw stick a yaw rate about the world's z axis, the
+// throttle stick a thrust. Without a yaw rate v1.16.0 holds the heading; older profiles integrate
+// the yaw rate.
 //
 // Frames: W world NED, B body FRD, D desired body. No clock, no allocation; one thread at a time.
 #pragma once
@@ -29,7 +30,7 @@ struct StickInput {
   decltype(attest_attitude_inputs::manual_control_setpoint) sticks;
   ThrustLimits<Scalar> thrust;
   Scalar dt_s;
-  Scalar unaided_heading;  // [rad]; not finite: none
+  Scalar unaided_heading;  // [rad]; not finite if not available
   bool heading_good;
   bool is_vtol;
 };
@@ -43,16 +44,17 @@ class Sticks {
 
   void set_gains(const StickGains<Scalar>& gains) { gains_ = gains; }
 
-  // A step in stabilized mode. The setpoint has no timestamp yet. REQUIRES: set_gains() was called.
+  // A step in stabilized mode. The caller sets the setpoint's timestamp. REQUIRES: set_gains() was
+  // called.
   AttitudeSetpoint<Scalar> update(const StickInput<Scalar>& in);
 
-  // A step in another mode. `runs`: the unit controls the attitude in this step.
+  // A step outside stabilized mode. `runs`: the unit controls the attitude in this step.
   void release(const Quaternion<Scalar>& q_WB, Scalar unaided_heading, bool runs);
 
   // The estimator was reset by the rotation `delta`.
   void reset_heading(const Quaternion<Scalar>& delta);
 
-  // Up to v1.15.4: whether the next step takes the heading as its yaw setpoint.
+  // Up to v1.15.4: whether the next step in stabilized mode takes the heading as its yaw setpoint.
   void set_restart(bool restart) { restart_ = restart; }
 
  private:
@@ -65,7 +67,7 @@ class Sticks {
   StickGains<Scalar> gains_{};
   LowPass<Scalar> roll_, pitch_, yaw_rate_;
   YawCorrection<Scalar> correction_;
-  Scalar yaw_sp_ = Scalar(0);  // [rad]; NaN: no heading is held; at the start north is held
+  Scalar yaw_sp_ = Scalar(0);  // [rad]; NaN: no heading is held; at the start 0, north
   bool restart_ = true;
   [[no_unique_address]] Stages stages_;
 };

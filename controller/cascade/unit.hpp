@@ -6,7 +6,8 @@
 namespace attest::cascade {
 
 // A static table that has the attitude unit and the rate unit as extensions, and no controller of
-// the older law; never NULL. Computes in binary32.
+// attest_unit.h; never NULL. Computes in binary32 unless compiled with
+// ATTEST_REFERENCE_SCALAR=double.
 const attest_unit* cascade_unit();
 
 // The same law in binary64: a second correct cascade, to measure the effect of rounding.

@@ -13,7 +13,7 @@
 
 namespace attest::cascade {
 
-// Table is attest_attitude_unit or attest_rate_unit, Unit a class with a constructor from a
+// Table is attest_attitude_unit or attest_rate_unit. Unit is a class with a constructor from a
 // Profile, set_parameter() and step().
 template <typename Table, typename Unit, typename Inputs, typename Outputs>
 struct UnitTable {

@@ -17,7 +17,8 @@ void change_controls(FaultyLaw& law, Change change) {
   });
 }
 
-// The law scales by 1, and `apply` gets the battery's factor instead.
+// The law itself scales by 1. `apply` then changes the published controls, given the battery's
+// factor.
 template <typename Apply>
 void scale_otherwise(FaultyLaw& law, Apply apply) {
   auto factor = std::make_shared<float>(1.0f);

@@ -1,4 +1,4 @@
-// Wrong integrators: each gate dropped, moved or made non-strict, and wrong flags and resets.
+// Wrong integrators: gates that are dropped, moved or made non-strict, and wrong motor limit flags.
 #include <algorithm>
 #include <array>
 #include <cmath>

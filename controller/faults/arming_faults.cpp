@@ -150,7 +150,7 @@ const Fault arming_list[] = {
      "stores the previous rates in a variable that all instances share", "a second instance",
      "static state",
      [](FaultyLaw& law) {
-       // Lives as long as an instance, so that a test vector does not depend on the one before it.
+       // Lives as long as any instance, so that a test vector does not depend on the previous one.
        static std::weak_ptr<Vector> of_living_instances;
        auto prev = of_living_instances.lock();
        if (!prev) of_living_instances = prev = std::make_shared<Vector>(Vector::Zero());

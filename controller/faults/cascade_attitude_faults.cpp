@@ -23,7 +23,7 @@ void change_both_attitudes(FaultyLaw& law, Change change) {
 
 Quat conjugated(const Quat& q) { return {q[0], -q[1], -q[2], -q[3]}; }
 
-// The whole angle of the rotation, which the law replaces by twice the sine of half of it.
+// The rotation vector: axis times angle. The law uses axis times twice the sine of half the angle.
 Vector rotation_angle(const Quat& error) {
   const Vector axis = cascade::imaginary_part(error);
   const float sine = cascade::length(axis);

@@ -21,8 +21,8 @@ void change_scaled(FaultyLaw& law, Scaled scaled) {
   law.rate_unit.step.scaled = scaled;
 }
 
-// Scales three of the six controls: those of the torque, or those of the thrust. The law scales
-// torque and thrust of an axis in turn.
+// Scales only the torque if `torque` is true, otherwise only the thrust. The law calls scaled() for
+// torque and thrust of an axis in turn, torque first.
 void scale_half(FaultyLaw& law, bool torque) {
   change_scaled(law, [torque, is_torque = false](Scalar control, Scalar scale) mutable {
     is_torque = !is_torque;

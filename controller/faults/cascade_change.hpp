@@ -24,7 +24,8 @@ inline constexpr auto until_v1_15_4 = cascade::until_v1_15_4;
 inline constexpr auto only_v1_15_4 = cascade::only_v1_15_4;
 inline constexpr auto only_v1_14_4 = cascade::only_v1_14_4;
 
-// Change is void(Gains&, const CascadeParameters&), and Unit AttitudeUnitLaw or RateUnitLaw.
+// Changes the gains that the law computes. Unit is AttitudeUnitLaw or RateUnitLaw. Change has the
+// signature void(Gains&, const CascadeParameters&).
 template <typename Unit, typename Change>
 void change_gains(Unit& unit, Change change) {
   unit.step.gains = [then = unit.step.gains, change](const CascadeParameters& parameters) mutable {
@@ -34,7 +35,7 @@ void change_gains(Unit& unit, Change change) {
   };
 }
 
-// Computes the gains from changed parameters. Change is void(CascadeParameters&).
+// Computes the gains from changed parameters. Change has the signature void(CascadeParameters&).
 template <typename Unit, typename Change>
 void change_parameters(Unit& unit, Change change) {
   unit.step.gains = [then = unit.step.gains, change](const CascadeParameters& parameters) mutable {
@@ -44,7 +45,7 @@ void change_parameters(Unit& unit, Change change) {
   };
 }
 
-// The unit follows other traits. Change is void(CascadeTraits&).
+// Changes the traits of the unit's profile. Change has the signature void(CascadeTraits&).
 template <typename Unit, typename Change>
 void change_traits(Unit& unit, Change change) {
   unit.step.traits = [then = unit.step.traits, change](cascade::Profile profile) {
@@ -54,7 +55,7 @@ void change_traits(Unit& unit, Change change) {
   };
 }
 
-// Gives one trait the value that it has in another profile.
+// Sets one trait to `value`, which it has in another profile.
 template <bool CascadeTraits::*trait, bool value>
 void follow(FaultyLaw& law) {
   const auto change = [](CascadeTraits& traits) { traits.*trait = value; };
@@ -62,7 +63,7 @@ void follow(FaultyLaw& law) {
   change_traits(law.rate_unit, change);
 }
 
-// Reads one parameter from the place of another.
+// Uses the value of parameter `from` also for parameter `to`.
 template <float CascadeParameters::*to, float CascadeParameters::*from>
 void read_from(FaultyLaw& law) {
   const auto change = [](CascadeParameters& p) { p.*to = p.*from; };
@@ -70,7 +71,7 @@ void read_from(FaultyLaw& law) {
   change_parameters(law.rate_unit, change);
 }
 
-// If the first step has no sample of `topic`, `set` makes one. Set is void(Inputs&).
+// If the first step has no sample of `topic`, adds one. Set, void(Inputs&), writes its fields.
 template <typename Unit, typename Set>
 void start_with(Unit& unit, std::uint32_t topic, Set set) {
   also_before(unit, [set, topic, is_first = true](typename Unit::Inputs& in) mutable {

@@ -1,5 +1,5 @@
-// Mistakes of the attitude unit of the cascade with quaternions of another norm, NaN and
-// infinities.
+// Mistakes of the attitude unit of the cascade with NaN, infinities, and quaternions whose norm is
+// not 1.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@ namespace {
 
 using QuaternionLaw = QuaternionStages::Law;
 
-// NaN becomes a bound: the comparisons of std::fmin and std::fmax drop it.
+// A NaN rate becomes the upper bound, because std::fmin and std::fmax ignore a NaN.
 Vector limited_by_fmin(const Vector& rates, const QuaternionGains& gains) {
   Vector limited;
   for (int i = 0; i < 3; ++i) {

@@ -1,5 +1,5 @@
-// Mistakes of the rate unit of the cascade in what stops the integral: saturation, limit, landing,
-// disarming.
+// Mistakes of the rate unit of the cascade in what stops or resets the integral: saturation, limit,
+// landing, disarming.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +13,7 @@ using RateLaw = TorqueStages::Law;
 using Allocation = RateLaw::Allocation;
 using cascade::Saturation;
 
-// Changes the flags that the law makes of a sample.
+// Changes the saturation flags that the law computes from a sample.
 template <typename Change>
 void change_saturation(FaultyLaw& law, Change change) {
   law.rate_unit.rate.saturation = [change](const Allocation& status) mutable {
@@ -23,7 +23,8 @@ void change_saturation(FaultyLaw& law, Change change) {
   };
 }
 
-// What a saturated axis integrates. Error is Scalar(error, positive, negative).
+// Replaces the error that an axis integrates. Error is Scalar(error, positive, negative), with the
+// axis's saturation flags.
 template <typename Error>
 void change_unsaturated(FaultyLaw& law, Error error) {
   law.rate_unit.rate.unsaturated = error;
@@ -39,7 +40,7 @@ Saturation flags_beyond(const Allocation& status, float threshold) {
   return flags;
 }
 
-// P acts on the error without the saturated direction, too.
+// Not only the integral but also P uses the error that the saturation flags limit.
 void saturate_p(FaultyLaw& law) {
   auto now = std::make_shared<Saturation>();
   change_saturation(law, [now](Saturation& flags, const Allocation&) { *now = flags; });
@@ -62,8 +63,8 @@ void change_may_integrate(FaultyLaw& law, May may) {
   law.rate_unit.rate.may_integrate = may;
 }
 
-// Sets the integral to 0 before the law, while the newest vehicle_land_detected in the inputs has
-// landed or maybe_landed set.
+// Also resets the integral while the newest vehicle_land_detected has landed or maybe_landed set,
+// and before its first sample.
 void reset_when_landed(FaultyLaw& law) {
   auto landed = std::make_shared<bool>(true);
   also_before(law.rate_unit, [landed](RateIn& in) {

@@ -11,16 +11,17 @@ namespace {
 using cascade::inverse;
 using cascade::product;
 
-// Whether thrust directions are opposite, by another test of the tilt rotation.
+// Replaces the test whether the thrust directions are opposite. Test is bool(const Quat& tilt).
 template <typename Test>
 void change_opposite(FaultyLaw& law, Test test) {
   law.attitude_unit.attitude.is_opposite = test;
 }
 
-// Makes w positive. The law makes the first component that is not 0 positive.
+// Makes w positive. The law makes the first component that is not almost 0 positive.
 Quat with_positive_w(const Quat& q) { return q[0] < 0 ? Quat(-q) : q; }
 
-// tilt_rotation() with another axis for opposite directions. Axis is Vector(const Vector& a).
+// tilt_rotation() with another axis for opposite directions. Axis, Vector(const Vector& a), returns
+// it for the present thrust direction `a`.
 template <typename Axis>
 void change_half_turn_axis(FaultyLaw& law, Axis axis) {
   law.attitude_unit.attitude.tilt_rotation = [axis](const Quat& q_WB, const Quat& q_WD) {
@@ -32,7 +33,7 @@ void change_half_turn_axis(FaultyLaw& law, Axis axis) {
   };
 }
 
-// Heading from the usual formula, also where yaw and roll are about the same axis.
+// The heading by the general formula, also at the poles, where yaw and roll are about one axis.
 Scalar heading_without_poles(const Quat& q, const CascadeTraits& law) {
   const float R00 = law.squares_heading ? q[0] * q[0] + q[1] * q[1] - q[2] * q[2] - q[3] * q[3]
                                         : 1 - 2 * (q[2] * q[2] + q[3] * q[3]);

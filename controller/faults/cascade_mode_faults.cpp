@@ -8,7 +8,7 @@ namespace {
 using Topics = cascade::AttitudeTopics;
 using StepLaw = AttitudeStepStages::Law;
 
-// Whether the unit runs, from changed topics. Change is void(Topics&).
+// Decides from changed topics whether the unit runs. Change is void(Topics&).
 template <typename Change>
 void change_runs(FaultyLaw& law, Change change) {
   law.attitude_unit.step.runs = [change](Topics topics) {
@@ -25,7 +25,7 @@ void change_follows_sticks(FaultyLaw& law, Change change) {
   };
 }
 
-// The topics that autotune is judged by, changed. Change is void(Topics&, std::uint64_t& now_us).
+// Changes what decides whether autotune is active. Change is void(Topics&, std::uint64_t& now_us).
 template <typename Change>
 void change_autotune(FaultyLaw& law, Change change) {
   law.attitude_unit.step.autotuned = [change](const Vector& rates, Topics topics,
@@ -35,7 +35,7 @@ void change_autotune(FaultyLaw& law, Change change) {
   };
 }
 
-// Autotune counts only in the step in which its sample arrives.
+// Autotune acts only in the step in which its sample arrives.
 void autotune_of_new_sample(FaultyLaw& law) {
   auto is_new = std::make_shared<bool>(false);
   also_before(law.attitude_unit, [is_new](AttitudeIn& in) {

@@ -11,7 +11,7 @@ namespace {
 
 using P = CascadeParameters;
 
-// One parameter always has this value, that of the default.
+// One parameter always has `value`, its default.
 template <float P::*member>
 void keep_at(FaultyLaw& law, float value) {
   const auto change = [value](P& p) { p.*member = value; };

@@ -11,7 +11,7 @@ namespace {
 
 using RateLaw = TorqueStages::Law;
 
-// The sum of the terms. Sum is Vector(p, i, d, ff).
+// Replaces the sum of the terms. Sum is Vector(p, i, d, ff).
 template <typename Sum>
 void change_torque(FaultyLaw& law, Sum sum) {
   law.rate_unit.rate.torque = [sum](const Vector& p, const Vector& i, const Vector& d,
@@ -29,7 +29,7 @@ Vector k_of(const CascadeParameters& p) {
   return cascade::each<Scalar>(p.mc_rollrate_k, p.mc_pitchrate_k, p.mc_yawrate_k);
 }
 
-// D from the difference of two values of `error`. Value is Vector(rates_sp, rates).
+// D acts on the change of `value` since the previous step. Value is Vector(rates_sp, rates).
 template <typename Value>
 void differentiate(FaultyLaw& law, Value value) {
   struct Seen {
@@ -49,7 +49,7 @@ void differentiate(FaultyLaw& law, Value value) {
   };
 }
 
-// The torque has the integral after this step's update.
+// The torque of roll and pitch has the integral after this step's update.
 void integrate_first(FaultyLaw& law) {
   struct Seen {
     Vector p = Vector::Zero(), d = Vector::Zero(), ff = Vector::Zero();

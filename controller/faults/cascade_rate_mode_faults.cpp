@@ -12,7 +12,7 @@ using AcroSticks = RateStepLaw::Sticks;
 using AcroGains = cascade::AcroGains<Scalar>;
 using AcroSetpoint = RateStepStages::Setpoint;
 
-// The sticks and gains of acro before the law. Change is void(AcroSticks&, AcroGains&).
+// Changes the sticks and gains of acro before use. Change is void(AcroSticks&, AcroGains&).
 template <typename Change>
 void change_acro_input(FaultyLaw& law, Change change) {
   law.rate_unit.step.acro = [change](AcroSticks sticks, AcroGains gains) {
@@ -21,7 +21,7 @@ void change_acro_input(FaultyLaw& law, Change change) {
   };
 }
 
-// The setpoint of acro after the law. Change is void(AcroSetpoint&, const AcroSticks&).
+// Changes the setpoint that acro computes. Change is void(AcroSetpoint&, const AcroSticks&).
 template <typename Change>
 void change_acro(FaultyLaw& law, Change change) {
   law.rate_unit.step.acro = [change](const AcroSticks& sticks, const AcroGains& gains) {
@@ -39,7 +39,7 @@ void change_is_acro(FaultyLaw& law, Change change) {
   };
 }
 
-// Samples of a topic are lost unless they arrive in the step that latches them.
+// A sample of `topic` is lost if the step in which it arrives does not latch it.
 template <std::uint32_t topic>
 void lose_pending(FaultyLaw& law) {
   law.rate_unit.step.pending = [](std::uint32_t before, std::uint32_t updated) {

@@ -23,8 +23,8 @@ void change_reset(FaultyLaw& law, Change change) {
 }
 using AttitudeTopic = decltype(AttitudeIn::vehicle_attitude);
 
-// A reset does not turn one of its three angles: 0 is the yaw setpoint, 1 the filtered error of the
-// heading, 2 the reference of the yaw correction.
+// The estimator's reset leaves out one of the three angles that it turns. `which` is 0 for the yaw
+// setpoint, 1 for the filtered error of the heading, 2 for the reference of the yaw correction.
 template <int which>
 void keep_angle(FaultyLaw& law) {
   law.attitude_unit.sticks.turned = [count = 0](Scalar angle, Scalar turn) mutable {

@@ -42,7 +42,7 @@ void move_limits_with_sticks(FaultyLaw& law) {
   };
 }
 
-// Applies the upper limit after it moved, one step early.
+// Applies the upper limit after it has moved in this step. The law applies it before.
 void move_limits_before_use(FaultyLaw& law) {
   struct Seen {
     Scalar dt_s = 0, spooled = 0;

@@ -16,7 +16,7 @@ void change_sticks(FaultyLaw& law, Change change) {
 }
 using SticksIn = decltype(AttitudeIn::manual_control_setpoint);
 
-// Combine is Quat(yaw, tilt).
+// Replaces the combination of yaw and tilt. Combine is Quat(yaw, tilt).
 template <typename Combine>
 void change_desired(FaultyLaw& law, Combine combine) {
   law.attitude_unit.sticks.desired_attitude = combine;
@@ -29,7 +29,7 @@ void change_tilt_limit(FaultyLaw& law, Limit limit) {
   };
 }
 
-// The tilt as a roll angle and a pitch angle, one after the other.
+// Rotates by the roll angle first, then by the pitch angle.
 Quat tilt_of_angles(const Vector& v) {
   const Quat roll(std::cos(v[0] / 2), std::sin(v[0] / 2), 0, 0);
   const Quat pitch(std::cos(v[1] / 2), 0, std::sin(v[1] / 2), 0);

@@ -8,7 +8,7 @@ namespace {
 using Curve = cascade::ThrottleCurve;
 using StickLaw = StickStages::Law;
 
-// The throttle with changed gains, in every profile.
+// Changes the gains of the sticks, in every profile.
 template <typename Change>
 void change_throttle_gains(FaultyLaw& law, Change change) {
   change_gains(law.attitude_unit, [change](AttitudeUnitGains& gains, const CascadeParameters& p) {
@@ -16,7 +16,7 @@ void change_throttle_gains(FaultyLaw& law, Change change) {
   });
 }
 
-// The thrust of the sticks after the law, in every profile.
+// Changes the thrust that the law computes from the throttle stick, in every profile.
 template <typename Change>
 void change_stick_thrust(FaultyLaw& law, Change change) {
   auto& sticks = law.attitude_unit.sticks;

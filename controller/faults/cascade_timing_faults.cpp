@@ -22,7 +22,7 @@ float clamped(float dt_s, const Bounds& bounds) {
   return cascade::clamp(dt_s, bounds.min_s, bounds.max_s);
 }
 
-// Other bounds of dt.
+// Limits dt to other bounds.
 template <typename Unit>
 void set_bounds(Unit& unit, Bounds bounds) {
   unit.step.step_time = [bounds](std::uint64_t now_us, std::uint64_t last_us) {
@@ -30,7 +30,7 @@ void set_bounds(Unit& unit, Bounds bounds) {
   };
 }
 
-// Another time between two samples, with the bounds of the unit. Measure is float(now, last).
+// Replaces the time between two samples, and keeps the bounds of dt. Measure is float(now, last).
 template <typename Unit, typename Measure>
 void measure(Unit& unit, const Bounds& bounds, Measure measured) {
   unit.step.step_time = [bounds, measured](std::uint64_t now_us, std::uint64_t last_us) mutable {
@@ -46,7 +46,7 @@ void measure_rate(FaultyLaw& law, Measure measured) {
   measure(law.rate_unit, rate_bounds, measured);
 }
 
-// Timestamps in an integer type, and their difference without wrap-around.
+// The timestamps are converted to type Integer. Their difference does not wrap around.
 template <typename Integer>
 float difference_as(std::uint64_t now_us, std::uint64_t last_us) {
   const double now = static_cast<double>(static_cast<Integer>(now_us));
@@ -63,7 +63,7 @@ float of_float_clock(std::uint64_t now_us, std::uint64_t last_us) {
 
 float four_ms(std::uint64_t, std::uint64_t) { return 0.004f; }
 
-// The time of the previous step.
+// The time that the previous step measured; 20 ms in the first step.
 auto one_late() {
   return [dt_s = 0.02f](std::uint64_t now_us, std::uint64_t last_us) mutable {
     return std::exchange(dt_s, seconds_between(now_us, last_us));

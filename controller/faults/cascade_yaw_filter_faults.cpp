@@ -10,7 +10,7 @@ namespace {
 using RateStepLaw = RateStepStages::Law;
 using LowPass = RateStepStages::LowPass;
 
-// Filter is Scalar(LowPass&, torque, dt_s, gains, traits).
+// Replaces the low-pass. Filter is Scalar(LowPass&, torque, dt_s, gains, traits).
 template <typename Filter>
 void change_yaw_filter(FaultyLaw& law, Filter filter) {
   law.rate_unit.step.filtered_yaw = filter;
@@ -23,7 +23,7 @@ void change_yaw_tau(FaultyLaw& law, Tau tau) {
   });
 }
 
-// The low-pass starts anew while the integral does.
+// Whenever the integral is reset, the state of the low-pass becomes 0, too.
 void restart_yaw_filter(FaultyLaw& law) {
   auto restarts = std::make_shared<bool>(false);
   law.rate_unit.step.resets_integral = [restarts](const cascade::RateTopics& topics) {
@@ -57,7 +57,7 @@ void filter_all_axes(FaultyLaw& law) {
   });
 }
 
-// With the default cutoff, because older profiles have no parameter for it.
+// Older profiles have no parameter for the cutoff, so the default of v1.16.0 is used: 2 Hz.
 void filter_as_in_v1_16_0(FaultyLaw& law) {
   auto is_older = std::make_shared<bool>(false);
   change_traits(law.rate_unit, [is_older](CascadeTraits& traits) {

@@ -22,14 +22,13 @@ void change_lock(FaultyLaw& law, Lock lock) {
   law.attitude_unit.sticks.locked_yaw = lock;
 }
 
-// The correction with changed arguments or results. Correct is bool(state, heading, unaided, dt,
-// traits).
+// Replaces the yaw correction. Correct is bool(state, heading, unaided, dt, traits).
 template <typename Correct>
 void change_correction(FaultyLaw& law, Correct correct) {
   law.attitude_unit.sticks.correct_yaw = correct;
 }
 
-// The lock tests the stick and not the filtered rate.
+// The lock tests the rate that the stick commands, not the filtered rate.
 void lock_by_stick(FaultyLaw& law) {
   auto commanded = std::make_shared<Scalar>(0.0f);
   auto& sticks = law.attitude_unit.sticks;

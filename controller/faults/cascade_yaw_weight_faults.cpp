@@ -9,7 +9,7 @@
 namespace attest::faults::in_cascade {
 namespace {
 
-// The yaw quaternion of another angle. Angle is Scalar(w, z, weight).
+// Replaces half the angle of the yaw rotation [rad]. Angle is Scalar(w, z, weight).
 template <typename Angle>
 void change_yaw_angle(FaultyLaw& law, Angle angle) {
   law.attitude_unit.attitude.weighted_yaw = [angle](Scalar w, Scalar z, Scalar weight) {
@@ -18,7 +18,7 @@ void change_yaw_angle(FaultyLaw& law, Angle angle) {
   };
 }
 
-// The gain of yaw from MC_YAW_P and the weight.
+// Replaces the yaw gain. Gain is Scalar(MC_YAW_P, weight).
 template <typename Gain>
 void change_yaw_gain(FaultyLaw& law, Gain gain) {
   change_gains(law.attitude_unit, [gain](AttitudeUnitGains& gains, const CascadeParameters& p) {
@@ -42,7 +42,7 @@ void change_rate_limit(FaultyLaw& law, Limit limit) {
   };
 }
 
-// The limit comes before the feed-forward.
+// Limits the rates before the feed-forward.
 void limit_early(FaultyLaw& law) {
   auto& stages = law.attitude_unit.attitude;
   stages.proportional = [](const Quat& error, const QuaternionGains& gains) {

@@ -1,6 +1,7 @@
-// The catalogue of faults as data: the mistakes that ports of the controller and of the cascade
-// make, each the reference with one stage replaced (faulty_controller.hpp). The share of faults
-// that a suite catches is a measure of the suite. The diagnosis compares a failing port with them.
+// The catalogue of faults as data: mistakes that ports of the controller and of the cascade make.
+// Each fault changes stages, inputs or outputs of the reference (faulty_controller.hpp). The share
+// of faults that a suite catches is a measure of the suite. The diagnosis compares a failing port
+// with the faults.
 //
 // The table is static and constant; any thread.
 #pragma once
@@ -64,7 +65,7 @@ class ProfileSet {
 
   // Returns false if no profile has that name.
   bool contains(std::string_view profile) const;
-  // Whether the profile, in the set or not, is one of the same law.
+  // Whether `profile` belongs to the law of this set. It need not be in the set.
   bool is_of_law_of(std::string_view profile) const;
 
  private:
@@ -80,7 +81,7 @@ struct Fault {
   std::string_view shows;  // the situation that makes it visible: "any attitude except level"
   std::string_view kind;   // of porting mistake: "quaternion order"
   void (*inject)(FaultyLaw& law);
-  // Not empty: the reason why no input can distinguish the fault from the law.
+  // If not empty: the reason why no input can distinguish the fault from the law.
   std::string_view equivalent = {};
   // The profiles in which some input distinguishes the fault from the law. If empty, the catalogue
   // fills in the profiles that have the part of the law concerned.
@@ -91,10 +92,10 @@ struct Fault {
   }
 };
 
-// In the order of the groups. The pointers stay valid until the program ends.
+// All faults, sorted by subject. The pointers stay valid until the program ends.
 std::span<const Fault* const> catalogue();
 
-// Null when no fault has that id.
+// Returns null if no fault has that id.
 const Fault* find_fault(std::string_view id);
 
 }  // namespace attest::faults

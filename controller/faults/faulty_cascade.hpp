@@ -20,7 +20,8 @@ using StickGains = cascade::StickGains<Scalar>;
 using AttitudeUnitGains = cascade::AttitudeUnitGains<Scalar>;
 using RateUnitGains = cascade::RateUnitGains<Scalar>;
 
-// Members are named and called as those of cascade::AttitudeStages.
+// Each struct of stages has the functions of the law's struct `Law`, with the same names. This
+// struct has those of cascade::AttitudeStages.
 struct QuaternionStages {
   using Law = cascade::AttitudeStages<Scalar>;
   using LawGains = cascade::AttitudeGains<Scalar>;
@@ -39,7 +40,6 @@ struct QuaternionStages {
   std::function<Vector(const Vector&, const LawGains&)> limit = Law::limit;
 };
 
-// As cascade::StickStages.
 struct StickStages {
   using Law = cascade::StickStages<Scalar>;
   std::function<Scalar()> no_yaw = Law::no_yaw;
@@ -63,7 +63,6 @@ struct StickStages {
   std::function<Scalar(Scalar, const StickGains&)> uncentred_throttle = Law::uncentred_throttle;
 };
 
-// As cascade::AttitudeStepStages.
 struct AttitudeStepStages {
   using Law = cascade::AttitudeStepStages<Scalar>;
   using Topics = cascade::AttitudeTopics;
@@ -86,7 +85,6 @@ struct AttitudeStepStages {
   std::function<bool(bool, const Topics&)> restarts_yaw = Law::restarts_yaw;
 };
 
-// As cascade::RateStages.
 struct TorqueStages {
   using Law = cascade::RateStages<Scalar>;
   using LawGains = cascade::RateGains<Scalar>;
@@ -104,7 +102,6 @@ struct TorqueStages {
   std::function<Scalar(Scalar, Scalar, Scalar)> limited = Law::limited;
 };
 
-// As cascade::RateStepStages.
 struct RateStepStages {
   using Law = cascade::RateStepStages<Scalar>;
   using LowPass = cascade::LowPass<Scalar>;
@@ -135,7 +132,7 @@ struct Around {
   std::function<void(const In&, Out&)> after = [](const In&, Out&) {};
 };
 
-// As cascade::AttitudeUnitLaw.
+// Replaces cascade::AttitudeUnitLaw.
 struct AttitudeUnitLaw : Around<attest_attitude_inputs, attest_attitude_outputs> {
   using Unit = cascade::AttitudeUnit<Scalar, AttitudeUnitLaw>;
   AttitudeStepStages step;
@@ -143,7 +140,7 @@ struct AttitudeUnitLaw : Around<attest_attitude_inputs, attest_attitude_outputs>
   QuaternionStages attitude;
 };
 
-// As cascade::RateUnitLaw.
+// Replaces cascade::RateUnitLaw.
 struct RateUnitLaw : Around<attest_rate_inputs, attest_rate_outputs> {
   using Unit = cascade::RateUnit<Scalar, RateUnitLaw>;
   RateStepStages step;

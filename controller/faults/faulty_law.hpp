@@ -1,7 +1,7 @@
 // The law with every stage replaceable. Each stage is a function: that of the reference, or that of
-// a fault. McAttControl<float, FaultyLaw> is then the reference with that one mistake.
+// a fault. McAttControl<float, FaultyLaw> is then the reference with that mistake.
 //
-// A function may have state. Each controller has its own copy of the law, and so of this state.
+// A function may have state. Each FaultyController makes its own law, and so has its own state.
 #pragma once
 
 #include <functional>
@@ -32,7 +32,8 @@ using reference::Topics;
 
 inline constexpr Scalar pi = std::numbers::pi_v<Scalar>;
 
-// Members are named and called as those of reference::AttitudeStages.
+// Each struct of stages has the functions of the law's struct `Law`, with the same names. This
+// struct has those of reference::AttitudeStages.
 struct AttitudeStages {
   using Law = reference::AttitudeStages<Scalar>;
   std::function<Tilt(const Matrix&, const Matrix&)> tilt_error = Law::tilt_error;
@@ -49,7 +50,6 @@ struct AttitudeStages {
   std::function<Scalar(Scalar, const AttitudeGains&)> weathervane_limit = Law::weathervane_limit;
 };
 
-// As reference::RateStages.
 struct RateStages {
   using Law = reference::RateStages<Scalar>;
   std::function<Scalar(Scalar, const RateGains&)> throttle_attenuation = Law::throttle_attenuation;
@@ -66,7 +66,6 @@ struct RateStages {
   std::function<Scalar(Scalar, Scalar, Scalar, Scalar, bool)> integrate_axis = Law::integrate_axis;
 };
 
-// As reference::RecoveryStages.
 struct RecoveryStages {
   using Law = reference::RecoveryStages<Scalar>;
   std::function<RecoveryTilt(const Quaternion&, const Quaternion&)> tilt = Law::tilt;
@@ -79,7 +78,6 @@ struct RecoveryStages {
   std::function<Vector(const Vector&, const AttitudeGains&)> limit = Law::limit;
 };
 
-// As reference::StepStages.
 struct StepStages {
   using Law = reference::StepStages<Scalar>;
   std::function<Scalar(std::uint64_t, std::uint64_t)> step_time = Law::step_time;
@@ -95,7 +93,6 @@ struct StepStages {
   std::function<float(const Topics&, const Gains&, Profile)> battery_factor = Law::battery_factor;
 };
 
-// As actuation::MixerStages.
 struct MixerStages {
   using Law = actuation::MixerStages<Scalar>;
   using Controls = Law::Controls;
@@ -113,12 +110,11 @@ struct MixerStages {
   std::function<Scalar(Scalar, Scalar, Scalar)> slew = Law::slew;
 };
 
-// As actuation::BatteryStages.
 struct BatteryStages {
   using Law = actuation::BatteryStages<Scalar>;
   using Options = actuation::BatteryOptions;
   using Sample = actuation::BatterySample;
-  std::function<Scalar(Scalar, Scalar)> low_passed = Law::low_passed;  // of the voltage
+  std::function<Scalar(Scalar, Scalar)> low_passed = Law::low_passed;  // for the voltage only
   std::function<Scalar(const Sample&, const Options&)> load_drop_V = Law::load_drop_V;
   std::function<Scalar(const Sample&, Scalar, const Options&)> measured = Law::measured;
   std::function<Scalar(Scalar, Scalar)> remaining = Law::remaining;
@@ -137,8 +133,8 @@ struct FaultyLaw : Around<attest_inputs, attest_outputs> {
   RateUnitLaw rate_unit;
 };
 
-// Append a function to the present one, so that two faults can act at once. Law is FaultyLaw, or
-// that of a unit of the cascade.
+// also_before() and also_after() keep the present function and call `added` after it, so that two
+// faults can act at once. Law is FaultyLaw, AttitudeUnitLaw or RateUnitLaw.
 template <typename Law, typename Added>
 void also_before(Law& law, Added added) {
   law.before = [then = law.before, added](typename Law::Inputs& in) mutable {

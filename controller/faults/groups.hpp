@@ -30,7 +30,7 @@ std::span<const Fault> mixer_faults();
 std::span<const Fault> mixer_fit_faults();
 std::span<const Fault> battery_status_faults();
 
-// Of the two units of the cascade: files cascade_*.cpp.
+// The faults of the two units of the cascade (files cascade_*.cpp).
 namespace in_cascade {
 std::span<const Fault> attitude_faults();
 std::span<const Fault> large_angle_faults();

@@ -9,7 +9,7 @@ namespace {
 
 namespace ordered = reference::ordered;
 
-// error * (1 - share) + direct * share, with another share.
+// Blends error * (1 - share) + direct * share, with another share.
 template <typename Share>
 void change_share(FaultyLaw& law, Share share) {
   law.attitude.blend = [share](const Vector& error, const Vector& direct, float c, float weight) {

@@ -10,7 +10,7 @@ using Law = MixerStages::Law;
 using Fit = MixerStages::Fit;
 using actuation::Saturation;
 
-// Changes the fit of roll and pitch; arguments are the law's fit, min_out, max_out and thrust.
+// Changes the fit of roll and pitch. `change` gets the law's fit, min_out, max_out and thrust.
 template <typename Change>
 void change_fit(FaultyLaw& law, Change change) {
   law.mixer.fit = [change](float min_out, float max_out, float thrust) {

@@ -1,4 +1,4 @@
-// Wrong modes: the choice of the loop, its inputs, and its publications.
+// Mistakes in modes: the choice of the outer loop, its inputs, and what it publishes.
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -20,7 +20,7 @@ void change_parameters(FaultyLaw& law, Change change) {
   };
 }
 
-// Reads one parameter from the place of another.
+// Uses the value of parameter `from` also for parameter `to`.
 template <float P::*to, float P::*from>
 void read_from(FaultyLaw& law) {
   change_parameters(law, [](Parameters& p) { p.*to = p.*from; });

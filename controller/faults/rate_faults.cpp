@@ -9,7 +9,7 @@
 namespace attest::faults {
 namespace {
 
-// Outputs with components exchanged or changed.
+// Changes the published controls.
 template <typename Change>
 void change_controls(FaultyLaw& law, Change change) {
   also_after(law, [change](const attest_inputs&, attest_outputs& out) {

@@ -9,7 +9,7 @@ namespace {
 
 using Mode = decltype(Topics::mode);
 
-// The limit with another bound.
+// Limits the rates to another bound.
 template <typename Bound>
 void change_bound(FaultyLaw& law, Bound bound) {
   law.attitude.limit = [bound](const Vector& rates, bool autonomous, const AttitudeGains& gains) {
@@ -156,7 +156,7 @@ const Fault limit_faults[] = {
      }},
 };
 
-// The feed-forward with another addition to the yaw rate.
+// Replaces what the feed-forward adds to the yaw rate.
 template <typename Addition>
 void change_yaw_feed_forward(FaultyLaw& law, Addition addition) {
   law.attitude.yaw_feed_forward = [addition](float yaw, float move_rate, float weight,

@@ -1,4 +1,4 @@
-// Wrong time steps.
+// Wrong time steps of the controller.
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -11,7 +11,7 @@ namespace {
 
 using V = const Vector&;
 
-// The attenuation, as another function of thrust, break and slope.
+// Replaces the attenuation by another function of thrust, break and slope.
 template <typename Factor>
 void change_attenuation(FaultyLaw& law, Factor factor) {
   law.rate.throttle_attenuation = [factor](float thrust, const RateGains& gains) {

@@ -18,7 +18,7 @@ void change_feed_forward(FaultyLaw& law, FeedForward feed_forward) {
   };
 }
 
-// The weather-vane's clamp, before or after the feed-forward only.
+// Applies the weather-vane's clamp once: after the feed-forward if `after`, otherwise before it.
 void clamp_once(FaultyLaw& law, bool after) {
   auto fed = std::make_shared<bool>(false);
   law.attitude.limit = [fed](V rates_sp, bool autonomous, const AttitudeGains& gains) {
@@ -53,7 +53,7 @@ void freeze_yaw_by_its_flag(FaultyLaw& law) {
   };
 }
 
-// With the defaults of v1.5.5: a break at full thrust and a slope of 1.
+// Attenuates P by thrust, as v1.5.5 does with its defaults: a break at full thrust, a slope of 1.
 void attenuate_by_thrust(FaultyLaw& law) {
   auto thrust = std::make_shared<float>(0.0f);
   also_before(law, [thrust](const attest_inputs& in) {

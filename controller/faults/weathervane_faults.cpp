@@ -1,4 +1,4 @@
-// Wrong weather-vanes.
+// Mistakes in the weather-vane, which lets the wind turn the nose.
 #include "controller/faults/groups.hpp"
 
 namespace attest::faults {

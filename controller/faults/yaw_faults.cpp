@@ -9,7 +9,8 @@ namespace {
 
 namespace ordered = reference::ordered;
 
-// R (I + by_sine K + by_square K K), its first column.
+// The nose is the first column of R (I + by_sine K + by_square K K). Terms returns by_sine and
+// by_square.
 template <typename Terms>
 void change_rodrigues(FaultyLaw& law, Terms terms) {
   law.attitude.nose_after_tilt = [terms](const Matrix& R_WB, const Tilt& tilt) -> Vector {

@@ -29,11 +29,11 @@ struct AttitudeInput {
   bool weathervane;               // the wind may turn the nose; implies autonomous
 };
 
-// Rotation error of the thrust axis: the shortest turn of the body that aligns that axis.
+// Error of the thrust axis: the shortest rotation of the body that aligns it with the desired one.
 template <typename Scalar>
 struct TiltError {
   Vector3<Scalar> rotation_B;  // axis times angle
-  Vector3<Scalar> axis_B;      // unset when sine is 0
+  Vector3<Scalar> axis_B;      // set only if sine > 0
   Scalar sine;
   Scalar cosine;
 };
@@ -72,10 +72,11 @@ struct AttitudeStages {
     return ordered::product_column(R_WB, turned);
   }
 
-  // 1 when the desired attitude is level or upside down, 0 at 90 deg, where yaw has no meaning.
+  // 1 if the desired attitude is level or upside down, 0 at 90 deg of tilt: yaw has no meaning
+  // there.
   ATTEST_INLINE static Scalar yaw_weight(const Matrix& R_WD) { return R_WD(2, 2) * R_WD(2, 2); }
 
-  // Angle from the tilted nose to the desired nose about the desired thrust axis.
+  // Angle about the desired thrust axis from nose_after_tilt() to the desired nose, times `weight`.
   ATTEST_INLINE static Scalar yaw_error(const Vector& nose_W, const Matrix& R_WD, Scalar weight) {
     const Vector x_D_W = R_WD.col(0);
     const Vector z_D_W = R_WD.col(2);
@@ -84,7 +85,7 @@ struct AttitudeStages {
            weight;
   }
 
-  // Twice the imaginary part of the error quaternion of the whole attitude, by the shorter way.
+  // Twice the imaginary part of the quaternion from R_WB to R_WD, for the shorter rotation.
   static Vector direct_error(const Matrix& R_WB, const Matrix& R_WD) {
     const Quaternion<Scalar> q_BD = quaternion_of(ordered::transpose_product(R_WB, R_WD));
     const Vector imaginary = imaginary_part(q_BD);
@@ -144,7 +145,7 @@ class AttitudeControl {
   [[no_unique_address]] Stages stages_;
 };
 
-// Rotation [rad, body axes] that takes the body to the desired attitude.
+// Attitude error [rad, body axes]: the rotation to the desired attitude, with its yaw weighted.
 template <typename Scalar, typename Stages>
 ATTEST_INLINE Vector3<Scalar> AttitudeControl<Scalar, Stages>::error(const Matrix3<Scalar>& R_WB,
                                                                      const Matrix3<Scalar>& R_WD,

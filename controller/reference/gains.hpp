@@ -36,13 +36,13 @@ struct Gains {
   Vector3<Scalar> acro_rate_max_rad_s;
   Scalar rattitude_threshold;  // [0..1] stick deflection
   bool battery_scaling;        // controls are multiplied by battery_status.scale
-  bool actuators_cut;          // circuit breaker: no actuator controls
+  bool actuators_cut;          // circuit breaker: actuator controls are not published
 };
 
 // The value of CBRK_RATE_CTRL that opens the breaker (PX4 v1.5.5 circuit_breaker).
 inline constexpr float rate_control_breaker_key = 140253.0f;
 
-// The gains of PX4 hold for this time constant; a shorter one raises them.
+// The gain parameters apply to this time constant. A shorter time constant raises the gains.
 inline constexpr float nominal_time_constant_s = 0.2f;
 
 template <typename Scalar>

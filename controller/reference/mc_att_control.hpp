@@ -45,7 +45,7 @@ class McAttControl {
   // Returns false in the same cases as set_parameter() in parameters.hpp.
   bool set_parameter(std::string_view name, float value);
 
-  // One step. Writes the fields of a topic only when it publishes the topic.
+  // One step. Writes `published` of every topic, and the other fields only of published topics.
   void step(const attest_inputs& in, attest_outputs& out);
 
  private:

@@ -1,4 +1,5 @@
-// The definitions of McAttControl: include it to instantiate another law (controller/faults).
+// The definitions of McAttControl, for code that instantiates it with another law
+// (controller/faults).
 #pragma once
 
 #include <cmath>
@@ -8,7 +9,7 @@
 
 namespace attest::reference {
 
-// Topics that are latched when the outer loop uses them, maybe some steps after they arrived.
+// Topics that are latched when the outer loop uses them, which may be some steps after they arrive.
 inline constexpr std::uint32_t latched_on_demand =
     ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT | ATTEST_UPDATED_VEHICLE_RATES_SETPOINT;
 
@@ -80,8 +81,8 @@ void McAttControl<Scalar, Law>::apply_parameters() {
   }
 }
 
-// Clears the attitude flag in the latched copy. It stays cleared until vehicle_control_mode is
-// updated, even when the stick returns before that.
+// If a stick is beyond the threshold, clears the attitude flag in the latched copy. The flag stays
+// cleared until vehicle_control_mode is updated, even if the stick returns before that.
 template <typename Scalar, typename Law>
 ATTEST_INLINE void McAttControl<Scalar, Law>::apply_rattitude() {
   if (topics_.mode.flag_control_rattitude_enabled == 0) return;

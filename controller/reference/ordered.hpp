@@ -42,8 +42,8 @@ ATTEST_INLINE Vector3<Scalar> cross(const Vector3<Scalar>& a, const Vector3<Scal
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// A v. Unlike the other sums, this sum starts at its first product. The difference shows in the
-// sign of a zero rate setpoint, at tilt errors of exactly 0 and 180 deg.
+// A v. Its sums, and those of transpose_times(), start at the first product, not at 0. This shows
+// in the sign of a zero rate setpoint, at tilt errors of exactly 0 and 180 deg.
 template <typename Scalar>
 ATTEST_INLINE Vector3<Scalar> times(const Matrix3<Scalar>& A, const Vector3<Scalar>& v) {
   return {A(0, 0) * v[0] + A(0, 1) * v[1] + A(0, 2) * v[2],
@@ -51,7 +51,7 @@ ATTEST_INLINE Vector3<Scalar> times(const Matrix3<Scalar>& A, const Vector3<Scal
           A(2, 0) * v[0] + A(2, 1) * v[1] + A(2, 2) * v[2]};
 }
 
-// A^T v, summed as A v is.
+// A^T v
 template <typename Scalar>
 ATTEST_INLINE Vector3<Scalar> transpose_times(const Matrix3<Scalar>& A, const Vector3<Scalar>& v) {
   return {A(0, 0) * v[0] + A(1, 0) * v[1] + A(2, 0) * v[2],

@@ -2,8 +2,8 @@
 //
 // Names and defaults are those of PX4 v1.5.5 (mc_att_control, vtol_att_control, commander). Angles
 // and angular rates of parameters are in degrees; everything computed from them is in radians
-// (gains.hpp). The law accepts any value. `min` and `max` are the range in which a vehicle can be
-// expected to fly: they serve the documentation and the drawing of random parameters.
+// (gains.hpp). The law accepts values outside `min` .. `max`. That is the range in which a vehicle
+// can be expected to fly: the documentation and the choice of random parameters use it.
 //
 // The table is static and constant; `Parameters` is a plain value. Any thread.
 #pragma once
@@ -42,13 +42,13 @@ struct ParameterInfo {
   std::string_view unit;  // "1" when dimensionless
   ParameterType type;
   std::string_view description;
-  ProfileSet profiles = all_profiles;  // versions of the law that have it
+  ProfileSet profiles = all_profiles;  // versions of the law that have the parameter
 };
 
 // Every parameter of the law, in a fixed order.
 std::span<const ParameterInfo> parameter_table();
 
-// The entry of that name, or nullptr.
+// The entry of that name, or nullptr if no parameter has it.
 const ParameterInfo* find_parameter(std::string_view name);
 
 // The values of a new controller.

@@ -19,12 +19,12 @@ inline constexpr std::array<Profile, 2> every_profile{Profile::px4_v1_5_5, Profi
 // All differences between the profiles, except their parameters (parameters.hpp).
 struct ProfileTraits {
   std::string_view name;
-  bool attenuates_by_throttle;          // the proportional rate gain (TPA)
-  bool feeds_forward_rates;             // the rates setpoint itself; else its change
+  bool attenuates_by_throttle;          // throttle reduces the proportional rate gain (TPA)
+  bool feeds_forward_rates;             // the rates setpoint itself; else its rate of change
   bool freezes_yaw_integral;            // while the mixer reports yaw at its limit
-  bool limits_yaw_before_feed_forward;  // when weather-vaning; every profile limits it after, too
-  bool limits_rates_in_auto;            // to the autonomous maximum, in every auto mode; else only
-                                        // in modes with velocity control
+  bool limits_yaw_before_feed_forward;  // when weather-vaning; every profile also limits it after
+  bool limits_rates_in_auto;            // auto modes without velocity control count as autonomous,
+                                        // too: for the limits of the rates and weather-vaning
   bool has_landing_gear;
   bool scales_by_battery;
 };

@@ -18,13 +18,13 @@
 
 namespace attest::reference {
 
-// An axis integrates only while its new integral and its control are inside this bound.
+// An axis integrates only while its new integral and its control are inside +- this bound.
 inline constexpr float integral_limit = 0.3f;
 
 // Up to this thrust the vehicle is assumed to stand on the ground, where integrals would wind up.
 inline constexpr float takeoff_thrust = 0.2f;
 
-// Saturation reported by the mixer: see multirotor_motor_limits.
+// Saturation reported by the mixer: see multirotor_motor_limits in attest_unit.h.
 struct MotorLimits {
   bool lower = false;
   bool upper = false;
@@ -36,7 +36,7 @@ struct RateInput {
   Vector3<Scalar> rates_B;
   Vector3<Scalar> rates_sp_B;
   Scalar thrust_sp;            // thrust of this step
-  Scalar published_thrust_sp;  // thrust of the latest vehicle_rates_setpoint
+  Scalar published_thrust_sp;  // thrust in the latched copy of vehicle_rates_setpoint
   Scalar dt_s;
   MotorLimits limits;
   bool flying;  // armed as a rotary wing; otherwise each step sets the integral to 0 first

@@ -15,7 +15,7 @@
 namespace attest::reference {
 
 // The latched copies of the topics. All zero at first, except that the vehicle starts as a rotary
-// wing. `rates_setpoint` has one copy: the controller's own setpoint overwrites the external one.
+// wing. The controller's own rates setpoint overwrites an external one in `rates_setpoint`.
 struct Topics {
   decltype(attest_inputs::vehicle_attitude_setpoint) attitude_setpoint{};
   decltype(attest_inputs::vehicle_rates_setpoint) rates_setpoint{};
@@ -69,8 +69,8 @@ struct StepStages {
     return autonomous && setpoint.disable_mc_yaw_control != 0;
   }
 
-  // Whether the controller's own rates setpoint replaces a pending external one. It does where both
-  // are on one topic. A VTOL publishes its own on mc_virtual_rates_setpoint.
+  // Whether the controller's own rates setpoint replaces a pending external one. It does if both
+  // are on the same topic. A VTOL publishes its own on mc_virtual_rates_setpoint.
   ATTEST_INLINE static bool supersedes_pending(bool is_vtol) { return !is_vtol; }
 
   // Acro limits thrust to 0.9, which leaves the mixer headroom for attitude control.

@@ -1,9 +1,9 @@
 // The outer loop of a tailsitter that recovers from a large tilt along an optimal path.
 //
 // The law of PX4 v1.5.5 TailsitterRecovery. A recovery begins beyond 30 deg of tilt error and ends
-// below 5 deg. During it the rate setpoint is a fitted function of the tilt and of the direction of
-// its axis; otherwise it follows a plain quaternion law. TailsitterRecovery replaces
-// AttitudeControl when VT_TYPE is 0 and VT_OPT_RECOV_EN is set.
+// below 5 deg. During a recovery the rate setpoint is a fitted function of the tilt and of the
+// direction of the tilt axis; otherwise a plain quaternion law gives it. TailsitterRecovery
+// replaces AttitudeControl if VT_TYPE is 0 and VT_OPT_RECOV_EN is not 0 at the first step.
 //
 // Frames: W world NED, B body FRD, D desired body. Angles [rad], rates [rad/s]. The only state is
 // the flag of a recovery in progress. No clock, no allocation; one thread at a time.

@@ -19,7 +19,7 @@ void Battery::update(Nanoseconds now, double hover_seconds_used, double power_ra
   charge_ = std::clamp(initial_charge_ - used, 0.0, 1.0);
   const double dt_s = static_cast<double>((now - updated_).count()) * s_per_ns;
   updated_ = now;
-  // Exact for a current that was constant since the last update.
+  // The low-pass is exact for a current that was constant since the last update.
   const double current = pack_.hover_current_A * power_ratio;
   const double kept =
       pack_.current_filter_s > 0 ? std::exp(-dt_s / pack_.current_filter_s) : (dt_s > 0 ? 0 : 1);

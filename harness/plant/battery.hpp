@@ -9,19 +9,19 @@ namespace attest {
 // No allocation; no clock: the caller passes the time of each measurement.
 class Battery {
  public:
-  // `charge` [0..1] of the capacity at the start. The current is that of hover until the first
-  // update. REQUIRES: a positive capacity.
+  // `charge` [0..1]: the share of the capacity at the start. Until the first update the current is
+  // that of hover. REQUIRES: a positive capacity.
   Battery(const BatteryPack& pack, double charge);
 
-  // Measures at `now`. `hover_seconds_used` is that of PlantState; `power_ratio` is the rotors'
-  // power divided by that in hover. REQUIRES: times do not decrease.
+  // Measures at `now`. `hover_seconds_used` is that of PlantState. `power_ratio` is the rotors'
+  // power divided by their power in hover. REQUIRES: times do not decrease.
   void update(Nanoseconds now, double hover_seconds_used, double power_ratio);
 
   double charge() const { return charge_; }        // 0..1
   double current_A() const { return current_A_; }  // low-passed
   double voltage_V() const;                        // under load, not below 0
 
-  // The factor of the rotors' speed: the voltage divided by that of a full battery in hover.
+  // The factor on the rotors' speed: the voltage divided by that of a full battery in hover.
   double supply_ratio() const;
 
  private:

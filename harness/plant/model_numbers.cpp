@@ -12,7 +12,7 @@ class Agreement {
   explicit Agreement(const Vehicle& vehicle) : toml_(vehicle.file.filename().string()) {}
 
   void same(const std::string& what, double model, double vehicle) {
-    // Not compared by bits, because MuJoCo recomputes the inertia.
+    // With a tolerance, because MuJoCo recomputes the inertia.
     constexpr double relative = 1e-9;
     if (!difference.empty() || std::abs(model - vehicle) <= relative * std::abs(vehicle)) return;
     difference = fmt::format("{} is {:g}, in {} it is {:g}", what, model, toml_, vehicle);

@@ -13,8 +13,8 @@ namespace attest {
 struct ModelNumbers {
   struct Rotor {
     Vector3 position_m;
-    Vector3 force_gear;     // force by thrust
-    Vector3 torque_gear_m;  // torque by thrust
+    Vector3 force_gear;     // force divided by thrust
+    Vector3 torque_gear_m;  // torque divided by thrust
     double thrust_coefficient;
     double time_constant_up_s;
     double time_constant_down_s;
@@ -26,7 +26,8 @@ struct ModelNumbers {
   std::vector<Rotor> rotors;
 };
 
-// The first quantity that differs from the vehicle's, with both values; empty when all agree.
+// Describes the first quantity that differs from the vehicle's, with both values. Returns an empty
+// text if all agree.
 std::string first_difference(const ModelNumbers& model, const Vehicle& vehicle);
 
 }  // namespace attest

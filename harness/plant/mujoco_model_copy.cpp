@@ -29,7 +29,7 @@ void for_each_array(mjModel& model, Act&& act) {
 
 MujocoModelCopy::MujocoModelCopy(const mjModel& original)
     : model_(std::make_unique<mjModel>(original)) {
-  model_->buffer = nullptr;  // of the original
+  model_->buffer = nullptr;  // belongs to the original
   model_->ntex = model_->ntexdata = 0;
   std::size_t bytes = 0;
   for_each_array(*model_, [&](const auto&, std::size_t size) { bytes += aligned(size); });

@@ -1,5 +1,5 @@
 // A MuJoCo model with arrays of its own, which may be changed. The textures are left out: only a
-// viewer reads them, and they are 98% of the bytes of a vehicle.
+// viewer reads them, and they are 98% of the bytes of a vehicle's model.
 #pragma once
 
 #include <cstddef>

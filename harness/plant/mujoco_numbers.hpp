@@ -19,12 +19,13 @@ enum UserData : int { drag_at = 0, wind_at = 3, userdata_size = 6 };
 
 }  // namespace mujoco_layout
 
-// For the comparison with the TOML (model_numbers.hpp). Errors: a model of another structure, with
-// the missing element.
+// The numbers that first_difference() compares with the TOML. Errors: a model that lacks an element
+// which the plant needs; the text names the element.
 Result<ModelNumbers> numbers_of(const mjModel_& model, const std::filesystem::path& xml);
 
-// Sets those numbers that first_difference() compares and that depend on the vehicle. The caller
-// updates what MuJoCo derives from them (mj_setConst). REQUIRES: as many rotors as the vehicle has.
+// Sets the numbers that first_difference() compares, except gravity and centre of mass. The caller
+// updates the values that MuJoCo derives from them (mj_setConst). REQUIRES: as many rotors as the
+// vehicle has.
 void set_numbers(const Vehicle& vehicle, mjModel_& model);
 
 }  // namespace attest

@@ -108,8 +108,8 @@ Result<Model> compile(const std::filesystem::path& xml) {
 
 // ---- models for a flight ------------------------------------------------------------------------
 
-// Reserves memory for the contacts of a few feet, and enables contacts. The memory is for four
-// points on each of some geoms, with up to four constraint rows for each point.
+// Enables contacts, and reserves memory for at least 64 contact points with four constraint rows
+// each.
 void enable_floor(mjModel& model) {
   constexpr int contacts = 64, rows_of_one = 4, stack_numbers = 200'000;
   model.nconmax = std::max(model.nconmax, contacts);
@@ -119,7 +119,7 @@ void enable_floor(mjModel& model) {
 }
 
 // Leaves out cameras, lights and sensors, which no flight reads, and geoms that have no effect.
-// MuJoCo would compute their places at each stage of a step: a quarter of the time of a flight.
+// MuJoCo would compute their places at each stage of a step, a quarter of the time of a flight.
 void leave_out_unused(mjModel& model) {
   model.ncam = model.nlight = model.nsensor = 0;
   const bool geoms_act = (model.opt.disableflags & mjDSBL_CONTACT) == 0 || model.ntendon > 0 ||
@@ -144,7 +144,7 @@ class MujocoPlant final : public Plant {
 
   void reset(const PlantState& start) override {
     mj_resetData(&model_, data_.get());
-    copy(vehicle_.drag_kg_s, data_->userdata + drag_at);  // no sign: the same in FRD and FLU
+    copy(vehicle_.drag_kg_s, data_->userdata + drag_at);  // the same in FRD and FLU
     place_centre_of_mass({0, 0, 0});
     now_ = Nanoseconds(0);
     steps_ = 0;
@@ -179,7 +179,7 @@ class MujocoPlant final : public Plant {
   const PlantState& state() const override { return state_; }
 
  private:
-  // To the next multiple of the physics period, or to `to` if that comes first.
+  // Steps to the next multiple of the physics period, or to `to` if that comes first.
   void step(Nanoseconds to) {
     Nanoseconds next = physics_.tick(steps_ + 1);
     if (next <= to) ++steps_;
@@ -224,7 +224,7 @@ class MujocoPlant final : public Plant {
     for (int i = 0; i < model_.nv; ++i) model_.dof_simplenum[i] = at_origin ? model_.nv - i : 0;
   }
 
-  // MuJoCo's free joint is at the body's origin; PlantState is that of the centre of mass.
+  // MuJoCo's free joint is at the body's origin. PlantState has the place of the centre of mass.
   void write_body() {
     const Quaternion q = flu_to_enu(state_.attitude);
     mjtNum *const qpos = data_->qpos, *const qvel = data_->qvel;
@@ -252,7 +252,7 @@ class MujocoPlant final : public Plant {
     std::copy_n(data_->act, rotors_, state_.rotor_rad_s.begin());
   }
 
-  // From the body's origin to the centre of mass, and its velocity, in the world.
+  // The place and velocity of the centre of mass relative to the body's origin, in world axes.
   void offset_in_world(mjtNum* arm_W, mjtNum* velocity_W) const {
     const mjtNum* arm_B = model_.body_ipos + 3 * body;
     mjtNum velocity_B[3];

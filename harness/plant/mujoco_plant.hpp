@@ -1,5 +1,5 @@
 // The plant in MuJoCo: a free body with one actuator per rotor, integrated by the Runge-Kutta
-// method of order 4 at the physics rate. Only the inside of this plant uses FLU and ENU.
+// method of order 4 at the physics rate. Only the code of this plant uses FLU and ENU.
 #pragma once
 
 #include <filesystem>
@@ -13,13 +13,13 @@ namespace attest {
 // A compiled MuJoCo model. Immutable; any number of plants may use it.
 class MujocoModel {
  public:
-  // Errors: XML that MuJoCo refuses, with its line; a model that disagrees with the vehicle's TOML,
-  // naming the quantity and both values.
+  // Errors: XML that MuJoCo refuses, with its line; the errors of numbers_of(); a model that
+  // disagrees with the vehicle's TOML, with the quantity and both values.
   static Result<std::shared_ptr<const MujocoModel>> load(const std::filesystem::path& xml,
                                                          const Vehicle& vehicle);
   virtual ~MujocoModel() = default;
 
-  // A copy with the numbers of another vehicle. Errors: another number of rotors.
+  // A copy with the numbers of another vehicle. Errors: another number of rotors; those of MuJoCo.
   virtual Result<std::shared_ptr<const MujocoModel>> with_numbers_of(
       const Vehicle& vehicle) const = 0;
 

@@ -13,7 +13,7 @@
 namespace attest {
 namespace {
 
-// Where each variable of the state begins.
+// The index at which each variable of the state begins.
 enum Variable : int { position = 0, velocity = 3, attitude = 6, rate = 10, used = 13, rotors = 14 };
 
 Vector3 cross(const Vector3& a, const Vector3& b) {
@@ -106,10 +106,10 @@ int right_hand_side(realtype, N_Vector y, N_Vector dy, void* dynamics) {
   return 0;
 }
 
-// Without this, SUNDIALS would print its errors. The returned flag is enough.
+// Without this, SUNDIALS would print its errors. check() reports them by the returned flag.
 void silent(int, const char*, const char*, char*, void*) {}
 
-// These calls fail only without memory.
+// The calls that are checked by made() fail only if memory is missing.
 template <typename T>
 T* made(T* pointer) {
   if (!pointer) throw std::bad_alloc();
@@ -156,7 +156,7 @@ class ErkPlant final : public OdePlant {
     std::copy_n(start.rate_rad_s.begin(), 3, y + rate);
     y[used] = start.hover_seconds_used;
     std::copy_n(start.rotor_rad_s.begin(), count_, y + rotors);
-    // Discards the last step size of the flight before.
+    // Discards the last step size of the previous flight.
     ERKStepReInit(integrator_, right_hand_side, 0, y_);
     stale_ = false;
   }
@@ -177,7 +177,7 @@ class ErkPlant final : public OdePlant {
   std::optional<Divergence> advance(Nanoseconds to) override {
     if (lost_ || to <= now_) return lost_;
     const double end = in_seconds(to);
-    // The integrator keeps the first stage from its last step, which had other inputs.
+    // Without a reset the integrator would reuse a stage of its last step, which had other inputs.
     if (stale_) ERKStepReset(integrator_, in_seconds(now_), y_);
     stale_ = false;
     ERKStepSetStopTime(integrator_, end);

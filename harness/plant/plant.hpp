@@ -78,8 +78,8 @@ bool has_floor(PlantKind kind);            // ground contact
 Result<PlantKind> parse_plant_kind(std::string_view name);
 
 struct PlantOptions {
-  // How often MuJoCo steps. Its steps begin at multiples of 1 / physics, and at the times to which
-  // it is advanced. The ode plant chooses its own steps.
+  // How often MuJoCo steps. Its steps begin at multiples of 1 / physics, and at the times that
+  // advance() was given. The ode plant chooses its own steps.
   Rate physics = Rate::hz(1000);
   bool floor = false;  // MuJoCo only: ground contact at z = 0
 };
@@ -90,8 +90,8 @@ class VehicleModel {
  public:
   // Reads models/<name>.toml and models/<name>.xml. A vehicle with the key `mjcf_of` has the MuJoCo
   // model of that other vehicle, with its own numbers. Errors, with file and, if known, line: no
-  // such vehicle (with the known ones), the errors of read_vehicle, XML that MuJoCo refuses, a
-  // model that disagrees with its TOML (with the quantity).
+  // such vehicle (with the known ones), an unsuitable `mjcf_of`, the errors of read_vehicle() and
+  // of MujocoModel::load().
   static Result<std::shared_ptr<const VehicleModel>> load(const std::filesystem::path& models,
                                                           const std::string& name);
   virtual ~VehicleModel() = default;
@@ -99,10 +99,11 @@ class VehicleModel {
   virtual const Vehicle& vehicle() const = 0;
 
   // The same MuJoCo model with the numbers of another vehicle, without compiling it again. Errors:
-  // another number of rotors.
+  // another number of rotors; those of MuJoCo.
   virtual Result<std::shared_ptr<const VehicleModel>> with_numbers_of(Vehicle vehicle) const = 0;
 
-  // Errors: options.floor for a plant without a floor. The vehicle model must outlive the plant.
+  // Errors: options.floor for a plant without a floor; those of MuJoCo. The vehicle model must
+  // outlive the plant.
   virtual Result<std::unique_ptr<Plant>> make_plant(PlantKind kind,
                                                     const PlantOptions& options) const = 0;
 };

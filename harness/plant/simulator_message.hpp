@@ -9,7 +9,7 @@ namespace attest {
 // no line.
 int line_in(const std::string& simulator_message);
 
-// Without line breaks.
+// The message on one line.
 std::string one_line(std::string simulator_message);
 
 }  // namespace attest

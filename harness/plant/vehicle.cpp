@@ -60,7 +60,7 @@ Vector3 read_drag(const TomlTable& root) {
   return drag;
 }
 
-// Far more than any vehicle, and little enough that no moment overflows.
+// Farther than on any vehicle, and small enough that no moment overflows.
 constexpr double farthest_rotor_m = 100;
 
 Vector3 read_place(const TomlTable& rotor) {
@@ -111,9 +111,9 @@ BatteryPack read_battery(const TomlTable& root) {
   return pack;
 }
 
-// Compares the mixer's rotor i with the vehicle's. In the mixer, rotors on the left have a positive
-// roll scale, those in front a positive pitch scale, and those that turn counter-clockwise a
-// positive yaw scale.
+// Returns the difference between a rotor and its rotor in the mixer, if there is one. In the mixer,
+// rotors on the left have a positive roll scale, those in front a positive pitch scale, and those
+// that turn counter-clockwise a positive yaw scale.
 std::optional<std::string> disagreement(const VehicleRotor& rotor, const actuation::Rotor& mixed) {
   constexpr double small = 1e-3;
   const auto differs = [&](double place, float scale) {

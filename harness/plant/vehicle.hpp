@@ -47,19 +47,20 @@ struct Vehicle {
   std::vector<VehicleRotor> rotors;
   double thrust_coefficient = 0;    // kf [N/(rad/s)^2]: thrust = kf w^2, along -z
   double torque_over_thrust_m = 0;  // km/kf: drag torque = km/kf * thrust, against the rotation
-  double time_constant_up_s = 0;    // of the rotor speed, towards a higher command
-  double time_constant_down_s = 0;  // towards a lower one
+  double time_constant_up_s = 0;    // of the rotor speed towards a higher command
+  double time_constant_down_s = 0;  // of the rotor speed towards a lower command
   double rotor_max_rad_s = 0;       // at the motor command 1
-  Vector3 drag_kg_s{};  // linear rotor drag, optional: force = -drag * air velocity, by body axis
+  Vector3 drag_kg_s{};  // optional, by body axis: force = -drag * velocity relative to the air
   double rate_bound_rad_s = 0;  // beyond this body rate a flight has diverged
   BatteryPack battery;
   std::string mixer;                                       // "R: 4x 10000 10000 10000 0"
   std::vector<std::pair<std::string, double>> parameters;  // of the law: gains for this vehicle
 
-  // The vehicle whose MuJoCo model this one uses, with its own numbers; empty: models/<name>.xml.
+  // The vehicle whose MuJoCo model this one uses, with its own numbers. If empty, it uses
+  // models/<name>.xml.
   std::string mjcf_of;
 
-  // The files of the vehicle: models/<name>.toml and .xml, or the .xml of `mjcf_of`.
+  // The files of the vehicle: models/<name>.toml, and models/<name>.xml or the .xml of `mjcf_of`.
   std::vector<std::filesystem::path> files() const;
 
   double hover_rotor_rad_s() const;  // the same for all rotors
@@ -67,17 +68,17 @@ struct Vehicle {
   // of the speed. REQUIRES: one speed per rotor.
   double power_ratio(std::span<const double> rotor_rad_s) const;
   double arm_m() const;  // from the centre of mass to the farthest hub
-  // The thrust control, 0..1, at which it hovers: motor commands are linear in the speed.
+  // The thrust control, 0..1, at which the vehicle hovers. Rotor speed is proportional to it.
   double hover_thrust() const { return hover_rotor_rad_s() / rotor_max_rad_s; }
 };
 
 inline constexpr double gravity_m_s2 = 9.80665;  // standard gravity, ISO 80000-3
 
-// Errors name file, line and fix: a number that is missing or impossible (a mass that is not
-// positive, an inertia that breaks the triangle inequality), an unknown key or parameter, a mixer
-// whose rotors are at other places than the vehicle's.
+// Errors name file, line and fix: a number that is missing or impossible (such as a mass that is
+// not positive, an inertia that breaks the triangle inequality, rotors that cannot lift the
+// vehicle), an unknown key or parameter, a mixer whose rotors are at other places.
 Result<Vehicle> read_vehicle(const std::filesystem::path& file);
-// The same for the text of a file, which need not exist.
+// Reads the text of a file. The file itself need not exist.
 Result<Vehicle> parse_vehicle(std::string_view text, const std::filesystem::path& file);
 
 // The names of the vehicles (*.toml) in a folder, sorted; empty when there is no such folder.

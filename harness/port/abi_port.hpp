@@ -11,7 +11,7 @@
 
 namespace attest {
 
-// The types of the parameters of a table's step().
+// Only for decltype: UnitOf with the types of the parameters of a table's step().
 template <typename In, typename Out>
 UnitOf<In, Out> unit_with(int (*)(void*, const In*, Out*));
 

@@ -1,4 +1,4 @@
-// Binary frames: the structs of the ABI as they are in memory, each behind a header.
+// Binary frames: a header and a payload. Inputs and outputs are the ABI's structs as in memory.
 #include <bit>
 #include <cstring>
 #include <utility>
@@ -125,7 +125,8 @@ class BinaryConversation final : public Conversation {
     return answer;
   }
 
-  // Sends the request, and returns the result in the answer. `rest` bytes follow the result.
+  // Sends the request, and returns the result in the answer. `rest` bytes must follow the result;
+  // the caller reads them.
   int result_of_request(std::size_t rest) {
     const Header answer = exchange();
     check_size(answer, sizeof(std::uint32_t) + rest);

@@ -31,14 +31,15 @@ struct ProgramStep {
   Sample sample{};
 };
 
-// A program that has answered the handshake. Every function throws PortBroke when the program has
-// ended, or when its answer breaks the rules. After that no more requests are made of it.
+// A program that has answered the handshake. A function that sends a request throws PortBroke if
+// the program has ended, or if its answer breaks the rules. After that is_over() is true, and no
+// request may follow.
 //
-// A program answers one request at a time. Units that are stepped on two threads lock `mutex()` for
-// a request and its answer. No other function locks it.
+// A program answers one request at a time. Units that may be stepped on two threads lock `mutex()`
+// for a request and its answer. Conversation itself does not lock it.
 class Conversation {
  public:
-  // Errors: the program cannot be started, it ended, its answer to the handshake is not valid.
+  // Makes the handshake. Errors: the program cannot be started, it ended, its answer is not valid.
   static Result<std::unique_ptr<Conversation>> begin(const std::vector<std::string>& command);
   static Result<std::unique_ptr<Conversation>> begin(PipedProgram program);
 
@@ -48,7 +49,7 @@ class Conversation {
   bool is_over() const { return is_over_; }
   std::mutex& mutex() { return mutex_; }
 
-  // destroy() for a destructor: what it throws is kept for throw_late().
+  // destroy() for a destructor: throw_late() throws the exception of destroy(), if there was one.
   void destroy_quietly(std::uint32_t unit) noexcept;
   void throw_late();
 
@@ -57,10 +58,11 @@ class Conversation {
                      const std::string& definition) = 0;
   virtual int destroy(std::uint32_t unit) = 0;
   virtual int set_parameter(std::uint32_t unit, const std::string& name, float value) = 0;
-  // Replaces the outputs. With text frames, a value that the program leaves out is kept, but a flag
-  // `published` becomes 0.
+  // Replaces the outputs. In a text frame, an output that the program leaves out keeps its value,
+  // but a flag `published` becomes 0.
   virtual int step(std::uint32_t unit, Module module, ProgramStep& step) = 0;
-  // REQUIRES: hello().has_batch, at most max_batch steps. `done`: the steps that have outputs.
+  // Sets `done` to the number of steps that have outputs. REQUIRES: hello().has_batch, 1 to
+  // max_batch steps.
   virtual int batch(std::uint32_t unit, Module module, std::span<ProgramStep> steps,
                     std::size_t& done);
 
@@ -70,7 +72,7 @@ class Conversation {
 
   PipedProgram& program() { return program_; }
   std::uint32_t next_sequence() { return ++sequence_; }
-  // Both throw PortBroke.
+  // ended() and broken() throw PortBroke.
   [[noreturn]] void ended(Request request);
   [[noreturn]] void broken(Request request, const std::string& what);
 

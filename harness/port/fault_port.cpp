@@ -108,7 +108,7 @@ class FaultPort final : public Port {
   }
 
  private:
-  // Null without a profile.
+  // Returns null if there is no profile.
   template <typename Made, typename Profile>
   std::unique_ptr<Unit> make(std::optional<Profile> profile) const {
     return profile ? std::make_unique<Made>(*profile, faults_) : nullptr;

@@ -1,4 +1,4 @@
-// `fault:ID` or `fault:ID+ID`: the reference with faults of the catalogue, to test a suite with.
+// `fault:ID` or `fault:ID+ID`: the reference with faults of the catalogue, to test a suite.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 namespace attest {
 
 // With `fraction_bits` the port declares fixed point, although it computes in floating point. This
-// shows which faults pass with the tolerance for such ports. Errors: no such fault, with the
+// shows which faults pass with the tolerance for fixed point. Errors: no such fault, with the
 // nearest known one.
 Result<std::unique_ptr<Port>> open_fault(std::string_view ids,
                                          std::optional<int> fraction_bits = std::nullopt);

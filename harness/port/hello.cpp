@@ -32,7 +32,7 @@ class Members {
     return optional<T>(name, what);
   }
 
-  // T() if the member is missing.
+  // Returns T() if the member is missing or of another type.
   template <typename T>
   T optional(const char* name, const char* what) {
     known_.emplace_back(name);
@@ -49,7 +49,7 @@ class Members {
     if (error_.empty()) error_ = std::move(error);
   }
 
-  // Empty if there is no error and every member is known.
+  // The first error, or an unknown member. Empty if there is neither.
   std::string error() const {
     if (!error_.empty()) return error_;
     for (const auto& [name, value] : object_.items()) {
@@ -85,7 +85,7 @@ std::vector<std::string> further_modules() {
   return names;
 }
 
-// A profile that attest does not know is one of the controller.
+// A profile that attest does not know counts as one of the controller.
 bool is_of_controller(const std::string& name) {
   const ProfileInfo* const profile = find_profile(name);
   return !profile || contains(profile->modules, Module::mc_att_control);

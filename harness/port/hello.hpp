@@ -16,23 +16,23 @@ inline constexpr int protocol_version = 1;
 
 enum class FrameForm { binary, text, shared };
 
-// What a program says of itself.
+// The program's answer to the handshake.
 struct Hello {
   std::string name, version;
   std::vector<std::string> profiles;
   FrameForm frames = FrameForm::binary;
-  ModuleSet modules;  // the controller is one of them if a profile has it
+  ModuleSet modules;  // with the controller if one of the profiles has it
   bool has_batch = false;
   std::vector<std::string> unsupported_groups;
   std::optional<int> fraction_bits;
   std::optional<Rate> fixed_step;
 };
 
-// What attest writes first, with its line feed.
+// The line that attest writes first, with its line feed.
 std::string greeting();
 
-// Parses the answer. Errors: no JSON object; a member that is missing, unknown or of another type;
-// another version of the protocol.
+// Parses the answer. Errors: no JSON object; a member that is missing, unknown or has a value that
+// is not allowed; another version of the protocol.
 Result<Hello> parse_hello(std::string_view line);
 
 }  // namespace attest

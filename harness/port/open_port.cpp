@@ -1,4 +1,4 @@
-// The specification of a port on a command line: its kind, its files, and the port itself.
+// Reads the specification of a port on a command line: its kind and its files. Opens the port.
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
@@ -15,7 +15,7 @@
 namespace attest {
 namespace {
 
-// What follows the prefix; empty if it is not there.
+// The text after the prefix; empty if the specification has another prefix.
 std::optional<std::string> after(std::string_view prefix, const std::string& specification) {
   if (!specification.starts_with(prefix)) return std::nullopt;
   return specification.substr(prefix.size());

@@ -10,8 +10,8 @@ namespace attest {
 
 Result<int> parse_fraction_bits(std::string_view arithmetic) {
   constexpr std::string_view prefix = "fixed:";
-  // With fewer bits, wrong ports would pass the tolerance. With more, the tolerance is that of
-  // floats.
+  // With fewer bits, wrong ports would pass the tolerance. With more, the tolerance is practically
+  // that of floats.
   constexpr int fewest = 20, most = 32;
   int bits = 0;
   const char* const end = arithmetic.data() + arithmetic.size();

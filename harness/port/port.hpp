@@ -1,5 +1,5 @@
-// The subject of the tests. A port implements one or more modules. A Unit is one running instance
-// of any module, also of a mixer or a battery estimate.
+// A port: the software under test. It implements one or more modules. A Unit is one running
+// instance of any module, also of a mixer or a battery estimate.
 //
 // The kinds of port are `builtin` (the reference), `lib:PATH` (a shared library with the ABI of
 // attest_unit.h), `proc:COMMAND` (a program, PROTOCOL.md), `recorded:DIR` (outputs in files, which
@@ -22,8 +22,8 @@
 
 namespace attest {
 
-// A port that is a program has ended, or has broken the rules of PROTOCOL.md. Thrown by create()
-// and by the functions of the units. `what()` is one line.
+// A port that is a program has ended, or has broken the rules of PROTOCOL.md. Thrown by
+// create_unit(), create(), finish() and the functions of the units. `what()` is one line.
 class PortBroke : public std::runtime_error {
  public:
   enum class How { ended, rules };
@@ -46,8 +46,8 @@ class Unit {
  public:
   virtual ~Unit() = default;
 
-  // These return ATTEST_OK, ATTEST_UNSUPPORTED, ATTEST_INVALID or ATTEST_FAILED. Any other value is
-  // reported as an error of the port.
+  // The functions with an int return ATTEST_OK, ATTEST_UNSUPPORTED, ATTEST_INVALID or
+  // ATTEST_FAILED. Any other value is reported as an error of the port.
   virtual int set_parameter(const std::string& name, float value) = 0;
   // Same as attest_timestamp_sample: called once before each step. A unit that does not need the
   // time returns ATTEST_OK.
@@ -60,11 +60,11 @@ class Unit {
     return step_structs(&in, &out);
   }
 
-  // How many steps batch() takes at most; 0: it takes none.
+  // The most steps that batch() takes; 0 if the unit has no batch().
   virtual std::size_t max_batch() const { return 0; }
-  // The same as one step after the other, with set_timestamp_sample() before each.
-  // REQUIRES: 1 <= samples.size() <= max_batch(), and a time for each; the outputs of the first
-  // sample are those of the last step before this batch.
+  // Makes one step for each sample, with set_timestamp_sample() before it. REQUIRES: 1 <=
+  // samples.size() <= max_batch(), and a time for each; the outputs of the first sample are those
+  // of the last step before this batch.
   virtual Batched batch(std::span<Sample> /*samples*/,
                         std::span<const std::uint64_t> /*timestamp_samples_us*/) {
     return {0, ATTEST_UNSUPPORTED};
@@ -102,9 +102,9 @@ class Port {
 
   virtual ModuleSet modules() const { return only(Module::mc_att_control); }
 
-  // A unit in its power-on state; null when the port does not support the profile, or allows no
-  // further instance now. `definition` is that of the mixer, if the module is one. The port must
-  // outlive the unit. REQUIRES: the port has the module.
+  // A unit in its power-on state; null if the port does not support the profile or the definition,
+  // or allows no further instance now. Only the mixer has a `definition`. The port must outlive the
+  // unit. REQUIRES: the port has the module.
   virtual std::unique_ptr<Unit> create_unit(Module module, const std::string& profile,
                                             const std::string& definition) = 0;
   // A controller. REQUIRES: same as create_unit().
@@ -112,8 +112,8 @@ class Port {
     return create_unit(Module::mc_att_control, profile, "");
   }
 
-  // Called after the units of a request were destroyed. Throws PortBroke if a program broke the
-  // protocol in destroy(), because the destructor of a unit cannot throw.
+  // Call after units were destroyed. Throws PortBroke if a program broke the protocol in destroy(),
+  // because the destructor of a unit cannot throw.
   virtual void finish() {}
 };
 
@@ -121,9 +121,8 @@ class Port {
 // range.
 Result<int> parse_fraction_bits(std::string_view arithmetic);
 
-// The files of which a port consists: PATH of "lib:PATH"; of "proc:COMMAND" the program, and each
-// of its arguments that is a file; of "recorded:DIR" all files below DIR, sorted. Empty for a port
-// without files.
+// The files of a port: PATH of "lib:PATH"; of "proc:COMMAND" the program, and each of its arguments
+// that is a file; of "recorded:DIR" all files below DIR, sorted. Empty for a port without files.
 std::vector<std::string> files_of(const std::string& specification);
 
 // True for "proc:COMMAND".

@@ -14,31 +14,32 @@ namespace attest {
 
 struct ProfileInfo {
   std::string_view name;  // "px4-v1.5.5"
-  ModuleSet modules;      // that this version of the firmware has and attest knows
+  ModuleSet modules;      // those of this version that attest knows
 };
 
 // Every profile: those of the controller, then those of the cascade.
 std::span<const ProfileInfo> known_profiles();
 std::vector<std::string> known_profile_names();
 
-// Null if there is none of that name.
+// Returns null if no profile has that name.
 const ProfileInfo* find_profile(std::string_view name);
 
-// True if the port can make at least one unit of that profile. If attest does not know the profile,
-// only a controller is tried.
+// True if the port makes a controller, an attitude unit or a rate unit of that profile. If attest
+// does not know the profile, only a controller is tried.
 bool makes_unit_of(Port& port, const std::string& profile);
 
 // A parameter of a module.
 struct Parameter {
   std::string_view name;
   float default_value;
-  float min, max;         // the bounds of the ground station, which the law does not enforce
+  float min, max;         // the law does not enforce them; infinite if there is no bound
   std::string_view unit;  // "1" when dimensionless
   std::string_view description;
   bool is_integer;
 };
 
-// The parameters of a module in a profile, in the order of the law's own table.
+// The parameters of a module in a profile, in the order of the law's own table. Empty if the
+// profile does not have the module.
 std::vector<Parameter> parameters_of(Module module, const ProfileInfo& profile);
 
 // True if the module has an integer parameter of that name in some profile.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* symbol_name = "attest_unit_v1";
 
-// A port without the controller has none of its functions.
+// A port that has no controller sets none of the controller's functions.
 bool has_controller(const attest_unit& unit) {
   return unit.create || unit.destroy || unit.set_parameter || unit.step;
 }
@@ -59,7 +59,7 @@ bool is_complete(const attest_unit& unit, const ModuleInfo& info) {
   return false;
 }
 
-// An extension that the port has must be complete.
+// Checks the extensions that the port has: tables must be complete, texts must be valid.
 Result<void> check_extensions(const attest_unit& unit, const std::string& path) {
   const auto incomplete = [&](const char* id) {
     return fail_at(path,
@@ -107,7 +107,7 @@ Result<std::unique_ptr<Port>> open_shared_library(const std::string& path) {
   if (!std::filesystem::is_regular_file(path, unreadable)) {
     return fail_at(path, "no such library; `--port lib:PATH` takes the path of a shared library");
   }
-  // If the path is absolute, the system does not search its folders of libraries.
+  // With an absolute path, the system does not search its own folders for the library.
   const std::string absolute = std::filesystem::absolute(path).string();
   const auto library = DynamicLibrary::open(absolute);
   if (!library) {

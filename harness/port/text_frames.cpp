@@ -1,4 +1,4 @@
-// Text frames: a JSON object a line. The signals have the names of channels.hpp.
+// Text frames: one JSON object on each line. The signals have the names of channels.hpp.
 #include <array>
 #include <cmath>
 #include <utility>
@@ -70,7 +70,7 @@ class TextConversation final : public Conversation {
       }
     });
     const json answer = exchange(Request::step, unit, std::move(request));
-    // Topics of which the answer says nothing are not published.
+    // A topic whose flag `published` is not in the answer is not published.
     clear_published(module, step.sample);
     std::size_t read = 0;
     for_each_channel(module, "out/", [&](const Channel& channel) {

@@ -137,7 +137,7 @@ std::string sha256_of_inputs(const Trace& trace) {
 
 namespace {
 
-// PROFILE/GROUP/NAME/RATE: the files of a vector without their extension.
+// PROFILE/GROUP/NAME/RATE: the path of a vector's files without their extension.
 std::string stem_of(const std::string& vector_id) {
   std::string stem = vector_id;
   if (const std::size_t at = stem.rfind('@'); at != std::string::npos) stem[at] = '/';
@@ -159,7 +159,7 @@ Result<std::optional<OutputFile>> find_output_file(const std::filesystem::path& 
   std::optional<OutputFile> found;
   for (const TableFormat format : table_formats) {
     const auto path = folder / fmt::format("{}.out.{}", stem_of(vector_id), name_of(format));
-    // A symbolic link is a file of outputs even if its target is missing: reading it is an error.
+    // A symbolic link counts as a file even if its target is missing: reading it gives an error.
     std::error_code ignored;
     const auto status = std::filesystem::symlink_status(path, ignored);
     if (!std::filesystem::exists(status)) continue;

@@ -39,10 +39,10 @@ struct Manifest {
   std::vector<std::string> column_order;  // of an NPY file without names
   ChannelSet not_recorded;                // outputs that the files do not have; not judged
 
-  // [columns]: name in the files of outputs -> name of a channel.
+  // [columns]: from a name in the files of outputs to the name of a channel.
   std::map<std::string, std::string> columns;
 
-  // [vectors]: id, "px4-v1.5.5/attitude/roll_30@250hz" -> SHA-256 of its inputs.
+  // [vectors]: from an id, "px4-v1.5.5/attitude/roll_30@250hz", to the SHA-256 of its inputs.
   std::map<std::string, std::string> vectors;
 };
 
@@ -50,7 +50,7 @@ struct Manifest {
 // arithmetic or rate.
 Result<Manifest> read_manifest(const std::filesystem::path& folder);
 
-// Written aside and renamed. Errors: the file cannot be written.
+// Writes a temporary file and renames it. Errors: the file cannot be written.
 Result<void> write_manifest(const std::filesystem::path& folder, const Manifest& manifest);
 
 // The hash covers all inputs and parameters of the trace at all ticks.

@@ -22,9 +22,9 @@ namespace {
 // The ABI of libmatio 1.5; Debian 12 has 1.5.23.
 constexpr const char* matio_soname = "libmatio.so.11";
 
-// The functions of matio.h that are in use, with its names and meanings. libmatio is loaded when
-// the first MAT file is read or written. Linked in, it would bring 33 more libraries (HDF5, curl,
-// Kerberos) into each process, and every fork would copy their pages.
+// The functions of matio.h that are in use. libmatio is loaded when the first MAT file is read or
+// written. Linked in, it would bring 33 more libraries (HDF5, curl, Kerberos) into each process,
+// and every fork would copy their pages.
 struct Matio {
   DynamicLibrary library;
   decltype(&::Mat_LogInitFunc) log_init_func = nullptr;
@@ -56,7 +56,7 @@ Result<Matio> load_matio() {
   return matio;
 }
 
-// Loaded once, and until the process ends.
+// Loads libmatio at the first call. It stays loaded until the process ends.
 const Result<Matio>& loaded_matio() {
   static const Result<Matio> matio = load_matio();
   return matio;
@@ -178,7 +178,8 @@ Result<Table> read_mat(const std::filesystem::path& path) {
 Result<void> write_mat(const std::filesystem::path& path, const Table& table) {
   const auto& matio = loaded_matio();
   if (!matio) return tl::unexpected(matio.error());
-  // libmatio writes to a path only. It gets that of a file in memory, so nothing is left behind.
+  // libmatio can only write to a path. The path is that of a file in memory, which leaves no file
+  // behind.
   const int memory = ::memfd_create("attest.mat", MFD_CLOEXEC);
   if (memory < 0) return fail_at(path.string(), "no memory to write the file in");
   const std::string in_memory = fmt::format("/proc/self/fd/{}", memory);

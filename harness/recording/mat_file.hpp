@@ -8,12 +8,12 @@
 
 namespace attest {
 
-// Variables that are no vectors of numbers are left out. Errors: no MAT file; those of
-// check_mat_layout().
-// Threads: one at a time.
+// Variables that are no vectors of real numbers are left out. Errors: no MAT file; those of
+// check_mat_layout(); libmatio cannot be loaded. Threads: one at a time.
 Result<Table> read_mat(const std::filesystem::path& path);
 
-// MAT 5, not compressed. Written aside and renamed. Errors: the file cannot be written.
+// MAT 5, not compressed. Writes a temporary file and renames it. Errors: the file cannot be
+// written; libmatio cannot be loaded.
 Result<void> write_mat(const std::filesystem::path& path, const Table& table);
 
 }  // namespace attest

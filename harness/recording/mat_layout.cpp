@@ -19,14 +19,14 @@
 namespace attest {
 namespace {
 
-// All numbers in this file are those of "MAT-File Format", MathWorks.
+// The numbers of the format are from "MAT-File Format", MathWorks.
 constexpr std::size_t header_size = 128, version_at = 124, byte_order_at = 126;
 constexpr std::uint32_t version_5 = 0x0100;
 constexpr std::uint32_t matrix = 14, compressed = 15;  // types of elements
 constexpr std::uint32_t first_numeric_class = 6, last_numeric_class = 15;
 
 constexpr std::uintmax_t most_in_file = std::uintmax_t{1} << 30;   // same as NPY files
-constexpr std::size_t most_decompressed = std::size_t{256} << 20;  // an hour at 8 kHz has 230 MB
+constexpr std::size_t most_decompressed = std::size_t{256} << 20;  // one hour at 8 kHz: 230 MB
 
 std::uint32_t integer_in(std::string_view bytes, bool is_big_endian) {
   std::uint32_t value = 0;
@@ -37,7 +37,7 @@ std::uint32_t integer_in(std::string_view bytes, bool is_big_endian) {
   return value;
 }
 
-// Bytes of a value of this type of element; 0 for a type that is no number.
+// The size in bytes of one value of this type of element; 0 for a type that is no number.
 std::size_t size_of(std::uint32_t type) {
   constexpr std::array<std::size_t, 14> sizes{0, 1, 1, 2, 2, 4, 4, 4, 0, 8, 0, 0, 8, 8};
   return type < sizes.size() ? sizes[type] : 0;
@@ -112,7 +112,7 @@ std::vector<std::uint32_t> integers_in(std::string_view bytes, bool is_big_endia
 }
 
 std::uint64_t product(const std::vector<std::uint32_t>& dimensions) {
-  constexpr std::uint64_t most = std::uint64_t{1} << 32;  // more than an element may have
+  constexpr std::uint64_t most = std::uint64_t{1} << 32;  // more values than an element may have
   std::uint64_t values = 1;
   for (const std::uint32_t dimension : dimensions) values = std::min(values, most) * dimension;
   return values;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view magic = "\x93NUMPY";
 
-// The type of an element: "f4", "u8", "b1"; "V3" is padding.
+// A field of an array. Kind and size are the type: "f4", "u8", "b1"; "V3" is padding.
 struct Element {
   std::string name;
   char kind = 0;
@@ -24,7 +24,7 @@ struct Element {
 };
 
 struct Header {
-  std::vector<Element> fields;  // one without a name: not a structured array
+  std::vector<Element> fields;  // one field without a name if the array is not structured
   bool is_fortran_order = false;
   std::vector<std::size_t> shape;
   std::size_t data = 0;  // where the elements begin
@@ -78,7 +78,7 @@ std::optional<Element> element_of(const std::string& name, const std::string& de
   }
   element.kind = descr[1];
   const auto parsed = std::from_chars(descr.data() + 2, descr.data() + descr.size(), element.size);
-  constexpr std::size_t largest = 4096;  // of padding
+  constexpr std::size_t largest = 4096;  // for padding
   if (parsed.ec != std::errc() || element.size == 0 || element.size > largest) return std::nullopt;
   const bool is_number = std::string_view("fiub").find(element.kind) != std::string_view::npos;
   const bool is_size =

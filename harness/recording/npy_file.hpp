@@ -11,12 +11,12 @@
 namespace attest {
 
 // A structured array of one dimension, or an array of two dimensions whose columns have the names
-// `names`. Elements: integers, floats and booleans, of this machine's byte order. Errors: no NPY
-// file; an incomplete one; another kind of array; a number of columns that is not that of the names
-// (a transposed array, for example).
+// `names`. Elements: integers, floats and booleans, little-endian. Errors: no NPY file; an
+// incomplete one; another kind of array; no names; a number of columns that is not that of the
+// names (a transposed array, for example).
 Result<Table> read_npy(const std::filesystem::path& path, const std::vector<std::string>& names);
 
-// A structured array. Written aside and renamed. Errors: the file cannot be written.
+// A structured array. Writes a temporary file and renames it. Errors: the file cannot be written.
 Result<void> write_npy(const std::filesystem::path& path, const Table& table);
 
 }  // namespace attest

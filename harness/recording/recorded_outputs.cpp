@@ -16,9 +16,9 @@
 namespace attest {
 namespace {
 
-constexpr std::size_t timestamp_channel = 0;  // of channels()
+constexpr std::size_t timestamp_channel = 0;  // index in channels()
 
-// Identifier -> channel.
+// From the identifier of a signal to its index in channels().
 std::map<std::string, std::size_t> channels_by_identifier(Module module) {
   std::map<std::string, std::size_t> known;
   const ChannelSet of_module = channels_of(module);
@@ -28,7 +28,7 @@ std::map<std::string, std::size_t> channels_by_identifier(Module module) {
   return known;
 }
 
-// The channel of each column of the table; empty for a column that is ignored.
+// The index of each column in channels(); empty for a column that is ignored.
 using ColumnChannels = std::vector<std::optional<std::size_t>>;
 
 ColumnChannels channels_of_columns(const Table& table, const Manifest& manifest, Module module) {
@@ -66,12 +66,12 @@ class Times {
   Times(const std::vector<double>& column, const std::string& unit, const Trace& trace)
       : times_us_(column), unit_(unit), trace_(trace) {
     for (double& time : times_us_) time *= microseconds(unit);
-    // Enough for times in seconds with few digits, too little for another tick.
+    // Large enough for times in seconds with few digits, too small to match another tick.
     constexpr double part_of_a_period = 0.25;
     allowed_us_ = std::max(0.5, part_of_a_period * shortest_period_us(trace));
   }
 
-  // Empty if each row has the time of its tick.
+  // Describes the first difference. Empty if each row has the time of its tick.
   std::string complaint() const {
     const std::size_t rows = times_us_.size(), ticks = trace_.samples.size();
     std::size_t row = 0;
@@ -164,7 +164,7 @@ std::string wrong_rows(const Table& table, const ColumnChannels& channel_of,
                      ticks);
 }
 
-// The outputs of the trace's module that the table lacks.
+// A message about the outputs of the trace's module that the table lacks; empty if it has all.
 std::string missing_outputs(const Table& table, const ChannelSet& present, const Manifest& manifest,
                             const Trace& trace) {
   const ChannelSet wanted =
@@ -200,7 +200,7 @@ bool is_value_of(const Channel& channel, double value) {
 
 bool is_published_flag(const Channel& channel) { return channel.name.ends_with(".published"); }
 
-// The channels of all columns.
+// The channels of all columns. Error: two columns of one channel.
 Result<ChannelSet> present_in(const Table& table, const ColumnChannels& channel_of,
                               const std::string& file) {
   ChannelSet present;

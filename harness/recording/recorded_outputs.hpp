@@ -22,10 +22,10 @@ namespace attest {
 Result<void> set_recorded_outputs(const Table& table, const Manifest& manifest,
                                   const std::string& file, Trace& trace);
 
-// Applies keep_unpublished() of output_topics.hpp to each tick.
+// At each tick, a topic that is not published keeps the values of the previous tick.
 void keep_unpublished(Trace& trace);
 
-// The columns that are neither an output nor an input nor `timestamp`.
+// The names of the columns that are neither a signal of the module nor a parameter.
 std::vector<std::string> ignored_columns(const Table& table, const Manifest& manifest,
                                          Module module);
 

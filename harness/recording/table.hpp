@@ -12,7 +12,7 @@ namespace attest {
 
 struct Column {
   std::string name;
-  std::vector<double> values;           // all columns of a table have the same number
+  std::vector<double> values;           // as many as in the other columns
   ChannelType type = ChannelType::f32;  // for writing; reading does not set it
 };
 

@@ -21,8 +21,8 @@ Result<TableFormat> parse_table_format(std::string_view name);
 // MAT: version 5, 7 or 7.3. Each vector of numbers is a column; the column has the variable's name.
 // NPY: version 1 to 3. A structured array has names. In an array of two dimensions, rows are ticks,
 // and `names` are those of its columns.
-// Errors: the file cannot be read; columns of different lengths; no column; a value that is no real
-// number; of NPY: an array that is transposed or has no names.
+// Errors: the file cannot be read; columns of different lengths; no column; those of the format,
+// such as a CSV cell that is no number, or an NPY array that is transposed or has no names.
 Result<Table> read_table(const std::filesystem::path& path, TableFormat format,
                          const std::vector<std::string>& names);
 

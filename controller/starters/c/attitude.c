@@ -43,8 +43,8 @@ static void quaternion_of(const float D[9], float q[4]) {
   q[0] = (D[3 * k + j] - D[3 * j + k]) * s;
 }
 
-/* Beyond 90 deg of tilt error the reduced error does not describe torsion well: the law mixes in
- * the direct rotation. */
+/* Beyond 90 deg of tilt error the law mixes in the direct rotation: twice the imaginary part of the
+ * quaternion from R to R_sp. */
 static void mix_direct_rotation(const float Rt[9], const float R_sp[9], float cosine, float yaw_w,
                                 float e[3]) {
   float D[9], q_e[4];
@@ -91,7 +91,7 @@ static void attitude_error(const float R[9], const float R_sp[9], float yaw_w, f
   if (cosine < 0.0f) mix_direct_rotation(Rt, R_sp, cosine, yaw_w, e);
 }
 
-/* The wind may turn the nose: little yaw authority, and no yaw integral that opposes the wind. */
+/* The wind may turn the nose: the yaw rate has a small limit, and no integral opposes the wind. */
 static void weather_vane(controller* c) {
   const float limit = c->gains.auto_rate_max[2] * c->gains.weather_vane_scale;
   c->rates_sp[2] = clamp(c->rates_sp[2], -limit, limit);
@@ -118,7 +118,7 @@ void attitude_law(controller* c) {
     c->rates_sp[i] = clamp(g->att_p[i] * e[i], -rate_max[i], rate_max[i]);
   }
   if (vane && old) weather_vane(c);
-  /* Added after the limit: the pilot's yaw rate may exceed it. */
+  /* Added after the limit, so the sum may exceed the limit. */
   c->rates_sp[2] += c->copy.vehicle_attitude_setpoint.yaw_sp_move_rate * yaw_w * g->yaw_ff;
   if (vane) weather_vane(c);
 }

@@ -34,7 +34,7 @@ typedef struct parameters {
   float weather_vane_scale, vtol_type, recovery_enabled, circuit_breaker;
 } parameters;
 
-/* The parameters as the law uses them. Computed at parameter_update, not at set_parameter(). */
+/* The parameters as the law uses them. Computed at the first step and at parameter_update. */
 typedef struct gains {
   float att_p[3];                                    /* [1/s] */
   float rate_p[3], rate_i[3], rate_d[3], rate_ff[3]; /* control per rad/s, rad, rad/s^2, rad/s */
@@ -52,8 +52,8 @@ typedef struct controller {
   attest_inputs copy;       /* each topic as it was last latched */
   uint32_t pending;         /* ATTEST_UPDATED_ bits of samples not latched yet */
   bool started;             /* false until the first step has begun */
-  bool have_vehicle_status; /* the first one selects the topics to publish to */
-  bool on_virtual_topics;   /* those of a VTOL; vehicle_rates_setpoint is still read */
+  bool have_vehicle_status; /* the first vehicle_status selects the topics to publish on */
+  bool on_virtual_topics;   /* publishes on those of a VTOL; still reads vehicle_rates_setpoint */
 
   bool tailsitter; /* tailsitter.c replaces attitude.c; decided at the first step */
   bool recovering; /* tailsitter.c: recovers from a large tilt */

@@ -79,7 +79,7 @@ static void recovery_rates(float tilt, float direction, float rates_sp[3]) {
   rates_sp[2] = yaw * -sign[2];
 }
 
-/* Small tilt: rates proportional to the imaginary part of the shortest rotation to the setpoint. */
+/* Without a recovery: rates proportional to the imaginary part of the rotation to the setpoint. */
 static void hold_rates(const gains* g, const float q[4], const float q_sp_conj[4],
                        float rates_sp[3]) {
   float q_e[4];

@@ -104,7 +104,7 @@ static void latch_inputs(controller* c, const attest_inputs* in) {
   c->copy.control_state = in->control_state;
   if (take(c, ATTEST_UPDATED_PARAMETER_UPDATE) || !c->started) read_parameters(c);
   if (!c->started) {
-    /* VT_TYPE 0 is the tailsitter. Later changes have no effect until a reboot. */
+    /* VT_TYPE 0 is the tailsitter. Later changes of these parameters have no effect. */
     c->tailsitter = c->parameters.vtol_type == 0.0f && c->parameters.recovery_enabled != 0.0f;
     c->started = true;
   }
@@ -127,7 +127,7 @@ static void publish_rates_setpoint(controller* c, attest_outputs* out) {
   c->copy.vehicle_rates_setpoint.yaw = c->rates_sp[2];
   c->copy.vehicle_rates_setpoint.thrust = c->thrust_sp;
   if (!c->have_vehicle_status) return;
-  /* On the same topic, this newer sample supersedes a pending external one. */
+  /* This newer sample supersedes a pending external one on the same topic. */
   if (!c->on_virtual_topics) take(c, ATTEST_UPDATED_VEHICLE_RATES_SETPOINT);
   out->vehicle_rates_setpoint.roll = c->rates_sp[0];
   out->vehicle_rates_setpoint.pitch = c->rates_sp[1];
@@ -186,7 +186,7 @@ static int step(void* self, const attest_inputs* in, attest_outputs* out) {
   out->actuator_controls_0.published = 0;
   out->mc_att_ctrl_status.published = 0;
 
-  /* The clamp is part of the law: above 500 Hz it still uses 2 ms. */
+  /* The clamp is part of the law: above 500 Hz the law still uses 2 ms. */
   float dt = (float)(in->timestamp - c->copy.timestamp) / 1000000.0f;
   dt = dt < 0.002f ? 0.002f : (dt > 0.02f ? 0.02f : dt);
   latch_inputs(c, in);

@@ -5,7 +5,7 @@
  * Vectors are float[3], matrices float[9] row by row, quaternions float[4] {w, x, y, z} (Hamilton).
  * The order of every sum is part of the law: products are added in index order. In a dot product
  * and in a product of two matrices the sum starts at 0. In matrix times vector it starts at the
- * first product. The difference is visible: 0 + (-0) is +0, so only the latter sum can be -0.
+ * first product. The difference shows: 0 + (-0) is +0, so only matrix times vector gives -0.
  * Output arguments come last and must not overlap the inputs.
  */
 #ifndef ATTEST_STARTER_VECTOR_H

@@ -23,17 +23,17 @@
 
 typedef struct attitude_law {
   float p[3];        /* [1/s] roll, pitch, yaw; yaw is divided by its weight */
-  float yaw_weight;  /* [0..1] yaw against roll and pitch */
+  float yaw_weight;  /* [0..1] share of the yaw error that is corrected */
   float rate_max[3]; /* [rad/s] */
   quat q_d;          /* desired attitude */
-  float yaw_rate;    /* [rad/s] about world z, fed forward; not finite: none */
+  float yaw_rate;    /* [rad/s] about world z, fed forward if finite */
 } attitude_law;
 
 void attitude_law_set_gains(attitude_law* law, const float p[3], float yaw_weight,
                             const float rate_max_deg[3]);
 void attitude_law_set_setpoint(attitude_law* law, quat q_d, float yaw_rate);
 
-/* The estimator turned its attitude by `delta`. The setpoint turns with it, so the error stays. */
+/* Turns the setpoint by `delta`, by which the estimator turned its attitude: the error stays. */
 void attitude_law_adapt(attitude_law* law, quat delta);
 
 /* The rates [rad/s] that turn the vehicle from attitude q towards the setpoint. */
@@ -64,7 +64,7 @@ typedef struct attitude_setpoint {
 /* State of sticks.c. */
 typedef struct stick_state {
   lowpass roll, pitch; /* of the tilt [rad] */
-  float yaw_sp;        /* [rad]; not finite, with yaw_lock: no heading is locked */
+  float yaw_sp;        /* [rad]; with yaw_lock, not finite if no heading is locked */
   float throttle_min;  /* thrust with the stick at its lowest, slews */
   float throttle_max;  /* limit of the thrust, slews up after arming */
   float hover;         /* thrust with a centred stick, slews */
@@ -72,7 +72,7 @@ typedef struct stick_state {
   /* With yaw_lock. */
   lowpass yaw_rate;  /* [rad/s] */
   lowpass yaw_error; /* estimated minus unaided heading [rad] */
-  float yaw_ref;     /* yaw_error when the heading was last steady [rad] */
+  float yaw_ref;     /* estimated minus unaided heading when last steady [rad] */
   float correction;  /* [rad] */
   bool converging;   /* the estimate of the heading changes without a turn of the vehicle */
 
@@ -87,7 +87,7 @@ typedef struct attitude_unit {
   uint64_t last; /* [us] timestamp_sample of the previous step */
 
   /* Topics as last latched. */
-  attitude_setpoint sample; /* newest of vehicle_attitude_setpoint, from outside or of the sticks */
+  attitude_setpoint sample; /* newest vehicle_attitude_setpoint, external or of the sticks */
   bool sample_pending;      /* not latched yet */
   float roll, pitch, yaw, throttle; /* sticks */
   bool attitude_controlled;
@@ -96,8 +96,8 @@ typedef struct attitude_unit {
   bool spooled_up;
   bool landed;
   bool heading_good;
-  float unaided_heading; /* [rad]; not finite: none */
-  float hover_estimate;  /* [0..1]; not finite: none */
+  float unaided_heading; /* [rad]; not finite if not available */
+  float hover_estimate;  /* [0..1]; not finite if not available */
 
   attitude_law law;
   float thrust[3];
@@ -117,19 +117,19 @@ static inline float attitude_heading(const attitude_unit* u, quat q) {
 
 /* ---- sticks ----------------------------------------------------------------------------------*/
 
-/* Parameters were read. */
+/* Call after parameters were read. */
 void sticks_read_parameters(attitude_unit* u);
 
 /* The setpoint of the sticks for attitude q. Its timestamp is left 0. */
 attitude_setpoint sticks_setpoint(attitude_unit* u, quat q, float dt);
 
-/* A step in which the sticks do not make the setpoint. `run`: the unit controls attitude. */
+/* Call if the sticks do not make the setpoint of this step. `run`: the unit controls attitude. */
 void sticks_release(attitude_unit* u, quat q, bool run);
 
-/* The estimator turned the heading by `turn` [rad]. */
+/* Call after the estimator turned the heading by `turn` [rad]. */
 void sticks_adapt(attitude_unit* u, float turn);
 
-/* The end of a step. `used`: the sticks made the setpoint. */
+/* Call at the end of each step. `used`: the sticks made the setpoint. */
 void sticks_finish(attitude_unit* u, bool used, float dt);
 
 #endif /* ATTEST_STARTER_ATTITUDE_H */

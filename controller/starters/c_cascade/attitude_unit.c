@@ -63,7 +63,7 @@ static void latch_vehicle_status(attitude_unit* u, const attest_attitude_inputs*
   u->vtol = in->vehicle_status.is_vtol != 0;
   u->in_transition = in->vehicle_status.in_transition_mode != 0;
   u->tailsitter = in->vehicle_status.is_vtol_tailsitter != 0;
-  /* Only here: after the spool-up time, spooled_up waits for the next sample of the topic. */
+  /* spooled_up changes only here: after the spool-up time, with the next sample of the topic. */
   const float armed_for = (float)(in->timestamp - in->vehicle_status.armed_time); /* [us] */
   u->spooled_up = in->vehicle_status.armed && armed_for > u->parameters.spoolup_time * 1e6f;
 }
@@ -101,7 +101,7 @@ static void use_sample(attitude_unit* u) {
   u->setpoint_time = u->sample.timestamp;
 }
 
-/* The newest setpoint, then a reset of the estimator. */
+/* Takes the newest setpoint, then follows a reset of the estimator. */
 static void follow_setpoint(attitude_unit* u, const attest_attitude_inputs* in) {
   if (u->sample_pending) {
     u->sample_pending = false;
@@ -116,7 +116,7 @@ static void follow_setpoint(attitude_unit* u, const attest_attitude_inputs* in) 
   }
 }
 
-/* The unit sees its own publication: it takes the place of a sample from outside. */
+/* The unit also receives this setpoint: it replaces a pending sample from outside. */
 static void publish_setpoint(attitude_unit* u, const attitude_setpoint* sp,
                              attest_attitude_outputs* out) {
   u->sample = *sp;

@@ -23,22 +23,22 @@ typedef struct profile {
   const char* name;
 
   /* Rate unit. */
-  bool yaw_torque_filter; /* low-pass on the yaw torque (6.7) */
+  bool yaw_torque_filter; /* low-pass on the yaw torque */
 
   /* Attitude unit, sticks. */
-  bool yaw_lock;           /* centred yaw stick locks a heading (4.1 to 4.4); otherwise the yaw
-                            * setpoint is the integral of the stick (7) */
-  bool hover_estimate;     /* centre of the throttle follows the hover thrust estimate (3.2, 4.8) */
-  bool throttle_slews;     /* limits of the throttle slew on the ground and at spool-up (3.8) */
-  bool lowpass_as_average; /* low-pass of the tilt is a weighted average (8) */
+  bool yaw_lock;           /* a centred yaw stick locks the heading; otherwise the yaw setpoint is
+                            * the integral of the stick */
+  bool hover_estimate;     /* centre of the throttle follows the hover thrust estimate */
+  bool throttle_slews;     /* limits of the thrust slew after landing, take-off and arming */
+  bool lowpass_as_average; /* low-pass of the tilt is (1 - a) s + a x; otherwise s + a (x - s) */
 
   /* Attitude unit, all modes. */
   bool setpoint_first;  /* setpoint and estimator reset are taken at the start of every step, and
-                         * the sticks set the law's setpoint directly (8) */
-  bool yaw_of_any_norm; /* heading of a quaternion without the assumption of norm 1 (8) */
+                         * the sticks set the law's setpoint directly */
+  bool yaw_of_any_norm; /* heading of a quaternion without the assumption of norm 1 */
 } profile;
 
-/* NULL: not supported. */
+/* Returns NULL if no profile has that name. */
 const profile* profile_find(const char* name);
 
 /* ---- parameters ------------------------------------------------------------------------------*/

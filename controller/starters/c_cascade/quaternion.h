@@ -3,8 +3,8 @@
  * quaternion.h - vectors and quaternions of the attitude unit.
  *
  * Quaternions are Hamilton, scalar first, body FRD to world NED. They may have any norm: only
- * quat_unit() normalises. The order of every sum, and products with a factor of 0, are part of the
- * law. They show in the last bits, in the sign of a zero and in NaN.
+ * quat_unit() and quat_between() normalise. The order of every sum, and products with a factor of
+ * 0, are part of the law. They show in the last bits, in the sign of a zero and in NaN.
  */
 #ifndef ATTEST_STARTER_QUATERNION_H
 #define ATTEST_STARTER_QUATERNION_H
@@ -33,8 +33,8 @@ static inline vec3 cross(vec3 a, vec3 b) {
   return (vec3){a.y * b.z - a.z * b.y, -a.x * b.z + a.z * b.x, a.x * b.y - a.y * b.x};
 }
 
-/* The axis along which v has its smallest component. The order of the comparisons is part of the
- * law: it decides ties. */
+/* The axis along which v has its component of smallest magnitude. The order of the comparisons is
+ * part of the law: it decides ties. */
 static inline vec3 smallest_axis(vec3 v) {
   const float x = fabsf(v.x), y = fabsf(v.y), z = fabsf(v.z);
   const vec3 x_axis = {1.0f, 0.0f, 0.0f};
@@ -81,7 +81,7 @@ static inline quat quat_canonical(quat q) {
   return quat_scale(q, first > 0.0f ? 1.0f : -1.0f);
 }
 
-/* The body's z axis in world axes, that is the third column of the rotation matrix. */
+/* The body's z axis in world axes: the third column of the rotation matrix. */
 static inline vec3 quat_z_axis(quat q) {
   return (vec3){2.0f * (q.w * q.y + q.x * q.z), 2.0f * (q.y * q.z - q.w * q.x),
                 q.w * q.w - q.x * q.x - q.y * q.y + q.z * q.z};

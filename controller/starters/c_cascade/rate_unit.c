@@ -19,7 +19,7 @@ typedef struct parameters {
   float battery_scale_enabled;
 } parameters;
 
-/* Values derived from them, computed when parameters are read. */
+/* Values derived from the parameters, computed when they are read. */
 typedef struct gains {
   float p[3], i[3], d[3], ff[3]; /* torque per rad/s, rad, rad/s^2, rad/s */
   float acro_max[3];             /* [rad/s] */
@@ -40,7 +40,7 @@ typedef struct rate_unit {
 
   /* Topics as last latched. */
   uint32_t pending;      /* ATTEST_RATE_UPDATED_ bits of samples that are not latched yet */
-  rates_setpoint sample; /* newest of vehicle_rates_setpoint, from outside or of the sticks */
+  rates_setpoint sample; /* newest vehicle_rates_setpoint, external or of the sticks */
   bool armed, manual, attitude_controlled, rates_controlled;
   bool rotary_wing, on_ground;
   bool saturated_up[3], saturated_down[3];
@@ -107,7 +107,7 @@ static float integrate(const rate_unit* u, int axis, float err, float dt) {
   if (u->saturated_up[axis]) err = min(err, 0.0f);
   if (u->saturated_down[axis]) err = max(err, 0.0f);
 
-  /* A large error integrates less, and one of 400 deg/s not at all. Otherwise the vehicle would
+  /* A large error is integrated less, and from 400 deg/s on not at all. Otherwise the vehicle would
    * overshoot after a flip. */
   float share = err / 6.98131704f;
   share = max(0.0f, 1.0f - share * share);
@@ -187,7 +187,7 @@ static void acro(rate_unit* u, const attest_rate_inputs* in, attest_rate_outputs
   memcpy(out->vehicle_rates_setpoint.thrust_body, u->setpoint.thrust, sizeof u->setpoint.thrust);
   out->vehicle_rates_setpoint.published = 1;
 
-  /* The unit sees its own publication, and latches it when acro mode has ended. */
+  /* The unit also receives what it publishes, and latches it when acro mode has ended. */
   u->sample = u->setpoint;
   u->pending |= ATTEST_RATE_UPDATED_VEHICLE_RATES_SETPOINT;
 }
@@ -212,8 +212,8 @@ static void latch_saturation(rate_unit* u, const attest_rate_inputs* in) {
   }
 }
 
-/* A low battery gives less thrust for the same command; the scale makes up for it.
- * While this is switched off, samples of the battery stay pending. */
+/* A low battery gives less thrust for the same command; the scale makes up for it. While
+ * MC_BAT_SCALE_EN is 0, samples of the battery stay pending. */
 static void compensate_battery(rate_unit* u, const attest_rate_inputs* in, float thrust[3],
                                float torque[3]) {
   if (u->parameters.battery_scale_enabled == 0.0f) return;
@@ -235,7 +235,7 @@ static void publish_integral(const rate_unit* u, attest_rate_outputs* out) {
   out->rate_ctrl_status.published = 1;
 }
 
-/* The steps of a unit that controls rates. */
+/* The part of a step that runs only if the rates are controlled. */
 static void control_rates(rate_unit* u, const attest_rate_inputs* in, float dt,
                           attest_rate_outputs* out) {
   if (!u->armed || !u->rotary_wing) memset(u->integral, 0, sizeof u->integral);
@@ -251,7 +251,7 @@ static void control_rates(rate_unit* u, const attest_rate_inputs* in, float dt,
   publish_integral(u, out);
   for (int i = 0; i < 3; i++) {
     if (!isfinite(torque[i])) torque[i] = 0.0f;
-    thrust[i] = u->setpoint.thrust[i]; /* also NaN */
+    thrust[i] = u->setpoint.thrust[i]; /* NaN stays NaN */
   }
   compensate_battery(u, in, thrust, torque);
 

@@ -40,7 +40,7 @@ static inline float seconds_between(uint64_t from, uint64_t to, float lo, float 
 
 typedef struct lowpass {
   float state;
-  float weight; /* kept while tau + dt is not positive */
+  float weight; /* kept while tau + dt is at most FLT_EPSILON */
 } lowpass;
 
 static inline float lowpass_weight(lowpass* f, float tau, float dt) {
@@ -54,7 +54,7 @@ static inline float lowpass_update(lowpass* f, float tau, float dt, float x) {
   return f->state;
 }
 
-/* The next value of `state` on its way to x, at most rate * dt away. */
+/* The next value of `state`, which follows x by at most rate * dt. */
 static inline float slew(float state, float rate, float dt, float x) {
   const float step = rate * dt;
   return state + clamp(x - state, -step, step);
@@ -62,7 +62,7 @@ static inline float slew(float state, float rate, float dt, float x) {
 
 /* ---- curves ----------------------------------------------------------------------------------*/
 
-/* From (x0, y0) to (x1, y1), constant outside. */
+/* The straight line from (x0, y0) to (x1, y1), constant outside. */
 static inline float line(float v, float x0, float x1, float y0, float y1) {
   if (v <= x0) return y0;
   if (v > x1) return y1;
@@ -84,7 +84,7 @@ static inline float superexpo(float v, float e, float g) {
   return (expo(x, e) * (1.0f - steep)) / (1.0f - fabsf(x) * steep);
 }
 
-/* 0 within +-z. A product with 0, not a branch: a NaN in v stays NaN. */
+/* 0 within +-z. Written as a product with 0, not as a branch, so that a NaN in v stays NaN. */
 static inline float deadzone(float v, float z) {
   const float x = clamp(v, -1.0f, 1.0f);
   const float width = clamp(z, 0.0f, 0.99f);

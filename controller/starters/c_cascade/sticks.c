@@ -11,9 +11,9 @@ static bool lacks_yaw_authority(const attitude_unit* u) {
 
 /* ---- yaw -------------------------------------------------------------------------------------*/
 
-/* While the estimate of the heading converges, it changes although the vehicle does
- * not turn. The unaided heading comes from the gyros alone and shows this. The result [rad] is the
- * change since the estimate was last steady. The yaw setpoint moves by it. */
+/* While the estimate of the heading converges, it changes although the vehicle does not turn. The
+ * unaided heading, from the gyros alone, shows this. Returns the change of the estimate since it
+ * was last steady [rad]. The yaw setpoint moves by this change. */
 static float yaw_correction(attitude_unit* u, float heading, float dt) {
   if (!isfinite(u->unaided_heading)) return 0.0f;
   stick_state* s = &u->sticks;
@@ -29,7 +29,7 @@ static float yaw_correction(attitude_unit* u, float heading, float dt) {
   return wrap(error - s->yaw_ref);
 }
 
-/* A centred stick locks the heading. Returns the yaw of the setpoint. */
+/* A centred yaw stick locks the heading. Returns the yaw of the setpoint. */
 static float lock_yaw(attitude_unit* u, float heading, float dt, float* yaw_rate) {
   const attitude_parameters* p = &u->parameters;
   stick_state* s = &u->sticks;
@@ -51,7 +51,7 @@ static float lock_yaw(attitude_unit* u, float heading, float dt, float* yaw_rate
   return isfinite(s->yaw_sp) ? s->yaw_sp : heading;
 }
 
-/* Before v1.16: the setpoint is the integral of the stick. */
+/* Before v1.16: the yaw setpoint is the integral of the yaw stick. */
 static float integrate_yaw(attitude_unit* u, float heading, float dt, float* yaw_rate) {
   stick_state* s = &u->sticks;
   *yaw_rate = u->yaw * u->stick_yaw_max;
@@ -84,9 +84,8 @@ static quat stick_tilt(attitude_unit* u, float dt) {
   return quat_of_rotation_vector(v);
 }
 
-/* VTOL. The yaw error may be large, because the wind turns the vehicle. The sticks act
- * about the present heading. So the tilt is turned by the yaw error, because the law applies it
- * about the yaw of the setpoint. */
+/* For a VTOL, whose yaw error may be large, because the wind turns the vehicle. The sticks command
+ * a tilt relative to the present heading. Returns that tilt relative to the setpoint's yaw. */
 static quat tilt_for_yaw_error(quat tilt, quat yaw, quat q) {
   const quat heading_only = quat_multiply(quat_inverse(quat_between(world_z, quat_z_axis(q))), q);
   const quat yaw_error = quat_multiply(quat_inverse(yaw), heading_only);
@@ -95,7 +94,7 @@ static quat tilt_for_yaw_error(quat tilt, quat yaw, quat q) {
 
 /* ---- throttle --------------------------------------------------------------------------------*/
 
-/* v1.14.4: limits that do not slew. */
+/* v1.14.4: the limits of the thrust do not slew. */
 static float fixed_throttle(const attitude_parameters* p, float stick) {
   const float s = (stick + 1.0f) * 0.5f;
   if (p->throttle_curve == 1.0f) return line(s, 0.0f, 1.0f, p->throttle_min, p->throttle_max);
@@ -106,7 +105,7 @@ static float fixed_throttle(const attitude_parameters* p, float stick) {
                : line(s, 0.0f, 0.5f, p->throttle_min, p->throttle_hover);
 }
 
-/* Since v1.15: limits that slew after arming and landing. */
+/* Since v1.15: the limits of the thrust slew after arming and landing. */
 static float slewed_throttle(const attitude_unit* u, float stick) {
   const attitude_parameters* p = &u->parameters;
   const stick_state* s = &u->sticks;

@@ -61,7 +61,7 @@ typedef struct {
 } answer;
 
 typedef struct {
-  void* self; /* NULL: no such unit */
+  void* self; /* NULL if the entry is free */
   uint32_t number;
   attest_outputs out; /* the same struct for every step, as the ABI says */
 } instance;
@@ -150,7 +150,7 @@ typedef struct {
   unsigned char answer[262144];
 } shared_memory;
 
-static shared_memory* shared; /* NULL: pipes */
+static shared_memory* shared; /* NULL if frames are in pipes */
 
 static int share_memory(void) {
   void* const at = mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED, SHARED_FILE, 0);
@@ -159,7 +159,7 @@ static int share_memory(void) {
   return 1;
 }
 
-/* Waits until attest has written one more request. 0: attest has closed stdin. */
+/* Waits until attest has written one more request. Returns 0 if attest has closed stdin. */
 static int wait_for_request(void) {
   const uint32_t last = atomic_load_explicit(&shared->answers, memory_order_relaxed);
   struct pollfd in = {.fd = STDIN_FILENO, .events = POLLIN};
@@ -201,7 +201,7 @@ int main(int count, char** arguments) {
       port->name, port->version, is_shared ? "shared" : "binary");
   fflush(stdout);
   while (shared ? take_frame(&head, &of) : read_frame(&head, &of)) {
-    if (head.size < MAX_TEXT) of.text[head.size] = '\0'; /* ends the name of a parameter */
+    if (head.size < MAX_TEXT) of.text[head.size] = '\0'; /* terminates the name of a parameter */
     head.size = (uint32_t)serve(port, &head, &of, &to);
     if (shared) {
       put_frame(&head, &to);

@@ -19,7 +19,7 @@ Mat3 turned(const Mat3& R, const Vec3& axis, float sine, float cosine) noexcept 
          });
 }
 
-// The rotation vector of the shortest rotation D, for small angles: twice the imaginary part.
+// Twice the imaginary part of the quaternion of D, with the sign of the shorter rotation.
 Vec3 direct_error(const Mat3& D) noexcept {
   const Quat q = quaternion_of(D);
   return q.w >= 0.0f ? q.im * 2.0f : conjugate(q).im * 2.0f;
@@ -47,8 +47,7 @@ Vec3 attitude_error(const Mat3& R, const Mat3& R_sp, float yaw_w) noexcept {
   e[2] = std::atan2(dot(cross(x_rp, x_sp), z_sp), dot(x_rp, x_sp)) * yaw_w;
 
   if (cosine < 0.0f) {
-    // Beyond 90 deg of tilt error this error does not describe torsion well. The law mixes in the
-    // direct rotation.
+    // Beyond 90 deg of tilt error the law mixes in the direct rotation.
     const Vec3 direct = direct_error(Rt * R_sp);
     const float direct_w = cosine * cosine * yaw_w;
     e = each_axis([&](std::size_t i) { return e[i] * (1.0f - direct_w) + direct[i] * direct_w; });
@@ -70,7 +69,7 @@ Vec3 attitude_law(Profile profile, const Gains& gains, const AttitudeTask& task)
   const float vane = gains.auto_rate_max[2] * gains.weather_vane_scale;
   float& yaw = rates_sp[2];
   if (task.weather_vane && profile == Profile::px4_v1_3_4) yaw = clamp(yaw, -vane, vane);
-  // Added after the limit: the pilot's yaw rate may exceed it.
+  // Added after the limit, so the sum may exceed the limit.
   yaw += task.yaw_sp_move_rate * yaw_w * gains.yaw_ff;
   if (task.weather_vane) yaw = clamp(yaw, -vane, vane);
   return rates_sp;

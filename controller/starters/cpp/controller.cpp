@@ -41,7 +41,7 @@ void Controller::latch_inputs(const attest_inputs& in) noexcept {
   copy_.control_state = in.control_state;
   const bool started = gains_.has_value();
   if (take(ATTEST_UPDATED_PARAMETER_UPDATE) || !started) gains_.emplace(parameters_);
-  // VT_TYPE 0 is the tailsitter. Later changes have no effect until a reboot.
+  // VT_TYPE 0 is the tailsitter. Later changes of these parameters have no effect.
   const bool recovery = parameters_.vtol_type == 0.0f && parameters_.recovery_enabled != 0.0f;
   if (!started && recovery) tailsitter_.emplace();
   if ((in.updated & ATTEST_UPDATED_VEHICLE_STATUS) != 0 && !topics_) {
@@ -138,7 +138,7 @@ void Controller::step(const attest_inputs& in, attest_outputs& out) noexcept {
   out.actuator_controls_0.published = 0;
   out.mc_att_ctrl_status.published = 0;
 
-  // The clamp is part of the law: above 500 Hz it still uses 2 ms.
+  // The clamp is part of the law: above 500 Hz the law still uses 2 ms.
   const float elapsed = static_cast<float>(in.timestamp - copy_.timestamp) / 1000000.0f;
   const float dt = clamp(elapsed, 0.002f, 0.02f);
   latch_inputs(in);
@@ -153,7 +153,7 @@ void Controller::step(const attest_inputs& in, attest_outputs& out) noexcept {
 void Controller::publish_rates_setpoint(attest_outputs& out) noexcept {
   copy_.vehicle_rates_setpoint = {rates_sp_[0], rates_sp_[1], rates_sp_[2], thrust_sp_};
   if (!topics_) return;
-  // On the same topic, this newer sample supersedes a pending external one.
+  // This newer sample supersedes a pending external one on the same topic.
   if (topics_ == Topics::of_multicopter) take(ATTEST_UPDATED_VEHICLE_RATES_SETPOINT);
   out.vehicle_rates_setpoint = {rates_sp_[0], rates_sp_[1], rates_sp_[2], thrust_sp_, 1};
 }

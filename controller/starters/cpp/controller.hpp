@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-// controller.hpp - one controller: what it latches of its inputs, the mode, what it publishes.
+// controller.hpp - one controller: latches inputs, selects the mode, publishes outputs.
 #ifndef ATTEST_STARTER_CPP_CONTROLLER_HPP
 #define ATTEST_STARTER_CPP_CONTROLLER_HPP
 
@@ -25,7 +25,7 @@ class Controller {
     return parameters_.set(profile_, name, value);
   }
 
-  // Writes `published` of all topics, and the topics that it publishes.
+  // Writes `published` of all topics, and the other fields of the topics that it publishes.
   void step(const attest_inputs& in, attest_outputs& out) noexcept;
 
  private:

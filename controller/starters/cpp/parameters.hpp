@@ -15,7 +15,7 @@ enum class Profile { px4_v1_5_5, px4_v1_3_4 };
 // The profile of a name such as "px4-v1.5.5".
 std::optional<Profile> profile_of(std::string_view name) noexcept;
 
-// In their own units, which are degrees where PX4 has degrees. Initialised with the defaults.
+// The parameters as set, in the units of PX4. Initialised with the defaults.
 struct Parameters {
   float roll_p = 6.5f, pitch_p = 6.5f, yaw_p = 2.8f;
   float roll_tc = 0.2f, pitch_tc = 0.2f;  // [s]
@@ -37,7 +37,8 @@ struct Parameters {
   bool set(Profile profile, std::string_view name, float value) noexcept;
 };
 
-// Computed at parameter_update, not when a parameter is set. Vectors are roll, pitch, yaw.
+// Computed from the parameters at the first step and at parameter_update. Vectors are roll, pitch,
+// yaw.
 struct Gains {
   Vec3 att_p;                                      // [1/s]
   Vec3 rate_p, rate_i, rate_d, rate_ff;            // control per rad/s, rad, rad/s^2, rad/s

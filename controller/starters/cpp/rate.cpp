@@ -7,10 +7,10 @@ namespace starter {
 
 namespace {
 
-constexpr float min_takeoff_thrust = 0.2f;  // up to it the vehicle may stand on the ground
+constexpr float min_takeoff_thrust = 0.2f;  // up to it, the vehicle may stand on the ground
 constexpr float integral_limit = 0.3f;
 
-// NaN is outside.
+// Returns false for NaN.
 bool inside_integral_limit(float v) noexcept { return -integral_limit < v && v < integral_limit; }
 
 // Thrust-based attenuation of the P gain. fmin and fmax ignore a NaN: NaN thrust gives 1.

@@ -20,8 +20,8 @@ class RateLoop {
  public:
   explicit RateLoop(Profile profile) noexcept : profile_(profile) {}
 
-  // The controls of roll, pitch and yaw, not yet made finite. Then updates the integrals. `dt` in
-  // [s], not 0.
+  // Returns the controls of roll, pitch and yaw, which may be NaN or infinite, and updates the
+  // integrals. `dt` in [s], not 0.
   Vec3 update(const Gains& gains, const RateTask& task, float dt) noexcept;
 
   void reset_integrals() noexcept { integrals_ = {}; }

@@ -58,7 +58,7 @@ Vec3 recovery_rates(const Tilt& tilt) noexcept {
   return {{roll * -sign[0], pitch * (-sign[1] * 1.5f), yaw * -sign[2]}};
 }
 
-// Small tilt: rates proportional to the imaginary part of the shortest rotation to the setpoint.
+// Without a recovery: rates proportional to the imaginary part of the rotation to the setpoint.
 Vec3 hold_rates(const Gains& gains, const AttitudeTask& task) noexcept {
   const Quat q_e = conjugate(task.q_d) * task.q;
   const float factor = q_e.w > 0.0f ? -2.0f : 2.0f;

@@ -7,9 +7,10 @@
 
 namespace starter {
 
-// Replaces attitude_law() if VT_TYPE is 0 and VT_OPT_RECOV_EN is set. Its rates return the vehicle
-// from a large tilt as fast as possible. They are fitted to the solutions of an optimisation. A
-// port for multicopters only can leave this class out and return ATTEST_UNSUPPORTED instead.
+// Replaces attitude_law() if VT_TYPE is 0 and VT_OPT_RECOV_EN is not 0 at the first step. Its rates
+// return the vehicle from a large tilt as fast as possible. They are fitted to the solutions of an
+// optimisation. A port for multicopters only can leave this class out and return ATTEST_UNSUPPORTED
+// instead.
 class TailsitterLoop {
  public:
   Vec3 update(const Gains& gains, const AttitudeTask& task) noexcept;

@@ -4,7 +4,7 @@
 // World is NED, body is FRD. Quaternions are Hamilton, {w, x, y, z}, and rotate body into world.
 // The order of every sum is part of the law: products are added in index order. In a dot product
 // and in a product of two matrices the sum starts at 0. In matrix times vector it starts at the
-// first product. The difference is visible: 0 + (-0) is +0, so only the latter sum can be -0.
+// first product. The difference shows: 0 + (-0) is +0, so only matrix times vector gives -0.
 #ifndef ATTEST_STARTER_CPP_VECTOR_HPP
 #define ATTEST_STARTER_CPP_VECTOR_HPP
 

@@ -40,14 +40,14 @@ class Controller:
         self.previous_rates_sp = vector(0, 0, 0)
 
     def set_parameter(self, name, value):
-        """False if there is no such parameter."""
+        """Returns False if there is no such parameter."""
         if name not in self.parameters:
             return False
         self.parameters[name] = f32(value)
         return True
 
     def step(self, inputs, outputs):
-        """Both are records: of INPUTS, and of OUTPUTS filled with zeros."""
+        """`inputs` is a record of INPUTS, `outputs` a record of OUTPUTS filled with zeros."""
         self.pending |= int(inputs["updated"])
         self.update_parameters()
         dt = self.time_step(int(inputs["timestamp"]))
@@ -70,7 +70,7 @@ class Controller:
         self.pending &= ~BIT["parameter_update"]
 
     def time_step(self, timestamp):
-        """Clamped, so the first one, from time 0, is the longest."""
+        """dt [s]. The first one counts from time 0, so it is usually clamped to DT_MAX."""
         dt = f32(timestamp - self.last_timestamp) / US_IN_S
         self.last_timestamp = timestamp
         return f32(clamp(dt, DT_MIN, DT_MAX))
@@ -91,7 +91,7 @@ class Controller:
         if mode["flag_control_rattitude_enabled"] and (
             abs(sticks["y"]) > threshold or abs(sticks["x"]) > threshold
         ):
-            # In the copy: it holds until the next vehicle_control_mode.
+            # Cleared in the copy, so it stays cleared until the next vehicle_control_mode.
             mode["flag_control_attitude_enabled"] = 0
 
     def control_attitude(self, inputs, output):
@@ -132,12 +132,12 @@ class Controller:
         output["rates"], output["thrust"] = rates_sp, thrust
         output["published"] = 1
         if not self.is_vtol:
-            # The unit and the outside are on one topic: the last sample counts. A VTOL publishes
+            # This newer sample replaces a pending external one on the same topic. A VTOL publishes
             # on a virtual topic.
             self.pending &= ~BIT["vehicle_rates_setpoint"]
 
     def control_rates(self, rates, rates_sp, thrust, dt):
-        """Roll, pitch and yaw controls; moves the integrals."""
+        """Returns the roll, pitch and yaw controls, and updates the integrals."""
         is_armed = self.latched["actuator_armed"]["armed"]
         if not is_armed or not self.latched["vehicle_status"]["is_rotary_wing"]:
             self.integrals = vector(0, 0, 0)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The law: attitude error to rates setpoint, rate error to controls, integrals.
+"""Parts of the law: attitude error, rates setpoint, throttle attenuation, integrals.
 
-It has no state. World is NED, body is FRD, a quaternion {w, x, y, z} rotates body into world.
+They have no state. World is NED, body is FRD, a quaternion {w, x, y, z} rotates body into world.
 The law is that of `mc_att_control` at the tags v1.5.5 and v1.3.4 of PX4.
 """
 
@@ -70,7 +70,7 @@ INTEGRAL_MAX = f32(0.3)  # of an integral, and of a control whose integral moves
 
 
 class Gains:
-    """What the law computes from the parameters, a dict of float32 scalars."""
+    """Gains and limits, computed from `parameters`, a dict of float32 scalars."""
 
     def __init__(self, parameters):
         def of_axes(*names):
@@ -129,7 +129,7 @@ def attitude_error(q, q_d):
 
 def limited_rates(error, yaw_weight, setpoint, mode, gains, is_v134):
     """Rates setpoint [rad/s] for an attitude error, and whether the weather-vane is on: the wind
-    may then turn the nose, and the yaw rate has a lower limit."""
+    may then turn the nose, and the yaw rate has a smaller limit."""
     is_auto = mode["flag_control_velocity_enabled"]
     if not is_v134:
         is_auto = is_auto or mode["flag_control_auto_enabled"]
@@ -154,8 +154,9 @@ def throttle_attenuation(thrust, gains):
 
 
 def new_integrals(integrals, controls, error, dt, thrust, limits, gains, is_v134):
-    """The integral of an axis moves while its control is not saturated."""
-    # Written so that the comparison is false for a thrust of NaN.
+    """The integrals after this step. All stay at low thrust or at a motor limit. One axis
+    stays if its control or its new integral is at a limit."""
+    # `not thrust > ...` is also true for a thrust of NaN.
     if not thrust > THRUST_MIN_FOR_INTEGRAL or limits["lower_limit"] or limits["upper_limit"]:
         return integrals
     moved = integrals + gains.rate_i * error * dt

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`attest_inputs` and `attest_outputs` of `attest_unit.h` as structured dtypes of numpy.
 
-The members have the names of the header, except that `rates` stands for roll, pitch and yaw, and
-`control` has all of its elements. Units and frames are those of the header.
+The members have the names of the header, except that `rates` and `rate_integrals` are arrays of
+roll, pitch and yaw. Units and frames are those of the header.
 """
 
 import numpy as np

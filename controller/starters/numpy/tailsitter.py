@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Recovery of a tailsitter from a large tilt: fitted rates for each tilt and tilt direction.
 
-It stands for the attitude law while VT_TYPE is 0 and VT_OPT_RECOV_EN is not 0.
-The law is that of `TailsitterRecovery` at the tag v1.5.5 of PX4. Its constants are fitted there.
+It replaces the attitude law if VT_TYPE is 0 and VT_OPT_RECOV_EN is not 0 at the first step.
+The law and its fitted constants are those of `TailsitterRecovery` at the tag v1.5.5 of PX4.
 """
 
 import numpy as np
@@ -59,7 +59,7 @@ def tilt_and_direction(q, q_sp):
 
 
 def folded(direction):
-    """The direction in the first quadrant, and the signs that undo it."""
+    """The direction folded into 0 .. pi/2, and the signs of the rates that undo the folding."""
     if direction < -RIGHT_ANGLE:
         return direction + PI, vector(-1, -1, 1)
     if direction < ZERO:
@@ -89,7 +89,8 @@ def fitted_rates(tilt, direction):
 
 
 class Recovery:
-    """Its state is whether it recovers: from a tilt of 30 deg on, until it is below 5 deg."""
+    """A recovery begins beyond 30 deg of tilt error and ends below 5 deg. Its flag is the only
+    state."""
 
     def __init__(self):
         self.is_on = False

@@ -5,7 +5,7 @@ A vector is a float32 array of 3, a quaternion one of 4 {w, x, y, z}, a matrix o
 Sums have the order of the firmware. `np.dot` and `@` leave the order to a BLAS library, and may
 round a product and a sum once instead of twice: they are not used.
 
-A number of Python would make a float32 scalar a float64 before numpy 2. So constants are float32.
+Before numpy 2, a Python number turns a float32 scalar into a float64. So constants are float32.
 """
 
 import ctypes
@@ -29,13 +29,13 @@ def radians(degrees):
 
 
 def clamp(value, low, high):
-    """Passes NaN."""
+    """NaN passes, because both comparisons are false."""
     return np.where(value < low, low, np.where(value > high, high, value))
 
 
 # The firmware calls these functions of the C library. Those of numpy give other last bits: in
 # float32 they depend on the processor, and a float64 result that is rounded differs as well.
-_libm = ctypes.CDLL(None)  # what Python is linked with, such as libm
+_libm = ctypes.CDLL(None)  # the libraries that Python is linked with
 
 
 def _from_libm(name, arguments):

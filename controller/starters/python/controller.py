@@ -34,7 +34,7 @@ MULTIROTOR_MOTOR_LIMITS = 1 << 6
 BATTERY_STATUS = 1 << 7
 PARAMETER_UPDATE = 1 << 8
 
-# The law's limits of dt. The shortest is above the period of a faster loop: a quirk of the law.
+# The law's limits of dt. A loop faster than 500 Hz also uses MIN_DT_S: a quirk of the law.
 MIN_DT_S = 0.002
 MAX_DT_S = 0.02
 MAX_ACRO_THRUST = binary32(0.9)
@@ -49,7 +49,7 @@ class AttitudeSetpoint(NamedTuple):
 
 
 class RatesSetpoint(NamedTuple):
-    """In the body [rad/s], and the thrust 0 .. 1."""
+    """Rates about the body axes [rad/s], and the thrust 0 .. 1."""
 
     roll: float
     pitch: float
@@ -86,7 +86,7 @@ class MotorLimits(NamedTuple):
 
 
 class Inputs(NamedTuple):
-    """The topics have the values of the classes above, in their order."""
+    """Each topic is a sequence of the values of its class above, in the same order."""
 
     timestamp_us: int
     updated: int
@@ -141,7 +141,7 @@ class Controller:
         self.integrals = (0.0, 0.0, 0.0)
 
     def set_parameter(self, name, value):
-        """Stores the value; the step reads it. False: the profile has no such parameter."""
+        """Stores the value. Returns False if the profile has no such parameter."""
         if name not in self.parameters:
             return False
         self.parameters[name] = value
@@ -156,7 +156,7 @@ class Controller:
         rates_sp, thrust, publish = self._outer_loop(inputs)
         rates_published = publish and self.has_vehicle_status
         if rates_published and not self.is_vtol:
-            # The own sample is newer on the same topic. A VTOL publishes on another one.
+            # This newer sample replaces a pending external one. A VTOL publishes on another topic.
             self.pending &= ~VEHICLE_RATES_SETPOINT
         if not self.mode.rates:
             return Outputs(
@@ -207,7 +207,7 @@ class Controller:
         if self.mode.rattitude and self.mode.attitude:
             threshold = self.gains.rattitude_threshold
             if abs(manual.y) > threshold or abs(manual.x) > threshold:
-                # In the copy: the flag stays clear until the next sample of the topic.
+                # Cleared in the copy, so it stays cleared until the next sample of the topic.
                 self.mode = self.mode._replace(attitude=0)
         if self.mode.attitude:
             rates_sp, thrust = self._attitude_mode(inputs)
@@ -242,7 +242,7 @@ class Controller:
         return rates_sp, setpoint.thrust
 
     def _rate_loop(self, rates, rates_sp, thrust, dt):
-        """The controls (roll, pitch, yaw). Advances the integrals."""
+        """Returns the controls (roll, pitch, yaw), and updates the integrals."""
         if not self.armed or not self.is_rotary_wing:
             self.integrals = (0.0, 0.0, 0.0)
         feed_forward = rates_sp

@@ -72,7 +72,7 @@ def default_parameters(profile):
 
 
 class Gains:
-    """What the law computes from its parameters: (roll, pitch, yaw) each, rates in rad/s."""
+    """Gains and limits, computed from the parameters. Tuples are (roll, pitch, yaw), in rad/s."""
 
     def __init__(self, parameters):
         p = parameters
@@ -144,7 +144,7 @@ def _tilted_x_axis(axis, sin_tilt, cos_tilt):
 
 def _blended_with_direct(error, r, r_sp, direct_weight):
     """Beyond 90 degrees of tilt: blends with the shortest rotation to the setpoint, which has no
-    singularity at half a turn. Near it, the direction of `error` is arbitrary."""
+    singularity at half a turn. Near half a turn, the direction of `error` is arbitrary."""
     columns_sp = (column(r_sp, 0), column(r_sp, 1), column(r_sp, 2))
     difference = tuple(
         tuple(dot(column(r, i), column_sp) for column_sp in columns_sp) for i in range(3)
@@ -178,23 +178,23 @@ def attitude_law(q, setpoint, gains, rate_max, weathervane, clamp_before_ff):
     wind_max = gains.weathervane_yaw_rate
     if weathervane and clamp_before_ff:
         yaw = clamp(yaw, -wind_max, wind_max)
-    yaw += setpoint.yaw_sp_move_rate * yaw_weight * gains.yaw_ff  # on top of the rate limit
+    yaw += setpoint.yaw_sp_move_rate * yaw_weight * gains.yaw_ff  # after the rate limit
     if weathervane:
         yaw = clamp(yaw, -wind_max, wind_max)
     return roll, pitch, yaw
 
 
 def thrust_attenuation(thrust, gains):
-    """The factor 0 .. 1 on the proportional gain: at high thrust the motors have more effect."""
+    """The factor 0 .. 1 on the proportional gain. At high thrust, motors have more effect."""
     factor = 1.0 - gains.tpa_slope * (abs(thrust) - gains.tpa_break)
     if factor != factor:
-        return 1.0  # fmin and fmax ignore a NaN
+        return 1.0  # as with fmin and fmax, which ignore a NaN
     return clamp(factor, 0.0, 1.0)
 
 
 def rate_law(rates, rates_prev, rates_sp, feed_forward, attenuation, integrals, gains, dt):
     """The controls (roll, pitch, yaw) for rates [rad/s] of this step and of the previous one.
-    `feed_forward` is what the gains FF multiply: the setpoint, or its change by time."""
+    The gains FF multiply `feed_forward`: the setpoint, or its rate of change."""
     p, d, ff = gains.rate_p, gains.rate_d, gains.rate_ff
     return tuple(
         p[i] * ((rates_sp[i] - rates[i]) * attenuation)

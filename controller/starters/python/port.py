@@ -52,7 +52,7 @@ def read_inputs(payload, offset):
 
 
 def as_binary32(value):
-    """Infinity where binary32 has no finite number."""
+    """The value, or infinity if it is too large for binary32."""
     return value if abs(value) <= LARGEST_BINARY32 else value * float("inf")
 
 
@@ -63,7 +63,7 @@ def write_outputs(answer, offset, outputs):
     )  # fmt: skip
     try:
         OUTPUTS.pack_into(answer, offset, *fields)
-    except OverflowError:  # pack refuses numbers that C rounds to infinity
+    except OverflowError:  # `pack` refuses numbers that C would round to infinity
         OUTPUTS.pack_into(answer, offset, *map(as_binary32, fields))
 
 

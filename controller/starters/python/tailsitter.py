@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The outer loop of a tailsitter with VT_OPT_RECOV_EN: PX4 v1.5.5 TailsitterRecovery.
 
-From a large tilt it returns on the path of least time. Its functions are fitted to solutions of an
-optimisation, with the constants below. A port for multicopters only can leave this file out.
+From a large tilt the vehicle returns on the path of least time. The functions are fitted to
+solutions of an optimisation, with the constants below. A port for multicopters only can leave this
+file out.
 """
 
 import math
@@ -52,12 +53,12 @@ def tilt_error(q, q_d):
     rotated = (-r_error[0][2], -r_error[1][2], -r_error[2][2])
     cos_tilt = dot(rotated, THRUST_AXIS)
     if cos_tilt >= 1.0:
-        tilt = 0.0  # rounding: math.acos raises above 1
+        tilt = 0.0  # a cosine that is rounded above 1 would make math.acos raise
     elif cos_tilt <= -1.0:
         tilt = math.pi
     else:
         tilt = math.acos(cos_tilt)
-    axis = THRUST_AXIS  # the axis of no tilt, and of half a turn, is arbitrary
+    axis = THRUST_AXIS  # at no tilt and at half a turn the axis is arbitrary
     if min(abs(tilt), abs(tilt - math.pi)) > 1e-5:
         axis = cross(rotated, THRUST_AXIS)
     axis = transposed_times(rotation_matrix(q), axis)
@@ -65,7 +66,7 @@ def tilt_error(q, q_d):
 
 
 def _first_quadrant(direction):
-    """The azimuth folded into 0 .. pi/2, and the signs of the three rates there."""
+    """The azimuth folded into 0 .. pi/2, and the signs of the rates that undo the folding."""
     if direction < -HALF_PI:
         return direction + math.pi, (-1.0, -1.0, 1.0)
     if direction < 0.0:
@@ -97,7 +98,7 @@ def recovery_rates(tilt, direction):
 
 
 def quaternion_law(q, q_d, gains):
-    """Near the setpoint: the rates are proportional to the error quaternion [rad/s]."""
+    """Without a recovery: the rates [rad/s] are proportional to the error quaternion."""
     w, x, y, z = quaternion_product(conjugate(q_d), q)
     twice = -2.0 if w > 0.0 else 2.0
     p = gains.attitude_p

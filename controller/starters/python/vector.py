@@ -2,7 +2,8 @@
 """Arithmetic with the results of IEEE 754 where Python raises, and vectors and quaternions.
 
 A vector is a tuple (x, y, z), a matrix a tuple of three rows. A quaternion is Hamilton, scalar
-first (w, x, y, z). Every function returns NaN and infinity as C does, and raises no exception.
+first (w, x, y, z). Except for binary32(), every function returns NaN and infinity as C does, and
+raises no exception.
 """
 
 import math
@@ -61,14 +62,14 @@ def column(matrix, index):
 
 
 def transposed_times(matrix, vector):
-    """matrix^T vector: with a rotation body to world, the vector of the world in the body."""
+    """matrix^T vector. If the matrix rotates body to world, this rotates world to body."""
     (a, b, c), (d, e, f), (g, h, i) = matrix
     x, y, z = vector
     return a * x + d * y + g * z, b * x + e * y + h * z, c * x + f * y + i * z
 
 
 def rotation_matrix(q):
-    """Body to world if q is. A q that is not of norm 1 is not normalised: this is in the law."""
+    """R(q), body to world if q is. As in the law, q is not normalised first."""
     w, x, y, z = q
     ww, xx, yy, zz = w * w, x * x, y * y, z * z
     return (
@@ -95,7 +96,7 @@ def quaternion_product(p, q):
 
 
 def quaternion_of_matrix(d):
-    """The matrix may be far from a rotation: then a root or a quotient is not finite."""
+    """The quaternion of d. If d is far from a rotation, a root or a quotient may not be finite."""
     trace = d[0][0] + d[1][1] + d[2][2]
     if trace > 0.0:
         s = square_root(trace + 1.0)

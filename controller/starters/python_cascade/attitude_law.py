@@ -27,7 +27,7 @@ OPPOSITE = Binary32(0.999989986)
 class AttitudeSetpoint(NamedTuple):
     time_us: int  # when it was published
     q_d: Tuple[Binary32, ...]  # of any norm
-    yaw_rate: Binary32  # [rad/s] about the world's z; not finite: none
+    yaw_rate: Binary32  # [rad/s] about the world's z; ignored if not finite
     thrust_body: Tuple[Binary32, ...]  # along the body axes; negative z is up
 
 
@@ -41,7 +41,7 @@ class AttitudeLaw:
         self.yaw_weight = clamp(p["MC_YAW_WEIGHT"], ZERO, ONE)
         yaw_gain = p["MC_YAW_P"]
         if self.yaw_weight > Binary32(1e-4):
-            yaw_gain = yaw_gain / self.yaw_weight  # the weight changes the path, not the gain
+            yaw_gain = yaw_gain / self.yaw_weight  # so that the weight does not reduce the gain
         self.gains = (p["MC_ROLL_P"], p["MC_PITCH_P"], yaw_gain)
         self.limits = tuple(radians(p[f"MC_{axis}RATE_MAX"]) for axis in AXES)
 

@@ -171,12 +171,12 @@ class AttitudeUnit:
             vehicle.unaided_heading = position.unaided_heading
 
     def _follow_sticks(self, inputs, q, dt, out):
-        """Publishes a setpoint, which the unit sees as a new sample on the topic."""
+        """Publishes a setpoint, which the unit also receives as a new sample on the topic."""
         sticks = inputs.manual_control_setpoint
         made = self.sticks.setpoint(sticks, self.vehicle, q, self.values, dt)
         self.pending_setpoint = AttitudeSetpoint(inputs.timestamp, *made)
         if self.profile == PX4_V114:
-            self._follow(self.pending_setpoint)  # now, so that the next step drops it
+            self._follow(self.pending_setpoint)  # so the next step drops the sample
         out.q_d, out.yaw_sp_move_rate, out.thrust_body = made
         out.published = 1
 

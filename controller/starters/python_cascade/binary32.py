@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Numbers of IEEE 754 binary32, as the firmware computes with.
+"""Numbers of IEEE 754 binary32, with which the firmware computes.
 
 A float of Python is binary64. An operation of two numbers of binary32, computed in binary64 and
 then rounded, has the result of the same operation in binary32: this holds for +, -, *, / and sqrt.
-Like C, and unlike Python, no operation raises an exception.
+As in C, no operation raises an exception.
 """
 
 import ctypes
@@ -68,7 +68,7 @@ def is_finite(number):
 
 def _of_libm(name, arguments=1):
     """A function of the C library, which Python is linked with. Another library may give other
-    last bits, except for the square root."""
+    last bits, except for sqrtf and floorf."""
     function = getattr(ctypes.CDLL(None), name)
     function.argtypes = (Binary32,) * arguments
     function.restype = Binary32

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The inputs and outputs of both units: the structs of `attest_cascade.h`.
 
-The members have the names of the header, and its units and frames. A topic whose bit in `updated`
+The members have the names, units and frames of the header. A topic whose bit in `updated`
 is clear holds its last sample, or zeros before the first one.
 """
 

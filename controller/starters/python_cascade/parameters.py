@@ -12,14 +12,14 @@ AXES = ("ROLL", "PITCH", "YAW")
 
 
 class Parameters:
-    """`set` stores a value. The unit reads all of them at its first step, and when asked to."""
+    """`set` stores a value. The unit reads all values at its first step and at parameter_update."""
 
     def __init__(self, defaults):
         self._stored = {name: Binary32(value) for name, value in defaults.items()}
         self._is_read = False
 
     def set(self, name, value):
-        """False: the profile has no such parameter."""
+        """Returns False if the profile has no such parameter."""
         if name not in self._stored:
             return False
         self._stored[name] = Binary32(value)

@@ -17,7 +17,7 @@ from rate_unit import RateUnit
 
 NAME = "starter-python-cascade"
 VERSION = "1.0"
-# The units of this port by the number of their module. Without its row a unit is not there.
+# The units of this port by the number of their module. To leave out a unit, delete its row.
 MODULES = {
     3: AttitudeUnit,
     4: RateUnit,

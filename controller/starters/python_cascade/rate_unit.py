@@ -67,7 +67,7 @@ class RateLaw:
         self.limits = tuple(parameters[f"MC_{axis}R_INT_LIM"] for axis in "RPY")
 
     def torque(self, rates, setpoint, acceleration, dt, is_landed):
-        """Of the integral before this step. `acceleration` in rad/s^2."""
+        """Returns the torque, then updates the integral. `acceleration` in rad/s^2."""
         error = tuple(setpoint[i] - rates[i] for i in range(3))
         torque = tuple(
             self.p[i] * error[i]
@@ -86,7 +86,7 @@ class RateLaw:
             error = smaller(error, ZERO)
         if self.saturated_down[i]:
             error = larger(error, ZERO)
-        share = error / RATE_ERROR_OF_NO_INTEGRAL  # a large error comes from a flip
+        share = error / RATE_ERROR_OF_NO_INTEGRAL  # less of a large error, as in a flip
         share = larger(ZERO, ONE - share * share)
         integral = self.integral[i] + share * self.i[i] * error * dt
         if not is_finite(integral):
@@ -142,7 +142,7 @@ class RateUnit:
         self._publish(torque, inputs, outputs)
 
     def _take(self, bit):
-        """Whether the topic is pending, which it then is no longer."""
+        """Whether the topic was pending. Afterwards it is not."""
         is_pending = self.pending & bit
         self.pending &= ~bit
         return is_pending
@@ -163,7 +163,7 @@ class RateUnit:
     def _latch_vehicle(self, inputs):
         self.pending |= inputs.updated
         if inputs.updated & RateInputs.VEHICLE_RATES_SETPOINT:
-            self.own_setpoint = None  # the newer sample on the same topic
+            self.own_setpoint = None  # the external sample is newer
         if self._take(RateInputs.VEHICLE_CONTROL_MODE):
             mode = inputs.vehicle_control_mode
             self.is_armed = mode.flag_armed != 0
@@ -177,7 +177,7 @@ class RateUnit:
             self.is_rotary_wing = inputs.vehicle_status.is_rotary_wing != 0
 
     def _follow_sticks(self, sticks, outputs):
-        """Acro: the sticks are rates. The unit sees its own sample as a new one on the topic."""
+        """Acro: the sticks are rates. The unit later receives the sample that it publishes here."""
         curves = (
             superexpo(sticks.roll, *self.acro_expo),
             superexpo(-sticks.pitch, *self.acro_expo),
@@ -193,7 +193,7 @@ class RateUnit:
         out.published = 1
 
     def _follow_setpoint(self, sample, rates):
-        """A rate that is not finite means: hold the rate of now."""
+        """An axis whose setpoint is not finite holds the rate measured now."""
         wanted, self.thrust = self.own_setpoint or (
             (sample.roll, sample.pitch, sample.yaw),
             tuple(sample.thrust_body),

@@ -2,7 +2,7 @@
 """Vectors and quaternions as tuples of Binary32. The order of each sum is part of the law.
 
 Quaternions are Hamilton, scalar first (w, x, y, z), and rotate the body (FRD) into the world (NED).
-Their norm may be other than 1: only `unit` normalises.
+Their norm may be other than 1: only `unit` and `between` normalise.
 """
 
 import math
@@ -28,7 +28,7 @@ NEARLY_VERTICAL = Binary32(0.001)  # [rad]
 
 
 def dot(a, b):
-    """Starts at zero, so that a sum of -0 is +0."""
+    """Starts at +0, so that a sum of zeros is +0."""
     total = ZERO
     for x, y in zip(a, b):
         total = total + x * y
@@ -74,7 +74,7 @@ def inverse(q):
 
 
 def canonical(q):
-    """The one of q and -q whose first component that is not zero is positive."""
+    """q or -q: the one whose first component that is not almost 0 is positive."""
     for component in q:
         if abs(component) > EPSILON:
             return q if component > ZERO else tuple(-x for x in q)
@@ -101,7 +101,7 @@ def between(a, b):
 
 
 def _axis_away_from(v):
-    """The coordinate axis of the smallest component of v."""
+    """The coordinate axis along which the magnitude of v is smallest."""
     x, y, z = (abs(component) for component in v)
     if x < y:
         return (ONE, ZERO, ZERO) if x < z else (ZERO, ZERO, ONE)
@@ -109,7 +109,7 @@ def _axis_away_from(v):
 
 
 def of_rotation_vector(x, y):
-    """A tilt about the horizontal axis (x, y), whose length is the angle [rad]."""
+    """The rotation about the horizontal axis (x, y) by the length of (x, y) [rad]."""
     v = (x, y, ZERO)
     angle = norm(v)
     if angle < Binary32(1e-10):
@@ -128,7 +128,7 @@ def heading_of(q):
 
 
 def heading_of_in_v114(q):
-    """The same with other rounding, and for another norm than 1 another value."""
+    """The same with other rounding. If the norm of q is not 1, the value differs."""
     q0, q1, q2, q3 = q
     return _heading(q, q0 * q0 + q1 * q1 - q2 * q2 - q3 * q3)
 

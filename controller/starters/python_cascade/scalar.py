@@ -12,12 +12,12 @@ def clamp(value, low, high):
 
 
 def smaller(a, b):
-    """The second if one is NaN."""
+    """Returns b if a or b is NaN."""
     return a if a < b else b
 
 
 def larger(a, b):
-    """The second if one is NaN."""
+    """Returns b if a or b is NaN."""
     return a if a > b else b
 
 
@@ -34,7 +34,7 @@ def wrap(angle):
 
 
 def seconds(later_us, earlier_us):
-    """A difference of times of the firmware, which are unsigned."""
+    """The difference of two times [s]. Times are unsigned integers, as in the firmware."""
     return microseconds(later_us, earlier_us) * Binary32(1e-6)
 
 
@@ -43,7 +43,7 @@ def microseconds(later_us, earlier_us):
 
 
 def line(value, x0, x1, y0, y1):
-    """From (x0, y0) to (x1, y1), and constant outside."""
+    """The straight line from (x0, y0) to (x1, y1), constant outside."""
     if value <= x0:
         return y0
     if value > x1:
@@ -101,6 +101,6 @@ class LowPassOfV114(LowPass):
 
 
 def slewed(state, rate, dt, value):
-    """The next state, which follows `value` at `rate` [1/s] at most."""
+    """The next state. It follows `value` by at most `rate` in each second."""
     step = rate * dt
     return state + clamp(value - state, -step, step)

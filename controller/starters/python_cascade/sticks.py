@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Stabilized mode: the sticks make an attitude setpoint.
 
-Tilt is the same in all profiles but for its filter. Heading and throttle have a class for each law.
-Each of them has the state of its own; `Vehicle` is what the unit knows of the vehicle.
+Tilt is the same in all profiles except for its filter. Heading and throttle have a class for each
+version of the law, which holds their state. `Vehicle` is the state of the vehicle.
 """
 
 from binary32 import EPSILON, HALF, NAN, ONE, TWO, ZERO, Binary32, is_finite
@@ -39,7 +39,7 @@ LARGE_FOR_INT = Binary32(2.0**31)
 
 
 class Vehicle:
-    """Of the last samples; before the first ones, of a multicopter on the ground."""
+    """From the latest samples. Before the first ones: a multicopter on the ground."""
 
     def __init__(self):
         self.is_rotary_wing = True
@@ -47,7 +47,7 @@ class Vehicle:
         self.has_spooled_up = False
         self.is_landed = True
         self.has_good_heading = True
-        self.unaided_heading = NAN  # [rad] of the gyros alone; not finite: none
+        self.unaided_heading = NAN  # [rad] of the gyros alone; used if finite
 
     def flies_as_multicopter(self):
         if self.is_in_transition:
@@ -65,7 +65,7 @@ class LockedHeading:
     the estimator's heading has against that of the gyros."""
 
     def __init__(self):
-        self.setpoint = ZERO  # NaN: no lock
+        self.setpoint = ZERO  # NaN if no heading is locked
         self.reference = self.correction = ZERO
         self.is_converging = False
         self.drift = LowPass()
@@ -103,7 +103,7 @@ class LockedHeading:
         return wrap(drift - self.reference)
 
     def rest(self, vehicle, q):
-        """A step without sticks."""
+        """A step in which the sticks do not make the setpoint."""
         self.setpoint = NAN
         if is_finite(vehicle.unaided_heading):
             self.drift.state = wrap(heading_of(q) - vehicle.unaided_heading)
@@ -150,8 +150,8 @@ class IntegratedHeading:
 
 
 class Throttle:
-    """v1.15 and v1.16: the limits move slowly after take-off and arming, in v1.16 the hover thrust
-    does, too. `estimate` of the hover thrust is NaN in v1.15."""
+    """v1.15 and v1.16: the limits of the thrust rise slowly after take-off and arming. In v1.16 the
+    hover thrust moves slowly, too. `estimate` is that of the hover thrust, NaN in v1.15."""
 
     def __init__(self):
         self.least = self.most = ZERO
@@ -188,7 +188,7 @@ class ThrottleOfV114:
         s = (stick + ONE) * HALF
         if p["MPC_THR_CURVE"] == ONE:
             return line(s, ZERO, ONE, least, full)
-        # NaN and too large numbers are below the middle, as in a conversion to int on x86.
+        # NaN and numbers too large for int use the lower line, as a conversion to int on x86.
         if ONE <= s * TWO < LARGE_FOR_INT:
             return line(s, HALF, ONE, hover, full)
         return line(s, ZERO, HALF, least, hover)
@@ -236,6 +236,6 @@ class Sticks:
 
 
 def _for_the_present_heading(tilt, turn, q):
-    """The same tilt in the world, seen from the heading that the vehicle has now."""
+    """The tilt is relative to the present heading. Returns it relative to the heading `turn`."""
     present = product(inverse(between(DOWN, z_axis(q))), q)
     return between(DOWN, z_axis(product(product(inverse(turn), present), tilt)))

@@ -21,7 +21,7 @@ typedef struct {
   ExtU rtU;
   ExtY rtY;
   DW rtDW;
-  P tuned;            /* as set; the model gets them at parameter_update */
+  P tuned;            /* as set; the model gets them at the first step and parameter_update */
   uint64_t timestamp; /* [us] of the previous step */
   bool started;
 } Instance;
@@ -111,7 +111,7 @@ static void write_outputs(const ExtY* rtY, attest_outputs* out) {
 static uint64_t elapsed_us(const Instance* instance, const attest_inputs* in) {
   (void)instance;
   (void)in;
-  return (uint64_t)(1.0e6 / (1.0 * FIXED_STEP_HZ) + 0.5); /* 1.0 *: the rate may be 1000/3 */
+  return (uint64_t)(1.0e6 / (1.0 * FIXED_STEP_HZ) + 0.5); /* `1.0 *`: the rate may be 1000/3 */
 }
 
 static const void* extension(const char* id) {

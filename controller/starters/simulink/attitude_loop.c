@@ -88,7 +88,7 @@ static void rodrigues(const real32_T rtu_R[9], const real32_T rtu_axis[3], real3
   matrix_multiply(rtu_R, rtb_Turn, rty_R);
 }
 
-/* Subsystem '<S1>/DirectRotation': mixed in beyond 90 deg of tilt error. */
+/* Subsystem '<S1>/DirectRotation': mixes the direct rotation into rty_e with weight rtu_w. */
 static void direct_rotation(const real32_T rtu_R[9], const real32_T rtu_R_sp[9], real32_T rtu_w,
                             real32_T rty_e[3]) {
   real32_T rtb_D[9];
@@ -174,7 +174,7 @@ void mc_att_control_attitude_loop(RT_MODEL* rtM) {
   if (Vane && old_law) {
     weather_vane(rtM);
   }
-  /* Added after the limit: the pilot's yaw rate may exceed it. */
+  /* Added after the limit, so the sum may exceed the limit. */
   rtDW->RatesSp_DSTATE[2] += rtb_Sp->yaw_sp_move_rate * Yaw_w * rtP->MC_YAW_FF;
   if (Vane) {
     weather_vane(rtM);

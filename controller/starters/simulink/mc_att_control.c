@@ -13,7 +13,7 @@ static void latch(RT_MODEL* rtM) {
   const ExtU* rtU = rtM->inputs;
   DW* rtDW = rtM->dwork;
   if (!rtDW->NotFirstStep) {
-    /* VT_TYPE 0 is the tailsitter. Later changes have no effect. */
+    /* VT_TYPE 0 is the tailsitter. Later changes of these parameters have no effect. */
     rtDW->Tailsitter_Enabled = rtP->VT_TYPE == 0.0F && rtP->VT_OPT_RECOV_EN != 0.0F;
     rtDW->NotFirstStep = true;
   }
@@ -33,7 +33,7 @@ static void latch(RT_MODEL* rtM) {
   }
 }
 
-/* Subsystem '<Root>/PublishRatesSp': on one topic, the model's sample replaces a pending one. */
+/* Subsystem '<Root>/PublishRatesSp': replaces a pending external sample on the same topic. */
 static void publish_rates_sp(RT_MODEL* rtM) {
   DW* rtDW = rtM->dwork;
   RatesSetpoint* rtb_Copy = &rtDW->Latch_rates_sp_DSTATE;
@@ -96,7 +96,7 @@ static void outer_loop(RT_MODEL* rtM) {
   }
 }
 
-/* Subsystem '<S3>/Tpa': thrust-based attenuation. NaN thrust gives 1, because fminf ignores it. */
+/* Subsystem '<S3>/Tpa': thrust-based attenuation. NaN thrust gives 1, because fminf ignores NaN. */
 static real32_T tpa_factor(const RT_MODEL* rtM) {
   const P* rtP = rtM->defaultParam;
   const real32_T thrust = fabsf(rtM->dwork->Latch_rates_sp_DSTATE.thrust);
@@ -189,7 +189,7 @@ static void actuators(RT_MODEL* rtM, const real32_T rtu_Control[3]) {
 void mc_att_control_step(RT_MODEL* rtM) {
   ExtY* rtY = rtM->outputs;
   real32_T rtb_Control[3];
-  /* The limits are part of the law: above 500 Hz it still uses 2 ms. */
+  /* The limits are part of the law: above 500 Hz the law still uses 2 ms. */
   const real32_T dt = rt_saturate((real32_T)rtM->inputs->elapsed / 1.0E+6F, 0.002F, 0.02F);
   rtY->rates_sp_valid = false;
   rtY->control_valid = false;

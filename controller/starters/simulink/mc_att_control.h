@@ -100,10 +100,10 @@ typedef struct {
   real32_T RatesSp_DSTATE[3];
   real32_T ThrustSp_DSTATE;
   real32_T UnitDelay_rates_DSTATE[3];
-  real32_T UnitDelay_rates_sp_DSTATE[3]; /* of law v1.3.4 */
+  real32_T UnitDelay_rates_sp_DSTATE[3]; /* for law v1.3.4 */
   real32_T Integrator_DSTATE[3];
   boolean_T RatesSp_Pending;  /* an external sample that was not latched yet */
-  boolean_T Attitude_Enabled; /* false from a large stick input to the next mode_new */
+  boolean_T Attitude_Enabled; /* in rattitude, large sticks clear it until the next mode_new */
   boolean_T Status_Received;
   boolean_T Topics_Virtual; /* of the first status: a VTOL publishes on virtual topics */
   boolean_T Tailsitter_Enabled;
@@ -121,7 +121,7 @@ typedef struct {
 /* mc_att_control_data.c: the parameters' defaults. */
 extern const P mc_att_control_default_P;
 
-/* Sets inports, outports and states to those of power-on. Leaves the parameters. */
+/* Sets inports, outports and states to 0. Does not change the parameters. */
 void mc_att_control_initialize(RT_MODEL* rtM);
 
 void mc_att_control_step(RT_MODEL* rtM);

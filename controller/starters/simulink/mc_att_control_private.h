@@ -12,7 +12,7 @@
 
 #define RT_PIF 3.14159274F /* the single nearest to pi */
 
-/* Subsystems of other files: rtDW.RatesSp_DSTATE of the latched attitude setpoint. */
+/* Subsystems of other files. They set rtDW.RatesSp_DSTATE from the latched attitude setpoint. */
 void mc_att_control_attitude_loop(RT_MODEL* rtM);
 void mc_att_control_tailsitter(RT_MODEL* rtM);
 
@@ -46,7 +46,7 @@ static inline void rt_cross(const real32_T u0[3], const real32_T u1[3], real32_T
   y[2] = u0[0] * u1[1] - u0[1] * u1[0];
 }
 
-/* y = transpose(u0) * u1. Here the sum starts at the first product, so that it can be -0. */
+/* y = transpose(u0) * u1. This sum starts at the first product, so it can be -0. */
 static inline void rt_transpose_times_vector(const real32_T u0[9], const real32_T u1[3],
                                              real32_T y[3]) {
   int32_T i;

@@ -2,7 +2,7 @@
 /*
  * Subsystem '<Root>/Tailsitter': replaces AttitudeLoop for a tailsitter that recovers from a large
  * tilt. Its rates are fitted to the solutions of an optimisation. A model for multicopters only can
- * leave it out; the wrapper then declares the group `tailsitter` as unsupported.
+ * leave this file out; its wrapper must then declare the group `tailsitter` as unsupported.
  */
 #include <math.h>
 
@@ -17,8 +17,8 @@ static void quat_multiply(const real32_T u0[4], const real32_T u1[4], real32_T y
 
 static real32_T sigmoid(real32_T u) { return 1.0F / (expf(-u) + 1.0F); }
 
-/* Subsystem '<S2>/Tilt': angle between the thrust axes [rad], and the direction [rad] of its axis
- * in the body's x-y plane, counted from y. */
+/* Subsystem '<S2>/Tilt': angle between the thrust axes [rad], and the direction [rad] of the tilt
+ * axis in the body's x-y plane, counted from y. */
 static void tilt_error(const real32_T rtu_q[4], const real32_T rtu_q_sp_conj[4],
                        real32_T* rty_Angle, real32_T* rty_Direction) {
   const real32_T Down[3] = {0.0F, 0.0F, -1.0F};
@@ -84,7 +84,7 @@ static void recovery_rates(real32_T rtu_Angle, real32_T rtu_Direction, real32_T 
   rty_Rates[2] *= -Sign[2];
 }
 
-/* Subsystem '<S2>/Hold': small tilt, proportional to the shortest rotation to the setpoint. */
+/* Subsystem '<S2>/Hold': without a recovery, rates proportional to the rotation to the setpoint. */
 static void hold_rates(const P* rtP, const real32_T rtu_q[4], const real32_T rtu_q_sp_conj[4],
                        real32_T rty_Rates[3]) {
   real32_T rtb_q_e[4];

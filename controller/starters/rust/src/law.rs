@@ -16,7 +16,7 @@ const YAW: usize = 2;
 /// The integrators stand still at or below this thrust [0..1].
 const MIN_TAKEOFF_THRUST: f32 = 0.2;
 
-/// Limit of each integral, and of the control beyond which its integrator stands still.
+/// An integrator stands still if its integral or its control would be at or beyond +- this limit.
 const RATES_INTEGRAL_LIMIT: f32 = 0.3;
 
 /// The version of the law.
@@ -45,8 +45,8 @@ pub struct Mode {
 }
 
 impl Mode {
-    /// True if no pilot flies: then `auto_rate_max` limits, and weather-vaning is allowed.
-    /// px4-v1.3.4 looks at the velocity flag only.
+    /// True if no pilot flies: `auto_rate_max` then limits the rates, and weather-vaning is
+    /// allowed. px4-v1.3.4 ignores the auto flag.
     fn autonomous(&self, profile: Profile) -> bool {
         let auto = self.auto && profile == Profile::V1_5_5;
         (self.velocity || auto) && !self.manual
@@ -158,7 +158,8 @@ impl Law {
     }
 
     /// The factor on the proportional part at high thrust: thrust-based PID attenuation (TPA).
-    /// `min` and `max` ignore NaN as those of C do, so a NaN thrust gives 1. `clamp` would keep it.
+    /// `min` and `max` ignore NaN, as fminf and fmaxf do, so a NaN thrust gives 1. `clamp` keeps
+    /// NaN.
     #[allow(clippy::manual_clamp)]
     fn attenuation(&self, thrust: f32) -> f32 {
         match self.profile {
@@ -208,7 +209,7 @@ fn within_integral_limit(value: f32) -> bool {
 }
 
 /// The rotation vector [rad] in body axes that turns `r` into `r_sp`: the thrust axis first, then
-/// yaw. `yaw_weight` is the weight of the yaw part. It is small if the thrust is not vertical.
+/// yaw. `yaw_weight` is the weight of the yaw part. It falls with the tilt of `r_sp`.
 fn attitude_error(r: &Matrix, r_sp: &Matrix, yaw_weight: f32) -> Vector {
     let (z, z_sp) = (r.column(2), r_sp.column(2));
     let mut error = r.transposed() * z.cross(z_sp);
@@ -239,7 +240,7 @@ fn rodrigues(axis: Vector, sine: f32, cosine: f32) -> Matrix {
     (Matrix::IDENTITY + k * sine) + (k * k) * (1.0 - cosine)
 }
 
-/// The rotation vector of the shortest rotation, used if the tilt error is beyond 90 deg.
+/// Twice the imaginary part of the quaternion of the shortest rotation from `r` to `r_sp`.
 fn direct_error(r: &Matrix, r_sp: &Matrix) -> Vector {
     let q = Quaternion::from_rotation(&(r.transposed() * *r_sp));
     if q.0[0] >= 0.0 {

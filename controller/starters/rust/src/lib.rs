@@ -2,7 +2,7 @@
 //! A port of the PX4 multicopter attitude controller for attest.
 //!
 //! This file is the shared library: the functions of `attest_unit.h`. `main.rs` is the same port as
-//! a program. A panic never crosses the C ABI: it becomes a result.
+//! a program. A panic never crosses the C ABI: it becomes `ATTEST_FAILED`, or null in `create`.
 
 pub mod abi;
 pub mod law;

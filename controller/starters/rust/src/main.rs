@@ -26,8 +26,8 @@ const BATCH: u32 = 5;
 /// The number of the controller among the modules of `create`.
 const CONTROLLER: u32 = 0;
 
-/// The answer to the handshake. The program has one version of the protocol to offer, so it need
-/// not parse the request: attest refuses an answer that it does not understand.
+/// The answer to the handshake. The program has only one version of the protocol, so it does not
+/// parse the request: attest refuses a version that it does not understand.
 const HANDSHAKE: &str = concat!(
     r#"{"protocol":1,"name":"attest-starter-rust","version":""#,
     env!("CARGO_PKG_VERSION"),
@@ -36,7 +36,7 @@ const HANDSHAKE: &str = concat!(
 
 fn main() -> io::Result<()> {
     let mut requests = io::stdin().lock();
-    // One write an answer, of any size.
+    // Buffered, so that a short answer is one write.
     let mut answers = BufWriter::new(io::stdout().lock());
 
     requests.read_until(b'\n', &mut Vec::new())?;

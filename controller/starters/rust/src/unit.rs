@@ -22,8 +22,8 @@ enum Topics {
     Virtual,
 }
 
-/// What the outer loop hands to the inner loop. Its own result and the external
-/// vehicle_rates_setpoint are one variable, as they are one topic.
+/// What the outer loop hands to the inner loop. The result of the outer loop and the external
+/// vehicle_rates_setpoint are one variable, as in the firmware.
 #[derive(Clone, Copy, Debug, Default)]
 struct RatesSetpoint {
     rates: Vector, // [rad/s]
@@ -33,7 +33,7 @@ struct RatesSetpoint {
 pub struct Unit {
     parameters: Parameters,
     law: Law,
-    /// Decided in the first step. None: the attitude law is used.
+    /// Decided in the first step. If None, the attitude law is used.
     recovery: Option<Recovery>,
     started: bool,
     last_timestamp: u64, // [us]
@@ -108,7 +108,7 @@ impl Unit {
         }
     }
 
-    /// Returns the law's dt [s]. The first one is large, and so limited to its maximum.
+    /// Returns the law's dt [s]. The first one counts from time 0, so it is usually DT_MAX.
     fn advance(&mut self, timestamp: u64) -> f32 {
         let elapsed_us = timestamp.wrapping_sub(self.last_timestamp);
         self.last_timestamp = timestamp;
@@ -158,7 +158,7 @@ impl Unit {
         }
     }
 
-    /// Rattitude flies rates while a stick is beyond the threshold. The flag in the copy stays
+    /// In rattitude, a stick beyond the threshold ends attitude control. The flag in the copy stays
     /// cleared until the next sample of vehicle_control_mode.
     fn leave_rattitude(&mut self) {
         let threshold = self.law.gains.rattitude_threshold;

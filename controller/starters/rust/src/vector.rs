@@ -169,7 +169,7 @@ impl Quaternion {
         Vector([x, y, z])
     }
 
-    /// The rotation matrix, body to world if the quaternion is. The norm is not corrected.
+    /// The rotation matrix, body to world if the quaternion is, which is not normalised first.
     pub fn rotation(self) -> Matrix {
         let [a, b, c, d] = self.0;
         let (aa, bb, cc, dd) = (a * a, b * b, c * c, d * d);

@@ -12,7 +12,7 @@ use attest_starter_rust::abi::{
 /// The header of a request or of an answer.
 #[derive(Clone, Copy, Debug)]
 pub struct Header {
-    /// Of the payload [bytes].
+    /// The size of the payload [bytes].
     pub size: u32,
     pub kind: u32,
     pub unit: u32,
@@ -44,7 +44,7 @@ impl Header {
     }
 }
 
-/// Reads a payload from its begin to its end. Each function returns None if too few bytes are left.
+/// Reads a payload from its start to its end. Each function returns None if too few bytes are left.
 pub struct Reader<'a> {
     rest: &'a [u8],
 }
