@@ -22,58 +22,59 @@ namespace attest::cli {
 namespace {
 
 constexpr const char* description =
-    "Judges whether a port of PX4's multicopter attitude and rate control conforms to the\n"
-    "reference at every loop rate. The port may be of the controller of v1.5.5 and v1.3.4, or\n"
-    "of the attitude unit and the rate unit of v1.14 to v1.16. Reports the first deviation: its\n"
-    "tick, signal and stage of the law.\n";
+    "Tests whether a port of PX4's multicopter attitude and rate control behaves as the original\n"
+    "does. The releases are v1.3.4, v1.5.5, v1.14.4, v1.15.4 and v1.16.0. The report names the\n"
+    "first deviation: its tick, its signal and the stage of the law.\n";
 
 constexpr const char* footer =
     "\nFirst steps (`attest help COMMAND` has more):\n"
-    "  attest run                                     the built-in reference, all cases and rates\n"
-    "  attest run --port lib:./libmine.so             your port\n"
+    "  attest run                                     run all cases on the built-in reference\n"
+    "  attest run --port lib:./libmine.so             run all cases on your port\n"
     "  attest run --port lib:./libmine.so --level exact --filter 'attitude/*@250hz'\n"
     "  attest replay TRACE.csv --port lib:./libmine.so\n"
     "  attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv\n"
-    "  attest sim hover --rate 250:1000               both units of v1.14 to v1.16, at 250 Hz and\n"
-    "                                                 1 kHz\n"
-    "  attest stress --port lib:./libmine.so          in real time, at 250 Hz to 8 kHz\n"
+    "  attest sim hover --rate 250:1000 --out f.csv   fly both units of v1.14 to v1.16\n"
+    "  attest stress --port lib:./libmine.so          fly in real time, at 250 Hz to 8 kHz\n"
     "\n"
-    "Exit codes: 0 no failure, 1 a failure, 2 wrong usage or environment, or no result.\n";
+    "Exit codes: 0 no failure, 1 a failure, 2 wrong usage or environment, or no result,\n"
+    "130 interrupted by Ctrl-C.\n";
 
 void add_sim(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<SimOptions>();
   CLI::App* command = app.add_subcommand(
-      "sim", "Let a port fly one case, and write the trace of the flight, for `attest replay`");
-  command->add_option("case", options->case_name, "A flight: its name or id, or a case file")
+      "sim",
+      "Fly one case in simulation with a port, and write a trace or a page of the "
+      "flight");
+  command
+      ->add_option("case", options->case_name,
+                   "The flight: the name or id of a case, or a case file")
       ->type_name("CASE");
   command
       ->add_option("--rate", options->rate,
-                   "Loop rate [Hz], also one that the case does not list; for v1.14 to v1.16 those "
-                   "of both units, such as 250:1000")
+                   "Loop rate [Hz]; for v1.14 to v1.16 the rates of both units, such as 250:1000")
       ->type_name("HZ");
   command
       ->add_option("--timing", options->timing,
-                   "Instead of a case and a rate: the flight that `stress` or `schedule` wrote "
-                   "with `--record-timing`, at the recorded times")
+                   "Fly the flight of this file from --record-timing again, at the recorded "
+                   "times; it replaces CASE, --rate, --vehicle and --plant")
       ->type_name("F");
   add_plant(*command, options->vehicle, options->plant);
   command->get_option("--plant")->description(
-      "`mujoco` or `ode`; default: the first plant of the case; `all`: the same flight on each, "
-      "for --html");
+      "Plant: `mujoco` or `ode`, or `all` for a page (--html) with the flights on "
+      "both; default: the first plant of the case");
   add_port(*command, options->host.port);
   command
-      ->add_option(
-          "--out", options->out,
-          "The flown trace: CSV, or a ULog of PX4 if the name ends with .ulg; `-` is stdout, as "
-          "CSV. For v1.14 to v1.16 F has the trace of the rate unit, and a second file has that of "
-          "the attitude unit: flown.csv and flown.attitude_unit.csv")
+      ->add_option("--out", options->out,
+                   "Write the trace as CSV, or as a ULog if the name ends with .ulg; for v1.14 to "
+                   "v1.16, F.csv has the rate unit and F.attitude_unit.csv the attitude unit")
       ->type_name("F");
-  add_page(*command, options->html, "A page with plots of the flight, and the attitude animated");
+  add_page(*command, options->html,
+           "a page with plots of the flight and an animation of the attitude");
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command, {{"attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv",
-                           "hover with the lead vehicle of the case, on its first plant"},
+                           "hover with the Iris on MuJoCo, and write a trace"},
                           {"attest sim gust --rate 500 --vehicle hexa --plant ode --out flown.csv",
-                           "another vehicle on the other plant"},
+                           "another vehicle and another plant"},
                           {"attest sim flip_150_level --rate 250 --html flight.html",
                            "the flight as a page with plots"},
                           {"attest sim gust --rate 250 --plant all --html flight.html",
@@ -100,8 +101,8 @@ void add_smoke(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<SmokeOptions>();
   CLI::App* command = app.add_subcommand(
       "smoke",
-      "Check step by step whether a new port keeps the rules of attest_unit.h, or of "
-      "harness/port/PROTOCOL.md if it is a program, before any law is compared");
+      "Check step by step whether a port follows attest_unit.h, or PROTOCOL.md if it "
+      "is a program; its law is not judged");
   add_port(*command, options->host.port);
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command,
@@ -115,13 +116,12 @@ void add_smoke(CLI::App& app, const Globals& globals, Action& action) {
 void add_new_port(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<NewPortOptions>();
   CLI::App* command = app.add_subcommand(
-      "new-port",
-      "Make a folder with a complete port, which you change into yours, and with CI jobs for it");
+      "new-port", "Make a folder with a complete port to start from, and with CI jobs");
   command->add_option("folder", options->folder, "The new folder")->type_name("DIR")->required();
   command
       ->add_option("--lang", options->language,
-                   "`c`, `cpp`, `numpy`, `python`, `rust` or `simulink`: a port of v1.5.5 and "
-                   "v1.3.4; `c_cascade` or `python_cascade`: a port of v1.14 to v1.16")
+                   "Port to start from: `c`, `cpp`, `numpy`, `python`, `rust` or `simulink` for "
+                   "v1.5.5 and v1.3.4; `c_cascade` or `python_cascade` for v1.14 to v1.16")
       ->type_name("LANG")
       ->required();
   add_examples(
@@ -162,15 +162,14 @@ int show_help(const CLI::App& app, const HelpOptions& options) {
 void add_help(CLI::App& app, Action& action) {
   auto options = std::make_shared<HelpOptions>();
   CLI::App* command = app.add_subcommand("help", "Show the options and examples of a command");
-  command
-      ->add_option("command", options->command, "The command; default: an overview of all commands")
+  command->add_option("command", options->command, "The command; default: show all commands")
       ->type_name("COMMAND");
   command
       ->add_option("--completion", options->completion,
-                   "Print a script that completes command lines: for `bash` or `zsh`")
+                   "Print the completion script for `bash` or `zsh`")
       ->type_name("KIND")
       ->check(CLI::IsMember({"bash", "zsh"}));
-  command->add_option("--man", options->man, "Write the manual pages to a folder")
+  command->add_option("--man", options->man, "Write the manual pages to this folder")
       ->type_name("DIR");
   add_examples(*command, {{"attest help run", "the same as `attest run --help`"},
                           {"source <(attest help --completion bash)",
@@ -227,9 +226,11 @@ int run_command_line(int argc, char** argv) {
   app.require_subcommand(1);
   app.fallthrough();
   Globals globals;
-  app.add_option("--suite", globals.suite, "Folder with cases/, golden/ and models/")
+  app.add_option("--suite", globals.suite,
+                 "Folder with cases/, golden/ and models/; default: ATTEST_SUITE, else the "
+                 "suite that attest comes with")
       ->type_name("DIR");
-  app.add_flag("-q,--quiet", globals.quiet, "No progress and no summary, only failures and errors");
+  app.add_flag("-q,--quiet", globals.quiet, "Print only failures and errors");
   Action action;
   add_commands(app, globals, action);
   const auto ended = parse(app, argc, argv);

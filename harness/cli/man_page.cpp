@@ -104,8 +104,8 @@ std::string examples_text(const CLI::App& command) {
 
 constexpr const char* exit_status =
     ".SH EXIT STATUS\n"
-    ".TP\n0\nNothing failed.\n"
-    ".TP\n1\nA vector failed, or \\fBattest bless\\fR was refused.\n"
+    ".TP\n0\nNo failure.\n"
+    ".TP\n1\nA failure, or the answer to \\fBattest bless\\fR was no.\n"
     ".TP\n2\nWrong usage or environment: a file, the port, a golden; or no result.\n"
     ".TP\n130\nInterrupted by Ctrl\\-C.\n";
 

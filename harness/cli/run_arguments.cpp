@@ -13,26 +13,23 @@ namespace {
 void add_strictness(CLI::App& command, RunOptions& options) {
   command
       .add_option("--level", options.level,
-                  "How strictly: `exact` (float32 bits), `numeric` (a tolerance for each signal) "
-                  "or `events` (the outputs change state, for example a topic is published or an "
-                  "integral moves, at the same ticks or one tick apart, and values differ by at "
-                  "most about half their size plus a small floor). "
-                  "Flights are judged the same way at each level")
+                  "How outputs are compared: `exact` (float32 bits), `numeric` (a tolerance for "
+                  "each signal) or `events` (events at most one tick apart, values within wide "
+                  "bounds); flights are always judged at `numeric`")
       ->type_name("LEVEL")
       ->capture_default_str()
       ->group(option_group::strictness);
   command
-      .add_option(
-          "--param", options.parameters,
-          "Set a parameter of port and reference from the first step on, in each open-loop case. "
-          "Flights are not run. Not for recorded ports, nor for a suite whose reference is a port")
+      .add_option("--param", options.parameters,
+                  "Set a parameter of port and reference in each open-loop case; flights are not "
+                  "run")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false)
       ->group(option_group::strictness);
   command
       .add_option("--expected-failures", options.expected_failures,
-                  "Failures that are accepted, with reasons (TOML), by group or case; if "
-                  "a listed case passes, the run fails")
+                  "Accept the failures that this TOML file lists; the run fails if a listed case "
+                  "passes")
       ->type_name("F")
       ->group(option_group::strictness);
 }
@@ -44,19 +41,19 @@ void add_execution(CLI::App& command, RunOptions& options) {
   add_timeout(command, options.host.timeout_s);
   command
       .add_flag("--in-process", options.host.in_process,
-                "Run the port in attest's own process, for a debugger or a sanitizer; the result "
-                "is partial")
+                "Run the port in attest's own process, for a debugger or a sanitizer; the "
+                "result is then partial")
       ->group(option_group::execution);
 }
 
 void add_reports(CLI::App& command, ReportOptions& options) {
   command
       .add_flag("--diagnose,!--no-diagnose", options.diagnose,
-                "After a failure, name the faults of the catalogue that match it (on by default)")
+                "After a failure, name the probable mistake; default: on")
       ->group(option_group::reports);
   command
       .add_flag("-v,--verbose", options.verbose,
-                "Show every failing case, not only the first of each group")
+                "Show every failing case; default: the first of each group")
       ->group(option_group::reports);
   for (const ReportFormat& format : report_formats()) {
     command.add_option(format.option, options.files[format.option], format.help)
@@ -65,17 +62,16 @@ void add_reports(CLI::App& command, ReportOptions& options) {
   }
   command
       .add_flag("--github", options.github,
-                "In GitHub Actions: print annotations, and add to the job summary")
+                "Print annotations for GitHub Actions, and add to the job summary")
       ->group(option_group::reports);
 }
 
 void add_traces(CLI::App& command, RunOptions& options) {
   command
       .add_option("--save-traces", options.save_traces,
-                  "Write the traces of each failing vector to a new folder: "
-                  "DIR/PROFILE/GROUP/NAME/CONFIGURATION.got.csv with the port's outputs, "
-                  ".want.csv with the expected ones and, except at the level `events`, "
-                  ".tolerance.csv with the allowed difference of each value")
+                  "Write the outputs of each failing vector (.got.csv), the expected outputs "
+                  "(.want.csv) and, except at the level events, the tolerances (.tolerance.csv) "
+                  "to this new folder")
       ->type_name("DIR")
       ->group(option_group::reports);
   command.get_option("--write-expected")->excludes(command.get_option("--expected-failures"));
@@ -86,23 +82,22 @@ void add_traces(CLI::App& command, RunOptions& options) {
 void add_run_command(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand(
-      "run", "Run a port through the cases and compare it with the golden traces");
+      "run", "Run the cases on a port, and compare its outputs with the expected ones");
   add_port(*command, options->host.port, Ports::any);
   add_selection(*command, options->select);
-  command->add_option("--shard", options->select.shard, "Only part I of N of the cases")
+  command->add_option("--shard", options->select.shard, "Run only part I of N of the cases")
       ->type_name("I/N")
       ->capture_default_str()
       ->group(option_group::selection);
   command
       ->add_option("--rerun-failed", options->select.rerun_failed,
-                   "Only the vectors that failed in this JSON report; give the same --level and "
-                   "--param as in that run")
+                   "Run only the vectors that failed in this JSON report; give the same --level "
+                   "and --param as in that run")
       ->type_name("REPORT")
       ->group(option_group::selection);
   command
       ->add_option("--timing", options->timing,
-                   "Only the flight that `stress` or `schedule` wrote with `--record-timing`, "
-                   "compared with the reference at the recorded times")
+                   "Run only the flight of this file from --record-timing, at the recorded times")
       ->type_name("F")
       ->group(option_group::selection);
   add_strictness(*command, *options);
@@ -114,14 +109,15 @@ void add_run_command(CLI::App& app, const Globals& globals, Action& action) {
       {{"attest run", "the built-in reference, all vectors"},
        {"attest run --port lib:./libmine.so", "your port"},
        {"attest run --port recorded:DIR",
-        "outputs in files, for inputs that `attest vectors DIR` wrote"},
+        "judge the files in DIR, whose inputs `attest vectors DIR` wrote"},
        {"attest run --port lib:./libmine.so --level exact --filter 'attitude/*@250hz'",
-        "some vectors, to the bit"},
+        "compare some vectors to the bit"},
        {"attest run --port lib:./libmine.so --exclude 'flight*/*' --junit attest.junit.xml",
-        "without the flights, with a report for CI"},
-       {"attest run --port lib:./libmine.so --html attest.html", "a page with plots of what fails"},
+        "leave out the flights, and write a report for CI"},
+       {"attest run --port lib:./libmine.so --html attest.html",
+        "write a page with plots of the failing vectors"},
        {"attest run --port lib:./libmine.so --rerun-failed attest.json",
-        "after a correction, what failed in a run with --json attest.json"}});
+        "run again what failed in a run with --json attest.json"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return run_command(*options, globals); };
   });
@@ -129,23 +125,21 @@ void add_run_command(CLI::App& app, const Globals& globals, Action& action) {
 
 void add_merge_command(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<MergeOptions>();
-  CLI::App* command = app.add_subcommand(
-      "merge", "Put the JSON reports of the shards of a run together, as one report");
+  CLI::App* command = app.add_subcommand("merge", "Join the JSON reports of the shards of a run");
   command->add_option("reports", options->files, "The reports of all shards, in any order")
       ->type_name("REPORT")
       ->required();
   command
-      ->add_option(
-          "--port", options->port,
-          "The port, which the diagnosis runs again; default: the port that the reports name")
+      ->add_option("--port", options->port,
+                   "Port that the diagnosis runs; default: the port of the reports")
       ->type_name("PORT");
   add_jobs(*command, options->jobs, "Number of worker processes for the diagnosis");
   add_timeout(*command, options->timeout_s);
   add_reports(*command, options->report);
   add_examples(*command, {{"attest run --port lib:./libmine.so --shard 1/4 --json part1.json",
-                           "the first of four jobs"},
+                           "run the first of four shards"},
                           {"attest merge part*.json --json attest.json --junit attest.junit.xml",
-                           "the report of all shards; its JSON is the same as without shards"}});
+                           "join the reports of all shards"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return merge_command(*options, globals); };
   });

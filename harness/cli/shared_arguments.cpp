@@ -55,7 +55,9 @@ void add_port(CLI::App& command, std::string& port, Ports accepted) {
                                 ? fmt::format("{}, `recorded:DIR`", callable_port_kinds)
                                 : callable_port_kinds;
   CLI::Option* const option =
-      command.add_option("--port", port, fmt::format("{}; `builtin` is the reference", kinds))
+      command
+          .add_option("--port", port,
+                      fmt::format("Port to run: {}; `builtin` is the reference of attest", kinds))
           ->type_name("PORT")
           ->capture_default_str();
   if (accepted == Ports::any) return;
@@ -71,16 +73,15 @@ void add_port(CLI::App& command, std::string& port, Ports accepted) {
 void add_timeout(CLI::App& command, double& timeout_s) {
   command
       .add_option("--timeout", timeout_s,
-                  "Limit for each answer of the port [s]. An answer of a library is a whole trace, "
-                  "one of a program is a step or a batch of steps; without an answer in time the "
-                  "verdict is `timeout`")
+                  "Limit for each answer of the port [s]: a library answers with a whole trace, "
+                  "a program with a step or a batch of steps")
       ->check(CLI::Range(0.1, 86400.0))
       ->capture_default_str()
       ->group(option_group::execution);
 }
 
 void add_page(CLI::App& command, std::string& file, const char* what) {
-  command.add_option("--html", file, fmt::format("{}; it needs no network", what))
+  command.add_option("--html", file, fmt::format("Write {}", what))
       ->type_name("F.html")
       ->group(option_group::reports);
 }
@@ -103,10 +104,13 @@ CLI::Option* add_rates(CLI::App& command, std::vector<std::string>& rates, const
 void add_plant(CLI::App& command, std::string& vehicle, std::string& plant,
                const char* usual_vehicle, const char* usual_plant) {
   command
-      .add_option("--vehicle", vehicle,
-                  fmt::format("One of `attest list --vehicles`; default: {}", usual_vehicle))
+      .add_option(
+          "--vehicle", vehicle,
+          fmt::format("Vehicle, one of `attest list --vehicles`; default: {}", usual_vehicle))
       ->type_name("VEHICLE");
-  command.add_option("--plant", plant, fmt::format("`mujoco` or `ode`; default: {}", usual_plant))
+  command
+      .add_option("--plant", plant,
+                  fmt::format("Plant: `mujoco` or `ode`; default: {}", usual_plant))
       ->type_name("PLANT");
 }
 
@@ -119,9 +123,9 @@ void add_selection(CLI::App& command, SelectionOptions& options) {
         ->group(option_group::selection);
   };
   add("--filter", options.filters,
-      "Only vectors whose id matches this shell pattern; quote it. The id of a vector is "
-      "PROFILE/GROUP/NAME@RATEhz. The id of a flight is PROFILE/GROUP/NAME@RATEhz-VEHICLE-PLANT. "
-      "PROFILE/ and the part from @ on are optional",
+      "Only vectors whose id matches this shell pattern: PROFILE/GROUP/NAME@RATEhz, "
+      "for a flight PROFILE/GROUP/NAME@RATEhz-VEHICLE-PLANT; PROFILE/ and the part "
+      "from @ on are optional",
       "GLOB");
   add("--exclude", options.excludes, "Leave out the vectors whose id matches this shell pattern",
       "GLOB");
@@ -131,9 +135,8 @@ void add_selection(CLI::App& command, SelectionOptions& options) {
       "PROFILE")
       ->delimiter(',');
   add_rates(command, options.rates,
-            "Only these loop rates [Hz], separated by commas; flights of v1.14 to v1.16 have "
-            "pairs, such as "
-            "250:1000")
+            "Only these loop rates [Hz], separated by commas; flights of v1.14 to v1.16 "
+            "have pairs such as 250:1000")
       ->group(option_group::selection);
   add("--vehicle", options.vehicles, "Only flights of these vehicles, separated by commas",
       "VEHICLE")
@@ -144,12 +147,14 @@ void add_selection(CLI::App& command, SelectionOptions& options) {
 
 void add_assumed(CLI::App& command, std::vector<std::string>& assumed) {
   command
-      .add_option("--assume", assumed,
-                  fmt::format("What was true in the flight, for topics that the log lacks: some of "
-                              "{}; default: {}; for v1.14 to v1.16: {}",
-                              fmt::join(assumption_words(), ", "),
-                              fmt::join(assumption_words(Module::mc_att_control, true), ","),
-                              assumed_by_default_of_units()))
+      .add_option(
+          "--assume", assumed,
+          fmt::format(
+              "What was true in the flight where the log lacks a topic: some of {}; default "
+              "for v1.5.5 and v1.3.4: {}; default for v1.14 to v1.16: {}",
+              fmt::join(assumption_words(), ", "),
+              fmt::join(assumption_words(Module::mc_att_control, true), ","),
+              assumed_by_default_of_units()))
       ->type_name("WORD,...")
       ->delimiter(',')
       ->allow_extra_args(false)

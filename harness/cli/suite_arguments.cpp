@@ -13,29 +13,31 @@ namespace {
 void add_faults(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<FaultOptions>();
   CLI::App* command =
-      app.add_subcommand("faults", "Measure the suite: which faults of the catalogue it catches");
+      app.add_subcommand("faults", "Measure which faults of the catalogue the suite catches");
   CLI::Option* const ids =
-      command->add_option("fault", options->ids, "Only these faults")->type_name("ID");
+      command->add_option("fault", options->ids, "Only these faults; default: all")
+          ->type_name("ID");
   command
-      ->add_option("--profile", options->profiles, "Only this version of the law (cases, faults)")
+      ->add_option("--profile", options->profiles,
+                   "Only these versions of the law, separated by commas; default: all")
       ->type_name("PROFILE")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command->add_flag("--list", options->list, "List the catalogue; run nothing");
+  command->add_flag("--list", options->list, "List the faults, and run nothing");
   CLI::Option* const bits =
       command
-          ->add_option(
-              "--fraction-bits", options->fraction_bits,
-              "Use the tolerances of a port in fixed point with this number of fraction bits")
+          ->add_option("--fraction-bits", options->fraction_bits,
+                       "Use the tolerances of a port in fixed point with this number of fraction "
+                       "bits; default: those of floating point")
           ->check(CLI::Range(20, 32));
   command
       ->add_flag("--diagnose", options->diagnose,
-                 "Measure the diagnosis instead: is each fault recognised?")
+                 "Measure instead which faults the diagnosis names")
       ->excludes(bits, ids);
   add_jobs(*command, options->jobs, "Number of faults that run at the same time");
-  add_examples(*command, {{"attest faults", "which faults the whole suite catches"},
+  add_examples(*command, {{"attest faults", "measure which faults the open-loop cases catch"},
                           {"attest faults --list --profile px4-v1.3.4",
-                           "the catalogue of one version of the law"}});
+                           "list the catalogue of one version of the law"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return faults_command(*options, globals); };
   });
@@ -44,19 +46,20 @@ void add_faults(CLI::App& app, const Globals& globals, Action& action) {
 void add_list(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<ListOptions>();
   CLI::App* command =
-      app.add_subcommand("list", "List the cases with their reasons, or one of the tables");
+      app.add_subcommand("list", "List the cases with their reasons, or another table");
   add_selection(*command, options->select);
   command->add_flag("--groups", options->groups,
-                    "Only the groups, with their numbers of cases and vectors");
-  command->add_flag("--parameters", options->parameters, "The parameters of the law");
+                    "List the groups with their numbers of cases and vectors");
+  command->add_flag("--parameters", options->parameters, "List the parameters of the law");
   command->add_flag("--channels", options->channels,
-                    "The signals, which are the columns of traces, with type, unit and module");
-  command->add_flag("--flight-modes", options->modes, "Flight modes and the flags they set");
-  command->add_flag("--vehicles", options->vehicles, "The vehicles, with mass, rotors, arm, ...");
+                    "List the signals (columns of traces) with type, unit and module");
+  command->add_flag("--flight-modes", options->modes,
+                    "List the flight modes and the flags that they set");
+  command->add_flag("--vehicles", options->vehicles, "List the vehicles with their main data");
   add_examples(*command,
-               {{"attest list --filter 'tpa/*'", "the cases of a group, with their reasons"},
+               {{"attest list --filter 'tpa/*'", "list the cases of a group with their reasons"},
                 {"attest list --parameters --profile px4-v1.3.4",
-                 "the parameters of one version of the law"}});
+                 "list the parameters of one version of the law"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return list_command(*options, globals); };
   });
@@ -68,9 +71,8 @@ void add_from_log(CLI::App& command, VectorOptions& options) {
       command
           .add_option(
               "--from-log", options.from_log,
-              "Instead, make a case with the inputs of this flight (.ulg) in a suite of your own, "
-              "DIR/cases/PROFILE/from_log; of v1.14 to v1.16, a case of each unit. `attest bless` "
-              "makes the goldens")
+              "Make a case from this flight log in the suite DIR instead; of v1.14 to v1.16, "
+              "a case of each unit")
           ->type_name("FLIGHT.ulg")
           ->group(option_group::logs);
   const auto add_time = [&](const char* name, auto& value, const char* what) {
@@ -80,8 +82,11 @@ void add_from_log(CLI::App& command, VectorOptions& options) {
         ->needs(log)
         ->group(option_group::logs);
   };
-  add_time("--from", options.from_s, "Begin at this time after the first step in the log [s]");
-  add_time("--to", options.to_s, "End before this time after the first step in the log [s]");
+  add_time("--from", options.from_s,
+           "Begin at this time after the first step in the log [s]; default: 0");
+  add_time("--to", options.to_s,
+           "End before this time after the first step in the log [s]; default: the end of "
+           "the log");
   add_assumed(command, options.assumed);
   command.get_option("--assume")->needs(log);
   for (const char* other : {"--lint", "--format", "--fixed-step", "--filter", "--exclude",
@@ -93,43 +98,40 @@ void add_from_log(CLI::App& command, VectorOptions& options) {
 void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<VectorOptions>();
   CLI::App* command = app.add_subcommand(
-      "vectors",
-      "Write the inputs of the vectors to files, for a port that attest cannot call; `attest run "
-      "--port recorded:DIR` judges its outputs");
+      "vectors", "Write the inputs of the vectors to files, for a port that attest cannot start");
   CLI::Option* const folder =
       command
-          ->add_option(
-              "folder", options->folder,
-              "The folder for the files: DIR/PROFILE/GROUP/NAME/RATEhz.csv and DIR/manifest.toml")
+          ->add_option("folder", options->folder,
+                       "Folder for the files; with --from-log, the folder of the suite")
           ->type_name("DIR");
-  CLI::Option* const lint =
-      command->add_flag("--lint", options->lint,
-                        "Write no files; report vectors that are compared numerically, but are too "
-                        "near to a threshold of the law, where correct controllers may take "
-                        "different branches");
+  CLI::Option* const lint = command->add_flag(
+      "--lint", options->lint,
+      "Write no files; report vectors so near to a threshold of the law that correct "
+      "ports may differ");
   lint->excludes(folder);
-  command->add_option("--format", options->format, "`csv`, `mat` (MATLAB) or `npy` (numpy)")
+  command
+      ->add_option("--format", options->format,
+                   "Format of the files: `csv`, `mat` (MATLAB) or `npy` (numpy)")
       ->type_name("FORMAT")
       ->capture_default_str()
       ->excludes(lint);
   command
       ->add_option("--fixed-step", options->fixed_step,
-                   "For a port with a fixed sample time: only the vectors at this rate whose ticks "
-                   "are one period apart. Their timestamps are shifted: the first is one period, "
-                   "not 5 s")
+                   "Only vectors at this rate whose ticks are one period apart, with timestamps "
+                   "that begin at one period; default: all vectors")
       ->type_name("HZ")
       ->excludes(lint);
   add_selection(*command, options->select);
   add_from_log(*command, *options);
   add_examples(
       *command,
-      {{"attest vectors DIR --group attitude --rate 250", "the inputs of some cases, a file each"},
+      {{"attest vectors DIR --group attitude --rate 250", "write the inputs of some cases"},
        {"attest vectors DIR --format mat --fixed-step 250",
-        "all that a Simulink model with a sample time of 4 ms can run"},
+        "write all vectors that a Simulink model with a sample time of 4 ms can run"},
        {"attest vectors ours --from-log flight.ulg --from 10 --to 20",
-        "a case with the inputs of ten seconds of a flight, in a suite of your own"},
+        "make a case from ten seconds of a flight, in the suite `ours`"},
        {"attest vectors --lint",
-        "is a vector so near to a threshold of the law that rounding decides?"}});
+        "report vectors for which rounding decides at a threshold of the law"}});
   command->callback([options, &globals, &action] {
     if (!options->lint && options->folder.empty()) throw CLI::RequiredError("folder");
     action = [=, &globals] {
@@ -143,25 +145,23 @@ void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
 void add_bless(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<BlessOptions>();
   CLI::App* command = app.add_subcommand(
-      "bless",
-      "Make new golden traces from the reference, after showing the changes; one process at a time "
-      "(golden/.bless.lock)");
+      "bless", "Make new golden traces from the reference, after showing the changes");
   add_selection(*command, options->select);
   command
       ->add_option("--reason", options->reason,
-                   "Reason of the change, stored in provenance.toml (required)")
+                   "Reason of the change, which is stored in provenance.toml (required)")
       ->type_name("TEXT");
-  command->add_flag("--yes", options->yes, "Do not ask");
+  command->add_flag("--yes", options->yes, "Replace the goldens without a question");
   command
       ->add_option("--port", options->port,
-                   "Make a suite of your own: the outputs of this port become the goldens of the "
-                   "cases in --suite DIR")
+                   "Make the goldens of --suite DIR from this port; default: from the reference "
+                   "of attest")
       ->type_name("PORT");
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command, {{"attest bless --filter 'px4-v1.5.5/tpa/*' --reason \"...\"",
-                           "shows the changes, and asks before it replaces the goldens"},
+                           "show the changes, and ask before the goldens are replaced"},
                           {"attest bless --suite ours --port lib:./ours.so --reason \"our law\"",
-                           "the cases in ours/cases, with your own law as the reference"}});
+                           "make the goldens of the suite `ours` from your own law"}});
   command->callback([options, &globals, &action] {
     action = [=, &globals] { return bless_command(*options, globals); };
   });

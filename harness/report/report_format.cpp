@@ -23,20 +23,19 @@ auto with_diagnosis(std::string (*render)(const RunResult&, const std::optional<
 
 std::span<const ReportFormat> report_formats() {
   static const ReportFormat formats[] = {
-      {"--html",
-       "Write a report as one HTML page, which needs no network; that of `run` has plots of "
-       "failing vectors",
+      {"--html", "Write an HTML page of the results; that of `run` has plots of failing vectors",
        html_report, true},
       {"--junit", "Write a JUnit XML report", with_diagnosis(junit_report)},
       {"--json", "Write a JSON report", with_diagnosis(json_report)},
       {"--code-quality", "Write a code quality report for GitLab (JSON)",
        with_diagnosis(code_quality_report)},
       {"--badge",
-       "Write a badge (SVG): green when the port conforms to a profile, amber when the result is "
-       "partial, red when something fails or nothing passes",
+       "Write an SVG badge: green if the port conforms, amber if the result is "
+       "partial, red if a vector failed or none passed",
        of_verdicts(badge)},
       {"--write-expected",
-       "Write the failures as a file for --expected-failures; fill in the reasons",
+       "Write the failures as a file for --expected-failures, in which you fill in "
+       "the reasons",
        of_verdicts(expected_failures_of)},
   };
   return formats;
