@@ -9,21 +9,20 @@ namespace {
 constexpr std::size_t most_suspects = 3;
 constexpr std::size_t most_in_group = 4;
 
-// The share of the passing vectors that a suspect must match. It is below 1 for ports with several
-// mistakes: on some passing vectors another mistake of the port hides the one of the suspect.
+// The share of the passing vectors that a suspect must match. It is below 1 because a port may have
+// several mistakes: on some passing vectors, one of them may hide that of the suspect.
 constexpr double passing_part = 0.95;
 
-// The share that a suspect must explain of the failing vectors that the suspects before it leave.
-// In a short vector, a fault may match by chance: integral-in-12-bits matched 1 of the 24 failing
-// vectors of a port with a tanh in its integrator.
+// The share that a suspect must explain of the failing vectors that the suspects before it leave
+// unexplained. In a short vector, a fault may match by chance: the fault integral-in-12-bits
+// matched 1 of the 24 failing vectors of a port with a tanh in its integrator.
 constexpr double least_part = 0.1;
 
-// One fault over all vectors.
 struct Record {
-  std::size_t fault = 0;  // index in the catalogue
-  std::size_t matched = 0, ticks = 0;
-  std::size_t passes = 0;              // passing vectors that it matches
-  std::size_t matched_passing = 0;     // ticks of all passing vectors that it matches
+  std::size_t fault = 0;               // index in the catalogue
+  std::size_t matched = 0, ticks = 0;  // of all ticks of failing vectors, it matches `matched`
+  std::size_t passes = 0;              // passing vectors that it matches at every tick
+  std::size_t matched_passing = 0;     // ticks of passing vectors that it matches
   std::vector<std::size_t> explained;  // failing vectors that it matches at every tick
   std::size_t intersection = 0, union_size = 0;
 
@@ -61,7 +60,7 @@ std::vector<Record> records_of(const std::vector<VectorSimilarity>& vectors) {
   return records;
 }
 
-// Drops the faults that deviate where the port does not.
+// Drops the faults that deviate in too many vectors in which the port does not.
 void drop_contradicted(std::size_t passing, std::vector<Record>& records) {
   const double enough = passing_part * static_cast<double>(passing);
   std::erase_if(records, [enough](const Record& record) {
@@ -77,7 +76,6 @@ std::vector<std::size_t> failing_of(const std::vector<VectorSimilarity>& vectors
   return indices;
 }
 
-// The vectors of `left` that the record explains.
 std::size_t explains(const Record& record, const std::vector<std::size_t>& left) {
   return static_cast<std::size_t>(
       std::count_if(record.explained.begin(), record.explained.end(), [&](std::size_t vector) {
@@ -103,7 +101,6 @@ Suspect suspect_of(const Record& best, const std::vector<Record>& records,
   return suspect;
 }
 
-// Empty if there are no records.
 const Record* best_of(const std::vector<Record>& records, const std::vector<std::size_t>& left) {
   const auto best = std::max_element(
       records.begin(), records.end(),
@@ -137,7 +134,6 @@ void find_suspects(const std::vector<Record>& records, std::vector<std::size_t> 
   diagnosis.unexplained = left.size();
 }
 
-// Replaces the suspects by two that explain more together, if there are such.
 void find_pair(const std::vector<Record>& records, const std::vector<std::size_t>& all,
                const CombinedWith& combined_with, Diagnosis& diagnosis) {
   const Record* const first = best_of(records, all);

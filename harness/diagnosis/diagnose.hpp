@@ -1,5 +1,5 @@
-// The faults of the catalogue that a port's failures resemble: the catalogue runs on the vectors
-// that failed, and on some that passed.
+// Finds the faults of the catalogue that a port's failures resemble. Every fault was run on some
+// vectors that failed, and on some that passed (diagnosis_job.hpp).
 #pragma once
 
 #include <cstddef>
@@ -15,33 +15,35 @@ namespace attest {
 // A fault whose outputs match the port's.
 struct Suspect {
   const faults::Fault* fault = nullptr;
-  // Of the vectors that fail: how many of their ticks, and how many whole vectors, it matches.
-  std::size_t matched = 0, ticks = 0;
-  std::size_t explained = 0, failing = 0;
-  std::vector<const faults::Fault*> ambiguity_group;  // faults that match equally well
-  const faults::Fault* with = nullptr;                // the match is of both together
+  std::size_t matched = 0, ticks = 0;      // it matches `matched` of all ticks of failing vectors
+  std::size_t explained = 0, failing = 0;  // it matches `explained` of the failing vectors wholly
+  std::vector<const faults::Fault*> ambiguity_group;  // at most four, which match equally well
+  const faults::Fault* with = nullptr;  // if not null, the numbers are of both faults together
 };
 
 struct Diagnosis {
   std::size_t vectors = 0, failing = 0;
   std::size_t unexplained = 0;  // failing vectors that no suspect matches at every tick
-  // Best first. Of the failing vectors that the suspects before it leave unexplained, each explains
-  // at least a tenth. If the `with` of the second is the first, the two are a pair, of which the
-  // first may explain less than a tenth alone.
+  // At most three, the best first. Each suspect explains at least a tenth of the failing vectors
+  // that the suspects before it do not explain. An exception is a pair of suspects, of which the
+  // second has the first as Suspect::with: the first may explain fewer.
   std::vector<Suspect> suspects;
-  // Of the first suspect; without a suspect, of `nearest`.
+  // Stage of the first suspect; without a suspect, of `nearest`.
   faults::Stage stage = faults::Stage::input;
-  // The fault whose deviations overlap most with the port's (see jaccard_index).
+  // The fault with the largest Jaccard index.
   const faults::Fault* nearest = nullptr;
-  double jaccard_index = 0;  // of the nearest, 0 .. 1: values at which both deviate / either does
+  // Of `nearest`, 0 to 1: the number of values at which both the fault and the port deviate,
+  // divided by the number of values at which at least one of them does.
+  double jaccard_index = 0;
 };
 
-// The same vectors, with each fault of the catalogue combined with the given fault.
+// Runs the same vectors again, with each fault of the catalogue combined with the given fault.
 using CombinedWith = std::function<std::vector<VectorSimilarity>(const faults::Fault&)>;
 
-// Empty when no vector fails. To search for a second mistake of the port, `combined_with` is called
-// with the fault that explains the most failing vectors, unless that fault explains all or none.
-// The two are named if they explain more vectors together than all suspects without them do.
+// Empty when no vector fails. If the suspects leave failing vectors unexplained, `combined_with` is
+// called with the fault that explains the most of all failing vectors, unless it explains none. The
+// best combination replaces the suspects if it explains more failing vectors than they do, and a
+// tenth or more of those that this fault leaves unexplained.
 std::optional<Diagnosis> diagnose(const std::vector<VectorSimilarity>& vectors,
                                   const CombinedWith& combined_with = {});
 

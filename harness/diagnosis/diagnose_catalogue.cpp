@@ -10,7 +10,8 @@
 namespace attest {
 namespace {
 
-// A vector, and the similarity of all faults to each of its distinct outputs.
+// The outputs of all faults on one vector, and for each distinct one as a port its similarity to
+// all distinct ones.
 struct Answered {
   FaultAnswers faults;
   std::vector<VectorSimilarity> of_distinct;

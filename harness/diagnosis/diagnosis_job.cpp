@@ -28,7 +28,8 @@ struct Vector {
 
 double distance_from_250(const Rate& rate) { return std::abs(std::log(rate.period_s() * 250)); }
 
-// One of each case, at the rate nearest to 250 Hz of those results that are `wanted`.
+// One vector of each open-loop case that is not long: among its results that are `wanted`, the one
+// nearest to 250 Hz.
 template <typename Wanted>
 std::vector<Vector> vectors_of(const std::vector<SelectedCase>& cases,
                                const std::vector<CaseResult>& results, Wanted wanted) {
@@ -60,7 +61,7 @@ void add_spread(const std::vector<Vector>& vectors, const HostOptions& options,
 
 using nlohmann::json;
 
-// Rows of numbers, because there are hundreds.
+// The similarities are rows of numbers without keys, because there are hundreds of faults.
 json to_json(const VectorDiagnosis& diagnosis) {
   if (!diagnosis) return nullptr;
   json rows = json::array();

@@ -14,7 +14,7 @@
 
 namespace attest {
 
-// Empty when the port declines the case or fails.
+// Empty when the port declares the case's group as unsupported, or has a fault.
 using VectorDiagnosis = std::optional<VectorSimilarity>;
 
 template <>
@@ -23,10 +23,11 @@ struct Codec<VectorDiagnosis> {
   static Result<VectorDiagnosis> decode(const std::string& text);
 };
 
-// One vector.
+// Runs port and faults on one vector.
 class DiagnosisJob final : public PortJob<VectorDiagnosis> {
  public:
-  // Open loop. The case must outlive this. With a `partner`, each fault is combined with it.
+  // With a `partner`, each fault is combined with it. REQUIRES: an open-loop case, which outlives
+  // this.
   DiagnosisJob(const Case& the_case, const Rate& rate, const faults::Fault* partner,
                HostOptions options)
       : case_(the_case), rate_(rate), partner_(partner), options_(std::move(options)) {}
@@ -41,9 +42,10 @@ class DiagnosisJob final : public PortJob<VectorDiagnosis> {
   HostOptions options_;
 };
 
-// For up to 48 vectors with the verdict fail or non-finite, and up to 48 that passed. One vector
-// per case, at the rate nearest to 250 Hz, spread over the suite. `cases` are those that were run,
-// and must outlive the jobs.
+// Jobs for up to 48 vectors that failed with a deviation, and for up to 48 vectors that passed.
+// Takes one failed and one passed vector per case, at the rate nearest to 250 Hz, spread over the
+// suite. Leaves out flights and long cases. No jobs if no vector failed. REQUIRES: `cases` are
+// those that were run, and outlive the jobs.
 Jobs<VectorDiagnosis> diagnosis_jobs(const std::vector<SelectedCase>& cases,
                                      const std::vector<CaseResult>& results,
                                      const HostOptions& options,

@@ -14,7 +14,7 @@
 namespace attest {
 namespace {
 
-// A vector. The likeliest to catch the fault come first: own group, then 250 Hz, then in order.
+// A vector. Those with a lower `turn` run first, because they are likelier to catch the fault.
 struct Attempt {
   const Case* the_case;
   LoopRate rate;
@@ -60,7 +60,7 @@ Result<FaultCatch> FaultJob::run(std::size_t) {
   HostHere host(*std::move(port));
   FaultCatch found;
   if (!fault_.profiles->is_of_law_of(profile_)) return found;
-  // The fault is of a module that the profile's cases do not have.
+  // An undetectable fault without cases of its group is of a module that the cases do not have.
   const bool has_group = std::any_of(cases_.begin(), cases_.end(), [&](const SelectedCase& one) {
     return one.the_case.group == fault_.group;
   });
@@ -74,7 +74,7 @@ Result<FaultCatch> FaultJob::run(std::size_t) {
       golden.emplace(std::move(*next));
       opened = the_case;
     }
-    // A fault that is equivalent to the law still differs from it by rounding.
+    // An undetectable fault may still round differently, which the exact level would notice.
     if (the_case->exact_only && !fault_.is_detectable(profile_)) continue;
     const Level level = the_case->exact_only ? Level::exact : Level::numeric;
     const auto result = evaluate_case(*the_case, rate.unit, *golden, host, {level});

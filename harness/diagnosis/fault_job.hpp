@@ -19,8 +19,8 @@ namespace attest {
 // The first case that caught a fault.
 struct FaultCatch {
   Verdict verdict = Verdict::pass;  // pass: no case caught it
-  std::string by;                   // id of the case, with its rate
-  std::optional<std::size_t> tick;  // that deviates first
+  std::string by;                   // id of the vector (CaseResult::id)
+  std::optional<std::size_t> tick;  // the first tick with a deviation
 
   bool is_caught() const { return fails_a_run(verdict); }
 };
@@ -33,7 +33,7 @@ struct Codec<FaultCatch> {
 
 class FaultJob final : public Job<FaultCatch> {
  public:
-  // REQUIRES: each case is in open loop and of `profile`; `cases` outlives this.
+  // REQUIRES: each case is an open-loop case of `profile`; `cases` outlives this.
   FaultJob(const faults::Fault& fault, std::string profile, const std::vector<SelectedCase>& cases,
            std::filesystem::path golden_root, std::optional<int> fraction_bits)
       : fault_(fault),
@@ -44,9 +44,9 @@ class FaultJob final : public Job<FaultCatch> {
 
   std::size_t size() const override { return 1; }
 
-  // Cases of the fault's own group come first, at 250 Hz and then at other rates; then all other
+  // First runs the cases of the fault's own group at 250 Hz, then at other rates; then all other
   // cases in the same way. Cases on a threshold of the law (Case::exact_only) are judged at the
-  // exact level, the others at the numeric one.
+  // exact level, the others at the numeric level. A fault of another law is not run.
   Result<FaultCatch> run(std::size_t task) override;
 
  private:
@@ -54,7 +54,7 @@ class FaultJob final : public Job<FaultCatch> {
   std::string profile_;
   const std::vector<SelectedCase>& cases_;
   std::filesystem::path golden_root_;
-  std::optional<int> fraction_bits_;  // judged as a port with this number of them
+  std::optional<int> fraction_bits_;  // if set, the fault is judged as a port in fixed point
 };
 
 }  // namespace attest

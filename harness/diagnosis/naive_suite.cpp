@@ -21,7 +21,7 @@ void set_quaternion(float (&q)[4], double w, double x, double y, double z) {
   for (int i = 0; i < 4; ++i) q[i] = static_cast<float>(components[i]);
 }
 
-// Armed in STABILIZED, with all topics updated at the first tick.
+// Inputs of the controller: level, armed in STABILIZED, all topics updated at the first tick.
 Sample hovering(std::size_t tick) {
   Sample sample{};
   sample.in.timestamp = 5'000'000 + 4000 * tick;
@@ -37,7 +37,7 @@ Sample hovering(std::size_t tick) {
   return sample;
 }
 
-// The same for the attitude unit, with a setpoint from outside in each step.
+// The same for the attitude unit, which gets an attitude setpoint in each step.
 Sample attitude_held(std::size_t tick) {
   Sample sample{};
   auto& in = sample.attitude_in;
@@ -56,7 +56,7 @@ Sample attitude_held(std::size_t tick) {
   return sample;
 }
 
-// And for the rate unit, in flight.
+// The same for the rate unit, which gets a rates setpoint of zero in each step.
 Sample rates_held(std::size_t tick) {
   Sample sample{};
   auto& in = sample.rate_in;
@@ -97,7 +97,7 @@ void set_rates(Sample& sample, Module module, float roll, float pitch, float yaw
   }
 }
 
-// Small attitude errors and rates that wander, and a setpoint that tilts a little.
+// Roll and pitch that wander by small angles, small random rates, and a constant level setpoint.
 Trace hover(Module module) {
   Trace trace;
   trace.present = channels_of(module);

@@ -13,7 +13,7 @@
 namespace attest {
 namespace {
 
-// A bit for each output of the module that differs.
+// A bit for each output of the module; 1 if the output differs.
 using Mask = std::uint32_t;
 
 struct Output {
@@ -96,7 +96,8 @@ FaultAnswers answers_of_faults(const Trace& given, const Subject& subject,
                                const faults::Fault* partner) {
   FaultAnswers answers;
   Trace answered = given;
-  std::optional<std::size_t> of_other_law;  // all these have the same outputs
+  // Index of the outputs of faults of another law, which all have the same.
+  std::optional<std::size_t> of_other_law;
   for (const faults::Fault* fault : faults::catalogue()) {
     const bool is_other = !fault->profiles->is_of_law_of(subject.profile);
     if (is_other && of_other_law) {

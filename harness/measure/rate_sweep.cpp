@@ -17,14 +17,13 @@
 namespace attest {
 namespace {
 
-// At the highest rate every vehicle of a case holds, or its bounds are wrong. At the lowest rate
-// the period is far beyond the law's own clamp of the time step (20 ms).
+// If a vehicle misses a bound at the highest rate, the bounds of the case are wrong. At the lowest
+// rate the period is far beyond 20 ms, to which the law limits its time step.
 constexpr int highest_hz = 1000, lowest_hz = 2;
 constexpr double rate_step = 0.8;
 // In units of 0.1 ms. No multicopter is flown with a delay beyond half a second.
 constexpr int longest_delay = 5000, delay_step = 20;
 
-// Flies one case several times, each time with another rate or delay.
 class Trial {
  public:
   Trial(const Case& the_case, PortHost& host, CaseResult& result)
@@ -74,7 +73,7 @@ class Trial {
   std::optional<Error> error_;
 };
 
-// The last number from `good` towards `bad` that holds, given that `good` does and `bad` does not.
+// The last number from `good` on that holds. REQUIRES: `good` holds and `bad` does not.
 template <typename Holds>
 int last_that_holds(int good, int bad, Holds&& holds) {
   while (std::abs(good - bad) > 1) {
@@ -108,7 +107,8 @@ double largest_delay(Holds&& holds) {
   return good;
 }
 
-// The rate of the attitude unit does not change, but it is never the faster one.
+// `usual` with another rate of the unit that commands the motors. The rate of the attitude unit is
+// not above it.
 LoopRate with_unit_at(const Rate& unit, const LoopRate& usual) {
   if (!usual.attitude_unit) return unit;
   return {std::min(*usual.attitude_unit, unit), unit};
@@ -174,7 +174,7 @@ Result<RateSweepResult> RateSweepJob::run(std::size_t task) {
   }
   if (trial.error()) return tl::unexpected(*trial.error());
   found.trials = trial.take_trials();
-  // A figure from before the port's failure is not valid.
+  // Flights before the port's failure do not make a valid figure.
   if (found.result.verdict != Verdict::pass) {
     (task == 0 ? found.lowest_rate_hz : found.largest_delay_ms) = -1;
   }

@@ -1,5 +1,5 @@
-// The limits of a vehicle: the lowest loop rate and the largest delay with which a port still flies
-// a case within the bounds of its metrics.
+// Searches for the lowest loop rate and the largest delay with which a port still flies a vehicle
+// within the bounds of a case's metrics.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace attest {
 
-// A flight of the search that the port flew to its end, or until it lost the vehicle.
+// A flight of the search, which ended as planned or with the loss of the vehicle.
 struct RateSweepTrial {
   double rate_hz = 0, delay_ms = 0;
   std::vector<double>
@@ -23,9 +23,10 @@ struct RateSweepTrial {
   bool holds = false;  // all metrics are within their bounds
 };
 
-// One of the two figures is set. It is below 0 if no value holds, or if `result` is not a pass.
+// Either `lowest_rate_hz` or `largest_delay_ms` is set. It is below 0 if the first flight of the
+// search does not hold, or if the verdict is not pass.
 struct RateSweepResult {
-  CaseResult result;  // a verdict other than pass: the port failed
+  CaseResult result;  // pass, or the verdict on a port that did not fly all flights
   std::optional<double> lowest_rate_hz;
   std::optional<double> largest_delay_ms;   // of the motor commands, beyond the case's own
   std::vector<RateSweepTrial> trials = {};  // in the order of the search
@@ -37,14 +38,15 @@ struct Codec<RateSweepResult> {
   static Result<RateSweepResult> decode(const std::string& text);
 };
 
-// The searches for one vehicle on one plant. Task 0 searches for the lowest rate. In the cascade
-// this is the rate of the rate unit; the attitude unit has its usual rate, or that of the rate unit
-// if that is lower. Task i searches for the largest delay at `rates[i - 1]`. Each search begins at
-// 1000 Hz, or without delay, and moves in steps until a flight misses a bound. Then it bisects the
-// last step. It does not try rates below, or delays above, that of the first flight that missed a
-// bound.
+// The searches for one vehicle on one plant. Task 0 searches for the lowest rate, from 1000 Hz down
+// to 2 Hz. In the cascade this is the rate of the rate unit; the attitude unit has the rate that it
+// has in `rates[0]`, or that of the rate unit if this is lower. Task i searches for the largest
+// delay at `rates[i - 1]`, from 0 up to half a second. Each search moves in steps until a flight
+// misses a bound or loses the vehicle. Then it bisects the last step. It does not go beyond that
+// flight, so a lower rate or a larger delay may hold again.
 class RateSweepJob final : public PortJob<RateSweepResult> {
  public:
+  // REQUIRES: `rates` is not empty.
   RateSweepJob(Case the_case, PlantConfiguration plant_configuration, std::vector<LoopRate> rates,
                std::shared_ptr<const VehicleModel> vehicle_model, HostOptions options)
       : case_(std::move(the_case)),

@@ -1,4 +1,4 @@
-// One simulated flight.
+// Flies one simulated flight.
 #pragma once
 
 #include "harness/casefile/case.hpp"
@@ -9,11 +9,12 @@ namespace attest {
 
 struct SimulatedFlight {
   CaseResult result;
-  Flown flown;  // also of a flight that ends early; without ticks after a fault of the port
+  Flown flown;  // no ticks if the port has a fault or does not fly; else all ticks up to the end
 };
 
-// Flies a fresh unit. The metrics are judged by the case's own bounds only. REQUIRES: the host's
-// course is this case. Errors: the flight cannot be set up.
+// Flies a fresh unit. Judges a fault, the loss of the vehicle, and the metrics by the case's own
+// bounds only. Outputs are not judged. REQUIRES: the host's course is this case. Errors: the flight
+// cannot be set up.
 Result<SimulatedFlight> simulate_flight(const Case& the_case, FlightPlan plan, PortHost& host);
 
 }  // namespace attest

@@ -14,7 +14,7 @@
 namespace attest {
 namespace {
 
-// A budget may exceed the range of the clock.
+// Limits the result, because a budget may exceed the range of Nanoseconds.
 Nanoseconds nanoseconds(double microseconds) {
   constexpr double longest_us = 1e15;
   return Nanoseconds(static_cast<std::int64_t>(std::min(microseconds, longest_us) * 1000));
@@ -32,7 +32,7 @@ void summarise(const LiveFlight& flight, const LiveUnitRecord& unit, const Rate&
   stress.ticks = unit.ticks.size();
   stress.deadlines = unit.ticks.size() + unit.skipped;
   stress.misses = deadline_misses(unit.ticks, rate, nanoseconds(budget.p99_latency_us));
-  stress.misses.skipped = unit.skipped;  // with those before the first tick
+  stress.misses.skipped = unit.skipped;  // also counts the releases before the first tick
   for (const LiveTick& tick : unit.ticks) {
     if (tick.waited) ++stress.waiting_steps;
     const bool limited = budget.execution_us.has_value();
@@ -70,7 +70,7 @@ Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
                                        const std::function<void(const StressProgress&)>& progress) {
   StressMeasurement measured;
   const bool is_cascade = task.the_case.attitude_loop.has_value();
-  // The modules decide which units are judged, so they must be those that were declared before.
+  // The judge uses the modules declared before the run, so they must not have changed.
   if (is_cascade && port.modules() != task.port.modules) return measured;
   const auto reference = open_builtin();
   const auto units = units_for(task.the_case, port, *reference);

@@ -1,17 +1,15 @@
-// The child process of a stress run, and the parent that listens to it.
+// The child process of a stress run, and the parent that listens to it. The child sends some
+// messages of the first kind, and then one of another kind:
 //
 //     {"progress": {"time_ns": ..., "deadlines": ..., "missed": ..., "idle": false}}
-//     {"units": [{"stress": {...}, "fault", "parameters"}],      of each unit: inputs, outputs,
-//      "divergence"}                                             ticks, times at which its outputs
-//                                                                were followed
-//                                                                (LoopTick::commanded)
-//     {"refused": true}                                          the port made no unit, or only
-//                                                                one of two; has the fault, too
+//     {"units": [{"stress": {...}, ...}, ...], ...}   the flight. For each unit three blobs follow:
+//                                                     samples, ticks, LoopTick::commanded
+//     {"refused": true, ...}                          the port did not make all units; its fault
 //     {"error": {...}}
 //
-// The port's code runs in the child, so no verdict is taken from there. A port can forge the
-// measurements, such as its own execution time. It cannot forge the verdict on its outputs, because
-// the parent judges them.
+// The port's code runs in the child, so the parent accepts no verdict from the child. A port can
+// forge the measurements, such as its own execution time. It cannot forge the verdict on its
+// outputs, because the parent judges them.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -73,7 +71,7 @@ void send_measured(const StressMeasurement& measured, MessageSocket& parent) {
   parent.send(text_of(head), blobs);
 }
 
-// The next blob, of `count` objects, if these are at most `most`.
+// The next blob, of `count` objects. Empty if there are more than `most`, or if it does not arrive.
 template <typename T>
 std::optional<std::vector<T>> read_some(const json& count, std::size_t most, BlobReader& blobs) {
   const auto wanted = count.get<std::size_t>();
@@ -84,12 +82,13 @@ struct MeasuredUnit {
   StressResult stress;
   LiveUnitRecord record;
   Times commanded;
-  std::size_t most = 0;  // ticks
+  std::size_t most = 0;  // the most ticks that the unit can have
 
   bool is_whole() const { return record.ticks.size() + stress.misses.skipped >= most; }
 };
 
-// Empty: as for measurement_from(). Throws json::exception, too.
+// Reads the part for one unit from the message of a flight. Empty, or json::exception: it is
+// invalid.
 std::optional<MeasuredUnit> unit_from(const json& head, std::size_t most, bool of_program,
                                       BlobReader& blobs) {
   auto stress = stress_from_json(head.at("stress"));
@@ -113,9 +112,9 @@ std::optional<MeasuredUnit> unit_from(const json& head, std::size_t most, bool o
   return unit;
 }
 
-// Empty: not a message of a stress run's child. A flight may be shorter than its case only after a
-// request to stop, a fault or a divergence, or with a unit that the estimator triggers. Throws
-// json::exception, too.
+// Reads the message of a flight. Empty, or json::exception: it is not one that attest's code in the
+// child would send. For example, a flight may be shorter than its case only after a request to
+// stop, a fault or a divergence, or with a unit that the estimator triggers.
 std::optional<StressMeasurement> measurement_from(const StressTask& task, bool of_program,
                                                   bool was_asked_to_stop, const json& head,
                                                   BlobReader& blobs) {
@@ -182,7 +181,7 @@ void work(const StressTask& task, const std::string& specification, const PortCa
   }
 }
 
-// The result if the port's declarations before the run exclude the task.
+// The result if the port's declarations before the run exclude the task; else empty.
 std::optional<StressResults> declined(const StressTask& task) {
   StressResult stress;
   stress.result = result_for(task.the_case, task.configuration);
@@ -205,7 +204,7 @@ StressResults gone_wrong(const StressTask& task, Verdict verdict, std::string re
   return {stress};
 }
 
-// Listens until the child has sent its result, has died, or hangs.
+// Listens until the child has sent its last message, has died, or hangs.
 class Listener {
  public:
   Listener(const StressTask& task, bool of_program, const PortCalls& calls, Child& child,
@@ -229,7 +228,7 @@ class Listener {
   }
 
  private:
-  // The result when no answer came, or an invalid one.
+  // The result if the last message did not come, or is invalid.
   StressResults end_of(Received::Kind why) {
     if (why == Received::Kind::ended) {
       const std::string how = child_.end(), words = child_.last_words();
@@ -252,11 +251,12 @@ class Listener {
 
   bool hangs() const {
     const Nanoseconds duration(static_cast<std::int64_t>(task_.the_case.duration.amount * 1e9));
-    // A child hangs if it sends no message for this time, or still flies this time after the end.
+    // A child hangs if it sends no message for this time, or flies for this time beyond the end of
+    // the case. While it measures the idle machine it sends no messages.
     const Nanoseconds limit = report_every + task_.timeout;
     return Clock::now() - heard_ > (idle_ ? task_.idle_duration + limit : limit) ||
            flown_ > duration + limit ||
-           // An upper bound that does not depend on its progress messages.
+           // An upper bound for a port that forges progress messages.
            Clock::now() - began_ > task_.timeout + task_.idle_duration + duration + 2 * limit;
   }
 
@@ -270,7 +270,8 @@ class Listener {
                              calls_.current(), limit_s);
   }
 
-  // Empty: it is not the last message. The port shares the process, so no message is trusted.
+  // The result if this is the last message; empty if it is a progress message. The port shares the
+  // child's process and could have forged the message, so its form is checked.
   std::optional<Result<StressResults>> answer_of(const Received& received,
                                                  const Patience& patience) {
     heard_ = Clock::now();
@@ -323,7 +324,7 @@ class Listener {
   const Clock::time_point began_ = Clock::now();
   Clock::time_point heard_ = Clock::now();
   bool is_stopping_ = false;
-  bool is_made_ = false;  // the unit was made; the first progress comes after that
+  bool is_made_ = false;  // the units were made; the first progress message comes after that
   bool idle_ = true;
   Nanoseconds flown_{0};
 };

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-// One list of members for both directions: `visit(key, member)`.
+// Calls `visit(key, member)` for each member. Writing (Put) and reading (Get) use the same list.
 template <typename SpreadT, typename Visit>
 void members_of_spread(SpreadT& spread, Visit&& visit) {
   visit("count", spread.count);
@@ -79,7 +79,7 @@ struct Put {
   }
 };
 
-// Throws json::exception on what is missing or of another type.
+// Throws json::exception if a member is missing or of another type.
 struct Get {
   const json& in;
   void operator()(const char* key, Buckets& buckets) const {

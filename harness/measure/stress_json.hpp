@@ -1,5 +1,5 @@
-// A StressResult as JSON and back: the message of a stress run's child, and one entry of the JSON
-// report. Times are integer nanoseconds, their keys end in _ns.
+// A StressResult as JSON and back: for the message of a stress run's child, and for an entry of the
+// JSON report. The measured times are integer nanoseconds under keys that end in _ns.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,8 +11,8 @@ namespace attest {
 
 nlohmann::json to_json(const StressResult& stress);
 
-// Errors: a missing or wrong member, which the port can cause because it shares the child's
-// process.
+// The inverse of to_json(), without `timeline` and `cyclictest`. Errors: a missing or wrong member,
+// which a port can cause because it shares the child's process.
 Result<StressResult> stress_from_json(const nlohmann::json& json);
 
 }  // namespace attest

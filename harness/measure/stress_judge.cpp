@@ -14,8 +14,8 @@ namespace {
 
 // If a larger share of the plant's steps is late, the flight was not in real time: verdict `skip`.
 constexpr double plant_late_share = 0.01;
-// The share that a budget of the 99th percentile allows. Late starts are counted, so no percentile
-// is needed.
+// A budget of the 99th percentile allows this share of late starts. They are counted, so that no
+// percentile is needed.
 constexpr double late_starts_share = 0.01;
 
 int gravity(Verdict verdict) { return fails_a_run(verdict) ? 2 : verdict == Verdict::pass ? 0 : 1; }

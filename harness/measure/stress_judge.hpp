@@ -1,5 +1,5 @@
-// The verdict on a live flight: outputs, the end of the flight, timing. Each is judged
-// independently of the others. A failure has priority over a skip, and a skip over a pass.
+// Judges a live flight: its outputs, its end, its timing. A failure of one of them has priority
+// over a skip, and a skip over a pass.
 #pragma once
 
 #include <optional>
@@ -11,29 +11,33 @@
 
 namespace attest {
 
-// Compares the outputs with those of the reference for the same inputs at the same times: late and
-// missing ticks do not excuse wrong outputs. Adds a skip where the outputs cannot be judged: no
-// tick, ticks beyond those that were kept, a decision of the law at its threshold before or at the
-// first deviation. REQUIRES: a port without a fixed step. Moves the samples out of `unit`.
+// Compares the outputs with those of the reference for the same inputs at the same times. So late
+// and missing ticks do not excuse wrong outputs. Adds a skip if outputs cannot be judged: there is
+// no tick, there are more ticks than checked_ticks, or Answers::undecided is set. Moves samples and
+// parameter changes out of `unit`. REQUIRES: a port without a fixed step.
 void judge_outputs(const Case& the_case, Module module, LiveUnitRecord& unit,
                    std::optional<int> fraction_bits, CaseResult& result);
 
-// Judges a flight that the plant ended. It is a skip if the outputs agree with the reference's to
-// the end, or if the reference loses the vehicle too, flown in simulation at the same times.
-// Otherwise it fails. REQUIRES: the outputs were judged before, if they can be.
+// Judges a flight that ended because the vehicle was lost, unless the result has failed already. If
+// the result is a pass, all outputs agree with the reference's, and it becomes a skip. If it is a
+// skip, the reference flies in simulation at the same times; if the reference does not lose the
+// vehicle, the result becomes a failure. REQUIRES: judge_outputs() was called before, unless the
+// port has a fixed step.
 void judge_flight_end(const StressTask& task, const LiveFlight& flight, CaseResult& result);
 
-// Compares the figures of `stress` with the budget. A port fails for overruns, and for misses and
-// late starts that are attributed to it (deadline_misses.hpp). Those of the machine give a skip.
+// Compares the figures of `stress` with the budget. A port fails for too many overruns, or for too
+// many misses or late starts that are the port's (deadline_misses.hpp). If the port does not fail
+// for these, too many misses or late starts of any cause, or late steps of the plant, give a skip.
 void judge_timing(const RealtimeBudget& budget, StressResult& stress);
 
-// All three, for one unit of the flight. `of_end`: whether the end of the flight counts for this
-// unit; it counts once. A flight that a fault of the other unit ended is a skip. REQUIRES: `stress`
-// has the measurements, and the identity of its result. Moves the unit's samples out of `flight`.
+// Does all three for one unit of the flight, or judges only its fault if it has one. `of_end`:
+// judge the end of the flight, which the caller does for one unit only. A flight that a fault of
+// the other unit ended is a skip. Moves the unit's samples out of `flight`. REQUIRES: `stress` has
+// the measurements, and the identity of its result.
 void judge_unit(const StressTask& task, Module module, LiveFlight& flight, bool of_end,
                 StressResult& stress);
 
-// Adds the reason why a part cannot be judged.
+// Adds a verdict of skip with this reason. A failure stays a failure.
 void add_skip(CaseResult& result, const std::string& reason);
 
 }  // namespace attest

@@ -13,7 +13,6 @@
 namespace attest {
 namespace {
 
-// Times vectors. All run in one process of the port; after that process has ended, in a new one.
 class Stopwatches {
  public:
   Stopwatches(const TimeOptions& options, const HostOptions& host)

@@ -3,12 +3,12 @@
 #include <cstddef>
 
 // A program may replace malloc ("Replacing malloc" in the manual of the GNU C library). A program
-// that links this file does so: the functions here count, and call those of the library. Its free
-// is not replaced. Libraries that are loaded later, such as ports, use these functions too.
+// that links this file does so: the functions here count, and call those of the GNU C library. Its
+// free() is not replaced. Libraries that are loaded later, such as ports, use these functions too.
 
 namespace {
 
-// This TLS model does not allocate the variable on first use, which would call malloc.
+// Other TLS models may allocate the variable at its first use, and so call malloc within malloc.
 [[gnu::tls_model("initial-exec")]] thread_local std::uint64_t allocations = 0;
 
 }  // namespace

@@ -16,13 +16,13 @@ namespace attest {
 
 namespace {
 
-// A day. A longer time is not a measurement.
+// Larger values are not plausible: a day, and a trillion cycles.
 constexpr std::int64_t longest_us = 86'400'000'000;
 constexpr std::int64_t most_cycles = 1'000'000'000'000;
-// Time to start, and to write its measurements.
+// For the start of cyclictest, and for its output.
 constexpr double patience_s = 10;
 
-// The counts of its histogram, by time in microseconds. Empty: not such a histogram.
+// The counts of cyclictest's histogram, by time [us]. Empty for other JSON.
 std::optional<std::map<std::int64_t, std::int64_t>> counts_of(const nlohmann::json& histogram) {
   std::map<std::int64_t, std::int64_t> counts;
   if (!histogram.is_object()) return std::nullopt;
@@ -40,7 +40,7 @@ std::optional<std::map<std::int64_t, std::int64_t>> counts_of(const nlohmann::js
 }  // namespace
 
 std::optional<Cyclictest> parse_cyclictest(const std::string& text) {
-  // The histogram as text follows the JSON.
+  // cyclictest prints the histogram again after the JSON, as text.
   const std::size_t end = std::min(text.find("\n}"), text.size());
   const auto json = json_from(text.substr(0, end + 2));
   const auto path = nlohmann::json::json_pointer("/thread/0");

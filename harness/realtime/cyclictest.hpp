@@ -1,4 +1,5 @@
-// The idle machine as measured by cyclictest (rt-tests): an independent check of our own pacer.
+// Wake-up latencies of the idle machine, measured by cyclictest (rt-tests). They are an independent
+// check of those that attest measures (idle_latency()).
 #pragma once
 
 #include <functional>
@@ -11,18 +12,19 @@
 namespace attest {
 
 struct Cyclictest {
-  Nanoseconds median{0};  // interpolated within its bins of 1 us
+  Nanoseconds median{0};  // interpolated within the 1 us bins of cyclictest
   Nanoseconds max{0};
   std::int64_t cycles = 0;
 };
 
-// On the unit's CPU, with its scheduler. Empty when it is not installed, failed, printed something
-// else, did not end some seconds after `duration`, or `stop` became true.
+// Runs cyclictest on the unit's CPU with the unit's scheduler. Empty when cyclictest is not
+// installed, failed, printed other text, did not end within 10 s after `duration`, or `stop` became
+// true.
 std::optional<Cyclictest> run_cyclictest(const Rate& rate, Nanoseconds duration,
                                          const LiveOptions& options,
                                          const std::function<bool()>& stop);
 
-// Parses its output with --json. Empty when the text is something else.
+// Parses the output of cyclictest with --json. Empty for other text.
 std::optional<Cyclictest> parse_cyclictest(const std::string& json);
 
 }  // namespace attest

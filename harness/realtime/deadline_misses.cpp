@@ -5,11 +5,11 @@
 namespace attest {
 namespace {
 
-// The usual delay is at most this part of the period: period / 10.
+// The usual delay is at most the period divided by this number.
 constexpr int usual_part_of_period = 10;
 
-// A unit in one of the two timelines of deadline_misses.hpp: the start of its last step, and the
-// finish of that step, from which on it is free.
+// A unit in one of the two computed timelines of deadline_misses.hpp: the start of its last step,
+// and the finish of that step, when the unit becomes free.
 struct Course {
   Nanoseconds free = Nanoseconds::min();
   Nanoseconds start{0};
@@ -48,7 +48,8 @@ Nanoseconds usual_delay(const std::vector<Delay>& delays, const Rate& rate) {
   return std::min(*middle, rate.tick(1) / usual_part_of_period);
 }
 
-// A release is skipped if the thread is still busy when the next one is due.
+// The number of skipped releases that are the port's. A release is skipped if the thread is still
+// busy when the next release is due, which is also the deadline of the skipped one.
 std::uint64_t skipped_by_port(const LiveTick& tick, const Rate& rate, Nanoseconds machines_finish,
                               Nanoseconds ports_finish) {
   std::uint64_t count = 0;

@@ -1,4 +1,4 @@
-// A histogram of times: counts in bins of equal ratio, and some exact figures.
+// A histogram of times, with bins of equal ratio: each bin ends at 1.01 times its beginning.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ namespace attest {
 // 10,000.
 bool supports_percentile(std::uint64_t count, double part);
 
-// Percentiles are correct to 1%, the width of a bin; count, min, max, mean and the count over the
-// limit are exact. The bins cover 1 ns to 1000 s. Shorter times count as 1 ns; a percentile beyond
-// 1000 s is the maximum. No allocation after construction.
+// Percentiles are correct to 1%, the width of a bin. Count, min, max, mean and over_limit() are
+// exact. The bins cover 1 ns to 1000 s. Shorter times are in the bin of 1 ns. A percentile beyond
+// 1000 s is the maximum. add() does not allocate.
 class Histogram {
  public:
   // Times t with from <= t < to, in whole nanoseconds.
@@ -29,7 +29,7 @@ class Histogram {
     friend bool operator==(const Bucket&, const Bucket&) = default;
   };
 
-  // Times above `limit` are counted separately.
+  // over_limit() counts the times above `limit`.
   explicit Histogram(Nanoseconds limit = Nanoseconds::max());
   Histogram(Histogram&&) noexcept;
   Histogram& operator=(Histogram&&) noexcept;
@@ -45,11 +45,12 @@ class Histogram {
   Nanoseconds max() const { return max_; }
   Nanoseconds mean() const;
 
-  // The time that the share `part` (0..1) of all times does not exceed, for any count.
+  // The time that the share `part` (0..1) of all times does not exceed. Does not check
+  // supports_percentile().
   Nanoseconds percentile(double part) const;
 
-  // Those that are not empty, ascending. Times below 1 ns are in the first bucket, which begins at
-  // the minimum then; times beyond 1000 s are in the last, which ends after the maximum.
+  // The bins that are not empty, ascending. With times below 1 ns, the first bucket begins at the
+  // minimum. With times beyond 1000 s, the last bucket ends after the maximum.
   std::vector<Bucket> buckets() const;
 
  private:

@@ -12,8 +12,8 @@
 namespace attest {
 namespace {
 
-// A file without a name, to which another program can write by a path of /proc. Nothing is left of
-// it when this process ends, however it ends.
+// A file in memory, to which another program can write by a path of /proc. The kernel removes it
+// when this process ends in any way.
 class NamelessFile {
  public:
   NamelessFile() : descriptor_(::memfd_create("attest-callgrind", MFD_CLOEXEC)) {}
@@ -40,8 +40,9 @@ class NamelessFile {
   int descriptor_;  // -1: it could not be made
 };
 
-// Each part of callgrind's output has a line such as "totals: 812". A part of 0 is no call: the end
-// of the command, or of a process that it forked.
+// The totals of the calls. Each part of callgrind's output has a line such as "totals: 812". A
+// total of 0 is that of no call: callgrind writes it at the end of the command and of each of its
+// forks.
 std::vector<std::uint64_t> totals_in(const std::string& dumps) {
   constexpr std::string_view key = "totals: ";
   std::vector<std::uint64_t> totals;
@@ -61,8 +62,8 @@ std::vector<std::uint64_t> instructions_of_calls(const std::vector<std::string>&
                                                  const ProgramLimits& limits) {
   const NamelessFile dumps;
   if (!is_installed("valgrind") || !dumps.is_open()) return {};
-  // A dump after each call, all in one file. Without vgdb, because its pipes stay in the folder for
-  // temporary files when valgrind is killed.
+  // Callgrind writes a part after each call, all in one file. vgdb is off, because its pipes stay
+  // in the folder for temporary files when valgrind is killed.
   std::vector<std::string> counted = {"valgrind",
                                       "--vgdb=no",
                                       "--tool=callgrind",

@@ -1,4 +1,5 @@
-// Instructions that a function executes, counted by valgrind: unlike times, the counts repeat.
+// Counts the instructions of a function with valgrind. Unlike times, the counts are the same in
+// each run.
 #pragma once
 
 #include <cstdint>

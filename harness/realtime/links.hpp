@@ -1,9 +1,11 @@
 // The messages between the threads of the plant and of the units.
 //
-//     plant -> each unit               the state; with a floor, what the land detector found
+//     plant -> each unit               the state; LandDetected in the cascade with a floor
 //     plant -> unit of the motors      battery_status
 //     unit of the motors -> plant      the motor commands
 //     attitude unit -> rate unit       the rates setpoint
+//
+// The unit of the motors commands them: the controller, or the rate unit of the cascade.
 #pragma once
 
 #include <atomic>
@@ -22,7 +24,7 @@ namespace attest {
 struct LiveState {
   Nanoseconds time{0};  // of the plant
   PlantState state;
-  Nanoseconds published{0};  // when this was written
+  Nanoseconds published{0};  // when this message was written
 };
 
 struct LiveCommand {
@@ -33,7 +35,7 @@ struct LiveCommand {
   bool armed = false;
 };
 
-// battery_status, of a flight with a battery.
+// battery_status, in a flight with a battery.
 struct LiveBattery {
   Nanoseconds time{0};  // of the battery's sample
   float scale = 1;
@@ -48,20 +50,20 @@ struct LiveRatesSetpoint {
 // From the plant to one unit.
 struct UnitLinks {
   TripleBuffer<LiveState> states;
-  TripleBuffer<LandDetected> landed;  // of a flight with a floor
+  TripleBuffer<LandDetected> landed;  // in the cascade with a floor
 };
 
 struct Links {
-  UnitLinks unit;           // that commands the motors
-  UnitLinks attitude_unit;  // of a flight of the cascade
+  UnitLinks unit;           // of the unit that commands the motors
+  UnitLinks attitude_unit;  // in a flight of the cascade
   TripleBuffer<LiveCommand> commands;
   TripleBuffer<LiveBattery> batteries;
   TripleBuffer<LiveRatesSetpoint> rates_setpoints;
-  std::atomic<int> flying{1};     // units that still fly; the last one that ends sets `stop`
+  std::atomic<int> flying{1};     // units that still fly; the last one sets `stop` when it ends
   std::atomic<bool> stop{false};  // any thread may set it
-  // For a unit that the estimator triggers: released when a new sample of the estimator is in its
-  // `states`, once for several samples, and once at the end. `all_published` is set after the last
-  // sample of the plant's thread.
+  // For a unit that the estimator triggers. The plant's thread releases `published` when a new
+  // sample of the estimator is in UnitLinks::states: once for several samples that come together,
+  // and once at the end. After its last sample it sets `all_published`.
   std::counting_semaphore<> published{0};
   std::atomic<bool> all_published{false};
 };

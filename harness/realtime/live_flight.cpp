@@ -15,18 +15,17 @@ namespace {
 
 // Above the kernel's own threads of priority 50, below its watchdogs of 99.
 constexpr int unit_priority = 80, attitude_unit_priority = 79, plant_priority = 78;
-constexpr auto settle_in = std::chrono::milliseconds(20);  // from the start of threads to time 0
+constexpr auto settle_in = std::chrono::milliseconds(20);  // for the start of threads before time 0
 constexpr auto progress_every = std::chrono::milliseconds(100);
-constexpr std::size_t step_stack_bytes = 256 * 1024;  // what a step may use without a page fault
+constexpr std::size_t step_stack_bytes = 256 * 1024;  // a step may use it without a page fault
 
-// Touches the stack below, which is mapped page by page as it is first used.
+// Touches the stack below this frame, because the kernel maps each page at its first use.
 void touch_stack() {
   volatile unsigned char pages[step_stack_bytes];
   for (std::size_t at = 0; at < step_stack_bytes; at += 4096) pages[at] = 0;
   static_cast<void>(pages[0]);
 }
 
-// The body of a real-time thread: claims its privileges, gets its memory ready, does its work.
 template <typename Work>
 void run_claimed(const ThreadWish& wish, std::vector<RealtimePrivilege>& privileges, Work&& work) {
   const DefaultFloatEnvironment environment;
@@ -68,7 +67,6 @@ LivePlantPlan plan_of(const Case& scripted, const Rate& rate, const Vehicle& veh
   return plan;
 }
 
-// What each unit of a flight is made from.
 struct UnitSetting {
   const Case& scripted;  // of the whole flight
   const LoopRate& rate;
@@ -78,7 +76,6 @@ struct UnitSetting {
   std::size_t samples;
 };
 
-// A unit with its clock; its thread runs it.
 struct FlyingUnit {
   FlyingUnit(Module module, Unit& port, const UnitSetting& setting, Links& links)
       : scripted(setting.scripted.of_module(module)),
@@ -94,7 +91,8 @@ struct FlyingUnit {
   std::vector<RealtimePrivilege> privileges;  // of its thread
 };
 
-// All that flies, ready for its threads. Not moved: the parts refer to each other.
+// The plant and the units, before their threads start. Must not move, because the members refer to
+// each other.
 struct Flyers {
   // REQUIRES: same as fly_live(); `scripted` is bound to the vehicle. All outlive this.
   Flyers(const Case& scripted, const LoopRate& rate, const Vehicle& vehicle, Plant& flown,
@@ -117,7 +115,7 @@ struct Flyers {
   PlantTask plant_task;
   Nanoseconds origin;  // time 0 of all clocks
   UnitSetting setting;
-  FlyingUnit unit;  // that commands the motors
+  FlyingUnit unit;  // the one that commands the motors
   std::unique_ptr<FlyingUnit> attitude_unit;
   Pacer plant_clock;
   LivePlant plant;
@@ -130,7 +128,6 @@ std::thread start(FlyingUnit& unit, const LiveOptions& options, int priority) {
   });
 }
 
-// The plant's thread, and one for each unit.
 std::vector<std::thread> start(Flyers& flyers, const LiveOptions& options) {
   std::vector<std::thread> threads;
   threads.emplace_back([&flyers, wish = plant_wish(options)] {
@@ -153,7 +150,6 @@ LiveProgress progress_at(Nanoseconds now, const Flyers& flyers) {
   return progress;
 }
 
-// Until the flight ends, by itself or by `stop`.
 void watch(Flyers& flyers, const std::function<bool()>& stop,
            const std::function<void(const LiveProgress&)>& progress) {
   Pacer here(flyers.origin, Wait{});
@@ -170,7 +166,6 @@ void add_refused(const std::vector<RealtimePrivilege>& from, std::vector<Realtim
                [](const RealtimePrivilege& right) { return !right.got; });
 }
 
-// Same as LiveFlight::privileges.
 std::vector<RealtimePrivilege> privileges_of(const ProcessPrivileges& process,
                                              const Flyers& flyers) {
   std::vector<RealtimePrivilege> all = process.privileges();
@@ -180,7 +175,7 @@ std::vector<RealtimePrivilege> privileges_of(const ProcessPrivileges& process,
   return all;
 }
 
-// After the threads have ended.
+// REQUIRES: the threads have ended.
 LiveFlight flight_of(Flyers& flyers, const ProcessPrivileges& process) {
   LiveFlight flight;
   flight.unit = flyers.unit.live.take_record();
@@ -227,7 +222,7 @@ Histogram idle_latency(const Rate& rate, Nanoseconds duration, const LiveOptions
       for (std::int64_t k = 0; rate.tick(k) < duration && !stop(); ++k) {
         const Nanoseconds woke = clock.wait_until(rate.tick(k));
         latency.add(woke - rate.tick(k));
-        // A release that was passed over has no wake-up of its own.
+        // Leaves out releases that have passed by now: they have no wake-up of their own.
         k = std::max(k, rate.ticks_in(woke + Nanoseconds(1)) - 1);
       }
     });

@@ -1,4 +1,4 @@
-// One or two units fly a plant in real time, one thread each.
+// One or two units fly a plant in real time. Each unit has a thread, and so has the plant.
 //
 // The priorities are those of the firmware: the rate unit's is above the attitude unit's. Both run
 // on the unit's CPU. The plant's priority is the lowest, in case it has the same CPU.
@@ -23,36 +23,36 @@ namespace attest {
 
 // Where and how the threads run.
 struct LiveOptions {
-  int unit_cpu = 0, plant_cpu = 0;  // if equal: one-CPU mode, the units have priority
-  bool fifo = true;
-  Wait wait;
+  int unit_cpu = 0, plant_cpu = 0;  // may be equal
+  bool fifo = true;                 // SCHED_FIFO; false: the ordinary scheduler
+  Wait wait;                        // of the units
 };
 
 struct LiveProgress {
   Nanoseconds time{0};
-  std::uint64_t deadlines = 0, missed = 0;  // of all units, passed so far
+  std::uint64_t deadlines = 0, missed = 0;  // of all units, so far
 };
 
 struct LiveFlight {
-  LiveUnitRecord unit;  // that commands the motors
+  LiveUnitRecord unit;  // of the unit that commands the motors
   LivePlantRecord plant;
-  std::optional<LiveUnitRecord> attitude_unit;  // of a flight of the cascade
-  // All privileges of the process and of the unit's thread, and those that were refused to the
+  std::optional<LiveUnitRecord> attitude_unit;  // in a flight of the cascade
+  // All privileges of the process and of the thread of `unit`, and those that were refused to the
   // other threads.
   std::vector<RealtimePrivilege> privileges;
-  Nanoseconds wall{0};  // duration of the flight
+  Nanoseconds wall{0};  // from time 0 to the last tick of `unit`
 
   // The times of the flight, with which a simulated flight can repeat it.
   FlightTiming timing() const;
 };
 
-// Flies the case for its whole duration, or until `stop` is true. The case's times of the units'
-// ticks are not used: the real clock alone makes ticks late. AttitudeLoop::delay of the cascade is
-// used. A unit that the estimator triggers waits for the plant's thread, which publishes a sample
-// at each tick of the rate. Keeps the samples of the first `samples` ticks of each unit. `progress`
-// is called every tenth of a second. The plant's thread samples the battery and runs the land
-// detector, with the command that the motors follow. REQUIRES: a flight; fresh units, one or both
-// as the case says. Errors: those of fly().
+// Flies the case to its end, or until `stop` is true, the vehicle is lost, or a port has a fault.
+// The case's jitter and dropped ticks are not used: the real clock alone makes ticks late.
+// AttitudeLoop::delay of the cascade is used. A unit that the estimator triggers waits for the
+// plant's thread, which publishes a sample at each tick of the rate. Keeps the samples of the first
+// `samples` ticks of each unit. `progress` is called every tenth of a second. The plant's thread
+// samples the battery and runs the land detector, with the command that the motors follow.
+// REQUIRES: a flight; fresh units, one or both as the case says. Errors: those of fly().
 Result<LiveFlight> fly_live(const Case& the_case, const RunConfiguration& configuration,
                             const VehicleModel& vehicle_model, FlightUnits units,
                             const LiveOptions& options, std::size_t samples,

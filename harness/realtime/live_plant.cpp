@@ -47,8 +47,8 @@ void LivePlant::run() {
   if (record_.divergence) links_.stop.store(true, std::memory_order_relaxed);
 }
 
-// Wakes a unit that waits for the estimator when a new sample is in the state. Several samples that
-// came due together wake it once.
+// Writes the state. If it is a new sample of the estimator, wakes the unit that waits for samples.
+// Several samples that are due together wake it once.
 void LivePlant::publish(Nanoseconds now) {
   write_state(now, clock_.now());
   if (!plan_.estimator) return;
@@ -58,7 +58,7 @@ void LivePlant::publish(Nanoseconds now) {
   links_.published.release();
 }
 
-// A buffer that no unit reads does no harm.
+// Without an attitude unit, its buffer is written and never read.
 void LivePlant::write_state(Nanoseconds now, Nanoseconds published) {
   links_.unit.states.write({now, task_.state(), published});
   links_.attitude_unit.states.write({now, task_.state(), published});

@@ -1,4 +1,4 @@
-// The plant on a clock: it is stepped as time passes.
+// Steps the plant on a clock, as time passes.
 #pragma once
 
 #include <cstddef>
@@ -19,9 +19,9 @@ namespace attest {
 struct LivePlantRecord {
   Histogram latency;
   std::uint64_t steps = 0;
-  std::uint64_t late_steps = 0;  // made together with a later step, whose time had come too
-  // For each tick of the unit: when the motors began to follow its command. Empty if a later
-  // command, or the end of the flight, came first.
+  std::uint64_t late_steps = 0;  // made together with a later step, which was due too
+  // For each tick of the unit that commands the motors: when the motors began to follow its
+  // command. Empty if a later command, or the end of the flight, came first.
   std::vector<std::optional<Nanoseconds>> commanded;
   std::optional<Divergence> divergence;
   Usage usage;
@@ -30,10 +30,10 @@ struct LivePlantRecord {
 struct LivePlantPlan {
   Rate physics;
   Nanoseconds duration{0};
-  std::size_t ticks = 0;                   // of the unit, at most
+  std::size_t ticks = 0;  // the most that the unit that commands the motors can have
   std::vector<Nanoseconds> battery_times;  // of the battery's samples; empty: no battery
-  std::optional<Rate> estimator;           // whose samples trigger the unit
-  // The detector of a flight of the cascade with a floor, and the times of its samples.
+  std::optional<Rate> estimator;           // set if its samples trigger the unit
+  // In the cascade with a floor: the detector, and the times of its samples.
   std::optional<LandDetector> land_detector;
   std::vector<Nanoseconds> landing_times;
 };
@@ -43,8 +43,8 @@ class LivePlant {
   // Publishes the state at time 0. Allocates here and never later.
   LivePlant(PlantTask& task, LivePlantPlan plan, Clock& clock, Links& links);
 
-  // Runs until `duration`, Links::stop, or the loss of the vehicle. Call once. The estimator's
-  // sample k is due at rate.tick(k), and is published with the first state that is not earlier.
+  // Runs until LivePlantPlan::duration, Links::stop, or the loss of the vehicle. Call once. The
+  // estimator's sample k is the first state at or after estimator.tick(k).
   void run();
 
   // After run().
@@ -63,13 +63,13 @@ class LivePlant {
   LivePlantPlan plan_;
   Clock& clock_;
   Links& links_;
-  std::size_t disturbed_ = 0;
-  std::size_t batteries_ = 0;   // samples taken
-  std::size_t landings_ = 0;    // of the land detector
-  std::int64_t estimates_ = 0;  // samples published
+  std::size_t disturbed_ = 0;   // disturbances so far
+  std::size_t batteries_ = 0;   // samples of the battery so far
+  std::size_t landings_ = 0;    // samples of the land detector so far
+  std::int64_t estimates_ = 0;  // samples of the estimator that were due so far
   float throttle_ = 0;          // of the command that the motors follow
   bool armed_ = false;
-  std::optional<LiveCommand> pending_;  // read by a step whose time is before the command's
+  std::optional<LiveCommand> pending_;  // made after the time of the step that read it
   LivePlantRecord record_;
 };
 

@@ -12,23 +12,23 @@ namespace attest {
 
 struct LiveTick {
   std::int64_t release_number = 0;
-  Nanoseconds release{0};     // k periods; of a triggered unit: when the sample was published
+  Nanoseconds release{0};     // release_number periods; if triggered: publication of the sample
   Nanoseconds deadline{0};    // one period after the release
-  Nanoseconds start{0};       // when the thread began to run for it
-  Nanoseconds sampled{0};     // time of the plant's state that it was given; -1: before any
-  Nanoseconds begins{0};      // its timestamp
-  Nanoseconds finish{0};      // when its commands were written
+  Nanoseconds start{0};       // when the thread woke up for this tick
+  Nanoseconds sampled{0};     // time of the plant's state that the unit got; -1: it has got none
+  Nanoseconds begins{0};      // when the inputs were taken; the unit's timestamp
+  Nanoseconds finish{0};      // when the unit's outputs were sent
   Nanoseconds elapsed{0};     // of the unit's step and the mixer, on the clock
-  Nanoseconds cpu{0};         // of that, CPU time
+  Nanoseconds cpu{0};         // CPU time of the unit's step and the mixer
   bool waited = false;        // the step gave up the CPU by itself: it slept, or waited for a lock
-  std::uint32_t skipped = 0;  // releases after this one that were passed over
+  std::uint32_t skipped = 0;  // releases skipped between this tick and the next
 
   Nanoseconds latency() const { return start - release; }
   Nanoseconds response() const { return finish - release; }
 
-  // The CPU time of the step, so that a preemption does not count. A step that waits by itself
-  // counts with all its elapsed time, because its waiting delays the response like computing. The
-  // two clocks are read one after the other, so `cpu` can be slightly above `elapsed`.
+  // The CPU time of the step, so that preemption does not count. For a step that waits by itself it
+  // is the elapsed time, because such waiting is the port's own delay. The two clocks are read one
+  // after the other, so `cpu` can be slightly above `elapsed`.
   Nanoseconds execution() const { return waited ? elapsed : std::min(cpu, elapsed); }
 };
 

@@ -24,8 +24,8 @@ const Rate& own_rate(const UnitTask& task, const LoopRate& rate) {
 DelayLine<LiveRatesSetpoint> rates_setpoints(const Case& the_case, const LoopRate& rate) {
   if (!the_case.attitude_loop) return {Nanoseconds(0), 0};
   const Nanoseconds delay = the_case.attitude_loop->delay.on(rate.unit);
-  // After a late tick of the attitude unit the next tick follows at once. So the unit may make more
-  // setpoints within the delay than the delay has periods.
+  // After a late tick of the attitude unit the next tick follows at once. So the attitude unit may
+  // make more setpoints within the delay than the delay has periods.
   return {delay, static_cast<std::size_t>(2 * rate.attitude_unit->ticks_in(delay)) + 2};
 }
 
@@ -77,7 +77,7 @@ void LiveUnit::run_on_releases() {
     take_sample();
     const Nanoseconds finish = tick({k, rate_.tick(k), rate_.tick(k + 1), woke});
     if (record_.fault) return;
-    // Of the releases that have passed meanwhile the last is due now.
+    // If several releases have passed since, the last of them is used.
     const std::int64_t last_passed = rate_.ticks_in(finish + Nanoseconds(1)) - 1;
     const std::int64_t next = std::max(k + 1, std::min(last_passed, deadlines_));
     count_skipped(k, next);
@@ -87,9 +87,9 @@ void LiveUnit::run_on_releases() {
 
 void LiveUnit::run_on_estimates() {
   constexpr auto look_for_the_end_every = std::chrono::milliseconds(10);
-  std::int64_t last = -1;  // sample that was used
+  std::int64_t last = -1;  // the last sample that was used
   while (last + 1 < deadlines_ && !links_.stop.load(std::memory_order_relaxed)) {
-    // Read before the wait: if it is set and the wait finds no sample, the last one was taken.
+    // Read before the wait: if it is set and the wait then finds no sample, none will come.
     const bool is_over = links_.all_published.load(std::memory_order_acquire);
     const bool published = links_.published.try_acquire_for(look_for_the_end_every);
     const bool is_new = published && take_sample();
@@ -167,8 +167,8 @@ bool LiveUnit::take_sample() {
   return sampled_ = true;
 }
 
-// A buffer has one reader, so only the unit that commands the motors reads those that both units
-// could read.
+// A buffer has one reader. So only the unit that commands the motors reads the buffers that are not
+// in UnitLinks.
 void LiveUnit::take_messages() {
   if (const LandDetected* landed = own_.landed.read()) landed_ = *landed;
   if (!commands_motors_) return;

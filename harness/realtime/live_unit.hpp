@@ -1,9 +1,9 @@
-// A unit's task on a clock: it waits for its releases, and records each tick.
+// Runs a unit's task on a clock: waits for its releases, and records each tick.
 //
-// The controller and the rate unit command the motors. The attitude unit sends the rates setpoint
-// to the rate unit. The rate unit receives it at its first tick that begins at least
-// AttitudeLoop::delay later. If a newer message arrives before that tick, the older one is lost,
-// same as in a topic of queue length 1.
+// The controller or the rate unit commands the motors. The attitude unit sends the rates setpoint
+// to the rate unit, which receives it at the first tick that begins at least AttitudeLoop::delay
+// later. If a newer setpoint arrives before that tick, the older one is lost, same as in a topic of
+// queue length 1.
 #pragma once
 
 #include <atomic>
@@ -31,28 +31,28 @@ struct LiveUnitRecord {
   Histogram age;               // of the sample used, at the finish of the step
   std::uint64_t late = 0;      // responses longer than the period
   std::uint64_t skipped = 0;   // skipped releases; all misses are late + skipped
-  Nanoseconds longest_gap{0};  // between the starts of two ticks
-  Usage usage;                 // after the first tick, which sets the parameters
+  Nanoseconds longest_gap{0};  // between LiveTick::begins of a tick and of the next
+  Usage usage;                 // without the first tick, which sets the parameters
   std::vector<LiveTick> ticks;
-  std::vector<Sample> samples;  // of the first ticks
-  std::vector<ParameterChange> changes;
-  // For each tick of the attitude unit: the start of the tick of the rate unit that received its
-  // setpoint. Empty if no tick received it.
+  std::vector<Sample> samples;           // of the first ticks
+  std::vector<ParameterChange> changes;  // of the same ticks
+  // In the rate unit's record, for each tick of the attitude unit: LiveTick::begins of the tick of
+  // the rate unit that received the setpoint. Empty if no tick received it.
   std::vector<std::optional<Nanoseconds>> setpoints_received;
   std::optional<PortFault> fault;
 };
 
-// One release per period. If releases come during a step, the next tick starts as soon as that step
-// ends. It uses the last of these releases; the others are skipped.
+// There is one release per period. If releases come during a step, the next tick starts as soon as
+// that step ends. It uses the last of these releases; the others are skipped.
 //
-// A unit that the estimator triggers waits for a sample instead. Its release is the publication. If
-// several samples come during a step, the newest is used and the others are skipped.
+// For a unit that the estimator triggers, a release is the publication of a sample. If several
+// samples come during a step, the newest is used and the others are skipped.
 class LiveUnit {
  public:
-  // Records all ticks, and the samples of the first `samples`. The constructor allocates that
-  // memory and touches every page, so that recording them in run() causes no page fault. Parameter
-  // changes have no reserved memory: a tick that records some may allocate. `the_case` is what a
-  // flight scripts for the task's module (Case::of_module). REQUIRES: a flight; all outlive this.
+  // Records all ticks, and the samples of the first `samples` ticks. The constructor allocates the
+  // memory for both and touches every page, so that run() records them without a page fault.
+  // Parameter changes have no reserved memory: a tick that records some may allocate. `the_case` is
+  // Case::of_module() of a flight, for the task's module. REQUIRES: all arguments outlive this.
   LiveUnit(const Case& the_case, const LoopRate& rate, UnitTask& task, Clock& clock, Links& links,
            std::size_t samples);
 
@@ -60,7 +60,7 @@ class LiveUnit {
   // Call once.
   void run();
 
-  // For other threads, while it runs.
+  // Other threads may call these while run() runs.
   std::uint64_t releases_passed() const { return passed_.load(std::memory_order_relaxed); }
   std::uint64_t missed() const { return missed_.load(std::memory_order_relaxed); }
 
@@ -73,9 +73,9 @@ class LiveUnit {
  private:
   void run_on_releases();
   void run_on_estimates();
-  // Runs the tick of a release; `due` has the values known before the step. Returns its finish.
+  // Runs the tick of a release; `due` has the values known before the step. Returns the finish.
   Nanoseconds tick(LiveTick due);
-  // Counts the releases after k and before `next`, which is the next that is used.
+  // Counts the releases after k and before `next` as skipped. `next` is the next release in use.
   void count_skipped(std::int64_t k, std::int64_t next);
   bool take_sample();
   void take_messages();

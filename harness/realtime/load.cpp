@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 3> names = {"cpu", "cache", "io"};
   while (true) value = value * 1.0000001 + 1e-9;
 }
 
-// Walks through more memory than a cache holds, a line at a time.
+// Walks through more memory than most caches hold, a line at a time.
 [[noreturn]] void use_cache() {
   constexpr std::size_t bytes = 64u << 20, line = 64;
   std::vector<unsigned char> memory(bytes);
@@ -56,11 +56,11 @@ constexpr std::array<std::string_view, 3> names = {"cpu", "cache", "io"};
   use_cpu();
 }
 
-// Empty when it is not installed, or ends at once and makes no load.
+// Empty when stress-ng is not installed, or ends at once.
 std::optional<Process> stress_ng(LoadKind kind, int workers) {
   constexpr double refuses_within_s = 0.2;
   if (!is_installed("stress-ng")) return std::nullopt;
-  // Its files of --io and --hdd go to the folder for temporary files.
+  // Without --temp-path, stress-ng writes temporary files to the current folder.
   auto process = start_program({"stress-ng", fmt::format("--{}", name_of(kind)),
                                 fmt::to_string(workers), "--temp-path", "/tmp"});
   if (!process || process->ends_within(refuses_within_s)) return std::nullopt;

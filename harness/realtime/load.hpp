@@ -14,9 +14,9 @@ enum class LoadKind { cpu, cache, io };
 std::string_view name_of(LoadKind kind);
 Result<LoadKind> parse_load_kind(std::string_view name);
 
-// Runs from construction to destruction: `workers` of stress-ng where it is installed and does not
-// end at once, else processes of our own. They run on all CPUs at ordinary priority, and die with
-// this process. Destruction takes a few seconds at most.
+// Runs `workers` from construction to destruction. They are those of stress-ng if it is installed
+// and does not end at once, or else processes of attest. They may run on all CPUs, have ordinary
+// priority, and die with this process. Destruction takes a few seconds at most.
 class Load {
  public:
   Load(LoadKind kind, int workers);

@@ -1,4 +1,4 @@
-// The clock of a real-time loop: sleeps to absolute times, so that latencies do not add up.
+// The clock of a real-time loop. It sleeps until absolute times, so that latencies do not add up.
 #pragma once
 
 #include "harness/schedule/clock.hpp"
@@ -11,7 +11,7 @@ struct Wait {
   Nanoseconds spin{0};
 };
 
-// CLOCK_MONOTONIC. One per thread; no allocation, no lock.
+// Uses CLOCK_MONOTONIC. One per thread; no allocation, no lock.
 class Pacer final : public Clock {
  public:
   // `origin` is now_monotonic() at time 0.

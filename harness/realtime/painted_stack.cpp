@@ -22,7 +22,7 @@ struct Call {
   void* argument;
 };
 
-// makecontext() passes integers only.
+// makecontext() passes ints only, so the address of the Call arrives in two halves.
 void enter(unsigned high, unsigned low) {
   const auto address = (static_cast<std::uintptr_t>(high) << 32) | low;
   const Call& call = *reinterpret_cast<const Call*>(address);

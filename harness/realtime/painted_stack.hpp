@@ -1,5 +1,5 @@
-// Measures how much stack a function uses. The function runs on its own stack, which is filled with
-// a pattern; the deepest changed byte marks the use.
+// Measures how much stack a function uses. The function runs on a separate stack, which is filled
+// with a pattern. The deepest byte that has changed shows the use.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace attest {
 
-// As large as the stack of a main thread (8 MiB), with a guard page below: a function that needs
-// more dies of SIGSEGV, same as there. One thread at a time.
+// Is as large as the stack of a main thread (8 MiB), with a guard page below. A function that needs
+// more gets SIGSEGV, same as in a main thread. For one thread at a time.
 class PaintedStack {
  public:
   static Result<PaintedStack> make();  // errors: no memory
@@ -19,16 +19,17 @@ class PaintedStack {
   PaintedStack& operator=(PaintedStack&&) = delete;
   ~PaintedStack();
 
-  // Calls `work` on this stack and returns when it has returned. It must not throw. The modes of
-  // the floating point unit are restored afterwards.
+  // Calls `work` on this stack, and restores the modes of the floating point unit afterwards.
+  // REQUIRES: `work` does not throw.
   template <typename Work>
   void run(Work&& work) {
     using Function = std::remove_reference_t<Work>;
     call([](void* function) { (*static_cast<Function*>(function))(); }, &work);
   }
 
-  // The most bytes that one call of run() has used since the last repaint(), without those of run()
-  // itself. Bytes that `work` reserves and never writes do not count below the deepest one written.
+  // The largest use of a call of run() since the last repaint() [bytes], without the use of run()
+  // itself. It ends at the deepest byte written, so stack that `work` reserves below it and never
+  // writes does not count.
   std::size_t used() const;
 
   void repaint();
@@ -36,7 +37,7 @@ class PaintedStack {
  private:
   explicit PaintedStack(unsigned char* memory) : memory_(memory) {}
   void call(void (*function)(void*), void* argument);
-  std::size_t lowest_change() const;  // offset from the bottom
+  std::size_t lowest_change() const;  // offset from the bottom of the stack
 
   unsigned char* memory_;  // the guard page, and the stack above it
   std::size_t own_ = 0;    // bytes that run() uses itself

@@ -22,13 +22,14 @@ RealtimePrivilege right(std::string name, bool got) {
 }  // namespace
 
 ProcessPrivileges::ProcessPrivileges() {
-  // Where locked memory is limited, MCL_FUTURE would make later allocations fail.
+  // If locked memory is limited, MCL_FUTURE would make allocations beyond the limit fail.
   rlimit limit{};
   ::getrlimit(RLIMIT_MEMLOCK, &limit);
   const bool unlimited = limit.rlim_cur == RLIM_INFINITY || ::geteuid() == 0;
   const int pages = unlimited ? MCL_CURRENT | MCL_FUTURE : MCL_CURRENT;
   privileges_.push_back(right("mlockall", ::mlockall(pages) == 0));
-  // The kernel keeps this limit as long as the file is open (Documentation/power/pm_qos_interface).
+  // The kernel limits the latency of CPUs to the number in this file as long as the file is open
+  // (Documentation/power/pm_qos_interface).
   const std::int32_t no_latency_us = 0;
   latency_ = ::open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
   const bool kept = latency_ >= 0 && ::write(latency_, &no_latency_us, sizeof no_latency_us) ==
@@ -54,7 +55,7 @@ std::vector<RealtimePrivilege> claim(const ThreadWish& wish) {
     privileges.push_back(right(fmt::format("SCHED_FIFO {}", wish.fifo_priority),
                                ::sched_setscheduler(0, SCHED_FIFO, &parameters) == 0));
   }
-  // By default, an ordinary thread's timers may be 50 us late to save power.
+  // By default, the timers of an ordinary thread may be 50 us late, to save power.
   privileges.push_back(right("timer slack 1 ns", ::prctl(PR_SET_TIMERSLACK, 1ul) == 0));
   return privileges;
 }

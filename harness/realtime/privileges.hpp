@@ -13,8 +13,8 @@ struct RealtimePrivilege {
   std::string why;  // reason of a refusal: "Operation not permitted"
 };
 
-// For the process while this lives: memory that stays in RAM, and CPUs that do not sleep deeply
-// (/dev/cpu_dma_latency at 0 us).
+// The privileges of the process, while this object exists: its memory stays in RAM, and CPUs do not
+// sleep deeply (/dev/cpu_dma_latency at 0 us).
 class ProcessPrivileges {
  public:
   ProcessPrivileges();
@@ -34,7 +34,7 @@ struct ThreadWish {
   int fifo_priority = 0;  // 0: the ordinary scheduler
 };
 
-// For the calling thread: CPU, scheduler, and timers without slack.
+// Claims for the calling thread: its CPU, its scheduler, and a timer slack of 1 ns.
 std::vector<RealtimePrivilege> claim(const ThreadWish& wish);
 
 // The CPUs that this process may use, ascending; at least one.

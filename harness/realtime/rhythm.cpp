@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t ticks_max = 1u << 17, events_max = 1u << 11;
 constexpr std::size_t fewest_blocks = 5;
-constexpr double complete = 0.8;  // the part of the blocks that have their event
+constexpr double complete = 0.8;  // the least part of the blocks that have an event at one place
 constexpr double false_alarms = 1e-4;
 
 // The examined ticks and events, cut so that the search takes a quarter of a second at most.
@@ -35,7 +35,7 @@ std::size_t events_wanted(std::size_t blocks) {
   return static_cast<std::size_t>(std::ceil(complete * static_cast<double>(blocks)));
 }
 
-// The upper bound of P(K >= hits) in rhythm.hpp. 1 if `hits` is below the mean plus one.
+// The upper bound of P(K >= hits) in rhythm.hpp; 1 if `hits` is below the mean of K plus one.
 double tail(const Examined& sample, std::size_t every, std::size_t hits) {
   const std::size_t end = sample.ticks / every * every;
   std::size_t events = 0, blocks = 0, last_block = sample.ticks;
@@ -57,7 +57,7 @@ class Hits {
  public:
   explicit Hits(std::size_t longest) : counts_(longest) {}
 
-  // The place within a block that has most events, and their number; of whole blocks only.
+  // The place within a block that has the most events, and their number. Counts whole blocks only.
   std::pair<std::size_t, std::size_t> most(const Examined& sample, std::size_t every) {
     const std::size_t end = sample.ticks / every * every;
     std::size_t first = 0, count = 0;
@@ -74,7 +74,7 @@ class Hits {
   std::vector<std::size_t> counts_;
 };
 
-// Of all pairs (every, first) with enough blocks.
+// The number of pairs (every, p) of rhythm.hpp, with `every` from 2 to `longest`.
 double pairs_tried(std::size_t longest) {
   const auto n = static_cast<double>(longest);
   return n * (n + 1) / 2 - 1;
@@ -86,7 +86,7 @@ std::optional<Rhythm> find_rhythm(const std::vector<std::size_t>& events, std::s
   const Examined sample = examined_of(events, ticks);
   const std::size_t longest = sample.ticks / fewest_blocks;
   if (longest < 2 || sample.events.empty()) return std::nullopt;
-  // With a shorter period there are too few events for its blocks.
+  // With a shorter period, there are not enough events for 80% of the blocks.
   const auto shortest = static_cast<std::size_t>(complete * static_cast<double>(sample.ticks) /
                                                  static_cast<double>(sample.events.size() + 1));
   Hits hits(longest + 1);

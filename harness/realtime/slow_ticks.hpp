@@ -1,5 +1,5 @@
-// Steps that took much longer than the others, and whether they come in a rhythm. Without the
-// rhythm, a port that does its housekeeping in every hundredth step looks like a busy machine.
+// Finds the steps that took much longer than the others, and their rhythm. A rhythm shows that not
+// a busy machine but the port is the cause, for example by housekeeping in every hundredth step.
 #pragma once
 
 #include <cstddef>
@@ -17,10 +17,10 @@ struct SlowTick {
   Nanoseconds execution{0}, elapsed{0};  // as in LiveTick
 };
 
-// Slow by execution time: a step that was preempted is not slow.
+// Steps that are slow by execution time, in which preemption does not count.
 struct SlowTicks {
   Nanoseconds threshold{0};      // the larger of 8 x median and median + 20 us
-  std::size_t count = 0;         // slower than that
+  std::size_t count = 0;         // steps slower than the threshold
   std::vector<SlowTick> worst;   // the slowest eight, by execution time
   std::optional<Rhythm> rhythm;  // in numbers of steps
 };

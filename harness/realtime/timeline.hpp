@@ -1,5 +1,5 @@
-// Shows when in a flight steps were late or long: the flight is divided into at most 400 parts, and
-// each part has the figures of its ticks.
+// Shows when in a flight steps were late or long. The flight is divided into parts, and each part
+// has the figures of its ticks.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +18,8 @@ struct TimelinePart {
   std::uint64_t ticks = 0;
   Nanoseconds latency{0}, execution{0}, response{0};  // the longest
   std::uint64_t late = 0, skipped = 0;                // as in DeadlineMisses
-  std::uint64_t overruns = 0;                         // steps above the limit
-  std::uint64_t late_starts = 0;                      // latencies above the limit
+  std::uint64_t overruns = 0;                         // execution above its limit
+  std::uint64_t late_starts = 0;                      // latency above its limit
 };
 
 struct TimelineTick {
@@ -28,7 +28,7 @@ struct TimelineTick {
 };
 
 struct FlightTimeline {
-  std::vector<TimelinePart> parts;  // of equal duration; those without a tick are left out
+  std::vector<TimelinePart> parts;  // of equal duration; parts without a tick are left out
   std::vector<TimelineTick> worst;  // the eight longest responses, longest first
 };
 

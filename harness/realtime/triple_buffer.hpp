@@ -1,9 +1,8 @@
-// The last value that one thread wrote, for one other thread: a topic of queue length 1 between two
-// CPUs. Wait-free on both sides: neither ever waits for the other, takes a lock or allocates.
+// Passes the last value that one thread wrote to one other thread, like a topic of queue length 1.
+// Wait-free: neither thread ever waits for the other, takes a lock or allocates.
 //
-// Three copies: the writer fills one, the reader looks at one, and the third is handed over by an
-// atomic exchange of its index. (H. Simpson's classic mechanism has four slots; with an atomic
-// exchange, three are enough.)
+// There are three slots: the writer fills one, the reader looks at one, and the third is handed
+// over by an atomic exchange of its index.
 #pragma once
 
 #include <array>
@@ -23,8 +22,8 @@ class TripleBuffer {
     writing_ = handed & index;
   }
 
-  // Reader only: the last value written, or null when it was read before. Valid until the next
-  // call.
+  // Reader only: the last value written; null if no value was written since the last call. Valid
+  // until the next call.
   const T* read() {
     if ((shared_.load(std::memory_order_relaxed) & fresh) == 0) return nullptr;
     const std::uint8_t handed = shared_.exchange(reading_, std::memory_order_acq_rel);
@@ -34,7 +33,7 @@ class TripleBuffer {
 
  private:
   static constexpr std::uint8_t index = 3, fresh = 4;
-  static constexpr std::size_t line_bytes = 64;  // no two threads write to one cache line
+  static constexpr std::size_t line_bytes = 64;  // a cache line; two threads never write to one
 
   struct alignas(line_bytes) Slot {
     T value{};

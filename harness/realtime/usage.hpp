@@ -9,10 +9,10 @@ namespace attest {
 
 struct Usage {
   Nanoseconds cpu{0};            // user and system
-  std::int64_t allocations = 0;  // calls of malloc and related functions
+  std::int64_t allocations = 0;  // thread_allocations()
   std::int64_t page_faults = 0;
   std::int64_t yields = 0;       // context switches because it waited
-  std::int64_t preemptions = 0;  // context switches because another thread had to run
+  std::int64_t preemptions = 0;  // context switches because the kernel ran another thread
 
   friend Usage operator-(const Usage& end, const Usage& begin) {
     return {end.cpu - begin.cpu, end.allocations - begin.allocations,
@@ -23,7 +23,7 @@ struct Usage {
 
 // Of the calling thread so far.
 Usage thread_usage();
-Nanoseconds thread_cpu_time();  // resolves nanoseconds; Usage::cpu resolves microseconds
+Nanoseconds thread_cpu_time();  // in steps of nanoseconds; Usage::cpu has microseconds
 std::int64_t thread_yields();   // Usage::yields alone
 
 }  // namespace attest

@@ -1,5 +1,5 @@
-// How attest uses Boost.Math: in double, so that the results are the same where long double is of
-// another size, and without exceptions for values that overflow.
+// The policy of Boost.Math in sweeps. It computes in double, so that results do not depend on the
+// size of long double, and throws no exception on overflow.
 #pragma once
 
 #include <boost/math/policies/policy.hpp>

@@ -13,8 +13,8 @@ double sign_test_of(const SweepFile& sweep, std::uint64_t above, std::uint64_t b
   return sweep.stop_when_decided ? sequential_sign_test(above, below) : sign_test(above, below);
 }
 
-// Bonferroni: all tests together, one for each metric and one for lost flights, are wrong with at
-// most the probability 1 - confidence.
+// Bonferroni: there is a test for each metric, and one for lost flights. If port and reference fly
+// equally, the probability that any of these tests finds a difference is at most 1 - confidence.
 double significance(const SweepFile& sweep, std::size_t metrics) {
   return (1 - sweep.confidence) / static_cast<double>(metrics + 1);
 }
@@ -27,7 +27,7 @@ double median_size(std::vector<double> values) {
   return empirical_quantile(values, 0.5);
 }
 
-// The sign test ignores differences within the tie: those of another order of arithmetic.
+// The sign test ignores differences within the tie, such as those by another order of arithmetic.
 MetricDifference difference_of(const std::string& name, const std::vector<double>& reference,
                                const std::vector<double>& port, const SweepFile& sweep) {
   MetricDifference difference;

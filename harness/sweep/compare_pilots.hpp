@@ -1,4 +1,4 @@
-// Whether a port flies like the reference: paired differences on the same samples.
+// Decides whether a port flies like the reference, by paired differences on the same samples.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,9 @@
 
 namespace attest {
 
-// The smallest number of pairs of flights that is significant if all differ in the same direction.
-// With fewer pairs, no test can find a difference.
+// The smallest number of pairs of flights that is significant if all pairs differ in the same
+// direction. With fewer pairs, no sign test can find a difference. `metrics`: the number
+// of metrics.
 std::uint64_t pairs_to_compare(const SweepFile& sweep, std::size_t metrics);
 
 PortDifference compare_pilots(const SweepFile& sweep, const SampleColumns& columns,

@@ -60,7 +60,8 @@ Result<void> check_correlation(const Design& design) {
 
 std::uint64_t permuted(std::uint64_t index, std::uint64_t count, std::uint64_t key,
                        const SampleStream& stream) {
-  // The domain is a x b, hardly larger than count. A result outside of count is permuted again.
+  // The cipher permutes 0 to a * b - 1, which is hardly more than `count`. A result of `count` or
+  // more is permuted again.
   auto a = static_cast<std::uint64_t>(std::ceil(std::sqrt(static_cast<double>(count))));
   while (a * a < count) ++a;
   const std::uint64_t b = (count + a - 1) / a;
@@ -86,7 +87,7 @@ struct DesignPoints::Impl {
     return open_uniform(stream.bits(Purpose::point, index, dimension));
   }
 
-  // The first point of the sequence is 0, which Boost leaves out.
+  // Point 0 of a Sobol sequence is the origin. Boost leaves it out and begins with point 1.
   std::vector<double> sobol_point(std::uint64_t index) {
     std::vector<double> point;
     if (index > 0) sobol.front().seed(index - 1);
@@ -97,8 +98,8 @@ struct DesignPoints::Impl {
     return point;
   }
 
-  // Random points. With few blocks, the points A and B of a Sobol sequence would have the same
-  // leading binary digits, and a Sobol index that is 1 could be estimated as 0.
+  // A and B are random points, not points of a Sobol sequence. With few blocks, those would have
+  // the same leading binary digits, and a Sobol index that is 1 could be estimated as 0.
   std::vector<double> saltelli_point(std::uint64_t index) const {
     const std::uint64_t block = index / design.block(), place = index % design.block();
     std::vector<double> point;
@@ -133,7 +134,6 @@ struct DesignPoints::Impl {
     return point;
   }
 
-  // Gaussian copula: the normal scores of the point, multiplied by the Cholesky factor.
   void correlate(std::vector<double>& point) const {
     const Eigen::Index size = factor.rows();
     Eigen::VectorXd scores(size);

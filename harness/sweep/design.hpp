@@ -1,7 +1,8 @@
-// Where the samples of a sweep lie in the unit cube, one dimension for each dispersion.
+// The points of a sweep's samples in the unit cube, which has a dimension for each dispersion
+// except seeds.
 //
-// The point of a sample depends on the seed and the index only, so each machine can make the points
-// of any samples.
+// The point of a sample depends on the design, the seed and the index of the sample only. So each
+// machine can make the points of any samples.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +18,7 @@
 namespace attest {
 
 enum class DesignKind {
-  monte_carlo,      // independent
+  monte_carlo,      // independent random points
   latin_hypercube,  // in each dimension one sample in each of `samples` strata of equal probability
   sobol,            // Joe and Kuo's direction numbers (2008), with a random digital shift
   grid,             // all combinations of levels, each in the middle of its stratum
@@ -31,19 +32,22 @@ struct Design {
   std::uint64_t samples = 0;
   std::size_t dimensions = 0;
   std::vector<std::uint64_t> levels;  // grid: of each dimension; their product is `samples`
-  // Of the dimensions' normal scores, row by row: Gaussian copula. Empty: independent.
+  // Gaussian copula: the correlation matrix of the dimensions' normal scores, row by row. Empty:
+  // the dimensions are independent.
   std::vector<double> correlation;
 
-  // A block of `saltelli` (Saltelli et al., Variance based sensitivity analysis of model output,
-  // 2010): two independent points A and B, and a mixed point for each dimension: it has the number
-  // of B in this dimension, and those of A in all others.
+  // The number of samples in a block of `saltelli` (Saltelli et al., Variance based sensitivity
+  // analysis of model output, 2010). A block has two independent points A and B, and then a mixed
+  // point for each dimension. A mixed point has the number of B in its dimension, and those of A in
+  // all others.
   std::uint64_t block() const { return dimensions + 2; }
-  // Whether requirements and tests use the sample. Of `saltelli` only A and B: the mixed points are
-  // not independent of them.
+  // Whether requirements and sign tests use the sample. They leave out the mixed points of
+  // `saltelli`, which are not independent of A and B.
   bool is_judged(std::uint64_t index) const {
     return kind != DesignKind::saltelli || index % block() < 2;
   }
-  // The sample whose seeds this sample has: itself, but A for the mixed points of `saltelli`.
+  // The sample whose drawn seeds this sample has. A mixed point of `saltelli` has those of A, any
+  // other sample has its own.
   std::uint64_t with_seeds(std::uint64_t index) const {
     return is_judged(index) ? index : index - index % block();
   }

@@ -31,8 +31,8 @@ constexpr std::array<std::pair<Kind, std::string_view>, 6> kind_names = {{
 double truncated_normal(const Distribution& of, double u) {
   const double below = normal_probability((of.low - of.mean) / of.deviation);
   const double above = normal_probability((of.mean - of.high) / of.deviation);
-  // Values beyond the median are computed from the upper tail, where probabilities have more
-  // digits.
+  // Above the median the value is computed from the probability of the upper tail, which is small
+  // and therefore has more digits.
   const double part = 1 - below - above;
   const double from_below = below + u * part;
   const double from_above = above + (1 - u) * part;

@@ -1,7 +1,8 @@
-// Ends a sweep when all its requirements are decided.
+// Finds the sample after which a sweep may end: all its requirements are decided, and with a port
+// there are enough samples for the sign tests.
 //
-// The samples are counted in their order, so a sweep ends at the same sample with any number of
-// jobs, and after a kill.
+// The samples are counted in the order of their indices, so a sweep ends at the same sample with
+// any number of jobs, and after a kill.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,7 @@ class EarlyStop {
   // REQUIRES: `sweep` and `columns` outlive this.
   EarlyStop(const SweepFile& sweep, const SampleColumns& columns);
 
-  // The next sample. REQUIRES: a row of these columns.
+  // Adds the next sample. REQUIRES: a row of these columns.
   void add(const SampleRow& row);
 
   // False if the sweep has no `stop_when_decided`.
@@ -26,9 +27,9 @@ class EarlyStop {
 
  private:
   const SweepFile& sweep_;
-  std::vector<std::size_t> metrics_;  // of each requirement
-  std::vector<std::uint64_t> held_;
-  std::uint64_t fewest_;  // samples, to compare the port with the reference
+  std::vector<std::size_t> metrics_;  // of each requirement: the index of its metric
+  std::vector<std::uint64_t> held_;   // of each requirement: the flights that hold it
+  std::uint64_t fewest_;              // samples that a comparison with the reference needs
   std::uint64_t count_ = 0;
 };
 

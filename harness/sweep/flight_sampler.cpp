@@ -14,9 +14,9 @@ namespace {
 
 using Document = DispersedKey::Document;
 
-// A seed of a case is an integer that every reader of TOML accepts.
+// Drawn seeds are below this, so that every reader of TOML accepts them as integers.
 constexpr std::uint64_t most_seed = 1ull << 31;
-// The ends of the probabilities that a design can reach.
+// The lowest and the highest number of a point (DesignPoints::at).
 constexpr double lowest_probability = 0x1p-53, highest_probability = 1 - 0x1p-53;
 
 bool is_dispersed(const SweepFile& sweep, Document document) {
@@ -65,7 +65,6 @@ std::string identity_of(const SweepFile& sweep, const NominalFlight& nominal) {
 
 using NamedNumber = std::pair<const char*, double>;
 
-// The lowest and the highest number that a design can draw.
 std::vector<NamedNumber> ends_of(const Distribution& distribution) {
   if (distribution.kind != Distribution::Kind::choice) {
     return {{"lowest", quantile(distribution, lowest_probability)},
@@ -177,7 +176,6 @@ Result<void> FlightSampler::apply(const std::string& what, SampledFlight& flight
   return {};
 }
 
-// While one number is at an end, the others are at their medians.
 Result<void> FlightSampler::check_ends() const {
   SampledFlight flight;
   for (const Dispersion& dispersion : sweep_.dispersions) {

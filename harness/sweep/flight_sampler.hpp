@@ -1,4 +1,4 @@
-// The samples of a sweep: the same flight with other numbers.
+// Makes the samples of a sweep: the same flight with other numbers.
 #pragma once
 
 #include <cstdint>
@@ -34,18 +34,18 @@ struct SampledFlight {
 
 class FlightSampler {
  public:
-  // Also checks the flight at the lowest and at the highest number of each distribution (the
-  // quantiles of 2^-53 and 1 - 2^-53), with the other numbers at their medians. Errors, with the
-  // line of the sweep file: those of bind_sweep(); a number that the case or the vehicle refuses.
+  // Also checks that case and vehicle accept the lowest and the highest number of each distribution
+  // (the quantiles of 2^-53 and 1 - 2^-53) while the other numbers are at their medians. Errors,
+  // with the line of the sweep file: those of bind_sweep(); a number that case or vehicle refuses.
   static Result<FlightSampler> make(SweepFile sweep, NominalFlight nominal);
 
   const SweepFile& sweep() const { return sweep_; }
   const NominalFlight& nominal() const { return nominal_; }
-  // Identifies the samples: SHA-256 of all that they depend on (sweep file, case, plant, vehicle,
-  // MJCF and number of samples). Flights with the same index and the same hash are the same.
+  // SHA-256 of all that the samples depend on (sweep file, case, plant, vehicle, MJCF and number of
+  // samples). Samples with the same index and the same hash are the same.
   const std::string& sha256() const { return sha256_; }
 
-  // Errors: the numbers together are impossible. The message names the sample and the number.
+  // Errors: case or vehicle refuses the numbers. The message names the sample and the numbers.
   Result<SampledFlight> sample(std::uint64_t index) const;
 
  private:

@@ -23,8 +23,8 @@
 namespace attest {
 namespace {
 
-// The number of samples of one piece of work: much more work than starting a port launcher, and
-// little enough that the last workers end at nearly the same time.
+// The samples of one piece of work. They take much longer than the start of a port launcher. They
+// are few enough that all workers end at nearly the same time.
 constexpr std::uint64_t samples_of_work = 32;
 
 struct SimulatedSample {
@@ -55,7 +55,7 @@ Result<SimulatedSample> simulate(const FlightSampler& sampler, const SampledFlig
   return simulated;
 }
 
-// Whether the port has NaN or infinity where the reference has finite outputs.
+// Whether the port has NaN or infinity in an output that is finite at all ticks of the reference.
 bool is_non_finite(const Flown& port, const Flown& reference) {
   if (first_non_finite(port.trace, reference.trace)) return true;
   return port.attitude_trace && reference.attitude_trace &&
@@ -103,7 +103,7 @@ class RowOrder {
   RowOrder(std::uint64_t next, const std::function<Result<void>(const std::string&)>& on_row)
       : next_(next), on_row_(on_row) {}
 
-  // False: an error, of on_row.
+  // Calls on_row for the rows whose turn has come. False if on_row had an error.
   bool take(std::uint64_t index, std::string row) {
     waiting_.emplace(index, std::move(row));
     for (auto first = waiting_.begin(); first != waiting_.end() && first->first == next_;
@@ -127,8 +127,8 @@ class RowOrder {
   std::optional<Error> error_;
 };
 
-// Flies the samples of one piece of work. The launcher starts before the reference flies them, so
-// that no process of the port has these flights in its memory.
+// Flies the samples of one piece of work. The port launcher starts before the reference flies them.
+// So no process of the port has the reference's flights of these samples in its memory.
 void fly_piece(const FlightSampler& sampler, const SampleRange& piece,
                const FlightsOptions& options, const Work::Done& done) {
   std::vector<Result<SampledFlight>> samples;
@@ -182,7 +182,7 @@ Result<void> fly_samples(const FlightSampler& sampler, const SampleRange& range,
                          const FlightsOptions& options,
                          const std::function<Result<void>(const std::string& row)>& on_row) {
   RowOrder order(range.begin, on_row);
-  std::map<std::size_t, Error> errors;  // by the place of the work
+  std::map<std::size_t, Error> errors;  // by the index of the piece of work
   PoolOptions pool;
   pool.processes = options.processes;
   pool.stop = [&] { return options.stop() || order.error().has_value(); };

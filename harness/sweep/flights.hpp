@@ -12,18 +12,17 @@ namespace attest {
 
 struct FlightsOptions {
   int processes = 1;
-  bool with_port = false;  // fly the port, too; the reference flies always
+  bool with_port = false;  // also fly the port; the reference always flies
   HostOptions host;        // of the port
-  std::function<bool()> stop = [] { return false; };  // true: end soon
+  std::function<bool()> stop = [] { return false; };  // true: end soon, rows may be missing
 };
 
-// The columns of the table for these flights.
 SampleColumns columns_of(const FlightSampler& sampler, bool with_port);
 
-// Flies the samples of the range, and calls `on_row` with the row of each, in the order of the
-// samples, in this process. A vehicle that is lost and a fault of the port are results. Errors, of
-// the first sample that has one: a sample that is impossible, a flight that cannot be set up, a
-// port that does not fly this case; or that of `on_row`.
+// Flies the samples of the range, and calls `on_row` in this process with the row of each, in the
+// order of the samples. A lost vehicle or a fault of the port is a result, not an error. Errors:
+// case or vehicle refuses a sample's numbers, a flight cannot be set up, the port does not support
+// the case; that of `on_row`. After an error or a stop, later samples have no rows.
 //
 // The port has a process for each of its flights, because it may keep state from one flight to the
 // next. Results must not depend on shards, jobs and kills.

@@ -20,8 +20,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are written as they are");
 
-// The functions of libhdf5 that are in use, loaded when the first file is written. Linked in, the
-// library would bring more than 30 others (curl, Kerberos) into each process.
+// The functions of libhdf5 that are in use, loaded when the first file is made. The library is not
+// linked, because it would bring more than 30 others (curl, Kerberos) into each process.
 struct Hdf5Library {
   DynamicLibrary library;
   decltype(&::H5open) open = nullptr;
@@ -48,8 +48,8 @@ struct Hdf5Library {
   decltype(&::H5Acreate2) create_attribute = nullptr;
   decltype(&::H5Awrite) write_attribute = nullptr;
   decltype(&::H5Aclose) close_attribute = nullptr;
-  // Valid after open().
-  const hid_t* float64 = nullptr;  // little-endian, as all of them
+  // The identifiers have their values after open(). The numbers are little-endian.
+  const hid_t* float64 = nullptr;
   const hid_t* uint64 = nullptr;
   const hid_t* uint8 = nullptr;
   const hid_t* text = nullptr;
@@ -79,7 +79,7 @@ bool find_all(const DynamicLibrary& in, Hdf5Library& hdf5) {
          in.find("H5Awrite", hdf5.write_attribute) && in.find("H5Aclose", hdf5.close_attribute);
 }
 
-// The variables behind H5T_IEEE_F64LE and others.
+// The variables behind macros such as H5T_IEEE_F64LE, which call H5open() at each use.
 bool find_identifiers(const DynamicLibrary& in, Hdf5Library& hdf5) {
   return in.find("H5T_IEEE_F64LE_g", hdf5.float64) && in.find("H5T_STD_U64LE_g", hdf5.uint64) &&
          in.find("H5T_STD_U8LE_g", hdf5.uint8) && in.find("H5T_C_S1_g", hdf5.text) &&
@@ -96,18 +96,17 @@ Result<Hdf5Library> load_hdf5() {
   if (!find_all(*library, hdf5) || !find_identifiers(*library, hdf5) || hdf5.open() < 0) {
     return fail(fmt::format("{} has not all functions of HDF5 1.10", hdf5_soname));
   }
-  // By default libhdf5 prints its errors. It must not, because attest reports them.
+  // By default libhdf5 prints its errors; attest reports them instead.
   hdf5.set_error_printer(H5E_DEFAULT, nullptr, nullptr);
   return hdf5;
 }
 
-// Loaded once, and until the process ends.
 const Result<Hdf5Library>& loaded_hdf5() {
   static const Result<Hdf5Library> hdf5 = load_hdf5();
   return hdf5;
 }
 
-// An object of the library; closed at the end. Below 0: it could not be made.
+// Owns an object of the library. An id below 0: the object could not be made.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -127,7 +126,7 @@ class Handle {
 
 using Attributes = std::vector<std::pair<std::string, std::string>>;
 
-// A file in memory. Remembers whether a call has failed.
+// An HDF5 file in memory. bytes() is empty if the file could not be made.
 class Hdf5File {
  public:
   explicit Hdf5File(const Hdf5Library& hdf5)
@@ -153,7 +152,6 @@ class Hdf5File {
   }
   void describe(const Attributes& attributes) { describe(file_.get(), attributes); }
 
-  // Empty: a call has failed.
   std::string bytes() {
     note(hdf5_.flush_file(file_.get(), H5F_SCOPE_LOCAL) >= 0);
     const ssize_t size = hdf5_.get_file_image(file_.get(), nullptr, 0);
@@ -191,7 +189,7 @@ class Hdf5File {
   bool is_good_ = true;
 };
 
-// All outcomes that a flight can have; the place of a name is its number.
+// The names of the enumeration of outcomes, each at the index that is its number.
 std::vector<std::string> outcome_names() {
   std::vector<std::string> names = {outcome_done, outcome_diverged};
   for (int i = 0; i < verdict_count; ++i) names.emplace_back(name_of(static_cast<Verdict>(i)));

@@ -44,7 +44,7 @@ std::string first_difference(const SweepIdentity& found, const SweepIdentity& ex
   return "";
 }
 
-// The identity file, and what a kill may have left of it, do not count.
+// Ignores the identity file, and temporary files of it that a killed process has left.
 bool has_other_files(const fs::path& folder) {
   std::error_code failed;
   for (fs::directory_iterator it(folder, failed), end; it != end && !failed; it.increment(failed)) {
@@ -85,7 +85,8 @@ Result<void> claim_folder(const fs::path& folder, const SweepIdentity& identity)
   std::error_code failed;
   fs::create_directories(folder, failed);
   if (failed) return fail_at(folder.string(), "cannot be made: " + failed.message());
-  // Before the look at the file: another attempt at the same shard may be writing it now.
+  // Checked before the identity file, because another attempt at the same shard may write that file
+  // and then others between the two checks.
   const bool has_others = has_other_files(folder);
   if (fs::exists(folder / identity_file, failed)) {
     const auto found = read_identity(folder);

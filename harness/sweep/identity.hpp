@@ -1,4 +1,4 @@
-// To which sweep the results in a folder belong.
+// The identity of the sweep whose results are in a folder.
 #pragma once
 
 #include <filesystem>
@@ -25,12 +25,13 @@ std::string identity_text(const SweepIdentity& identity);  // the content of the
 // Errors: no such file, or another kind of file.
 Result<SweepIdentity> read_identity(const std::filesystem::path& folder);
 
-// Makes the folder and the file, or checks that the folder is of this sweep. Errors: a folder with
-// other files; the results of another sweep, with the first difference.
+// Makes the folder and the identity file. If the folder has that file, checks that it is of this
+// sweep and shard. Errors: the folder has other files and no identity file; it is of another sweep
+// or shard, with the first difference.
 Result<void> claim_folder(const std::filesystem::path& folder, const SweepIdentity& identity);
 
-// The first difference, as text: "the port is lib:a.so, not lib:b.so". The shard is not compared.
-// Empty: both are of the same sweep.
+// The first difference, as text: "the port is lib:a.so, not lib:b.so". Empty if both are of the
+// same sweep. The shards are not compared.
 std::string difference(const SweepIdentity& found, const SweepIdentity& expected);
 
 }  // namespace attest

@@ -1,4 +1,4 @@
-// Samples of a sweep as a suite of their own, which `attest sim` flies again.
+// Writes samples of a sweep as a suite of their own, which `attest sim` can fly again.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,9 @@
 
 namespace attest {
 
-// The case and the vehicle of sample 42 are those of the sweep with `_sample_42` at the end of
-// their names. `models` are those of the suite of the sweep; they are copied. Replaces the folder.
+// Replaces `folder` by a suite with a case and a vehicle for each sample. The names for sample 42
+// are those of the sweep's case and vehicle with `_sample_42` at the end. The files of `models`,
+// the models of the sweep's suite, are copied. Without samples the folder is removed.
 Result<void> keep_flights(const FlightSampler& sampler, const std::vector<std::uint64_t>& samples,
                           const std::filesystem::path& models, const std::filesystem::path& folder);
 

@@ -40,7 +40,6 @@ Result<void> add_folder(const fs::path& folder, const SweepIdentity& whole, std:
                                               found->shard, other->second.string()));
 }
 
-// A folder of shards, such as that of a plan, stands for the folders in it.
 std::vector<fs::path> folders_of_shards(const fs::path& folder) {
   std::error_code failed;
   std::vector<fs::path> folders;
@@ -67,7 +66,6 @@ Result<FolderByShard> find_shards(const std::vector<fs::path>& given, const Swee
   return by_shard;
 }
 
-// What keeps the shards from being merged.
 struct Incomplete {
   std::vector<std::size_t> missing;  // shards without a folder
   std::vector<std::size_t> shards;   // shards that lack samples
@@ -90,7 +88,8 @@ Error error_of(const Incomplete& found, std::size_t count) {
                   fmt::join(parts, "; "))};
 }
 
-// The rows of a shard, with their line ends. Empty: the shard is incomplete.
+// The rows of a shard, with their line ends; empty if the shard is incomplete. `there` becomes the
+// number of its rows.
 Result<std::optional<std::string>> rows_of(const fs::path& folder, const SampleColumns& columns,
                                            const SampleRange& range, std::uint64_t& there) {
   const fs::path file = folder / sample_file;

@@ -1,4 +1,4 @@
-// Joins the shards of a sweep: the result is that of one machine, byte for byte.
+// Joins the tables of a sweep's shards. The result has the bytes of a sweep without shards.
 #pragma once
 
 #include <cstddef>
@@ -14,20 +14,20 @@
 
 namespace attest {
 
-// The table in the folder of a sweep.
 inline constexpr const char* sample_file = "samples.csv";
 
 // The samples of a shard are consecutive. The sizes of the shards differ by at most one sample.
 SampleRange range_of(const Shard& shard, std::uint64_t samples);
 
-// "3,17-20": as ranges, the way that Slurm writes the indices of a job array.
+// "3,17-20", as Slurm writes the indices of a job array.
 // REQUIRES: ascending.
 std::string ranges_of(const std::vector<std::size_t>& indices);
 
-// Makes the folder `out` from the folders of all shards, in any order. A folder of such folders
-// stands for all of them. May be repeated. Memory: one shard. Errors, with the folder: a shard of
-// another sweep, with the difference; another division into shards; a shard that is given twice;
-// all shards that are missing or incomplete.
+// Makes the folder `out` from the folders of all shards, which are given in any order. A folder
+// that contains folders of shards stands for all of them. `out` may have the result of an earlier
+// merge of this sweep. One shard at a time is in memory. Errors: a folder is of another sweep, with
+// the difference; a folder is of another division into shards; a shard is given twice; shards are
+// missing or incomplete (the message names them all).
 Result<void> merge_shards(const std::vector<std::filesystem::path>& folders,
                           const SweepIdentity& whole, const SampleColumns& columns,
                           std::uint64_t samples, const std::filesystem::path& out);

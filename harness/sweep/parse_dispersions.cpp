@@ -46,7 +46,8 @@ void parse_choice(const TomlTable& table, Distribution& distribution) {
   }
 }
 
-// Truncated to less than this part of the normal distribution, a value would hardly be random.
+// The least part of a normal distribution that a truncation may leave. With less, the values would
+// be nearly constant.
 constexpr double least_part = 1e-6;
 
 void check_part(const TomlTable& table, const Distribution& of) {
@@ -136,7 +137,7 @@ std::uint64_t parse_levels(const TomlTable& table, const Distribution& of, Desig
   return static_cast<std::uint64_t>(levels);
 }
 
-// A name is a column of a CSV file.
+// The name of a dispersion is that of a column of samples.csv.
 void check_name(const TomlTable& table, const std::string& name) {
   const auto is_plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
@@ -154,7 +155,7 @@ std::size_t dimension_named(const std::string& name, const std::vector<Dispersio
   return static_cast<std::size_t>(found - dimensions.begin());
 }
 
-// The rows and columns of one matrix. Empty: an error was recorded.
+// The dimensions that one matrix correlates. `taken`: the dimensions that are in a matrix already.
 std::vector<std::size_t> parse_members(const TomlTable& table,
                                        const std::vector<Dispersion>& dispersions,
                                        std::set<std::size_t>& taken) {

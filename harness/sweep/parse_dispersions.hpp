@@ -8,16 +8,16 @@
 
 namespace attest {
 
-// This function and parse_correlation() record their errors in the table.
+// This function and parse_correlation() record their errors in the tables of the file.
 std::vector<Dispersion> parse_dispersions(const TomlTable& root, DesignKind design);
 
-// The matrix of all dimensions, row by row; empty if the file has no correlation. REQUIRES: the
-// dispersions of this file.
+// The correlation matrix of all dimensions, row by row; empty if the file has no [correlate.NAME].
+// REQUIRES: the dispersions of this file.
 std::vector<double> parse_correlation(const TomlTable& root,
                                       const std::vector<Dispersion>& dispersions,
                                       DesignKind design);
 
-// The dispersions that are dimensions of the design: all except seeds.
+// The indices of the dispersions that are dimensions of the design: all except seeds.
 std::vector<std::size_t> dimensions_of(const std::vector<Dispersion>& dispersions);
 
 }  // namespace attest

@@ -10,7 +10,7 @@
 namespace attest {
 namespace {
 
-// The distance beyond the bounds; below 0 within them. A flight without the metric is the worst.
+// The distance beyond the nearer bound; below 0 within the bounds. Infinite without a value.
 double violation(const Requirement& requirement, double value) {
   if (std::isnan(value)) return std::numeric_limits<double>::infinity();
   return std::max(value - requirement.max, requirement.min - value);
@@ -29,7 +29,7 @@ std::vector<std::uint64_t> worst_samples(const Requirement& requirement,
   return samples;
 }
 
-// The same rule as that of EarlyStop.
+// Uses the same rule as EarlyStop.
 RequirementDecision decided_sequentially(const RequirementResult& result, double confidence) {
   const double needed = result.requirement.probability;
   if (!excludes(result.held, result.count, needed, confidence))

@@ -1,7 +1,7 @@
-// The random numbers of a sweep: a function of the seed, the index of the sample and the purpose.
-// No number depends on another one, so each machine can make those of any sample.
+// The random numbers of a sweep: functions of seed, purpose and two counters. No number depends on
+// another one, so each machine can make those of any sample.
 //
-// SHA-256 in counter mode; the bits are the same on every platform.
+// They are SHA-256 in counter mode, so the bits are the same on every platform.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ class SampleStream {
 
   enum class Purpose : std::uint8_t { point, permutation, shift, seed };
 
-  // 64 uniform bits. `sample` and `item` are counters.
+  // 64 uniform bits.
   std::uint64_t bits(Purpose purpose, std::uint64_t sample, std::uint64_t item) const;
 
  private:

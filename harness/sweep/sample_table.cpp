@@ -39,7 +39,7 @@ std::optional<T> parsed(std::string_view cell) {
   return value;
 }
 
-// NaN for an empty cell.
+// Reads outcome and metrics from the cells from `first` on. An empty cell becomes NaN.
 bool read_flight(const std::vector<std::string_view>& cells, std::size_t first, std::size_t metrics,
                  FlightResult& flight) {
   flight.outcome = std::string(cells[first]);
@@ -52,7 +52,6 @@ bool read_flight(const std::vector<std::string_view>& cells, std::size_t first, 
   return !flight.outcome.empty();
 }
 
-// Reads the complete lines, a line at a time. A file without a complete header is empty.
 class TableReader {
  public:
   TableReader(const fs::path& file, const SampleColumns& columns, const SampleRange& range,

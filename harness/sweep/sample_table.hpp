@@ -1,4 +1,5 @@
-// The results of a sweep as a CSV file: a row for each sample, in the order of their indices.
+// The results of a sweep as a CSV file: a row for each sample, in the order of the samples'
+// indices.
 //
 // Rows are appended to an unfinished table, which has another name:
 // "samples.csv.part-node7-1f0c9a7e". When it is complete, it is renamed. So `samples.csv` is
@@ -7,10 +8,10 @@
 // continued.
 //
 // Several machines may make the same table at the same time in a shared folder, for example if a
-// cluster starts a shard again while its lost node still works. Each has an unfinished table of its
-// own, named after the machine, and begins with the rows of the longest one. All would finish with
-// the same bytes, so it does not matter which of them is renamed last. This needs no lock between
-// machines, which many shared file systems do not have, or do not release after a machine's death.
+// cluster starts a shard again while its lost node still works. Each machine has an unfinished
+// table of its own, named after the machine, and begins with the rows of the longest one. All
+// finish with the same bytes, so it does not matter which table is renamed last. This needs no lock
+// between machines: many shared file systems have none, or do not release that of a dead machine.
 #pragma once
 
 #include <cstdint>
@@ -26,14 +27,14 @@
 
 namespace attest {
 
-// How a flight ended: "done", "diverged", or the verdict on the fault of a port: "crash".
+// How a flight ended: "done", "diverged" (the vehicle was lost), or the verdict on a port that had
+// a fault or non-finite outputs, such as "crash".
 inline constexpr const char* outcome_done = "done";
 inline constexpr const char* outcome_diverged = "diverged";
 
-// One flight of a sample.
 struct FlightResult {
   std::string outcome = outcome_done;
-  std::vector<double> metrics;  // empty unless done
+  std::vector<double> metrics;  // empty unless done; in a SampleRow: NaN unless done
 };
 
 struct SampleColumns {
@@ -42,14 +43,14 @@ struct SampleColumns {
 
   // "sample,mass,reference.outcome,reference.settles,port.outcome,port.settles\n".
   std::string header() const;
-  // `flights`: of the reference, then of the port if there is one.
+  // With its line break. `flights`: of the reference, then of the port if there is one.
   std::string line(std::uint64_t index, const std::vector<double>& drawn,
                    const std::vector<FlightResult>& flights) const;
-  // Of a metric. REQUIRES: there is one with this name.
+  // The index of the metric with this name. REQUIRES: there is one.
   std::size_t place_of(const std::string& metric) const;
 };
 
-// The numbers of a line. The metrics of a flight whose outcome is not "done" are NaN.
+// The content of a line. The metrics of a flight whose outcome is not "done" are NaN.
 struct SampleRow {
   std::vector<double> drawn;
   std::vector<FlightResult> flights;  // of the reference, then of the port if there is one
@@ -57,7 +58,7 @@ struct SampleRow {
 
 using OnRow = std::function<void(const SampleRow&)>;
 
-// False: `line`, without its line break, is not the row of that sample.
+// Reads a line without its line break. False: it is not the row of the sample `index`.
 bool read_row(std::string_view line, const SampleColumns& columns, std::uint64_t index,
               SampleRow& row);
 
@@ -69,14 +70,15 @@ struct SampleRange {
 
 class SampleTable {
  public:
-  // Makes the unfinished table, or continues the longest one; `on_row` gets the rows that are
-  // there. Empty: another process of this machine is making this table, or has just finished it;
-  // try again. Errors: a finished table has a line that is not one of its rows (with the line's
-  // number); the table cannot be written.
+  // Makes the unfinished table of this machine, or continues the longest one. If `file` has all
+  // rows of `range`, none is left to append. `on_row` gets the rows that are there. Empty: another
+  // process of this machine is making the table, or some process has just finished it; try again.
+  // Errors: a finished table has a line that is not one of its rows (with the line's number); the
+  // table cannot be written.
   static Result<std::optional<SampleTable>> open(
       const std::filesystem::path& file, const SampleColumns& columns, const SampleRange& range,
       const OnRow& on_row = [](const SampleRow&) {});
-  // The same on the machine of this name.
+  // The same, with this name of the machine.
   static Result<std::optional<SampleTable>> open_on(
       const std::string& machine, const std::filesystem::path& file, const SampleColumns& columns,
       const SampleRange& range, const OnRow& on_row = [](const SampleRow&) {});
@@ -86,10 +88,10 @@ class SampleTable {
 
   std::uint64_t next() const { return next_; }  // the first sample that has no row
 
-  // The row of sample next(). Errors: the disk is full.
+  // Appends the row of sample next(), with its line break. Errors: it cannot be written.
   Result<void> append(std::string_view line);
-  // Flushes to disk, gives the table its name, and removes all unfinished ones.
-  // REQUIRES: the table has the rows of all samples that were to be flown.
+  // Flushes the table to disk, gives it its name, and removes all unfinished ones. REQUIRES: the
+  // table has all rows that it is to have.
   Result<void> finish();
 
  private:
@@ -103,14 +105,14 @@ class SampleTable {
   bool is_complete_ = false;  // finish() has nothing to do
 };
 
-// All rows of one pilot: the reference or the port.
+// The flights of one pilot: the reference or the port.
 struct PilotData {
   std::vector<std::string> outcomes;         // of each sample
-  std::vector<std::vector<double>> metrics;  // of each metric, of each sample; NaN unless done
+  std::vector<std::vector<double>> metrics;  // [metric][sample]; NaN unless done
 };
 
 struct SampleData {
-  std::vector<std::vector<double>> drawn;  // of each dispersion, of each sample
+  std::vector<std::vector<double>> drawn;  // [dispersion][sample]
   std::vector<PilotData> pilots;           // reference, then port
 
   std::size_t samples() const { return pilots.front().outcomes.size(); }
@@ -118,7 +120,7 @@ struct SampleData {
 
 // Reads all rows into memory, because quantiles, ranks and indices need all values of a column.
 // They take 8 bytes for each number, and the text of each outcome. Errors: a line that is not of
-// this table, or an incomplete last line.
+// this table, an incomplete last line, fewer rows than `range` has.
 Result<SampleData> read_samples(const std::filesystem::path& file, const SampleColumns& columns,
                                 const SampleRange& range);
 

@@ -1,4 +1,4 @@
-// SampleTable: the rows of an unfinished table.
+// SampleTable: opens, continues and finishes a table.
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -34,7 +34,7 @@ Result<void> write_all(int descriptor, std::string_view bytes, const fs::path& f
   return {};
 }
 
-// Without locks each process has a file of its own.
+// Where the file system has no locks, each process has an unfinished table of its own.
 int open_unlocked(fs::path& part) {
   part += fmt::format("-{:08x}", std::random_device()());
   return ::open(part.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, table_mode);
@@ -50,9 +50,9 @@ struct Source {
   TableExtent extent;
 };
 
-// The longest table of `file` and its parts; `part`, if no other is longer. The part that a
-// machine left may end with anything, because the blocks of a file that a dying machine has written
-// arrive in any order.
+// The table with the most rows among `file` and its unfinished tables; `part` if none has more rows
+// than it. An unfinished table may end with wrong lines, because the blocks that a dying machine
+// writes reach the disk in any order.
 Result<Source> longest(const fs::path& file, const fs::path& part, const SampleColumns& columns,
                        const SampleRange& range) {
   Source best{part, {}};
@@ -71,7 +71,6 @@ Result<Source> longest(const fs::path& file, const fs::path& part, const SampleC
   return best;
 }
 
-// Replaces the content of `descriptor` by the first bytes of the file.
 Result<void> copy_from(const Source& source, int descriptor, const fs::path& part) {
   const auto from = open_regular_file(source.file);
   if (!from) return tl::unexpected(from.error());
@@ -86,7 +85,8 @@ Result<void> copy_from(const Source& source, int descriptor, const fs::path& par
   return tl::unexpected(table_error(part, "cannot be written"));
 }
 
-// The unfinished table: the rows of the source, and the place behind them for writing.
+// Makes `part` the unfinished table with the valid rows of the source, or with the header only, and
+// seeks to its end.
 Result<void> begin_part(const Source& source, const SampleColumns& columns, int descriptor,
                         const fs::path& part) {
   if (source.file != part) {
@@ -99,9 +99,9 @@ Result<void> begin_part(const Source& source, const SampleColumns& columns, int 
   return source.extent.bytes > 0 ? Result<void>() : write_all(descriptor, columns.header(), part);
 }
 
-// A name of this machine: its host name, and an id of its last boot. Processes with the same name
-// must see each other's locks. The boot id alone is not enough: copies of a virtual machine may
-// share it.
+// A name of this machine: its host name, and the beginning of the id of its last boot. Two machines
+// must not have the same name, because they do not see each other's locks. The boot id alone is not
+// enough: copies of a virtual machine may share it.
 std::string this_machine() {
   constexpr std::size_t enough = 8;
   std::array<char, 256> host{};
@@ -143,7 +143,7 @@ Result<std::optional<SampleTable>> SampleTable::open_on(const std::string& machi
   if (descriptor < 0 && is_without_locks(errno)) descriptor = open_unlocked(part);
   if (descriptor < 0) return tl::unexpected(table_error(part, "cannot be opened"));
   SampleTable table(file, part, descriptor, range.begin);
-  const auto source = longest(file, part, columns, range);  // after it was locked
+  const auto source = longest(file, part, columns, range);  // `part` is locked and cannot grow
   if (!source) return tl::unexpected(source.error());
   table.next_ += source->extent.rows;
   table.is_complete_ =
@@ -152,7 +152,7 @@ Result<std::optional<SampleTable>> SampleTable::open_on(const std::string& machi
   if (table.is_complete_) {
     ::unlink(part.c_str());
   } else if (source->file != part && !fs::exists(source->file, failed)) {
-    return std::nullopt;  // finished a moment ago
+    return std::nullopt;  // another process has just finished the table and removed the source
   } else if (auto begun = begin_part(*source, columns, descriptor, part); !begun) {
     return tl::unexpected(begun.error());
   }

@@ -6,7 +6,7 @@
 namespace attest {
 namespace {
 
-// The end of the interval between a probability inside of it and one outside.
+// The end of the interval that lies between `inside`, which the interval contains, and `outside`.
 double end_between(double inside, double outside, std::uint64_t held, std::uint64_t count,
                    double confidence) {
   constexpr int halvings = 60;  // to the precision of a double
@@ -31,7 +31,7 @@ bool excludes(std::uint64_t held, std::uint64_t count, double probability, doubl
 
 Interval sequential_interval(std::uint64_t held, std::uint64_t count, double confidence) {
   if (count == 0) return {};
-  // The ratio is smallest at the share, below 1 there, and grows to both sides.
+  // At the share held / count the ratio is below 1 and smallest. It grows to both sides.
   const double share =
       std::clamp(static_cast<double>(held) / static_cast<double>(count), 1e-15, 1 - 1e-15);
   return {held == 0 ? 0 : end_between(share, 0, held, count, confidence),

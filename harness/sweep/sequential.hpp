@@ -1,4 +1,4 @@
-// Statistics that are valid after every sample, so a sweep may end because of their values.
+// Statistics that are valid after every sample, so that a sweep may end because of their values.
 //
 // Take two likelihoods of the samples: one if the probability is uniformly distributed on 0..1, one
 // if it has a fixed value. If that value is the true probability, the ratio of the first likelihood
@@ -14,13 +14,14 @@
 
 namespace attest {
 
-// The logarithm of that ratio. REQUIRES: 0 < probability < 1.
+// The logarithm of that ratio, if `held` of `count` samples hold. `probability` is the fixed value.
+// REQUIRES: 0 < probability < 1.
 double log_mixture_ratio(std::uint64_t held, std::uint64_t count, double probability);
 
 // True if sequential_interval() does not contain the probability.
 bool excludes(std::uint64_t held, std::uint64_t count, double probability, double confidence);
 
-// With this confidence, the intervals after 1, 2, 3, ... samples all contain the probability.
+// With this confidence, the intervals after 1, 2, 3, ... samples all contain the true probability.
 Interval sequential_interval(std::uint64_t held, std::uint64_t count, double confidence);
 
 // The p-value of a two-sided sign test that is valid after every sample. If both signs are equally

@@ -15,7 +15,7 @@ double mean_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-// The complete blocks with finite values only: A, B, and A with one dimension of B.
+// The complete blocks in which all values are finite: of A, of B, and of each mixed point.
 class Blocks {
  public:
   Blocks(const std::vector<double>& values, std::size_t size) : values_(values) {
@@ -50,7 +50,7 @@ struct Variance {
 
 Variance variance_of(const Blocks& blocks) {
   Variance variance;
-  const double first = blocks.a(0);  // so that equal values have no variance, to the bit
+  const double first = blocks.a(0);  // subtracted, so that equal values have exactly no variance
   for (std::size_t i = 0; i < blocks.count(); ++i) {
     variance.mean += (blocks.a(i) - first) + (blocks.b(i) - first);
   }
@@ -68,7 +68,8 @@ struct Ratio {
   Interval interval;
 };
 
-// The mean of the terms divided by the variance. The delta method for a ratio of two means.
+// The mean of the terms divided by the variance. The interval is that of the delta method for a
+// ratio of two means.
 Ratio ratio_of(const std::vector<double>& terms, const Variance& variance, double confidence) {
   const double value = mean_of(terms) / variance.value;
   double squares = 0;

@@ -18,7 +18,7 @@ namespace {
 
 using Binomial = boost::math::binomial_distribution<double, BoostPolicy>;
 
-// From 1; the mean rank for equal values.
+// Ranks count from 1. Equal values have their mean rank.
 std::vector<double> ranks_of(const std::vector<double>& values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

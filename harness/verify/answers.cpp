@@ -11,8 +11,8 @@
 namespace attest {
 namespace {
 
-// The decision that rounding makes at a tick with these margins. The norm is left out: quaternions
-// of an estimator have norm 1 as exactly as floats allow.
+// The first decision that is nearer than its least margin, so that rounding can make it. Leaves out
+// Decision::quaternion_norm, for which an estimator's quaternions are always safe.
 std::optional<Decision> made_by_rounding(const Margins& margins, std::optional<int> fraction_bits) {
   for (std::size_t i = 0; i < decision_count; ++i) {
     const auto decision = static_cast<Decision>(i);
@@ -22,7 +22,7 @@ std::optional<Decision> made_by_rounding(const Margins& margins, std::optional<i
   return std::nullopt;
 }
 
-// Compares all ticks, and those before the first tick that rounding decides.
+// Compares all ticks, and separately the ticks before the first decision by rounding.
 class Answering {
  public:
   Answering(const Trace& flown, const Tolerances& tolerances)
@@ -42,7 +42,7 @@ class Answering {
     Comparison& all = answers.comparison;
     if (!before_) return answers;
     if (all.agrees()) {
-      all.tightest = before_->tightest;  // later ticks may be near their tolerance
+      all.tightest = before_->tightest;  // after the decision a correct port may deviate more
     } else if (before_->agrees() && all.first && !all.got_non_finite) {
       near_.deviating_tick = all.first->tick;
       answers.undecided = near_;

@@ -1,6 +1,6 @@
 // Compares the outputs of a unit at each tick of a flight with those of the reference for the same
-// inputs. The plant has no part in this, so a difference cannot grow through feedback. The first
-// deviating tick is therefore the tick at which the port erred.
+// inputs. A difference cannot grow through the plant, so the first deviating tick is the tick at
+// which the port erred.
 #pragma once
 
 #include <cstddef>
@@ -14,11 +14,13 @@
 namespace attest {
 
 struct Answers {
-  // Of the ticks before `undecided`, or of all ticks.
+  // Of the ticks before Undecided::tick if `undecided` is set, otherwise of all ticks. If all ticks
+  // agree, `tightest` is still that of the ticks before the first decision by rounding.
   Comparison comparison;
 
-  // The first tick at which rounding makes a decision of the law (margins.hpp). Set if an output
-  // deviates there or later: correct outputs then depend on the branch that the port took.
+  // The first tick at which rounding can make a decision of the law (decisions.hpp). Set if the
+  // outputs agree before this tick and deviate at it or later. Correct outputs then depend on the
+  // branch that the port took.
   struct Undecided {
     Decision decision;
     std::size_t tick;
@@ -27,10 +29,10 @@ struct Answers {
   std::optional<Undecided> undecided;
 };
 
-// A unit of the reference, from its power-on state on, gets the inputs of `flown`, and each tick is
-// compared. A NaN or infinity where the reference has a number is never undecided. `fraction_bits`:
-// of a port in fixed point, which rounds more. REQUIRES: a whole trace of a unit, with at least one
-// tick. Errors: the reference does not have the profile, or fails.
+// Gives the inputs of `flown` to a unit of the reference in its power-on state, and compares each
+// tick. A NaN or infinity where the reference has a number is never undecided. `fraction_bits` is
+// set for a port in fixed point, which rounds more. REQUIRES: `flown` is the whole trace of a unit,
+// with at least one tick. Errors: the reference does not have the profile, or fails.
 Result<Answers> compare_answers(const Trace& flown, const std::string& profile,
                                 const Tolerances& tolerances,
                                 std::optional<int> fraction_bits = {});

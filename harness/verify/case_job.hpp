@@ -28,11 +28,11 @@ struct Codec<CaseResult> {
   static Result<CaseResult> decode(const std::string& text);
 };
 
-// A case in some of its run configurations. For an open-loop case: any of its run configurations.
-// For a flight: those with one vehicle and one plant.
+// Judges a case in several of its run configurations. Those of a flight all have the same vehicle
+// and plant.
 class CaseJob final : public PortJob<CaseResult> {
  public:
-  // `vehicle_model` is the plant configuration's; null for open loop.
+  // `vehicle_model` is that of a flight's vehicle; null for open loop.
   CaseJob(Case the_case, std::vector<RunConfiguration> configurations,
           std::shared_ptr<const VehicleModel> vehicle_model, std::filesystem::path golden_root,
           JudgeOptions judge, HostOptions options)
@@ -60,7 +60,7 @@ class CaseJob final : public PortJob<CaseResult> {
   std::optional<Golden> golden_;
 };
 
-// A flight at recorded times.
+// Judges a flight at recorded times.
 class TimedJob final : public PortJob<CaseResult> {
  public:
   TimedJob(Case the_case, TimingFile timing, std::shared_ptr<const VehicleModel> vehicle_model,
@@ -82,9 +82,9 @@ class TimedJob final : public PortJob<CaseResult> {
   HostOptions options_;
 };
 
-// The jobs of the selected cases, in order. An open-loop case is one job. A flight is one job per
-// plant configuration, so that the workers share long flights. Errors: a vehicle that cannot be
-// loaded.
+// The jobs of the selected cases, in the order of the cases. An open-loop case is one job. A flight
+// is one job for each plant configuration, so that several workers fly it at the same time. Errors:
+// a vehicle cannot be loaded.
 Result<Jobs<CaseResult>> case_jobs(const std::vector<SelectedCase>& cases,
                                    const std::filesystem::path& golden_root,
                                    VehicleModels& vehicle_models, const JudgeOptions& judge,

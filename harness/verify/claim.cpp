@@ -10,10 +10,10 @@
 namespace attest {
 namespace {
 
-// Extensions of the ABI that a port need not have.
 bool is_module(const std::string& group) { return group == "mixer" || group == "battery_status"; }
 
-// Counts of the cases of a group at a rate.
+// The number of vectors of a group at a rate. `good`: those that passed, and those that were
+// skipped because they are compared at the exact level only.
 struct Tally {
   std::size_t in_suite = 0, run = 0, good = 0;
 };
@@ -21,7 +21,7 @@ struct Tally {
 struct Group {
   std::map<LoopRate, Tally> rates;
   bool passes = false, fails = false;
-  // Cases that the claim counts separately.
+  // `skipped` is without the `good` vectors, `unsupported` without is_of_another_step().
   std::size_t unsupported = 0, skipped = 0, expected_failures = 0;
 
   bool was_run() const {
@@ -36,7 +36,8 @@ bool has_step(const LoopRate& rate, const Rate& step) {
   return rate.unit == step && rate.attitude_unit.value_or(step) == step;
 }
 
-// A port with a fixed step runs at that rate only, and the claim names its step.
+// Whether a fixed step of the port excludes the rate of the result. Such results do not count as
+// unsupported, because the claim names the fixed step.
 bool is_of_another_step(const CaseResult& result, const RunResult& run) {
   return run.fixed_step && !has_step(result.rate, *run.fixed_step) &&
          result.verdict == Verdict::unsupported;
@@ -76,8 +77,8 @@ bool was_judged(const Groups& groups) {
   });
 }
 
-// Whether all cases of the group are good, at the rates of the run or at the rate of a fixed step.
-// A group without any case at a fixed step is not whole, because it has no pass.
+// Whether a vector of the group passed, and all its vectors are good at the rates that were run.
+// For a port with a fixed step only the vectors at that rate count.
 bool is_whole(const Group& group, const RunResult& run) {
   const std::set<LoopRate> selected(run.rates.begin(), run.rates.end());
   return group.passes && std::all_of(group.rates.begin(), group.rates.end(), [&](const auto& each) {
@@ -89,7 +90,7 @@ bool is_whole(const Group& group, const RunResult& run) {
          });
 }
 
-// "3 vectors unsupported (modes, tpa)"; left out when the count is 0.
+// Adds "3 vectors unsupported (modes, tpa)" to `missing`, unless the count is 0.
 void say(const Groups& groups, std::size_t Group::*count, const char* singular, const char* plural,
          std::vector<std::string>& missing) {
   std::size_t all = 0;
@@ -104,8 +105,8 @@ void say(const Groups& groups, std::size_t Group::*count, const char* singular, 
       fmt::format("{} {} ({})", all, all == 1 ? singular : plural, fmt::join(names, ", ")));
 }
 
-// Up to four names: "100, 250 Hz". More names do not fit into a line, so only their number is
-// given: "19 groups".
+// Up to four names: "100, 250 Hz". More names do not fit into a line, so they are counted:
+// "19 groups".
 std::string few_or_counted(const std::vector<std::string>& names, std::string_view unit,
                            std::string_view noun) {
   constexpr std::size_t few = 4;
@@ -113,8 +114,8 @@ std::string few_or_counted(const std::vector<std::string>& names, std::string_vi
   return fmt::format("{}{}", fmt::join(names, ", "), unit);
 }
 
-// Adds the mandatory groups and the rates without any vector run, and the number of vectors not
-// run.
+// Adds the selection, the groups and the rates of which no vector was run, and the number of
+// vectors that were not run. Optional modules do not count.
 void say_what_was_not_run(const Groups& groups, const RunResult& run,
                           std::vector<std::string>& missing) {
   std::vector<std::string> names, rates;

@@ -1,9 +1,11 @@
 // The conformance claims that a run supports. Each profile has its own, because a port may
 // implement one version of the law only.
 //
-// A port conforms to a profile when it passed the released suite: every group that is not an
-// optional module (mixer, battery estimate), every rate, every case. Cases of the exact level may
-// be skipped at another level. Anything less is partial, and the claim names the missing parts.
+// A port conforms to a profile if no case failed, and all cases of the released suite passed: every
+// rate and every group, except the optional modules (mixer, battery estimate). Cases that are
+// compared at the exact level only may be skipped at another level. A port with a fixed step,
+// changed parameters, outputs that were not recorded, or no process of its own does not conform. A
+// claim names the groups that fail, and what is missing.
 #pragma once
 
 #include <string>
@@ -15,25 +17,28 @@ namespace attest {
 
 struct Claim {
   std::string profile;
-  // Groups, in alphabetical order. Whole: every case passed at all rates that were run.
+  // Groups, in alphabetical order. `whole`: all cases passed, at all rates that were run.
+  // `in_part`: some cases passed, and none failed. `failing`: a case failed.
   std::vector<std::string> whole, in_part, failing;
-  // Optional modules that are whole. A module that fails is in `failing` instead.
+  // Optional modules of which all cases passed. They are not in `whole`; a module of which a case
+  // failed is in `failing`.
   std::vector<std::string> modules;
-  bool has_all_groups = false;  // `whole` has all mandatory groups
+  bool has_all_groups = false;  // all groups except optional modules are in `whole`
   std::vector<std::string>
-      missing;  // "custom suite", "2 vectors unsupported (tpa)"; empty: conforms
+      missing;  // reasons against conformance: "custom suite", "2 vectors unsupported (tpa)"
 
   bool conforms() const { return failing.empty() && missing.empty(); }
 };
 
-// One for each profile with a judged case, sorted. A profile that the port does not support has no
-// claim: all its cases are skipped.
+// One claim for each profile in which a case passed or failed, sorted by profile. A profile that
+// the port does not support has no claim, because all its cases are skipped.
 std::vector<Claim> claims_of(const RunResult& run);
 
 enum class Standing { conformant, partial, none };
 
-// Of the whole run. None: a case failed, an error occurred, the run stopped early, or no case
-// passed. Conformant: the port conforms to at least one profile.
+// The standing of the whole run. `none`: a verdict fails the run, an error occurred, the run
+// stopped early, or no case passed. Otherwise `conformant` if the port conforms to at least one
+// profile.
 Standing standing_of(const RunResult& run);
 
 }  // namespace attest

@@ -21,15 +21,15 @@
 namespace attest {
 namespace {
 
-// The inputs and expected outputs of a vector.
 struct Expected {
   Trace want;
   BranchAlternatives branch_alternatives;
 };
 
-// Drives a fresh unit through `answered`, whose inputs are those of `want`, and compares. After a
-// fault, `answered` keeps only the ticks that were answered. Branch
-// alternatives are equally correct, but the exact level accepts the law's branch only.
+// Drives a fresh unit through `answered`, which has the inputs of the vector, and judges its
+// outputs. After a fault, `answered` keeps only the ticks before it. At a tie of the law every
+// branch is correct, but the exact level accepts the law's own branch only. `of_branches`: the
+// tolerances that decide which branch the port took.
 void run_and_judge(Trace& answered, const Expected& expected, const Subject& subject,
                    PortHost& host, const Tolerances& tolerances, const Tolerances& of_branches,
                    const std::filesystem::path& saved_traces, CaseResult& result) {
@@ -64,7 +64,6 @@ void run_and_judge(Trace& answered, const Expected& expected, const Subject& sub
   save_traces(saved_traces, subject, {answered, *want, tolerances}, result);
 }
 
-// A case's inputs for the unit, and the reference's outputs for exactly these inputs.
 struct Prepared {
   Trace answered;  // inputs only, so far
   Expected expected;
@@ -97,9 +96,9 @@ Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& g
   return Prepared{std::move(made), {std::move(*want), std::move(*others)}};
 }
 
-// The expected outputs for other inputs than those of the golden. A port with a fixed step
-// (fixed_step.hpp) gets times from one period after zero on; --param changes parameters. The
-// outputs are those of the reference. Errors: the reference does not agree with the golden.
+// For inputs that differ from those of the golden: `begun` is the case with the times for a port
+// with a fixed step (fixed_step.hpp), and `parameters` are those of --param. The expected outputs
+// are those of the reference. Errors: the reference does not agree with the golden of `the_case`.
 Result<Prepared> prepare_varied(const Case& the_case, const Case& begun, const Rate& rate,
                                 const Golden& golden,
                                 const std::vector<ParameterChange>& parameters) {
@@ -128,7 +127,7 @@ Result<Prepared> prepare_varied(const Case& the_case, const Case& begun, const R
   return prepared;
 }
 
-// Those that the subject has.
+// Leaves out the parameters that the subject does not have, or whose value it cannot have.
 std::vector<ParameterChange> accepted_by(const Subject& subject,
                                          std::vector<ParameterChange> parameters) {
   std::erase_if(parameters, [&](const ParameterChange& parameter) {

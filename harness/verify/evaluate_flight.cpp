@@ -24,9 +24,9 @@
 namespace attest {
 namespace {
 
-// The allowed deviation of a metric from the reference's. Beyond the horizon, the flights of two
-// correct controllers differ. These values are a few times the measured differences, and far below
-// those of a port with a wrong gain.
+// The allowed deviation of a metric from the reference's. Two correct controllers have slightly
+// different metrics, because their flights differ beyond the horizon. The values are a few times
+// these measured differences, and far below the differences of a port with a wrong gain.
 double tolerance_of(Measure measure, double reference, const Rate& rate) {
   constexpr double relative = 0.05;
   const auto at_least = [&] {
@@ -77,15 +77,15 @@ void judge_metrics(const Case& the_case, const Flown& flown, const ReferenceFlig
                              tolerance_of(metric.measure, expected, result.rate.unit),
                              metric.min,
                              metric.max};
-    // A ratio has no unit, so the absolute part does not apply to it.
+    // With `versus` the metric is a ratio without a unit, so only a relative tolerance applies.
     if (metric.versus) measurement.tolerance = 0.05 * std::abs(expected);
     if (!measurement.within()) reasons.push_back(off(measurement));
     result.metrics.push_back(std::move(measurement));
   }
 }
 
-// For a flight with correct outputs: the comparison of the loop with the golden, and the tightest
-// headroom of both comparisons.
+// For a flight with correct outputs: the comparison of the loop with the golden, but with the ticks
+// of `answers`, and the tightest headroom of both.
 Comparison with_tightest(Comparison loop, const Comparison& answers) {
   loop.ticks = answers.ticks;
   if (!loop.tightest || (answers.tightest && answers.tightest->ratio < loop.tightest->ratio)) {
@@ -94,7 +94,6 @@ Comparison with_tightest(Comparison loop, const Comparison& answers) {
   return loop;
 }
 
-// Compares the outputs of all units with the reference's.
 Result<Comparison> compare_units(const Flown& flown, const std::string& profile,
                                  const Tolerances& tolerances, std::optional<int> fraction_bits) {
   auto answers = compare_answers(flown.trace, profile, tolerances, fraction_bits);
@@ -105,14 +104,16 @@ Result<Comparison> compare_units(const Flown& flown, const std::string& profile,
   return both(answers->comparison, attitude->comparison);
 }
 
-// Compares each output with the reference's, and the loop with the golden's rows up to the horizon.
-// NaN and infinity fail at every tick.
+// Compares each output with the reference's. If all agree, compares the loop with the golden's rows
+// up to the horizon. NaN or infinity in an output that is finite in all rows fails at every tick,
+// also beyond the horizon.
 Result<void> judge_ticks(const Case& the_case, const Flown& flown, const ReferenceFlight& reference,
                          std::optional<int> fraction_bits, CaseResult& result) {
-  // The horizon was measured with floats. In flight, a port's rounding changes its later inputs. A
-  // port with 22 fraction bits was measured to deviate from the golden's rates by seven times the
-  // tolerance of its LSBs. With 30 bits, that is a tenth of the tolerance of floats for rates.
-  // With fewer bits, the loop as a whole is judged by the metrics only.
+  // The horizon is that of floats. A port in fixed point rounds more, and in flight its rounding
+  // changes its later inputs. A port with 22 fraction bits was measured to deviate from the
+  // golden's rates by seven times the tolerance of its LSBs. With 30 bits, seven times that
+  // tolerance is a tenth of the tolerance of floats for rates. With fewer bits only the metrics
+  // judge the loop.
   constexpr int as_near_as_floats_bits = 30;
   const double horizon_s = fraction_bits.value_or(as_near_as_floats_bits) < as_near_as_floats_bits
                                ? 0
@@ -159,7 +160,7 @@ std::string how_it_ended(const Flown& flown) {
 
 namespace {
 
-// The expected outputs are those of the reference for the inputs of that flight.
+// Saves the traces of a failed flight, with the reference's outputs for the same inputs.
 void save_flight(const std::filesystem::path& folder, const Trace& flown,
                  const Tolerances& tolerances, CaseResult& result) {
   if (!saves_traces(folder, result) || flown.samples.empty()) return;
@@ -171,7 +172,7 @@ void save_flight(const std::filesystem::path& folder, const Trace& flown,
   save_traces(folder, subject, {flown, want, tolerances}, result);
 }
 
-// The fault of a flight, or a fault of kind protocol if its traces cannot be those of the flight.
+// The fault of a flight. If its traces contradict the plan: a fault of kind protocol.
 std::optional<PortFault> fault_of(const Course& course, const FlightPlan& plan,
                                   const Flown& flown) {
   const std::string contradiction = flight_contradiction(course, plan, flown);
@@ -180,7 +181,6 @@ std::optional<PortFault> fault_of(const Course& course, const FlightPlan& plan,
                    fmt::format("{}: the port changed memory that is not its own", contradiction)};
 }
 
-// A fresh unit flies at the times of `plan`, and is compared with the reference.
 Result<CaseResult> evaluate_with(const Course& course, const FlightPlan& plan,
                                  const ReferenceFlight& reference, PortHost& host,
                                  const std::filesystem::path& saved_traces) {
@@ -210,9 +210,9 @@ Result<CaseResult> evaluate_with(const Course& course, const FlightPlan& plan,
   return result;
 }
 
-// For a port with a fixed step (fixed_step.hpp): the case begins one period after zero, and the
-// port is compared with the reference in that case. Errors: the reference does not agree with the
-// golden.
+// For a port with a fixed step (fixed_step.hpp): the case begins one period after zero, and a
+// flight of the reference in this shifted case takes the place of the golden. Errors: in the case
+// as it is, the reference does not agree with the golden.
 Result<CaseResult> evaluate_from_one_period_on(const Course& course, FlightPlan plan,
                                                const ReferenceFlight& golden, PortHost& host,
                                                const std::filesystem::path& saved_traces) {

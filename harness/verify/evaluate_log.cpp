@@ -36,7 +36,7 @@ void set_parameters(const std::vector<ParameterChange>& parameters, Trace& trace
   for (const ParameterChange& change : parameters) override_parameter(change, trace);
 }
 
-// `got` with the log's values of the parameters that the log has.
+// Returns `got`, in which the parameters that the log has get the log's values.
 Trace with_parameters_of_log(const LoggedUnit& log, Trace got) {
   const auto& logged = log.trace.parameters;
   const auto is_logged = [&](const ParameterChange& change) {
@@ -53,9 +53,8 @@ Trace with_parameters_of_log(const LoggedUnit& log, Trace got) {
   return got;
 }
 
-// Adds the reference's outputs to the inputs. False, without outputs, if the reference refuses the
-// inputs, for example because it does not have the profile: then no deviation from the log is
-// explained.
+// Adds the reference's outputs to the inputs. If the reference has a fault, for example because it
+// does not have the profile, returns false and clears all outputs.
 bool answer_by_reference(const Subject& subject, Trace& inputs) {
   HostHere reference(open_builtin());
   const bool has_answered = !reference.drive(subject, inputs);
@@ -85,10 +84,11 @@ std::vector<bool> ticks_but(const LoggedUnit& log, Known most) {
   return leaves_out;
 }
 
-// What of a log can be compared with any port.
+// Finds out which ticks and which outputs of a log can judge a port.
 class Comparable {
  public:
-  // `reference`: its outputs; null if it does not have the profile. Then the log is not checked.
+  // `reference`: the log's inputs with the reference's outputs. If it is null, the log is not
+  // compared with the reference.
   Comparable(const LoggedUnit& log, const Trace* reference, const LogLimits& limits)
       : log_(log), limits_(limits) {
     if (log.has_every_step) {
@@ -157,7 +157,7 @@ class Comparable {
 void judge_topics(const std::vector<TopicAgreement>& topics, const LogLimits& limits,
                   CaseResult& result) {
   for (const TopicAgreement& topic : topics) {
-    const bool is_non_finite = topic.non_finite > 0;  // wrong, whatever the earlier steps were
+    const bool is_non_finite = topic.non_finite > 0;  // wrong also if earlier steps are not known
     if (!is_non_finite && (!topic.not_judged.empty() || topic.agrees(limits))) continue;
     if (result.verdict == Verdict::non_finite) continue;
     if (result.reason.empty() || is_non_finite) result.reason = why_it_fails(topic, limits);

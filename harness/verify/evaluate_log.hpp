@@ -1,4 +1,4 @@
-// A port against the log of a real flight.
+// Judges a port by the log of a real flight.
 #pragma once
 
 #include <vector>
@@ -13,27 +13,27 @@ namespace attest {
 struct LogResult {
   CaseResult result;  // verdict and reason
   std::vector<TopicAgreement> topics;
-  Trace got;  // the port's outputs; up to the fault, if there was one
+  Trace got;  // with the port's outputs; up to the fault, if there was one
 };
 
 // Gives the inputs of one unit of a log to a fresh instance and compares its outputs with the
-// logged ones.
+// logged ones. An output is judged if the log shows enough of its inputs:
 //
-// - The attitude law's rates setpoint depends on one sample only. It is judged in every log, except
-//   at ticks for which the log lacks an input.
-// - All other outputs depend on earlier steps. They are judged if the log has every step; in a log
-//   of v1.14 to v1.16 also if it has nearly every step.
-// - In a log of v1.14 to v1.16, and in one of the controller that lacks steps, the reference must
-//   also agree with the log; otherwise the output is not judged. The log then lacks samples (the
-//   logger also thins inputs such as control_allocator_status), or another law flew.
-// - If attest does not have the profile, no reference checks the log: its outputs are taken as
-// right.
-// - NaN or infinity where the log has a number is judged in every output (Verdict::non_finite).
+// - vehicle_rates_setpoint of the controller and of the attitude unit depends on one sample only.
+//   Ticks for which the log lacks an input are left out. Where the sticks make the setpoint, it
+//   depends on earlier steps.
+// - All other outputs depend on earlier steps. The log must have every step; a log of v1.14 to
+//   v1.16 may lack a few.
+// - The reference must agree with the log, unless the log is of the controller and has every step.
+//   If it does not agree, the log lacks samples (the logger also drops samples of inputs such as
+//   control_allocator_status), or another law flew.
+// - If attest does not have the profile, the log is not compared with the reference.
+// - NaN or infinity where the log has a number fails in every output (Verdict::non_finite).
 //
-// If no output is judged, the verdict is skip. `parameters` replace those of the log for the port;
-// the reference has them only where the log has none of that name. Parameters that the unit does
-// not have in this profile are left out. The verdict is never a statement of conformance: a log
-// shows few situations.
+// If no output is judged, the verdict is skip. The port gets `parameters` instead of the log's
+// parameters of the same names. The reference gets those of `parameters` that the log does not
+// have. Parameters that the unit does not have in this profile are left out. A log shows few
+// situations, so a pass is no statement of conformance.
 LogResult evaluate_log(const LoggedUnit& log, const std::string& profile, PortHost& host,
                        const LogLimits& limits,
                        const std::vector<ParameterChange>& parameters = {});

@@ -14,16 +14,15 @@
 namespace attest {
 namespace {
 
-// The vector's id, or the id without the configuration.
 bool matches(const std::string& pattern, const std::string& vector) {
   const std::string of_case = vector.substr(0, vector.rfind('@'));
   return ::fnmatch(pattern.c_str(), vector.c_str(), 0) == 0 ||
          ::fnmatch(pattern.c_str(), of_case.c_str(), 0) == 0;
 }
 
-// The profile whose vectors all match, if vectors in any other group would match too. The pattern
-// would excuse every mistake of a port, including later ones. Empty for other patterns. A group
-// that the suite does not have stands for the others, because a suite may have a single group.
+// The profile that the pattern would excuse as a whole; empty if there is none. The pattern then
+// matches all vectors of the profile in `suite`, and an invented vector in a group that the suite
+// does not have. Without the invented vector, no pattern could name the only group of a suite.
 std::string wholly_excused(const std::string& pattern, const std::vector<std::string>& suite) {
   const auto matches_other_group = [&](const std::string& profile) {
     const std::string id = profile + "/another_group/another_case";
@@ -43,8 +42,8 @@ std::string wholly_excused(const std::string& pattern, const std::vector<std::st
   return found == all_match.end() ? "" : found->first;
 }
 
-// The verdicts that a reason begins with, as in "crash, timeout: reason". If it begins with none,
-// the two verdicts of a difference from the golden.
+// The verdicts that a reason begins with, as in "crash, timeout: reason". For a reason that begins
+// with other text: `fail` and `non-finite`, the verdicts of wrong outputs.
 std::vector<Verdict> excused_by(std::string_view reason) {
   const std::vector<Verdict> differences{Verdict::fail, Verdict::non_finite};
   std::vector<Verdict> excused;
@@ -102,9 +101,9 @@ bool ExpectedFailures::expects(const CaseResult& result) const {
   });
 }
 
-// Marks in `used` the entries that match.
 void ExpectedFailures::expect(CaseResult& result, std::vector<bool>& used) const {
-  const ExpectedFailure* entry = nullptr;  // the first that excuses the verdict, else the first
+  // The first matching entry that excuses the verdict, else the first matching entry.
+  const ExpectedFailure* entry = nullptr;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     if (!matches(entries_[i].pattern, result.id())) continue;
     used[i] = true;

@@ -19,14 +19,14 @@ bool is_unsupported(const Rate& step, const std::string& what, CaseResult& resul
 
 bool has_clock(Module module) { return info_of(module).has_updated; }
 
-// When the sample was taken that the law computes its dt from.
+// The time from which the law computes its dt.
 std::uint64_t sampled_us(const Sample& sample, Module module) {
   if (module == Module::attitude_unit) return sample.attitude_in.vehicle_attitude.timestamp_sample;
   if (module == Module::rate_unit) return sample.rate_in.vehicle_angular_velocity.timestamp_sample;
   return sample.in.timestamp;
 }
 
-// Whether each step, and the sample of each step, is one period after the one before.
+// Whether tick k and its sample are at k + 1 periods.
 bool is_at_steps(const Trace& trace, const Rate& step, Module module) {
   for (std::size_t k = 0; k < trace.samples.size(); ++k) {
     const std::uint64_t due_us = timestamp_us(step.tick(static_cast<std::int64_t>(k) + 1));

@@ -1,13 +1,14 @@
 // Cases for a port with a fixed sample time (ATTEST_EXTENSION_FIXED_STEP).
 //
-// The law computes dt from timestamps. The first timestamp of a case is 5 s, and the law takes the
-// previous one as 0. The law limits this dt of 5 s to 20 ms. A port with a fixed step uses its
-// period instead, so it cannot agree. For such a port the cases begin one period after zero, so
-// that each dt is the period. A golden has the outputs for its own timestamps. The expected outputs
-// therefore come from the reference, after a check that the reference agrees with the golden.
+// The law computes dt from timestamps. By default the first timestamp of a case is 5 s, and the law
+// starts with a previous timestamp of 0. It limits this dt of 5 s to 20 ms. A port with a fixed
+// step uses its period at the first tick too, so its outputs would differ. For such a port the
+// cases begin one period after zero, so that each dt is the period. The goldens are for other
+// timestamps, so the expected outputs come from the reference, which must agree with the golden.
 //
-// The units of the cascade compute dt from the times of their samples, so these must be one period
-// apart too. A time of a topic that would be before zero, such as that of arming, becomes zero.
+// The units of the cascade compute dt from the times of their samples, so the samples must be one
+// period apart too. A time in a topic that would be before zero, such as that of arming, becomes
+// zero.
 #pragma once
 
 #include "harness/casefile/case.hpp"
@@ -17,23 +18,25 @@
 
 namespace attest {
 
-// Whether `the_case` begins one period after zero for this port (Case::from_one_period_on). Mixers
-// and battery estimates have no clock, so their cases are not shifted.
+// Whether `the_case` must begin one period after zero for this port (Case::from_one_period_on).
+// False for mixers and battery estimates, which have no clock.
 bool has_fixed_step(const PortSays& port, const Case& the_case);
 
-// The inputs of a vector for this port: Case::from_one_period_on() if it has a fixed step.
+// The inputs of a vector for this port: of Case::from_one_period_on() if has_fixed_step().
 Trace inputs_for(const PortSays& port, const Case& the_case, const Rate& rate);
 
 // Whether the port has a fixed step that the case does not keep: another rate, ticks that are not
-// exactly periodic, samples taken at other times, or a `start_s` of the case's own. In a flight of
-// the cascade both units must keep the step. If the result is true, the verdict becomes
-// unsupported, with the reason.
+// exactly periodic, samples taken at other times, or a `start_s` of the case's own. If so, the
+// verdict becomes unsupported, with the reason.
 bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
                      CaseResult& result);
+
+// The same for a flight, whose ticks begin at the times of `timing`. In the cascade both units must
+// keep the step. The times of the samples are not checked.
 bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
                      const FlightTiming& timing, CaseResult& result);
 
-// The same for a recorded trace, whose timestamps are fixed.
+// The same for a recorded trace: its tick k and the sample of it must be at k + 1 periods.
 bool has_other_steps(const PortSays& port, const Trace& recorded, Module module,
                      CaseResult& result);
 

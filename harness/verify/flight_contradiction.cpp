@@ -41,7 +41,7 @@ Scripted scripted_in(const Case& part) {
   return scripted;
 }
 
-// The name of the first input that is not as scripted; empty if there is none.
+// The name of the first input that differs from the script; empty if there is none.
 std::string_view first_other(const Scripted& scripted, const Sample& flown, const Sample& want) {
   if (flown.in.timestamp != want.in.timestamp) return "timestamp";
   if (((flown.in.updated ^ want.in.updated) & scripted.updated) != 0) return "an updated bit";
@@ -56,7 +56,8 @@ bool same(const ParameterChange& a, const ParameterChange& b) {
   return a.tick == b.tick && a.name == b.name && same_bits(a.value, b.value);
 }
 
-// Of one unit. `part`: what the case scripts for it.
+// The first contradiction in the trace of one unit. `part`: the case of that unit
+// (Case::of_module).
 std::string contradicts_case(const Case& part, const Rate& rate, const LoopTiming& timing,
                              const Trace& trace) {
   const std::string_view unit = info_of(part.module).title;

@@ -6,8 +6,8 @@
 
 namespace attest {
 
-// The launcher starts before the worker opens its first job. So no process of a port has in its
-// memory what the worker has read: goldens and outputs of the reference.
+// The launcher of the ports' processes starts before the worker opens its first job. So the memory
+// of these processes does not have the goldens that the worker reads later.
 template <typename R>
 class PortJob : public Job<R> {
  public:

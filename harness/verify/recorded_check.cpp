@@ -51,7 +51,7 @@ Tolerances tolerances_for(const fs::path& file, const Provenance& provenance) {
   return tolerances;
 }
 
-// A description of the difference; empty when the trace conforms.
+// Describes the difference; empty when the trace conforms.
 Result<std::string> trace_difference(const fs::path& file, const Provenance& provenance) {
   const auto recorded = read_recorded(file);
   if (!recorded) return tl::unexpected(recorded.error());

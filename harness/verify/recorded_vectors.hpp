@@ -1,4 +1,4 @@
-// The vectors of a folder of `attest vectors`: written for a suite, and checked against one.
+// Writes vectors to a folder of `attest vectors`, and checks such a folder.
 #pragma once
 
 #include <cstddef>
@@ -13,24 +13,25 @@
 
 namespace attest {
 
-// Writes the inputs of the vectors that the port can run, a file each, and adds them to the
-// folder's manifest, which is made if there is none (recording/manifest.hpp). Flights are left out,
-// because their inputs depend on the outputs. Mixers are named in the provenance.toml next to the
-// files. Returns the number of files. Errors: a file that cannot be read or written; the manifest
-// is of a port with another fixed step; no vector is left.
+// Writes the inputs of the vectors that a recorded port can run, a file each, and adds them to the
+// folder's manifest, which is made if there is none (recording/manifest.hpp). Leaves out flights
+// (their inputs depend on the outputs), cases with two instances, and vectors that do not keep
+// `fixed_step`. The provenance.toml next to the files has the mixer definitions. Returns the
+// number of files. Errors: a file cannot be read or written; the manifest has another fixed step;
+// no vector is left.
 Result<std::size_t> write_recorded_vectors(const std::filesystem::path& folder, TableFormat format,
                                            const std::vector<SelectedCase>& cases,
                                            std::optional<Rate> fixed_step);
 
 struct RecordedVectors {
-  std::size_t selected = 0;          // without flights
-  std::size_t answered = 0;          // of these
+  std::size_t selected = 0;          // vectors that a recorded port can run
+  std::size_t answered = 0;          // of these, the vectors with a file of outputs
   std::string first;                 // the first file of outputs
-  std::vector<std::string> ignored;  // its columns that have no meaning to attest
+  std::vector<std::string> ignored;  // columns of that file that attest does not know
 };
 
-// Errors: none of the selected vectors is answered; the inputs that the manifest was written with
-// are not those that the case makes now.
+// Finds the outputs of the selected vectors. Errors: no vector has outputs; the inputs of a vector
+// with outputs are not those that its case makes now; the manifest cannot be read.
 Result<RecordedVectors> check_recorded_vectors(const std::filesystem::path& folder,
                                                const PortSays& port,
                                                const std::vector<SelectedCase>& cases);

@@ -18,42 +18,42 @@ struct Limits {
   bool own_process = true;        // false: it shared the judge's process
   double timeout_s = 0;           // for each answer
   std::optional<int> memory_gib;  // empty: no limit
-  int file_mib = 0;               // of each file it writes
+  int file_mib = 0;               // of each file that the port writes
 };
 
 // The results are in the order of the cases, for any number of jobs.
 struct RunResult {
   std::string attest_version;
-  std::string command = "run";  // the command of attest that made it: run or stress
-  std::string timing;           // the file that was replayed; empty: the cases' own times
+  std::string command = "run";  // the command that was run: run or stress
+  std::string timing;           // file of the recorded times; empty: the cases' own times
   std::string port;             // as given: "lib:./libmine.so"
   std::string port_name;        // declared by the port
   std::string port_version;
   std::optional<int> fraction_bits;         // of a port in fixed point
   std::optional<Rate> fixed_step;           // of a port with a fixed sample time
-  std::vector<ParameterChange> parameters;  // of --param, in place of the cases'
+  std::vector<ParameterChange> parameters;  // of --param; they replace the cases' own
   ChannelSet not_recorded;                  // outputs that a recorded port does not have
   Level level = Level::numeric;
   std::vector<LoopRate> rates;      // selected, ascending
-  std::string selection;            // the options that selected a part, except --shard
-  bool all_configurations = false;  // of each selected case, all were selected
+  std::string selection;            // the options that selected vectors, except --shard
+  bool all_configurations = false;  // each selected case is selected in all its configurations
   Shard shard;                      // the part of the selected vectors that was run
   std::size_t selected = 0;         // vectors of that shard
-  // "profile/group" -> how many cases the suite has at each rate, selected or not.
+  // "profile/group" -> the number of the suite's vectors at each rate, selected or not.
   std::map<std::string, std::map<LoopRate, std::size_t>> suite;
-  std::string suite_folder;  // as --suite gives it; empty: the suite was found
+  std::string suite_folder;  // as given with --suite; empty: not given
   std::string cases_version = "unversioned", golden_version = "unversioned";  // of the suite
-  std::string suite_reference;     // the port whose outputs its goldens are; empty: attest's own
-  std::string suite_sha256;        // of its content
+  std::string suite_reference;     // the port that made the goldens; empty: attest's reference
+  std::string suite_sha256;        // of the suite's content
   bool suite_is_released = false;  // this attest was released with that content
-  std::string port_sha256;         // of its library; empty: the port is part of attest
+  std::string port_sha256;         // of the port's files; empty: the port is part of attest
   Limits limits;                   // of the port
   std::string date;                // of the run, UTC: "2026-03-31"
   std::vector<CaseResult> results;
-  std::vector<Error> errors;   // of the environment: a golden that cannot be read, ...
-  bool stopped_early = false;  // --fail-fast
+  std::vector<Error> errors;   // of the environment, such as a golden that cannot be read
+  bool stopped_early = false;  // vectors were left out, for example after --fail-fast
 
-  // The options that selected a part: "--group tpa --shard 2/4"; empty: everything.
+  // The options that selected vectors: "--group tpa --shard 2/4"; empty: all were selected.
   std::string selection_text() const;
 
   std::size_t count(Verdict verdict) const;

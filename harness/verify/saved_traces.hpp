@@ -11,7 +11,7 @@
 
 namespace attest {
 
-// True if the traces of this result are to be saved: there is a folder, and the result fails.
+// True if there is a folder, and the result fails.
 bool saves_traces(const std::filesystem::path& folder, const CaseResult& result);
 
 // The traces of a failing vector. Both have the inputs that the port was given.
@@ -21,20 +21,20 @@ struct JudgedTraces {
   const Tolerances& tolerances;
 };
 
-// Their files, in the folder of the case. The stem is the label of the run configuration; of the
-// attitude unit in a flight, also its name.
+// The files of the traces, in the folder of the case. The stem is the label of the run
+// configuration. For the attitude unit of a flight, the name of this module follows.
 struct TraceFiles {
   std::filesystem::path got, want;
-  std::filesystem::path tolerance;  // allowed |got - want| in place of each output, as in want
+  std::filesystem::path tolerance;  // has the allowed |got - want| in place of each output
 };
 TraceFiles trace_files(const std::filesystem::path& folder, const CaseResult& result,
                        Module module);
 
-// Writes FOLDER/PROFILE/GROUP/NAME/CONFIGURATION.got.csv, .want.csv and .tolerance.csv, and the
-// provenance.toml with which `attest replay` reads them. If `got` has no tick, only .want.csv is
-// written. The level events has no tolerances, so no .tolerance.csv. If a file cannot be written,
-// the result's reason says so. REQUIRES: saves_traces(). Threads: processes may save vectors of the
-// same case at the same time.
+// Writes FOLDER/PROFILE/GROUP/NAME/CONFIGURATION.got.csv, .want.csv and .tolerance.csv
+// (trace_files()), and the provenance.toml with which `attest replay` reads them. If `got` has no
+// tick, .want.csv is the only trace. The level events has no tolerances, so no .tolerance.csv. If a
+// file cannot be written, the result's reason says so. Several processes may save vectors of the
+// same case at the same time. REQUIRES: saves_traces().
 void save_traces(const std::filesystem::path& folder, const Subject& subject,
                  const JudgedTraces& traces, CaseResult& result);
 

@@ -1,4 +1,4 @@
-// Wall time of a result, for JUnit only: no verdict depends on it.
+// Measures the wall time of a result, on which no verdict depends.
 #pragma once
 
 #include <chrono>

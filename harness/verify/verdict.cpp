@@ -59,7 +59,7 @@ bool RunResult::failed() const {
 }
 
 bool MetricResult::within() const {
-  // An infinite reference makes every difference infinite, and its tolerance can be infinite too.
+  // With an infinite reference, difference and tolerance may both be infinite, and `<=` would hold.
   const bool near =
       value == reference || (std::isfinite(reference) && std::abs(value - reference) <= tolerance);
   return near && value >= min && value <= max;

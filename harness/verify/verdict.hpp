@@ -1,4 +1,4 @@
-// The verdict on one case at one rate. It does not depend on the catalogue of wrong controllers.
+// The verdict on one vector: a case in one run configuration.
 #pragma once
 
 #include <optional>
@@ -13,24 +13,24 @@
 
 namespace attest {
 
-// Only pass counts as conformant. pass, unsupported, skip and xfail do not fail a run; all others
-// do.
+// pass, unsupported, skip and xfail do not fail a run; all others do.
 enum class Verdict {
   pass,
-  fail,         // an output differs, or the port reported a failure
+  fail,         // an output or a metric is wrong, or the port reported a failure
   crash,        // the port's process died
   timeout,      // no answer in time
   protocol,     // the port broke the rules of the ABI
-  non_finite,   // NaN or Inf where the golden has a number
-  unsupported,  // the port declared that it does not support this
-  skip,         // not run, with a reason (profile not supported, exact-level case)
-  xfail,        // failed, as expected
+  non_finite,   // NaN or Inf where the expected output is a number
+  unsupported,  // excluded by a declaration of the port, or by ATTEST_UNSUPPORTED
+  skip,         // not judged, for the given reason (profile not supported, exact-level case)
+  xfail,        // failed as expected (expected.hpp)
   xpass,        // passed although expected to fail
 };
 
 inline constexpr int verdict_count = 10;
 
-// The reason of the only kind of skip that a conformant run may have.
+// The reason of a skipped case that is compared at the exact level only. Below that level a claim
+// of conformance counts such a case like a pass (claim.cpp).
 inline constexpr std::string_view exact_level_only =
     "on a threshold of the law: compared at the exact level only";
 
@@ -38,16 +38,16 @@ std::string_view name_of(Verdict verdict);  // "non-finite"
 std::optional<Verdict> parse_verdict(std::string_view name);
 bool fails_a_run(Verdict verdict);
 
-// A metric of a flight, with its bounds.
 struct MetricResult {
-  std::string name;  // as the case calls it
+  std::string name;  // its key in the case
   Measure measure = Measure::settling_time_s;
   double value = 0;
-  double reference = 0;  // of the golden
+  double reference = 0;  // the value of the reference's flight
   double tolerance = 0;  // allowed |value - reference|
   double min = 0, max = 0;
 
-  // Infinite values agree with each other; NaN agrees with no value.
+  // Whether `value` is from `min` to `max`, and within the tolerance of the reference. Infinities
+  // of the same sign are within the tolerance; NaN never is.
   bool within() const;
 };
 
@@ -58,18 +58,18 @@ struct CaseResult {
   LoopRate rate;
   std::optional<PlantConfiguration> plant_configuration;  // of a flight
   Verdict verdict = Verdict::pass;
-  std::string reason;     // one line; empty for a plain pass
+  std::string reason;     // one line; may be empty for a pass, or if `first` shows the failure
   std::size_t ticks = 0;  // compared
   std::size_t deviating_ticks = 0;
   std::optional<Deviation> first, worst;
   std::optional<Headroom> tightest;
-  std::vector<MetricResult> metrics;  // of a flight without fault and early end
-  double elapsed_s = 0;  // of wall time, for JUnit only: everything else is deterministic
+  std::vector<MetricResult> metrics;  // of a flight without a fault that did not end early
+  double elapsed_s = 0;               // wall time; no verdict depends on it
 
   std::string case_id() const { return profile + "/" + group + "/" + name; }
   RunConfiguration configuration() const { return {rate, plant_configuration}; }
-  // "px4-v1.5.5/attitude/roll_30@250hz", "px4-v1.5.5/flight/hover@250hz-iris-ode": what --filter
-  // matches and what a report names.
+  // "px4-v1.5.5/attitude/roll_30@250hz", "px4-v1.5.5/flight/hover@250hz-iris-ode". Reports show
+  // this id, and patterns of --filter match it.
   std::string id() const { return case_id() + "@" + configuration().label(); }
 };
 

@@ -65,7 +65,7 @@ std::size_t channel_from(JsonReader& reader, const char* key) {
   return 0;
 }
 
-// The sign and the payload of a NaN are in its bits only.
+// Returns `value`; if it is NaN, with the sign and the payload of the bits under `key`.
 double with_bits(JsonReader& reader, double value, const char* key) {
   if (!reader.has(key)) return value;
   const std::string text = reader.text(key);

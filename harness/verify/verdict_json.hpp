@@ -10,9 +10,10 @@
 // "settling_time_s", "value": 0.62, "reference": 0.61, "tolerance": 0.08, "min": "-inf", "max": 1,
 // "within": true}.
 //
-// `first` and `tightest` are absent when the result has no such value. JSON has no NaN and no
-// infinity: a number that is not finite is the string "nan", "inf" or "-inf". Channels are given by
-// name. Values of float32 channels have their bits in addition to the number.
+// `first`, `worst` (same members as `first`) and `tightest` are absent when the result has no such
+// value. JSON has no NaN and no infinity: a number that is not finite is the string "nan", "inf" or
+// "-inf". Channels are given by name. `got` and `want` of a float32 channel have their bits in
+// addition to the number.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -22,11 +23,11 @@
 
 namespace attest {
 
-// Text of the port stays as it is: text_of() and document_of() repair invalid UTF-8.
+// Text of the port may be invalid UTF-8, which text_of() and document_of() repair.
 nlohmann::json to_json(const CaseResult& result);
 
-// The inverse. Errors: a discarded value (json_from), a missing or wrong
-// member, an unknown verdict, channel or rate. Unknown and derived members (id, stage) are ignored.
+// The inverse of to_json(). Errors: a discarded value (json_from), a missing or wrong member, an
+// unknown verdict, channel or rate. Unknown and derived members (id, stage, within) are ignored.
 Result<CaseResult> case_result_from_json(const nlohmann::json& json);
 
 }  // namespace attest
