@@ -78,7 +78,7 @@ std::span<const FlightMode> flight_modes(Module module) {
 
 std::array<std::uint8_t, 6> FlightMode::flags_in_transition() const {
   auto result = flags;
-  if (name.starts_with("AUTO_")) result.back() = 0;  // flag_control_velocity_enabled
+  if (name.starts_with("AUTO_")) result.back() = 0;  // velocity
   return result;
 }
 
