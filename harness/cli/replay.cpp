@@ -152,9 +152,14 @@ class Replay {
     return is_log(file) ? replay_log(file) : replay_trace(file);
   }
 
-  // Starts the port's process unless there is one. Call it before the recorded outputs are read,
-  // because the port's process is a copy of this process, and must not contain them.
-  Result<void> start() { return ensure_host(host_, options_.host); }
+  // Starts the port's process unless one runs. It is called before a file is read, because the
+  // port's process is a copy of this process, and must not contain the recorded outputs. So if the
+  // port crashes or hangs on one unit of a log, its other unit is not run.
+  Result<void> start() {
+    if (timed_out_) host_.reset();
+    timed_out_ = false;
+    return ensure_host(host_, options_.host);
+  }
 
   Result<void> replay_trace(const std::string& file) {
     const auto recorded = recorded_in(file, options_);
@@ -207,7 +212,6 @@ class Replay {
 
   Result<void> judge_unit(const FlightLog& log, const LoggedUnit& unit,
                           std::vector<LogResult>& results) {
-    if (auto started = start(); !started) return started;
     const LogResult& found = results.emplace_back(evaluate_log(
         unit, log.profile, *host_, options_.log_limits, parameters_of(options_, log, unit)));
     count(found.result);
@@ -226,7 +230,7 @@ class Replay {
   }
 
   void count(const CaseResult& result) {
-    if (result.verdict == Verdict::timeout) host_.reset();  // the next trace gets a new process
+    timed_out_ = timed_out_ || result.verdict == Verdict::timeout;
     passed_ += result.verdict == Verdict::pass ? 1 : 0;
     failed_ += fails_a_run(result.verdict) ? 1 : 0;
   }
@@ -249,6 +253,7 @@ class Replay {
   std::string arithmetic_;  // of the port, if it is not floating point
   std::FILE* out_;
   std::unique_ptr<PortHost> host_;
+  bool timed_out_ = false;  // the port in host_
   std::size_t passed_ = 0;
   std::size_t failed_ = 0;
   bool are_logs_ = false;  // a file was a flight log, which cannot prove conformance

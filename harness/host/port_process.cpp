@@ -31,6 +31,12 @@ void set_outputs(const std::vector<Sample>& answered, Trace& trace) {
   }
 }
 
+// The fault of a request to a port that had `kind` before.
+std::string not_run(PortFault::Kind kind) {
+  return kind == PortFault::Kind::timeout ? "not run: the port had timed out before"
+                                          : "not run: the port's process had ended before";
+}
+
 class PortProcess final : public PortHost {
  public:
   // `port` is empty if it is not started (HostOptions::hangs).
@@ -110,7 +116,7 @@ class PortProcess final : public PortHost {
       -> std::invoke_result_t<Read, const Arrived&> {
     const bool was_asked = std::exchange(was_asked_, true);
     if (fault_) {
-      if (was_asked && !is_spent()) fault_->what = "not run: the port had timed out before";
+      if (was_asked) fault_->what = not_run(fault_->kind);
       return std::nullopt;
     }
     ++request_;
@@ -194,7 +200,7 @@ class PortProcess final : public PortHost {
   std::optional<PortChild> port_;
   PortSays says_;
   std::uint64_t request_ = 0;
-  bool was_asked_ = false;          // by a request; after a timeout, later ones are `not run`
+  bool was_asked_ = false;          // by a request; after a fault, later ones are `not run`
   std::optional<PortFault> fault_;  // permanent
 };
 

@@ -174,6 +174,9 @@ static int attitude_step(void* self, const attest_attitude_inputs* in,
                          attest_attitude_outputs* out) {
   static int ticks;
   const int result = attitude_unit_table.step(self, in, out);
+#ifdef CRASH
+  if (++ticks == 10) __builtin_trap();
+#endif
 #ifdef WILD_RATES
   if (++ticks % 25 == 0) out->vehicle_rates_setpoint.roll = WILD_RATES;
 #endif
@@ -241,6 +244,15 @@ WILD
   [ "$status" -eq 1 ]
   judged pass fail
   has "4.0% of vehicle_torque_setpoint are not explained; at most 2% may be"
+}
+
+# A new process for the rate unit would have the outputs of the log in its memory.
+@test "after a crash in one unit of a log, the port is not run on the other one" {
+  wild -DCRASH
+  run "$ATTEST" replay "$FLIGHT" --port lib:./wild.so
+  [ "$status" -eq 1 ]
+  judged crash crash
+  has "not run: the port's process had ended before"
 }
 
 @test "NaN fails in a rate unit that is otherwise not judged" {
