@@ -175,6 +175,11 @@ void set_integer(const Channel& channel, Sample& sample, std::uint64_t value) {
   store(sample, channel.offset, static_cast<std::uint8_t>(value));
 }
 
+void copy_value(const Channel& channel, const Sample& from, Sample& to) {
+  if (channel.type == ChannelType::u64) return set_integer(channel, to, integer_of(channel, from));
+  set_value(channel, to, value_of(channel, from));
+}
+
 float float_of(const Channel& channel, const Sample& sample) {
   return load<float>(sample, channel.offset);
 }

@@ -111,8 +111,9 @@ double value_of(const Channel& channel, const Sample& sample);
 bool same_bits(const Channel& channel, const Sample& a, const Sample& b);
 // REQUIRES: 0 <= value < 2^53 for u64, an integer 0..255 for u8; any value for f32 and bit.
 void set_value(const Channel& channel, Sample& sample, double value);
-float float_of(const Channel& channel, const Sample& sample);            // REQUIRES: type f32
-std::uint64_t integer_of(const Channel& channel, const Sample& sample);  // REQUIRES: type u64
+void copy_value(const Channel& channel, const Sample& from, Sample& to);  // every bit of it
+float float_of(const Channel& channel, const Sample& sample);             // REQUIRES: type f32
+std::uint64_t integer_of(const Channel& channel, const Sample& sample);   // REQUIRES: type u64
 // REQUIRES: type u64, or type u8 with `value` at most 255.
 void set_integer(const Channel& channel, Sample& sample, std::uint64_t value);
 

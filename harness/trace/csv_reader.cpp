@@ -113,7 +113,7 @@ class Base {
     sample = base;
     for (std::size_t i = 0; i < channels().size(); ++i) {
       const Channel& channel = channels()[i];
-      if (own_[i]) set_value(channel, sample, value_of(channel, own));
+      if (own_[i]) copy_value(channel, own, sample);
     }
     return {};
   }

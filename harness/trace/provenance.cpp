@@ -99,25 +99,24 @@ std::uint64_t canonical_bits(double value) {
                                                         : value);
 }
 
-// The value of a channel if it is the same in every sample.
+// The value of a channel if it is the same in every sample, and a double can hold it.
 std::optional<double> constant_value(const Channel& channel, const std::vector<Trace>& traces) {
-  const double first = value_of(channel, traces.front().samples.front());
-  const std::uint64_t bits = canonical_bits(first);
+  const Sample& first = traces.front().samples.front();
+  constexpr std::uint64_t inexact_from = std::uint64_t{1} << 53;
+  if (channel.type == ChannelType::u64 && integer_of(channel, first) >= inexact_from) return {};
   for (const Trace& trace : traces) {
     for (const Sample& sample : trace.samples) {
-      if (canonical_bits(value_of(channel, sample)) != bits) return std::nullopt;
+      if (!same_bits(channel, sample, first)) return std::nullopt;
     }
   }
-  return first;
+  return value_of(channel, first);
 }
 
 bool is_same(const Channel& channel, const std::vector<Trace>& traces,
              const std::vector<Trace>& base) {
   for (std::size_t i = 0; i < traces.size(); ++i) {
     for (std::size_t tick = 0; tick < traces[i].samples.size(); ++tick) {
-      const double value = value_of(channel, traces[i].samples[tick]);
-      const double other = value_of(channel, base[i].samples[tick]);
-      if (canonical_bits(value) != canonical_bits(other)) return false;
+      if (!same_bits(channel, traces[i].samples[tick], base[i].samples[tick])) return false;
     }
   }
   return true;

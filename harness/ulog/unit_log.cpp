@@ -188,7 +188,7 @@ class UnitOfLog {
       if (value_of(published, sample) != 0) continue;
       for (const LogField& field : output.topic().fields) {
         const Channel& channel = channels()[field.channel];
-        set_value(channel, sample, value_of(channel, trace().samples[tick - 1]));
+        copy_value(channel, trace().samples[tick - 1], sample);
       }
     }
   }

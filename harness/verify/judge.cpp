@@ -75,7 +75,7 @@ void fill_in(const ChannelSet& not_recorded, const Trace& want, Trace& answered)
   for (std::size_t i = 0; i < channels().size(); ++i) {
     if (!filled[i]) continue;
     for (std::size_t tick = 0; tick < answered.samples.size(); ++tick) {
-      set_value(channels()[i], answered.samples[tick], value_of(channels()[i], want.samples[tick]));
+      copy_value(channels()[i], want.samples[tick], answered.samples[tick]);
     }
   }
   keep_unpublished(answered);

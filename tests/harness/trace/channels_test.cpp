@@ -160,6 +160,16 @@ TEST(Channels, AreComparedToTheBit) {
   EXPECT_FALSE(same_bits(scale, a, b));
 }
 
+TEST(Channels, AreCopiedToTheBit) {
+  Sample from{}, to{};
+  set_integer(channel("timestamp"), from, (std::uint64_t{1} << 53) + 1);
+  set_value(channel("in/battery_status.scale"), from, -0.0);
+  for (const char* name : {"timestamp", "in/battery_status.scale"}) {
+    copy_value(channel(name), from, to);
+    EXPECT_TRUE(same_bits(channel(name), from, to)) << name;
+  }
+}
+
 TEST(Channels, HaveTheStageThatWritesThem) {
   EXPECT_EQ(channel("in/vehicle_rates_setpoint.roll").stage, Stage::input);
   EXPECT_EQ(channel("out/vehicle_rates_setpoint.roll").stage, Stage::attitude_law);
