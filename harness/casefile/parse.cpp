@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-EitherBranch parse_either_branch(const TomlTable& root) {
+EitherBranch parse_either_branch(const TomlTable& root, Module module) {
   constexpr const char* key = "either_branch";
   EitherBranch branches;
   if (!root.has(key)) return branches;
@@ -37,7 +37,7 @@ EitherBranch parse_either_branch(const TomlTable& root) {
       root.error(key, fmt::format("no decision `{}`; use yaw_wrap, shorter_rotation", decision));
     }
   }
-  if (root.has("level") || root.has("flight") || root.has("mixer") || root.has("battery")) {
+  if (root.has("level") || root.has("flight") || module != Module::mc_att_control) {
     root.error(key, "is for the controller in open loop, at any level");
   }
   return branches;
@@ -273,7 +273,7 @@ void parse_body(const TomlTable& root, Case& parsed) {
     parsed.numeric_only = level == "numeric";
     if (level != "numeric" && level != "exact") root.error("level", "must be numeric or exact");
   }
-  parsed.either_branch = parse_either_branch(root);
+  parsed.either_branch = parse_either_branch(root, parsed.module);
   if (parsed.either_branch.any() && most_ticks(parsed) > 1000) {
     root.error("either_branch",
                "is for cases of at most 1000 ticks, whose goldens keep every tick");

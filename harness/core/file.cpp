@@ -119,7 +119,12 @@ Result<int> open_regular_file(const fs::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (file < 0) return system_failure(path, "cannot open the file");
   struct stat status;
-  if (::fstat(file, &status) == 0 && S_ISREG(status.st_mode)) return file;
+  if (::fstat(file, &status) != 0) {
+    auto failure = system_failure(path, "cannot open the file");
+    ::close(file);
+    return failure;
+  }
+  if (S_ISREG(status.st_mode)) return file;
   ::close(file);
   return fail_at(path.string(), fmt::format("not a regular file but {}", kind_of(status.st_mode)));
 }

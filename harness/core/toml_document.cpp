@@ -102,7 +102,8 @@ Result<void> set_number(toml::table& root, const std::string& text, double value
   if (!table) return tl::unexpected(table.error());
   prefer_literal_key(**table, path);
   if (const auto node = find_number(**table, path); !node) return tl::unexpected(node.error());
-  if (value == std::floor(value) && std::abs(value) < whole_below) {
+  const bool is_negative_zero = value == 0 && std::signbit(value);  // no integer has this sign
+  if (value == std::floor(value) && std::abs(value) < whole_below && !is_negative_zero) {
     put(**table, path, static_cast<std::int64_t>(value));
   } else {
     put(**table, path, value);

@@ -1,6 +1,5 @@
 #include "harness/host/smoke.hpp"
 
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -24,10 +23,10 @@ std::string difference(const Trace& now, const Trace& before, Module module) {
     for (std::size_t i = 0; i < channels().size(); ++i) {
       const Channel& channel = channels()[i];
       if (!outputs[i]) continue;
-      const double is = value_of(channel, now.samples[tick]);
-      const double was = value_of(channel, before.samples[tick]);
-      if (is == was || (std::isnan(is) && std::isnan(was))) continue;
-      return fmt::format("{} at tick {} is {:g}, it was {:g}", channel.name, tick, is, was);
+      if (same_bits(channel, now.samples[tick], before.samples[tick])) continue;
+      return fmt::format("{} at tick {} is {:g}, it was {:g}", channel.name, tick,
+                         value_of(channel, now.samples[tick]),
+                         value_of(channel, before.samples[tick]));
     }
   }
   return "";

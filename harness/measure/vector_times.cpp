@@ -126,9 +126,9 @@ Result<CorpusTimes> time_corpus(const std::vector<SelectedCase>& cases, const Ti
       for (const Nanoseconds step : vector->steps) times.steps.add(step);
       on_result(vector->result);
       times.vectors.push_back(*std::move(vector));
+      times.clock = stopwatches.clock();
     }
   }
-  times.clock = stopwatches.clock();
   return times;
 }
 

@@ -102,9 +102,7 @@ void parse_requirements(const TomlTable& root, SweepFile& sweep) {
   const DesignKind design = sweep.design.kind;
   if (!sweep.requirements.empty() &&
       (design == DesignKind::sobol || design == DesignKind::saltelli)) {
-    root.error("require",
-               "needs a design with an interval for the probability: `monte_carlo` or "
-               "`latin_hypercube`");
+    root.error("require", "needs the design `monte_carlo`, `latin_hypercube` or `grid`");
   }
   constexpr const char* key = "stop_when_decided";
   sweep.stop_when_decided = root.boolean(key, false);

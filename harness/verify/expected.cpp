@@ -151,6 +151,8 @@ std::string expected_failures_of(const RunResult& run) {
   }
   TomlWriter toml;
   const auto reason = [](const std::vector<const CaseResult*>& failed) {
+    // Of an expected failure: the verdicts that the list excuses, and the user's reason.
+    if (failed.front()->verdict == Verdict::xfail) return failed.front()->reason;
     std::vector<Verdict> verdicts;
     for (const CaseResult* result : failed) verdicts.push_back(result->verdict);
     std::ranges::sort(verdicts);
@@ -159,7 +161,10 @@ std::string expected_failures_of(const RunResult& run) {
   };
   for (const auto& [id, count] : cases) {
     if (count.failed.empty()) continue;
-    if (run.all_configurations && run.shard.count == 1 && count.failed.size() == count.all) {
+    const bool has_expected = std::ranges::any_of(
+        count.failed, [](const CaseResult* result) { return result->verdict == Verdict::xfail; });
+    const bool all_failed = count.failed.size() == count.all && !has_expected;
+    if (run.all_configurations && run.shard.count == 1 && all_failed) {
       toml.set("expected", id + "@*", reason(count.failed));
       continue;
     }

@@ -164,6 +164,8 @@ TEST(CaseErrors, EitherBranch) {
             "6:1: no decision `yaw`; use yaw_wrap, shorter_rotation");
   EXPECT_THAT(errors_of("either_branch = [\"yaw_wrap\"]\nlevel = \"exact\"\n"),
               HasSubstr("6:1: is for the controller in open loop"));
+  EXPECT_THAT(errors_of("either_branch = [\"yaw_wrap\"]\nmodule = \"rate_unit\"\n"),
+              HasSubstr("6:1: is for the controller in open loop"));
 }
 
 TEST(CaseErrors, AParameterExistsInEveryProfileOfTheFile) {

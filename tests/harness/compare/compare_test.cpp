@@ -158,10 +158,11 @@ TEST(Compare, WhatTheOtherDidNotRecordIsAMismatch) {
   Trace got = want;
   got.present.reset(channel(roll));
   EXPECT_THAT(compare(got, want, Tolerances()).mismatch,
-              HasSubstr("out/vehicle_rates_setpoint.roll was not recorded"));
+              HasSubstr("got lacks out/vehicle_rates_setpoint.roll, which want has"));
   got.present.reset(channel("out/vehicle_rates_setpoint.yaw"));
-  EXPECT_EQ(compare(got, want, Tolerances()).mismatch,
-            "out/vehicle_rates_setpoint.roll, out/vehicle_rates_setpoint.yaw were not recorded");
+  EXPECT_EQ(
+      compare(got, want, Tolerances()).mismatch,
+      "got lacks out/vehicle_rates_setpoint.roll, out/vehicle_rates_setpoint.yaw, which want has");
 }
 
 TEST(Compare, WhatOnlyTheJudgedTraceHasIsNamed) {

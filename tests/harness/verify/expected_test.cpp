@@ -139,6 +139,17 @@ TEST_F(Expected, WhatIsWrittenIsReadAndExcusesTheRun) {
   EXPECT_FALSE(applied(text).failed());
 }
 
+// The shards of a run can have a list. A new list that is made from their merged reports keeps it.
+TEST_F(Expected, AnExpectedFailureIsWrittenWithItsReason) {
+  run_.results = {result_of("b", Verdict::crash)};
+  const std::string list = "[expected]\n\"px4-v1.5.5/tpa/b@*\" = \"crash, timeout: known\"\n";
+  RunResult merged = applied(list);
+  merged.all_configurations = true;
+  const std::string text = expected_failures_of(merged);
+  EXPECT_THAT(text, HasSubstr("'px4-v1.5.5/tpa/b@250hz' = 'crash, timeout: known'"));
+  EXPECT_FALSE(applied(text).failed());
+}
+
 TEST_F(Expected, OneConfigurationThatFailsIsWrittenByItself) {
   run_.results.push_back(result_of("b", Verdict::pass, Rate::hz(1000)));
   EXPECT_THAT(expected_failures_of(run_), HasSubstr("'px4-v1.5.5/tpa/b@50hz' = 'non-finite: say"));
