@@ -108,6 +108,7 @@ std::string other_line(const CLI::App& command, const std::string& name) {
   std::vector<std::string> options;
   std::string values;
   for (const CLI::Option* option : command.get_options()) {
+    if (option->get_group().empty()) continue;  // hidden
     if (option->get_positional() && values.empty()) values = values_of(*option);
     for (const std::string& each : names_of(*option)) options.push_back(each);
   }

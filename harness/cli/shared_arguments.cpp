@@ -86,9 +86,9 @@ void add_page(CLI::App& command, std::string& file, const char* what) {
       ->group(option_group::reports);
 }
 
-void add_jobs(CLI::App& command, int& jobs, const char* what) {
+void add_jobs(CLI::App& command, int& jobs, const char* what, const char* usual) {
   jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  command.add_option("--jobs,-j", jobs, fmt::format("{}; default: one for each CPU", what))
+  command.add_option("--jobs,-j", jobs, fmt::format("{}; default: {}", what, usual))
       ->type_name("N")
       ->check(CLI::Range(1, 1024))
       ->group(option_group::execution);
@@ -114,7 +114,7 @@ void add_plant(CLI::App& command, std::string& vehicle, std::string& plant,
       ->type_name("PLANT");
 }
 
-void add_selection(CLI::App& command, SelectionOptions& options) {
+void add_selection(CLI::App& command, SelectionOptions& options, Selects selects) {
   const auto add = [&](const char* name, std::vector<std::string>& values, const char* what,
                        const char* type) {
     return command.add_option(name, values, what)
@@ -122,10 +122,14 @@ void add_selection(CLI::App& command, SelectionOptions& options) {
         ->allow_extra_args(false)
         ->group(option_group::selection);
   };
+  const bool with_flights = selects == Selects::all_vectors;
   add("--filter", options.filters,
-      "Only vectors whose id matches this shell pattern: PROFILE/GROUP/NAME@RATEhz, "
-      "for a flight PROFILE/GROUP/NAME@RATEhz-VEHICLE-PLANT; PROFILE/ and the part "
-      "from @ on are optional",
+      with_flights ? "Only vectors whose id matches this shell pattern: "
+                     "PROFILE/GROUP/NAME@RATEhz, for a flight "
+                     "PROFILE/GROUP/NAME@RATEhz-VEHICLE-PLANT; PROFILE/ and the part from @ on "
+                     "are optional"
+                   : "Only vectors whose id matches this shell pattern: "
+                     "PROFILE/GROUP/NAME@RATEhz; PROFILE/ and @RATEhz are optional",
       "GLOB");
   add("--exclude", options.excludes, "Leave out the vectors whose id matches this shell pattern",
       "GLOB");
@@ -135,9 +139,11 @@ void add_selection(CLI::App& command, SelectionOptions& options) {
       "PROFILE")
       ->delimiter(',');
   add_rates(command, options.rates,
-            "Only these loop rates [Hz], separated by commas; flights of v1.14 to v1.16 "
-            "have pairs such as 250:1000")
+            with_flights ? "Only these loop rates [Hz], separated by commas; flights of v1.14 to "
+                           "v1.16 have pairs such as 250:1000"
+                         : "Only these loop rates [Hz], separated by commas")
       ->group(option_group::selection);
+  if (!with_flights) return;
   add("--vehicle", options.vehicles, "Only flights of these vehicles, separated by commas",
       "VEHICLE")
       ->delimiter(',');

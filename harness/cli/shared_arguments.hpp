@@ -1,6 +1,7 @@
 // Options that several commands have.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <initializer_list>
 #include <string>
@@ -41,7 +42,10 @@ std::string value_name(const CLI::Option& option);
 // be called before the commands are added: they copy the formatter that exists then.
 void use_plain_flag_names(CLI::App& app);
 
-void add_selection(CLI::App& command, SelectionOptions& options);  // --filter and related
+enum class Selects : std::uint8_t { all_vectors, open_loop };
+// --filter and related. Without --vehicle and --plant, which select flights, for `open_loop`.
+void add_selection(CLI::App& command, SelectionOptions& options,
+                   Selects selects = Selects::all_vectors);
 CLI::Option* add_rates(CLI::App& command, std::vector<std::string>& rates, const char* what);
 void add_plant(CLI::App& command, std::string& vehicle, std::string& plant,
                const char* usual_vehicle = "the lead vehicle of the case",
@@ -54,6 +58,8 @@ void add_assumed(CLI::App& command, std::vector<std::string>& assumed);
 void add_timeout(CLI::App& command, double& timeout_s);
 // --html: the file of a page; `what` describes the page.
 void add_page(CLI::App& command, std::string& file, const char* what);
-void add_jobs(CLI::App& command, int& jobs, const char* what);  // default: one per CPU
+// `usual` describes the default, which is one per CPU.
+void add_jobs(CLI::App& command, int& jobs, const char* what,
+              const char* usual = "one for each CPU");
 
 }  // namespace attest::cli

@@ -89,8 +89,8 @@ void add_from_log(CLI::App& command, VectorOptions& options) {
            "the log");
   add_assumed(command, options.assumed);
   command.get_option("--assume")->needs(log);
-  for (const char* other : {"--lint", "--format", "--fixed-step", "--filter", "--exclude",
-                            "--group", "--rate", "--vehicle", "--plant"}) {
+  for (const char* other :
+       {"--lint", "--format", "--fixed-step", "--filter", "--exclude", "--group", "--rate"}) {
     log->excludes(command.get_option(other));
   }
 }
@@ -121,7 +121,7 @@ void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
                    "that begin at one period; default: all vectors")
       ->type_name("HZ")
       ->excludes(lint);
-  add_selection(*command, options->select);
+  add_selection(*command, options->select, Selects::open_loop);
   add_from_log(*command, *options);
   add_examples(
       *command,
@@ -147,6 +147,8 @@ void add_bless(CLI::App& app, const Globals& globals, Action& action) {
   CLI::App* command = app.add_subcommand(
       "bless", "Make new golden traces from the reference, after showing the changes");
   add_selection(*command, options->select);
+  // Hidden: bless_command() refuses it, and says what to use instead.
+  command->get_option("--exclude")->group("");
   command
       ->add_option("--reason", options->reason,
                    "Reason of the change, which is stored in provenance.toml (required)")

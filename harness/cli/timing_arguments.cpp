@@ -226,10 +226,9 @@ void add_sweep(CLI::App& app, const Globals& globals, Action& action) {
            "a page with the requirements, distributions, sensitivities and worst flights");
   add_shard_plan(*command, *options);
   add_timeout(*command, options->host.timeout_s);
-  // add_jobs() appends "; default: one for each CPU".
   add_jobs(*command, options->jobs,
-           "Number of samples that fly at the same time; with --plan, in each shard "
-           "(default: 1)");
+           "Number of samples that fly at the same time, with --plan in each shard",
+           "one for each CPU; with --plan, 1");
   add_examples(
       *command,
       {{"attest sweep SWEEP.toml --out results --keep-worst 3 --html sweep.html",
@@ -287,7 +286,7 @@ void add_time(CLI::App& app, const Globals& globals, Action& action) {
                          "Measure the execution time and the stack use of a port's steps in the "
                          "open-loop vectors");
   add_port(*command, options->host.port);
-  add_selection(*command, options->select);
+  add_selection(*command, options->select, Selects::open_loop);
   command
       ->add_option("--repeat", options->measure.repeats,
                    "Number of runs of each vector; the shortest time of each step counts")
