@@ -75,8 +75,7 @@ TickComparer::TickComparer(const ChannelSet& got, const ChannelSet& want,
     result_.only_got[i] = got[i] && !want[i];
   }
   if (!missing.empty()) {
-    not_recorded_ = fmt::format("{} {} not recorded", fmt::join(missing, ", "),
-                                missing.size() == 1 ? "was" : "were");
+    not_recorded_ = fmt::format("got lacks {}, which want has", fmt::join(missing, ", "));
   } else if (chosen_.empty()) {
     not_recorded_ = "nothing to compare: no out/ signals";
   }

@@ -30,9 +30,8 @@ load common
 @test "two mistakes at once are both named" {
   for pair in "yaw-reversed dt-no-minimum" "tpa-missing gate-yaw-dropped" \
     "acro-pitch-reversed limit-missing" "battery-divides d-on-error"; do
-    run "$ATTEST" run --port "fault:${pair/ /+}" --rate 250,1000 --group attitude \
-      --group rate_limit --group rates --group tpa --group anti_windup --group battery \
-      --group modes --group timing
+    run "$ATTEST" run --port "fault:${pair/ /+}" --profile px4-v1.5.5 --rate 250 \
+      --group attitude,rate_limit,rates,tpa,anti_windup,battery,modes,timing
     [ "$status" -eq 1 ]
     for one in $pair; do has "\`$one\`"; done
   done

@@ -173,7 +173,7 @@ MORE
 }
 
 @test "processes that fly for one folder take turns, on file systems without locks too" {
-  make_sweep 200 </dev/null
+  make_sweep 100 </dev/null
   "$ATTEST" -q sweep sweep.toml --out whole
   "$ATTEST" -q sweep sweep.toml --out out --jobs 1 &
   until [ -e out/identity.json ] && ls out/samples.csv.part-* 2>/dev/null; do sleep 0.01; done
