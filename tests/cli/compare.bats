@@ -191,7 +191,7 @@ without() {
   without less.csv out/actuator_controls_0.control[1] >least.csv
   run "$ATTEST" compare least.csv whole.csv
   [ "$status" -eq 1 ]
-  has "got lacks out/actuator_controls_0.control[0], out/actuator_controls_0.control[1], which want has"
+  has "got lacks out/actuator_controls_0.control[0], out/actuator_controls_0.control[1], which want"
   run "$ATTEST" -q replay least.csv
   [ "$status" -eq 0 ]
   has "  not compared, because the trace does not have them: out/actuator_controls_0.control[0], o"
