@@ -26,8 +26,9 @@ struct ProfileTraits {
   bool spools_up;                    // arming and landing move the limits of the throttle stick's
                                      // thrust; else they are fixed, and the stick is mapped to 0..1
   bool latches_in_every_step;        // every step takes the attitude setpoint and the estimator's
-                                     // reset, before the modes; else only if attitude is controlled
-  bool flies_own_setpoint_directly;  // the law uses the sticks' setpoint at once; else by its topic
+                                     // reset; else only a step that controls the attitude does
+  bool flies_own_setpoint_directly;  // the law gets the sticks' setpoint without a check; else only
+                                     // if it is newer than the setpoint in use, like a topic's
   bool squares_heading;              // R00 in heading() is ww + xx - yy - zz; else 1 - 2 (yy + zz)
   bool weighs_low_pass;              // LowPass: (1 - a) s + a x; else s + a (x - s)
 };

@@ -176,7 +176,7 @@ const Fault anti_windup_list[] = {
        use_gates(law, {.by_integral = [](float n) { return std::abs(n) <= integral_limit; }});
      }},
     {"gate-control-dropped", "anti_windup", Stage::gate, "integrates at any control",
-     "a control beyond 0.3 below the thrust", "a condition dropped",
+     "a control beyond 0.3, but below the thrust", "a condition dropped",
      [](FaultyLaw& law) { use_gates(law, {.by_control = [](float) { return true; }}); }},
     {"gate-control-upper-only", "anti_windup", Stage::gate, "checks positive controls only",
      "a control below -0.3", "a condition dropped",

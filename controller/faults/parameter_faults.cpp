@@ -1,4 +1,4 @@
-// Parameters that are read wrongly: from another name, in another unit, at another time.
+// Parameters that are read wrongly: not at all, from another name, or at another time.
 #include <cmath>
 #include <optional>
 #include <utility>

@@ -58,6 +58,7 @@ Result<void> check_names(const std::vector<std::string>& asked, const std::set<s
   for (const std::string& name : asked) {
     if (known.count(name)) continue;
     const std::vector<std::string> candidates(known.begin(), known.end());
+    if (candidates.empty()) return fail(fmt::format("no selected case has a {}", kind));
     return fail(fmt::format("no cases of {} `{}`{}; there are {}", kind, name,
                             suggestion(name, candidates), fmt::join(candidates, ", ")));
   }

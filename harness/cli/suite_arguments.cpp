@@ -117,8 +117,8 @@ void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
       ->excludes(lint);
   command
       ->add_option("--fixed-step", options->fixed_step,
-                   "Only vectors at this rate whose ticks are one period apart, with timestamps "
-                   "that begin at one period; default: all vectors")
+                   "Only vectors at this rate whose ticks are one period apart; their timestamps "
+                   "are changed to begin at one period; default: all vectors, unchanged")
       ->type_name("HZ")
       ->excludes(lint);
   add_selection(*command, options->select, Selects::open_loop);

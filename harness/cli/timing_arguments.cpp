@@ -152,7 +152,8 @@ void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("F.csv")
       ->group(option_group::reports);
   add_timeout(*command, options->host.timeout_s);
-  add_jobs(*command, options->jobs, "Number of vehicles that fly at the same time");
+  add_jobs(*command, options->jobs,
+           "Number of pairs of vehicle and plant that fly at the same time");
   add_examples(*command, {{"attest sweep-rate --port lib:./libmine.so --vehicle iris",
                            "find the lowest rate and the largest delay for the Iris"}});
   command->callback([options, &globals, &action] {

@@ -16,8 +16,8 @@ struct SmokeFinding {
   bool is_good = true;
 };
 
-// Steps a fresh unit of each module of `profile` that the port has, with the inputs of a vehicle
-// that shakes, at the port's fixed step or 250 Hz:
+// Steps each unit of `profile` that the port has (not its mixer or battery estimate), with the
+// inputs of a vehicle that shakes, at the port's fixed step or 250 Hz:
 //
 //     steps       every step returns ATTEST_OK, or the unit is unsupported
 //     outputs     after the last step, the topics that carry the result are published, with numbers

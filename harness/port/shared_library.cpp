@@ -93,8 +93,8 @@ Result<void> check_table(const attest_unit* unit, const std::string& path) {
                                      unit->abi_version, ATTEST_UNIT_ABI_VERSION));
   }
   if (const std::string name = missing_member(*unit); !name.empty()) {
-    return fail_at(path, fmt::format("attest_unit.{} is NULL; every member but extension must be "
-                                     "set",
+    return fail_at(path, fmt::format("attest_unit.{} is NULL; only `extension` may be NULL, or all "
+                                     "functions of the controller if the port has none",
                                      name));
   }
   return check_extensions(*unit, path);

@@ -22,7 +22,8 @@ Result<TableFormat> parse_table_format(std::string_view name);
 // NPY: version 1 to 3. A structured array has names. In an array of two dimensions, rows are ticks,
 // and `names` are those of its columns.
 // Errors: the file cannot be read; columns of different lengths; no column; those of the format,
-// such as a CSV cell that is no number, or an NPY array that is transposed or has no names.
+// such as a CSV cell that is no number, or an NPY array of two dimensions whose number of columns
+// is not that of `names`.
 Result<Table> read_table(const std::filesystem::path& path, TableFormat format,
                          const std::vector<std::string>& names);
 

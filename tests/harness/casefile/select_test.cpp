@@ -138,6 +138,10 @@ TEST_F(SelectTest, FlightsByVehiclePlantAndConfiguration) {
   selection.vehicles = {"irish"};
   EXPECT_THAT(select(selection)[0], HasSubstr("`irish`; did you mean `iris`?"));
   selection = {};
+  selection.groups = {"attitude"};
+  selection.vehicles = {"iris"};
+  EXPECT_THAT(select(selection), ElementsAre("no selected case has a vehicle"));
+  selection = {};
   selection.plants = {"gazebo"};
   EXPECT_THAT(select(selection)[0], HasSubstr("`gazebo`"));
 }
