@@ -129,8 +129,8 @@ TEST_F(DispersedPage, ABoundFarAwayDoesNotSqueezeTheDistribution) {
   EXPECT_THAT(groups[1].plots[0].band->high, Each(testing::Lt(0.01f)));
 }
 
-TEST_F(DispersedPage, AMillionSamplesAreThinnedAndTheWorstStay) {
-  fly(1'000'000, [](int i) { return i == 765'432 ? 100 : 1 + 1e-7 * i; });
+TEST_F(DispersedPage, ManySamplesAreThinnedAndTheWorstStay) {
+  fly(200'000, [](int i) { return i == 165'432 ? 100 : 1 + 1e-7 * i; });
   const auto all = plots();
   const PlotSeries& distribution = all.groups[0].plots[0].series[0];
   EXPECT_LE(distribution.x.size(), most_drawn_quantiles + 2 * drawn_tail + 2);
