@@ -113,7 +113,9 @@ Result<Child> Child::adopt(const std::function<Result<Process>(const ChildFiles&
 
 Result<Child> Child::spawn(Runs runs, const Work& work) {
   return adopt([&](const ChildFiles& files) {
-    return Process::start([&] { run_in_child(runs, files, work); });
+    const auto when_stopped =
+        runs == Runs::our_code ? Process::WhenStopped::continues : Process::WhenStopped::stays;
+    return Process::start([&] { run_in_child(runs, files, work); }, when_stopped);
   });
 }
 

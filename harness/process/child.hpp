@@ -49,6 +49,7 @@ class Child {
   Received receive(const Patience& patience = {});
   Received::Kind receive_blob(void* place, std::size_t size, const Patience& patience = {});
 
+  void wake() { process_.wake(); }
   void kill() { process_.kill(); }
   bool was_killed() const { return process_.was_killed(); }
 

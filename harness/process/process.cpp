@@ -1,22 +1,14 @@
 #include "harness/process/process.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <mutex>
-#include <set>
 #include <string>
-#include <system_error>
-#include <thread>
 #include <utility>
-#include <vector>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -25,37 +17,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "harness/process/happens_within.hpp"
+#include "harness/process/orphans.hpp"
 #include "harness/process/signals.hpp"
 
 namespace attest {
 namespace {
-
-using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
-
-// Polls `happened`, at first with short pauses, because most processes end within a millisecond.
-template <typename Happened>
-bool happens_within(double seconds, Happened&& happened) {
-  const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
-  for (Clock::duration pause = 50us; !happened();
-       pause = std::min<Clock::duration>(2 * pause, 5ms)) {
-    if (Clock::now() >= deadline) return false;
-    std::this_thread::sleep_for(pause);
-  }
-  return true;
-}
-
-// The children that this process has started. All its other children are orphans: descendants whose
-// parents have ended. `mutex` is locked while a started child is not in `processes` yet.
-struct Owned {
-  std::mutex mutex;
-  std::set<pid_t> processes;
-};
-
-Owned& owned() {
-  static Owned all;
-  return all;
-}
 
 // Called in a new child, which owns no process. Its copy of the lock is locked: the parent held the
 // lock while it forked.
@@ -82,44 +49,6 @@ void reap(pid_t process, Ending& ending) {
   if (has_ended) ending.wait_status = status;
 }
 
-// The children of `process`, a number or "self". Empty if `process` has ended.
-std::vector<pid_t> children(const std::string& process) {
-  std::vector<pid_t> found;
-  std::error_code gone;
-  std::filesystem::directory_iterator task("/proc/" + process + "/task", gone);
-  for (; !gone && task != end(task); task.increment(gone)) {
-    std::ifstream list(task->path() / "children");
-    for (pid_t child = 0; list >> child;) found.push_back(child);
-  }
-  return found;
-}
-
-// The orphans and their descendants.
-std::vector<pid_t> orphans() {
-  constexpr std::size_t enough = 10'000;  // a limit: processes may fork faster than this loop
-  std::vector<pid_t> found = children("self");
-  std::erase_if(found, [](pid_t child) { return owned().processes.contains(child); });
-  for (std::size_t i = 0; i < found.size() && found.size() < enough; ++i) {
-    const std::vector<pid_t> next = children(std::to_string(found[i]));
-    found.insert(found.end(), next.begin(), next.end());
-  }
-  return found;
-}
-
-// Kills the orphans repeatedly: when one ends, its own children become orphans.
-void end_orphans() {
-  // Reading /proc costs 100 page faults, and is not necessary without children.
-  siginfo_t ignored{};
-  if (::waitid(P_ALL, 0, &ignored, WEXITED | WNOHANG | WNOWAIT) != 0 && errno == ECHILD) return;
-  const std::lock_guard lock(owned().mutex);
-  happens_within(time_to_die_s, [] {
-    const std::vector<pid_t> all = orphans();
-    for (const pid_t orphan : all) ::kill(orphan, SIGKILL);
-    for (const pid_t orphan : all) ::waitpid(orphan, nullptr, WNOHANG);
-    return all.empty();
-  });
-}
-
 // ---- the guard ----------------------------------------------------------------------------------
 
 // True in a process below a guard.
@@ -132,15 +61,17 @@ bool is_guarded = false;
 constexpr int end_all = SIGHUP;
 
 // Waits for the end of `leader`, the child process. Empty: the caller must end `leader`.
-std::optional<int> status_of(pid_t leader, pid_t owner) {
+std::optional<int> status_of(pid_t leader, pid_t owner, Process::WhenStopped when_stopped) {
   sigset_t taken;
   ::sigemptyset(&taken);
   for (const int signal : {SIGCHLD, SIGTERM, end_all}) ::sigaddset(&taken, signal);
   int signal = 0;
   while (signal != end_all && ::getppid() == owner) {
     int status = 0;
-    for (pid_t ended = 0; (ended = ::waitpid(-1, &status, WNOHANG)) > 0;) {
-      if (ended == leader) return status;
+    for (pid_t child = 0; (child = ::waitpid(-1, &status, WNOHANG | WUNTRACED)) > 0;) {
+      if (child != leader) continue;
+      if (!WIFSTOPPED(status)) return status;
+      if (when_stopped == Process::WhenStopped::continues) ::kill(leader, SIGCONT);
     }
     signal = ::sigwaitinfo(&taken, nullptr);
     if (signal == SIGTERM) ::kill(-leader, SIGTERM);
@@ -165,7 +96,8 @@ std::optional<int> status_of(pid_t leader, pid_t owner) {
 }
 
 // Writes to `ready` the errno of fork(), or 0 when the child process can be sent signals.
-[[noreturn]] void guard(pid_t owner, int ready, const std::function<void()>& work) {
+[[noreturn]] void guard(pid_t owner, int ready, const std::function<void()>& work,
+                        Process::WhenStopped when_stopped) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, end_all);
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
@@ -184,7 +116,7 @@ std::optional<int> status_of(pid_t leader, pid_t owner) {
   ::close_range(0, ~0u, 0);
   if (leader < 0 || !is_told) ::_exit(EXIT_FAILURE);
   Ending ending;
-  ending.wait_status = status_of(leader, owner);
+  ending.wait_status = status_of(leader, owner, when_stopped);
   if (!ending.wait_status) {
     ::kill(leader, SIGKILL);
     reap(leader, ending);
@@ -194,7 +126,7 @@ std::optional<int> status_of(pid_t leader, pid_t owner) {
 }
 
 // Returns the id of the guard when it has forked the child process. -1: errno has the reason.
-pid_t start_guarded(const std::function<void()>& work) {
+pid_t start_guarded(const std::function<void()>& work, Process::WhenStopped when_stopped) {
   const pid_t owner = ::getpid();
   std::array<int, 2> ready{-1, -1};
   if (::pipe2(ready.data(), O_CLOEXEC) != 0) return -1;
@@ -202,7 +134,7 @@ pid_t start_guarded(const std::function<void()>& work) {
   if (started == 0) {
     own_nothing();
     ::close(ready[0]);
-    guard(owner, ready[1], work);
+    guard(owner, ready[1], work, when_stopped);
   }
   int reason = errno;
   ::close(ready[1]);
@@ -224,11 +156,11 @@ pid_t start_alone(const std::function<void()>& work) {
 
 }  // namespace
 
-Result<Process> Process::start(const std::function<void()>& work) {
+Result<Process> Process::start(const std::function<void()>& work, WhenStopped when_stopped) {
   // Otherwise a child that calls exit() would print the unflushed output of the parent, too.
   std::fflush(nullptr);
   if (is_guarded) return adopt([&] { return start_alone(work); });
-  auto started = adopt([&] { return start_guarded(work); });
+  auto started = adopt([&] { return start_guarded(work, when_stopped); });
   if (started) started->has_guard_ = true;
   return started;
 }
@@ -303,6 +235,12 @@ bool Process::ends_within(double seconds) {
            const int waited = ::waitid(P_PID, id, &info, WEXITED | WNOHANG | WNOWAIT);
            return (waited != 0 && errno != EINTR) || info.si_pid != 0;
          });
+}
+
+void Process::wake() {
+  siginfo_t info{};
+  if (pid_ <= 0 || ::waitid(P_PID, static_cast<id_t>(pid_), &info, WSTOPPED | WNOHANG) != 0) return;
+  if (info.si_pid != 0) ::kill(pid_, SIGCONT);
 }
 
 void Process::terminate() {

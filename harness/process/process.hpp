@@ -26,8 +26,11 @@ class Process {
  public:
   // Forks. `work` runs in the child, which then exits with status 0. The child starts with an empty
   // signal mask and default signal handlers (reset_signals()), and leaves no core file. `work` must
-  // not throw.
-  static Result<Process> start(const std::function<void()>& work);
+  // not throw. `when_stopped`: whether the guard continues a child that a signal has stopped, such
+  // as a worker of attest, which its port may stop; without a guard it stays stopped.
+  enum class WhenStopped { stays, continues };
+  static Result<Process> start(const std::function<void()>& work,
+                               WhenStopped when_stopped = WhenStopped::stays);
 
   // Takes over a child process that start() did not make. `fork` lets another process call
   // fork_sibling(), and returns the id of the new process, or -1 with errno. The new process has no
@@ -45,6 +48,9 @@ class Process {
   // Waits up to `seconds`. True: the process has ended, or there is none. A later end() still
   // returns how it ended.
   bool ends_within(double seconds);
+
+  // Continues the guard, or the process if it has no guard, if a signal has stopped it.
+  void wake();
 
   void terminate();  // sends SIGTERM to the group
   void kill();       // kills the process; its descendants end at the latest in end()

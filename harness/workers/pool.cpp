@@ -118,8 +118,9 @@ class Pool {
     for (Worker& worker : workers_) {
       descriptors.push_back({worker.child.socket().descriptor(), POLLIN, 0});
     }
-    constexpr int look_every_ms = 100;  // period of the check of `stop`
+    constexpr int look_every_ms = 100;  // period of the checks of `stop` and for stopped guards
     ::poll(descriptors.data(), descriptors.size(), look_every_ms);
+    for (Worker& worker : workers_) worker.child.wake();
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < descriptors.size(); ++i) {
       if (descriptors[i].revents != 0) found.push_back(i);

@@ -141,6 +141,13 @@ RESULT
   has "protocol"
 }
 
+@test "a port that stops the processes that judge it still gets a verdict" {
+  run timeout -s KILL 60 "$ATTEST" run --port "lib:$PORTS/hostile_stops_judge.so" \
+    --filter 'rates/*@250hz' --jobs 2
+  [ "$status" -eq 0 ]
+  has "vectors conform"
+}
+
 # daemons: the processes of this test that the port has made daemons.
 daemons() {
   local process

@@ -116,6 +116,35 @@ TEST(Process, ThatCannotBeStartedIsAnErrorWithTheLimit) {
   EXPECT_EQ(WEXITSTATUS(status), EXIT_SUCCESS);
 }
 
+TEST(Process, ContinuesWhenItIsStoppedIfItIsStartedSo) {
+  const auto stop_myself = [] { ::raise(SIGSTOP); };
+  auto continues = Process::start(stop_myself, Process::WhenStopped::continues);
+  ASSERT_TRUE(continues);
+  EXPECT_TRUE(continues->end(60).is_success());
+  auto stays = Process::start(stop_myself);
+  ASSERT_TRUE(stays);
+  EXPECT_FALSE(stays->ends_within(0.1));
+  EXPECT_TRUE(stays->end(0).was_killed);
+}
+
+TEST(Process, WakesItsGuard) {
+  std::array<int, 2> go{-1, -1};
+  ASSERT_EQ(::pipe(go.data()), 0);
+  const auto stop_both = [&] {
+    char begin = 0;
+    if (::read(go[0], &begin, 1) != 1) ::_exit(EXIT_FAILURE);
+    ::kill(::getppid(), SIGSTOP);
+    ::raise(SIGSTOP);
+  };
+  auto process = Process::start(stop_both, Process::WhenStopped::continues);
+  ASSERT_TRUE(process);
+  EXPECT_EQ(::write(go[1], "x", 1), 1);  // start() has returned, so it does not need the guard
+  EXPECT_FALSE(process->ends_within(0.1));
+  for (int i = 0; i < 1000 && !process->ends_within(0.01); ++i) process->wake();
+  EXPECT_TRUE(process->end(0).is_success());
+  for (const int end : go) ::close(end);
+}
+
 TEST(Process, IsNotWaitedForBeyondTheLimit) {
   Process process = started(stay);
   EXPECT_FALSE(process.ends_within(0.01));

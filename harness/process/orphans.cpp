@@ -1,0 +1,65 @@
+#include "harness/process/orphans.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <sys/wait.h>
+
+#include "harness/process/ending.hpp"
+#include "harness/process/happens_within.hpp"
+
+namespace attest {
+
+Owned& owned() {
+  static Owned all;
+  return all;
+}
+
+namespace {
+
+// The children of `process`, a number or "self". Empty if `process` has ended.
+std::vector<pid_t> children(const std::string& process) {
+  std::vector<pid_t> found;
+  std::error_code gone;
+  std::filesystem::directory_iterator task("/proc/" + process + "/task", gone);
+  for (; !gone && task != end(task); task.increment(gone)) {
+    std::ifstream list(task->path() / "children");
+    for (pid_t child = 0; list >> child;) found.push_back(child);
+  }
+  return found;
+}
+
+// The orphans and their descendants.
+std::vector<pid_t> orphans() {
+  constexpr std::size_t enough = 10'000;  // a limit: processes may fork faster than this loop
+  std::vector<pid_t> found = children("self");
+  std::erase_if(found, [](pid_t child) { return owned().processes.contains(child); });
+  for (std::size_t i = 0; i < found.size() && found.size() < enough; ++i) {
+    const std::vector<pid_t> next = children(std::to_string(found[i]));
+    found.insert(found.end(), next.begin(), next.end());
+  }
+  return found;
+}
+
+}  // namespace
+
+void end_orphans() {
+  // Reading /proc costs 100 page faults, and is not necessary without children.
+  siginfo_t ignored{};
+  if (::waitid(P_ALL, 0, &ignored, WEXITED | WNOHANG | WNOWAIT) != 0 && errno == ECHILD) return;
+  const std::lock_guard lock(owned().mutex);
+  happens_within(time_to_die_s, [] {
+    const std::vector<pid_t> all = orphans();
+    for (const pid_t orphan : all) ::kill(orphan, SIGKILL);
+    for (const pid_t orphan : all) ::waitpid(orphan, nullptr, WNOHANG);
+    return all.empty();
+  });
+}
+
+}  // namespace attest
