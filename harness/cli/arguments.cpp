@@ -204,14 +204,9 @@ std::optional<int> parse(CLI::App& app, int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {
     return app.exit(success);
-  } catch (const CLI::ExtrasError& error) {
-    const std::string wrong = unknown_option(app, argc, argv);
-    if (!wrong.empty()) return report_error({wrong});
-    app.exit(error);
-    return exit_usage;
   } catch (const CLI::ParseError& error) {
-    app.exit(error);
-    return exit_usage;
+    const std::string wrong = unknown_option(app, argc, argv);
+    return report_error({wrong.empty() ? wrong_usage(app, error) : wrong});
   }
   if (const std::string wrong = wrong_value(app); !wrong.empty()) return report_error({wrong});
   return std::nullopt;

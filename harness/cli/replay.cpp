@@ -242,9 +242,10 @@ class Replay {
     const char* const what = !are_logs_                                ? "traces conform"
                              : entries_.size() > options_.files.size() ? "traces and units agree"
                                                                        : "traces and logs agree";
-    fmt::print(out_, "{} {} of {} {}{} ({}, {}{})\n", failed_ == 0 ? "PASS" : "FAIL", passed_,
-               entries_.size(), what, apart > 0 ? fmt::format(", {} not compared", apart) : "",
-               options_.host.port, name_of(level_), arithmetic_);
+    const char* const conclusion = failed_ > 0 ? "FAIL" : passed_ > 0 ? "PASS" : "NONE";
+    fmt::print(out_, "{} {} of {} {}{} ({}, {}{})\n", conclusion, passed_, entries_.size(), what,
+               apart > 0 ? fmt::format(", {} not compared", apart) : "", options_.host.port,
+               name_of(level_), arithmetic_);
   }
 
   const ReplayOptions& options_;

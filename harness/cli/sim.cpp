@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/cli/command.hpp"
 #include "harness/cli/find_case.hpp"
@@ -118,11 +119,12 @@ Result<void> write(const std::vector<SimulatedFlight>& flights, const PortSays& 
   return write_file(options.html, flight_page(flights, port));
 }
 
-void print(const CaseResult& result, const std::string& out) {
-  std::string written = "no trace was written";
-  if (result.ticks > 0) written = fmt::format("{} ticks", result.ticks);
-  if (result.ticks > 0 && !out.empty()) written += " -> " + out;
-  fmt::print("{}  {}\n", result.id(), written);
+void print(const CaseResult& result, const SimOptions& options) {
+  std::vector<std::string> files;
+  if (result.ticks > 0 && !options.out.empty()) files.push_back(options.out);
+  if (!options.html.empty() && options.html != "-") files.push_back(options.html);
+  fmt::print("{}  {} ticks{}{}\n", result.id(), result.ticks, files.empty() ? "" : " -> ",
+             fmt::join(files, ", "));
   if (!result.reason.empty()) fmt::print("  {}: {}\n", name_of(result.verdict), result.reason);
   for (const MetricResult& metric : result.metrics) {
     fmt::print("  {:<20} {:<24}{:>10.4g}  {}{}\n", metric.name, name_of(metric.measure),
@@ -141,13 +143,15 @@ int sim_command(const SimOptions& options, const Globals& globals) {
   if (const auto written = write(*flights, says, options); !written) {
     return report_error(written.error());
   }
-  bool passed = true;
+  bool any_fails = false, any_passes = false;
   for (const SimulatedFlight& flight : *flights) {
-    const bool passes = flight.result.verdict == Verdict::pass;
-    if (!globals.quiet || !passes) print(flight.result, options.out);
-    passed = passed && passes;
+    const Verdict verdict = flight.result.verdict;
+    if (!globals.quiet || verdict != Verdict::pass) print(flight.result, options);
+    any_fails = any_fails || fails_a_run(verdict);
+    any_passes = any_passes || verdict == Verdict::pass;
   }
-  return passed ? exit_ok : exit_failed;
+  if (any_fails) return exit_failed;
+  return any_passes ? exit_ok : report_error({"the port did not fly: no flight has a result"});
 }
 
 }  // namespace attest::cli

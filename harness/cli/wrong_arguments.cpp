@@ -44,6 +44,12 @@ std::string unknown_option(const CLI::App& app, int argc, char** argv) {
   return "";
 }
 
+std::string wrong_usage(const CLI::App& app, const CLI::ParseError& error) {
+  if (app.get_subcommands().empty()) return "name a command; attest --help lists them";
+  return fmt::format("{}; attest {} --help describes the options", error.what(),
+                     app.get_subcommands().front()->get_name());
+}
+
 std::string wrong_value(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands()) {
     for (const CLI::Option* option : command->get_options()) {

@@ -6,7 +6,8 @@
 
 namespace CLI {
 class App;
-}
+class ParseError;
+}  // namespace CLI
 
 namespace attest::cli {
 
@@ -14,6 +15,9 @@ std::string unknown_command(const CLI::App& app, const std::string& word);
 
 // For a command line that CLI11 rejects: the first word that starts with `--` and is not an option.
 std::string unknown_option(const CLI::App& app, int argc, char** argv);
+
+// For any other command line that CLI11 rejects: its message, and where the options are described.
+std::string wrong_usage(const CLI::App& app, const CLI::ParseError& error);
 
 // After parsing. Finds values that no option accepts: an empty text, for example from an unset
 // shell variable, and NaN and infinity, which pass the range checks of CLI11.

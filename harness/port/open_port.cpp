@@ -63,6 +63,13 @@ Result<std::unique_ptr<Port>> open_port(const std::string& specification) {
   if (const auto fault = after("fault:", specification)) return open_fault(*fault);
   if (const auto library = after("lib:", specification)) return open_shared_library(*library);
   if (const auto command = after("proc:", specification)) return open_program(*command);
+  std::error_code unreadable;
+  if (std::filesystem::is_regular_file(specification, unreadable)) {
+    return fail(
+        fmt::format("unknown port `{0}`: a file; a shared library is `lib:{0}`, a program "
+                    "`proc:{0}`",
+                    specification));
+  }
   return fail(fmt::format("unknown port `{}`; use one of {}", specification, callable_port_kinds));
 }
 

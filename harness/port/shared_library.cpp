@@ -105,6 +105,9 @@ Result<void> check_table(const attest_unit* unit, const std::string& path) {
 Result<std::unique_ptr<Port>> open_shared_library(const std::string& path) {
   std::error_code unreadable;
   if (!std::filesystem::is_regular_file(path, unreadable)) {
+    if (std::filesystem::is_directory(path, unreadable)) {
+      return fail_at(path, "is a folder; `--port lib:PATH` takes the path of a shared library");
+    }
     return fail_at(path, "no such library; `--port lib:PATH` takes the path of a shared library");
   }
   // With an absolute path, the system does not search its own folders for the library.

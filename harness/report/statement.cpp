@@ -63,7 +63,7 @@ std::string text_of(const Claim& claim, const RunResult& run) {
   const std::string what = fmt::format("{}, {}{}, {}, {}", profile, name_of(run.level),
                                        arithmetic_of(run), rate_text(run), which_groups(claim));
   if (claim.conforms()) return "conformant: " + what;
-  return fmt::format("partial: {} (missing: {})", what,
+  return fmt::format("partial: {} (because: {})", what,
                      one_line(fmt::format("{}", fmt::join(claim.missing, "; "))));
 }
 

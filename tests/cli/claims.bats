@@ -18,7 +18,7 @@ value() { python3 -c "import json; r = json.load(open('report.json')); print($1)
   blessed_suite
   run "$ATTEST" --suite suite run --json report.json --badge badge.svg
   [ "$status" -eq 0 ]
-  has "conformance: partial: px4-v1.5.5, numeric, 11 rates, all groups (missing: custom suite)"
+  has "conformance: partial: px4-v1.5.5, numeric, 11 rates, all groups (because: custom suite)"
   [ "$(value 'r["conformant"]')" = False ]
   grep -q "px4-v1.5.5 numeric, partial" badge.svg
   cp -r "$SOURCE/golden/SUITE.sha256" suite/golden/ # has no effect
@@ -29,7 +29,7 @@ value() { python3 -c "import json; r = json.load(open('report.json')); print($1)
 @test "a filter gives a partial result that says so, in every report" {
   run "$ATTEST" run --group tpa --rate 250 --json report.json --junit junit.xml --badge badge.svg
   [ "$status" -eq 0 ]
-  has "partial: px4-v1.5.5, numeric, 1 rate, group tpa (missing: only --group tpa --rate 250;"
+  has "partial: px4-v1.5.5, numeric, 1 rate, group tpa (because: only --group tpa --rate 250;"
   has "no vector at 10 rates; "
   [ "$(value 'r["conformant"]')" = False ]
   [ "$(value '[c["profile"] for c in r["claims"]]')" = "['px4-v1.3.4', 'px4-v1.5.5']" ]

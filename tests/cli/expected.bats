@@ -9,7 +9,7 @@ load common
   run "$ATTEST" run --port fault:tpa-missing --group tpa --rate 250 --expected-failures known.toml
   [ "$status" -eq 0 ]
   has "xfail: fail: say why this is accepted"
-  has "partial: px4-v1.3.4, numeric, 1 rate, group tpa (missing: "
+  has "partial: px4-v1.3.4, numeric, 1 rate, group tpa (because: "
 }
 
 @test "an expected failure that passes fails the run" {
@@ -30,7 +30,7 @@ T
   run "$ATTEST" run --group tpa --group rates --level exact --badge badge.svg
   [ "$status" -eq 0 ]
   cases=$(cat "$SOURCE/cases/VERSION") golden=$(cat "$SOURCE/golden/VERSION")
-  has "px4-v1.5.5, exact, 11 rates, groups rates, tpa (missing: only --group "
+  has "px4-v1.5.5, exact, 11 rates, groups rates, tpa (because: only --group "
   has "cases $cases, golden $golden (released suite "
   grep -q "px4-v1.5.5 exact, partial" badge.svg
 }

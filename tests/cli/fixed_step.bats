@@ -12,7 +12,7 @@ groups=(--group attitude --group rates --group timing --group mixer)
   has "the port has a fixed step of 250 Hz, and this has late or missing ticks"
   has "the port has a fixed step of 250 Hz, and this has a start_s of its own"
   has "partial: px4-v1.5.5, numeric, fixed step of 250 Hz, groups attitude, rates"
-  has "(missing: fixed step of 250 Hz;"
+  has "(because: fixed step of 250 Hz;"
   grep -q '"fixed_step": "250"' report.json
   grep -q 'name="port.fixed_step" value="250"' junit.xml
 }

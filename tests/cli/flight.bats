@@ -50,6 +50,14 @@ broken() {
   has 'no cases of vehicle `hxea`; did you mean `hexa`?'
 }
 
+@test "a flight of another release than the port's has no result" {
+  run "$ATTEST" sim hover --rate 250:1000 --port "lib:$STARTER" --html page.html
+  [ "$status" -eq 2 ]
+  has "0 ticks -> page.html"
+  has "skip: the port does not support profile px4-v1.16.0"
+  has "attest: error: the port did not fly"
+}
+
 @test "a port with a wrong sign loses its vehicle, and the verdict says when" {
   run "$ATTEST" run --port "$flip" --filter 'px4-v1.5.5/flight/hover@250hz-iris-*' \
     --json r.json

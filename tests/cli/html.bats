@@ -112,9 +112,9 @@ PORT
 
 @test "one flight is a page, with or without its trace" {
   "$ATTEST" sim flip_150_level --rate 250 --html one.html --out flown.csv >printed
-  grep -q "1000 ticks -> flown.csv" printed
+  grep -q "1000 ticks -> flown.csv, one.html$" printed
   "$ATTEST" sim flip_150_level --rate 250 --html two.html >printed
-  grep -q "1000 ticks$" printed
+  grep -q "1000 ticks -> two.html$" printed
   cmp one.html two.html
   run "$ATTEST" sim flip_150_level --rate 250
   [ "$status" -eq 2 ]
@@ -127,7 +127,7 @@ PORT
 @test "a flight in which the port crashes is a page without plots" {
   run "$ATTEST" sim hover --rate 250 --port "lib:$PORTS/port_crash.so" --html page.html
   [ "$status" -eq 1 ]
-  has "no trace was written"
+  has "0 ticks -> page.html"
   grep -q "in step() at tick 20" page.html
 }
 

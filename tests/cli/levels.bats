@@ -21,7 +21,7 @@ open_loop=(--group anti_windup --group modes --group arming --group attitude --g
   run "$ATTEST" run --group tailsitter --group tpa --port "lib:$PORTS/port_no_tailsitter.so"
   [ "$status" -eq 0 ]
   has "unsupported: the port declares that it does not support tailsitter"
-  has "partial: px4-v1.5.5, numeric, 11 rates, group tpa (missing: only --group"
+  has "partial: px4-v1.5.5, numeric, 11 rates, group tpa (because: only --group"
 }
 
 @test "a mixer has no events: it is judged by its values at that level too" {

@@ -161,7 +161,13 @@ TASKS
   run "$ATTEST" run --port lib:./missing.so
   [ "$status" -eq 2 ]
   has "missing.so: no such library"
+  run "$ATTEST" run --port lib:.
+  [ "$status" -eq 2 ]
+  has "is a folder"
   echo "not a library" >text.so
+  run "$ATTEST" run --port ./text.so
+  [ "$status" -eq 2 ]
+  has 'a shared library is `lib:./text.so`'
   run "$ATTEST" run --port lib:./text.so
   [ "$status" -eq 2 ]
   has "cannot be loaded"

@@ -90,6 +90,7 @@ recorded() { ls "$SOURCE"/golden/recorded/*/*.csv | grep -v tailsitter; }
   run "$ATTEST" replay "$trace" --port "lib:$PORTS/port_prints.so"
   [ "$status" -eq 2 ]
   has "no trace was compared"
+  has "NONE 0 of 1 traces conform, 1 not compared"
   has "unsupported"
   has "the port has no mixer (extension attest.mixer.v1)"
 }

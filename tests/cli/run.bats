@@ -13,7 +13,7 @@ quick=(--group battery --group rates --rate 100,250,8000)
 @test "without a command: help that teaches, exit 2" {
   run "$ATTEST"
   [ "$status" -eq 2 ]
-  has "subcommand is required"
+  has "attest: error: name a command; attest --help lists them"
 }
 
 @test "help names the first steps" {
@@ -22,9 +22,16 @@ quick=(--group battery --group rates --rate 100,250,8000)
   has "attest run --port lib:./libmine.so"
 }
 
-@test "an unknown option is a usage error" {
+@test "a wrong command line is an error that says what to do" {
   run "$ATTEST" run --prot builtin
   [ "$status" -eq 2 ]
+  has 'attest: error: unknown option `--prot`; did you mean `--port`?'
+  run "$ATTEST" --nonsense
+  [ "$status" -eq 2 ]
+  has 'attest: error: unknown option `--nonsense`'
+  run "$ATTEST" new-port mine
+  [ "$status" -eq 2 ]
+  has "attest: error: --lang is required; attest new-port --help describes the options"
 }
 
 @test "filters, groups and rates select" {

@@ -31,6 +31,11 @@ TEST(Suggestion, IsEmptyWhenNothingIsNear) {
   EXPECT_EQ(suggestion(std::string(1000, 't'), names), "");
 }
 
+TEST(Suggestion, NamesACandidateOfWhichTheLastPartIsGiven) {
+  EXPECT_EQ(suggestion("v1.5.5", {"px4-v1.3.4", "px4-v1.5.5"}), "; did you mean `px4-v1.5.5`?");
+  EXPECT_EQ(suggestion("5", {"px4-v1.5.5"}), "");
+}
+
 TEST(Suggestion, AllowsAThirdOfTheLength) {
   EXPECT_EQ(suggestion("control_state.q[0]", {"in/control_state.q[0]"}),
             "; did you mean `in/control_state.q[0]`?");

@@ -47,9 +47,9 @@ TEST(Statement, OfAPartSaysWhatIsMissing) {
   run.results[2].verdict = Verdict::unsupported;
   EXPECT_THAT(conformance_statement(run),
               HasSubstr("partial: px4-v1.5.5, numeric, 2 rates, groups attitude, tpa and parts of "
-                        "modes (missing: 1 vector unsupported (modes)); cases"));
+                        "modes (because: 1 vector unsupported (modes)); cases"));
   run.suite_is_released = false;
-  EXPECT_THAT(conformance_statement(run), HasSubstr("(missing: custom suite; 1 vector"));
+  EXPECT_THAT(conformance_statement(run), HasSubstr("(because: custom suite; 1 vector"));
   EXPECT_THAT(conformance_statement(run), HasSubstr("(custom suite aaaaaaaaaaaa)"));
 }
 
@@ -68,7 +68,7 @@ TEST(Statement, SaysTheFixedStepOfAPort) {
   run.results.front().verdict = Verdict::unsupported;
   EXPECT_THAT(conformance_statement(run),
               HasSubstr("partial: px4-v1.5.5, numeric, fixed step of 250 Hz, all groups "
-                        "(missing: fixed step of 250 Hz)"));
+                        "(because: fixed step of 250 Hz)"));
 }
 
 TEST(Statement, SaysWhyThereIsNone) {

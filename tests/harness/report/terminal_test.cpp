@@ -54,7 +54,7 @@ TEST(Summary, TheClaimForEachProfileHasALine) {
   EXPECT_THAT(summary(run),
               HasSubstr("\nconformance:\n"
                         "  conformant: px4-v1.3.4, exact, 2 rates, all groups\n"
-                        "  partial: px4-v1.5.5, exact, 2 rates, parts of attitude (missing: 1 "
+                        "  partial: px4-v1.5.5, exact, 2 rates, parts of attitude (because: 1 "
                         "vector not run)\n"
                         "  cases "));
 }
