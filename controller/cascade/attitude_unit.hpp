@@ -5,7 +5,8 @@
 //     latch the topics that were updated
 //     stabilized mode: the sticks publish an attitude setpoint
 //     if the attitude is controlled:
-//         attitude setpoint, reset of the estimator (from v1.15.4), attitude law, autotune
+//         from v1.15.4: attitude setpoint, reset of the estimator
+//         attitude law, autotune
 //     thrust limits and hover thrust for the next step
 //
 // Frames: world NED, body FRD. Units are those of attest_cascade.h. No clock, no allocation after

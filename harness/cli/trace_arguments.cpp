@@ -163,9 +163,10 @@ void add_plot(CLI::App& app, const Globals& globals, Action& action) {
       ->allow_extra_args(false);
   command->add_flag("--list", options->list, "List the signals, and write no page");
   command
-      ->add_option("--html", options->html,
-                   "Write this page; default: the name of the first file with .html, in the "
-                   "current folder")
+      ->add_option(
+          "--html", options->html,
+          "Write this page; default: that of the first file, with .html as its ending, in the "
+          "current folder")
       ->type_name("F.html")
       ->group(option_group::reports);
   add_examples(*command, {{"attest plot flown.csv flight.ulg --channels 'control_state.*_rate'",

@@ -23,9 +23,9 @@ enum UserData : int { drag_at = 0, wind_at = 3, userdata_size = 6 };
 // which the plant needs; the text names the element.
 Result<ModelNumbers> numbers_of(const mjModel_& model, const std::filesystem::path& xml);
 
-// Sets the numbers that first_difference() compares, except gravity and centre of mass. The caller
-// updates the values that MuJoCo derives from them (mj_setConst). REQUIRES: as many rotors as the
-// vehicle has.
+// Sets the numbers that first_difference() compares, except gravity, centre of mass and those gears
+// of a rotor that must have the same value in each model. The caller updates the values that MuJoCo
+// derives from them (mj_setConst). REQUIRES: as many rotors as the vehicle has.
 void set_numbers(const Vehicle& vehicle, mjModel_& model);
 
 }  // namespace attest

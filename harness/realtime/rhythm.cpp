@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t ticks_max = 1u << 17, events_max = 1u << 11;
 constexpr std::size_t fewest_blocks = 5;
-constexpr double complete = 0.8;  // the least part of the blocks that have an event at one place
+constexpr double complete = 0.8;  // at least this share of all blocks must have an event at a place
 constexpr double false_alarms = 1e-4;
 
 // The examined ticks and events, cut so that the search takes a quarter of a second at most.

@@ -63,7 +63,7 @@ static void set3(float out[3], float roll, float pitch, float yaw) {
 static void read_parameters(controller* c) {
   const parameters* p = &c->parameters;
   gains* g = &c->gains;
-  /* A time constant above the default of 0.2 s lowers the gains, except I and FF. */
+  /* A time constant above the default of 0.2 s lowers the gains of its axis, except I and FF. */
   const float roll = 0.2f / p->roll_tc;
   const float pitch = 0.2f / p->pitch_tc;
   set3(g->att_p, p->roll_p * roll, p->pitch_p * pitch, p->yaw_p);
@@ -109,7 +109,8 @@ static void latch_inputs(controller* c, const attest_inputs* in) {
     c->started = true;
   }
   if ((in->updated & ATTEST_UPDATED_VEHICLE_STATUS) && !c->have_vehicle_status) {
-    /* The first sample selects the topics for the life of the instance. */
+    /* The first sample decides for the life of the instance whether it publishes on the virtual
+     * topics of a VTOL. */
     c->have_vehicle_status = true;
     c->on_virtual_topics = in->vehicle_status.is_vtol != 0;
   }
