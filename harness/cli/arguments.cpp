@@ -205,7 +205,10 @@ std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::Success& success) {
     return app.exit(success);
   } catch (const CLI::ParseError& error) {
-    const std::string wrong = unknown_option(app, argc, argv);
+    // A missing command or argument is less helpful to name than a misspelt option.
+    const bool is_about_option = dynamic_cast<const CLI::ValidationError*>(&error) != nullptr ||
+                                 dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr;
+    const std::string wrong = is_about_option ? "" : unknown_option(app, argc, argv);
     return report_error({wrong.empty() ? wrong_usage(app, error) : wrong});
   }
   if (const std::string wrong = wrong_value(app); !wrong.empty()) return report_error({wrong});

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -120,14 +121,19 @@ Result<void> write(const std::vector<SimulatedFlight>& flights, const PortSays& 
 }
 
 void print(const CaseResult& result, const SimOptions& options) {
+  std::FILE* const to = options.out == "-" || options.html == "-" ? stderr : stdout;
   std::vector<std::string> files;
-  if (result.ticks > 0 && !options.out.empty()) files.push_back(options.out);
-  if (!options.html.empty() && options.html != "-") files.push_back(options.html);
-  fmt::print("{}  {} ticks{}{}\n", result.id(), result.ticks, files.empty() ? "" : " -> ",
+  if (result.ticks > 0 && !options.out.empty()) {
+    files.push_back(options.out);
+    if (result.rate.attitude_unit) files.push_back(attitude_file(options.out));
+  }
+  std::erase_if(files, [](const std::string& file) { return file.empty() || file == "-"; });
+  if (!options.html.empty()) files.push_back(options.html);
+  fmt::print(to, "{}  {} ticks{}{}\n", result.id(), result.ticks, files.empty() ? "" : " -> ",
              fmt::join(files, ", "));
-  if (!result.reason.empty()) fmt::print("  {}: {}\n", name_of(result.verdict), result.reason);
+  if (!result.reason.empty()) fmt::print(to, "  {}: {}\n", name_of(result.verdict), result.reason);
   for (const MetricResult& metric : result.metrics) {
-    fmt::print("  {:<20} {:<24}{:>10.4g}  {}{}\n", metric.name, name_of(metric.measure),
+    fmt::print(to, "  {:<20} {:<24}{:>10.4g}  {}{}\n", metric.name, name_of(metric.measure),
                metric.value, metric_bounds(metric), metric.within() ? "" : "  MISSED");
   }
 }

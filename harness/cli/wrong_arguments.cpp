@@ -36,6 +36,7 @@ std::string unknown_option(const CLI::App& app, int argc, char** argv) {
   }
   for (int i = 1; i < argc; ++i) {
     const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
+    if (word == "--") break;
     if (!word.starts_with("--")) continue;
     if (std::find(names.begin(), names.end(), word) != names.end()) continue;
     return fmt::format("unknown option `{}`{}; attest{} --help shows them", word,
@@ -45,9 +46,11 @@ std::string unknown_option(const CLI::App& app, int argc, char** argv) {
 }
 
 std::string wrong_usage(const CLI::App& app, const CLI::ParseError& error) {
-  if (app.get_subcommands().empty()) return "name a command; attest --help lists them";
-  return fmt::format("{}; attest {} --help describes the options", error.what(),
-                     app.get_subcommands().front()->get_name());
+  const auto commands = app.get_subcommands();
+  const bool lacks_command = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+  if (commands.empty() && lacks_command) return "name a command; attest --help lists them";
+  return fmt::format("{}; attest {}--help describes the options", error.what(),
+                     commands.empty() ? "" : commands.front()->get_name() + " ");
 }
 
 std::string wrong_value(const CLI::App& app) {

@@ -33,8 +33,9 @@ void set_outputs(const std::vector<Sample>& answered, Trace& trace) {
 
 // The fault of a request to a port that had `kind` before.
 std::string not_run(PortFault::Kind kind) {
-  return kind == PortFault::Kind::timeout ? "not run: the port had timed out before"
-                                          : "not run: the port's process had ended before";
+  return kind == PortFault::Kind::timeout
+             ? "not run: the port had timed out before"
+             : "not run: the port had crashed or broken the protocol before";
 }
 
 class PortProcess final : public PortHost {

@@ -139,7 +139,8 @@ Child::~Child() { close_all({output_}); }
 
 namespace {
 
-// A time limit that also ends the wait when the process has died.
+// A time limit that also ends the wait when the process has died. Continues a guard that a port has
+// stopped, perhaps in the middle of a message of the worker.
 class UntilDeath {
  public:
   UntilDeath(Process& process, const Patience& patience) : patience_(patience) {
@@ -148,6 +149,7 @@ class UntilDeath {
       // The wait ends only at the next call, because the last message of a dead process may still
       // be unread.
       has_died_ = process.ends_within(0);
+      process.wake();
       return patience.given_up();
     };
   }

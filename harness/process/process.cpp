@@ -239,7 +239,8 @@ bool Process::ends_within(double seconds) {
 
 void Process::wake() {
   siginfo_t info{};
-  if (pid_ <= 0 || ::waitid(P_PID, static_cast<id_t>(pid_), &info, WSTOPPED | WNOHANG) != 0) return;
+  if (!has_guard_ || pid_ <= 0) return;
+  if (::waitid(P_PID, static_cast<id_t>(pid_), &info, WSTOPPED | WNOHANG) != 0) return;
   if (info.si_pid != 0) ::kill(pid_, SIGCONT);
 }
 
@@ -253,6 +254,7 @@ void Process::kill() {
   if (has_guard_) {
     // Not SIGKILL: the guard must end daemons even if this process is killed now.
     ::kill(pid_, end_all);
+    ::kill(pid_, SIGCONT);  // a port may have stopped the guard
   } else {
     ::kill(-pid_, SIGKILL);
     ::kill(pid_, SIGKILL);  // the process may have moved to another group

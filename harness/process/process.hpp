@@ -49,7 +49,7 @@ class Process {
   // returns how it ended.
   bool ends_within(double seconds);
 
-  // Continues the guard, or the process if it has no guard, if a signal has stopped it.
+  // Continues the guard if a signal has stopped it. A process without a guard stays stopped.
   void wake();
 
   void terminate();  // sends SIGTERM to the group

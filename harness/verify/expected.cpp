@@ -1,6 +1,7 @@
 #include "harness/verify/expected.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <string_view>
 
@@ -151,20 +152,21 @@ std::string expected_failures_of(const RunResult& run) {
   }
   TomlWriter toml;
   const auto reason = [](const std::vector<const CaseResult*>& failed) {
-    // Of an expected failure: the verdicts that the list excuses, and the user's reason.
-    if (failed.front()->verdict == Verdict::xfail) return failed.front()->reason;
     std::vector<Verdict> verdicts;
-    for (const CaseResult* result : failed) verdicts.push_back(result->verdict);
+    for (const CaseResult* result : failed) {
+      if (result->verdict == Verdict::xfail) {  // in a merged report: what its list excused
+        std::ranges::copy(excused_by(result->reason), std::back_inserter(verdicts));
+      } else {
+        verdicts.push_back(result->verdict);
+      }
+    }
     std::ranges::sort(verdicts);
     verdicts.erase(std::unique(verdicts.begin(), verdicts.end()), verdicts.end());
     return fmt::format("{}: say why this is accepted, and until when", names_of(verdicts));
   };
   for (const auto& [id, count] : cases) {
     if (count.failed.empty()) continue;
-    const bool has_expected = std::ranges::any_of(
-        count.failed, [](const CaseResult* result) { return result->verdict == Verdict::xfail; });
-    const bool all_failed = count.failed.size() == count.all && !has_expected;
-    if (run.all_configurations && run.shard.count == 1 && all_failed) {
+    if (run.all_configurations && run.shard.count == 1 && count.failed.size() == count.all) {
       toml.set("expected", id + "@*", reason(count.failed));
       continue;
     }

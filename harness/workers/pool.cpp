@@ -135,8 +135,8 @@ class Pool {
     if (received.kind == Received::Kind::given_up) return;
     if (received.kind != Received::Kind::message) return conclude(worker);
     std::size_t tasks = 0;
-    if (worker.child.receive_blob(&tasks, sizeof tasks) != Received::Kind::message) {
-      return conclude(worker);
+    if (worker.child.receive_blob(&tasks, sizeof tasks, patience) != Received::Kind::message) {
+      return options_.stop() ? void() : conclude(worker);
     }
     if (tasks == 0) {
       worker.over = true;

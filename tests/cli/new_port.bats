@@ -15,9 +15,11 @@ made() {
   run mine/check --group rates --rate 250
   [ "$status" -eq 0 ]
   has "PASS"
-  # The command that repeats a failure is for the folder in which check was called.
-  run mine/check --group rates --rate 250 --level exact --html report.html
+  # Paths are relative to the folder in which check was called, those of the report too.
+  run mine/check --group rates --rate 250 --html report.html --json report.json
+  [ "$status" -eq 0 ]
   [ -s report.html ]
+  grep -q '"port": ".*mine/' report.json
   grep -q "uses: ./.github/actions/attest" mine/.github/workflows/attest.yml
   grep -q "./check --github" mine/.github/actions/attest/action.yml
   grep -q "./check --html" mine/.gitlab-ci.yml

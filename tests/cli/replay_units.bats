@@ -252,7 +252,7 @@ WILD
   run "$ATTEST" replay "$FLIGHT" --port lib:./wild.so
   [ "$status" -eq 1 ]
   judged crash crash
-  has "not run: the port's process had ended before"
+  has "not run: the port had crashed or broken the protocol before"
 }
 
 @test "NaN fails in a rate unit that is otherwise not judged" {

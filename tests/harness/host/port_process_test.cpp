@@ -128,7 +128,7 @@ TEST(PortProcess, ItsDeathIsTheFaultOfTheRequestAndOfAllThatFollow) {
   const auto later = host->drive(unit, trace);
   ASSERT_TRUE(later);
   EXPECT_EQ(later->kind, Kind::crash);
-  EXPECT_EQ(later->what, "not run: the port's process had ended before");
+  EXPECT_EQ(later->what, "not run: the port had crashed or broken the protocol before");
 }
 
 TEST(PortProcess, AHangIsWaitedForOnce) {

@@ -139,14 +139,16 @@ TEST_F(Expected, WhatIsWrittenIsReadAndExcusesTheRun) {
   EXPECT_FALSE(applied(text).failed());
 }
 
-// The shards of a run can have a list. A new list that is made from their merged reports keeps it.
-TEST_F(Expected, AnExpectedFailureIsWrittenWithItsReason) {
+// The shards of a run can have a list. A new list that is made from their merged reports excuses
+// the same verdicts.
+TEST_F(Expected, AnExpectedFailureIsWrittenWithTheVerdictsThatWereExcused) {
   run_.results = {result_of("b", Verdict::crash)};
-  const std::string list = "[expected]\n\"px4-v1.5.5/tpa/b@*\" = \"crash, timeout: known\"\n";
-  RunResult merged = applied(list);
+  run_.results[0].reason = "died at tick 20";
+  RunResult merged = applied("[expected]\n\"px4-v1.5.5/tpa/b@*\" = \"crash, timeout: known\"\n");
+  ASSERT_EQ(merged.results[0].verdict, Verdict::xfail);
   merged.all_configurations = true;
   const std::string text = expected_failures_of(merged);
-  EXPECT_THAT(text, HasSubstr("'px4-v1.5.5/tpa/b@250hz' = 'crash, timeout: known'"));
+  EXPECT_THAT(text, HasSubstr("'px4-v1.5.5/tpa/b@*' = 'crash, timeout: say why"));
   EXPECT_FALSE(applied(text).failed());
 }
 

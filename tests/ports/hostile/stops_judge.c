@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: pass. Stops the worker that judges it, and the guard of the worker, once in each process.
- * Its outputs are right; attest must not wait for the stopped processes. */
+/* Judged: pass. A thread stops the guard of the worker that judges the port, and the worker, again
+ * and again, also in the middle of a message. The outputs are right, so attest must not wait for
+ * the stopped processes. */
 #define _GNU_SOURCE
+#include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -19,13 +21,22 @@ static pid_t parent_of(pid_t process) {
   return parent;
 }
 
-static int step(void* self, const attest_inputs* in, attest_outputs* out) {
-  static int is_done;
-  if (!is_done) {
-    const pid_t worker = getppid(), guard = parent_of(worker);
-    is_done = 1;
+static void* keep_stopping(void* worker_of_port) {
+  const pid_t worker = *(const pid_t*)worker_of_port, guard = parent_of(worker);
+  for (;;) {
     if (guard > 1) kill(guard, SIGSTOP);
     if (worker > 1) kill(worker, SIGSTOP);
+    usleep(20 * 1000);
+  }
+  return NULL;
+}
+
+static int step(void* self, const attest_inputs* in, attest_outputs* out) {
+  static pid_t worker;
+  if (worker == 0) {
+    pthread_t thread;
+    worker = getppid();
+    pthread_create(&thread, NULL, keep_stopping, &worker);
   }
   return wrapper_step(self, in, out);
 }
