@@ -19,7 +19,7 @@ made() {
   run mine/check --group rates --rate 250 --html report.html --json report.json
   [ "$status" -eq 0 ]
   [ -s report.html ]
-  grep -q '"port": ".*mine/' report.json
+  grep -q '"specification": ".*mine/' report.json
   grep -q "uses: ./.github/actions/attest" mine/.github/workflows/attest.yml
   grep -q "./check --github" mine/.github/actions/attest/action.yml
   grep -q "./check --html" mine/.gitlab-ci.yml
