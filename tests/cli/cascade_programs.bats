@@ -93,7 +93,7 @@ cases=(acro/superexpo attitude/tilt_by_azimuth battery/clamped_after_scaling
   grep -q "$reason" report.json
   run "$ATTEST" sim hover --rate 100:400 --plant ode --out none.csv \
     --port "proc:$PYTHON single/port.py"
-  [ "$status" -eq 1 ]
+  [ "$status" -eq 2 ]
   has "$reason"
   run "$ATTEST" stress --case hover --rate 100:400 --duration 0.1 --no-cyclictest --policy other \
     --port "proc:$PYTHON single/port.py"

@@ -95,7 +95,7 @@ MORE
 }
 
 @test "a killed sweep continues to the same bytes, with any number of jobs" {
-  make_sweep 150 </dev/null
+  make_sweep 100 </dev/null
   "$ATTEST" -q sweep sweep.toml --out whole --jobs 2
   for kill_after in 0.3 0.6; do
     "$ATTEST" -q sweep sweep.toml --out parts --jobs 1 &

@@ -152,7 +152,7 @@ std::vector<const Fault*> walked_faults([[maybe_unused]] std::size_t one_of) {
 // More than rounding.
 TEST(CascadeFaults, EachIsToldFromTheLawInItsProfiles) {
   constexpr float tolerance = 1e-5f;
-  for (const Fault* fault : walked_faults(16)) {
+  for (const Fault* fault : walked_faults(32)) {
     for (const cascade::Profile profile : every_profile) {
       if (!fault->is_detectable(name_of(profile))) continue;
       EXPECT_TRUE(is_told(profile, *fault, tolerance)) << fault->id << " in " << name_of(profile);
