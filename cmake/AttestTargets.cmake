@@ -27,9 +27,10 @@ endif()
 
 # Half of the compile time is optimisation, so it depends on how long a library runs.
 # RUNS_SELDOM: -O1 in a release; the whole suite takes as long as with -O3, within 2%.
-# TESTED_BRIEFLY: -O0 with sanitizers (Debug), for what takes little of the tests' time.
+# TESTED_BRIEFLY: -O0 with sanitizers (Debug), for what takes little of the tests' time. Not in the
+# preset fuzz, which has no tests: there the same code takes most of the time.
 set(ATTEST_RUNS_SELDOM $<$<CONFIG:Release>:-O1>)
-set(ATTEST_TESTED_BRIEFLY $<$<CONFIG:Debug>:-O0>)
+set(ATTEST_TESTED_BRIEFLY $<$<AND:$<CONFIG:Debug>,$<BOOL:${ATTEST_TESTS}>>:-O0>)
 
 # attest_library(NAME [RUNS_SELDOM] [TESTED_BRIEFLY] SOURCES a.cpp ... [PUBLIC target ...]
 # [PRIVATE target ...])

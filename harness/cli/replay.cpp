@@ -16,6 +16,7 @@
 #include "harness/core/file.hpp"
 #include "harness/core/version.hpp"
 #include "harness/golden/recorded.hpp"
+#include "harness/report/conclusion.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/html/signals_page.hpp"
 #include "harness/report/log_text.hpp"
@@ -242,9 +243,11 @@ class Replay {
     const char* const what = !are_logs_                                ? "traces conform"
                              : entries_.size() > options_.files.size() ? "traces and units agree"
                                                                        : "traces and logs agree";
-    const char* const conclusion = failed_ > 0 ? "FAIL" : passed_ > 0 ? "PASS" : "NONE";
-    fmt::print(out_, "{} {} of {} {}{} ({}, {}{})\n", conclusion, passed_, entries_.size(), what,
-               apart > 0 ? fmt::format(", {} not compared", apart) : "", options_.host.port,
+    const Conclusion conclusion = failed_ > 0   ? Conclusion::fail
+                                  : passed_ > 0 ? Conclusion::pass
+                                                : Conclusion::none;
+    fmt::print(out_, "{} {} of {} {}{} ({}, {}{})\n", name_of(conclusion), passed_, entries_.size(),
+               what, apart > 0 ? fmt::format(", {} not compared", apart) : "", options_.host.port,
                name_of(level_), arithmetic_);
   }
 

@@ -127,8 +127,8 @@ void print(const CaseResult& result, const SimOptions& options) {
     files.push_back(options.out);
     if (result.rate.attitude_unit) files.push_back(attitude_file(options.out));
   }
+  files.push_back(options.html);
   std::erase_if(files, [](const std::string& file) { return file.empty() || file == "-"; });
-  if (!options.html.empty()) files.push_back(options.html);
   fmt::print(to, "{}  {} ticks{}{}\n", result.id(), result.ticks, files.empty() ? "" : " -> ",
              fmt::join(files, ", "));
   if (!result.reason.empty()) fmt::print(to, "  {}: {}\n", name_of(result.verdict), result.reason);

@@ -116,6 +116,9 @@ PORT
   "$ATTEST" sim flip_150_level --rate 250 --html two.html >printed
   grep -q "1000 ticks -> two.html$" printed
   cmp one.html two.html
+  "$ATTEST" sim flip_150_level --rate 250 --html - >three.html 2>printed
+  cmp one.html three.html
+  grep -q "1000 ticks$" printed
   run "$ATTEST" sim flip_150_level --rate 250
   [ "$status" -eq 2 ]
   has "needs --out or --html"

@@ -224,6 +224,14 @@ def header_namespace(tree: Tree):
                 yield Finding(path, number, "`using namespace` in a header: write the names out")
 
 
+def properties_can_fail(tree: Tree):
+    """rc::check() returns whether a property holds; it does not fail the test around it."""
+    for path in tree.cxx("tests/"):
+        for number, line in enumerate(cxx.code_only(tree.text(path)).splitlines(), 1):
+            if re.search(r"\brc::check\s*\(", line):
+                yield Finding(path, number, "`rc::check()` fails no test: use RC_GTEST_PROP")
+
+
 _CONSOLE = re.compile(r"\s*#\s*include\s*<iostream>|.*\bstd::(?:cout|cerr|clog|cin)\b")
 
 
@@ -274,6 +282,7 @@ RULES = (
     no_machine_paths,
     header_shape,
     header_namespace,
+    properties_can_fail,
     libraries_do_not_print,
     links_resolve,
 )

@@ -126,6 +126,12 @@ EXAMPLES = {
             {"a.hpp": PURPOSE + "// no using namespace here\n", "a.cpp": "using namespace std;\n"},
         )
     ],
+    "properties_can_fail": [
+        (
+            {"tests/a_test.cpp": "TEST(A, Holds) { rc::check([] {}); }\n"},
+            {"tests/a_test.cpp": "RC_GTEST_PROP(A, Holds, ()) {}  // not rc::check()\n"},
+        )
+    ],
     "libraries_do_not_print": [
         (
             {"harness/core/a.cpp": "#include <iostream>\n"},

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
 
 #include "harness/core/toml.hpp"
 
@@ -94,14 +94,12 @@ TEST(TomlDocument, KeepsTheOrderOfTheKeys) {
   EXPECT_EQ(number_in(*changed, "metrics.tilts.max"), 1.5);
 }
 
-TEST(TomlDocument, KeepsEveryBitOfANumber) {
-  rc::check([] {
-    const double value = *rc::gen::oneOf(rc::gen::arbitrary<double>(), rc::gen::element(0.0, -0.0));
-    const auto changed = document().with({{"mass_kg", value}});
-    RC_ASSERT(changed.has_value());
-    const double read = number_in(*changed, "mass_kg");
-    RC_ASSERT(read == value && std::signbit(read) == std::signbit(value));
-  });
+RC_GTEST_PROP(TomlDocument, KeepsEveryBitOfANumber, ()) {
+  const double value = *rc::gen::oneOf(rc::gen::arbitrary<double>(), rc::gen::element(0.0, -0.0));
+  const auto changed = document().with({{"mass_kg", value}});
+  RC_ASSERT(changed.has_value());
+  const double read = number_in(*changed, "mass_kg");
+  RC_ASSERT(read == value && std::signbit(read) == std::signbit(value));
 }
 
 }  // namespace
