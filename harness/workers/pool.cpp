@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <malloc.h>
 #include <poll.h>
 
 #include "harness/core/own_arena.hpp"
@@ -177,8 +176,7 @@ class Pool {
 }  // namespace
 
 std::size_t run_in_workers(const std::vector<Work>& work, const PoolOptions& options) {
-  // Returns free memory to the system first, so that a fork has fewer pages.
-  ::malloc_trim(0);
+  make_heap_cheap_to_fork();
   return Pool(work, options).run();
 }
 
