@@ -1,8 +1,10 @@
 #include "harness/cli/arguments.hpp"
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -13,6 +15,7 @@
 #include "harness/cli/run_arguments.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_arguments.hpp"
+#include "harness/cli/suite_folder.hpp"
 #include "harness/cli/timing_arguments.hpp"
 #include "harness/cli/trace_arguments.hpp"
 #include "harness/cli/wrong_arguments.hpp"
@@ -62,7 +65,7 @@ void add_sim(CLI::App& app, const Globals& globals, Action& action) {
   command->get_option("--plant")->description(
       "Plant: `mujoco` or `ode`, or `all` for a page (--html) with the flights on "
       "both; default: the first plant of the case");
-  add_port(*command, options->host.port);
+  add_port(*command, globals, options->host);
   command
       ->add_option("--out", options->out,
                    "Write the trace as CSV, or as a ULog if the name ends with .ulg; for v1.14 to "
@@ -88,7 +91,7 @@ void add_doctor(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<DoctorOptions>();
   CLI::App* command = app.add_subcommand(
       "doctor", "Check the machine, the suite, the reference and a port, and report errors");
-  add_port(*command, options->host.port);
+  add_port(*command, globals, options->host);
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command, {{"attest doctor --port lib:./libmine.so",
                            "the machine, the suite, the reference and your port"}});
@@ -103,7 +106,7 @@ void add_smoke(CLI::App& app, const Globals& globals, Action& action) {
       "smoke",
       "Check step by step whether a port follows attest_unit.h, or PROTOCOL.md if it "
       "is a program; its law is not judged");
-  add_port(*command, options->host.port);
+  add_port(*command, globals, options->host);
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command,
                {{"attest smoke --port \"proc:python3 my_port.py\"", "the exchange with a program"},
@@ -215,6 +218,21 @@ std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   return std::nullopt;
 }
 
+// Ports must see neither the chosen suite nor the one that attest comes with.
+void hide_suites(const Globals& globals) {
+  std::vector<std::filesystem::path> roots;
+  if (const auto suite = find_suite(globals.suite)) {
+    roots.push_back(suite->root);
+    if (suite->base) roots.push_back(*suite->base);
+  }
+  if (const auto data = data_folder()) roots.push_back(*data);
+  for (const std::filesystem::path& root : roots) {
+    for (const char* part : {"cases", "golden"}) {
+      globals.barrier->hidden.push_back((root / part).string());
+    }
+  }
+}
+
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
@@ -228,11 +246,18 @@ int run_command_line(int argc, char** argv) {
                  "Folder with cases/, golden/ and models/; default: ATTEST_SUITE, else the "
                  "suite that attest comes with")
       ->type_name("DIR");
+  app.add_option("--port-reads", globals.barrier->readable,
+                 "The port may read this file or folder although it is in the suite, which is "
+                 "hidden from ports; may be given several times")
+      ->type_name("PATH")
+      ->allow_extra_args(false);
   app.add_flag("-q,--quiet", globals.quiet, "Print only failures and errors");
   Action action;
   add_commands(app, globals, action);
   const auto ended = parse(app, argc, argv);
-  return ended ? *ended : action();
+  if (ended) return *ended;
+  hide_suites(globals);
+  return action();
 }
 
 }  // namespace attest::cli

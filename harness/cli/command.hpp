@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,8 @@ enum Exit : int {
 struct Globals {
   std::string suite;   // folder with cases/ and golden/; empty: find_suite() searches for it
   bool quiet = false;  // print only failures and errors
+  // The barrier of all ports (HostOptions::barrier). The command line completes it.
+  std::shared_ptr<BarrierOptions> barrier = std::make_shared<BarrierOptions>();
 };
 
 // Prints "attest: error: <file:line: message>" on stderr, and returns exit_usage.

@@ -78,6 +78,13 @@ void examine_limits(const DoctorOptions& options, Examination& examination) {
                    fmt::format("of a port's process: {:g} s per answer, {}, {} MiB per file; "
                                "all processes that it started end with it",
                                options.host.timeout_s, memory, max_file_mib));
+  const auto missing = missing_parts(barrier_parts());
+  examination.good(
+      "barrier", missing.empty()
+                     ? "a port cannot open the suite, nor signal or read attest's processes"
+                     : fmt::format("a port cannot read attest's processes, but this kernel has no "
+                                   "barrier for {} (Landlock: files Linux 5.13, signals 6.12)",
+                                   fmt::join(missing, ", ")));
 }
 
 }  // namespace

@@ -55,8 +55,10 @@ std::string declarations_of(const RunResult& run) {
 std::string limits_of(const RunResult& run) {
   const Limits& limits = run.limits;
   if (!limits.own_process) return "--in-process";
-  return fmt::format("{} s, {} GiB, {} MiB a file", limits.timeout_s, limits.memory_gib.value_or(0),
-                     limits.file_mib);
+  const auto missing = missing_parts(limits.barrier);
+  return fmt::format("{} s, {} GiB, {} MiB a file{}{}", limits.timeout_s,
+                     limits.memory_gib.value_or(0), limits.file_mib,
+                     missing.empty() ? "" : ", no barrier for ", fmt::join(missing, ", "));
 }
 
 const std::vector<Property>& properties() {
@@ -177,11 +179,13 @@ RunResult merged(std::vector<Part> parts) {
 
 // The port for the diagnosis. Empty: the port is missing or has another hash, and a note is
 // printed.
-std::optional<HostOptions> host_for(const MergeOptions& options, const RunResult& run) {
+std::optional<HostOptions> host_for(const MergeOptions& options, const Globals& globals,
+                                    const RunResult& run) {
   HostOptions host;
   host.port = options.port.empty() ? run.port : options.port;
   host.timeout_s = options.timeout_s;
   host.stop = interrupted;
+  host.barrier = globals.barrier;
   // The code of another port is not called.
   if (const auto sha256 = sha256_of_port(host.port); sha256 && *sha256 == run.port_sha256) {
     if (const auto port = describe_port(host)) {
@@ -227,7 +231,7 @@ int merge_command(const MergeOptions& options, const Globals& globals) {
   if (!reports) return report_error(reports.error());
   ReportOptions report = options.report;
   std::optional<HostOptions> host;
-  if (report.diagnose && run.failed()) host = host_for(options, run);
+  if (report.diagnose && run.failed()) host = host_for(options, globals, run);
   report.diagnose = host.has_value();
   return conclude(run, {*cases, host.value_or(HostOptions{}), options.jobs, {}}, report,
                   *std::move(reports), begin, globals);

@@ -83,7 +83,7 @@ void add_run_command(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand(
       "run", "Run the cases on a port, and compare its outputs with the expected ones");
-  add_port(*command, options->host.port, Ports::any);
+  add_port(*command, globals, options->host, Ports::any);
   add_selection(*command, options->select);
   command->add_option("--shard", options->select.shard, "Run only part I of N of the cases")
       ->type_name("I/N")
@@ -119,6 +119,8 @@ void add_run_command(CLI::App& app, const Globals& globals, Action& action) {
        {"attest run --port lib:./libmine.so --rerun-failed attest.json",
         "run again what failed in a run with --json attest.json"}});
   command->callback([options, &globals, &action] {
+    // Goldens of earlier runs may be there.
+    if (!options->save_traces.empty()) globals.barrier->hidden.push_back(options->save_traces);
     action = [=, &globals] { return run_command(*options, globals); };
   });
 }

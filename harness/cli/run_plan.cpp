@@ -207,7 +207,8 @@ Result<void> identify(const RunOptions& options, const SuiteFolder& suite, RunRe
   run.attest_version = version;
   run.port = options.host.port;
   run.limits = {!options.host.in_process, options.host.timeout_s,
-                memory_is_limited() ? std::optional(max_memory_gib) : std::nullopt, max_file_mib};
+                memory_is_limited() ? std::optional(max_memory_gib) : std::nullopt, max_file_mib,
+                barrier_parts()};
   auto hash = suite.sha256();
   if (!hash) return tl::unexpected(hash.error());
   run.suite_sha256 = *hash;

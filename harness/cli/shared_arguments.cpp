@@ -50,13 +50,14 @@ void add_examples(CLI::App& command, std::initializer_list<Example> examples) {
   command.footer(text);
 }
 
-void add_port(CLI::App& command, std::string& port, Ports accepted) {
+void add_port(CLI::App& command, const Globals& globals, HostOptions& host, Ports accepted) {
+  host.barrier = globals.barrier;
   const std::string kinds = accepted == Ports::any
                                 ? fmt::format("{}, `recorded:DIR`", callable_port_kinds)
                                 : callable_port_kinds;
   CLI::Option* const option =
       command
-          .add_option("--port", port,
+          .add_option("--port", host.port,
                       fmt::format("Port to run: {}; `builtin` is the reference of attest", kinds))
           ->type_name("PORT")
           ->capture_default_str();
@@ -74,7 +75,8 @@ void add_timeout(CLI::App& command, double& timeout_s) {
   command
       .add_option("--timeout", timeout_s,
                   "Limit for each answer of the port [s]: a library answers with a whole trace, "
-                  "a program with a step or a batch of steps")
+                  "a program with a step or a batch of steps. Counts the CPU time of the port's "
+                  "processes; they may sleep three times as long")
       ->check(CLI::Range(0.1, 86400.0))
       ->capture_default_str()
       ->group(option_group::execution);

@@ -52,7 +52,8 @@ void add_plant(CLI::App& command, std::string& vehicle, std::string& plant,
                const char* usual_plant = "the first plant of the case");
 // `callable` refuses a recorded port, which has outputs but no functions; only `run` can judge it.
 enum class Ports { callable, any };
-void add_port(CLI::App& command, std::string& port, Ports accepted = Ports::callable);
+void add_port(CLI::App& command, const Globals& globals, HostOptions& host,
+              Ports accepted = Ports::callable);
 // --assume: assumptions that replace the topics that a flight log lacks.
 void add_assumed(CLI::App& command, std::vector<std::string>& assumed);
 void add_timeout(CLI::App& command, double& timeout_s);

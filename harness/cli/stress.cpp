@@ -159,7 +159,7 @@ Result<void> run_all(const StressPlan& plan, const StressOptions& options, const
     if (interrupted()) break;
     const auto progress = [&](const StressProgress& now) { line.show(task, now); };
     const auto judge = options.cyclictest ? idle_by_cyclictest(task) : std::nullopt;
-    auto results = run_stress(task, options.host.port, interrupted, progress);
+    auto results = run_stress(task, options.host, interrupted, progress);
     if (!results) return tl::unexpected(results.error());
     line.erase();
     if (run.results.empty() && !globals.quiet)

@@ -159,6 +159,7 @@ void add_bless(CLI::App& app, const Globals& globals, Action& action) {
                    "Make the goldens of --suite DIR from this port; default: from the reference "
                    "of attest")
       ->type_name("PORT");
+  options->host.barrier = globals.barrier;
   add_timeout(*command, options->host.timeout_s);
   add_examples(*command, {{"attest bless --filter 'px4-v1.5.5/tpa/*' --reason \"...\"",
                            "show the changes, and ask before the goldens are replaced"},

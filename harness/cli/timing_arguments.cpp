@@ -90,7 +90,7 @@ void add_stress(CLI::App& app, const Globals& globals, Action& action) {
       "stress",
       "Fly one case in real time with a port, and measure latency, execution time, "
       "response time and deadline misses");
-  add_port(*command, options->host.port);
+  add_port(*command, globals, options->host);
   add_rates(*command, options->rates,
             "Loop rates [Hz], separated by commas; for v1.14 to v1.16 pairs such as 250:1000")
       ->default_str("250,500,1000,2000,4000,8000");
@@ -146,7 +146,7 @@ void add_sweep_rate(CLI::App& app, const Globals& globals, Action& action) {
                    "Only this plant: `mujoco` or `ode`; default: all plants of the case")
       ->type_name("PLANT")
       ->allow_extra_args(false);
-  add_port(*command, options->host.port);
+  add_port(*command, globals, options->host);
   add_page(*command, options->html, "a page with the limits, and with the metrics by rate");
   command->add_option("--csv", options->csv, "Write the table as CSV")
       ->type_name("F.csv")
@@ -211,7 +211,7 @@ void add_sweep(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("SWEEP.toml")
       ->required();
   add_plant(*command, options->vehicle, options->plant, "that of the file", "that of the file");
-  add_port(*command, options->host.port);
+  add_port(*command, globals, options->host);
   command
       ->add_option("--out", options->out,
                    "Folder for the results; an interrupted sweep continues with the samples that "
@@ -266,7 +266,7 @@ void add_schedule(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("CASE")
       ->capture_default_str();
   add_plant(*command, options->vehicle, options->plant);
-  add_port(*command, options->host.port);
+  add_port(*command, globals, options->host);
   command
       ->add_option("--record-timing", options->record_timing,
                    "Write the times of all ticks, for `run --timing` and `sim --timing`")
@@ -286,7 +286,7 @@ void add_time(CLI::App& app, const Globals& globals, Action& action) {
       app.add_subcommand("time",
                          "Measure the execution time and the stack use of a port's steps in the "
                          "open-loop vectors");
-  add_port(*command, options->host.port);
+  add_port(*command, globals, options->host);
   add_selection(*command, options->select, Selects::open_loop);
   command
       ->add_option("--repeat", options->measure.repeats,

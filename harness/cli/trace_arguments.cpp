@@ -62,7 +62,7 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("files", options->files, "Traces (CSV) or flight logs (.ulg)")
       ->type_name("FILE")
       ->required();
-  add_port(*command, options->host.port);
+  add_port(*command, globals, options->host);
   add_law_options(*command, *options);
   add_log_options(*command, *options);
   add_page(*command, options->html,
@@ -78,6 +78,9 @@ void add_replay(CLI::App& app, const Globals& globals, Action& action) {
                           {"attest replay FLIGHT.ulg --port lib:./libmine.so",
                            "compare a port with the log of a flight"}});
   command->callback([options, &globals, &action] {
+    // The outputs in these files are what the port must compute.
+    auto& hidden = globals.barrier->hidden;
+    hidden.insert(hidden.end(), options->files.begin(), options->files.end());
     action = [=, &globals] { return replay_command(*options, globals); };
   });
 }
@@ -90,7 +93,7 @@ void add_record(CLI::App& app, const Globals& globals, Action& action) {
       ->type_name("CASE")
       ->required();
   command->add_option("--rate", options->rate, "The loop rate [Hz]")->type_name("HZ")->required();
-  add_port(*command, options->host.port);
+  add_port(*command, globals, options->host);
   command
       ->add_option("--out", options->out,
                    "Write the trace as CSV, or as a ULog if the name ends with .ulg; `-` is stdout")

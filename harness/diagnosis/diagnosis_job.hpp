@@ -30,7 +30,7 @@ class DiagnosisJob final : public PortJob<VectorDiagnosis> {
   // this.
   DiagnosisJob(const Case& the_case, const Rate& rate, const faults::Fault* partner,
                HostOptions options)
-      : case_(the_case), rate_(rate), partner_(partner), options_(std::move(options)) {}
+      : PortJob(std::move(options)), case_(the_case), rate_(rate), partner_(partner) {}
 
   std::size_t size() const override { return 1; }
   Result<VectorDiagnosis> run(std::size_t task) override;
@@ -39,7 +39,6 @@ class DiagnosisJob final : public PortJob<VectorDiagnosis> {
   const Case& case_;
   Rate rate_;
   const faults::Fault* partner_;
-  HostOptions options_;
 };
 
 // Jobs for up to 48 vectors that failed with a deviation, and for up to 48 vectors that passed.

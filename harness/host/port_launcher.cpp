@@ -53,15 +53,15 @@ Result<std::shared_ptr<const PortCalls>> shared_calls() {
 // One thread at a time, same as Launcher.
 class PortLauncher {
  public:
-  static Result<PortLauncher> start() {
+  static Result<PortLauncher> start(const BarrierOptions& barrier) {
     auto calls = shared_calls();
     if (!calls) return tl::unexpected(calls.error());
-    auto launcher = Launcher::start(Child::Runs::code_of_others,
-                                    [&calls](const std::string& request, MessageSocket& judge) {
-                                      Served served{};
-                                      std::memcpy(&served, request.data(), sizeof served);
-                                      serve(served, **calls, judge);
-                                    });
+    auto launcher =
+        Launcher::start(barrier, [&calls](const std::string& request, MessageSocket& judge) {
+          Served served{};
+          std::memcpy(&served, request.data(), sizeof served);
+          serve(served, **calls, judge);
+        });
     if (!launcher) return tl::unexpected(launcher.error());
     return PortLauncher(*std::move(calls), *std::move(launcher));
   }
@@ -93,9 +93,9 @@ std::optional<PortLauncher>& port_launcher() {
 
 }  // namespace
 
-Result<void> start_port_launcher() {
+Result<void> start_port_launcher(const BarrierOptions& barrier) {
   port_launcher().reset();
-  auto launcher = PortLauncher::start();
+  auto launcher = PortLauncher::start(barrier);
   if (!launcher) return tl::unexpected(launcher.error());
   port_launcher().emplace(*std::move(launcher));
   return {};
@@ -113,8 +113,9 @@ Result<PortChild> launch_port(const HostOptions& options, const Course& course) 
   if (is_below_guard()) return fail("the worker has no launcher for the port's process");
   auto calls = shared_calls();
   if (!calls) return tl::unexpected(calls.error());
-  return Child::spawn(Child::Runs::code_of_others,
-                      [&](MessageSocket& judge) { serve(served, **calls, judge); })
+  return Child::spawn(
+             Child::Runs::code_of_others,
+             [&](MessageSocket& judge) { serve(served, **calls, judge); }, *options.barrier)
       .map([&](Child child) {
         return PortChild{std::move(child), *std::move(calls)};
       });

@@ -15,8 +15,9 @@ struct HostOptions;
 
 // Starts the launcher of this process, and ends the one that it had. A worker calls this before it
 // reads data that ports must not read (Job::begin_worker()). The launcher can then start the
-// processes of many ports, one after the other. Errors: a process cannot be started.
-Result<void> start_port_launcher();
+// processes of many ports, one after the other. All of them are behind the same barrier. Errors: a
+// process cannot be started.
+Result<void> start_port_launcher(const BarrierOptions& barrier);
 
 // False before the first start, and after a launch found the launcher dead. A worker must then end:
 // it may have read data that ports must not read, and a new launcher would have them in its memory.

@@ -1,5 +1,6 @@
 #include "harness/host/port_process.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <type_traits>
 #include <utility>
@@ -36,6 +37,55 @@ std::string not_run(PortFault::Kind kind) {
   return kind == PortFault::Kind::timeout
              ? "not run: the port had timed out before"
              : "not run: the port had crashed or broken the protocol before";
+}
+
+// Measures an answer of the port. A machine under load must not make a right port late, so the
+// limit is one of CPU time. Sleep has a limit of its own, and the time in which the port waits for
+// a CPU does not count. The limits of a library are for a whole trace. A program may take longer
+// for a trace, so its limits are for each call. The calls are counted in memory that the program
+// cannot write, so it cannot extend the limits.
+class AnswerMeter {
+ public:
+  enum class Limit { none, running, asleep, memory };
+
+  AnswerMeter(const HostOptions& options, const PortChild& port)
+      : most_(options.timeout_s), port_(port), is_program_(is_program(options.port)) {}
+
+  // Looks at the processes of the port at most every 100 ms.
+  Limit exceeded() {
+    const auto now = SteadyClock::now();
+    if (now - looked_ < std::chrono::milliseconds(100)) return Limit::none;
+    looked_ = now;
+    const TreeUsage usage = port_.child.usage();
+    if (memory_is_limited() && usage.resident_bytes >> 30 >= max_memory_gib) return Limit::memory;
+    const bool is_new_call =
+        is_program_ && std::exchange(calls_, port_.calls->count()) != port_.calls->count();
+    if (!at_begin_ || is_new_call) {
+      at_begin_ = usage;
+      began_ = now;
+    }
+    const auto running = std::max(usage.running - at_begin_->running, Duration{0});
+    const auto waiting = std::max(usage.waiting - at_begin_->waiting, Duration{0});
+    if (running > most_) return Limit::running;
+    return now - began_ - running - waiting > most_ * longer_asleep ? Limit::asleep : Limit::none;
+  }
+
+ private:
+  using Duration = std::chrono::nanoseconds;
+
+  std::chrono::duration<double> most_;
+  const PortChild& port_;
+  bool is_program_;
+  SteadyClock::time_point looked_ = SteadyClock::now(), began_ = looked_;
+  std::optional<TreeUsage> at_begin_;
+  std::uint64_t calls_ = 0;
+};
+
+// "10 s of CPU time"
+std::string text_of(AnswerMeter::Limit exceeded, const HostOptions& options) {
+  return exceeded == AnswerMeter::Limit::asleep
+             ? fmt::format("{:g} s of sleep", options.timeout_s * longer_asleep)
+             : fmt::format("{:g} s of CPU time", options.timeout_s);
 }
 
 class PortProcess final : public PortHost {
@@ -127,19 +177,11 @@ class PortProcess final : public PortHost {
     return answer_from("", limit, std::move(read));
   }
 
-  // The time limit of a library is for a whole trace. A program may take longer for a trace, so its
-  // limit is for each call. The calls are counted in memory that the program cannot write, so it
-  // cannot extend the limit.
-  Patience patience() const {
-    Patience limit = Patience::seconds(options_.timeout_s);
-    limit.given_up = options_.stop;
-    if (!is_program(options_.port)) return limit;
-    limit.until = SteadyClock::time_point::max();
-    limit.given_up = [this, count = port_->calls->count(), heard = SteadyClock::now()]() mutable {
-      if (std::exchange(count, port_->calls->count()) != port_->calls->count())
-        heard = SteadyClock::now();
-      return options_.stop() ||
-             SteadyClock::now() - heard > std::chrono::duration<double>(options_.timeout_s);
+  Patience patience() {
+    Patience limit;
+    limit.given_up = [this, meter = AnswerMeter(options_, *port_)]() mutable {
+      exceeded_ = meter.exceeded();
+      return exceeded_ != AnswerMeter::Limit::none || options_.stop();
     };
     return limit;
   }
@@ -179,17 +221,23 @@ class PortProcess final : public PortHost {
     if (why != Kind::ended) port_->child.kill();
     const std::string how = port_->child.end();
     const std::string where = when.empty() ? port_->calls->current() : ", " + when;
+    const std::string words = port_->child.last_printed();
+    if (exceeded_ == AnswerMeter::Limit::memory) {
+      fault_ = PortFault{PortFault::Kind::crash, 0,
+                         fmt::format("the port's processes used more than {} GiB of memory{}{}",
+                                     max_memory_gib, where, words)};
+      return;
+    }
     switch (why) {
       case Kind::ended:
-        fault_ = PortFault{
-            PortFault::Kind::crash, 0,
-            fmt::format("the port's process {}{}{}", how, where, port_->child.last_printed())};
+        fault_ = PortFault{PortFault::Kind::crash, 0,
+                           fmt::format("the port's process {}{}{}", how, where, words)};
         return;
       case Kind::too_late:
       case Kind::given_up:
-        fault_ = PortFault{PortFault::Kind::timeout, 0,
-                           fmt::format("no answer within {} s{}{}", options_.timeout_s, where,
-                                       port_->child.last_printed())};
+        fault_ = PortFault{
+            PortFault::Kind::timeout, 0,
+            fmt::format("no answer within {}{}{}", text_of(exceeded_, options_), where, words)};
         return;
       default:
         fault_ = PortFault{PortFault::Kind::protocol, 0,
@@ -201,6 +249,7 @@ class PortProcess final : public PortHost {
   std::optional<PortChild> port_;
   PortSays says_;
   std::uint64_t request_ = 0;
+  AnswerMeter::Limit exceeded_ = AnswerMeter::Limit::none;
   bool was_asked_ = false;          // by a request; after a fault, later ones are `not run`
   std::optional<PortFault> fault_;  // permanent
 };

@@ -12,11 +12,15 @@
 #include <vector>
 
 #include "harness/host/port_host.hpp"
+#include "harness/process/barrier.hpp"
 
 namespace attest {
 
-// The time limit of each answer of a port [s]. An answer usually takes milliseconds.
+// The limit of CPU time for each answer of a port [s]. An answer usually takes milliseconds.
 inline constexpr double default_timeout_s = 10;
+// While an answer is awaited, the port's processes may sleep this many times as long as they may
+// run. On a machine under load a page of a file may take seconds to arrive.
+inline constexpr double longer_asleep = 3;
 
 struct HostOptions;
 using StartHost =
@@ -29,6 +33,8 @@ struct HostOptions {
   std::optional<PortSays> said = {};
   double timeout_s = default_timeout_s;
   bool in_process = false;  // for a debugger: no process of its own, no protection
+  // Never null. Hides what the port must not see: the suite, recorded outputs.
+  std::shared_ptr<const BarrierOptions> barrier = std::make_shared<BarrierOptions>();
   // The text of the fault, if the port hung when it was loaded. Such a port is not started again.
   // The first request ends with this fault, and later requests with `not run`.
   std::string hangs = {};

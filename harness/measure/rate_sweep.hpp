@@ -49,11 +49,11 @@ class RateSweepJob final : public PortJob<RateSweepResult> {
   // REQUIRES: `rates` is not empty.
   RateSweepJob(Case the_case, PlantConfiguration plant_configuration, std::vector<LoopRate> rates,
                std::shared_ptr<const VehicleModel> vehicle_model, HostOptions options)
-      : case_(std::move(the_case)),
+      : PortJob(std::move(options)),
+        case_(std::move(the_case)),
         plant_configuration_(std::move(plant_configuration)),
         rates_(std::move(rates)),
-        vehicle_model_(std::move(vehicle_model)),
-        options_(std::move(options)) {}
+        vehicle_model_(std::move(vehicle_model)) {}
 
   std::size_t size() const override { return rates_.size() + 1; }
   Result<void> open() override;
@@ -66,7 +66,6 @@ class RateSweepJob final : public PortJob<RateSweepResult> {
   PlantConfiguration plant_configuration_;
   std::vector<LoopRate> rates_;
   std::shared_ptr<const VehicleModel> vehicle_model_;
-  HostOptions options_;
   std::unique_ptr<PortHost> host_;
 };
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/casefile/case.hpp"
+#include "harness/host/port_process.hpp"
 #include "harness/host/port_says.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/realtime/cyclictest.hpp"
@@ -96,7 +97,7 @@ struct StressMeasurement {
 // Flies the task in a child process, and judges it in this process. A port that crashes or hangs
 // gets a verdict. `stop` ends the flight early; the measurements so far are judged.
 // Errors: the port cannot be opened; the flight cannot be set up; the timing cannot be written.
-Result<StressResults> run_stress(const StressTask& task, const std::string& port,
+Result<StressResults> run_stress(const StressTask& task, const HostOptions& host,
                                  const std::function<bool()>& stop,
                                  const std::function<void(const StressProgress&)>& progress);
 

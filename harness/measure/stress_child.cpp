@@ -331,16 +331,17 @@ class Listener {
 
 }  // namespace
 
-Result<StressResults> run_stress(const StressTask& task, const std::string& port,
+Result<StressResults> run_stress(const StressTask& task, const HostOptions& host,
                                  const std::function<bool()>& stop,
                                  const std::function<void(const StressProgress&)>& progress) {
   if (auto unsupported = declined(task)) return *std::move(unsupported);
   const auto calls = PortCalls::make();
   if (!calls) return tl::unexpected(calls.error());
-  auto child = Child::spawn(Child::Runs::code_of_others,
-                            [&](MessageSocket& parent) { work(task, port, *calls, parent); });
+  auto child = Child::spawn(
+      Child::Runs::code_of_others,
+      [&](MessageSocket& parent) { work(task, host.port, *calls, parent); }, *host.barrier);
   if (!child) return tl::unexpected(child.error());
-  return Listener(task, is_program(port), *calls, *child, progress).listen(stop);
+  return Listener(task, is_program(host.port), *calls, *child, progress).listen(stop);
 }
 
 }  // namespace attest

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <exception>
 #include <initializer_list>
+#include <optional>
 #include <utility>
 
 #include <fcntl.h>
@@ -35,23 +36,22 @@ void close_all(std::initializer_list<int> files) {
   }
 }
 
-// Limits the writable memory, which includes all allocations: a port that never stops allocating
-// must not use up the memory of the machine. With sanitizers there is no limit, as they reserve
-// terabytes.
-void limit_memory() {
-  if (memory_is_limited()) {
-    rlimit memory{};
-    ::getrlimit(RLIMIT_DATA, &memory);
-    memory.rlim_cur = std::min<rlim_t>(memory.rlim_max, max_memory_bytes);
-    ::setrlimit(RLIMIT_DATA, &memory);
-  }
+// Sets both limits: the soft one, and the hard one up to which a process can raise the soft one.
+void limit(__rlimit_resource resource, rlim_t most) {
+  rlimit both{};
+  ::getrlimit(resource, &both);
+  both.rlim_max = std::min(both.rlim_max, most);
+  both.rlim_cur = std::min(both.rlim_cur, both.rlim_max);
+  ::setrlimit(resource, &both);
 }
 
-void limit_files() {
-  rlimit files{};
-  ::getrlimit(RLIMIT_FSIZE, &files);
-  files.rlim_cur = std::min(files.rlim_max, max_file_bytes);
-  ::setrlimit(RLIMIT_FSIZE, &files);
+// The limit of memory is that of writable memory, which includes all allocations: a port that never
+// stops allocating must not use up the memory of the machine. With sanitizers there is no limit, as
+// they reserve terabytes.
+void limit_code_of_others() {
+  if (memory_is_limited()) limit(RLIMIT_DATA, max_memory_bytes);
+  limit(RLIMIT_NOFILE, max_open_files);
+  limit(RLIMIT_FSIZE, max_file_bytes);
   ::signal(SIGXFSZ, SIG_IGN);  // a write past the limit then fails instead of killing the process
 }
 
@@ -74,12 +74,12 @@ bool memory_is_limited() { return !built_with_sanitizers; }
 
 // Neither returns nor throws. The child must not unwind the parent's stack, which owns files to be
 // renamed and other children, and must not run the parent's exit handlers.
-void run_in_child(Child::Runs runs, const ChildFiles& files, const Child::Work& work) {
-  keep_only(files);
-  if (runs == Child::Runs::code_of_others) {
-    limit_files();
-    limit_memory();
+void run_in_child(const Barrier* barrier, const ChildFiles& files, const Child::Work& work) {
+  if (barrier != nullptr) {
+    limit_code_of_others();
+    barrier->enter();
   }
+  keep_only(files);
   MessageSocket socket(files.socket);
   try {
     work(socket);
@@ -111,11 +111,18 @@ Result<Child> Child::adopt(const std::function<Result<Process>(const ChildFiles&
   return tl::unexpected(process.error());
 }
 
-Result<Child> Child::spawn(Runs runs, const Work& work) {
+Result<Child> Child::spawn(Runs runs, const Work& work, const BarrierOptions& options) {
+  std::optional<Barrier> barrier;
+  if (runs == Runs::code_of_others) {
+    auto made = Barrier::make(options);
+    if (!made) return tl::unexpected(made.error());
+    barrier.emplace(*std::move(made));
+  }
+  hide_memory();
+  const auto when_stopped = barrier ? Process::WhenStopped::stays : Process::WhenStopped::continues;
   return adopt([&](const ChildFiles& files) {
-    const auto when_stopped =
-        runs == Runs::our_code ? Process::WhenStopped::continues : Process::WhenStopped::stays;
-    return Process::start([&] { run_in_child(runs, files, work); }, when_stopped);
+    return Process::start([&] { run_in_child(barrier ? &*barrier : nullptr, files, work); },
+                          when_stopped);
   });
 }
 

@@ -7,8 +7,10 @@
 #include <utility>
 
 #include "harness/core/result.hpp"
+#include "harness/process/barrier.hpp"
 #include "harness/process/message_socket.hpp"
 #include "harness/process/process.hpp"
+#include "harness/process/tree_usage.hpp"
 
 namespace attest {
 
@@ -20,7 +22,7 @@ struct ChildFiles {
 };
 
 // Limits of a child that runs code of others. A build with sanitizers does not limit the memory.
-inline constexpr int max_memory_gib = 4, max_file_mib = 16;
+inline constexpr int max_memory_gib = 4, max_file_mib = 16, max_open_files = 1024;
 bool memory_is_limited();
 
 class Child {
@@ -29,9 +31,10 @@ class Child {
   using Work = std::function<void(MessageSocket&)>;
 
   // Forks a child (a Process), which runs `work` and then ends. Its stdout and stderr are captured
-  // (last_words), its stdin is empty, and it has no descriptors of the parent. Code of others also
-  // has limits: of memory, and of the size of each file that it writes, including its output.
-  static Result<Child> spawn(Runs runs, const Work& work);
+  // (last_words), its stdin is empty, and it has no descriptors of the parent. Code of others runs
+  // behind the barrier, and has limits that it cannot raise: of memory, of the number of open
+  // files, and of the size of each file that it writes, including its output.
+  static Result<Child> spawn(Runs runs, const Work& work, const BarrierOptions& barrier = {});
 
   // Same as spawn(), but `launch` starts the process and makes it call run_in_child() with the
   // given files. `launch` must not close these files.
@@ -48,6 +51,8 @@ class Child {
   // alone does not show this: a process that the child started may keep the child's end open.
   Received receive(const Patience& patience = {});
   Received::Kind receive_blob(void* place, std::size_t size, const Patience& patience = {});
+
+  TreeUsage usage() const { return usage_of_tree(process_.pid()); }
 
   void wake() { process_.wake(); }
   void kill() { process_.kill(); }
@@ -78,8 +83,9 @@ class Child {
   bool has_exited_well_ = false;
 };
 
-// Called in the new child: closes all files except `files`, limits code of others, does the work,
-// and ends the process.
-[[noreturn]] void run_in_child(Child::Runs runs, const ChildFiles& files, const Child::Work& work);
+// Called in the new child: closes all files except `files`, does the work, and ends the process.
+// With a barrier the work is code of others.
+[[noreturn]] void run_in_child(const Barrier* barrier, const ChildFiles& files,
+                               const Child::Work& work);
 
 }  // namespace attest

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -19,14 +20,19 @@ struct Launched {
 };
 
 // Runs in the launcher: serves the owner until the owner closes the socket.
-void serve(Child::Runs runs, const Launcher::Work& work, MessageSocket& owner) {
+void serve(const BarrierOptions& options, const Launcher::Work& work, MessageSocket& owner) {
+  const auto barrier = Barrier::make(options);
+  if (!barrier) {
+    fmt::print(stderr, "{}\n", barrier.error().to_string());
+    ::_exit(EXIT_FAILURE);
+  }
   while (true) {
     const std::vector<int> descriptors = owner.receive_descriptors();
     if (descriptors.size() != 3) return;
     const ChildFiles files{descriptors[0], descriptors[1], descriptors[2]};
     Launched launched{};
     launched.child = fork_sibling([&] {
-      run_in_child(runs, files, [&](MessageSocket& socket) {
+      run_in_child(&*barrier, files, [&](MessageSocket& socket) {
         const Received request = socket.receive();
         if (request.kind == Received::Kind::message) work(request.head, socket);
       });
@@ -39,9 +45,10 @@ void serve(Child::Runs runs, const Launcher::Work& work, MessageSocket& owner) {
 
 }  // namespace
 
-Result<Launcher> Launcher::start(Child::Runs runs, const Work& work, double time_limit_s) {
-  auto process =
-      Child::spawn(Child::Runs::our_code, [&](MessageSocket& owner) { serve(runs, work, owner); });
+Result<Launcher> Launcher::start(const BarrierOptions& barrier, const Work& work,
+                                 double time_limit_s) {
+  auto process = Child::spawn(Child::Runs::our_code,
+                              [&](MessageSocket& owner) { serve(barrier, work, owner); });
   if (!process) return tl::unexpected(process.error());
   return Launcher(*std::move(process), time_limit_s);
 }
@@ -60,7 +67,10 @@ pid_t Launcher::fork_there(const ChildFiles& files) {
   }
   is_alive_ = answered == Received::Kind::message;
   is_late_ = answered == Received::Kind::too_late;
-  if (!is_alive_) return -1;
+  if (!is_alive_) {
+    errno = ECHILD;
+    return -1;
+  }
   errno = launched.reason;
   return launched.child;
 }

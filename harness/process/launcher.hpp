@@ -1,4 +1,5 @@
-// A process that forks children for its owner, the process that started it.
+// A process that forks children for its owner, the process that started it. The children run code
+// of others.
 #pragma once
 
 #include <functional>
@@ -25,7 +26,8 @@ class Launcher {
 
   // Forks the launcher. launch() kills a launcher that needs more than `time_limit_s` for an
   // answer. An answer takes milliseconds, or seconds on a machine that swaps.
-  static Result<Launcher> start(Child::Runs runs, const Work& work, double time_limit_s = 60);
+  static Result<Launcher> start(const BarrierOptions& barrier, const Work& work,
+                                double time_limit_s = 60);
 
   // The launcher forks a child, and then the owner itself sends the request to that child. So the
   // child's work, which may kill or stop the launcher, begins only after the owner has taken over

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <sys/wait.h>
@@ -35,19 +36,16 @@ std::vector<pid_t> children(const std::string& process) {
   return found;
 }
 
-// The orphans and their descendants.
-std::vector<pid_t> orphans() {
-  constexpr std::size_t enough = 10'000;  // a limit: processes may fork faster than this loop
-  std::vector<pid_t> found = children("self");
-  std::erase_if(found, [](pid_t child) { return owned().processes.contains(child); });
-  for (std::size_t i = 0; i < found.size() && found.size() < enough; ++i) {
-    const std::vector<pid_t> next = children(std::to_string(found[i]));
-    found.insert(found.end(), next.begin(), next.end());
-  }
-  return found;
-}
-
 }  // namespace
+
+std::vector<pid_t> with_descendants(std::vector<pid_t> processes) {
+  constexpr std::size_t enough = 10'000;  // a limit: processes may fork faster than this loop
+  for (std::size_t i = 0; i < processes.size() && processes.size() < enough; ++i) {
+    const std::vector<pid_t> next = children(std::to_string(processes[i]));
+    processes.insert(processes.end(), next.begin(), next.end());
+  }
+  return processes;
+}
 
 void end_orphans() {
   // Reading /proc costs 100 page faults, and is not necessary without children.
@@ -55,7 +53,9 @@ void end_orphans() {
   if (::waitid(P_ALL, 0, &ignored, WEXITED | WNOHANG | WNOWAIT) != 0 && errno == ECHILD) return;
   const std::lock_guard lock(owned().mutex);
   happens_within(time_to_die_s, [] {
-    const std::vector<pid_t> all = orphans();
+    std::vector<pid_t> found = children("self");
+    std::erase_if(found, [](pid_t child) { return owned().processes.contains(child); });
+    const std::vector<pid_t> all = with_descendants(std::move(found));
     for (const pid_t orphan : all) ::kill(orphan, SIGKILL);
     for (const pid_t orphan : all) ::waitpid(orphan, nullptr, WNOHANG);
     return all.empty();

@@ -3,6 +3,7 @@
 
 #include <mutex>
 #include <set>
+#include <vector>
 
 #include <sys/types.h>
 
@@ -16,6 +17,9 @@ struct Owned {
 };
 
 Owned& owned();
+
+// The processes, and all below them that have not ended.
+std::vector<pid_t> with_descendants(std::vector<pid_t> processes);
 
 // Kills the orphans repeatedly: when one ends, its own children become orphans. REQUIRES: this
 // process is a subreaper.

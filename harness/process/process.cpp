@@ -167,47 +167,61 @@ Result<Process> Process::start(const std::function<void()>& work, WhenStopped wh
 
 Result<Process> Process::adopt(const std::function<pid_t()>& fork) {
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
-  const SignalsBlocked blocked;
-  const std::lock_guard lock(owned().mutex);
-  const pid_t started = fork();
-  const int reason = errno;
-  if (started > 0) {
-    ::setpgid(started, started);  // lead_group() does the same, perhaps later
-    owned().processes.insert(started);
-    return Process(started);
-  }
+  pid_t started = -1;
+  int reason = 0;
+  // On a machine under load, other processes may end and leave room within these seconds.
+  constexpr double patience_s = 10;
+  happens_within(patience_s, [&] {
+    const SignalsBlocked blocked;
+    const std::lock_guard lock(owned().mutex);
+    started = fork();
+    reason = errno;
+    if (started > 0) {
+      ::setpgid(started, started);  // lead_group() does the same, perhaps later
+      owned().processes.insert(started);
+    }
+    return started > 0 || (reason != EAGAIN && reason != ENOMEM);
+  });
+  if (started > 0) return Process(started);
   return fail(fmt::format("cannot start a process: {}{}", std::strerror(reason),
                           reason == EAGAIN ? " (`ulimit -u` limits how many there are)" : ""));
 }
+
+namespace {
+
+struct Forked {
+  pid_t child = -1;
+  int reason = 0;  // errno, if there is no child
+};
+
+// The process between this one and the child process. It shares the memory of this process, which
+// waits until it ends (vfork): a second copy of the page tables would double the time of a launch.
+[[gnu::noinline]] void fork_from_between(pid_t owner, const std::function<void()>& work,
+                                         Forked& forked) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    own_nothing();
+    happens_within(time_to_die_s, [&] { return ::getppid() == owner; });
+    lead_group(owner, work);
+  }
+  forked = {child, errno};
+  ::_exit(EXIT_SUCCESS);
+}
+
+}  // namespace
 
 pid_t fork_sibling(const std::function<void()>& work) {
   std::fflush(nullptr);
   const SignalsBlocked blocked;
   const std::lock_guard lock(owned().mutex);
   const pid_t owner = ::getppid();
-  std::array<int, 2> pipe{-1, -1};
-  if (::pipe2(pipe.data(), O_CLOEXEC) != 0) return -1;
-  const pid_t between = ::fork();
-  if (between == 0) {
-    const std::array<int, 2> forked{::fork(), errno};
-    if (forked[0] == 0) {
-      own_nothing();
-      for (const int end : pipe) ::close(end);
-      happens_within(time_to_die_s, [&] { return ::getppid() == owner; });
-      lead_group(owner, work);
-    }
-    static_cast<void>(!::write(pipe[1], &forked, sizeof forked));
-    ::_exit(EXIT_SUCCESS);
-  }
-  std::array<int, 2> forked{between, errno};  // the id of the child process or -1, and errno
-  ::close(pipe[1]);
-  if (between > 0) {
-    if (::read(pipe[0], &forked, sizeof forked) != sizeof forked) forked = {-1, ECHILD};
-    ::waitpid(between, nullptr, 0);  // now the owner is the parent of the child process
-  }
-  ::close(pipe[0]);
-  errno = forked[1];
-  return forked[0];
+  Forked forked;
+  const pid_t between = ::vfork();
+  if (between == 0) fork_from_between(owner, work, forked);
+  if (between < 0) return -1;
+  ::waitpid(between, nullptr, 0);  // now the owner is the parent of the child process
+  errno = forked.reason;
+  return forked.child;
 }
 
 bool is_below_guard() { return is_guarded; }

@@ -35,7 +35,7 @@ class Process {
   // Takes over a child process that start() did not make. `fork` lets another process call
   // fork_sibling(), and returns the id of the new process, or -1 with errno. The new process has no
   // guard of its own. Until `fork` returns, signals are blocked, and other threads cannot start
-  // processes.
+  // processes. Calls `fork` again for up to 10 s while errno is EAGAIN or ENOMEM.
   static Result<Process> adopt(const std::function<pid_t()>& fork);
 
   Process() = default;  // no process, same as after end()

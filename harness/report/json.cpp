@@ -111,6 +111,7 @@ ordered_json limits(const Limits& of) {
   out["timeout_s"] = of.timeout_s;
   if (of.memory_gib) out["memory_gib"] = *of.memory_gib;
   out["file_mib"] = of.file_mib;
+  out["barrier"] = {{"files", of.barrier.files}, {"signals", of.barrier.signals}};
   return out;
 }
 

@@ -57,6 +57,8 @@ void read_limits(JsonReader reader, RunResult& run) {
     run.limits.memory_gib = static_cast<int>(reader.integer("memory_gib"));
   }
   run.limits.file_mib = static_cast<int>(reader.integer("file_mib"));
+  JsonReader barrier = reader.object("barrier");
+  run.limits.barrier = {barrier.flag("files"), barrier.flag("signals")};
 }
 
 void read_selection(JsonReader reader, RunResult& run) {

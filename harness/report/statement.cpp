@@ -81,6 +81,10 @@ std::string subject_of(const RunResult& run) {
     out += ", port " + (run.port_sha256.empty() ? one_line(run.port) : short_hash(run.port_sha256));
   }
   if (!run.date.empty()) out += ", " + run.date;
+  const auto missing = missing_parts(run.limits.barrier);
+  if (run.limits.own_process && !missing.empty()) {
+    out += fmt::format("; this kernel has no barrier for {}", fmt::join(missing, ", "));
+  }
   return out;
 }
 

@@ -134,7 +134,7 @@ void fly_piece(const FlightSampler& sampler, const SampleRange& piece,
   std::vector<Result<SampledFlight>> samples;
   for (std::uint64_t i = piece.begin; i < piece.end; ++i) samples.push_back(sampler.sample(i));
   if (options.with_port) {
-    if (const auto started = start_port_launcher(); !started) {
+    if (const auto started = start_port_launcher(*options.host.barrier); !started) {
       return done(encode(Result<nlohmann::json>(tl::unexpected(started.error()))), piece.size());
     }
   }

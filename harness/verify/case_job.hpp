@@ -36,12 +36,12 @@ class CaseJob final : public PortJob<CaseResult> {
   CaseJob(Case the_case, std::vector<RunConfiguration> configurations,
           std::shared_ptr<const VehicleModel> vehicle_model, std::filesystem::path golden_root,
           JudgeOptions judge, HostOptions options)
-      : case_(std::move(the_case)),
+      : PortJob(std::move(options)),
+        case_(std::move(the_case)),
         configurations_(std::move(configurations)),
         vehicle_model_(std::move(vehicle_model)),
         golden_root_(std::move(golden_root)),
-        judge_(std::move(judge)),
-        options_(std::move(options)) {}
+        judge_(std::move(judge)) {}
 
   std::size_t size() const override { return configurations_.size(); }
   Result<void> open() override;
@@ -55,7 +55,6 @@ class CaseJob final : public PortJob<CaseResult> {
   std::shared_ptr<const VehicleModel> vehicle_model_;
   std::filesystem::path golden_root_;
   JudgeOptions judge_;
-  HostOptions options_;
   std::unique_ptr<PortHost> host_;
   std::optional<Golden> golden_;
 };
@@ -65,11 +64,11 @@ class TimedJob final : public PortJob<CaseResult> {
  public:
   TimedJob(Case the_case, TimingFile timing, std::shared_ptr<const VehicleModel> vehicle_model,
            std::filesystem::path saved_traces, HostOptions options)
-      : case_(std::move(the_case)),
+      : PortJob(std::move(options)),
+        case_(std::move(the_case)),
         timing_(std::move(timing)),
         vehicle_model_(std::move(vehicle_model)),
-        saved_traces_(std::move(saved_traces)),
-        options_(std::move(options)) {}
+        saved_traces_(std::move(saved_traces)) {}
 
   std::size_t size() const override { return 1; }
   Result<CaseResult> run(std::size_t task) override;
@@ -79,7 +78,6 @@ class TimedJob final : public PortJob<CaseResult> {
   TimingFile timing_;
   std::shared_ptr<const VehicleModel> vehicle_model_;
   std::filesystem::path saved_traces_;
-  HostOptions options_;
 };
 
 // The jobs of the selected cases, in the order of the cases. An open-loop case is one job. A flight

@@ -9,6 +9,7 @@
 
 #include "harness/casefile/select.hpp"
 #include "harness/compare/tolerance.hpp"
+#include "harness/process/barrier.hpp"
 #include "harness/verify/verdict.hpp"
 
 namespace attest {
@@ -19,6 +20,7 @@ struct Limits {
   double timeout_s = 0;           // for each answer
   std::optional<int> memory_gib;  // empty: no limit
   int file_mib = 0;               // of each file that the port writes
+  BarrierParts barrier;           // that the kernel had
 };
 
 // The results are in the order of the cases, for any number of jobs.

@@ -10,7 +10,7 @@ starter() { echo "proc:$PYTHON $SOURCE/controller/starters/python/port.py"; }
 # judged PROGRAM: runs it on one vector.
 judged() {
   run "$ATTEST" run --port "$(program "$1")" --filter px4-v1.5.5/rates/p_alone@250hz \
-    --timeout 3 --no-diagnose --json report.json
+    --timeout 1 --no-diagnose --json report.json
 }
 
 # refused PROGRAM TEXT: the error, before anything runs.
@@ -158,11 +158,11 @@ HEADROOM
 @test "a program that does not answer is a timeout, and nothing of it is left" {
   judged "program.py hangs"
   [ "$status" -eq 1 ]
-  has "timeout: no answer within 3 s in step() at tick 19"
+  has "timeout: no answer within 3 s of sleep in step() at tick 19"
   judged "program.py never_answers"
-  has "timeout: no answer within 3 s, when it was loaded"
+  has "timeout: no answer within 3 s of sleep, when it was loaded"
   judged "program.py does_not_read"
-  has "timeout: no answer within 3 s in create()"
+  has "timeout: no answer within 3 s of sleep in create()"
   nothing_is_left
 }
 
@@ -172,7 +172,7 @@ HEADROOM
   has "crash: at tick 19: the program exited with status 3 in the request \`step\`"
   judged "program.py closes_stdout --shared"
   [ "$status" -eq 1 ]
-  has "timeout: no answer within 3 s in step() at tick 19"
+  has "timeout: no answer within 3 s of sleep in step() at tick 19"
   judged "program.py prints --shared"
   has "the answer to the request \`step\` begins with the bytes \`roll = 0.3"
   nothing_is_left

@@ -64,11 +64,12 @@ TEST(DescribePort, OneThatCannotBeLoadedSaysWhy) {
 TEST(DescribePort, OneThatHangsSaysSo) {
   const auto load = described(test_port("hangs_in_load"), {}, 0.3);
   ASSERT_TRUE(load) << load.error().to_string();
-  EXPECT_EQ(load->hangs, "no answer within 0.3 s, when it was loaded");
+  EXPECT_EQ(load->hangs, "no answer within 0.3 s of CPU time, when it was loaded");
   const auto create = described(test_port("hangs_in_create"), profiles, 0.3);
   ASSERT_TRUE(create) << create.error().to_string();
   EXPECT_EQ(create->hangs, "");
-  EXPECT_EQ(create->goes_wrong, "profile px4-v1.5.5: no answer within 0.3 s in create()");
+  EXPECT_EQ(create->goes_wrong,
+            "profile px4-v1.5.5: no answer within 0.3 s of CPU time in create()");
   EXPECT_THAT(create->profiles, IsEmpty());
   EXPECT_EQ(described("builtin")->hangs, "");
   EXPECT_EQ(described("builtin")->goes_wrong, "");

@@ -137,7 +137,7 @@ TEST(PortProcess, AHangIsWaitedForOnce) {
   const auto fault = host->drive(unit, trace);
   ASSERT_TRUE(fault);
   EXPECT_EQ(fault->kind, Kind::timeout);
-  EXPECT_EQ(fault->what, "no answer within 0.2 s in step() at tick 20");
+  EXPECT_EQ(fault->what, "no answer within 0.2 s of CPU time in step() at tick 20");
   EXPECT_EQ(host->drive(unit, trace)->what, "not run: the port had timed out before");
   EXPECT_FALSE(host->is_spent());
 }
@@ -145,7 +145,8 @@ TEST(PortProcess, AHangIsWaitedForOnce) {
 TEST(PortProcess, OneThatHangsWhenItIsLoadedSaysSoOnce) {
   const auto host = host_of("hangs_in_load", false, {}, 0.2);
   Trace trace = pitching();
-  EXPECT_EQ(host->drive(unit, trace)->what, "no answer within 0.2 s, when it was loaded");
+  EXPECT_EQ(host->drive(unit, trace)->what,
+            "no answer within 0.2 s of CPU time, when it was loaded");
   EXPECT_EQ(host->drive(unit, trace)->what, "not run: the port had timed out before");
 }
 

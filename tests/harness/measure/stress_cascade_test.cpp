@@ -36,7 +36,7 @@ StressTask cascade_task(const char* name = "hover.toml") {
 StressResults stressed(const std::string& port, StressTask task) {
   task.port = *describe_port(HostOptions{port}, {task.the_case.profile});
   auto results = run_stress(
-      task, port, [] { return false; }, [](const StressProgress&) {});
+      task, HostOptions{port}, [] { return false; }, [](const StressProgress&) {});
   if (!results) throw std::runtime_error(results.error().to_string());
   return *std::move(results);
 }
@@ -78,7 +78,7 @@ TEST(StressCascade, APortWhoseModulesChangeBreaksTheRules) {
   task.port.modules = only(Module::rate_unit);
   task.port.profiles = {"px4-v1.16.0"};
   const auto results = run_stress(
-      task, "builtin", [] { return false; }, [](const StressProgress&) {});
+      task, HostOptions{}, [] { return false; }, [](const StressProgress&) {});
   ASSERT_TRUE(results) << results.error().to_string();
   ASSERT_EQ(results->size(), 1u);
   EXPECT_EQ(results->front().result.verdict, Verdict::protocol);

@@ -42,7 +42,7 @@ Result<StressResult> only(Result<StressResults> results) {
 
 Result<StressResult> stressed(const std::string& port, const StressTask& task = hover_task()) {
   return only(run_stress(
-      task, port, [] { return false; }, [](const StressProgress&) {}));
+      task, HostOptions{port}, [] { return false; }, [](const StressProgress&) {}));
 }
 
 TEST(Stress, ARightPortIsJudgedByItsOutputsToo) {

@@ -39,7 +39,7 @@ std::string with_launcher(const Launcher::Work& work,
                           const std::function<std::string(Launcher&)>& use,
                           double time_limit_s = 60) {
   return in_worker([&] {
-    auto launcher = Launcher::start(Child::Runs::code_of_others, work, time_limit_s);
+    auto launcher = Launcher::start(BarrierOptions{}, work, time_limit_s);
     return launcher ? use(*launcher) : launcher.error().to_string();
   });
 }
@@ -142,43 +142,34 @@ TEST(Launcher, TheDaemonsOfAChildEndWithIt) {
             "ended");
 }
 
-// The launcher is such a process.
-void signal_the_other_children_of(pid_t owner, int signal) {
-  std::ifstream children(fmt::format("/proc/{0}/task/{0}/children", owner));
-  for (pid_t child = 0; children >> child;) {
-    if (child != ::getpid()) ::kill(child, signal);
-  }
+// Sends a signal to the launcher, the only child of the calling process.
+void signal_the_launcher(int signal) {
+  std::ifstream children(fmt::format("/proc/{0}/task/{0}/children", ::getpid()));
+  for (pid_t child = 0; children >> child;) ::kill(child, signal);
+}
+
+std::string answers_around(int signal, double time_limit_s) {
+  const auto here = [](const std::string&, MessageSocket& owner) { owner.send("here"); };
+  return with_launcher(
+      here,
+      [signal](Launcher& launcher) {
+        const std::string first = answer_of(launcher);
+        signal_the_launcher(signal);
+        const std::string second = answer_of(launcher);
+        return first + "; " + second + "; " + answer_of(launcher);
+      },
+      time_limit_s);
 }
 
 TEST(Launcher, OneThatWasKilledIsAnError) {
-  const auto kills = [](const std::string&, MessageSocket& owner) {
-    signal_the_other_children_of(::getppid(), SIGKILL);
-    owner.send("killed");
-  };
-  EXPECT_EQ(with_launcher(kills,
-                          [](Launcher& launcher) {
-                            const std::string first = answer_of(launcher);
-                            const std::string second = answer_of(launcher);
-                            return first + "; " + second + "; " + answer_of(launcher);
-                          }),
-            "killed; a launcher process of attest was killed by signal 9 (Killed); please report "
+  EXPECT_EQ(answers_around(SIGKILL, 60),
+            "here; a launcher process of attest was killed by signal 9 (Killed); please report "
             "this; the launcher process of attest has died");
 }
 
 TEST(Launcher, OneThatWasStoppedIsKilledAndAnError) {
-  const auto stops = [](const std::string&, MessageSocket& owner) {
-    signal_the_other_children_of(::getppid(), SIGSTOP);
-    owner.send("stopped");
-  };
-  EXPECT_EQ(with_launcher(
-                stops,
-                [](Launcher& launcher) {
-                  const std::string first = answer_of(launcher);
-                  const std::string second = answer_of(launcher);
-                  return first + "; " + second + "; " + answer_of(launcher);
-                },
-                3),
-            "stopped; a launcher process of attest did not answer within 3 s; the port may have "
+  EXPECT_EQ(answers_around(SIGSTOP, 3),
+            "here; a launcher process of attest did not answer within 3 s; the port may have "
             "stopped it; the launcher process of attest has died");
 }
 

@@ -78,8 +78,9 @@ TEST_F(PortsTest, AHangIsATimeoutOnceACase) {
   ASSERT_EQ(outcome.results.size(), 6u);
   for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_EQ(outcome.results[i].verdict, Verdict::timeout);
-    EXPECT_EQ(outcome.results[i].reason, i % 2 == 0 ? "no answer within 0.3 s in step() at tick 20"
-                                                    : "not run: the port had timed out before");
+    EXPECT_EQ(outcome.results[i].reason,
+              i % 2 == 0 ? "no answer within 0.3 s of CPU time in step() at tick 20"
+                         : "not run: the port had timed out before");
   }
 }
 
