@@ -138,6 +138,8 @@ const std::vector<Pair>& pairs() {
       {"suite, 2 jobs", "suite/2_jobs", "suite/1_job", 1 / 1.9, "at least 1.9x the speed of 1 job"},
       {"suite, port in a process of its own", "suite/2_jobs", "suite/port_shared", 1.10,
        "at most 1.10x the port in the judge's process"},
+      {"suite at 250 Hz, one job, port in a process of its own", "suite/250hz",
+       "suite/250hz_shared", 1.30, "at most 1.30x the port in the judge's process"},
   };
   return list;
 }

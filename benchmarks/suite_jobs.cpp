@@ -1,6 +1,7 @@
 // The whole suite on the reference at the numeric level, from the case files to the verdicts, with
-// one, two and (given four processors) four workers. A further run has two workers with the port in
-// the judge's process: the floor of the cost of a separate process.
+// one, two and (given four processors) four workers. Further runs have the port in the judge's
+// process: the floor of the cost of separate processes. At one rate this cost is highest, because
+// each case then has a process for one vector.
 #include <thread>
 
 #include <benchmark/benchmark.h>
@@ -12,9 +13,10 @@
 namespace attest::bench {
 namespace {
 
-void suite(benchmark::State& state, int processes, bool isolated = true) {
+void suite(benchmark::State& state, int processes, bool isolated = true,
+           const Selection& selection = {}) {
   for (auto _ : state) {
-    const auto cases = select_cases({ATTEST_SOURCE_DIR "/cases"}, {});
+    const auto cases = select_cases({ATTEST_SOURCE_DIR "/cases"}, selection);
     VehicleModels vehicle_models(ATTEST_SOURCE_DIR "/models");
     HostOptions host;
     host.in_process = !isolated;
@@ -31,6 +33,14 @@ void one_job(benchmark::State& state) { suite(state, 1); }
 void two_jobs(benchmark::State& state) { suite(state, 2); }
 void port_shared(benchmark::State& state) { suite(state, 2, false); }
 
+Selection one_rate() {
+  Selection selection;
+  selection.rates = {LoopRate(Rate::hz(250))};
+  return selection;
+}
+void one_rate_isolated(benchmark::State& state) { suite(state, 1, true, one_rate()); }
+void one_rate_shared(benchmark::State& state) { suite(state, 1, false, one_rate()); }
+
 void four_jobs(benchmark::State& state) {
   if (std::thread::hardware_concurrency() < 4) return state.SkipWithError("needs 4 processors");
   suite(state, 4);
@@ -39,6 +49,8 @@ void four_jobs(benchmark::State& state) {
 BENCHMARK(one_job)->Name("suite/1_job")->UseRealTime()->Iterations(1);
 BENCHMARK(two_jobs)->Name("suite/2_jobs")->UseRealTime()->Iterations(1);
 BENCHMARK(port_shared)->Name("suite/port_shared")->UseRealTime()->Iterations(1);
+BENCHMARK(one_rate_isolated)->Name("suite/250hz")->UseRealTime()->Iterations(1);
+BENCHMARK(one_rate_shared)->Name("suite/250hz_shared")->UseRealTime()->Iterations(1);
 BENCHMARK(four_jobs)->Name("suite/4_jobs")->UseRealTime()->Iterations(1);
 
 }  // namespace
