@@ -10,7 +10,7 @@ through the suite, flights last. The text at the head of a patch says what the m
 marked mistake.
 
 Prints a table. Exits 1 if an unmarked mistake passes, a marked one fails, or a right port fails; 2
-if a patch does not apply or its port does not compile.
+if a patch does not apply, also one that is not judged, or a port does not compile.
 """
 
 import argparse
@@ -91,13 +91,25 @@ def candidates() -> list[Candidate]:
     return found
 
 
-def build(candidate: Candidate, folder: pathlib.Path) -> pathlib.Path:
-    """The shared library of the candidate, made in `folder`."""
+def copy_sources(candidate: Candidate, folder: pathlib.Path) -> None:
+    """The sources of the candidate, in `folder`."""
     for source in sorted(STYLES[candidate.style].iterdir()):
         if source.suffix in SOURCES:
             shutil.copy(source, folder)
     if candidate.patch:
         apply(candidate.patch, folder)
+
+
+def require_that_all_apply() -> None:
+    """Takes a second. Without it a change of a starter breaks patches that no test judges."""
+    for candidate in candidates():
+        with tempfile.TemporaryDirectory() as name:
+            copy_sources(candidate, pathlib.Path(name))
+
+
+def build(candidate: Candidate, folder: pathlib.Path) -> pathlib.Path:
+    """The shared library of the candidate, made in `folder`."""
+    copy_sources(candidate, folder)
     sources = sorted(path.name for path in folder.iterdir() if path.suffix in (".c", ".cpp"))
     compiler = "c++" if sources[0].endswith(".cpp") else "cc"
     flags = ["-O1", "-ffp-contract=off", "-fPIC", "-shared", "-fvisibility=hidden"]
@@ -170,6 +182,11 @@ def main() -> int:
     chosen = [c for c in chosen if c not in left_out]
     if not chosen:
         print(f"no mistake is called {' or '.join(args.only)}", file=sys.stderr)
+        return 2
+    try:
+        require_that_all_apply()
+    except Broken as error:
+        print(error, file=sys.stderr)
         return 2
     all_groups = groups(args.attest)
     print("| mistake | style | caught by |\n|---|---|---|")
