@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -29,25 +30,23 @@
 namespace attest::cli {
 namespace {
 
-Result<void> set_parameters(const ReplayOptions& options, const Subject& subject, Trace& trace) {
+Result<void> set_parameters(const ReplayOptions& options, RecordedParts& trace) {
   for (const std::string& parameter : options.parameters) {
     const auto change = parse_parameter(parameter);
     if (!change) return tl::unexpected(change.error());
-    if (auto checked = check_parameter(subject, *change); !checked) {
+    if (auto checked = check_parameter(trace.subject(), *change); !checked) {
       return fail(fmt::format("--param {}: {}", parameter, checked.error().message));
     }
-    override_parameter(*change, trace);
+    trace.override_parameter(*change);
   }
   return {};
 }
 
-Result<Recorded> recorded_in(const std::string& file, const ReplayOptions& options) {
-  auto recorded = read_recorded(file, options.profile, options.mixer);
+Result<RecordedParts> recorded_in(const std::string& file, const ReplayOptions& options) {
+  auto recorded = RecordedParts::open(file, options.profile, options.mixer);
   if (!recorded) return recorded;
-  if (auto set = set_parameters(options, recorded->subject, recorded->trace); !set) {
-    return tl::unexpected(set.error());
-  }
-  print_notes(file, recorded->notes);
+  if (auto set = set_parameters(options, *recorded); !set) return tl::unexpected(set.error());
+  print_notes(file, recorded->notes());
   return recorded;
 }
 
@@ -163,23 +162,31 @@ class Replay {
   }
 
   Result<void> replay_trace(const std::string& file) {
-    const auto recorded = recorded_in(file, options_);
+    auto recorded = recorded_in(file, options_);
     if (!recorded) return tl::unexpected(recorded.error());
-    return judge_trace(recorded->trace, recorded->subject);
+    return judge_trace(*recorded, recorded->subject());
   }
 
-  Result<void> judge_trace(const Trace& trace, const Subject& subject) {
-    Trace got;
-    const CaseResult result = evaluate_trace(trace, subject, *host_, Tolerances(level_), &got);
+  // A page shows the whole trace. Without one, the trace need not be in memory as a whole.
+  Result<CaseResult> evaluated(TraceParts& trace, const Subject& subject) {
+    const Tolerances tolerances(level_);
+    if (options_.html.empty()) return evaluate_parts(trace, subject, *host_, tolerances);
+    Trace whole, got;
+    const auto read = trace.next_part(std::numeric_limits<std::size_t>::max(), whole);
+    if (!read) return tl::unexpected(read.error());
+    CaseResult result = evaluate_trace(whole, subject, *host_, tolerances, &got);
+    auto written = write_page([&] { return trace_page(whole, got, result, options_.host.port); });
+    if (!written) return tl::unexpected(written.error());
+    return result;
+  }
+
+  Result<void> judge_trace(TraceParts& trace, const Subject& subject) {
+    const auto evaluation = evaluated(trace, subject);
+    if (!evaluation) return tl::unexpected(evaluation.error());
+    const CaseResult& result = *evaluation;
     count(result);
     entries_.push_back(json_of_trace(result, subject.module));
-    if (auto written =
-            write_page([&] { return trace_page(trace, got, result, options_.host.port); });
-        !written) {
-      return written;
-    }
-    const Module module = module_of(trace.present);
-    const ChannelSet not_compared = channels_of(module, "out/") & ~trace.present;
+    const ChannelSet not_compared = channels_of(subject.module, "out/") & ~trace.present();
     if (result.verdict == Verdict::pass && globals_.quiet && not_compared.none()) return {};
     print_result(result, result.name, name_of(level_), out_);
     if (not_compared.any()) {
@@ -200,7 +207,8 @@ class Replay {
       for (const ParameterChange& change : parameters_of(options_, *log, first)) {
         override_parameter(change, trace);
       }
-      return judge_trace(trace, {log->profile, first.module});
+      PartsOfTrace parts(trace);
+      return judge_trace(parts, {log->profile, first.module});
     }
     are_logs_ = true;
     std::vector<LogResult> results;

@@ -101,6 +101,14 @@ void TickComparer::add(const Sample& got, const Sample& want,
   ++tick_;
 }
 
+void TickComparer::add(const Trace& got, const Trace& want) {
+  PendingChanges changes(want.parameters);
+  const std::size_t common = std::min(got.samples.size(), want.samples.size());
+  for (std::size_t tick = 0; tick < common; ++tick) {
+    add(got.samples[tick], want.samples[tick], changes.take_until(tick));
+  }
+}
+
 Comparison TickComparer::finish(std::size_t got_ticks, std::size_t want_ticks) {
   if (result_.mismatch.empty() && got_ticks != want_ticks) {
     result_.mismatch = fmt::format("{} ticks, expected {}", got_ticks, want_ticks);
@@ -189,11 +197,7 @@ void compare_events(const Trace& got, const Trace& want, Comparison& result) {
 
 Comparison compare(const Trace& got, const Trace& want, const Tolerances& tolerances) {
   TickComparer comparer(got.present, want.present, tolerances);
-  PendingChanges changes(want.parameters);
-  const std::size_t common = std::min(got.samples.size(), want.samples.size());
-  for (std::size_t tick = 0; tick < common; ++tick) {
-    comparer.add(got.samples[tick], want.samples[tick], changes.take_until(tick));
-  }
+  comparer.add(got, want);
   Comparison result = comparer.finish(got.samples.size(), want.samples.size());
   const bool of_events = tolerances.level() == Level::events && result.mismatch.empty();
   if (of_events) compare_events(got, want, result);

@@ -74,6 +74,8 @@ class TickComparer {
 
   // The next tick of both; `changes` are the parameters that `want` sets at it.
   void add(const Sample& got, const Sample& want, std::span<const ParameterChange> changes);
+  // The next ticks of both: parts of equal length, or of the shorter length.
+  void add(const Trace& got, const Trace& want);
 
   // Takes the lengths of both traces. REQUIRES: add() was called for each tick that both have.
   Comparison finish(std::size_t got_ticks, std::size_t want_ticks);

@@ -3,7 +3,6 @@
 #include <system_error>
 
 #include "harness/trace/csv.hpp"
-#include "harness/trace/trace_file.hpp"
 
 namespace attest {
 namespace {
@@ -23,9 +22,9 @@ struct Side {
 
 Result<Comparison> compare_whole(const std::filesystem::path& got,
                                  const std::filesystem::path& want, const Tolerances& tolerances) {
-  const auto all_got = open_trace(got, TraceNeed::outputs);
+  const auto all_got = read_csv(got, TraceNeed::outputs);
   if (!all_got) return tl::unexpected(all_got.error());
-  const auto all_want = open_trace(want, TraceNeed::outputs);
+  const auto all_want = read_csv(want, TraceNeed::outputs);
   if (!all_want) return tl::unexpected(all_want.error());
   return compare(*all_got, *all_want, tolerances);
 }
@@ -40,10 +39,7 @@ Result<Comparison> compare_files(const std::filesystem::path& got,
       return fail_at(file.string(), "is a pipe; write its content to a file first");
     }
   }
-  const bool are_streamed = is_streamed(got) && is_streamed(want);
-  if (!are_streamed || tolerances.level() == Level::events) {
-    return compare_whole(got, want, tolerances);
-  }
+  if (tolerances.level() == Level::events) return compare_whole(got, want, tolerances);
   auto got_reader = TraceReader::open(got, TraceNeed::outputs);
   if (!got_reader) return tl::unexpected(got_reader.error());
   auto want_reader = TraceReader::open(want, TraceNeed::outputs);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <set>
+#include <limits>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,7 +14,6 @@
 #include "harness/core/suggestion.hpp"
 #include "harness/port/profiles.hpp"
 #include "harness/trace/provenance.hpp"
-#include "harness/trace/trace_file.hpp"
 
 namespace attest {
 namespace {
@@ -34,18 +33,17 @@ std::string mixer_of(const std::filesystem::path& file, const Provenance& proven
   return actuation::parse_mixer(unscaled) ? unscaled : "";
 }
 
-Result<void> check_mixer(const Trace& trace, const std::string& definition) {
+Result<void> check_mixer(const std::string& file, const ChannelSet& present,
+                         const std::string& definition) {
   if (definition.empty()) {
-    return fail_at(trace.source,
-                   "mixer definition missing; pass --mixer \"R: 4x 10000 10000 10000 0\"");
+    return fail_at(file, "mixer definition missing; pass --mixer \"R: 4x 10000 10000 10000 0\"");
   }
   const auto mixer = actuation::parse_mixer(definition);
-  if (!mixer)
-    return fail_at(trace.source, fmt::format("mixer `{}`: {}", definition, mixer.error()));
-  const ChannelSet outputs = channels_of(Module::mixer, "out/actuator_outputs.") & trace.present;
+  if (!mixer) return fail_at(file, fmt::format("mixer `{}`: {}", definition, mixer.error()));
+  const ChannelSet outputs = channels_of(Module::mixer, "out/actuator_outputs.") & present;
   if (outputs.count() == mixer->rotors.size()) return {};
-  return fail_at(trace.source, fmt::format("has {} rotors, mixer `{}` has {}", outputs.count(),
-                                           definition, mixer->rotors.size()));
+  return fail_at(file, fmt::format("has {} rotors, mixer `{}` has {}", outputs.count(), definition,
+                                   mixer->rotors.size()));
 }
 
 bool is_one_of(const std::string& name, const std::vector<std::string>& names) {
@@ -61,61 +59,29 @@ std::string newest_profile_of(Module module) {
   return std::string(found == all.end() ? default_profile : found->name);
 }
 
-// Removes parameters that only other profiles have: a trace of one version of the law may have been
-// written with the columns of another version.
-void leave_out_foreign_parameters(Recorded& recorded) {
-  const Subject& subject = recorded.subject;
-  const auto own = parameter_names(subject.module, subject.profile);
-  const auto all = parameter_names(subject.module, "");
-  std::set<std::string> foreign;
-  for (const ParameterChange& change : recorded.trace.parameters) {
-    if (!is_one_of(change.name, own) && is_one_of(change.name, all)) foreign.insert(change.name);
+Result<Subject> subject_of(const TraceReader& reader, const std::filesystem::path& file,
+                           const std::string& profile, const std::string& mixer) {
+  const auto provenance = provenance_of(file);
+  if (!provenance) return tl::unexpected(provenance.error());
+  Subject subject{profile, module_of(reader.present())};
+  if (subject.profile.empty()) subject.profile = provenance->profile;
+  if (subject.profile.empty()) subject.profile = newest_profile_of(subject.module);
+  if (subject.module == Module::mixer) {
+    subject.mixer = mixer.empty() ? mixer_of(file, *provenance) : mixer;
+  } else if (!mixer.empty()) {
+    return fail_at(reader.file(), "is no mixer trace; leave --mixer out");
   }
-  if (foreign.empty()) return;
-  std::erase_if(recorded.trace.parameters,
-                [&](const ParameterChange& change) { return foreign.contains(change.name); });
-  recorded.notes.push_back(fmt::format("not set, because {} does not have them: {}",
-                                       subject.profile, fmt::join(foreign, ", ")));
+  return subject;
 }
 
-// Without a number of cells the battery's scale would stay 1. Recordings of the firmware that do
-// not state the number had 3.
-void give_cells(Recorded& recorded) {
-  constexpr const char* name = "BAT_N_CELLS";
-  constexpr float usual_cells = 3;
-  if (recorded.subject.module != Module::battery_status) return;
-  const auto& parameters = recorded.trace.parameters;
-  const bool is_given =
-      std::any_of(parameters.begin(), parameters.end(),
-                  [](const ParameterChange& change) { return change.name == name; });
-  if (is_given) return;
-  recorded.trace.parameters.insert(recorded.trace.parameters.begin(), {0, name, usual_cells});
-  recorded.notes.push_back(
-      fmt::format("no column in/parameter.{0}: {1:g} cells are assumed; "
-                  "`--param {0}=N` sets another number",
-                  name, usual_cells));
-}
-
-void note_ignored_columns(Recorded& recorded) {
-  const auto& names = recorded.trace.ignored_columns;
+void note_ignored(const std::vector<std::string>& names, std::vector<std::string>& notes) {
   if (names.empty()) return;
   constexpr std::size_t most = 8;
   const auto end = names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), most));
   const std::string more =
       names.size() > most ? fmt::format(" and {} more", names.size() - most) : "";
-  recorded.notes.push_back(fmt::format("columns ignored, because attest has no such signals: {}{}",
-                                       fmt::join(names.begin(), end, ", "), more));
-}
-
-Result<void> check_parameters(Recorded& recorded) {
-  leave_out_foreign_parameters(recorded);
-  give_cells(recorded);
-  for (const ParameterChange& change : recorded.trace.parameters) {
-    if (auto checked = check_parameter(recorded.subject, change); !checked) {
-      return fail_at(recorded.trace.source, checked.error().message);
-    }
-  }
-  return {};
+  notes.push_back(fmt::format("columns ignored, because attest has no such signals: {}{}",
+                              fmt::join(names.begin(), end, ", "), more));
 }
 
 }  // namespace
@@ -155,30 +121,93 @@ void override_parameter(const ParameterChange& change, Trace& trace) {
   trace.parameters.insert(trace.parameters.begin(), change);
 }
 
+Result<RecordedParts> RecordedParts::open(const std::filesystem::path& file,
+                                          const std::string& profile, const std::string& mixer) {
+  auto reader = TraceReader::open(file, TraceNeed::inputs_and_outputs);
+  if (!reader) return tl::unexpected(reader.error());
+  auto subject = subject_of(*reader, file, profile, mixer);
+  if (!subject) return tl::unexpected(subject.error());
+  // Each parameter of a file has a value at the first tick.
+  Trace first;
+  if (auto read = reader->next_part(1, first); !read) return tl::unexpected(read.error());
+  RecordedParts parts(*std::move(reader), *std::move(subject));
+  note_ignored(first.ignored_columns, parts.notes_);
+  parts.adapt_parameters(first);
+  if (parts.subject_.module == Module::mixer) {
+    auto checked = check_mixer(parts.file(), parts.present(), parts.subject_.mixer);
+    if (!checked) return tl::unexpected(checked.error());
+  }
+  if (auto begun = parts.rewind(); !begun) return tl::unexpected(begun.error());
+  return parts;
+}
+
+// Leaves out the parameters that only other profiles have: a trace of one version of the law may
+// have been written with the columns of another version.
+void RecordedParts::adapt_parameters(const Trace& first) {
+  const auto own = parameter_names(subject_.module, subject_.profile);
+  const auto all = parameter_names(subject_.module, "");
+  for (const ParameterChange& change : first.parameters) {
+    if (!is_one_of(change.name, own) && is_one_of(change.name, all)) foreign_.insert(change.name);
+  }
+  if (!foreign_.empty()) {
+    notes_.push_back(fmt::format("not set, because {} does not have them: {}", subject_.profile,
+                                 fmt::join(foreign_, ", ")));
+  }
+  if (subject_.module == Module::battery_status) give_cells(first);
+}
+
+// Without a number of cells the battery's scale would stay 1. Recordings of the firmware that do
+// not state the number had 3.
+void RecordedParts::give_cells(const Trace& first) {
+  constexpr const char* name = "BAT_N_CELLS";
+  constexpr float usual_cells = 3;
+  const bool is_given =
+      std::any_of(first.parameters.begin(), first.parameters.end(),
+                  [](const ParameterChange& change) { return change.name == name; });
+  if (is_given) return;
+  added_.push_back({0, name, usual_cells});
+  notes_.push_back(
+      fmt::format("no column in/parameter.{0}: {1:g} cells are assumed; "
+                  "`--param {0}=N` sets another number",
+                  name, usual_cells));
+}
+
+void RecordedParts::override_parameter(const ParameterChange& change) {
+  overridden_.insert(change.name);
+  std::erase_if(added_, [&](const ParameterChange& one) { return one.name == change.name; });
+  added_.insert(added_.begin(), change);
+}
+
+Result<void> RecordedParts::next_part(std::size_t most, Trace& part) {
+  if (auto read = reader_.next_part(most, part); !read) return read;
+  auto& changes = part.parameters;
+  std::erase_if(changes,
+                [&](const ParameterChange& change) { return foreign_.contains(change.name); });
+  for (const ParameterChange& change : changes) {
+    if (auto checked = check_parameter(subject_, change); !checked) {
+      return fail_at(file(), checked.error().message);
+    }
+  }
+  std::erase_if(changes,
+                [&](const ParameterChange& change) { return overridden_.contains(change.name); });
+  if (std::exchange(is_at_begin_, false)) {
+    changes.insert(changes.begin(), added_.begin(), added_.end());
+  }
+  return {};
+}
+
+Result<void> RecordedParts::rewind() {
+  is_at_begin_ = true;
+  return reader_.rewind();
+}
+
 Result<Recorded> read_recorded(const std::filesystem::path& file, const std::string& profile,
                                const std::string& mixer) {
-  auto trace = open_trace(file, TraceNeed::inputs_and_outputs);
-  if (!trace) return tl::unexpected(trace.error());
-  const auto folder_provenance = provenance_of(file);
-  if (!folder_provenance) return tl::unexpected(folder_provenance.error());
-  const Provenance& provenance = *folder_provenance;
-  Recorded recorded{std::move(*trace), {profile, Module::mc_att_control, ""}, {}};
-  Subject& subject = recorded.subject;
-  subject.module = module_of(recorded.trace.present);
-  note_ignored_columns(recorded);
-  if (subject.profile.empty()) subject.profile = provenance.profile;
-  if (subject.profile.empty()) subject.profile = newest_profile_of(subject.module);
-  if (auto checked = check_parameters(recorded); !checked) {
-    return tl::unexpected(checked.error());
-  }
-  if (subject.module != Module::mixer && !mixer.empty()) {
-    return fail_at(recorded.trace.source, "is no mixer trace; leave --mixer out");
-  }
-  if (subject.module != Module::mixer) return recorded;
-  subject.mixer = mixer.empty() ? mixer_of(file, provenance) : mixer;
-  if (auto checked = check_mixer(recorded.trace, subject.mixer); !checked) {
-    return tl::unexpected(checked.error());
-  }
+  auto parts = RecordedParts::open(file, profile, mixer);
+  if (!parts) return tl::unexpected(parts.error());
+  Recorded recorded{{}, parts->subject(), parts->notes()};
+  const auto read = parts->next_part(std::numeric_limits<std::size_t>::max(), recorded.trace);
+  if (!read) return tl::unexpected(read.error());
   return recorded;
 }
 

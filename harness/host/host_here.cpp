@@ -27,7 +27,25 @@ std::optional<PortFault> HostHere::held(std::optional<PortFault> fault,
 }
 
 std::optional<PortFault> HostHere::drive(const Subject& subject, Trace& trace) {
-  return ports_.run([&] { return held(attest::drive(driven(), subject, trace), subject.profile); });
+  const bool begins = subject.part.first_tick == 0;
+  return ports_.run([&] {
+    if (begins) parts_.reset();  // the judge may have stopped in the middle of a trace
+    if (!begins || !subject.part.is_last) return drive_part(subject, trace);
+    return held(attest::drive(driven(), subject, trace), subject.profile);
+  });
+}
+
+std::optional<PortFault> HostHere::drive_part(const Subject& subject, Trace& part) {
+  const auto [first_tick, is_last] = subject.part;
+  if (first_tick == 0) {
+    auto unit = make_unit(driven(), subject);
+    if (!unit) return held(unit.error(), subject.profile);
+    parts_.emplace(*std::move(unit), subject.module);
+  }
+  auto fault = parts_->drive(part, first_tick);
+  if (!fault && !is_last) return std::nullopt;
+  parts_.reset();
+  return held(std::move(fault), subject.profile);
 }
 
 Result<Flown> HostHere::fly(const FlightPlan& plan) {

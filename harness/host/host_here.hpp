@@ -31,11 +31,13 @@ class HostHere final : public PortHost {
   // PortBroke if a program broke the protocol in destroy().
   std::optional<PortFault> held(std::optional<PortFault> fault, const std::string& profile) const;
   Port& driven() { return noted_ ? *noted_ : *port_; }
+  std::optional<PortFault> drive_part(const Subject& subject, Trace& part);
   Result<void> measure_stack(const Subject& subject, Trace trace, StepTimes& times);
 
   std::unique_ptr<Port> port_;
   const PortCalls* calls_;
-  std::unique_ptr<Port> noted_;  // port_, with its calls noted; null without calls_
+  std::unique_ptr<Port> noted_;      // port_, with its calls noted; null without calls_
+  std::optional<PartDriver> parts_;  // of a trace of which further parts follow
   PortFloatEnvironment ports_;
   PortSays says_;
   Course course_;

@@ -16,7 +16,9 @@ json to_json(const Subject& subject) {
   return {{"profile", subject.profile},
           {"module", subject.module},
           {"mixer", subject.mixer},
-          {"instances", subject.instances}};
+          {"instances", subject.instances},
+          {"first_tick", subject.part.first_tick},
+          {"is_last", subject.part.is_last}};
 }
 
 json to_json(const PortSays& says) {
@@ -43,8 +45,11 @@ PortSays says_from(const json& in) {
 }
 
 Subject subject_from(const json& in) {
-  return {in.at("profile").get<std::string>(), in.at("module").get<Module>(),
-          in.at("mixer").get<std::string>(), in.at("instances").get<Instances>()};
+  return {in.at("profile").get<std::string>(),
+          in.at("module").get<Module>(),
+          in.at("mixer").get<std::string>(),
+          in.at("instances").get<Instances>(),
+          {in.at("first_tick").get<std::size_t>(), in.at("is_last").get<bool>()}};
 }
 
 // Reads the trace of a request. The judge is trusted, so the samples are there.

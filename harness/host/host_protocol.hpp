@@ -18,6 +18,8 @@
 //     judge   -> {"do": "supports", "profile": ...}
 //     process -> {"request": 4, "supports": true}
 //
+// A long trace is driven in several requests, one for each Part (open_loop.hpp).
+//
 // "request" counts the requests, which may come in any order. {"request": n, "fault": {...}} alone
 // is the answer to any request if a program ended, or broke its protocol, outside of a step.
 //

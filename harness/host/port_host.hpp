@@ -43,7 +43,8 @@ class PortHost {
   // a request, that request ends with a fault of kind protocol.
   virtual const PortSays& says() const = 0;
 
-  // Same as drive() of open_loop.hpp, with a fresh instance.
+  // Same as drive() of open_loop.hpp, with a fresh instance. If `trace` is a part of a longer one
+  // (Subject::part), its first part makes the instance, and its other parts continue with it.
   virtual std::optional<PortFault> drive(const Subject& subject, Trace& trace) = 0;
 
   // Same as fly() of flight.hpp, with fresh units. REQUIRES: the host was started with a course.

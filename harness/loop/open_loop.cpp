@@ -16,16 +16,19 @@ namespace {
 
 class Drive {
  public:
-  Drive(Unit& unit, Module module, Trace& trace)
-      : driver_(unit, module),
+  // `first_tick`: that of `trace`, which may be a part of a longer one.
+  Drive(Unit& unit, UnitDriver& driver, Trace& trace, std::size_t first_tick = 0)
+      : driver_(driver),
         max_batch_(unit.max_batch()),
         trace_(trace),
+        first_tick_(first_tick),
         changes_(trace.parameters) {}
 
   bool is_over() const { return tick_ == trace_.samples.size(); }
 
   std::optional<PortFault> step() {
-    auto fault = driver_.step(tick_, changes_.take_until(tick_), trace_.samples[tick_]);
+    auto fault =
+        driver_.step(first_tick_ + tick_, changes_.take_until(tick_), trace_.samples[tick_]);
     ++tick_;
     return fault;
   }
@@ -36,18 +39,27 @@ class Drive {
     const auto due = changes_.take_until(tick_);
     const std::size_t end =
         std::min({tick_ + max_batch_, changes_.next_tick(), trace_.samples.size()});
-    auto fault = driver_.batch(tick_, due, std::span(trace_.samples).subspan(tick_, end - tick_));
+    auto fault = driver_.batch(first_tick_ + tick_, due,
+                               std::span(trace_.samples).subspan(tick_, end - tick_));
     tick_ = end;
     return fault;
   }
 
  private:
-  UnitDriver driver_;
+  UnitDriver& driver_;
   std::size_t max_batch_;
   Trace& trace_;
+  std::size_t first_tick_;
   PendingChanges changes_;
   std::size_t tick_ = 0;
 };
+
+std::optional<PortFault> to_its_end(Drive drive) {
+  while (!drive.is_over()) {
+    if (auto fault = drive.advance()) return fault;
+  }
+  return std::nullopt;
+}
 
 // The other instance, with its own inputs. Its outputs are not judged.
 class Other {
@@ -56,7 +68,8 @@ class Other {
       : unit_(unit),
         defaults_(other_defaults(judged, subject.module, subject.profile)),
         trace_(other_inputs(judged, subject.module, subject.profile)),
-        drive_(unit, subject.module, trace_) {}
+        driver_(unit, subject.module),
+        drive_(unit, driver_, trace_) {}
 
   // The first call also sets the parameters of this instance, after the judged instance's first
   // step.
@@ -88,6 +101,7 @@ class Other {
   Unit& unit_;
   std::vector<ParameterChange> defaults_;
   Trace trace_;
+  UnitDriver driver_;
   Drive drive_;
 };
 
@@ -126,7 +140,8 @@ std::optional<PortFault> drive_in_company(std::unique_ptr<Unit> first, Create cr
     return subject.instances == Instances::again ? makes_no_other() : makes_only_one();
   }
   if (subject.instances == Instances::together) {
-    return drive_alternately(Drive(*judged, subject.module, trace), other);
+    UnitDriver driver(*judged, subject.module);
+    return drive_alternately(Drive(*judged, driver, trace), other);
   }
   if (subject.instances == Instances::crossed) {
     if (auto fault = other.run()) return fault;
@@ -181,11 +196,12 @@ PortFault makes_none(Port& port, const Subject& subject) {
 }  // namespace
 
 std::optional<PortFault> drive(Unit& unit, Trace& trace, Module module) {
-  Drive drive(unit, module, trace);
-  while (!drive.is_over()) {
-    if (auto fault = drive.advance()) return fault;
-  }
-  return std::nullopt;
+  UnitDriver driver(unit, module);
+  return to_its_end(Drive(unit, driver, trace));
+}
+
+std::optional<PortFault> PartDriver::drive(Trace& part, std::size_t first_tick) {
+  return to_its_end(Drive(*unit_, driver_, part, first_tick));
 }
 
 Subject subject_of(const Case& the_case) {

@@ -1,9 +1,11 @@
 // Steps a unit with the inputs of a trace, and records the unit's outputs in the trace.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "harness/casefile/case.hpp"
 #include "harness/loop/unit_driver.hpp"
@@ -16,12 +18,19 @@ namespace attest {
 // PortFault::tick have the unit's outputs. REQUIRES: a unit of `module` in its power-on state.
 std::optional<PortFault> drive(Unit& unit, Trace& trace, Module module = Module::mc_att_control);
 
+// A part of a trace that is too long for one request. One instance steps all parts.
+struct Part {
+  std::size_t first_tick = 0;  // of the part, in the trace; 0: a fresh instance
+  bool is_last = true;         // then the instance is destroyed
+};
+
 // The module of a port that is stepped, and how it is created.
 struct Subject {
   std::string profile;
   Module module = Module::mc_att_control;
   std::string mixer = {};  // only for Module::mixer: "R: 4x 10000 10000 10000 0"
   Instances instances = Instances::one;
+  Part part = {};  // REQUIRES: Instances::one, if the trace has several parts
 };
 
 Subject subject_of(const Case& the_case);
@@ -33,6 +42,23 @@ tl::expected<std::unique_ptr<Unit>, PortFault> make_unit(Port& port, const Subje
 // Steps a fresh instance of the subject's module through the trace. `subject.instances` says which
 // other instance of the port exists before it or at the same time. Kind::unsupported: the port
 // cannot make the second instance while the first one exists.
+// REQUIRES: the subject's part is the whole trace.
 std::optional<PortFault> drive(Port& port, const Subject& subject, Trace& trace);
+
+// Steps one instance through the parts of a trace.
+class PartDriver {
+ public:
+  // REQUIRES: a unit of `module` in its power-on state.
+  PartDriver(std::unique_ptr<Unit> unit, Module module)
+      : unit_(std::move(unit)), driver_(*unit_, module) {}
+
+  // Same as drive(), for the next part. PortFault::tick is in the trace as a whole. REQUIRES: no
+  // fault before.
+  std::optional<PortFault> drive(Trace& part, std::size_t first_tick);
+
+ private:
+  std::unique_ptr<Unit> unit_;
+  UnitDriver driver_;
+};
 
 }  // namespace attest

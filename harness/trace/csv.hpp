@@ -22,32 +22,39 @@
 
 #include "harness/core/result.hpp"
 #include "harness/trace/trace.hpp"
+#include "harness/trace/trace_parts.hpp"
 
 namespace attest {
 
-// Reads the whole trace, with the constants of a provenance.toml in the same folder. Parameter
-// columns become changes. At tick 0 all are changes, after those of the constants. Later, at each
+// Reads the whole trace, from a pipe too, with the constants of a provenance.toml in the same
+// folder. A file with a column of mixer traces (mixer_csv.hpp) has all channels in its columns, so
+// `need` and the constants do not apply; its timestamps count the rows from 0. Parameter columns
+// become changes. At tick 0 all are changes, after those of the constants. Later, at each
 // tick with in/updated.parameter_update, a value that differs from the one last set is a change (by
 // bits, NaN = NaN). A trace with a base has the parameters of the base. Errors, each as
 // file:line:column with what to do: unreadable file, no header, unknown or repeated column, missing
 // channel, short or long row, a cell that is not a number of its channel's type, timestamps that do
-// not increase, no rows, a wrong provenance.toml or base.
+// not increase, no rows, a wrong provenance.toml or base; those of RereadableFile::open().
 Result<Trace> read_csv(const std::filesystem::path& path, TraceNeed need);
 
-// Reads a trace tick by tick, in memory that does not grow with the length of the trace.
-class TraceReader {
+// Reads a trace tick by tick, in memory that does not grow with the length of the trace. But the
+// content of a pipe is kept in memory.
+class TraceReader final : public TraceParts {
  public:
   static Result<TraceReader> open(const std::filesystem::path& path, TraceNeed need);
   TraceReader(TraceReader&&) noexcept;
-  ~TraceReader();
+  ~TraceReader() override;
 
-  const std::string& file() const;
-  const ChannelSet& present() const;
+  const std::string& file() const override;
+  const ChannelSet& present() const override;
   const std::vector<std::string>& ignored() const;  // see Trace::ignored_columns
 
   // Reads the next tick. Replaces `changes` by the changes of parameters at this tick. Returns
   // false after the last tick. Errors: those of read_csv().
   Result<bool> next(Sample& sample, std::vector<ParameterChange>& changes);
+
+  Result<void> next_part(std::size_t most, Trace& part) override;
+  Result<void> rewind() override;
 
  private:
   struct Impl;

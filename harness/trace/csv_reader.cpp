@@ -1,80 +1,21 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <limits>
 #include <optional>
-#include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "harness/core/suggestion.hpp"
+#include "harness/core/rereadable_file.hpp"
 #include "harness/trace/csv.hpp"
+#include "harness/trace/csv_layout.hpp"
 #include "harness/trace/csv_rows.hpp"
-#include "harness/trace/plant_columns.hpp"
+#include "harness/trace/mixer_csv.hpp"
 #include "harness/trace/provenance.hpp"
 
 namespace attest {
 namespace {
-
-constexpr std::size_t timestamp_channel = 0;  // of channels()
-
-// A row in memory is a Sample and the values of the parameter columns.
-constexpr std::size_t parameters_offset = sizeof(Sample);
-constexpr CsvColumn ignored_column{CellType::ignored, 0};
-
-struct Layout {
-  std::vector<CsvColumn> columns;
-  std::vector<std::string> parameters;
-  ChannelSet present;
-  std::vector<std::string> ignored;
-};
-
-// The firmware of the cascade publishes this topic too; attest_cascade.h says why the ABI lacks it.
-constexpr std::string_view left_out_of_the_abi = "out/actuator_controls_status.";
-
-// Whether an unknown column is ignored: only in a trace to be replayed, and only if its name cannot
-// be a misspelt one of attest's. `suggestion`: a similar known name, or empty.
-bool may_be_ignored(std::string_view name, const CsvRows& rows, const std::string& suggestion,
-                    TraceNeed need) {
-  const auto& header = rows.header();
-  const bool is_a_trace =
-      std::find(header.begin(), header.end(), channels()[timestamp_channel].name) != header.end();
-  if (need != TraceNeed::inputs_and_outputs || !is_a_trace) return false;
-  if (name.starts_with(left_out_of_the_abi)) return true;
-  return suggestion.empty() && !name.starts_with("in/") && !name.starts_with("out/");
-}
-
-Result<Layout> layout_of(const CsvRows& rows, Module module, TraceNeed need) {
-  Layout layout;
-  for (std::size_t i = 0; i < rows.header().size(); ++i) {
-    const std::string_view name = rows.header()[i];
-    if (const auto index = find_channel(module, name)) {
-      const Channel& channel = channels()[*index];
-      layout.columns.push_back({cell_type(channel.type), channel.offset, channel.bit});
-      layout.present.set(*index);
-    } else if (const auto parameter = parameter_of(name)) {
-      const std::size_t offset = parameters_offset + sizeof(float) * layout.parameters.size();
-      layout.columns.push_back({CellType::f32, offset});
-      layout.parameters.emplace_back(*parameter);
-    } else if (name.starts_with(plant_prefix)) {
-      layout.columns.push_back(ignored_column);
-    } else {
-      std::vector<std::string> names;
-      for (const std::string_view known : names_of(channels_of(module))) names.emplace_back(known);
-      const std::string meant = suggestion(name, names);
-      if (channels_named(name).any()) {
-        return rows.fail_at_name(
-            i, fmt::format("{} is of another module than {}; keep the columns of one module",
-                           in_backquotes(name), name_of(module)));
-      }
-      if (!may_be_ignored(name, rows, meant, need)) {
-        return rows.fail_at_name(i, fmt::format("unknown column {}{}", in_backquotes(name), meant));
-      }
-      layout.columns.push_back(ignored_column);
-      layout.ignored.emplace_back(name);
-    }
-  }
-  return layout;
-}
 
 // The base of a trace (Provenance::base): it supplies the columns that the trace itself lacks.
 class Base {
@@ -154,30 +95,6 @@ Result<void> apply_constants(const std::map<std::string, double>& constants, con
   return {};
 }
 
-Result<void> check_need(const ChannelSet& present, TraceNeed need, const std::string& file) {
-  const auto missing = [&](std::string_view name, std::size_t others, std::string_view what_to_do) {
-    const std::string more = others == 0 ? "" : fmt::format(" (nor {} others)", others);
-    return fail_at(file, fmt::format("no column {}{}; {}", name, more, what_to_do), 1);
-  };
-  if (!present[timestamp_channel]) {
-    return missing("timestamp", 0, "add the time of each sample in microseconds");
-  }
-  const Module module = module_of(present);
-  const ChannelSet absent = channels_of(module, "in/") & ~present;
-  if (need != TraceNeed::outputs && absent.any()) {
-    const std::string_view name = channels()[absent._Find_first()].name;
-    return missing(
-        name, absent.count() - 1,
-        fmt::format("add the column, or an entry \"{}\" under [constants] in a {} next to "
-                    "the file",
-                    name, provenance_name));
-  }
-  if (need != TraceNeed::inputs && (present & channels_of(module, "out/")).none()) {
-    return missing("out/...", 0, "add at least one output of the unit");
-  }
-  return {};
-}
-
 // Turns the values of parameter columns into changes.
 class ParameterColumns {
  public:
@@ -207,15 +124,76 @@ class ParameterColumns {
 }  // namespace
 
 struct TraceReader::Impl {
+  RereadableFile source;
+  TraceNeed need;
   CsvRows rows;
+  bool counts_rows = false;  // instead of a column of timestamps
   ChannelSet present{};
   ParameterColumns parameters{{}};
-  std::vector<std::string> ignored{};      // names of columns
-  std::vector<ParameterChange> constants;  // parameters of the provenance, set at tick 0
+  std::vector<std::string> ignored{};        // names of columns
+  std::vector<ParameterChange> constants{};  // parameters of the provenance, set at tick 0
   std::vector<char> row{};
   std::unique_ptr<Base> base{};  // null: the trace has all of its columns itself
   std::size_t tick = 0;
   std::uint64_t last_timestamp = 0;
+
+  // `file`: the name in messages.
+  static Result<std::unique_ptr<Impl>> open(RereadableFile source, const std::string& file,
+                                            TraceNeed need) {
+    auto rows = CsvRows::open(source.path(), CsvRows::Unnamed::refused, file);
+    if (!rows) return tl::unexpected(rows.error());
+    auto impl = std::make_unique<Impl>(Impl{std::move(source), need, std::move(*rows)});
+    const auto done =
+        has_mixer_columns(impl->rows) ? impl->set_mixer_columns() : impl->set_columns();
+    if (!done) return tl::unexpected(done.error());
+    return impl;
+  }
+
+  Result<void> set_mixer_columns() {
+    counts_rows = true;
+    present.set(timestamp_channel);
+    auto columns = mixer_columns_of(rows, present);
+    if (!columns) return tl::unexpected(columns.error());
+    rows.set_columns(*std::move(columns));
+    set_common({});
+    return {};
+  }
+
+  Result<void> set_columns() {
+    const std::filesystem::path& path = source.path();
+    const auto provenance = provenance_in(path.parent_path());
+    if (!provenance) return tl::unexpected(provenance.error());
+    if (!provenance->base.empty()) {
+      auto opened = Base::open(path, provenance->base);
+      if (!opened) return tl::unexpected(opened.error());
+      base = std::move(*opened);
+    }
+    const Module module = module_of_file(rows, *provenance, base.get());
+    auto layout = layout_of(rows, module, need);
+    if (!layout) return tl::unexpected(layout.error());
+    present = layout->present;
+    parameters = ParameterColumns(std::move(layout->parameters));
+    ignored = std::move(layout->ignored);
+    Sample common{};
+    if (auto done =
+            apply_constants(provenance->constants, rows, module, common, present, constants);
+        !done) {
+      return done;
+    }
+    if (base) {
+      base->set_own(present);
+      present |= base->present();
+    }
+    rows.set_columns(std::move(layout->columns));
+    set_common(common);
+    return check_need(present, need, rows.file());
+  }
+
+  // The values of the channels that are no columns.
+  void set_common(const Sample& common) {
+    row.resize(parameters_offset + parameters.size());
+    std::memcpy(row.data(), &common, sizeof common);
+  }
 
   Result<void> check_timestamp(const Sample& sample) const {
     if (tick == 0 || sample.in.timestamp > last_timestamp) return {};
@@ -244,6 +222,7 @@ struct TraceReader::Impl {
     }
     if (!*more) return false;
     std::memcpy(&sample, row.data(), sizeof sample);
+    if (counts_rows) sample.in.timestamp = tick;
     if (auto increases = check_timestamp(sample); !increases) {
       return tl::unexpected(increases.error());
     }
@@ -270,61 +249,48 @@ Result<bool> TraceReader::next(Sample& sample, std::vector<ParameterChange>& cha
 }
 
 Result<TraceReader> TraceReader::open(const std::filesystem::path& path, TraceNeed need) {
-  auto rows = CsvRows::open(path);
-  if (!rows) return tl::unexpected(rows.error());
-  const auto provenance = provenance_in(path.parent_path());
-  if (!provenance) return tl::unexpected(provenance.error());
-  std::unique_ptr<Base> base;
-  if (!provenance->base.empty()) {
-    auto opened = Base::open(path, provenance->base);
-    if (!opened) return tl::unexpected(opened.error());
-    base = std::move(*opened);
-  }
-  const Module module = module_of_file(*rows, *provenance, base.get());
-  auto layout = layout_of(*rows, module, need);
-  if (!layout) return tl::unexpected(layout.error());
+  // The file may be opened twice.
+  auto source = RereadableFile::open(path);
+  if (!source) return tl::unexpected(source.error());
+  auto impl = Impl::open(*std::move(source), path.string(), need);
+  if (!impl) return tl::unexpected(impl.error());
+  return TraceReader(*std::move(impl));
+}
 
-  auto impl = std::make_unique<Impl>(Impl{std::move(*rows),
-                                          layout->present,
-                                          ParameterColumns(std::move(layout->parameters)),
-                                          std::move(layout->ignored),
-                                          {}});
-  Sample common{};
-  if (const auto done = apply_constants(provenance->constants, impl->rows, module, common,
-                                        impl->present, impl->constants);
-      !done) {
-    return tl::unexpected(done.error());
+Result<void> TraceReader::rewind() {
+  auto again = Impl::open(std::move(impl_->source), impl_->rows.file(), impl_->need);
+  if (!again) return tl::unexpected(again.error());
+  impl_ = *std::move(again);
+  return {};
+}
+
+Result<void> TraceReader::next_part(std::size_t most, Trace& part) {
+  part.source = file();
+  part.present = present();
+  part.ignored_columns = ignored();
+  part.samples.clear();
+  part.parameters.clear();
+  Sample sample;
+  std::vector<ParameterChange> changes;
+  while (part.samples.size() < most) {
+    const auto more = next(sample, changes);
+    if (!more) return tl::unexpected(more.error());
+    if (!*more) return {};
+    for (ParameterChange& change : changes) change.tick = part.samples.size();
+    part.samples.push_back(sample);
+    part.parameters.insert(part.parameters.end(), changes.begin(), changes.end());
   }
-  if (base) {
-    base->set_own(impl->present);
-    impl->present |= base->present();
-    impl->base = std::move(base);
-  }
-  if (const auto done = check_need(impl->present, need, impl->rows.file()); !done) {
-    return tl::unexpected(done.error());
-  }
-  impl->rows.set_columns(std::move(layout->columns));
-  impl->row.resize(parameters_offset + impl->parameters.size());
-  std::memcpy(impl->row.data(), &common, sizeof common);
-  return TraceReader(std::move(impl));
+  return {};
 }
 
 Result<Trace> read_csv(const std::filesystem::path& path, TraceNeed need) {
   auto reader = TraceReader::open(path, need);
   if (!reader) return tl::unexpected(reader.error());
   Trace trace;
-  trace.source = reader->file();
-  trace.present = reader->present();
-  trace.ignored_columns = reader->ignored();
-  Sample sample;
-  std::vector<ParameterChange> changes;
-  while (true) {
-    const auto more = reader->next(sample, changes);
-    if (!more) return tl::unexpected(more.error());
-    if (!*more) return trace;
-    trace.samples.push_back(sample);
-    trace.parameters.insert(trace.parameters.end(), changes.begin(), changes.end());
+  if (auto read = reader->next_part(std::numeric_limits<std::size_t>::max(), trace); !read) {
+    return tl::unexpected(read.error());
   }
+  return trace;
 }
 
 }  // namespace attest

@@ -40,11 +40,15 @@ int place_of(std::string_view line, std::string_view cell) {
 
 }  // namespace
 
-Result<CsvRows> CsvRows::open(const std::filesystem::path& path, Unnamed unnamed) {
+Result<CsvRows> CsvRows::open(const std::filesystem::path& path, Unnamed unnamed,
+                              std::string name) {
   CsvRows rows;
-  rows.file_ = path.string();
-  const auto opened = open_regular_file(path);
-  if (!opened) return tl::unexpected(opened.error());
+  rows.file_ = name.empty() ? path.string() : std::move(name);
+  auto opened = open_regular_file(path);
+  if (!opened) {
+    opened.error().file = rows.file_;
+    return tl::unexpected(opened.error());
+  }
   rows.stream_.reset(::fdopen(*opened, "rb"));
   if (!rows.stream_) {
     ::close(*opened);

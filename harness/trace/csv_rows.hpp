@@ -28,10 +28,10 @@ class CsvRows {
  public:
   // `unnamed`: whether one column may be without a name, as row numbers often are. Errors:
   // unreadable file, no header, a repeated column, a NUL byte in a name, a column without a name if
-  // refused.
+  // refused. `name`: the file in messages; if empty, `path`.
   enum class Unnamed { refused, allowed };
-  static Result<CsvRows> open(const std::filesystem::path& path,
-                              Unnamed unnamed = Unnamed::refused);
+  static Result<CsvRows> open(const std::filesystem::path& path, Unnamed unnamed = Unnamed::refused,
+                              std::string name = {});
 
   const std::string& file() const { return file_; }
   const std::vector<std::string>& header() const { return header_; }

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "harness/core/suggestion.hpp"
-#include "harness/trace/csv_rows.hpp"
 
 namespace attest {
 namespace {
@@ -89,35 +88,16 @@ Result<void> check_rotors(const CsvRows& rows) {
 
 }  // namespace
 
-Result<Trace> read_mixer_csv(const std::filesystem::path& path) {
-  auto rows = CsvRows::open(path);
-  if (!rows) return tl::unexpected(rows.error());
-  Trace trace;
-  trace.source = rows->file();
-  trace.present.set(0);  // timestamp
-  auto columns = columns_of(*rows, trace.present);
-  if (!columns) return tl::unexpected(columns.error());
-  if (auto checked = check_rotors(*rows); !checked) return tl::unexpected(checked.error());
-  rows->set_columns(*std::move(columns));
-
-  Sample sample{};
-  while (true) {
-    const auto more = rows->next(&sample);
-    if (!more) return tl::unexpected(more.error());
-    if (!*more) break;
-    sample.in.timestamp = trace.samples.size();
-    trace.samples.push_back(sample);
-  }
-  if (trace.samples.empty()) {
-    return fail_at(rows->file(), "no rows; a mixer trace has a row for each call", 2);
-  }
-  return trace;
+Result<std::vector<CsvColumn>> mixer_columns_of(const CsvRows& rows, ChannelSet& present) {
+  auto columns = columns_of(rows, present);
+  if (!columns) return columns;
+  if (auto checked = check_rotors(rows); !checked) return tl::unexpected(checked.error());
+  return columns;
 }
 
-bool looks_like_mixer_csv(const std::filesystem::path& path) {
-  const auto rows = CsvRows::open(path);
-  return rows && std::any_of(rows->header().begin(), rows->header().end(),
-                             [](const std::string& name) { return find(name) != nullptr; });
+bool has_mixer_columns(const CsvRows& rows) {
+  return std::any_of(rows.header().begin(), rows.header().end(),
+                     [](const std::string& name) { return find(name) != nullptr; });
 }
 
 }  // namespace attest

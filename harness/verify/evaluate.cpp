@@ -1,5 +1,7 @@
 #include "harness/verify/evaluate.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -148,10 +150,10 @@ CaseResult result_for(const Case& the_case, const RunConfiguration& configuratio
   return result;
 }
 
-CaseResult result_for(const Trace& recorded, const std::string& profile) {
+CaseResult result_for(const std::string& recorded, const std::string& profile) {
   CaseResult result;
   result.profile = profile;
-  result.name = recorded.source;
+  result.name = recorded;
   return result;
 }
 
@@ -186,21 +188,99 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
   return result;
 }
 
+namespace {
+
+Tolerances tolerances_of_trace(const Tolerances& tolerances, Module module, const PortSays& port,
+                               std::size_t ticks) {
+  const bool numeric_for_events = tolerances.level() == Level::events && !has_events(module);
+  Tolerances allowed = numeric_for_events ? Tolerances(Level::numeric) : tolerances;
+  if (port.fraction_bits) allowed.allow_lsb(*port.fraction_bits, ticks);
+  return allowed;
+}
+
+}  // namespace
+
 CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHost& host,
                           const Tolerances& tolerances, Trace* got) {
   const Stopwatch stopwatch;
-  CaseResult result = result_for(recorded, subject.profile);
+  CaseResult result = result_for(recorded.source, subject.profile);
   if (has_other_steps(host.says(), recorded, subject.module, result)) return result;
   Trace answered = recorded;
   for (Sample& sample : answered.samples) sample.clear_outputs();
-  const bool numeric_for_events =
-      tolerances.level() == Level::events && !has_events(subject.module);
-  Tolerances allowed = numeric_for_events ? Tolerances(Level::numeric) : tolerances;
-  if (const auto bits = host.says().fraction_bits)
-    allowed.allow_lsb(*bits, recorded.samples.size());
+  const Tolerances allowed =
+      tolerances_of_trace(tolerances, subject.module, host.says(), recorded.samples.size());
   run_and_judge(answered, {recorded, {}}, subject, host, allowed, allowed, {}, result);
   result.elapsed_s = stopwatch.elapsed_s();
   if (got != nullptr) *got = std::move(answered);
+  return result;
+}
+
+namespace {
+
+// For a port whose verdict depends on the whole trace before its first step: reads the trace, and
+// returns the number of its ticks. For any other port returns 0.
+Result<std::size_t> count_ticks(TraceParts& recorded, std::size_t most_ticks, Module module,
+                                const PortSays& port, CaseResult& result) {
+  if (!port.fraction_bits && !port.fixed_step) return 0;
+  auto ticks =
+      for_each_part(recorded, most_ticks, [&](const Trace& part, std::size_t first_tick, bool) {
+        if (result.verdict == Verdict::pass)
+          has_other_steps(port, part, module, result, first_tick);
+        return true;
+      });
+  if (!ticks) return ticks;
+  if (auto begun = recorded.rewind(); !begun) return tl::unexpected(begun.error());
+  return ticks;
+}
+
+// Gives the parts to one instance, and compares them. After a fault, the rest of the trace is read
+// for its errors only.
+Result<Comparison> drive_parts(TraceParts& recorded, std::size_t most_ticks, Subject subject,
+                               PortHost& host, const Tolerances& tolerances,
+                               std::optional<PortFault>& fault) {
+  TickComparer comparer(recorded.present(), recorded.present(), tolerances);
+  Trace answered;
+  const auto ticks =
+      for_each_part(recorded, most_ticks, [&](const Trace& want, std::size_t first, bool is_last) {
+        answered = want;
+        for (Sample& sample : answered.samples) sample.clear_outputs();
+        subject.part = {first, is_last};
+        if (!fault) fault = host.drive(subject, answered);
+        if (fault) leave_out_from(std::max(fault->tick, first) - first, want, answered);
+        comparer.add(answered, want);
+        return true;
+      });
+  if (!ticks) return tl::unexpected(ticks.error());
+  return comparer.finish(*ticks, *ticks);
+}
+
+}  // namespace
+
+Result<CaseResult> evaluate_parts(TraceParts& recorded, const Subject& subject, PortHost& host,
+                                  const Tolerances& tolerances, std::size_t most_ticks) {
+  const PortSays& port = host.says();
+  if (tolerances.level() == Level::events || port.is_recorded) {
+    Trace whole;
+    auto read = recorded.next_part(std::numeric_limits<std::size_t>::max(), whole);
+    if (!read) return tl::unexpected(read.error());
+    return evaluate_trace(whole, subject, host, tolerances);
+  }
+  const Stopwatch stopwatch;
+  CaseResult result = result_for(recorded.file(), subject.profile);
+  const auto ticks = count_ticks(recorded, most_ticks, subject.module, port, result);
+  if (!ticks) return tl::unexpected(ticks.error());
+  if (result.verdict != Verdict::pass || declines(port, result)) return result;
+  const Tolerances allowed = tolerances_of_trace(tolerances, subject.module, port, *ticks);
+  std::optional<PortFault> fault;
+  const auto compared = drive_parts(recorded, most_ticks, subject, host, allowed, fault);
+  if (!compared) return tl::unexpected(compared.error());
+  if (fault && !leaves_ticks_to_judge(*fault)) {
+    judge(*fault, result);
+  } else {
+    judge(*compared, result);
+    if (fault) judge_after(*fault, result);
+  }
+  result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }
 

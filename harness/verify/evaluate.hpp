@@ -2,6 +2,7 @@
 // in a process of its own (port_host.hpp).
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "harness/loop/flight.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/plant/plant.hpp"
+#include "harness/trace/trace_parts.hpp"
 #include "harness/verify/verdict.hpp"
 
 namespace attest {
@@ -26,9 +28,10 @@ struct JudgeOptions {
   std::vector<ParameterChange> parameters = {};
 };
 
-// A result that names its vector; the other members have their defaults.
+// A result that names its vector, or the file of a recorded trace; the other members have their
+// defaults.
 CaseResult result_for(const Case& the_case, const RunConfiguration& configuration);
-CaseResult result_for(const Trace& recorded, const std::string& profile);
+CaseResult result_for(const std::string& recorded, const std::string& profile);
 
 // Generates the case's inputs at that rate, gives them to a fresh unit, and compares the outputs
 // with the golden. Errors: the golden is missing, or is not that of this case; the reference does
@@ -64,5 +67,13 @@ std::string how_it_ended(const Flown& flown);
 // fault if there was one. If a fixed step of the port excludes the trace, `got` does not change.
 CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHost& host,
                           const Tolerances& tolerances, Trace* got = nullptr);
+
+// The same, in memory that does not grow with the length of the trace: at most `most_ticks` are in
+// memory. But the events level, which looks ahead, and a recorded port need the whole trace. For a
+// port with a fixed step or in fixed point, the trace is read twice. Errors: those of TraceParts.
+inline constexpr std::size_t ticks_at_once = 2048;
+Result<CaseResult> evaluate_parts(TraceParts& recorded, const Subject& subject, PortHost& host,
+                                  const Tolerances& tolerances,
+                                  std::size_t most_ticks = ticks_at_once);
 
 }  // namespace attest

@@ -175,7 +175,7 @@ void judge_topics(const std::vector<TopicAgreement>& topics, const LogLimits& li
 
 LogResult evaluate_log(const LoggedUnit& log, const std::string& profile, PortHost& host,
                        const LogLimits& limits, const std::vector<ParameterChange>& parameters) {
-  LogResult found{result_for(log.trace, profile), {}, log.trace};
+  LogResult found{result_for(log.trace.source, profile), {}, log.trace};
   CaseResult& result = found.result;
   const Subject subject{profile, log.module};
   set_parameters(parameters, found.got);

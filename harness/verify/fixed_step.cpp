@@ -26,11 +26,12 @@ std::uint64_t sampled_us(const Sample& sample, Module module) {
   return sample.in.timestamp;
 }
 
-// Whether tick k and its sample are at k + 1 periods.
-bool is_at_steps(const Trace& trace, const Rate& step, Module module) {
-  for (std::size_t k = 0; k < trace.samples.size(); ++k) {
-    const std::uint64_t due_us = timestamp_us(step.tick(static_cast<std::int64_t>(k) + 1));
-    const Sample& sample = trace.samples[k];
+// Whether tick k and its sample are at k + 1 periods. `first_tick`: that of `trace`.
+bool is_at_steps(const Trace& trace, const Rate& step, Module module, std::size_t first_tick = 0) {
+  for (std::size_t i = 0; i < trace.samples.size(); ++i) {
+    const auto k = static_cast<std::int64_t>(first_tick + i);
+    const std::uint64_t due_us = timestamp_us(step.tick(k + 1));
+    const Sample& sample = trace.samples[i];
     if (sample.in.timestamp != due_us || sampled_us(sample, module) != due_us) return false;
   }
   return true;
@@ -92,10 +93,10 @@ bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rat
   return has_other_steps(port, the_case, rate, begins_of(timing.unit), result);
 }
 
-bool has_other_steps(const PortSays& port, const Trace& recorded, Module module,
-                     CaseResult& result) {
+bool has_other_steps(const PortSays& port, const Trace& recorded, Module module, CaseResult& result,
+                     std::size_t first_tick) {
   const auto step = port.fixed_step;
-  if (!step || !has_clock(module) || is_at_steps(recorded, *step, module)) return false;
+  if (!step || !has_clock(module) || is_at_steps(recorded, *step, module, first_tick)) return false;
   return is_unsupported(*step, "was not recorded at its steps from one period after zero on",
                         result);
 }

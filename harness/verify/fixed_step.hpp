@@ -36,8 +36,9 @@ bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rat
 bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
                      const FlightTiming& timing, CaseResult& result);
 
-// The same for a recorded trace: its tick k and the sample of it must be at k + 1 periods.
-bool has_other_steps(const PortSays& port, const Trace& recorded, Module module,
-                     CaseResult& result);
+// The same for a recorded trace, or for a part of it that begins at `first_tick`: tick k and the
+// sample of it must be at k + 1 periods.
+bool has_other_steps(const PortSays& port, const Trace& recorded, Module module, CaseResult& result,
+                     std::size_t first_tick = 0);
 
 }  // namespace attest

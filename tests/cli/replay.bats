@@ -30,6 +30,25 @@ recorded() { ls "$SOURCE"/golden/recorded/*/*.csv | grep -v tailsitter; }
   has "FAIL 0 of 1"
 }
 
+@test "a long trace is not in memory as a whole" {
+  ! nm "$ATTEST" | grep -q __asan_init || skip "sanitizers reserve terabytes"
+  local mixers="$SOURCE/golden/recorded/mixer-v1.5.5"
+  cp "$mixers/provenance.toml" .
+  { head -1 "$mixers/4x.csv"; yes "$(sed -n 2p "$mixers/4x.csv")" | head -300000; } >4x.csv
+  run bash -c 'ulimit -v 300000; exec "$0" "$@"' "$ATTEST" replay 4x.csv
+  [ "$status" -eq 0 ]
+  has "300000 ticks"
+}
+
+@test "a mistake in the last row is reported, also if the port failed before" {
+  local trace="$SOURCE/golden/recorded/px4-v1.5.5/tracking_100hz.csv"
+  cp "$(dirname "$trace")/provenance.toml" .
+  { cat "$trace"; echo 1; } >long.csv
+  run "$ATTEST" replay --port "lib:$PORTS/port_crash.so" long.csv
+  [ "$status" -eq 2 ]
+  has "long.csv:$(wc -l <long.csv):"
+}
+
 @test "a parameter can be overridden" {
   trace="$SOURCE"/golden/recorded/px4-v1.5.5/tracking_100hz.csv
   run "$ATTEST" replay "$trace" --param MC_ROLL_P=6.5

@@ -1,4 +1,4 @@
-// Traces in CSV, of the three modules and of mixers as recorded. A trace that is read, written and
+// Traces in CSV, of the modules and of mixers as recorded. A trace that is read, written and
 // read again has the same bits. Reading it tick by tick gives the same samples as reading the
 // whole.
 #include "harness/trace/csv.hpp"
@@ -8,7 +8,6 @@
 #include <bit>
 #include <vector>
 
-#include "harness/trace/trace_file.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace attest::fuzz {
@@ -73,12 +72,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   // One need an input, because an error about an unknown column is slow: it suggests a name.
   constexpr std::array needs{TraceNeed::outputs, TraceNeed::inputs, TraceNeed::inputs_and_outputs};
   const TraceNeed need = needs[size % needs.size()];
-  const auto trace = open_trace(file, need);
+  const auto trace = read_csv(file, need);
   if (!trace) {
     fuzz::require_readable(trace.error(), file);
     return 0;
   }
   fuzz::require_written(*trace, need);
-  if (is_streamed(file)) fuzz::require_streamed(file, *trace, need);
+  fuzz::require_streamed(file, *trace, need);
   return 0;
 }

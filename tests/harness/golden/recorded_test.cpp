@@ -8,7 +8,6 @@
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/trace/csv.hpp"
-#include "harness/trace/trace_file.hpp"
 #include "tests/harness/casefile/case_files.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
 
@@ -99,10 +98,40 @@ TEST(Recorded, TheProfileThatTheUserNamesGoesBeforeThatOfTheFolder) {
   EXPECT_EQ(read->subject.profile, "px4-v1.5.5");
 }
 
+// The file changes MC_ROLL_P at tick 2, and has a parameter that only px4-v1.5.5 has.
+TEST(Recorded, PartsHaveTheParametersOfTheWhole) {
+  const TemporaryDirectory folder;
+  auto trace = read_csv(recorded / "px4-v1.5.5" / "fuzz_250hz.csv", TraceNeed::outputs);
+  ASSERT_TRUE(trace) << trace.error().to_string();
+  trace->keep_first(4);
+  trace->parameters = {{0, "MC_ROLL_P", 6}, {0, "MC_TPA_BREAK_P", 1}, {2, "MC_ROLL_P", 7}};
+  trace->samples[2].in.updated |= ATTEST_UPDATED_PARAMETER_UPDATE;
+  const auto file = folder.path() / "trace.csv";
+  ASSERT_TRUE(write_csv(file, *trace, all_columns(*trace)));
+  auto parts = RecordedParts::open(file, "px4-v1.3.4");
+  ASSERT_TRUE(parts) << parts.error().to_string();
+  EXPECT_THAT(parts->notes(), testing::ElementsAre(HasSubstr("not set, because px4-v1.3.4")));
+  const auto changes_of_parts = [&] {
+    std::vector<std::vector<ParameterChange>> changes;
+    EXPECT_TRUE(parts->rewind());
+    EXPECT_TRUE(for_each_part(*parts, 2, [&](const Trace& part, std::size_t, bool) {
+      changes.push_back(part.parameters);
+      return true;
+    }));
+    return changes;
+  };
+  using Changes = std::vector<ParameterChange>;
+  EXPECT_THAT(changes_of_parts(), testing::ElementsAre(Changes{{0, "MC_ROLL_P", 6}},
+                                                       Changes{{0, "MC_ROLL_P", 7}}, Changes{}));
+  parts->override_parameter({0, "MC_ROLL_P", 5});
+  EXPECT_THAT(changes_of_parts(),
+              testing::ElementsAre(Changes{{0, "MC_ROLL_P", 5}}, Changes{}, Changes{}));
+}
+
 // A parameter of another profile is left out with a note; a parameter of no profile is an error.
 TEST(Recorded, AParameterOfNoProfileIsAnError) {
   const TemporaryDirectory folder;
-  auto trace = open_trace(recorded / "px4-v1.5.5" / "fuzz_250hz.csv", TraceNeed::outputs);
+  auto trace = read_csv(recorded / "px4-v1.5.5" / "fuzz_250hz.csv", TraceNeed::outputs);
   ASSERT_TRUE(trace) << trace.error().to_string();
   trace->parameters.push_back({0, "MC_ROLL_Q", 1});
   const auto file = folder.path() / "trace.csv";

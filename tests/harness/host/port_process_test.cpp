@@ -11,6 +11,7 @@
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/loop/case_timing.hpp"
+#include "harness/trace/trace_parts.hpp"
 #include "tests/harness/casefile/case_files.hpp"
 
 namespace attest {
@@ -70,6 +71,56 @@ TEST(PortProcess, DrivesAsHere) {
     EXPECT_NE(here.samples[5].out.actuator_controls_0.control[1], 0);
     EXPECT_EQ(apart.parameters, here.parameters);
   }
+}
+
+TEST(PortProcess, DrivesTheSameInParts) {
+  for (const std::string port : {"builtin", "sign_flip"}) {
+    Trace whole = pitching();
+    EXPECT_FALSE(host_of(port, true)->drive(unit, whole));
+    const auto host = host_of(port);
+    for (const std::size_t most : {1U, 7U, 30U}) {
+      PartsOfTrace parts(whole);
+      Subject subject = unit;
+      std::vector<Sample> answered;
+      ASSERT_TRUE(for_each_part(parts, most, [&](Trace part, std::size_t first, bool is_last) {
+        for (Sample& sample : part.samples) sample.clear_outputs();
+        subject.part = {first, is_last};
+        EXPECT_FALSE(host->drive(subject, part));
+        answered.insert(answered.end(), part.samples.begin(), part.samples.end());
+        return true;
+      }));
+      EXPECT_TRUE(same_samples(whole.samples, answered)) << port << ", parts of " << most;
+    }
+  }
+}
+
+// As after a mistake in the middle of a file.
+TEST(PortProcess, ATraceThatWasNotDrivenToItsEndLeavesNoInstance) {
+  Trace first = pitching(), whole = pitching();
+  const auto host = host_of("builtin");
+  Subject part = unit;
+  part.part = {0, false};
+  EXPECT_FALSE(host->drive(part, first));
+  EXPECT_FALSE(host->drive(part, whole));
+  EXPECT_TRUE(same_samples(first.samples, whole.samples));
+}
+
+TEST(PortProcess, AFaultInALaterPartHasTheTickOfTheTrace) {
+  Trace whole = pitching();
+  const auto expected = host_of("step_fails", true)->drive(unit, whole);
+  ASSERT_TRUE(expected);
+  const auto host = host_of("step_fails");
+  PartsOfTrace parts(whole);
+  Subject subject = unit;
+  std::optional<PortFault> fault;
+  ASSERT_TRUE(for_each_part(parts, 7, [&](Trace part, std::size_t tick, bool is_last) {
+    subject.part = {tick, is_last};
+    fault = host->drive(subject, part);
+    return !fault;
+  }));
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->tick, expected->tick);
+  EXPECT_EQ(fault->what, expected->what);
 }
 
 TEST(PortProcess, FliesAsHere) {

@@ -1,9 +1,8 @@
-#include "harness/trace/mixer_csv.hpp"
-
 #include <tuple>
 
 #include <gtest/gtest.h>
 
+#include "harness/trace/csv.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
 
 namespace attest {
@@ -20,7 +19,7 @@ constexpr std::string_view recorded =
 class MixerCsv : public testing::Test {
  protected:
   std::string error_of(std::string_view text) {
-    const auto trace = read_mixer_csv(directory_.write("6x.csv", text));
+    const auto trace = read_csv(directory_.write("6x.csv", text), TraceNeed::outputs);
     if (trace) return "";
     return trace.error().to_string().substr(directory_.path().string().size() + 1);
   }
@@ -29,7 +28,7 @@ class MixerCsv : public testing::Test {
 };
 
 TEST_F(MixerCsv, ReadsARecordedTrace) {
-  const auto trace = read_mixer_csv(directory_.write("6x.csv", recorded));
+  const auto trace = read_csv(directory_.write("6x.csv", recorded), TraceNeed::inputs_and_outputs);
   ASSERT_TRUE(trace) << trace.error().to_string();
   EXPECT_EQ(trace->source, (directory_.path() / "6x.csv").string());
   EXPECT_EQ(module_of(trace->present), Module::mixer);
@@ -46,14 +45,6 @@ TEST_F(MixerCsv, ReadsARecordedTrace) {
   EXPECT_EQ(out.multirotor_motor_limits.yaw, 1);
 }
 
-TEST_F(MixerCsv, IsKnownByItsHeader) {
-  EXPECT_TRUE(looks_like_mixer_csv(directory_.write("a", recorded)));
-  EXPECT_TRUE(looks_like_mixer_csv(directory_.write("a", "rol,pitch\n")));
-  EXPECT_FALSE(looks_like_mixer_csv(directory_.write("a", "timestamp,in/battery_status.scale\n")));
-  EXPECT_FALSE(looks_like_mixer_csv(directory_.write("a", "")));
-  EXPECT_FALSE(looks_like_mixer_csv(directory_.path() / "missing"));
-}
-
 TEST_F(MixerCsv, NamesErrorsByPlace) {
   constexpr std::string_view four = "roll,pitch,yaw,thrust,delta_out_max,out[0],out[1],out[2],";
   const std::string header = std::string(four) + "out[3],lower_limit,upper_limit,yaw_limit\n";
@@ -64,7 +55,7 @@ TEST_F(MixerCsv, NamesErrorsByPlace) {
             "6x.csv:2:23: `-1` is not a flag for yaw_limit; write an integer from 0 to 255");
   EXPECT_EQ(error_of(header + "1,2\n"),
             "6x.csv:2:4: row has 2 of 12 cells, yaw is missing; complete or remove the row");
-  EXPECT_EQ(error_of(header), "6x.csv:2: no rows; a mixer trace has a row for each call");
+  EXPECT_EQ(error_of(header), "6x.csv:2: no rows; a trace has a row for each tick");
   EXPECT_EQ(error_of(std::string(four) + "out[4],lower_limit,upper_limit,yaw_limit\n"),
             "6x.csv:1: no column out[3]; add it");
   EXPECT_EQ(error_of(std::string(four) + "lower_limit,upper_limit,yaw_limit\n"),
@@ -75,13 +66,13 @@ TEST_F(MixerCsv, NamesErrorsByPlace) {
             "6x.csv:1:1: unknown column `rolll` in a mixer trace; did you mean `roll`?");
   EXPECT_EQ(error_of("roll,pitch,roll\n"), "6x.csv:1:12: repeated column `roll`; remove one");
   EXPECT_EQ(error_of(""), "6x.csv:1:1: no header; the first line must name the columns");
-  EXPECT_EQ(read_mixer_csv("missing").error().to_string(),
+  EXPECT_EQ(read_csv("missing", TraceNeed::inputs).error().to_string(),
             "missing: cannot open the file: No such file or directory");
 }
 
 TEST_F(MixerCsv, TruncationAtAnyByteReadsOrFails) {
   for (std::size_t size = 0; size <= recorded.size(); ++size) {
-    const auto trace = read_mixer_csv(directory_.write("a", recorded.substr(0, size)));
+    const auto trace = read_csv(directory_.write("a", recorded.substr(0, size)), TraceNeed::inputs);
     if (!trace) {
       EXPECT_GE(trace.error().line, 1);
     }

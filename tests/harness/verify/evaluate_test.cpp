@@ -1,13 +1,18 @@
 #include "harness/verify/evaluate.hpp"
 
 #include <fstream>
+#include <functional>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "harness/core/file.hpp"
 #include "harness/host/host_here.hpp"
+#include "harness/port/builtin.hpp"
 #include "harness/trace/csv.hpp"
+#include "harness/trace/trace_parts.hpp"
+#include "harness/verify/verdict_json.hpp"
 #include "tests/harness/golden/blessed.hpp"
 #include "tests/harness/verify/small_suite.hpp"
 
@@ -155,6 +160,83 @@ TEST_F(EvaluateTest, ARecordedTraceIsGivenToThePort) {
   const CaseResult result = judge("builtin");
   ASSERT_TRUE(result.first);
   EXPECT_EQ(result.first->tick, 5u);
+}
+
+// Everything that a report shows, except the time that it took.
+std::string shown(CaseResult result) {
+  result.elapsed_s = 0;
+  return to_json(result).dump();
+}
+
+// Returns ATTEST_UNSUPPORTED at tick 12.
+class UnsupportedLater final : public PortHost {
+ public:
+  explicit UnsupportedLater(const std::string& port) : host_(opened(port)) {}
+
+  const PortSays& says() const override { return host_->says(); }
+  std::optional<PortFault> drive(const Subject& subject, Trace& trace) override {
+    auto fault = host_->drive(subject, trace);
+    if (fault || subject.part.first_tick + trace.samples.size() <= 12) return fault;
+    return PortFault{PortFault::Kind::unsupported, 12, "step at tick 12 ..."};
+  }
+  Result<Flown> fly(const FlightPlan& plan) override { return host_->fly(plan); }
+  Result<StepTimes> time_steps(const Subject& wanted, const Trace& inputs,
+                               bool with_stack) override {
+    return host_->time_steps(wanted, inputs, with_stack);
+  }
+  bool supports(const std::string& profile) override { return host_->supports(profile); }
+
+ private:
+  std::unique_ptr<PortHost> host_;
+};
+
+class PartsTest : public EvaluateTest {
+ protected:
+  void SetUp() override {
+    suite_.add("pitch", pitching);
+    recorded_ = answers_of_reference(suite_[0])[0].trace;
+    recorded_.source = "flight.csv";
+  }
+
+  // Expects the same result for parts of any size as for the whole trace.
+  void expect_the_same(const std::function<std::unique_ptr<PortHost>()>& open,
+                       Level level = Level::numeric) {
+    const Subject subject{"px4-v1.5.5"};
+    const Tolerances tolerances(level);
+    const CaseResult whole = evaluate_trace(recorded_, subject, *open(), tolerances);
+    for (const std::size_t most : {1U, 7U, 30U, 1000U}) {
+      PartsOfTrace parts(recorded_);
+      const auto host = open();
+      const auto result = evaluate_parts(parts, subject, *host, tolerances, most);
+      ASSERT_TRUE(result) << result.error().to_string();
+      EXPECT_EQ(shown(*result), shown(whole)) << "parts of " << most;
+    }
+  }
+
+  Trace recorded_;
+};
+
+TEST_F(PartsTest, OfAnySizeGiveTheResultOfTheWhole) {
+  recorded_.parameters.push_back({9, "MC_PITCHRATE_P", 0.3f});
+  recorded_.samples[9].in.updated |= ATTEST_UPDATED_PARAMETER_UPDATE;
+  HostHere reference(open_builtin());
+  ASSERT_FALSE(reference.drive({"px4-v1.5.5"}, recorded_));
+  for (const Level level : {Level::exact, Level::numeric, Level::events}) {
+    for (const std::string& port :
+         {std::string("builtin"), std::string("fault:quat-order-state"), test_port("sign_flip"),
+          test_port("step_fails"), test_port("unsupported_step"), test_port("refuses_profile"),
+          test_port("non_finite"), test_port("fixed_step")}) {
+      SCOPED_TRACE(port);
+      expect_the_same([&] { return opened(port); }, level);
+    }
+  }
+}
+
+TEST_F(PartsTest, AreJudgedUpToTheTickThatIsUnsupported) {
+  expect_the_same([] { return std::make_unique<UnsupportedLater>("builtin"); });
+  expect_the_same([] { return std::make_unique<UnsupportedLater>(test_port("sign_flip")); });
+  recorded_.samples[20].out.actuator_controls_0.control[3] += 0.5f;
+  expect_the_same([] { return std::make_unique<UnsupportedLater>("builtin"); });
 }
 
 TEST_F(EvaluateTest, OnlyTheTicksThatThePortAnsweredAreItsOutputs) {
