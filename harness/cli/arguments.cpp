@@ -12,6 +12,7 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/completion.hpp"
 #include "harness/cli/man_page.hpp"
+#include "harness/cli/outputs.hpp"
 #include "harness/cli/run_arguments.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_arguments.hpp"
@@ -141,8 +142,10 @@ struct HelpOptions {
   std::string command, completion, man;
 };
 
-int show_help(const CLI::App& app, const HelpOptions& options) {
+int show_help(const CLI::App& app, const HelpOptions& options, const Globals& globals) {
   if (!options.man.empty()) {
+    const auto apart = check_output_folder(options.man, globals.suite);
+    if (!apart) return report_error(apart.error());
     const auto written = write_man_pages(app, options.man);
     return written ? exit_ok : report_error(written.error());
   }
@@ -162,7 +165,7 @@ int show_help(const CLI::App& app, const HelpOptions& options) {
   return exit_ok;
 }
 
-void add_help(CLI::App& app, Action& action) {
+void add_help(CLI::App& app, const Globals& globals, Action& action) {
   auto options = std::make_shared<HelpOptions>();
   CLI::App* command = app.add_subcommand("help", "Show the options and examples of a command");
   command->add_option("command", options->command, "The command; default: show all commands")
@@ -177,8 +180,9 @@ void add_help(CLI::App& app, Action& action) {
   add_examples(*command, {{"attest help run", "the same as `attest run --help`"},
                           {"source <(attest help --completion bash)",
                            "completion in this shell, unless the package installed it"}});
-  command->callback(
-      [options, &app, &action] { action = [=, &app] { return show_help(app, *options); }; });
+  command->callback([options, &app, &globals, &action] {
+    action = [=, &app, &globals] { return show_help(app, *options, globals); };
+  });
 }
 
 void add_commands(CLI::App& app, const Globals& globals, Action& action) {
@@ -191,7 +195,7 @@ void add_commands(CLI::App& app, const Globals& globals, Action& action) {
   add_new_port(app, globals, action);
   add_doctor(app, globals, action);
   add_smoke(app, globals, action);
-  add_help(app, action);
+  add_help(app, globals, action);
   app.footer(footer);  // last: commands copy the footer that exists when they are added
 }
 

@@ -209,9 +209,8 @@ int merge_command(const MergeOptions& options, const Globals& globals) {
   if (!suite) return report_error(suite.error());
   std::vector<std::string> outputs;
   for (const auto& [option, path] : options.report.files) outputs.push_back(path);
-  if (auto checked = check_outputs(outputs, {options.port, options.files}, *suite); !checked) {
-    return report_error(checked.error());
-  }
+  const auto apart = check_outputs(outputs, {options.port, options.files}, globals.suite);
+  if (!apart) return report_error(apart.error());
   auto parts = read_parts(options.files);
   if (!parts) return report_error(parts.error());
   if (auto checked = check_parts(*parts); !checked) return report_error(checked.error());

@@ -11,6 +11,7 @@
 
 #include "harness/cli/command.hpp"
 #include "harness/cli/new_folder.hpp"
+#include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/suggestion.hpp"
 #include "harness/process/program.hpp"
@@ -56,8 +57,7 @@ struct Parts {
 Result<Parts> parts_of(const Language& language) {
   const auto data = data_folder();
   if (!data) return fail("the data of this attest is missing: share/attest of its installation");
-  std::error_code ignored;
-  const bool is_installed = fs::is_directory(*data / "starters", ignored);
+  const bool is_installed = is_installation(*data);
   const fs::path starters = *data / (is_installed ? "starters" : "controller/starters");
   return Parts{starters / language.name, *data / (is_installed ? "include" : "controller"),
                *data / (is_installed ? "ci" : "ci/examples")};
@@ -95,7 +95,10 @@ void lay_out(const Parts& parts, const Language& language, const fs::path& folde
   fs::copy_file(parts.ci / "gitlab-ci.yml", folder / ".gitlab-ci.yml");
 }
 
-Result<Language> make_port(const NewPortOptions& options) {
+Result<Language> make_port(const NewPortOptions& options, const std::string& suite) {
+  if (auto apart = check_output_folder(options.folder, suite); !apart) {
+    return tl::unexpected(apart.error());
+  }
   auto language = language_named(options.language);
   if (!language) return language;
   const auto parts = parts_of(*language);
@@ -111,7 +114,7 @@ Result<Language> make_port(const NewPortOptions& options) {
 }  // namespace
 
 int new_port_command(const NewPortOptions& options, const Globals& globals) {
-  const auto language = make_port(options);
+  const auto language = make_port(options, globals.suite);
   if (!language) return report_error(language.error());
   if (!find_program(language->toolchain)) {
     fmt::print(stderr, "attest: note: {} is not installed; {}/packages.txt names its package\n",

@@ -6,8 +6,11 @@
 #include <set>
 #include <system_error>
 
+#include <fmt/format.h>
 #include <unistd.h>
 
+#include "harness/cli/suite_folder.hpp"
+#include "harness/core/file.hpp"
 #include "harness/port/port.hpp"
 
 namespace attest::cli {
@@ -19,9 +22,10 @@ namespace fs = std::filesystem;
 fs::path identity(const fs::path& path) {
   if (path == "-") return identity("/dev/stdout");
   std::error_code failed;
-  const fs::path absolute = fs::absolute(path, failed);
-  const fs::path canonical = fs::weakly_canonical(absolute, failed);
-  return failed ? absolute.lexically_normal() : canonical;
+  const fs::path absolute = fs::absolute(behind_links(path), failed);
+  fs::path canonical = fs::weakly_canonical(absolute, failed);
+  if (failed) canonical = absolute.lexically_normal();
+  return canonical.has_filename() ? canonical : canonical.parent_path();  // "mine/"
 }
 
 bool lies_in(const fs::path& path, const fs::path& folder) {
@@ -29,11 +33,61 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
          folder.end();
 }
 
-bool is_of_suite(const fs::path& path, const SuiteFolder& suite) {
-  std::vector<fs::path> folders = suite.case_folders();
-  folders.insert(folders.end(), {suite.golden(), suite.models()});
-  return std::any_of(folders.begin(), folders.end(),
-                     [&](const fs::path& folder) { return lies_in(path, identity(folder)); });
+bool is_suite(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::is_regular_file(folder / base_file, ignored) ||
+         (fs::is_directory(folder / "cases", ignored) &&
+          fs::is_directory(folder / "golden", ignored));
+}
+
+// What a command may not write, with its name in messages.
+struct Protected {
+  fs::path path;
+  const char* what;
+};
+constexpr const char* a_suite = "a suite";
+
+// Other files in the folder of a suite are the user's own.
+std::vector<Protected> parts_of(const fs::path& suite) {
+  std::vector<Protected> parts;
+  for (const char* name : {"cases", "golden", "models", base_file}) {
+    parts.push_back({identity(suite / name), a_suite});
+  }
+  return parts;
+}
+
+std::vector<Protected> own_data() {
+  const auto data = data_folder();
+  if (!data) return {};
+  if (is_installation(*data)) return {{identity(*data), "the data of this attest"}};
+  return parts_of(*data);
+}
+
+// `path`: an identity(). `given`: the suite of the command.
+std::vector<Protected> protected_near(const fs::path& path, const std::string& given) {
+  std::vector<Protected> all = own_data();
+  const auto add = [&](const fs::path& suite) {
+    const auto parts = parts_of(suite);
+    all.insert(all.end(), parts.begin(), parts.end());
+  };
+  if (const auto suite = find_suite(given)) {
+    add(suite->root);
+    if (suite->base) add(*suite->base);
+  }
+  for (fs::path above = path; above.has_relative_path(); above = above.parent_path()) {
+    if (is_suite(above)) add(above);
+  }
+  return all;
+}
+
+Result<void> check_apart(const std::string& name, const fs::path& path,
+                         const std::vector<Protected>& all) {
+  for (const Protected& one : all) {
+    if (!lies_in(path, one.path)) continue;
+    return fail_at(
+        name, fmt::format("is in {}, which only `attest bless` changes; name another", one.what));
+  }
+  return {};
 }
 
 std::set<fs::path> identities_of(const Inputs& inputs) {
@@ -45,9 +99,10 @@ std::set<fs::path> identities_of(const Inputs& inputs) {
   return files;
 }
 
-// `suite` is null if there is none.
-Result<void> check_each(const std::vector<std::string>& outputs, const Inputs& inputs,
-                        const SuiteFolder* suite) {
+}  // namespace
+
+Result<void> check_outputs(const std::vector<std::string>& outputs, const Inputs& inputs,
+                           const std::string& suite) {
   const std::set<fs::path> read = identities_of(inputs);
   std::set<fs::path> written;
   for (const std::string& output : outputs) {
@@ -56,37 +111,27 @@ Result<void> check_each(const std::vector<std::string>& outputs, const Inputs& i
     if (!written.insert(file).second) {
       return fail_at(output, "is asked for twice; each report needs a file of its own");
     }
-    std::error_code ignored;
     if (read.contains(file)) {
       return fail_at(output, "is read by this command and would be overwritten; name another file");
     }
-    if (suite != nullptr && is_of_suite(file, *suite) && fs::exists(file, ignored)) {
-      return fail_at(output, "is a file of the suite and would be overwritten; name another file");
-    }
+    const auto apart = check_apart(output, file, protected_near(file, suite));
+    if (!apart) return apart;
   }
   return {};
 }
 
-}  // namespace
-
-Result<void> check_outputs(const std::vector<std::string>& outputs, const Inputs& inputs,
-                           const SuiteFolder& suite) {
-  return check_each(outputs, inputs, &suite);
+Result<void> check_output_folder(const std::string& folder, const std::string& suite) {
+  const fs::path path = identity(folder);
+  std::vector<Protected> all = protected_near(path, suite);
+  if (is_suite(path)) all.push_back({path, a_suite});
+  return check_apart(folder, path, all);
 }
 
-Result<void> check_outputs(const std::vector<std::string>& outputs, const Inputs& inputs,
-                           const std::string& suite_folder) {
-  const auto suite = find_suite(suite_folder);
-  return check_each(outputs, inputs, suite ? &*suite : nullptr);
+Result<void> check_own_suite(const std::string& suite) {
+  return check_apart(suite, identity(fs::path(suite) / "cases"), own_data());
 }
 
-Result<void> check_output_folder(const std::string& folder, const SuiteFolder& suite) {
-  if (!is_of_suite(identity(folder), suite)) return {};
-  return fail_at(folder,
-                 "is a folder of the suite, whose files would be overwritten; name another folder");
-}
-
-Result<void> prepare_trace_folder(const std::string& folder, const SuiteFolder& suite) {
+Result<void> prepare_trace_folder(const std::string& folder, const std::string& suite) {
   if (folder.empty()) return {};
   if (auto apart = check_output_folder(folder, suite); !apart) return apart;
   std::error_code failed;

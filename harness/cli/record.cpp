@@ -31,7 +31,7 @@ Result<void> record(const RecordOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return tl::unexpected(suite.error());
   const auto checked =
-      check_outputs({options.out}, {options.host.port, {options.case_name}}, *suite);
+      check_outputs({options.out}, {options.host.port, {options.case_name}}, globals.suite);
   if (!checked) return tl::unexpected(checked.error());
   const auto trace = recorded(options, *suite);
   if (!trace) return tl::unexpected(trace.error());

@@ -15,7 +15,7 @@
 namespace attest::cli {
 namespace {
 
-Result<void> check_paths(const RunOptions& options, const SuiteFolder& suite) {
+Result<void> check_paths(const RunOptions& options, const std::string& suite) {
   std::vector<std::string> outputs;
   for (const auto& [option, path] : options.report.files) outputs.push_back(path);
   auto checked = check_outputs(
@@ -54,7 +54,7 @@ int run_command(const RunOptions& options, const Globals& globals) {
   note_interrupts();  // before the first request to the port, which may hang
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
-  if (const auto checked = check_paths(options, *suite); !checked) {
+  if (const auto checked = check_paths(options, globals.suite); !checked) {
     return report_error(checked.error());
   }
   const auto traces = PlottedTraces::prepare(options);

@@ -80,8 +80,9 @@ Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder
 int schedule_command(const ScheduleOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
-  const auto checked = check_outputs(
-      {options.record_timing}, {options.host.port, {options.tasks, options.case_name}}, *suite);
+  const auto checked =
+      check_outputs({options.record_timing},
+                    {options.host.port, {options.tasks, options.case_name}}, globals.suite);
   if (!checked) return report_error(checked.error());
   const auto plan = make_plan(options, *suite);
   if (!plan) return report_error(plan.error());

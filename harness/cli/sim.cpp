@@ -85,7 +85,7 @@ Result<Sim> prepare(const SimOptions& options, const Globals& globals) {
   if (options.out.empty() && options.html.empty()) return fail("needs --out or --html");
   const auto checked =
       check_outputs({options.out, attitude_file(options.out), options.html},
-                    {options.host.port, {options.timing, options.case_name}}, *suite);
+                    {options.host.port, {options.timing, options.case_name}}, globals.suite);
   if (!checked) return tl::unexpected(checked.error());
   if (!options.timing.empty()) return prepare_timed(options, *suite);
   return prepare_case(options, *suite);

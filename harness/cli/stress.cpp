@@ -56,10 +56,6 @@ void set_budget(const StressOptions& options, RealtimeBudget& budget) {
 }
 
 Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& suite) {
-  const auto checked =
-      check_outputs({options.html, options.json, options.junit, options.record_timing},
-                    {options.host.port, {options.case_name}}, suite);
-  if (!checked) return tl::unexpected(checked.error());
   const auto rates = parse_rates(options.rates);
   if (!rates) return tl::unexpected(rates.error());
   auto chosen =
@@ -184,6 +180,10 @@ Result<void> run_all(const StressPlan& plan, const StressOptions& options, const
 int stress_command(const StressOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
+  const auto checked =
+      check_outputs({options.html, options.json, options.junit, options.record_timing},
+                    {options.host.port, {options.case_name}}, globals.suite);
+  if (!checked) return report_error(checked.error());
   const auto plan = make_plan(options, *suite);
   if (!plan) return report_error(plan.error());
   auto json = open_report(options.json);

@@ -153,6 +153,11 @@ std::optional<fs::path> data_folder() {
   return std::nullopt;
 }
 
+bool is_installation(const fs::path& data) {
+  std::error_code ignored;
+  return fs::is_directory(data / "starters", ignored);  // controller/starters in the source tree
+}
+
 Result<SuiteFolder> find_suite(const std::string& given) {
   if (!given.empty()) return named(given, "--suite");
   if (const char* folder = std::getenv("ATTEST_SUITE"); folder && *folder) {

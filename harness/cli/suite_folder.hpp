@@ -66,6 +66,9 @@ struct SuiteFolder {
 // build folder is inside it. Empty: neither exists.
 std::optional<std::filesystem::path> data_folder();
 
+// Whether `data`, a data_folder(), is that of an installation instead of the source tree.
+bool is_installation(const std::filesystem::path& data);
+
 // `given` if it is not empty; else $ATTEST_SUITE; else data_folder(). Errors: there is no such
 // suite; its file BASE names no suite, or a suite that has a base itself.
 Result<SuiteFolder> find_suite(const std::string& given);

@@ -167,7 +167,7 @@ Result<void> check_apart(const std::string& file, const SweepOptions& options) {
   return {};
 }
 
-Result<void> check_options(const SweepOptions& options, const SuiteFolder& suite) {
+Result<void> check_options(const SweepOptions& options, const std::string& suite) {
   if (options.out.empty()) return fail("needs --out, the folder of the results");
   if (auto apart = check_output_folder(options.out, suite); !apart) return apart;
   for (const std::string& file : {options.html, options.hdf5}) {
@@ -196,7 +196,9 @@ Result<void> check_shard(const PreparedSweep& sweep, const SweepOptions& options
 int sweep_command(const SweepOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
-  if (auto checked = check_options(options, *suite); !checked) return report_error(checked.error());
+  if (auto checked = check_options(options, globals.suite); !checked) {
+    return report_error(checked.error());
+  }
   const auto sweep = prepare_sweep(options, *suite);
   if (!sweep) return report_error(sweep.error());
   if (auto checked = check_shard(*sweep, options); !checked) return report_error(checked.error());

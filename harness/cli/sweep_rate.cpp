@@ -79,8 +79,8 @@ Result<RateSweepPlan> make_plan(const RateSweepOptions& options, const SuiteFold
 int sweep_rate_command(const RateSweepOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
-  const auto checked =
-      check_outputs({options.csv, options.html}, {options.host.port, {options.case_name}}, *suite);
+  const auto checked = check_outputs({options.csv, options.html},
+                                     {options.host.port, {options.case_name}}, globals.suite);
   if (!checked) return report_error(checked.error());
   const auto plan = make_plan(options, *suite);
   if (!plan) return report_error(plan.error());

@@ -53,7 +53,7 @@ std::vector<std::uint64_t> counted(const TimeCommandOptions& options, const Suit
   return counts;
 }
 
-Result<void> check(const TimeCommandOptions& options, const SuiteFolder& suite) {
+Result<void> check(const TimeCommandOptions& options, const std::string& suite) {
   if (options.instructions && is_program(options.host.port)) {
     return fail(
         "--instructions counts those of a library: a program has a process of its own; run "
@@ -123,7 +123,9 @@ int report(const TimeCommandOptions& options, const TimeRun& run, bool quiet) {
 int time_command(const TimeCommandOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
-  if (const auto checked = check(options, *suite); !checked) return report_error(checked.error());
+  if (const auto checked = check(options, globals.suite); !checked) {
+    return report_error(checked.error());
+  }
   const auto cases = open_loop_cases(options, *suite);
   if (!cases) return report_error(cases.error());
   const auto host = host_for(options);

@@ -23,7 +23,7 @@ Result<std::size_t> write_vectors(const VectorOptions& options, const Globals& g
   }
   const auto suite = find_suite(globals.suite);
   if (!suite) return tl::unexpected(suite.error());
-  if (auto checked = check_output_folder(options.folder, *suite); !checked) {
+  if (auto checked = check_output_folder(options.folder, globals.suite); !checked) {
     return tl::unexpected(checked.error());
   }
   const auto cases = options.select.cases_in(suite->case_folders());

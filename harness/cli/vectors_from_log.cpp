@@ -69,12 +69,6 @@ struct WrittenCase {
   LogCase made;
 };
 
-Result<void> check_folder(const std::string& folder) {
-  const auto released = data_folder();
-  if (!released) return {};
-  return check_output_folder((fs::path(folder) / "cases").string(), {*released, {}});
-}
-
 // A case of each unit whose inputs the log has. A log of the controller may lack steps, because the
 // golden of its case comes from a reference that starts at the same tick.
 Result<std::vector<LogCase>> cases_of(const VectorOptions& options, FlightLog& log) {
@@ -98,7 +92,7 @@ Result<std::vector<LogCase>> cases_of(const VectorOptions& options, FlightLog& l
 Result<std::vector<WrittenCase>> write_cases_of_log(const VectorOptions& options) {
   const auto profile = profile_in(options);
   if (!profile) return tl::unexpected(profile.error());
-  if (auto checked = check_folder(options.folder); !checked) {
+  if (auto checked = check_own_suite(options.folder); !checked) {
     return tl::unexpected(checked.error());
   }
   auto log = read_log(options.from_log, options.assumed, *profile);

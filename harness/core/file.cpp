@@ -149,6 +149,17 @@ Result<std::string> read_file(const fs::path& path, std::uintmax_t most_bytes) {
   return text;
 }
 
+fs::path behind_links(fs::path path) {
+  constexpr int most = 40;  // as Linux
+  fs::path target = path;
+  std::error_code failed;
+  for (int i = 0; i < most; ++i) {
+    if (!fs::is_symlink(fs::symlink_status(target, failed))) return target;
+    target = target.parent_path() / fs::read_symlink(target, failed);
+  }
+  return path;
+}
+
 std::string sha256(std::string_view bytes) {
   Sha256 hash;
   hash.add(bytes);
@@ -255,6 +266,7 @@ Result<AtomicFile> AtomicFile::open(const fs::path& path) {
   if (!path.has_filename()) return fail_at(path.string(), "not a file name; name a file");
   struct stat status;
   const bool exists = ::stat(path.c_str(), &status) == 0;
+  if (!exists && errno == ELOOP) return system_failure(path, "cannot create the file");
   if (exists && S_ISDIR(status.st_mode)) {
     return fail_at(path.string(), "is a directory; name a file");
   }
@@ -266,12 +278,16 @@ Result<AtomicFile> AtomicFile::open(const fs::path& path) {
     if (file < 0) return system_failure(path, "cannot write the file");
     return AtomicFile(path, "", "", file);
   }
-  // A symbolic link stays; the file that it points to is replaced.
+  // A symbolic link stays, and the file that it points to is made or replaced, as by a shell.
   std::error_code failed;
-  fs::path target = exists ? fs::canonical(path, failed) : path;
+  fs::path target = exists ? fs::canonical(path, failed) : behind_links(path);
   if (failed) return fail_at(path.string(), "cannot find the file: " + failed.message());
   fs::path temporary;
   const int file = create_in_folder_of(target, temporary);
+  if (file < 0 && !exists && target != path) {
+    return system_failure(path,
+                          fmt::format("cannot create {}, to which it links", target.string()));
+  }
   if (file < 0) return system_failure(path, "cannot create the file");
   return AtomicFile(path, std::move(target), std::move(temporary), file);
 }

@@ -23,6 +23,10 @@ inline constexpr std::uintmax_t most_text_bytes = std::uintmax_t{64} << 20;
 Result<std::string> read_file(const std::filesystem::path& path,
                               std::uintmax_t most_bytes = most_text_bytes);
 
+// The file that a program writes when it opens `path`: follows symbolic links, also to a file that
+// does not exist. `path` itself if it is no link, or if its links form a loop.
+std::filesystem::path behind_links(std::filesystem::path path);
+
 // SHA-256 as 64 lower-case hex digits, as `sha256sum` prints it.
 std::string sha256(std::string_view bytes);
 Result<std::string> sha256_of_file(const std::filesystem::path& path);

@@ -110,23 +110,80 @@ refused() {
   has "$port: is read by this command"
 }
 
-@test "no report may overwrite a file of the suite" {
+@test "no command but bless writes into a suite" {
   blessed_suite
-  case_file=suite/cases/px4-v1.5.5/attitude/roll.toml
-  golden=suite/golden/px4-v1.5.5/attitude/roll/250hz.csv
-  ln -s suite/golden alias
-  before=$(cat $case_file $golden)
-  for target in $case_file $golden alias/px4-v1.5.5/attitude/roll/250hz.csv; do
-    run "$ATTEST" --suite suite run --json $target
-    [ "$status" -eq 2 ]
-    has "$target: is a file of the suite"
+  ln -s "$PWD/suite/golden" alias
+  ln -s suite/golden/new.csv dangling
+  cp -r suite other
+  echo released >suite/BASE
+  find suite other -type f -exec sha256sum {} + | sort >before
+  sim=(sim hover --rate 250 --out)
+  # Existing files and new ones; by a link, a link without a target and a detour; of the suite in
+  # use and of another one.
+  for target in suite/cases/px4-v1.5.5/attitude/roll.toml suite/cases/new.csv suite/BASE \
+    suite/golden/px4-v1.5.5/attitude/roll/250hz.csv alias/new.csv dangling suite/../other/golden/x \
+    "$PWD/other/cases/new.csv" "$SOURCE/models/new.csv"; do
+    for command in "run --json" "sim hover --rate 250 --html" "record roll --rate 250 --out"; do
+      run "$ATTEST" --suite suite $command "$target"
+      [ "$status" -eq 2 ]
+      has "$target: is in a suite"
+    done
   done
-  for folder in suite/golden suite/cases alias/px4-v1.5.5; do
-    run "$ATTEST" --suite suite vectors $folder
-    [ "$status" -eq 2 ]
-    has "$folder: is a folder of the suite"
+  for folder in suite suite/golden suite/cases/new alias/px4-v1.5.5 other ./other/ other/golden \
+    "$SOURCE" "$SOURCE/models/new"; do
+    for command in vectors "new-port --lang c" "run --save-traces" "help --man" \
+      "sweep $SOURCE/controller/starters/c/README.md --out"; do
+      run "$ATTEST" --suite suite $command "$folder"
+      [ "$status" -eq 2 ]
+      has "$folder: is in a suite"
+    done
   done
-  [ "$before" = "$(cat $case_file $golden)" ]
+  find suite other -type f -exec sha256sum {} + | sort | diff before -
+  [ -L dangling ]
+}
+
+@test "no command writes into the data of an installation" {
+  mkdir -p installed/{bin,share/attest/starters}
+  cp "$ATTEST" installed/bin/attest
+  cp -r "$SOURCE/models" installed/share/attest/
+  make_suite
+  mv suite/* installed/share/attest/
+  ln -s installed/share/attest data
+  find installed | sort >before
+  make_suite
+  for folder in installed/share/attest data installed/share/attest/new data/starters/new; do
+    for command in vectors "--suite suite vectors" "new-port --lang c" "help --man" \
+      "vectors --from-log missing.ulg"; do
+      run installed/bin/attest $command $folder
+      [ "$status" -eq 2 ]
+      has ": is in "
+    done
+  done
+  run installed/bin/attest sim hover --rate 250 --html data/new.html
+  [ "$status" -eq 2 ]
+  has "data/new.html: is in the data of this attest"
+  find installed | sort | diff before -
+}
+
+@test "a report at a link goes to the file that the link names" {
+  ln -s kept/page.html page.html
+  run "$ATTEST" sim gust --rate 250 --html page.html
+  [ "$status" -eq 2 ]
+  has "page.html: cannot create kept/page.html, to which it links: No such file or directory"
+  mkdir kept
+  for _ in new old; do
+    run "$ATTEST" sim gust --rate 250 --html page.html
+    [ "$status" -eq 0 ]
+    [ -L page.html ]
+    tail -c 8 kept/page.html | grep -q "</html>"
+  done
+  run "$ATTEST" sim gust --rate 250 --html page.html --out kept/page.html
+  [ "$status" -eq 2 ]
+  has "is asked for twice"
+  ln -s loop loop
+  run "$ATTEST" sim gust --rate 250 --html loop
+  [ "$status" -eq 2 ]
+  has "loop: cannot create the file: Too many levels of symbolic links"
 }
 
 @test "an output is never one of the files that are read, with or without a suite" {
