@@ -175,7 +175,8 @@ class Replay {
     const auto read = trace.next_part(std::numeric_limits<std::size_t>::max(), whole);
     if (!read) return tl::unexpected(read.error());
     CaseResult result = evaluate_trace(whole, subject, *host_, tolerances, &got);
-    auto written = write_page([&] { return trace_page(whole, got, result, options_.host.port); });
+    auto written = write_page(
+        {result.verdict}, [&] { return trace_page(whole, got, result, options_.host.port); });
     if (!written) return tl::unexpected(written.error());
     return result;
   }
@@ -215,8 +216,10 @@ class Replay {
     for (const LoggedUnit& unit : log->units) {
       if (auto judged = judge_unit(*log, unit, results); !judged) return judged;
     }
+    std::vector<Verdict> verdicts;
+    for (const LogResult& found : results) verdicts.push_back(found.result.verdict);
     return write_page(
-        [&] { return log_page(*log, results, options_.log_limits, options_.host.port); });
+        verdicts, [&] { return log_page(*log, results, options_.log_limits, options_.host.port); });
   }
 
   Result<void> judge_unit(const FlightLog& log, const LoggedUnit& unit,
@@ -231,10 +234,11 @@ class Replay {
     return {};
   }
 
-  // Makes the page only if it is wanted.
+  // Makes the page only if it is wanted and has a result. Otherwise an old page is kept.
   template <typename MakePage>
-  Result<void> write_page(MakePage make_page) const {
-    if (options_.html.empty()) return {};
+  Result<void> write_page(const std::vector<Verdict>& verdicts, MakePage make_page) const {
+    const bool any_result = std::any_of(verdicts.begin(), verdicts.end(), is_judged);
+    if (options_.html.empty() || !any_result) return {};
     return write_file(options_.html, make_page());
   }
 

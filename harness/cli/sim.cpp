@@ -120,14 +120,14 @@ Result<void> write(const std::vector<SimulatedFlight>& flights, const PortSays& 
   return write_file(options.html, flight_page(flights, port));
 }
 
-void print(const CaseResult& result, const SimOptions& options) {
+void print(const CaseResult& result, const SimOptions& options, bool is_written) {
   std::FILE* const to = options.out == "-" || options.html == "-" ? stderr : stdout;
   std::vector<std::string> files;
   if (result.ticks > 0 && !options.out.empty()) {
     files.push_back(options.out);
     if (result.rate.attitude_unit) files.push_back(attitude_file(options.out));
   }
-  files.push_back(options.html);
+  if (is_written) files.push_back(options.html);
   std::erase_if(files, [](const std::string& file) { return file.empty() || file == "-"; });
   fmt::print(to, "{}  {} ticks{}{}\n", result.id(), result.ticks, files.empty() ? "" : " -> ",
              fmt::join(files, ", "));
@@ -146,18 +146,20 @@ int sim_command(const SimOptions& options, const Globals& globals) {
   PortSays says;
   const auto flights = fly_all(*sim, options.host, says);
   if (!flights) return report_error(flights.error());
-  if (const auto written = write(*flights, says, options); !written) {
-    return report_error(written.error());
-  }
-  bool any_fails = false, any_passes = false;
+  // Files of an earlier command are kept if no flight has a result.
+  const bool any_result =
+      std::any_of(flights->begin(), flights->end(),
+                  [](const SimulatedFlight& flight) { return is_judged(flight.result.verdict); });
+  const auto written = any_result ? write(*flights, says, options) : Result<void>();
+  if (!written) return report_error(written.error());
+  bool any_fails = false;
   for (const SimulatedFlight& flight : *flights) {
     const Verdict verdict = flight.result.verdict;
-    if (!globals.quiet || verdict != Verdict::pass) print(flight.result, options);
+    if (!globals.quiet || verdict != Verdict::pass) print(flight.result, options, any_result);
     any_fails = any_fails || fails_a_run(verdict);
-    any_passes = any_passes || verdict == Verdict::pass;
   }
-  if (any_fails) return exit_failed;
-  return any_passes ? exit_ok : report_error({"the port did not fly: no flight has a result"});
+  if (!any_result) return report_error({"the port did not fly: no flight has a result"});
+  return any_fails ? exit_failed : exit_ok;
 }
 
 }  // namespace attest::cli

@@ -203,6 +203,8 @@ int stress_command(const StressOptions& options, const Globals& globals) {
   if (auto done = run_all(*plan, options, globals, run); !done) return report_error(done.error());
   const RunResult all = run_of(run);
   for (const auto& written :
+  const std::vector<std::string> missing = rates_not_judged(run);
+  if (missing.size() == all.results.size()) html->reset();  // a page of an earlier run is kept
        {write_report(*json, stress_json(run)), write_report(*junit, junit_report(all)),
         write_report(*html, stress_page(run))}) {
     if (!written) return report_error(written.error());
@@ -210,9 +212,9 @@ int stress_command(const StressOptions& options, const Globals& globals) {
   if (!globals.quiet) fmt::print("{}", render_stress_end(run, terminal_style(stdout)));
   if (run.interrupted) return exit_interrupted;
   if (all.failed()) return exit_failed;
-  if (const auto rates = rates_not_judged(run); !rates.empty()) {
+  if (!missing.empty()) {
     return report_error(
-        {fmt::format("not judged: {} Hz; see the reasons above", fmt::join(rates, " Hz, "))});
+        {fmt::format("not judged: {} Hz; see the reasons above", fmt::join(missing, " Hz, "))});
   }
   return exit_ok;
 }

@@ -11,6 +11,7 @@
 #include "harness/core/file.hpp"
 #include "harness/measure/rate_sweep.hpp"
 #include "harness/plant/vehicle_models.hpp"
+#include "harness/report/failure_text.hpp"
 #include "harness/report/html/rate_sweep_page.hpp"
 #include "harness/report/progress.hpp"
 #include "harness/report/rate_sweep_text.hpp"
@@ -96,6 +97,13 @@ int sweep_rate_command(const RateSweepOptions& options, const Globals& globals) 
   if (interrupted()) return exit_interrupted;
   for (const Error& error : outcome.errors) report_error(error);
   if (!outcome.errors.empty()) return exit_usage;
+  // Files of an earlier command are kept if no flight has a result.
+  const bool any_result =
+      std::any_of(outcome.results.begin(), outcome.results.end(),
+                  [](const RateSweepResult& found) { return is_judged(found.result.verdict); });
+  if (!any_result) {
+    return report_error({"the port did not fly: " + reason_text(outcome.results.front().result)});
+  }
 
   const std::vector<RateSweepRow> rows = rate_sweep_rows(outcome.results);
   if (auto written = write_file(options.csv, rate_sweep_csv(rows, plan->rates)); !written) {

@@ -162,8 +162,7 @@ std::string render_privileges(const std::vector<RealtimePrivilege>& privileges) 
 std::vector<std::string> rates_not_judged(const StressRun& run) {
   std::vector<std::string> rates;
   for (const CaseResult& result : run_of(run).results) {
-    const bool is_judged = result.verdict == Verdict::pass || fails_a_run(result.verdict);
-    if (!is_judged) rates.push_back(result.rate.to_string());
+    if (!is_judged(result.verdict)) rates.push_back(result.rate.to_string());
   }
   return rates;
 }

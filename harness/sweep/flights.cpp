@@ -40,7 +40,7 @@ Result<SimulatedSample> simulate(const FlightSampler& sampler, const SampledFlig
   if (!flown) return tl::unexpected(flown.error());
   auto& [result, flight] = *flown;
   if (flight.divergence) return SimulatedSample{{outcome_diverged, {}}, std::move(flight)};
-  if (result.verdict == Verdict::unsupported || result.verdict == Verdict::skip) {
+  if (!is_judged(result.verdict)) {
     return fail(fmt::format("the port does not fly {}: {}", result.id(), result.reason));
   }
   SimulatedSample simulated;

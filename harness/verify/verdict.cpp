@@ -42,6 +42,10 @@ bool fails_a_run(Verdict verdict) {
   return true;
 }
 
+bool is_judged(Verdict verdict) {
+  return verdict != Verdict::skip && verdict != Verdict::unsupported;
+}
+
 std::string RunResult::selection_text() const {
   if (shard.count == 1) return selection;
   return fmt::format("{}{}--shard {}", selection, selection.empty() ? "" : " ", shard.to_string());

@@ -37,6 +37,7 @@ inline constexpr std::string_view exact_level_only =
 std::string_view name_of(Verdict verdict);  // "non-finite"
 std::optional<Verdict> parse_verdict(std::string_view name);
 bool fails_a_run(Verdict verdict);
+bool is_judged(Verdict verdict);  // all but skip and unsupported
 
 struct MetricResult {
   std::string name;  // its key in the case

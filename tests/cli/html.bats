@@ -138,6 +138,26 @@ PORT
   run "$ATTEST" sim flip_150_level --rate 250 --plant all --html page.html
   [ "$status" -eq 0 ]
   has "@250hz-iris-mujoco"
+@test "without a result the old page stays" {
+  echo old >page.html
+  "$ATTEST" record px4-v1.5.5/tpa/each_axis --rate 250 --out recorded.csv >/dev/null
+  port=(--port "lib:$PORTS/port_other_profiles.so")
+  run "$ATTEST" sim hover --rate 250 "${port[@]}" --html page.html
+  [ "$status" -eq 2 ]
+  has "the port did not fly"
+  run "$ATTEST" replay recorded.csv --profile px4-v1.5.5 "${port[@]}" --html page.html
+  [ "$status" -eq 2 ]
+  has "no trace was compared"
+  run "$ATTEST" sweep-rate --rates 250 "${port[@]}" --html page.html --csv page.html.csv
+  [ "$status" -eq 2 ]
+  has "the port did not fly: the port does not support profile px4-v1.5.5"
+  [ ! -e page.html.csv ]
+  run "$ATTEST" stress --rates 250 --duration 0.1 "${port[@]}" --html page.html
+  [ "$status" -eq 2 ]
+  has "not judged: 250 Hz"
+  [ "$(cat page.html)" = old ]
+}
+
   has "@250hz-iris-ode"
   grep -q '"name":"roll (ode)"' page.html
   run "$ATTEST" sim flip_150_level --rate 250 --plant all --out flown.csv
