@@ -3,7 +3,8 @@
 #include <system_error>
 
 #include <fmt/format.h>
-#include <unistd.h>
+
+#include "harness/process/temporary_folder.hpp"
 
 namespace attest::cli {
 namespace {
@@ -24,17 +25,18 @@ Result<void> make_new_folder(const std::string& given,
   fs::path folder = fs::path(given).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();  // "mine/"
   if (auto checked = check_new(folder); !checked) return checked;
-  // Filled under another name and then renamed, so that an error leaves no incomplete folder.
-  const fs::path aside = folder.string() + fmt::format(".part-{}", ::getpid());
-  std::error_code ignored;
   try {
-    fs::create_directories(aside);
-    auto filled = fill(aside);
-    if (filled) fs::rename(aside, folder);
-    if (!filled) fs::remove_all(aside, ignored);
+    const fs::path parent = fs::absolute(folder).parent_path();
+    fs::create_directories(parent);
+    const fs::path name = folder.filename();
+    const auto aside = TemporaryFolder::make_in(parent, fmt::format(".{}", name.string()));
+    if (!aside) return tl::unexpected(aside.error());
+    // Filled there and then renamed, so that an error leaves no incomplete folder.
+    fs::create_directory(aside->path() / name);
+    auto filled = fill(aside->path() / name);
+    if (filled) fs::rename(aside->path() / name, folder);
     return filled;
   } catch (const fs::filesystem_error& error) {
-    fs::remove_all(aside, ignored);
     return fail_at(given, fmt::format("cannot be made: {}", error.code().message()));
   }
 }

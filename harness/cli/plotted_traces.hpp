@@ -8,7 +8,7 @@
 
 #include "harness/cli/command.hpp"
 #include "harness/cli/run_plan.hpp"
-#include "harness/core/temporary_folder.hpp"
+#include "harness/process/temporary_folder.hpp"
 
 namespace attest::cli {
 

@@ -97,7 +97,7 @@ std::optional<int> status_of(pid_t leader, pid_t owner, Process::WhenStopped whe
 
 // Writes to `ready` the errno of fork(), or 0 when the child process can be sent signals.
 [[noreturn]] void guard(pid_t owner, int ready, const std::function<void()>& work,
-                        Process::WhenStopped when_stopped) {
+                        Process::WhenStopped when_stopped, const std::function<void()>& at_end) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, end_all);
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
@@ -122,11 +122,13 @@ std::optional<int> status_of(pid_t leader, pid_t owner, Process::WhenStopped whe
     reap(leader, ending);
   }
   end_orphans();
+  at_end();
   end_as(ending);
 }
 
 // Returns the id of the guard when it has forked the child process. -1: errno has the reason.
-pid_t start_guarded(const std::function<void()>& work, Process::WhenStopped when_stopped) {
+pid_t start_guarded(const std::function<void()>& work, Process::WhenStopped when_stopped,
+                    const std::function<void()>& at_end) {
   const pid_t owner = ::getpid();
   std::array<int, 2> ready{-1, -1};
   if (::pipe2(ready.data(), O_CLOEXEC) != 0) return -1;
@@ -134,7 +136,7 @@ pid_t start_guarded(const std::function<void()>& work, Process::WhenStopped when
   if (started == 0) {
     own_nothing();
     ::close(ready[0]);
-    guard(owner, ready[1], work, when_stopped);
+    guard(owner, ready[1], work, when_stopped, at_end);
   }
   int reason = errno;
   ::close(ready[1]);
@@ -156,11 +158,12 @@ pid_t start_alone(const std::function<void()>& work) {
 
 }  // namespace
 
-Result<Process> Process::start(const std::function<void()>& work, WhenStopped when_stopped) {
+Result<Process> Process::start(const std::function<void()>& work, WhenStopped when_stopped,
+                               const std::function<void()>& at_end) {
   // Otherwise a child that calls exit() would print the unflushed output of the parent, too.
   std::fflush(nullptr);
   if (is_guarded) return adopt([&] { return start_alone(work); });
-  auto started = adopt([&] { return start_guarded(work, when_stopped); });
+  auto started = adopt([&] { return start_guarded(work, when_stopped, at_end); });
   if (started) started->has_guard_ = true;
   return started;
 }

@@ -27,10 +27,13 @@ class Process {
   // Forks. `work` runs in the child, which then exits with status 0. The child starts with an empty
   // signal mask and default signal handlers (reset_signals()), and leaves no core file. `work` must
   // not throw. `when_stopped`: whether the guard continues a child that a signal has stopped, such
-  // as a worker of attest, which its port may stop; without a guard it stays stopped.
+  // as a worker of attest, which its port may stop; without a guard it stays stopped. `at_end`: the
+  // guard calls it when the child process and its descendants have ended, also if the owner has
+  // died. REQUIRES, for `at_end`: this process is not below a guard.
   enum class WhenStopped { stays, continues };
-  static Result<Process> start(const std::function<void()>& work,
-                               WhenStopped when_stopped = WhenStopped::stays);
+  static Result<Process> start(
+      const std::function<void()>& work, WhenStopped when_stopped = WhenStopped::stays,
+      const std::function<void()>& at_end = [] {});
 
   // Takes over a child process that start() did not make. `fork` lets another process call
   // fork_sibling(), and returns the id of the new process, or -1 with errno. The new process has no

@@ -56,13 +56,12 @@ constexpr std::array<std::string_view, 3> names = {"cpu", "cache", "io"};
   use_cpu();
 }
 
-// Empty when stress-ng is not installed, or ends at once.
-std::optional<Process> stress_ng(LoadKind kind, int workers) {
+// Empty when stress-ng ends at once.
+std::optional<Process> stress_ng(LoadKind kind, int workers, const std::string& folder) {
   constexpr double refuses_within_s = 0.2;
-  if (!is_installed("stress-ng")) return std::nullopt;
   // Without --temp-path, stress-ng writes temporary files to the current folder.
   auto process = start_program({"stress-ng", fmt::format("--{}", name_of(kind)),
-                                fmt::to_string(workers), "--temp-path", "/tmp"});
+                                fmt::to_string(workers), "--temp-path", folder});
   if (!process || process->ends_within(refuses_within_s)) return std::nullopt;
   return *std::move(process);
 }
@@ -81,7 +80,10 @@ Result<LoadKind> parse_load_kind(std::string_view name) {
 
 Load::Load(LoadKind kind, int workers) {
   if (workers == 0) return;
-  if (auto process = stress_ng(kind, workers)) {
+  if (is_installed("stress-ng")) {
+    if (auto folder = TemporaryFolder::make("load")) folder_.emplace(*std::move(folder));
+  }
+  if (auto process = folder_ ? stress_ng(kind, workers, folder_->path()) : std::nullopt) {
     processes_.push_back(*std::move(process));
     description_ = fmt::format("{} x {} (stress-ng)", workers, name_of(kind));
     return;

@@ -1,12 +1,14 @@
 // Load on the machine during a stress run.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "harness/core/result.hpp"
 #include "harness/process/process.hpp"
+#include "harness/process/temporary_folder.hpp"
 
 namespace attest {
 
@@ -28,6 +30,7 @@ class Load {
   const std::string& description() const { return description_; }
 
  private:
+  std::optional<TemporaryFolder> folder_;  // for the files of stress-ng
   std::vector<Process> processes_;
   std::string description_ = "none";
 };

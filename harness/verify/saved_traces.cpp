@@ -13,12 +13,20 @@
 namespace attest {
 namespace {
 
+// `folder` itself is not made: if it is gone, a temporary folder was removed because attest has
+// died, and must not appear again.
+Result<void> make_below(std::filesystem::path folder, const std::filesystem::path& path) {
+  for (const auto& name : path) {
+    std::error_code failed;
+    std::filesystem::create_directory(folder /= name, failed);
+    if (failed) return fail_at(folder.string(), "cannot be made: " + failed.message());
+  }
+  return {};
+}
+
 Result<void> write_traces(const TraceFiles& files, const std::string& label, const Subject& subject,
                           const JudgedTraces& traces) {
   const std::filesystem::path folder = files.want.parent_path();
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  if (failed) return fail_at(folder.string(), "cannot be made: " + failed.message());
   std::map<std::string, std::string> mixers;
   if (subject.module == Module::mixer) {
     for (const char* which : {".got", ".want", ".tolerance"}) mixers[label + which] = subject.mixer;
@@ -55,8 +63,11 @@ TraceFiles trace_files(const std::filesystem::path& folder, const CaseResult& re
 
 void save_traces(const std::filesystem::path& folder, const Subject& subject,
                  const JudgedTraces& traces, CaseResult& result) {
-  const auto saved = write_traces(trace_files(folder, result, subject.module),
-                                  label_of(result, subject.module), subject, traces);
+  auto saved = make_below(folder, result.case_id());
+  if (saved) {
+    saved = write_traces(trace_files(folder, result, subject.module),
+                         label_of(result, subject.module), subject, traces);
+  }
   if (saved) return;
   result.reason += fmt::format("{}its traces are not saved: {}", result.reason.empty() ? "" : "; ",
                                saved.error().to_string());

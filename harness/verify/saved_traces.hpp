@@ -34,7 +34,7 @@ TraceFiles trace_files(const std::filesystem::path& folder, const CaseResult& re
 // (trace_files()), and the provenance.toml with which `attest replay` reads them. If `got` has no
 // tick, .want.csv is the only trace. The level events has no tolerances, so no .tolerance.csv. If a
 // file cannot be written, the result's reason says so. Several processes may save vectors of the
-// same case at the same time. REQUIRES: saves_traces().
+// same case at the same time. REQUIRES: saves_traces(); the folder exists.
 void save_traces(const std::filesystem::path& folder, const Subject& subject,
                  const JudgedTraces& traces, CaseResult& result);
 

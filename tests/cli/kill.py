@@ -290,9 +290,7 @@ def check_left(tester, place, command, before, whole, output, is_killed):
     """After the end of attest. `is_killed`: by SIGKILL."""
     require_no_process(place.folder.name + tester.folder.name)
     temporary = files_of(place.temporary)
-    # Nothing can remove the folder of the plots after SIGKILL.
-    is_known = is_killed and all(name.startswith("attest-plots-") for name in temporary)
-    require(is_known or temporary == {}, f"temporary files: {temporary}")
+    require(temporary == {}, f"temporary files: {temporary}")
     after = files_of(place.suite)
     if not command.is_bless:
         require(after == before, "the suite has changed")

@@ -1,4 +1,4 @@
-#include "harness/core/temporary_folder.hpp"
+#include "harness/process/temporary_folder.hpp"
 
 #include <cstdlib>
 #include <fstream>
