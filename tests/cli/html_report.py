@@ -17,6 +17,7 @@ import unittest
 from browser import Browser, chromium
 
 SKIPPED = 77
+SOURCE = pathlib.Path(__file__).resolve().parent.parent.parent
 ARGUMENTS = argparse.Namespace()
 
 # The rows of the table, by the names of their columns.
@@ -29,7 +30,7 @@ ROWS = """(() => {
 
 
 class Page(unittest.TestCase):
-    """The page of one run. `options` select it."""
+    """The page of a command: a run with `options`, or that of make_page()."""
 
     options = ["--port", "fault:tpa-missing", "--group", "tpa", "--rate", "100,250"]
 
@@ -67,7 +68,21 @@ class Page(unittest.TestCase):
         return self.browser.run(script)
 
 
-class FailingPort(Page):
+class HasPlots:
+    """A page that has plots when it opens."""
+
+    def test_each_plot_has_the_width_of_its_box(self):
+        # The window must not have been resized, because dygraphs then draws again.
+        drawn = "[...document.querySelectorAll('.values, .deviation')]"
+        self.browser.wait_for(f"{drawn}.filter((box) => box.querySelector('canvas')).length > 1")
+        widths = self.run_in_page(
+            f"{drawn}.map((box) => [box.clientWidth, box.querySelector('canvas').clientWidth])"
+        )
+        for box, canvas in widths:
+            self.assertEqual(canvas, box, widths)
+
+
+class FailingPort(HasPlots, Page):
     def test_the_numbers_are_those_of_the_json_report(self):
         rows = self.run_in_page(ROWS)
         self.assertEqual(len(rows), len(self.report["results"]))
@@ -231,7 +246,7 @@ class PassingPort(Page):
         self.assertGreater(self.run_in_page("document.querySelectorAll('.row').length"), 3)
 
 
-class StepTimes(Page):
+class StepTimes(HasPlots, Page):
     """The page of `attest time --html`: axes with logarithms, bars, steps."""
 
     @classmethod
@@ -303,7 +318,46 @@ class DispersedSweep(StepTimes):
         self.assertIn("worst flights", self.run_in_page(legend))
 
 
-class Flight(Page):
+class ReplayedTrace(HasPlots, Page):
+    """The page of `attest replay --html`."""
+
+    @classmethod
+    def make_page(cls, folder: pathlib.Path):
+        trace = SOURCE / "golden/recorded/px4-v1.5.5/fuzz_250hz.csv"
+        cls.run_attest("replay", trace, "--html", cls.page)
+
+
+class Comparison(HasPlots, Page):
+    """The page of `attest compare --html`."""
+
+    @classmethod
+    def make_page(cls, folder: pathlib.Path):
+        for port in ("builtin", "fault:tpa-missing"):
+            options = ["--rate", "250", "--port", port, "--out", folder / f"{port}.csv"]
+            cls.run_attest("record", "px4-v1.5.5/tpa/each_axis", *options)
+        files = [folder / "builtin.csv", folder / "fault:tpa-missing.csv"]
+        cls.run_attest("compare", *files, "--by-time", "--html", cls.page)
+
+
+class Signals(HasPlots, Page):
+    """The page of `attest plot`."""
+
+    @classmethod
+    def make_page(cls, folder: pathlib.Path):
+        trace = SOURCE / "golden/recorded/px4-v1.5.5/fuzz_250hz.csv"
+        cls.run_attest("plot", trace, "--html", cls.page)
+
+
+class RateSweep(HasPlots, Page):
+    """The page of `attest sweep-rate --html`."""
+
+    @classmethod
+    def make_page(cls, folder: pathlib.Path):
+        options = ["--rates", "100,250", "--vehicle", "iris"]
+        cls.run_attest("sweep-rate", *options, "--html", cls.page)
+
+
+class Flight(HasPlots, Page):
     """The page of `attest sim --html`."""
 
     @classmethod

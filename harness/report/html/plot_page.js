@@ -251,6 +251,8 @@
     return {line, read};
   };
 
+  // Adds the elements of a plot. Its draw() must be called when the page has all elements, because
+  // dygraphs takes the width that the box has then: a box that is alone in its row is wider.
   const addPlot = (place, data, xLabel, group) => {
     const plot = decoded(data);
     const unit = plot.unit ? ` [${plot.unit}]` : '';
@@ -260,14 +262,18 @@
       tabIndex: 0,
       'aria-label': `${plot.title}${unit}. The arrow keys move the cursor.`,
     });
+    let drawn;
     const {line, read} = legendOf(plot, (i, isShown) => drawn.setVisibility(i, isShown));
     const title = element('h3', {}, plot.title + unit, ' ', element('small', {}, plot.note));
     place.append(element('div', {className: 'plot'}, title, line, box));
     const rows = rowsOf(plot);
-    const drawn = new Dygraph(box, rows, {
-      ...optionsOf(plot, xLabel),
-      highlightCallback: (_, x) => group.moveTo(x),
-    });
+    const draw = () => {
+      drawn = new Dygraph(box, rows, {
+        ...optionsOf(plot, xLabel),
+        highlightCallback: (_, x) => group.moveTo(x),
+      });
+      return drawn;
+    };
     const xs = rows.map(([x]) => x);
     box.addEventListener('keydown', (event) => {
       const at = nearest(xs, group.cursor ?? xs[0]);
@@ -276,7 +282,12 @@
       event.preventDefault();
       group.moveTo(xs[Math.min(Math.max(to, 0), xs.length - 1)]);
     });
-    return {drawn, read, select: (x) => drawn.setSelection(nearest(xs, x))};
+    return {
+      draw,
+      read,
+      select: (x) => drawn.setSelection(nearest(xs, x)),
+      destroy: () => drawn.destroy(),
+    };
   };
 
   // The plots of a group have one cursor.
@@ -289,14 +300,18 @@
       this.place = element('div', {className: 'group'});
     }
 
-    draw() {
-      for (const {drawn} of this.plots.splice(0)) drawn.destroy();
+    // Replaces the elements of the group.
+    lay() {
+      for (const plot of this.plots.splice(0)) plot.destroy();
       this.place.replaceChildren();
       this.data.plots.forEach((plot, i, all) => {
         const xLabel = all.length <= 4 || i === all.length - 1 ? this.data.x_label : '';
         this.plots.push(addPlot(this.place, plot, xLabel, this));
       });
-      const drawn = this.plots.map((plot) => plot.drawn);
+    }
+
+    draw() {
+      const drawn = this.plots.map((plot) => plot.draw());
       if (drawn.length > 1) Dygraph.synchronize(drawn, {range: false, selection: false});
       if (this.cursor !== null) this.show(this.cursor);
     }
@@ -328,6 +343,7 @@
     place.prepend(element('p', {className: 'hint'}, hint));
   }
   const drawAll = () => {
+    for (const group of groups) group.lay();
     for (const group of groups) group.draw();
   };
   drawAll();

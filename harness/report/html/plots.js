@@ -112,6 +112,8 @@
     return parts;
   };
 
+  // Adds the elements of a signal. draw() must be called when the page has all elements, because
+  // dygraphs takes the width that they have then.
   const addSignal = (place, signal, ticks, marked) => {
     const curves = decoded(signal);
     const line = element('p', {className: 'reading'});
@@ -150,12 +152,15 @@
       )
     );
     line.replaceChildren(...reading(curves, -1));
-    const plots = [valuePlot(values, curves, marked), deviationPlot(deviation, curves, marked)];
+    const draw = () => [
+      valuePlot(values, curves, marked),
+      deviationPlot(deviation, curves, marked),
+    ];
     const follow = (time) => {
       const i = time === null ? -1 : nearest(curves.time, time);
       line.replaceChildren(...reading(curves, i));
     };
-    return {plots, follow, curves};
+    return {draw, follow, curves};
   };
 
   let drawnPlots = [];
@@ -234,8 +239,6 @@
     const signals = plotted.signals.map((signal) =>
       addSignal(place, signal, plotted.ticks, marked)
     );
-    drawnPlots = signals.flatMap((signal) => signal.plots);
-    synchronise(signals);
     if (marked !== null) tools.append(zoomButtons(signals, marked));
     if (plotted.hidden > 0) {
       place.append(
@@ -246,6 +249,8 @@
         )
       );
     }
+    drawnPlots = signals.flatMap((signal) => signal.draw());
+    synchronise(signals);
     onColoursChanged(() => addPlots(place, row, plotted));
   };
 
