@@ -226,6 +226,7 @@ int merge_command(const MergeOptions& options, const Globals& globals) {
   run.suite = vectors_by_group(*suite, run.suite_sha256);
   run.suite_is_released = run.suite_sha256 == released_suite_sha256();
   run.suite_folder = globals.suite;
+  name_files(*cases, *suite, run);
   auto reports = open_reports(options.report);
   if (!reports) return report_error(reports.error());
   ReportOptions report = options.report;

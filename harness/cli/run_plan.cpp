@@ -162,6 +162,7 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
   plan.run.all_configurations = all_configurations;
   if (const auto shard = Shard::parse(options.select.shard)) plan.run.shard = *shard;
   plan.run.rates.assign(rates.begin(), rates.end());
+  name_files(*cases, suite, plan.run);
   plan.cases = std::move(*cases);
   return {};
 }
@@ -178,6 +179,7 @@ Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, Run
   if (auto asked = ask_port({flight->the_case.profile}, plan); !asked) return asked;
   plan.run.selected = 1;
   plan.run.timing = options.timing;
+  name_files({{flight->the_case, {}}}, suite, plan.run);
   plan.run.rates = {flight->timing.configuration.rate};
   plan.jobs.push_back(
       std::make_unique<TimedJob>(std::move(flight->the_case), std::move(flight->timing),
@@ -247,6 +249,13 @@ Result<std::string> sha256_of_port(const std::string& port) {
   }
   if (hashes.size() <= 1) return hashes.empty() ? "" : hashes.front();
   return sha256(fmt::format("{}\n", fmt::join(hashes, "\n")));
+}
+
+void name_files(const std::vector<SelectedCase>& cases, const SuiteFolder& suite, RunResult& run) {
+  for (const SelectedCase& selected : cases) {
+    run.case_files[selected.the_case.id()] = path_from_here(selected.the_case.file);
+  }
+  run.golden_folder = path_from_here(suite.golden());
 }
 
 Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite) {

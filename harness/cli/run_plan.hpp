@@ -27,6 +27,9 @@ struct RunPlan {
 // port cannot be opened; recorded outputs are for other inputs; a file that cannot be read.
 Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite);
 
+// Stores the paths of the case files and of the goldens in `run`, for its reports.
+void name_files(const std::vector<SelectedCase>& cases, const SuiteFolder& suite, RunResult& run);
+
 // SHA-256 of the port's file, or of the hashes of its files if it has several. Empty: the port has
 // no file. Errors: a file that cannot be read.
 Result<std::string> sha256_of_port(const std::string& port);

@@ -196,15 +196,16 @@ int stress_command(const StressOptions& options, const Globals& globals) {
   note_interrupts();
   StressRun run;
   run.suite_folder = globals.suite;
+  run.case_file = path_from_here(plan->tasks.front().the_case.file);
   run.port = options.host.port;
   run.description = plan->port;
   run.live = plan->tasks.front().live;
   run.budget = plan->tasks.front().the_case.flight->realtime;
   if (auto done = run_all(*plan, options, globals, run); !done) return report_error(done.error());
   const RunResult all = run_of(run);
-  for (const auto& written :
   const std::vector<std::string> missing = rates_not_judged(run);
   if (missing.size() == all.results.size()) html->reset();  // a page of an earlier run is kept
+  for (const auto& written :
        {write_report(*json, stress_json(run)), write_report(*junit, junit_report(all)),
         write_report(*html, stress_page(run))}) {
     if (!written) return report_error(written.error());

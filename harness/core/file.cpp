@@ -160,6 +160,15 @@ fs::path behind_links(fs::path path) {
   return path;
 }
 
+std::string path_from_here(const fs::path& path) {
+  std::error_code failed;
+  const fs::path absolute = fs::weakly_canonical(fs::absolute(path, failed), failed);
+  if (failed) return path.string();
+  const fs::path relative = absolute.lexically_relative(fs::current_path(failed));
+  const bool is_below = !failed && !relative.empty() && *relative.begin() != "..";
+  return is_below ? relative.string() : absolute.string();
+}
+
 std::string sha256(std::string_view bytes) {
   Sha256 hash;
   hash.add(bytes);

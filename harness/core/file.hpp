@@ -27,6 +27,10 @@ Result<std::string> read_file(const std::filesystem::path& path,
 // does not exist. `path` itself if it is no link, or if its links form a loop.
 std::filesystem::path behind_links(std::filesystem::path path);
 
+// The path of an existing file, for messages and reports: from the current folder if the file is
+// below it, else absolute. Links are resolved.
+std::string path_from_here(const std::filesystem::path& path);
+
 // SHA-256 as 64 lower-case hex digits, as `sha256sum` prints it.
 std::string sha256(std::string_view bytes);
 Result<std::string> sha256_of_file(const std::filesystem::path& path);

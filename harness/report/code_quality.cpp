@@ -44,8 +44,7 @@ std::string code_quality_report(const RunResult& run, const std::optional<Diagno
          {"check_name", fmt::format("attest {}", name_of(result.verdict))},
          {"fingerprint", sha256(key)},
          {"severity", severity_of(result.verdict)},
-         {"location",
-          {{"path", fmt::format("cases/{}.toml", result.case_id())}, {"lines", {{"begin", 1}}}}}});
+         {"location", {{"path", run.case_files.at(result.case_id())}, {"lines", {{"begin", 1}}}}}});
   }
   return document_of(entries);
 }

@@ -192,10 +192,14 @@ std::string failure_text(const CaseResult& result, const RunResult& run) {
   std::string out = fmt::format("{}\n  {}: {}\n", one_line(result.id()), name_of(result.verdict),
                                 reason_text(result));
   out += finding_text(result, run.level);
-  const std::string id = one_line(result.case_id());
-  out += fmt::format("  case:      cases/{}.toml\n", id);
-  if (result.first && run.command == "run" && run.timing.empty())
-    out += fmt::format("  golden:    golden/{}/{}.csv\n", id, result.configuration().label());
+  const std::string id = result.case_id();
+  if (const auto file = run.case_files.find(id); file != run.case_files.end())
+    out += fmt::format("  case:      {}\n", one_line(file->second));
+  if (result.first && run.command == "run" && run.timing.empty()) {
+    out +=
+        fmt::format("  golden:    {}\n", one_line(fmt::format("{}/{}/{}.csv", run.golden_folder, id,
+                                                              result.configuration().label())));
+  }
   out += "  reproduce: " + reproduce_command(result, run);
   if (result.plant_configuration && run.timing.empty())
     out += "\n  fly it:    " + sim_command(result, run);

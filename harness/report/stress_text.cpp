@@ -227,6 +227,7 @@ RunResult run_of(const StressRun& run) {
       continue;
     }
     all.results.push_back(stress.result);
+    all.case_files[stress.result.case_id()] = run.case_file;
     all.results.back().reason = reason_of(stress);
     all.rates.push_back(stress.result.rate);
   }

@@ -13,6 +13,7 @@ namespace attest {
 
 struct StressRun {
   std::string suite_folder;     // the value of --suite; empty: not given
+  std::string case_file;        // as RunResult::case_files
   std::string port;             // the value of --port
   PortDescription description;  // as the port declares
   std::string load;             // for people; "none" without load

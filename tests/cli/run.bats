@@ -333,3 +333,58 @@ EXCERPT
   "$ATTEST" list --vehicle hexa,crazyflie2 >commas
   "$ATTEST" list --vehicle hexa --vehicle crazyflie2 | cmp commas
 }
+
+# paths_of FILE...: the files that reports name: JUnit XML, GitLab's JSON, the terminal.
+paths_of() {
+  python3 - "$@" <<'PATHS'
+import json, pathlib, re, sys
+for file in map(pathlib.Path, sys.argv[1:]):
+    text = file.read_text()
+    if file.suffix == ".json":
+        print("\n".join(entry["location"]["path"] for entry in json.loads(text)))
+    else:
+        print("\n".join(re.findall(r"^ +(?:case|golden): +(.*)$", text, re.MULTILINE)))
+PATHS
+}
+
+@test "each path in a report is that of a file, from the folder where attest was started" {
+  # The cases of px4-v1.3.4 are in the files of px4-v1.5.5.
+  mkdir -p here/suite/{cases,golden} ours
+  for profile in px4-v1.5.5 px4-v1.3.4; do
+    mkdir -p here/suite/golden/$profile
+    cp -r "$SOURCE/golden/$profile/rates" here/suite/golden/$profile/
+  done
+  mkdir here/suite/cases/px4-v1.5.5
+  cp -r "$SOURCE/cases/px4-v1.5.5/rates" here/suite/cases/px4-v1.5.5/
+  echo ../here/suite >ours/BASE
+  cp -r here/suite/golden ours/
+  failing=(--port "lib:$PORTS/port_sign_flip.so" --profile px4-v1.3.4 --group rates --rate 250
+    --no-diagnose)
+  begin_with() { [ "$(wc -l <paths)" -gt 1 ] && ! grep -v "^$1" paths; }
+  looked() {
+    run "$ATTEST" "$@" --verbose --junit junit.xml --code-quality quality.json
+    [ "$status" -eq 1 ]
+    echo "$output" >terminal
+    paths_of junit.xml quality.json terminal | sort -u >paths
+    while read -r path; do [ -f "$path" ]; done <paths
+  }
+  looked run "${failing[@]}"
+  begin_with "$SOURCE/"
+  looked --suite ours run "${failing[@]}"
+  begin_with "\(here/suite/cases\|ours/golden\)/"
+  cd here
+  looked --suite suite run "${failing[@]}" --json report.json
+  begin_with suite/
+  looked --suite "$PWD/suite" merge report.json --no-diagnose
+  begin_with suite/
+  looked --suite ../ours run "${failing[@]}"
+  grep -q "^suite/cases" paths
+  grep -q "^$BATS_TEST_TMPDIR/ours/golden" paths
+  cd suite
+  looked --suite . run "${failing[@]}"
+  begin_with "\(cases\|golden\)/px4"
+
+  run "$ATTEST" stress --rates 250 --duration 0.1 --port "lib:$PORTS/port_crash.so" --junit stress.xml
+  [ "$status" -eq 1 ]
+  [ "$(paths_of stress.xml)" = "$SOURCE/cases/px4-v1.5.5/flight/hover.toml" ]
+}

@@ -159,6 +159,10 @@ RunResult sample_run() {
   add_mixed(run.results);
   add_robustness(run.results);
   add_flights(run.results);
+  for (const CaseResult& result : run.results) {
+    run.case_files[result.case_id()] = "cases/" + result.case_id() + ".toml";
+  }
+  run.golden_folder = "golden";
   run.selected = run.results.size() + 1;  // one has an error instead
   run.errors = {Error{"row 4 has 21 columns, expected 22",
                       "golden/px4-v1.5.5/mixed/take_off/250hz.csv", 4, 0},
