@@ -299,7 +299,7 @@ quick=(--group battery --group rates --rate 100,250,8000)
   for folder in "$SOURCE/golden" "$SOURCE/golden/new"; do
     run "$ATTEST" run --group tpa --save-traces "$folder"
     [ "$status" -eq 2 ]
-    has "is a folder of the suite"
+    has "is in a suite"
   done
   mkdir old
   touch old/file
