@@ -175,8 +175,8 @@ class Replay {
     const auto read = trace.next_part(std::numeric_limits<std::size_t>::max(), whole);
     if (!read) return tl::unexpected(read.error());
     CaseResult result = evaluate_trace(whole, subject, *host_, tolerances, &got);
-    auto written = write_page(
-        {result.verdict}, [&] { return trace_page(whole, got, result, options_.host.port); });
+    auto written = write_page({result.verdict},
+                              [&] { return trace_page(whole, got, result, options_.host.port); });
     if (!written) return tl::unexpected(written.error());
     return result;
   }
