@@ -384,7 +384,8 @@ PATHS
   looked --suite . run "${failing[@]}"
   begin_with "\(cases\|golden\)/px4"
 
-  run "$ATTEST" stress --rates 250 --duration 0.1 --port "lib:$PORTS/port_crash.so" --junit stress.xml
+  run "$ATTEST" stress --rates 250 --duration 0.1 --port "lib:$PORTS/port_crash.so" \
+    --junit stress.xml
   [ "$status" -eq 1 ]
   [ "$(paths_of stress.xml)" = "$SOURCE/cases/px4-v1.5.5/flight/hover.toml" ]
 }
