@@ -90,6 +90,10 @@ void allow_all_but(const std::vector<fs::path>& hidden, const fs::path& path, in
   }
 }
 
+// Through these files root can stop, limit or kill any process. Some programs read their own limits
+// there.
+constexpr const char* control_groups = "/sys/fs/cgroup";
+
 std::vector<fs::path> existing(const std::vector<std::string>& paths) {
   std::vector<fs::path> found;
   for (const std::string& path : paths) {
@@ -172,8 +176,11 @@ Result<Barrier> Barrier::make(const BarrierOptions& options) {
     return fail(fmt::format("cannot make the barrier around a port: {}", std::strerror(errno)));
   }
   Barrier barrier(rules, std::move(filter));
-  allow_all_but(existing(options.hidden), "/", rules);
-  for (const fs::path& path : existing(options.readable)) {
+  std::vector<std::string> hidden = options.hidden, readable = options.readable;
+  hidden.emplace_back(control_groups);
+  readable.emplace_back(control_groups);
+  allow_all_but(existing(hidden), "/", rules);
+  for (const fs::path& path : existing(readable)) {
     allow(rules, path, LANDLOCK_ACCESS_FS_READ_FILE);
   }
   return barrier;

@@ -89,6 +89,13 @@ needs_scopes() {
   done
 }
 
+@test "control groups cannot be used" {
+  needs_landlock
+  attacked freezes
+  [ "$status" -eq 1 ]
+  has "fail: differs from the golden"
+}
+
 @test "limits cannot be raised, and shared memory counts" {
   for attack in raises_files raises_memory raises_of_parent; do
     attacked $attack

@@ -9,6 +9,7 @@
  *     reads_memory, opens_memory, traces                     of the processes above
  *     stops, kills, queues                                   signals to the processes above
  *     raises_files, raises_memory, raises_of_parent          limits
+ *     freezes                                                writes a file of control groups
  *     makes_shared                                           5 GiB of shared memory */
 #define _GNU_SOURCE
 #include <fcntl.h>
@@ -18,6 +19,7 @@
 #include <sys/mman.h>
 #include <sys/ptrace.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/uio.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -135,6 +137,14 @@ static int raises_memory(void) { return raises(0, RLIMIT_DATA); }
 static int raises_of(pid_t process) { return raises(process, RLIMIT_CPU); }
 static int raises_of_parent(void) { return on_any_above(raises_of); }
 
+/* A control group can stop or kill any process of its user. */
+static int freezes(void) {
+  return opens("/sys/fs/cgroup/cgroup.procs", O_WRONLY) ||
+         opens("/sys/fs/cgroup/freezer/cgroup.procs", O_WRONLY) ||
+         mkdir("/sys/fs/cgroup/attack", 0700) == 0 ||
+         mkdir("/sys/fs/cgroup/freezer/attack", 0700) == 0;
+}
+
 /* Judged: crash, because the limit of memory counts shared memory too. */
 static int makes_shared(void) {
   const size_t piece = (size_t)1 << 26;
@@ -158,7 +168,7 @@ static int step(void* self, const attest_inputs* in, attest_outputs* out) {
   (void)reads_file, (void)writes_file, (void)removes_file, (void)renames_file;
   (void)reads_by_link, (void)reads_by_root, (void)reads_by_program, (void)reads_memory;
   (void)opens_memory, (void)traces, (void)stops, (void)kills, (void)queues, (void)raises_files;
-  (void)raises_memory, (void)raises_of_parent, (void)makes_shared;
+  (void)raises_memory, (void)raises_of_parent, (void)makes_shared, (void)freezes;
   return result;
 }
 
