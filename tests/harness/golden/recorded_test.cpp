@@ -104,7 +104,7 @@ TEST(Recorded, PartsHaveTheParametersOfTheWhole) {
   auto trace = read_csv(recorded / "px4-v1.5.5" / "fuzz_250hz.csv", TraceNeed::outputs);
   ASSERT_TRUE(trace) << trace.error().to_string();
   trace->keep_first(4);
-  trace->parameters = {{0, "MC_ROLL_P", 6}, {0, "MC_TPA_BREAK_P", 1}, {2, "MC_ROLL_P", 7}};
+  trace->parameters = {{0, "MC_ROLL_P", 6}, {0, "MC_TPA_BREAK", 1}, {2, "MC_ROLL_P", 7}};
   trace->samples[2].in.updated |= ATTEST_UPDATED_PARAMETER_UPDATE;
   const auto file = folder.path() / "trace.csv";
   ASSERT_TRUE(write_csv(file, *trace, all_columns(*trace)));

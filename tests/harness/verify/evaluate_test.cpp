@@ -184,7 +184,7 @@ class UnsupportedLater final : public PortHost {
                                bool with_stack) override {
     return host_->time_steps(wanted, inputs, with_stack);
   }
-  bool supports(const std::string& profile) override { return host_->supports(profile); }
+  bool supports(const std::string& law) override { return host_->supports(law); }
 
  private:
   std::unique_ptr<PortHost> host_;
