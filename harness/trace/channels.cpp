@@ -1,7 +1,9 @@
 #include "harness/trace/channels.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <unordered_map>
 #include <vector>
 
 #include "harness/core/same_bits.hpp"
@@ -29,15 +31,32 @@ bool is_of(Module module, std::size_t index) {
   return index == 0 || channel_table[index].module == module;
 }
 
+using Places = std::unordered_map<std::string_view, std::size_t>;
+
+// The index of each name of a module. Without it, finding the columns of a file is a third of the
+// time to open it.
+const Places& places_of(Module module) {
+  static const auto places = [] {
+    std::array<Places, module_count> all;
+    for (const ModuleInfo& info : modules()) {
+      for (std::size_t i = 0; i < channel_table.size(); ++i) {
+        if (!is_of(info.module, i)) continue;
+        all[static_cast<std::size_t>(info.module)].emplace(channel_table[i].name, i);
+      }
+    }
+    return all;
+  }();
+  return places[static_cast<std::size_t>(module)];
+}
+
 }  // namespace
 
 std::span<const Channel> channels() { return channel_table; }
 
 std::optional<std::size_t> find_channel(Module module, std::string_view name) {
-  for (std::size_t i = 0; i < channel_table.size(); ++i) {
-    if (channel_table[i].name == name && is_of(module, i)) return i;
-  }
-  return std::nullopt;
+  const Places& places = places_of(module);
+  const auto found = places.find(name);
+  return found == places.end() ? std::nullopt : std::optional(found->second);
 }
 
 std::optional<std::string_view> parameter_of(std::string_view column) {

@@ -213,6 +213,14 @@ struct TraceReader::Impl {
     return more;
   }
 
+  // Makes room for the rows that follow, with some to spare because their lengths differ. Growing
+  // step by step would touch twice the memory. The limit holds if the first row is unusually short.
+  void reserve(std::size_t most, Trace& part) const {
+    constexpr std::size_t most_reserved = 100'000;
+    const std::size_t left = std::min(rows.rows_left(), most_reserved);
+    part.samples.reserve(std::min(most, 2 + left + left / 4));
+  }
+
   // Reads the next row of the file itself, without the base.
   Result<bool> next_row(Sample& sample, std::vector<ParameterChange>& changes) {
     const auto more = rows.next(row.data());
@@ -278,6 +286,7 @@ Result<void> TraceReader::next_part(std::size_t most, Trace& part) {
     if (!*more) return {};
     for (ParameterChange& change : changes) change.tick = part.samples.size();
     part.samples.push_back(sample);
+    if (part.samples.size() == 1) impl_->reserve(most, part);
     part.parameters.insert(part.parameters.end(), changes.begin(), changes.end());
   }
   return {};

@@ -7,6 +7,7 @@
 #include <unordered_set>
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "harness/core/file.hpp"
@@ -55,6 +56,8 @@ Result<CsvRows> CsvRows::open(const std::filesystem::path& path, Unnamed unnamed
     return fail_at(rows.file_,
                    fmt::format("cannot open the file: {}", std::generic_category().message(errno)));
   }
+  struct stat status {};
+  if (::fstat(*opened, &status) == 0) rows.unread_ = static_cast<std::uintmax_t>(status.st_size);
   std::setvbuf(rows.stream_.get(), nullptr, _IONBF, 0);  // buffer_ is the buffer
   rows.buffer_ = std::make_unique_for_overwrite<char[]>(buffer_size + 1);
   if (const auto done = rows.read_header(unnamed); !done) return tl::unexpected(done.error());
@@ -100,6 +103,7 @@ Result<void> CsvRows::fill() {
     at_end_of_file_ = true;
   }
   end_ += count;
+  unread_ -= std::min<std::uintmax_t>(count, unread_);
   return {};
 }
 
@@ -142,6 +146,10 @@ Result<bool> CsvRows::next(void* row) {
     if (!more || !*more) return more;
   }
   return fail_at(file_, "empty line between rows; remove it", empty_line, 1);
+}
+
+std::size_t CsvRows::rows_left() const {
+  return static_cast<std::size_t>((unread_ + (end_ - begin_)) / (line_.size() + 1));
 }
 
 bool CsvRows::parse_line(char* row) const {

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -44,6 +45,9 @@ class CsvRows {
   // short or long row, an empty line before the last row, a line that is longer than 64 KiB.
   Result<bool> next(void* row);
 
+  // About how many rows follow, if they are as long as the last one.
+  std::size_t rows_left() const;
+
   // An error at the column's name in the header, or at its cell in the row last read.
   tl::unexpected<Error> fail_at_name(std::size_t column, std::string message) const;
   tl::unexpected<Error> fail_at_cell(std::size_t column, std::string message) const;
@@ -67,6 +71,7 @@ class CsvRows {
   std::size_t begin_ = 0;  // of the unread text in buffer_
   std::size_t end_ = 0;
   bool at_end_of_file_ = false;
+  std::uintmax_t unread_ = 0;  // bytes of the file that are not yet in buffer_
 
   std::string_view line_;  // the line last read, without its end
   int line_number_ = 0;
