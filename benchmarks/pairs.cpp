@@ -101,8 +101,10 @@ const std::vector<Pair>& pairs() {
        "at most 1.0x the law written by hand in C"},
       {"step of the rate unit", "cascade/rate", "cascade/rate_by_hand", 1.0,
        "at most 1.0x the law written by hand in C"},
-      {"step of a program, on one CPU", "program/step", "program/bare_pipe", 1.25,
-       "at most 1.25x a bare pipe"},
+      // A poll() for each answer is 10% of a bare exchange. It finds out that a program has ended
+      // although its children keep its pipe open, which read() cannot.
+      {"step of a program, on one CPU", "program/step", "program/bare_pipe", 1.30,
+       "at most 1.30x a bare pipe, of which poll() is 0.10"},
       {"trace of a program, in one batch", "program/trace_in_batch", "program/trace_in_steps",
        1 / 20.0, "at least 20x the speed of single steps"},
       {"step of a program in shared memory, on two CPUs: 99.9th percentile", "program/shared_p999",
