@@ -71,8 +71,8 @@ Result<void> check_profile(const std::string& file, const FlightLog& log) {
 }  // namespace
 
 Result<FlightLog> read_log(const std::string& file, const std::vector<std::string>& assumed,
-                           const std::string& profile) {
-  auto log = read_flight_log(file, assumed);
+                           const std::string& profile, bool whole) {
+  auto log = whole ? read_flight_log(file, assumed) : open_flight_log(file, assumed);
   if (!log) return log;
   if (!profile.empty()) log->profile = profile;
   if (auto chosen = choose_profile(file, *log); !chosen) return tl::unexpected(chosen.error());

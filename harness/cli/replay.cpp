@@ -83,7 +83,8 @@ std::vector<ParameterChange> parameters_of(const ReplayOptions& options, const F
 // The log, and in it the profile to replay it with.
 Result<FlightLog> log_in(const std::string& file, const ReplayOptions& options) {
   if (!options.mixer.empty()) return fail_at(file, "is no mixer trace; leave --mixer out");
-  auto log = read_log(file, options.assumed, options.profile);
+  const bool has_page = !options.html.empty();  // which shows the whole log
+  auto log = read_log(file, options.assumed, options.profile, has_page);
   if (!log) return log;
   if (auto checked = check_parameters(options, *log); !checked) {
     return tl::unexpected(checked.error());
@@ -204,12 +205,14 @@ class Replay {
     const LoggedUnit& first = log->units.front();
     // A log that attest wrote has the outputs of all steps, so it is judged like a trace.
     if (log->is_of_attest && first.has_every_step) {
-      Trace trace = first.trace;
+      Trace parameters;
+      parameters.parameters = first.trace.parameters;
       for (const ParameterChange& change : parameters_of(options_, *log, first)) {
-        override_parameter(change, trace);
+        override_parameter(change, parameters);
       }
-      PartsOfTrace parts(trace);
-      return judge_trace(parts, {log->profile, first.module});
+      const auto ticks = ticks_of(first);
+      ticks->set_parameters(std::move(parameters.parameters));
+      return judge_trace(*ticks, {log->profile, first.module});
     }
     are_logs_ = true;
     std::vector<LogResult> results;

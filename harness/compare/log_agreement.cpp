@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace attest {
 namespace {
@@ -52,39 +53,65 @@ struct Range {
   }
 };
 
-Range range_around(std::size_t tick, const Channel& channel, const Topic& topic,
-                   const Trace& reference) {
+Range range_around(std::size_t at, const Channel& channel, const Topic& topic,
+                   const std::vector<Sample>& reference) {
   Range range;
-  const std::size_t last = std::min(tick + 2, reference.samples.size());
-  for (std::size_t i = tick > 0 ? tick - 1 : 0; i < last; ++i) {
-    const double value = value_of(channel, reference.samples[i]);
-    if (!topic.is_in(reference.samples[i]) || !std::isfinite(value)) continue;
+  const std::size_t last = std::min(at + 2, reference.size());
+  for (std::size_t i = at > 0 ? at - 1 : 0; i < last; ++i) {
+    const double value = value_of(channel, reference[i]);
+    if (!topic.is_in(reference[i]) || !std::isfinite(value)) continue;
     range.low = std::min(range.low, value);
     range.high = std::max(range.high, value);
   }
   return range;
 }
 
+// Some successive ticks. A tick is judged with its two neighbours, so the last tick of a part waits
+// here for the next part, and the tick before it stays with it.
+struct TickWindow {
+  std::vector<Sample> got, logged, reference;
+  std::vector<bool> leaves_out;
+  std::size_t first_tick = 0;
+  std::uint64_t begin_us = 0;  // the time of tick 0
+
+  void add(const Trace& more_got, const Trace& more_logged, const Trace& more_reference,
+           const std::vector<bool>& left_out) {
+    const std::size_t ticks = more_logged.samples.size();
+    if (logged.empty() && ticks > 0) begin_us = more_logged.samples.front().in.timestamp;
+    got.insert(got.end(), more_got.samples.begin(), more_got.samples.end());
+    logged.insert(logged.end(), more_logged.samples.begin(), more_logged.samples.end());
+    reference.insert(reference.end(), more_reference.samples.begin(), more_reference.samples.end());
+    leaves_out.insert(leaves_out.end(), left_out.begin(), left_out.end());
+    leaves_out.resize(logged.size());
+  }
+
+  void drop(std::size_t ticks) {
+    const auto count = static_cast<std::ptrdiff_t>(ticks);
+    for (auto* samples : {&got, &logged, &reference}) {
+      samples->erase(samples->begin(), samples->begin() + count);
+    }
+    leaves_out.erase(leaves_out.begin(), leaves_out.begin() + count);
+    first_tick += ticks;
+  }
+};
+
 class Agreement {
  public:
-  Agreement(Topic topic, const Trace& got, const Trace& logged, const Trace& reference,
-            const LogLimits& limits)
-      : topic_(std::move(topic)),
-        got_(got),
-        logged_(logged),
-        reference_(reference),
-        limits_(limits) {
+  Agreement(Topic topic, const TickWindow& window, const LogLimits& limits)
+      : topic_(std::move(topic)), window_(window), limits_(limits) {
     found_.topic = topic_.name;
   }
 
-  TopicAgreement found(const std::vector<bool>& leaves_out) && {
-    for (std::size_t tick = 0; tick < logged_.samples.size(); ++tick) {
-      if (!topic_.is_in(logged_.samples[tick])) continue;
-      if (tick < leaves_out.size() && leaves_out[tick])
-        leave_out(tick);
-      else
-        add(tick);
-    }
+  // `at`: the place of the tick in the window.
+  void judge(std::size_t at) {
+    if (!topic_.is_in(window_.logged[at])) return;
+    if (window_.leaves_out[at])
+      leave_out(at);
+    else
+      add(at);
+  }
+
+  TopicAgreement finish() {
     std::sort(deviations_.begin(), deviations_.end());
     found_.median = quantile(0.5);
     found_.p90 = quantile(0.9);
@@ -94,73 +121,77 @@ class Agreement {
   }
 
  private:
-  void add(std::size_t tick) {
+  void add(std::size_t at) {
     ++found_.paired;
-    if (!topic_.is_in(got_.samples[tick])) {
+    if (!topic_.is_in(window_.got[at])) {
       ++found_.missing;
-      return note(tick, topic_.fields.front());
+      return note(at, topic_.fields.front());
     }
     std::size_t worst = topic_.fields.front();
     for (const std::size_t field : topic_.fields) {
-      if (deviation_at(tick, field) > deviation_at(tick, worst)) worst = field;
+      if (deviation_at(at, field) > deviation_at(at, worst)) worst = field;
     }
-    if (has_no_number(tick)) ++found_.non_finite;
-    const double largest = deviation_at(tick, worst);
+    if (has_no_number(at)) ++found_.non_finite;
+    const double largest = deviation_at(at, worst);
     deviations_.push_back(largest);
     if (largest <= limits_.within)
       ++found_.within;
-    else if (is_between(tick))
+    else if (is_between(at))
       ++found_.between_samples;
     else
-      note(tick, worst);
+      note(at, worst);
   }
 
-  double deviation_at(std::size_t tick, std::size_t field) const {
+  double deviation_at(std::size_t at, std::size_t field) const {
     const Channel& channel = channels()[field];
-    return deviation(value_of(channel, got_.samples[tick]),
-                     value_of(channel, logged_.samples[tick]));
+    return deviation(value_of(channel, window_.got[at]), value_of(channel, window_.logged[at]));
   }
 
   // Also at a tick that is left out, the port's output must be finite if those of reference and log
   // are.
-  void leave_out(std::size_t tick) {
+  void leave_out(std::size_t at) {
     ++found_.left_out;
     const auto is_finite = [&](std::size_t field) {
-      return std::isfinite(value_of(channels()[field], reference_.samples[tick]));
+      return std::isfinite(value_of(channels()[field], window_.reference[at]));
     };
-    if (topic_.is_in(got_.samples[tick]) && has_no_number(tick) &&
+    if (topic_.is_in(window_.got[at]) && has_no_number(at) &&
         std::all_of(topic_.fields.begin(), topic_.fields.end(), is_finite)) {
       ++found_.non_finite;
     }
   }
 
-  bool has_no_number(std::size_t tick) const {
+  bool has_no_number(std::size_t at) const {
     return std::any_of(topic_.fields.begin(), topic_.fields.end(),
-                       [&](std::size_t field) { return is_no_number(tick, field); });
+                       [&](std::size_t field) { return is_no_number(at, field); });
   }
 
   // True if the log has a number here and the port has none.
-  bool is_no_number(std::size_t tick, std::size_t field) const {
+  bool is_no_number(std::size_t at, std::size_t field) const {
     const Channel& channel = channels()[field];
-    return !std::isfinite(value_of(channel, got_.samples[tick])) &&
-           std::isfinite(value_of(channel, logged_.samples[tick]));
+    return !std::isfinite(value_of(channel, window_.got[at])) &&
+           std::isfinite(value_of(channel, window_.logged[at]));
   }
 
-  bool is_between(std::size_t tick) const {
+  bool is_between(std::size_t at) const {
     return std::all_of(topic_.fields.begin(), topic_.fields.end(), [&](std::size_t field) {
       const Channel& channel = channels()[field];
-      if (deviation_at(tick, field) <= limits_.within) return true;
-      const Range range = range_around(tick, channel, topic_, reference_);
-      return range.has(value_of(channel, logged_.samples[tick]), limits_.within) &&
-             range.has(value_of(channel, got_.samples[tick]), limits_.within);
+      if (deviation_at(at, field) <= limits_.within) return true;
+      const Range range = range_around(at, channel, topic_, window_.reference);
+      return range.has(value_of(channel, window_.logged[at]), limits_.within) &&
+             range.has(value_of(channel, window_.got[at]), limits_.within);
     });
   }
 
-  void note(std::size_t tick, std::size_t field) {
+  void note(std::size_t at, std::size_t field) {
     if (found_.first_unexplained) return;
     const Channel& channel = channels()[field];
-    found_.first_unexplained = {tick, field, value_of(channel, got_.samples[tick]),
-                                value_of(channel, logged_.samples[tick])};
+    const std::uint64_t time_us = window_.logged[at].in.timestamp;
+    found_.first_unexplained = {window_.first_tick + at,
+                                time_us,
+                                static_cast<double>(time_us - window_.begin_us) * 1e-6,
+                                field,
+                                value_of(channel, window_.got[at]),
+                                value_of(channel, window_.logged[at])};
   }
 
   double quantile(double part) const {
@@ -170,9 +201,7 @@ class Agreement {
   }
 
   Topic topic_;
-  const Trace& got_;
-  const Trace& logged_;
-  const Trace& reference_;
+  const TickWindow& window_;
   LogLimits limits_;
   std::vector<double> deviations_;
   TopicAgreement found_;
@@ -192,13 +221,42 @@ bool TopicAgreement::agrees(const LogLimits& limits) const {
          part_unexplained() <= limits.most_unexplained;
 }
 
-std::vector<TopicAgreement> agreement_with_log(const Trace& got, const Trace& logged,
-                                               const Trace& reference, const LogLimits& limits,
-                                               const std::vector<bool>& leaves_out) {
-  std::vector<TopicAgreement> found;
-  for (Topic& topic : topics_in(logged.present)) {
-    found.push_back(Agreement(std::move(topic), got, logged, reference, limits).found(leaves_out));
+struct LogAgreement::Impl {
+  TickWindow window;
+  std::size_t judged = 0;  // ticks of the window
+  std::vector<Agreement> topics;
+
+  void judge_until(std::size_t end) {
+    for (; judged < end; ++judged) {
+      for (Agreement& topic : topics) topic.judge(judged);
+    }
   }
+};
+
+LogAgreement::LogAgreement(const ChannelSet& logged, const LogLimits& limits)
+    : impl_(std::make_unique<Impl>()) {
+  for (Topic& topic : topics_in(logged)) {
+    impl_->topics.emplace_back(std::move(topic), impl_->window, limits);
+  }
+}
+LogAgreement::LogAgreement(LogAgreement&&) noexcept = default;
+LogAgreement& LogAgreement::operator=(LogAgreement&&) noexcept = default;
+LogAgreement::~LogAgreement() = default;
+
+void LogAgreement::add(const Trace& got, const Trace& logged, const Trace& reference,
+                       const std::vector<bool>& leaves_out) {
+  impl_->window.add(got, logged, reference, leaves_out);
+  const std::size_t ticks = impl_->window.logged.size();
+  if (ticks < 2) return;
+  impl_->judge_until(ticks - 1);
+  impl_->window.drop(ticks - 2);
+  impl_->judged = 1;
+}
+
+std::vector<TopicAgreement> LogAgreement::finish() {
+  impl_->judge_until(impl_->window.logged.size());
+  std::vector<TopicAgreement> found;
+  for (Agreement& topic : impl_->topics) found.push_back(topic.finish());
   return found;
 }
 

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,6 +27,8 @@ struct LogLimits {
 
 struct LoggedPair {
   std::size_t tick;
+  std::uint64_t timestamp_us;
+  double after_s;       // after tick 0
   std::size_t channel;  // index into channels()
   double got, logged;
 };
@@ -56,11 +60,27 @@ struct TopicAgreement {
   bool agrees(const LogLimits& limits) const;
 };
 
-// The topics that the log has, in the order of the channels. `reference`: the reference's outputs
-// for the inputs of the log. `got`, `logged` and `reference` have the same ticks. `leaves_out`: the
-// ticks to leave out, in every topic; if empty, no tick is left out.
-std::vector<TopicAgreement> agreement_with_log(const Trace& got, const Trace& logged,
-                                               const Trace& reference, const LogLimits& limits,
-                                               const std::vector<bool>& leaves_out = {});
+// Takes the traces part by part, and keeps the deviations only.
+class LogAgreement {
+ public:
+  // `logged`: the channels of the log.
+  LogAgreement(const ChannelSet& logged, const LogLimits& limits);
+  LogAgreement(LogAgreement&&) noexcept;
+  LogAgreement& operator=(LogAgreement&&) noexcept;
+  ~LogAgreement();
+
+  // The next ticks. `reference`: the reference's outputs for the inputs of the log. `got`, `logged`
+  // and `reference` have the same ticks. `leaves_out`: the ticks to leave out, in every topic; if
+  // empty, no tick is left out.
+  void add(const Trace& got, const Trace& logged, const Trace& reference,
+           const std::vector<bool>& leaves_out = {});
+
+  // The topics that the log has, in the order of the channels. REQUIRES: add() is not called again.
+  std::vector<TopicAgreement> finish();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace attest

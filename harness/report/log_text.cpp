@@ -7,11 +7,6 @@
 namespace attest {
 namespace {
 
-double seconds_of(const LoggedUnit& log, std::size_t tick) {
-  const auto& samples = log.trace.samples;
-  return static_cast<double>(samples[tick].in.timestamp - samples[0].in.timestamp) * 1e-6;
-}
-
 std::string part_text(std::size_t count, const TopicAgreement& topic, const std::string& what) {
   const double part = static_cast<double>(count) / static_cast<double>(topic.paired);
   return fmt::format("    {:6} {:5.1f}%  {}\n", count, 100 * part, what);
@@ -33,13 +28,13 @@ std::string deviations_text(const TopicAgreement& topic, const LogLimits& limits
   return text;
 }
 
-std::string first_text(const LoggedUnit& log, const LoggedPair& pair) {
+std::string first_text(const LoggedPair& pair) {
   const Channel& channel = channels()[pair.channel];
   return fmt::format(
       "    first one not explained: tick {}, {:.3f} s after tick 0, in {}\n"
       "      got    {}\n      logged {}\n",
-      pair.tick, seconds_of(log, pair.tick), channel_with_unit(channel),
-      value_text(channel, pair.got), value_text(channel, pair.logged));
+      pair.tick, pair.after_s, channel_with_unit(channel), value_text(channel, pair.got),
+      value_text(channel, pair.logged));
 }
 
 // `said`: the reason of the verdict, which is not repeated.
@@ -57,7 +52,7 @@ std::string topic_text(const LoggedUnit& log, const TopicAgreement& topic,
     const bool is_said = topic.not_judged == said;
     text += is_said ? "    not judged\n" : fmt::format("    not judged: {}\n", topic.not_judged);
   } else if (topic.first_unexplained) {
-    text += first_text(log, *topic.first_unexplained);
+    text += first_text(*topic.first_unexplained);
   }
   return text;
 }

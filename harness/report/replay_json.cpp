@@ -22,16 +22,16 @@ ordered_json entry_of(const CaseResult& result, Module module, const char* kind)
           {"ticks", result.ticks}};
 }
 
-ordered_json pair_of(const LoggedPair& pair, const LoggedUnit& unit) {
+ordered_json pair_of(const LoggedPair& pair) {
   return {{"tick", pair.tick},
-          {"timestamp_us", unit.trace.samples[pair.tick].in.timestamp},
+          {"timestamp_us", pair.timestamp_us},
           {"channel", channels()[pair.channel].name},
           {"got", json_of(pair.got)},
           {"logged", json_of(pair.logged)}};
 }
 
 ordered_json topic_of(const TopicAgreement& topic, const LoggedOutput& logged,
-                      const LoggedUnit& unit, const LogLimits& limits) {
+                      const LogLimits& limits) {
   ordered_json out = {{"topic", topic.topic},
                       {"judged", topic.not_judged.empty()},
                       {"not_judged", topic.not_judged},
@@ -48,7 +48,7 @@ ordered_json topic_of(const TopicAgreement& topic, const LoggedOutput& logged,
                       {"p90", json_of(topic.p90)},
                       {"p99", json_of(topic.p99)},
                       {"largest", json_of(topic.largest)}};
-  if (topic.first_unexplained) out["first_unexplained"] = pair_of(*topic.first_unexplained, unit);
+  if (topic.first_unexplained) out["first_unexplained"] = pair_of(*topic.first_unexplained);
   return out;
 }
 
@@ -69,7 +69,7 @@ ordered_json json_of_unit(const FlightLog& log, const LoggedUnit& unit, const Lo
   entry["has_every_step"] = unit.has_every_step;
   entry["topics"] = ordered_json::array();
   for (std::size_t i = 0; i < result.topics.size(); ++i) {
-    entry["topics"].push_back(topic_of(result.topics[i], unit.outputs[i], unit, limits));
+    entry["topics"].push_back(topic_of(result.topics[i], unit.outputs[i], limits));
   }
   entry["notes"] = log.notes;
   return entry;

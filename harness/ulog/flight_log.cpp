@@ -1,6 +1,10 @@
 #include "harness/ulog/flight_log.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -115,10 +119,8 @@ std::optional<double> fastest_hz(const ModuleContents& log) {
   return log.module() == Module::rate_unit ? found : std::nullopt;
 }
 
-void judge_steps(const ModuleContents& log, std::optional<double> rate_hz, LoggedUnit& unit) {
-  const StepGaps gaps = step_gaps(log.steps().times());
+void judge_steps(const StepGaps& gaps, std::optional<double> rate_hz, LoggedUnit& unit) {
   unit.not_judged = too_sparse(unit.module, gaps, rate_hz);
-  unit.begins_in_flight = ulog::is_in_flight(unit.module, unit.trace.samples.front());
   unit.has_every_step = unit.has_every_step && unit.not_judged.empty() &&
                         may_be_complete(unit.module, gaps, rate_hz) && !unit.begins_in_flight;
 }
@@ -173,6 +175,34 @@ void add_losses(const LogContents& log, std::vector<std::string>& notes) {
   for (const std::string& damage : log.damage) notes.push_back("damaged: " + damage);
 }
 
+class TicksInMemory final : public LoggedTicks {
+ public:
+  explicit TicksInMemory(const LoggedUnit& unit) : unit_(unit), parts_(unit.trace) {
+    parameters_ = unit.trace.parameters;
+  }
+
+  const std::string& file() const override { return unit_.trace.source; }
+  const ChannelSet& present() const override { return unit_.trace.present; }
+  Result<void> rewind() override {
+    next_ = 0;
+    return parts_.rewind();
+  }
+  Result<void> next_part(std::size_t most, Trace& part) override {
+    auto read = parts_.next_part(most, part);
+    const std::size_t ticks = part.samples.size();
+    part.parameters = changes_in(parameters_, next_, ticks);
+    const auto begin = unit_.known.begin() + static_cast<std::ptrdiff_t>(next_);
+    known_.assign(begin, begin + static_cast<std::ptrdiff_t>(ticks));
+    next_ += ticks;
+    return read;
+  }
+
+ private:
+  const LoggedUnit& unit_;
+  PartsOfTrace parts_;
+  std::size_t next_ = 0;
+};
+
 class LogReading {
  public:
   LogReading(const std::filesystem::path& path, LogContents& log,
@@ -209,10 +239,10 @@ class LogReading {
       unit.step_topic = log.steps().name();
       unit.trace.present.set(0).set(*find_channel(log.module(), "in/updated.parameter_update"));
       unit.not_judged = "the log has " + std::move(missing);
+      unit.trace.source = path_.string();
     } else {
       unit = made(log);
     }
-    unit.trace.source = path_.string();
     flight_.units.push_back(std::move(unit));
   }
 
@@ -226,10 +256,12 @@ class LogReading {
     if (!assumed_.empty() || rules != LogRules::attest) used = assume(assumed_, log, first);
     for (const std::string& word : used) add_once(word, used_);
     const auto rate_hz = fastest_hz(log);
-    LoggedUnit unit = unit_of_log(log, first, rules);
+    const auto& times = log.steps().times();
+    const StepGaps gaps = step_gaps(std::vector<std::uint64_t>(times.begin(), times.end()));
+    LoggedUnit unit = unit_of_log(std::move(log), first, rules, path_.string());
     if (log_.dropouts > 0 || !log_.damage.empty()) unit.has_every_step = false;
     if (rules == LogRules::cascade && !used.empty()) unit.has_every_step = false;
-    if (rules == LogRules::cascade) judge_steps(log, rate_hz, unit);
+    if (rules == LogRules::cascade) judge_steps(gaps, rate_hz, unit);
     return unit;
   }
 
@@ -252,11 +284,30 @@ bool is_log(const std::filesystem::path& path) {
   return path.extension() == ".ulg" || path.extension() == ".ulog";
 }
 
-Result<FlightLog> read_flight_log(const std::filesystem::path& path,
+Result<FlightLog> open_flight_log(const std::filesystem::path& path,
                                   const std::vector<std::string>& assumed) {
   auto log = ulog::read_contents(path);
   if (!log) return tl::unexpected(log.error());
   return LogReading(path, *log, assumed).read();
+}
+
+Result<FlightLog> read_flight_log(const std::filesystem::path& path,
+                                  const std::vector<std::string>& assumed) {
+  auto log = open_flight_log(path, assumed);
+  if (!log) return log;
+  for (LoggedUnit& unit : log->units) {
+    if (!unit.ticks) continue;
+    const auto ticks = std::exchange(unit.ticks, nullptr);
+    auto read = ticks->next_part(std::numeric_limits<std::size_t>::max(), unit.trace);
+    if (!read) return tl::unexpected(read.error());
+    unit.known = ticks->known();
+  }
+  return log;
+}
+
+std::shared_ptr<LoggedTicks> ticks_of(const LoggedUnit& unit) {
+  if (unit.ticks) return unit.ticks;
+  return std::make_shared<TicksInMemory>(unit);
 }
 
 }  // namespace attest

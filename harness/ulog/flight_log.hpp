@@ -3,14 +3,17 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "harness/core/result.hpp"
 #include "harness/trace/trace.hpp"
+#include "harness/trace/trace_parts.hpp"
 #include "harness/ulog/assumptions.hpp"
 #include "harness/ulog/log_contents.hpp"
 #include "harness/ulog/step_gaps.hpp"
@@ -31,6 +34,20 @@ enum class Known : std::uint8_t {
   nothing         // no: the log has no setpoint, or no mode, up to this tick
 };
 
+// The ticks of a unit of a log, part by part.
+class LoggedTicks : public TraceParts {
+ public:
+  // Of each tick of the part last read.
+  const std::vector<Known>& known() const { return known_; }
+
+  // The changes of parameters in the parts; at first those of the log.
+  void set_parameters(std::vector<ParameterChange> changes) { parameters_ = std::move(changes); }
+
+ protected:
+  std::vector<Known> known_;
+  std::vector<ParameterChange> parameters_;
+};
+
 struct LoggedUnit {
   Module module = Module::mc_att_control;
   std::string step_topic;  // "control_state"
@@ -40,8 +57,10 @@ struct LoggedUnit {
   // the output of the tick before. An output field that the log does not have is not in
   // `trace.present`. An input field that it does not have is there, as LogField::if_absent.
   Trace trace;
-  std::vector<LoggedOutput> outputs;
   std::vector<Known> known;  // of each tick
+  // Unless null: the ticks, which are then neither in `trace` nor in `known`.
+  std::shared_ptr<LoggedTicks> ticks;
+  std::vector<LoggedOutput> outputs;
   // True if nothing shows that the log lacks a step of the unit. For a log of v1.14 to v1.16, it
   // must also begin on the ground, with no input assumed. If false, outputs that depend on earlier
   // steps (the integral, the derivative) cannot be computed exactly from the log.
@@ -84,6 +103,14 @@ struct FlightLog {
 // be read or is not a ULog; it has too little for every unit; those of check_assumed().
 Result<FlightLog> read_flight_log(const std::filesystem::path& path,
                                   const std::vector<std::string>& assumed = {});
+
+// The same, with LoggedUnit::ticks. Their memory grows with the log: it has the values of the
+// topics of the units, each in the bytes of its type.
+Result<FlightLog> open_flight_log(const std::filesystem::path& path,
+                                  const std::vector<std::string>& assumed = {});
+
+// The ticks of the unit, from the first one on. REQUIRES: the unit outlives them, and has ticks.
+std::shared_ptr<LoggedTicks> ticks_of(const LoggedUnit& unit);
 
 // Whether the name ends with .ulg or .ulog.
 bool is_log(const std::filesystem::path& path);

@@ -35,7 +35,23 @@ bool is_integer(const LogField& field) {
   return channels()[field.channel].type == ChannelType::u64;
 }
 
+// The bytes of the field's values. They are stored from the least significant byte on.
+std::size_t bytes_of(const LogField& field) {
+  switch (channels()[field.channel].type) {
+    case ChannelType::u64:
+      return sizeof(std::uint64_t);
+    case ChannelType::f32:
+      return sizeof(float);
+    default:
+      return 1;
+  }
+}
+
 }  // namespace
+
+LogSeries::LogSeries(LogTopic topic) : topic_(std::move(topic)) {
+  for (const LogField& field : topic_.fields) row_bytes_ += bytes_of(field);
+}
 
 LogSeries::Place LogSeries::find_place(const Reader& reader, const Subscription& subscription,
                                        const LogField& field) const {
@@ -84,7 +100,11 @@ void LogSeries::add(const Reader& reader, const Data& data) {
   }
   times_.push_back(time);
   if (sample_time_) sample_times_.push_back(value_in<std::uint64_t>(data, *sample_time_));
-  for (std::size_t i = 0; i < places_.size(); ++i) values_.push_back(bits_of(data, i));
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const std::uint64_t bits = bits_of(data, i);
+    const auto* const bytes = reinterpret_cast<const unsigned char*>(&bits);
+    values_.insert(values_.end(), bytes, bytes + bytes_of(topic_.fields[i]));
+  }
 }
 
 std::optional<std::uint64_t> LogSeries::sample_time(std::size_t row) const {
@@ -114,10 +134,13 @@ std::vector<std::size_t> LogSeries::logged_channels() const {
 }
 
 void LogSeries::copy(std::size_t row, Sample& to) const {
-  const std::size_t count = topic_.fields.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const Channel& channel = channels()[topic_.fields[i].channel];
-    const std::uint64_t bits = values_[row * count + i];
+  auto at = values_.begin() + static_cast<std::ptrdiff_t>(row * row_bytes_);
+  for (const LogField& field : topic_.fields) {
+    const Channel& channel = channels()[field.channel];
+    const auto count = static_cast<std::ptrdiff_t>(bytes_of(field));
+    std::uint64_t bits = 0;
+    std::copy_n(at, count, reinterpret_cast<unsigned char*>(&bits));
+    at += count;
     if (channel.type == ChannelType::f32) {
       set_value(channel, to, std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
     } else {

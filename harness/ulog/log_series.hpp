@@ -1,9 +1,10 @@
 // The samples of one topic of a log, and their places in a Sample.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,7 +17,7 @@ namespace attest::ulog {
 
 class LogSeries {
  public:
-  explicit LogSeries(LogTopic topic) : topic_(std::move(topic)) {}
+  explicit LogSeries(LogTopic topic);
 
   const LogTopic& topic() const { return topic_; }
   const std::string& name() const { return topic_.name; }
@@ -41,11 +42,11 @@ class LogSeries {
   // Samples left out because the topic has no timestamp. Not counted in left_out().
   std::size_t without_time() const { return without_time_; }
   std::uint64_t time(std::size_t row) const { return times_[row]; }  // us
-  std::span<const std::uint64_t> times() const { return times_; }
+  const std::deque<std::uint64_t>& times() const { return times_; }
   // The field `timestamp_sample`: the time of the sensor sample behind this sample. Empty if the
   // topic has no such field.
   std::optional<std::uint64_t> sample_time(std::size_t row) const;
-  std::span<const std::uint64_t> sample_times() const { return sample_times_; }
+  const std::deque<std::uint64_t>& sample_times() const { return sample_times_; }
   // Index of the first sample after that time; size() if there is none.
   std::size_t first_after(std::uint64_t time) const;
 
@@ -72,11 +73,13 @@ class LogSeries {
   std::uint64_t bits_of(const Data& data, std::size_t field) const;
 
   LogTopic topic_;
+  std::size_t row_bytes_ = 0;           // of a sample in values_
   std::optional<std::size_t> located_;  // index of the subscription of these places
   std::optional<Column> time_, sample_time_;
   std::vector<Place> places_;  // of the topic's fields
-  std::vector<std::uint64_t> times_, sample_times_;
-  std::vector<std::uint64_t> values_;  // sample by sample: integers, bits of floats
+  // A deque does not copy its elements when it grows, so it never needs twice its memory.
+  std::deque<std::uint64_t> times_, sample_times_;
+  std::deque<unsigned char> values_;  // sample by sample, each field in the bytes of its channel
   std::size_t left_out_ = 0, without_time_ = 0;
 };
 

@@ -2,11 +2,16 @@
 // mode, other modules publish vehicle_attitude_setpoint and vehicle_rates_setpoint.
 #pragma once
 
+#include <cstdint>
 #include <string_view>
 
 #include "harness/trace/module.hpp"
 
 namespace attest::ulog {
+
+// An output that is more than this after a step does not belong to it. An attitude unit runs at up
+// to 250 Hz, and publishes a fraction of a millisecond after its sample.
+inline constexpr std::uint64_t latest_answer_us = 2000;
 
 // Whether the unit itself publishes the topic in a step with these inputs. Always true for a topic
 // that only this unit publishes, and for every topic of the controller of v1.5.5 and v1.3.4.

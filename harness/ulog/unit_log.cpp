@@ -1,18 +1,21 @@
 #include "harness/ulog/unit_log.hpp"
 
 #include <algorithm>
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "harness/ulog/own_topics.hpp"
+#include "harness/ulog/paired_output.hpp"
 
 namespace attest::ulog {
 namespace {
 
-// An output that is more than this after a step does not belong to it. An attitude unit runs at up
-// to 250 Hz, and publishes a fraction of a millisecond after its sample.
-constexpr std::uint64_t latest_answer_us = 2000;
+const Channel& bit_of(Module module, const char* topic) {
+  return channels()[*find_channel(module, fmt::format("in/updated.{}", topic))];
+}
 
 // Gives each step the samples of one input topic.
 class PendingRows {
@@ -21,6 +24,7 @@ class PendingRows {
       : series_(series), module_(module), rules_(rules) {
     const auto bit = find_channel(module, "in/updated." + series.name());
     updated_ = channels()[*bit].bit;
+    is_shared_ = find_channel(module, "out/" + series.name() + ".published").has_value();
   }
 
   // Copies the last sample of the topic before the step at `time` to `sample`, if it is newer than
@@ -46,47 +50,148 @@ class PendingRows {
   // publishes once in a step, soon after the step's time.
   bool is_own(std::size_t row, const Sample& last) const {
     return rules_ == LogRules::cascade && last.in.timestamp > 0 &&
-           series_.time(row) - last.in.timestamp <= latest_answer_us && is_shared() &&
+           series_.time(row) - last.in.timestamp <= latest_answer_us && is_shared_ &&
            publishes(module_, series_.name(), last);
-  }
-
-  bool is_shared() const {
-    return find_channel(module_, "out/" + series_.name() + ".published").has_value();
   }
 
   const LogSeries& series_;
   Module module_;
   LogRules rules_;
   std::uint32_t updated_;
+  bool is_shared_;  // the unit publishes the topic, too
   std::size_t next_ = 0;
 };
 
-class UnitOfLog {
+// The inputs of a unit, step by step.
+class LoggedInputs {
  public:
-  UnitOfLog(ModuleContents& log, LogRules rules) : log_(log), steps_(log.steps()), rules_(rules) {
-    unit_.module = log.module();
-    unit_.step_topic = steps_.name();
-    unit_.trace.present = channels_of(log.module(), "in/");
-    unit_.trace.present.set(0);  // timestamp
-    const auto sampled = steps_.sample_times();
-    has_sample_times_ =
-        sampled.size() == steps_.size() && std::is_sorted(sampled.begin(), sampled.end());
+  // `first`: the sample before the first step.
+  LoggedInputs(const ModuleContents& log, const Sample& first, LogRules rules)
+      : steps_(log.steps()), last_(first), held_(first) {
+    for (const LogSeries& series : log.series()) {
+      if (series.is_output() || &series == &steps_) continue;
+      topics_.emplace_back(series, log.module(), rules);
+    }
   }
 
-  LoggedUnit made(const Sample& first) && {
-    fill_inputs(first);
-    fill_parameters();
-    unit_.has_every_step = true;
-    for (const LogSeries& series : log_.series()) {
-      if (series.left_out() + series.without_time() > 0) unit_.has_every_step = false;
-      if (series.is_output() && is_logged(series)) fill_outputs(series);
-    }
-    note_known();
-    return std::move(unit_);
+  const Sample& next() {
+    const std::uint64_t time = steps_.time(tick_);
+    Sample now = held_;
+    for (PendingRows& rows : topics_) rows.advance_to(time, last_, now);
+    steps_.copy(tick_++, now);
+    now.in.timestamp = time;
+    held_ = last_ = now;
+    held_.in.updated = 0;
+    return last_;
   }
 
  private:
-  Trace& trace() { return unit_.trace; }
+  const LogSeries& steps_;
+  std::vector<PendingRows> topics_;
+  Sample last_;
+  Sample held_;  // the inputs of the last step, of which none is new
+  std::size_t tick_ = 0;
+};
+
+// Finds out, tick by tick, whether the log shows the setpoint that the unit follows.
+class SetpointKnown {
+ public:
+  SetpointKnown(Module module, LogRules rules) : module_(module), rules_(rules) {
+    if (rules != LogRules::cascade) return;
+    const bool is_attitude_unit = module == Module::attitude_unit;
+    setpoint_ =
+        &bit_of(module, is_attitude_unit ? "vehicle_attitude_setpoint" : "vehicle_rates_setpoint");
+    mode_ = &bit_of(module, "vehicle_control_mode");
+  }
+
+  Known next(const Sample& sample) {
+    if (rules_ != LogRules::cascade) return Known::all;
+    has_mode_ = has_mode_ || value_of(*mode_, sample) != 0;
+    if (value_of(*setpoint_, sample) != 0) now_ = Known::all;
+    if (module_ == Module::attitude_unit) {
+      if (is_of_sticks(sample)) now_ = Known::if_every_step;
+    } else if (publishes(module_, "vehicle_rates_setpoint", sample)) {
+      now_ = Known::all;
+    }
+    return has_mode_ ? now_ : Known::nothing;
+  }
+
+  bool has_mode() const { return has_mode_ || rules_ != LogRules::cascade; }
+
+ private:
+  Module module_;
+  LogRules rules_;
+  const Channel* setpoint_ = nullptr;
+  const Channel* mode_ = nullptr;
+  bool has_mode_ = false;
+  Known now_ = Known::nothing;
+};
+
+class TicksOfLog final : public LoggedTicks {
+ public:
+  TicksOfLog(ModuleContents log, const Sample& first, LogRules rules, std::string file)
+      : log_(std::move(log)),
+        first_(first),
+        rules_(rules),
+        file_(std::move(file)),
+        update_(bit_of(log_.module(), "parameter_update")),
+        setpoint_(log_.module(), rules_) {
+    present_ = channels_of(log_.module(), "in/");
+    present_.set(0);  // timestamp
+    parameters_ = std::exchange(log_.parameters, {});
+    std::erase_if(parameters_,
+                  [&](const ParameterChange& change) { return change.tick >= ticks(); });
+    for (const ParameterChange& change : parameters_) updates_.push_back(change.tick);
+    pair_outputs();
+    inputs_.emplace(log_, first_, rules_);
+  }
+  TicksOfLog(const TicksOfLog&) = delete;
+  TicksOfLog& operator=(const TicksOfLog&) = delete;
+
+  const std::string& file() const override { return file_; }
+  const ChannelSet& present() const override { return present_; }
+
+  // What LoggedUnit says of the ticks.
+  void describe(LoggedUnit& unit) const {
+    unit.module = log_.module();
+    unit.step_topic = log_.steps().name();
+    unit.trace.source = file_;
+    unit.trace.present = present_;
+    unit.trace.parameters = parameters_;
+    unit.begins_in_flight = begins_in_flight_;
+    unit.has_every_step = begins_with_mode_;
+    for (const LogSeries& series : log_.series()) {
+      if (series.left_out() + series.without_time() > 0) unit.has_every_step = false;
+    }
+    for (const PairedOutput& output : outputs_) {
+      unit.outputs.push_back(output.logged());
+      if (output.logged().paired < output.logged().samples) unit.has_every_step = false;
+    }
+  }
+
+  Result<void> next_part(std::size_t most, Trace& part) override {
+    part.source = file_;
+    part.present = present_;
+    part.samples.clear();
+    known_.clear();
+    const std::size_t first = tick_;
+    while (tick_ < ticks() && part.samples.size() < most) {
+      part.samples.push_back(next());
+      known_.push_back(setpoint_.next(part.samples.back()));
+    }
+    part.parameters = changes_in(parameters_, first, part.samples.size());
+    return {};
+  }
+
+  Result<void> rewind() override {
+    tick_ = next_update_ = 0;
+    inputs_.emplace(log_, first_, rules_);
+    setpoint_ = SetpointKnown(log_.module(), rules_);
+    return {};
+  }
+
+ private:
+  std::size_t ticks() const { return log_.steps().size(); }
 
   // Whether the trace has this output. In a log of attest, a topic without samples counts, too: the
   // unit never published it.
@@ -95,141 +200,77 @@ class UnitOfLog {
     return output.size() > 0 || rules_ == LogRules::attest;
   }
 
-  void fill_inputs(Sample sample) {
-    std::vector<PendingRows> inputs;
+  void pair_outputs() {
     for (const LogSeries& series : log_.series()) {
-      if (series.is_output() || &series == &steps_) continue;
-      inputs.emplace_back(series, log_.module(), rules_);
+      if (!series.is_output() || !is_logged(series)) continue;
+      outputs_.emplace_back(log_, series, rules_);
+      present_.set(*series.topic().is_new);
+      for (const std::size_t channel : series.logged_channels()) present_.set(channel);
     }
-    trace().samples.reserve(steps_.size());
-    for (std::size_t tick = 0; tick < steps_.size(); ++tick) {
-      const Sample& last = tick == 0 ? sample : trace().samples[tick - 1];
-      Sample now = sample;
-      for (PendingRows& rows : inputs) rows.advance_to(steps_.time(tick), last, now);
-      steps_.copy(tick, now);
-      now.in.timestamp = steps_.time(tick);
-      trace().samples.push_back(now);
-      sample = now;
-      sample.in.updated = 0;
+    for (PairedOutput& output : outputs_) output.pair_until(0, nullptr);
+    LoggedInputs inputs(log_, first_, rules_);
+    // Only in a log of the cascade it depends on the inputs which samples are of the unit.
+    const std::size_t steps = rules_ == LogRules::cascade ? ticks() : 1;
+    for (std::size_t tick = 0; tick < steps; ++tick) {
+      const Sample& step = inputs.next();
+      const std::size_t until = tick + 1 == steps ? ticks() : tick + 1;
+      for (PairedOutput& output : outputs_) output.pair_until(until, &step);
+      if (tick == 0) look_at_first(step);
     }
-    if (rules_ == LogRules::cascade && log_.module() == Module::attitude_unit) count_resets();
   }
 
-  void count_resets() {
-    const auto before = trace().samples.front().attitude_in.vehicle_attitude.quat_reset_counter;
-    for (Sample& sample : trace().samples) {
+  void look_at_first(const Sample& step) {
+    SetpointKnown setpoint(log_.module(), rules_);
+    setpoint.next(step);
+    begins_with_mode_ = setpoint.has_mode();
+    begins_in_flight_ = rules_ == LogRules::cascade && is_in_flight(log_.module(), step);
+    resets_before_ = step.attitude_in.vehicle_attitude.quat_reset_counter;
+  }
+
+  Sample next() {
+    Sample sample = inputs_->next();
+    if (rules_ == LogRules::cascade && log_.module() == Module::attitude_unit) {
       auto& counter = sample.attitude_in.vehicle_attitude.quat_reset_counter;
-      counter = static_cast<std::uint8_t>(counter - before);
+      counter = static_cast<std::uint8_t>(counter - resets_before_);
     }
-  }
-
-  void fill_parameters() {
-    auto changes = std::move(log_.parameters);
-    std::erase_if(changes,
-                  [&](const ParameterChange& change) { return change.tick >= steps_.size(); });
-    const Channel& bit = bit_of("parameter_update");
-    for (const ParameterChange& change : changes) {
-      if (change.tick > 0) set_value(bit, trace().samples[change.tick], 1);
+    while (next_update_ < updates_.size() && updates_[next_update_] <= tick_) {
+      if (updates_[next_update_++] > 0) set_value(update_, sample, 1);
     }
-    trace().parameters = std::move(changes);
+    for (const PairedOutput& output : outputs_) output.add_to(tick_, before_, sample);
+    ++tick_;
+    before_ = sample;
+    return sample;
   }
 
-  void fill_outputs(const LogSeries& output) {
-    LoggedOutput logged{output.name(), 0, 0};
-    const std::size_t flag = *output.topic().is_new;
-    const Channel& published = channels()[flag];
-    trace().present.set(flag);
-    for (const std::size_t channel : output.logged_channels()) trace().present.set(channel);
-    for (std::size_t row = 0; row < output.size(); ++row) {
-      const auto tick = tick_of(output, row);
-      if (is_of_others(output, row)) continue;
-      ++logged.samples;
-      if (!tick || value_of(published, trace().samples[*tick]) != 0) continue;
-      output.copy(row, trace().samples[*tick]);
-      set_value(published, trace().samples[*tick], 1);
-      ++logged.paired;
-    }
-    if (logged.paired < logged.samples) unit_.has_every_step = false;
-    hold_unpublished(output, published);
-    unit_.outputs.push_back(std::move(logged));
-  }
-
-  // The tick of the step that published the output; empty if it is not known.
-  std::optional<std::size_t> tick_of(const LogSeries& output, std::size_t row) const {
-    const auto sampled = output.sample_time(row);
-    if (sampled && has_sample_times_) return tick_sampled_at(*sampled);
-    const auto after = steps_.first_after(sampled ? *sampled : output.time(row));
-    if (after == 0) return std::nullopt;
-    if (sampled && steps_.time(after - 1) != *sampled) return std::nullopt;
-    const bool is_late =
-        rules_ == LogRules::cascade && output.time(row) - steps_.time(after - 1) > latest_answer_us;
-    return is_late ? std::nullopt : std::optional(after - 1);
-  }
-
-  std::optional<std::size_t> tick_sampled_at(std::uint64_t time) const {
-    const auto all = steps_.sample_times();
-    const auto found = std::lower_bound(all.begin(), all.end(), time);
-    if (found == all.end() || *found != time) return std::nullopt;
-    return static_cast<std::size_t>(found - all.begin());
-  }
-
-  // Whether another module published this sample, because this unit does not publish the topic in
-  // the mode at that time. Also true before the log's first step.
-  bool is_of_others(const LogSeries& output, std::size_t row) const {
-    if (rules_ != LogRules::cascade) return false;
-    const auto after = steps_.first_after(output.time(row));
-    return after == 0 || !publishes(log_.module(), output.name(), unit_.trace.samples[after - 1]);
-  }
-
-  // Ticks that do not publish get the values of the tick before, as the ABI requires.
-  void hold_unpublished(const LogSeries& output, const Channel& published) {
-    for (std::size_t tick = 1; tick < trace().samples.size(); ++tick) {
-      Sample& sample = trace().samples[tick];
-      if (value_of(published, sample) != 0) continue;
-      for (const LogField& field : output.topic().fields) {
-        const Channel& channel = channels()[field.channel];
-        copy_value(channel, trace().samples[tick - 1], sample);
-      }
-    }
-  }
-
-  void note_known() {
-    unit_.known.assign(trace().samples.size(), Known::all);
-    if (rules_ != LogRules::cascade) return;
-    const bool is_attitude_unit = log_.module() == Module::attitude_unit;
-    const Channel& setpoint =
-        bit_of(is_attitude_unit ? "vehicle_attitude_setpoint" : "vehicle_rates_setpoint");
-    const Channel& mode = bit_of("vehicle_control_mode");
-    bool has_mode = false;
-    Known now = Known::nothing;
-    for (std::size_t tick = 0; tick < unit_.known.size(); ++tick) {
-      const Sample& sample = trace().samples[tick];
-      has_mode = has_mode || value_of(mode, sample) != 0;
-      if (value_of(setpoint, sample) != 0) now = Known::all;
-      if (is_attitude_unit && is_of_sticks(sample)) now = Known::if_every_step;
-      if (!is_attitude_unit && publishes(log_.module(), "vehicle_rates_setpoint", sample)) {
-        now = Known::all;
-      }
-      unit_.known[tick] = has_mode ? now : Known::nothing;
-      if (!has_mode) unit_.has_every_step = false;
-    }
-  }
-
-  const Channel& bit_of(const char* topic) const {
-    return channels()[*find_channel(log_.module(), fmt::format("in/updated.{}", topic))];
-  }
-
-  ModuleContents& log_;
-  const LogSeries& steps_;
+  ModuleContents log_;
+  Sample first_;
   LogRules rules_;
-  bool has_sample_times_;  // every step has a timestamp_sample; these do not decrease
-  LoggedUnit unit_;
+  std::string file_;
+  ChannelSet present_;
+  std::vector<PairedOutput> outputs_;
+  std::vector<std::size_t> updates_;  // the ticks of the log's changes of parameters
+  const Channel& update_;
+  bool begins_with_mode_ = false;
+  bool begins_in_flight_ = false;
+  std::uint8_t resets_before_ = 0;
+
+  // The next tick.
+  std::size_t tick_ = 0;
+  std::size_t next_update_ = 0;
+  std::optional<LoggedInputs> inputs_;
+  SetpointKnown setpoint_;
+  Sample before_;  // the tick before
 };
 
 }  // namespace
 
-LoggedUnit unit_of_log(ModuleContents& log, Sample first, LogRules rules) {
-  return UnitOfLog(log, rules).made(first);
+LoggedUnit unit_of_log(ModuleContents log, const Sample& first, LogRules rules,
+                       const std::string& file) {
+  const auto ticks = std::make_shared<TicksOfLog>(std::move(log), first, rules, file);
+  LoggedUnit unit;
+  ticks->describe(unit);
+  unit.ticks = ticks;
+  return unit;
 }
 
 }  // namespace attest::ulog

@@ -1,5 +1,7 @@
-// Makes the trace of one unit from the contents of a log.
+// Makes the ticks of one unit from the contents of a log.
 #pragma once
+
+#include <string>
 
 #include "harness/ulog/flight_log.hpp"
 
@@ -12,8 +14,9 @@ enum class LogRules : std::uint8_t {
   cascade      // PX4 of v1.14 to v1.16: as in flight_log.hpp
 };
 
-// `first`: the sample before the first step, with bits in `updated` for the assumed topics. Moves
-// the parameters out of `log`. REQUIRES: the log has steps.
-LoggedUnit unit_of_log(ModuleContents& log, Sample first, LogRules rules);
+// A unit with LoggedUnit::ticks. `first`: the sample before the first step, with bits in `updated`
+// for the assumed topics. REQUIRES: the log has steps.
+LoggedUnit unit_of_log(ModuleContents log, const Sample& first, LogRules rules,
+                       const std::string& file);
 
 }  // namespace attest::ulog

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -11,7 +13,6 @@
 #include "harness/host/host_here.hpp"
 #include "harness/port/builtin.hpp"
 #include "harness/port/profiles.hpp"
-#include "harness/verify/evaluate.hpp"
 #include "harness/verify/judge.hpp"
 
 namespace attest {
@@ -25,44 +26,71 @@ bool has_memory(Module module, const TopicAgreement& topic) {
   return module == Module::rate_unit || topic.topic != memoryless;
 }
 
-void leave_out_parameters_of_others(const Subject& subject, Trace& trace) {
+using Parameters = std::vector<ParameterChange>;
+
+Parameters without_those_of_others(const Subject& subject, Parameters parameters) {
   const auto own = parameter_names(subject.module, subject.profile);
-  std::erase_if(trace.parameters, [&](const ParameterChange& change) {
+  std::erase_if(parameters, [&](const ParameterChange& change) {
     return std::find(own.begin(), own.end(), change.name) == own.end();
   });
+  return parameters;
 }
 
-void set_parameters(const std::vector<ParameterChange>& parameters, Trace& trace) {
-  for (const ParameterChange& change : parameters) override_parameter(change, trace);
+// The log's parameters, with those that the port gets in their place.
+Parameters parameters_of_port(const LoggedUnit& log, const Parameters& given) {
+  Trace trace;
+  trace.parameters = log.trace.parameters;
+  for (const ParameterChange& change : given) override_parameter(change, trace);
+  return trace.parameters;
 }
 
-// Returns `got`, in which the parameters that the log has get the log's values.
-Trace with_parameters_of_log(const LoggedUnit& log, Trace got) {
+// Returns `of_port`, in which the parameters that the log has get the log's values.
+Parameters with_those_of_log(const LoggedUnit& log, const Parameters& of_port) {
   const auto& logged = log.trace.parameters;
   const auto is_logged = [&](const ParameterChange& change) {
     return std::any_of(logged.begin(), logged.end(),
                        [&](const ParameterChange& one) { return one.name == change.name; });
   };
-  std::vector<ParameterChange> parameters;
-  std::copy_if(got.parameters.begin(), got.parameters.end(), std::back_inserter(parameters),
+  Parameters parameters;
+  std::copy_if(of_port.begin(), of_port.end(), std::back_inserter(parameters),
                [&](const ParameterChange& change) { return !is_logged(change); });
   parameters.insert(parameters.end(), logged.begin(), logged.end());
   std::stable_sort(parameters.begin(), parameters.end(),
                    [](const auto& a, const auto& b) { return a.tick < b.tick; });
-  got.parameters = std::move(parameters);
-  return got;
+  return parameters;
 }
 
-// Adds the reference's outputs to the inputs. If the reference has a fault, for example because it
-// does not have the profile, returns false and clears all outputs.
-bool answer_by_reference(const Subject& subject, Trace& inputs) {
-  HostHere reference(open_builtin());
-  const bool has_answered = !reference.drive(subject, inputs);
-  if (!has_answered) {
-    for (Sample& sample : inputs.samples) sample.clear_outputs();
-  }
-  return has_answered;
+// The ticks of a log are in memory, so reading them cannot fail.
+template <typename Take>
+std::size_t for_each_part_of(LoggedTicks& ticks, std::size_t most_ticks, Take take) {
+  return ticks.rewind().and_then([&] { return for_each_part(ticks, most_ticks, take); }).value();
 }
+
+// An instance of a port that gets the inputs of a log.
+class Replayed {
+ public:
+  Replayed(PortHost& host, Subject subject, const Parameters& parameters)
+      : host_(host), subject_(std::move(subject)), parameters_(parameters) {}
+
+  // The inputs of a part, without outputs.
+  Trace inputs(const Trace& logged, std::size_t first_tick) const {
+    Trace inputs = logged;
+    inputs.parameters = changes_in(parameters_, first_tick, logged.samples.size());
+    for (Sample& sample : inputs.samples) sample.clear_outputs();
+    return inputs;
+  }
+
+  // Adds the outputs. The instance is made for the first part, and ends with the last.
+  std::optional<PortFault> answer(Trace& inputs, std::size_t first_tick, bool is_last) {
+    subject_.part = {first_tick, is_last};
+    return host_.drive(subject_, inputs);
+  }
+
+ private:
+  PortHost& host_;
+  Subject subject_;
+  const Parameters& parameters_;
+};
 
 std::string why_it_fails(const TopicAgreement& topic, const LogLimits& limits) {
   if (topic.non_finite > 0) {
@@ -78,29 +106,35 @@ std::string why_it_fails(const TopicAgreement& topic, const LogLimits& limits) {
                      100 * topic.part_unexplained(), topic.topic, 100 * limits.most_unexplained);
 }
 
-std::vector<bool> ticks_but(const LoggedUnit& log, Known most) {
+std::vector<bool> ticks_but(const std::vector<Known>& ticks, Known most) {
   std::vector<bool> leaves_out;
-  for (const Known known : log.known) leaves_out.push_back(known > most);
+  for (const Known known : ticks) leaves_out.push_back(known > most);
   return leaves_out;
 }
 
 // Finds out which ticks and which outputs of a log can judge a port.
 class Comparable {
  public:
-  // `reference`: the log's inputs with the reference's outputs. If it is null, the log is not
-  // compared with the reference.
-  Comparable(const LoggedUnit& log, const Trace* reference, const LogLimits& limits)
+  // `reference(most)`: how well the reference agrees with the log at the ticks of which at most
+  // this is unknown. Empty if the reference cannot answer; then the log is not compared with it.
+  template <typename Reference>
+  Comparable(const LoggedUnit& log, const LogLimits& limits, Reference reference)
       : log_(log), limits_(limits) {
     if (log.has_every_step) {
-      leaves_out_ = ticks_but(log, Known::if_every_step);
-      compare_reference(reference);
+      most_ = Known::if_every_step;
+      take(reference(most_));
       if (agrees_with_reference(memoryless)) return;
     }
-    leaves_out_ = ticks_but(log, Known::all);
-    compare_reference(reference);
+    most_ = Known::all;
+    take(reference(most_));
   }
 
-  const std::vector<bool>& leaves_out() const { return leaves_out_; }
+  bool has_reference() const { return has_reference_; }
+
+  // The ticks to leave out, of these.
+  std::vector<bool> leaves_out(const std::vector<Known>& ticks) const {
+    return ticks_but(ticks, most_);
+  }
 
   std::string why_not(const TopicAgreement& topic) const {
     const bool needs_steps = has_memory(log_.module, topic);
@@ -122,9 +156,9 @@ class Comparable {
   }
 
  private:
-  void compare_reference(const Trace* reference) {
-    if (reference == nullptr) return;
-    of_reference_ = agreement_with_log(*reference, log_.trace, *reference, limits_, leaves_out_);
+  void take(std::optional<std::vector<TopicAgreement>> of_reference) {
+    has_reference_ = of_reference.has_value();
+    of_reference_ = std::move(of_reference).value_or(std::vector<TopicAgreement>());
   }
 
   std::string why_unlike_reference(const TopicAgreement& topic) const {
@@ -150,7 +184,8 @@ class Comparable {
 
   const LoggedUnit& log_;
   const LogLimits& limits_;
-  std::vector<bool> leaves_out_;
+  Known most_ = Known::all;
+  bool has_reference_ = false;
   std::vector<TopicAgreement> of_reference_;
 };
 
@@ -171,34 +206,96 @@ void judge_topics(const std::vector<TopicAgreement>& topics, const LogLimits& li
   result.reason = topics.empty() ? "the log has no output of it" : topics.front().not_judged;
 }
 
+// Gives the log to the reference and to a port.
+class LogJudge {
+ public:
+  LogJudge(const LoggedUnit& log, Subject subject, const LogLimits& limits, const Parameters& given,
+           std::size_t most_ticks)
+      : log_(log),
+        ticks_(ticks_of(log)),
+        subject_(std::move(subject)),
+        limits_(limits),
+        most_ticks_(most_ticks),
+        of_port_(without_those_of_others(subject_, parameters_of_port(log, given))),
+        as_flown_(without_those_of_others(subject_, with_those_of_log(log, of_port_))) {}
+
+  // Empty if the reference has a fault, for example because it does not have the profile.
+  std::optional<std::vector<TopicAgreement>> of_reference(Known most) {
+    HostHere host(open_builtin());
+    Replayed reference(host, subject_, as_flown_);
+    LogAgreement agreement(log_.trace.present, limits_);
+    std::optional<PortFault> fault;
+    for_each_part_of(*ticks_, most_ticks_, [&](const Trace& logged, std::size_t at, bool is_last) {
+      Trace answered = reference.inputs(logged, at);
+      fault = reference.answer(answered, at, is_last);
+      if (!fault) agreement.add(answered, logged, answered, ticks_but(ticks_->known(), most));
+      return !fault;
+    });
+    if (fault) return std::nullopt;
+    return agreement.finish();
+  }
+
+  // Sets the topics and the ticks, unless the port has a fault.
+  std::optional<PortFault> drive(PortHost& port, const Comparable& comparable, LogResult& found) {
+    HostHere host(open_builtin());
+    Replayed reference(host, subject_, as_flown_), judged(port, subject_, of_port_);
+    LogAgreement agreement(log_.trace.present, limits_);
+    std::optional<PortFault> fault;
+    const std::size_t ticks = for_each_part_of(
+        *ticks_, most_ticks_, [&](const Trace& logged, std::size_t at, bool is_last) {
+          Trace as_flown = reference.inputs(logged, at);
+          if (comparable.has_reference()) reference.answer(as_flown, at, is_last);
+          Trace got = judged.inputs(logged, at);
+          fault = judged.answer(got, at, is_last);
+          if (!log_.ticks) append(got, found.got);
+          if (fault) return false;
+          const auto leaves_out = comparable.leaves_out(ticks_->known());
+          agreement.add(got, logged, as_flown, leaves_out);
+          return true;
+        });
+    if (fault) {
+      found.got.keep_first(fault->tick);
+      return fault;
+    }
+    found.result.ticks = ticks;
+    found.topics = agreement.finish();
+    return std::nullopt;
+  }
+
+ private:
+  static void append(const Trace& part, Trace& whole) {
+    whole.samples.insert(whole.samples.end(), part.samples.begin(), part.samples.end());
+  }
+
+  const LoggedUnit& log_;
+  std::shared_ptr<LoggedTicks> ticks_;
+  Subject subject_;
+  const LogLimits& limits_;
+  std::size_t most_ticks_;
+  Parameters of_port_, as_flown_;
+};
+
 }  // namespace
 
 LogResult evaluate_log(const LoggedUnit& log, const std::string& profile, PortHost& host,
-                       const LogLimits& limits, const std::vector<ParameterChange>& parameters) {
-  LogResult found{result_for(log.trace.source, profile), {}, log.trace};
+                       const LogLimits& limits, const std::vector<ParameterChange>& parameters,
+                       std::size_t most_ticks) {
+  LogResult found{result_for(log.trace.source, profile), {}, {}};
   CaseResult& result = found.result;
-  const Subject subject{profile, log.module};
-  set_parameters(parameters, found.got);
-  leave_out_parameters_of_others(subject, found.got);
-  for (Sample& sample : found.got.samples) sample.clear_outputs();
   if (declines(host.says(), result)) return found;
-  if (log.trace.samples.empty()) {
+  if (!log.ticks && log.trace.samples.empty()) {
     result.verdict = Verdict::skip;
     result.reason = log.not_judged;
     return found;
   }
-  Trace as_flown = with_parameters_of_log(log, found.got);
-  leave_out_parameters_of_others(subject, as_flown);
-  const bool has_reference = answer_by_reference(subject, as_flown);
-  if (const auto fault = host.drive(subject, found.got)) {
-    found.got.keep_first(fault->tick);
+  found.got.source = log.trace.source;
+  found.got.present = log.trace.present;
+  LogJudge judging(log, {profile, log.module}, limits, parameters, most_ticks);
+  const Comparable comparable(log, limits, [&](Known most) { return judging.of_reference(most); });
+  if (const auto fault = judging.drive(host, comparable, found)) {
     judge(*fault, result);
     return found;
   }
-  result.ticks = log.trace.samples.size();
-  const Comparable comparable(log, has_reference ? &as_flown : nullptr, limits);
-  found.topics =
-      agreement_with_log(found.got, log.trace, as_flown, limits, comparable.leaves_out());
   for (TopicAgreement& topic : found.topics) topic.not_judged = comparable.why_not(topic);
   judge_topics(found.topics, limits, result);
   return found;

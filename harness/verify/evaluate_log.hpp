@@ -1,11 +1,13 @@
 // Judges a port by the log of a real flight.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "harness/compare/log_agreement.hpp"
 #include "harness/host/port_host.hpp"
 #include "harness/ulog/flight_log.hpp"
+#include "harness/verify/evaluate.hpp"
 #include "harness/verify/verdict.hpp"
 
 namespace attest {
@@ -13,7 +15,9 @@ namespace attest {
 struct LogResult {
   CaseResult result;  // verdict and reason
   std::vector<TopicAgreement> topics;
-  Trace got;  // with the port's outputs; up to the fault, if there was one
+  // With the port's outputs; up to the fault, if there was one. Only for a log that is in memory as
+  // a whole; else empty.
+  Trace got;
 };
 
 // Gives the inputs of one unit of a log to a fresh instance and compares its outputs with the
@@ -34,8 +38,11 @@ struct LogResult {
 // parameters of the same names. The reference gets those of `parameters` that the log does not
 // have. Parameters that the unit does not have in this profile are left out. A log shows few
 // situations, so a pass is no statement of conformance.
+//
+// Reads the ticks twice, at most `most_ticks` at once. REQUIRES: a log with LoggedUnit::ticks was
+// not evaluated before.
 LogResult evaluate_log(const LoggedUnit& log, const std::string& profile, PortHost& host,
-                       const LogLimits& limits,
-                       const std::vector<ParameterChange>& parameters = {});
+                       const LogLimits& limits, const std::vector<ParameterChange>& parameters = {},
+                       std::size_t most_ticks = ticks_at_once);
 
 }  // namespace attest

@@ -1,6 +1,7 @@
 // Which deviations from a flight log count as agreement, and which are explained.
 #include "harness/compare/log_agreement.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -26,6 +27,32 @@ Trace trace_of(const Rolls& rolls) {
     trace.samples.push_back(sample);
   }
   return trace;
+}
+
+Trace part_of(const Trace& whole, std::size_t first, std::size_t ticks) {
+  Trace part = whole;
+  const auto begin = whole.samples.begin() + static_cast<std::ptrdiff_t>(first);
+  part.samples.assign(begin, begin + static_cast<std::ptrdiff_t>(ticks));
+  return part;
+}
+
+// In parts of that many ticks.
+std::vector<TopicAgreement> agreement_with_log(const Trace& got, const Trace& logged,
+                                               const Trace& reference, const LogLimits& limits,
+                                               const std::vector<bool>& leaves_out = {},
+                                               std::size_t most = 1000) {
+  LogAgreement agreement(logged.present, limits);
+  const std::size_t all = logged.samples.size();
+  for (std::size_t first = 0; first < all; first += most) {
+    const std::size_t ticks = std::min(most, all - first);
+    std::vector<bool> of_part;
+    for (std::size_t i = first; i < first + ticks && i < leaves_out.size(); ++i) {
+      of_part.push_back(leaves_out[i]);
+    }
+    agreement.add(part_of(got, first, ticks), part_of(logged, first, ticks),
+                  part_of(reference, first, ticks), of_part);
+  }
+  return agreement.finish();
 }
 
 TopicAgreement agreement(const Rolls& got, const Rolls& logged, const LogLimits& limits = {},
@@ -120,6 +147,40 @@ TEST(LogAgreement, ATickThatIsLeftOutMustStillHaveNumbers) {
   EXPECT_FALSE(found({1.0f, nan, 3.0f}, logged).agrees({}));
   // The reference has no number either, for what the log has of the inputs.
   EXPECT_TRUE(found({1.0f, nan, 3.0f}, {1.0f, nan, 3.0f}).agrees({}));
+}
+
+// Each of these has a tick between the reference's values at its neighbours, which may be in
+// another part.
+TEST(LogAgreement, PartsOfAnySizeAgreeAsTheWhole) {
+  Rolls got, logged, reference;
+  std::vector<bool> leaves_out;
+  for (int i = 0; i < 40; ++i) {
+    const float value = std::sin(0.7f * static_cast<float>(i));
+    reference.push_back(value);
+    got.push_back(i % 5 == 0 ? value + 0.2f : value);
+    logged.push_back(i % 3 == 0 ? value - 0.2f : value);
+    if (i % 11 == 0) logged.back().reset();
+    if (i % 13 == 0) got.back() = nan;
+    leaves_out.push_back(i % 7 == 0);
+  }
+  const auto in_parts_of = [&](std::size_t most) {
+    return agreement_with_log(trace_of(got), trace_of(logged), trace_of(reference), {}, leaves_out,
+                              most)
+        .at(0);
+  };
+  const TopicAgreement whole = in_parts_of(1000);
+  EXPECT_GT(whole.between_samples, 0u);
+  EXPECT_GT(whole.unexplained(), 0u);
+  for (const std::size_t most : {1U, 2U, 7U, 40U}) {
+    const TopicAgreement parts = in_parts_of(most);
+    EXPECT_EQ(parts.left_out, whole.left_out);
+    EXPECT_EQ(parts.paired, whole.paired);
+    EXPECT_EQ(parts.non_finite, whole.non_finite);
+    EXPECT_EQ(parts.within, whole.within);
+    EXPECT_EQ(parts.between_samples, whole.between_samples) << "parts of " << most;
+    EXPECT_EQ(parts.p90, whole.p90);
+    EXPECT_EQ(parts.first_unexplained->tick, whole.first_unexplained->tick);
+  }
 }
 
 TEST(LogAgreement, AWrongSignIsNotExplained) {

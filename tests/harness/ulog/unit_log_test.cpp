@@ -1,6 +1,7 @@
 // What PX4 v1.14 to v1.16 logs is divided between the attitude unit and the rate unit.
 #include "harness/ulog/unit_log.hpp"
 
+#include <cstring>
 #include <map>
 #include <utility>
 
@@ -89,6 +90,34 @@ std::vector<float> rolls_of(const LoggedUnit& unit) {
     if (published.published != 0) found.push_back(published.roll);
   }
   return found;
+}
+
+TEST_F(LogOfPx4, HasTheSameTicksInParts) {
+  add_mode(500, false, true);
+  add_setpoint(900, 0.5f);
+  for (std::uint64_t time = 1000; time < 50000; time += 4000) {
+    add_attitude(time, 0.25f, time > 20000 ? 1 : 0);
+    if (time % 3 != 0) add_rates(time + 100, static_cast<float>(time));
+    if (time == 25000) add_mode(time + 50, true, true);
+  }
+  const FlightLog whole = read();
+  const auto opened = open_flight_log(path_);
+  ASSERT_TRUE(opened);
+  const LoggedUnit& unit = whole.units[0];
+  const auto& ticks = opened->units[0].ticks;
+  ASSERT_TRUE(ticks);
+  for (const std::size_t most : {1U, 5U, 13U}) {
+    ASSERT_TRUE(ticks->rewind());
+    std::size_t tick = 0;
+    ASSERT_TRUE(for_each_part(*ticks, most, [&](const Trace& part, std::size_t, bool) {
+      for (std::size_t i = 0; i < part.samples.size(); ++i, ++tick) {
+        EXPECT_EQ(std::memcmp(&part.samples[i], &unit.trace.samples[tick], sizeof(Sample)), 0);
+        EXPECT_EQ(ticks->known()[i], unit.known[tick]);
+      }
+      return true;
+    }));
+    EXPECT_EQ(tick, unit.trace.samples.size());
+  }
 }
 
 TEST_F(LogOfPx4, HasTwoUnits) {

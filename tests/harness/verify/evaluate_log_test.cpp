@@ -100,6 +100,30 @@ LoggedUnit logged_controller() {
   return log;
 }
 
+TEST(EvaluateLog, PartsOfAnySizeGiveTheSameResult) {
+  LoggedUnit log = logged_rate_unit();
+  log.trace.parameters = {{0, "MC_ROLLRATE_P", 0.15f}, {201, "MC_ROLLRATE_P", 0.18f}};
+  for (std::size_t tick = 0; tick < 50; ++tick) log.known[tick] = Known::nothing;
+  for (const char* port : {"builtin", "fault:cascade-i-missing"}) {
+    const auto in_parts_of = [&](std::size_t most) {
+      HostHere host(*open_port(port));
+      return evaluate_log(log, law_of_log, host, {}, {{0, "MC_PITCHRATE_P", 0.1f}}, most);
+    };
+    const LogResult whole = in_parts_of(1000);
+    EXPECT_EQ(whole.topics.front().left_out, 50u);
+    for (const std::size_t most : {1U, 7U, 400U}) {
+      const LogResult parts = in_parts_of(most);
+      EXPECT_EQ(parts.result.verdict, whole.result.verdict);
+      EXPECT_EQ(parts.result.reason, whole.result.reason);
+      EXPECT_EQ(parts.result.ticks, whole.result.ticks);
+      EXPECT_EQ(parts.got.samples.size(), whole.got.samples.size());
+      ASSERT_EQ(parts.topics.size(), whole.topics.size());
+      EXPECT_EQ(parts.topics.front().largest, whole.topics.front().largest);
+      EXPECT_EQ(parts.topics.front().within, whole.topics.front().within);
+    }
+  }
+}
+
 TEST(EvaluateLog, ALogOfTheControllerWithEveryStepIsBelieved) {
   LoggedUnit log = logged_controller();
   HostHere host(open_builtin());
