@@ -205,6 +205,7 @@ struct FaultOptions {
   bool list = false;
   bool diagnose = false;
   std::optional<int> fraction_bits;
+  std::string level;  // of all cases; empty: numeric, and exact for cases of that level only
   int jobs = 1;
 };
 int faults_command(const FaultOptions& options, const Globals& globals);

@@ -106,16 +106,23 @@ int diagnose_all(const std::vector<SelectedCase>& cases, const std::string& prof
 
 // Prints which faults are caught. Returns exit_ok if a case of its own group catches each
 // detectable fault, and no case catches a fault that is not detectable in the profile. With
-// --diagnose: prints which faults are not named, and returns exit_ok if at least 95% are named.
+// --level: returns exit_ok, because no single level has to catch all. With --diagnose: prints which
+// faults are not named, and returns exit_ok if at least 95% are named.
 Result<int> measure(const FaultOptions& options, const SuiteFolder& suite,
                     const std::string& profile, const std::vector<const Fault*>& faults) {
   const auto cases = open_loop_cases(suite, profile);
   if (!cases) return tl::unexpected(cases.error());
   if (options.diagnose) return diagnose_all(*cases, profile);
+  std::optional<Level> level;
+  if (!options.level.empty()) {
+    const auto parsed = parse_level(options.level);
+    if (!parsed) return tl::unexpected(parsed.error());
+    level = *parsed;
+  }
   Jobs<FaultCatch> jobs;
   for (const Fault* fault : faults) {
-    jobs.push_back(
-        std::make_unique<FaultJob>(*fault, profile, *cases, suite.golden(), options.fraction_bits));
+    jobs.push_back(std::make_unique<FaultJob>(*fault, profile, *cases, suite.golden(),
+                                              options.fraction_bits, level));
   }
   JobOptions<FaultCatch> workers;
   workers.processes = options.jobs;
@@ -126,7 +133,11 @@ Result<int> measure(const FaultOptions& options, const SuiteFolder& suite,
   std::vector<FaultFinding> findings = find_naively(faults, profile);
   for (std::size_t i = 0; i < findings.size(); ++i) findings[i].found = outcome.results[i];
   fmt::print("{}", render_fault_table(findings));
-  return verdict(findings);
+  if (!level) return verdict(findings);
+  const FaultSummary summary = summary_of(findings);
+  fmt::print("{}, level {}: {} of {} detectable faults are caught\n", profile, options.level,
+             summary.caught, summary.detectable);
+  return exit_ok;
 }
 
 // The faults of the profile's law.

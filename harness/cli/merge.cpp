@@ -189,7 +189,7 @@ std::optional<HostOptions> host_for(const MergeOptions& options, const Globals& 
   // The code of another port is not called.
   if (const auto sha256 = sha256_of_port(host.port); sha256 && *sha256 == run.port_sha256) {
     if (const auto port = describe_port(host)) {
-      host.said = *port;
+      hold_to(*port, host);
       return host;
     }
   }

@@ -52,8 +52,7 @@ Result<FlightsOptions> flights_of(const SweepOptions& options) {
   if (!flights.with_port) return flights;
   const auto port = describe_port(options.host);
   if (!port) return tl::unexpected(port.error());
-  flights.host.hangs = port->hangs;
-  if (port->hangs.empty()) flights.host.said = *port;
+  hold_to(*port, flights.host);
   return flights;
 }
 

@@ -292,7 +292,9 @@ int replay_command(const ReplayOptions& options, const Globals& globals) {
   if (port->fraction_bits && *level == Level::numeric) {
     arithmetic = fmt::format(" for fixed point with {} fraction bits", *port->fraction_bits);
   }
-  return Replay(options, globals, *level, std::move(arithmetic)).run();
+  ReplayOptions held = options;
+  hold_to(*port, held.host);
+  return Replay(held, globals, *level, std::move(arithmetic)).run();
 }
 
 }  // namespace attest::cli

@@ -43,8 +43,7 @@ Result<void> ask_port(const std::vector<std::string>& profiles, RunPlan& plan) {
   plan.run.fraction_bits = port->fraction_bits;
   plan.run.fixed_step = port->fixed_step;
   plan.run.not_recorded = port->not_recorded;
-  plan.host.hangs = port->hangs;
-  if (port->hangs.empty()) plan.host.said = *port;
+  hold_to(*port, plan.host);
   return {};
 }
 

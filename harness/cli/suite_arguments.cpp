@@ -30,12 +30,21 @@ void add_faults(CLI::App& app, const Globals& globals, Action& action) {
                        "Use the tolerances of a port in fixed point with this number of fraction "
                        "bits; default: those of floating point")
           ->check(CLI::Range(20, 32));
+  CLI::Option* const level =
+      command
+          ->add_option(
+              "--level", options->level,
+              "Judge all cases at this level, exact, numeric or events, and print how many "
+              "faults it catches; default: numeric, and exact for the cases that are "
+              "compared at that level only")
+          ->type_name("LEVEL");
   command
       ->add_flag("--diagnose", options->diagnose,
                  "Measure instead which faults the diagnosis names")
-      ->excludes(bits, ids);
+      ->excludes(bits, ids, level);
   add_jobs(*command, options->jobs, "Number of faults that run at the same time");
   add_examples(*command, {{"attest faults", "measure which faults the open-loop cases catch"},
+                          {"attest faults --level events tpa-missing", "the same at one level"},
                           {"attest faults --list --profile px4-v1.3.4",
                            "list the catalogue of one version of the law"}});
   command->callback([options, &globals, &action] {

@@ -60,9 +60,8 @@ Result<RateSweepPlan> make_plan(const RateSweepOptions& options, const SuiteFold
   const auto port = describe_port(options.host);
   if (!port) return tl::unexpected(port.error());
   HostOptions host = options.host;
-  host.hangs = port->hangs;
+  hold_to(*port, host);
   host.stop = interrupted;
-  if (port->hangs.empty()) host.said = *port;
   VehicleModels vehicle_models(suite.models());
   for (const PlantConfiguration& plant_configuration : *plant_configurations) {
     auto vehicle_model = vehicle_models.get(plant_configuration.vehicle);

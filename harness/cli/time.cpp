@@ -69,7 +69,7 @@ Result<HostOptions> host_for(const TimeCommandOptions& options) {
   if (!port) return tl::unexpected(port.error());
   HostOptions host = options.host;
   host.stop = interrupted;
-  host.hangs = port->hangs;
+  hold_to(*port, host);
   return host;
 }
 

@@ -20,18 +20,21 @@ class JsonReader {
 
   // A missing member is an error; the result is then null.
   const nlohmann::json& member(const char* key);
-  JsonReader object(const char* key) { return {member(key), error_}; }
+  // Error messages of the result name its members as "key.member".
+  JsonReader object(const char* key);
 
   // A member that is missing or of another type is an error; the result is then empty, 0 or false.
   const nlohmann::json& list(const char* key);
   std::string text(const char* key);
   std::vector<std::string> texts(const char* key);
-  std::uint64_t count(const char* key);
-  std::int64_t integer(const char* key);
+  std::uint64_t count(const char* key, std::uint64_t most = UINT64_MAX);
+  std::int64_t integer(const char* key, std::int64_t least = INT64_MIN,
+                       std::int64_t most = INT64_MAX);  // below `least`, above `most`: an error
   bool flag(const char* key);
   double real(const char* key);  // accepts the texts "nan", "inf" and "-inf", too
 
   void wrong(std::string message);
+  void wrong(const char* key, const std::string& what);  // "`key` is not a string"
 
  private:
   template <typename T>
@@ -39,6 +42,7 @@ class JsonReader {
 
   const nlohmann::json& object_;
   std::string& error_;
+  std::string path_ = {};  // "key." of an object in an object
 };
 
 // The inverse of JsonReader::real().

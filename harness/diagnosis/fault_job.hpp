@@ -11,6 +11,7 @@
 
 #include "controller/faults/fault.hpp"
 #include "harness/casefile/select.hpp"
+#include "harness/compare/tolerance.hpp"
 #include "harness/verify/verdict.hpp"
 #include "harness/workers/job.hpp"
 
@@ -35,18 +36,21 @@ class FaultJob final : public Job<FaultCatch> {
  public:
   // REQUIRES: each case is an open-loop case of `profile`; `cases` outlives this.
   FaultJob(const faults::Fault& fault, std::string profile, const std::vector<SelectedCase>& cases,
-           std::filesystem::path golden_root, std::optional<int> fraction_bits)
+           std::filesystem::path golden_root, std::optional<int> fraction_bits,
+           std::optional<Level> level = {})
       : fault_(fault),
         profile_(std::move(profile)),
         cases_(cases),
         golden_root_(std::move(golden_root)),
-        fraction_bits_(fraction_bits) {}
+        fraction_bits_(fraction_bits),
+        level_(level) {}
 
   std::size_t size() const override { return 1; }
 
   // First runs the cases of the fault's own group at 250 Hz, then at other rates; then all other
-  // cases in the same way. Cases on a threshold of the law (Case::exact_only) are judged at the
-  // exact level, the others at the numeric level. A fault of another law is not run.
+  // cases in the same way. All cases are judged at `level`, if it is set. Otherwise cases on a
+  // threshold of the law (Case::exact_only) are judged at the exact level, and the others at the
+  // numeric level. A fault of another law is not run.
   Result<FaultCatch> run(std::size_t task) override;
 
  private:
@@ -55,6 +59,7 @@ class FaultJob final : public Job<FaultCatch> {
   const std::vector<SelectedCase>& cases_;
   std::filesystem::path golden_root_;
   std::optional<int> fraction_bits_;  // if set, the fault is judged as a port in fixed point
+  std::optional<Level> level_;
 };
 
 }  // namespace attest

@@ -22,8 +22,7 @@ std::optional<PortFault> HostHere::held(std::optional<PortFault> fault,
   if (const std::string difference = change(says_, PortSays::asked(*port_)); !difference.empty()) {
     return PortFault{PortFault::Kind::protocol, 0, difference};
   }
-  if (fault && fault->kind == PortFault::Kind::profile) return no_unit_of(profile, says_);
-  return fault;
+  return held_to(says_, profile, std::move(fault));
 }
 
 std::optional<PortFault> HostHere::drive(const Subject& subject, Trace& trace) {

@@ -1,11 +1,18 @@
 #include "harness/host/host_protocol.hpp"
 
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <type_traits>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "harness/core/error_json.hpp"
 #include "harness/core/json_text.hpp"
+#include "harness/core/printable.hpp"
+#include "harness/realtime/painted_stack.hpp"
 
 namespace attest {
 namespace {
@@ -31,16 +38,23 @@ json to_json(const PortSays& says) {
   return out;
 }
 
-PortSays says_from(const json& in) {
-  PortSays says{in.at("name").get<std::string>(),
-                in.at("version").get<std::string>(),
-                in.at("unsupported_groups").get<std::vector<std::string>>(),
-                {},
-                {},
-                ModuleSet(in.at("modules").get<unsigned long>()),
-                {}};
-  if (in.contains("fraction_bits")) says.fraction_bits = in.at("fraction_bits").get<int>();
-  if (const auto step = Rate::parse(in.value("fixed_step", ""))) says.fixed_step = *step;
+PortSays says_from(JsonReader in) {
+  PortSays says;
+  says.name = in.text("name");
+  says.version = in.text("version");
+  says.unsupported_groups = in.texts("unsupported_groups");
+  const auto wrong = wrong_in_declared(says.name, says.version, says.unsupported_groups);
+  if (!wrong.empty()) in.wrong(wrong);
+  if (in.has("fraction_bits")) {
+    const auto bits = in.integer("fraction_bits", fewest_fraction_bits, most_fraction_bits);
+    says.fraction_bits = static_cast<int>(bits);
+  }
+  if (in.has("fixed_step")) {
+    const auto step = Rate::parse(in.text("fixed_step"));
+    if (!step) in.wrong("fixed_step", "is wrong: " + step.error().message);
+    if (step) says.fixed_step = *step;
+  }
+  says.modules = ModuleSet(in.count("modules", ModuleSet().set().to_ulong()));
   return says;
 }
 
@@ -56,7 +70,9 @@ Subject subject_from(const json& in) {
 Trace trace_from(const json& head, BlobReader& blobs) {
   Trace trace;
   trace.samples = blobs.read<Sample>(head.at("ticks").get<std::size_t>()).value();
-  trace.parameters = changes_from(head.at("parameters"));
+  std::string error;
+  JsonReader reader(head, error);
+  trace.parameters = changes_from(reader, "parameters", SIZE_MAX);
   return trace;
 }
 
@@ -94,9 +110,7 @@ class Answerer {
     const auto flown = host_.fly(plan);
     if (!flown) return refuse(flown.error(), question_.request, judge_);
     const Trace& trace = flown->trace;
-    json answer = {{"source", trace.source},
-                   {"ticks", trace.samples.size()},
-                   {"parameters", changes_json(trace.parameters)}};
+    json answer = {{"ticks", trace.samples.size()}, {"parameters", changes_json(trace.parameters)}};
     set_end(flown->fault, flown->divergence, answer);
     std::vector<Blob> blobs{blob_of(trace.samples), blob_of(trace.plant)};
     if (const auto& attitude = flown->attitude_trace) {
@@ -132,37 +146,67 @@ class Answerer {
   MessageSocket& judge_;
 };
 
-// Reads an answer with `read`. An exception means that there is no valid answer: a member is
-// missing or of another type.
+// Reads an answer with `read`, which reports what is wrong to the reader.
 template <typename Read>
-auto read_answer(const Arrived& arrived, Read read) -> decltype(read(json())) {
+auto read_answer(const Arrived& arrived, Read read)
+    -> Result<std::invoke_result_t<Read, JsonReader&>> {
   const json head = json_from(arrived.head);
-  if (!head.is_object()) return std::nullopt;
-  try {
-    if (head.at("request").get<std::uint64_t>() != arrived.request) return std::nullopt;
-    auto answer = read(head);
-    if (arrived.blobs.left() > 0) return std::nullopt;
-    return answer;
-  } catch (const json::exception&) {
-    return std::nullopt;
+  std::string error;
+  JsonReader reader(head, error);
+  if (const auto request = reader.count("request"); request != arrived.request) {
+    reader.wrong("request", fmt::format("is {}, not {}", request, arrived.request));
   }
+  auto answer = read(reader);
+  if (arrived.blobs.left() > 0) reader.wrong("it has more data than its head says");
+  if (!error.empty()) return fail(printable_part(error));
+  return Result<decltype(answer)>(tl::in_place, std::move(answer));
 }
 
-// Reads the trace of one unit of a flight, which must have `ticks` ticks.
-std::optional<Trace> flown_trace(const Arrived& arrived, const json& head, Module module,
-                                 std::size_t ticks) {
-  auto samples = arrived.blobs.read<Sample>(ticks);
-  if (!samples) return std::nullopt;
+// The next blob, which must have `count` objects.
+template <typename T>
+std::vector<T> objects_from(const Arrived& arrived, std::size_t count, const char* what,
+                            JsonReader& head) {
+  auto objects = arrived.blobs.read<T>(count);
+  if (objects) return *std::move(objects);
+  head.wrong(fmt::format("the {} are not those of {} ticks", what, count));
+  return {};
+}
+
+// Reads the number of ticks of a flight or of a timing.
+std::size_t ticks_from(JsonReader& head, const char* key, std::size_t all, bool may_end_early) {
+  const auto ticks = static_cast<std::size_t>(head.count(key, all));
+  if (ticks < all && !may_end_early) {
+    head.wrong(key, fmt::format("is {} of {}, and the answer does not say why", ticks, all));
+  }
+  return ticks;
+}
+
+Trace flown_trace(const Arrived& arrived, JsonReader& head, Module module, std::size_t ticks) {
   Trace trace;
-  trace.source = head.at("source").get<std::string>();
-  trace.samples = *std::move(samples);
+  trace.samples = objects_from<Sample>(arrived, ticks, "samples", head);
   trace.present = channels_of(module);
   return trace;
 }
 
-tl::unexpected<Error> error_in(const json& head) {
-  auto error = error_from_json(head.at("error"));
-  return tl::unexpected(error ? *std::move(error) : error.error());
+// Reads the first part of a flight: the trace of the unit that commands the motors.
+void read_motors_unit(const Arrived& arrived, const FlightPlan& plan, JsonReader& head,
+                      Flown& flown) {
+  const bool is_cascade = plan.configuration.rate.attitude_unit.has_value();
+  const std::size_t all = plan.timing.unit.size();
+  const std::size_t ticks = ticks_from(head, "ticks", all, flown.fault || flown.divergence);
+  flown.trace =
+      flown_trace(arrived, head, is_cascade ? Module::rate_unit : Module::mc_att_control, ticks);
+  flown.trace.parameters = changes_from(head, "parameters", all);
+  flown.trace.plant = objects_from<PlantSample>(arrived, ticks, "samples of the plant", head);
+}
+
+void read_attitude_unit(const Arrived& arrived, const FlightPlan& plan, JsonReader& head,
+                        Flown& flown) {
+  const std::size_t all = plan.timing.attitude_unit.size();
+  const std::size_t ticks =
+      ticks_from(head, "attitude_ticks", all, flown.fault || flown.divergence);
+  flown.attitude_trace = flown_trace(arrived, head, Module::attitude_unit, ticks);
+  flown.attitude_trace->parameters = changes_from(head, "attitude_parameters", all);
 }
 
 }  // namespace
@@ -196,83 +240,66 @@ std::string supports_request(const std::string& profile) {
   return text_of({{"do", "supports"}, {"profile", profile}});
 }
 
-std::optional<Driven> read_driven(const Arrived& arrived, std::size_t ticks) {
-  return read_answer(arrived, [&](const json& head) -> std::optional<Driven> {
-    auto samples = arrived.blobs.read<Sample>(ticks);
-    if (!samples) return std::nullopt;
-    return Driven{*std::move(samples), fault_from(head, arrived.of_program)};
+Result<Driven> read_driven(const Arrived& arrived, std::size_t ticks) {
+  return read_answer(arrived, [&](JsonReader& head) {
+    return Driven{objects_from<Sample>(arrived, ticks, "samples", head),
+                  fault_from(head, ticks, arrived.of_program)};
   });
 }
 
-std::optional<Result<Flown>> read_flown(const Arrived& arrived, const FlightPlan& plan) {
-  using Answer = std::optional<Result<Flown>>;
-  return read_answer(arrived, [&](const json& head) -> Answer {
-    if (head.contains("error")) return error_in(head);
-    Flown flown;
-    flown.fault = fault_from(head, arrived.of_program);
-    flown.divergence = divergence_from(head);
-    const bool ends_early = flown.fault || flown.divergence;
+Result<Result<Flown>> read_flown(const Arrived& arrived, const FlightPlan& plan,
+                                 Nanoseconds duration) {
+  return read_answer(arrived, [&](JsonReader& head) -> Result<Flown> {
+    if (head.has("error")) return error_in(head);
     const FlightTiming& timing = plan.timing;
-    const bool is_cascade = plan.configuration.rate.attitude_unit.has_value();
-    const auto count_of = [&](const char* key, const LoopTiming& ticks) {
-      const auto count = head.at(key).get<std::size_t>();
-      const bool is_sane = count == ticks.size() || (count < ticks.size() && ends_early);
-      return is_sane ? std::optional(count) : std::nullopt;
-    };
-    const auto count = count_of("ticks", timing.unit);
-    if (!count) return std::nullopt;
-    auto trace =
-        flown_trace(arrived, head, is_cascade ? Module::rate_unit : Module::mc_att_control, *count);
-    auto plant = trace ? arrived.blobs.read<PlantSample>(*count) : std::nullopt;
-    if (!plant) return std::nullopt;
-    flown.trace = *std::move(trace);
-    flown.trace.parameters = changes_from(head.at("parameters"));
-    flown.trace.plant = *std::move(plant);
-    if (!is_cascade) return flown;
-    const auto attitude_count = count_of("attitude_ticks", timing.attitude_unit);
-    if (!attitude_count) return std::nullopt;
-    flown.attitude_trace = flown_trace(arrived, head, Module::attitude_unit, *attitude_count);
-    if (!flown.attitude_trace) return std::nullopt;
-    flown.attitude_trace->parameters = changes_from(head.at("attitude_parameters"));
+    Flown flown;
+    flown.fault = fault_from(head, std::max(timing.unit.size(), timing.attitude_unit.size()),
+                             arrived.of_program);
+    flown.divergence = divergence_from(head, duration);
+    read_motors_unit(arrived, plan, head, flown);
+    if (plan.configuration.rate.attitude_unit) read_attitude_unit(arrived, plan, head, flown);
     return flown;
   });
 }
 
-std::optional<Result<StepTimes>> read_times(const Arrived& arrived, std::size_t ticks) {
-  using Answer = std::optional<Result<StepTimes>>;
-  return read_answer(arrived, [&](const json& head) -> Answer {
-    if (head.contains("error")) return error_in(head);
+Result<Result<StepTimes>> read_times(const Arrived& arrived, std::size_t ticks) {
+  return read_answer(arrived, [&](JsonReader& head) -> Result<StepTimes> {
+    if (head.has("error")) return error_in(head);
     StepTimes times;
-    times.fault = fault_from(head, arrived.of_program);
-    const auto count = head.at("steps").get<std::size_t>();
-    if (count > ticks || (count < ticks && !times.fault)) return std::nullopt;
-    auto steps = arrived.blobs.read<Nanoseconds>(count);
-    if (!steps) return std::nullopt;
-    times.steps = *std::move(steps);
-    times.clock = Nanoseconds(head.at("clock_ns").get<std::int64_t>());
-    if (head.contains("stack")) times.stack_bytes = head.at("stack").get<std::size_t>();
+    times.fault = fault_from(head, ticks, arrived.of_program);
+    const std::size_t count = ticks_from(head, "steps", ticks, times.fault.has_value());
+    times.steps = objects_from<Nanoseconds>(arrived, count, "steps", head);
+    const auto is_sane = [](Nanoseconds step) {
+      return step >= Nanoseconds(0) && step <= std::chrono::hours(1);
+    };
+    if (!std::ranges::all_of(times.steps, is_sane)) {
+      head.wrong("steps", "has a duration that is negative or longer than an hour");
+    }
+    constexpr std::int64_t second_ns = 1'000'000'000;
+    times.clock = Nanoseconds(head.integer("clock_ns", 0, second_ns));
+    if (head.has("stack")) times.stack_bytes = head.count("stack", PaintedStack::size);
     return times;
   });
 }
 
-std::optional<bool> read_supports(const Arrived& arrived) {
-  return read_answer(arrived, [&](const json& head) -> std::optional<bool> {
-    return head.at("supports").get<bool>();
-  });
+Result<bool> read_supports(const Arrived& arrived) {
+  return read_answer(arrived, [](JsonReader& head) { return head.flag("supports"); });
 }
 
 std::optional<PortFault> read_fault(const Arrived& arrived) {
-  return read_answer(arrived, [&](const json& head) -> std::optional<PortFault> {
-    constexpr std::size_t request_and_fault = 2;
-    return head.size() == request_and_fault ? fault_from(head, arrived.of_program) : std::nullopt;
+  if (!arrived.of_program) return std::nullopt;
+  const auto fault = read_answer(arrived, [&](JsonReader& head) {
+    auto found = fault_from(head, 0, arrived.of_program);
+    if (!found || found->kind < PortFault::Kind::protocol) head.wrong("no fault of a program");
+    return found;
   });
+  return fault ? *fault : std::nullopt;
 }
 
-std::optional<Result<PortSays>> read_greeting(const Arrived& arrived) {
-  using Answer = std::optional<Result<PortSays>>;
-  return read_answer(arrived, [&](const json& head) -> Answer {
-    if (head.contains("error")) return error_in(head);
-    return says_from(head.at("says"));
+Result<Result<PortSays>> read_greeting(const Arrived& arrived) {
+  return read_answer(arrived, [](JsonReader& head) -> Result<PortSays> {
+    if (head.has("error")) return error_in(head);
+    return says_from(head.object("says"));
   });
 }
 

@@ -21,12 +21,13 @@
 // A long trace is driven in several requests, one for each Part (open_loop.hpp).
 //
 // "request" counts the requests, which may come in any order. {"request": n, "fault": {...}} alone
-// is the answer to any request if a program ended, or broke its protocol, outside of a step.
+// is the answer to any request if a program ended, or broke its protocol, outside of a step. Other
+// kinds of fault do not come alone.
 //
 // {"request": n, "error": {...}} replaces the greeting if the port cannot be loaded, and the answer
 // to "fly" or "time" if attest cannot do that. The port's code runs in that process, so the judge
-// does not trust its messages. A message that does not answer its request, is incomplete or has the
-// wrong size counts as no answer.
+// does not trust its messages. It checks each member where it arrives: its type, and its range. A
+// message with a wrong member, or that does not answer its request, is a broken protocol.
 #pragma once
 
 #include <cstddef>
@@ -54,20 +55,24 @@ struct Arrived {
   bool of_program = false;  // the port is a program, which may end while its host goes on
 };
 
-// The readers return an empty optional if the message is not a valid answer to that request. A
-// valid answer has all `ticks` ticks. A flight or a timing may have fewer, if the answer has the
-// fault or divergence that ended it.
+// Errors of the readers: the message is not a valid answer to that request; the text names the
+// member. A valid answer has all `ticks` ticks. A flight or a timing may have fewer, if the answer
+// has the fault or divergence that ended it. The error in a result of a reader is that of an answer
+// with "error".
 struct Driven {
   std::vector<Sample> samples;
   std::optional<PortFault> fault;
 };
-std::optional<Driven> read_driven(const Arrived& arrived, std::size_t ticks);
-std::optional<Result<Flown>> read_flown(const Arrived& arrived, const FlightPlan& plan);
-std::optional<Result<StepTimes>> read_times(const Arrived& arrived, std::size_t ticks);
-std::optional<bool> read_supports(const Arrived& arrived);
-// Reads an answer that consists of a fault only.
+Result<Driven> read_driven(const Arrived& arrived, std::size_t ticks);
+// The traces of the result have no `source`. `duration`: of the case.
+Result<Result<Flown>> read_flown(const Arrived& arrived, const FlightPlan& plan,
+                                 Nanoseconds duration);
+Result<Result<StepTimes>> read_times(const Arrived& arrived, std::size_t ticks);
+Result<bool> read_supports(const Arrived& arrived);
+Result<Result<PortSays>> read_greeting(const Arrived& arrived);
+// Reads an answer of a program's host that is a fault only: Kind::crash or Kind::protocol. Empty:
+// it is another answer.
 std::optional<PortFault> read_fault(const Arrived& arrived);
-std::optional<Result<PortSays>> read_greeting(const Arrived& arrived);
 
 // Of the port's process.
 bool greet(const PortSays& says, MessageSocket& judge);

@@ -32,6 +32,12 @@ void set_outputs(const std::vector<Sample>& answered, Trace& trace) {
   }
 }
 
+// A flight that diverges does so before this time.
+Nanoseconds duration_of(const Case& the_case, const FlightPlan& plan) {
+  const Rate& rate = plan.configuration.rate.unit;
+  return the_case.duration.on(rate) + rate.tick(1);  // from_one_period_on: one more
+}
+
 // The fault of a request to a port that had `kind` before.
 std::string not_run(PortFault::Kind kind) {
   return kind == PortFault::Kind::timeout
@@ -91,8 +97,8 @@ std::string text_of(AnswerMeter::Limit exceeded, const HostOptions& options) {
 class PortProcess final : public PortHost {
  public:
   // `port` is empty if it is not started (HostOptions::hangs).
-  PortProcess(const HostOptions& options, std::optional<PortChild> port)
-      : options_(options), port_(std::move(port)) {
+  PortProcess(const HostOptions& options, const Course& course, std::optional<PortChild> port)
+      : options_(options), course_(course), port_(std::move(port)) {
     if (options.said) says_ = *options.said;
     if (!port_) fault_ = PortFault{PortFault::Kind::timeout, 0, options.hangs};
   }
@@ -101,12 +107,17 @@ class PortProcess final : public PortHost {
   Result<void> greet() {
     if (!port_) return {};
     const auto greeted = answer_from("when it was loaded", patience(), read_greeting);
-    if (greeted && !*greeted) {
+    if (!greeted) return {};
+    if (!*greeted) {
       Error error = greeted->error();
       if (is_program(options_.port)) error.message += port_->child.last_printed();
       return tl::unexpected(std::move(error));
     }
-    if (greeted && !options_.said) says_ = **greeted;
+    if (!options_.said) {
+      says_ = **greeted;
+    } else if (const std::string difference = change(says_, **greeted); !difference.empty()) {
+      give_up(Kind::no_message, "", difference);
+    }
     return {};
   }
 
@@ -119,20 +130,24 @@ class PortProcess final : public PortHost {
             [&](const Arrived& arrived) { return read_driven(arrived, inputs.size()); });
     if (!driven) return fault_;
     set_outputs(driven->samples, trace);
-    return with_words(driven->fault);
+    return judged(driven->fault, subject.profile);
   }
 
   Result<Flown> fly(const FlightPlan& plan) override {
     const std::vector<Blob> times{blob_of(plan.timing.unit), blob_of(plan.timing.attitude_unit)};
-    auto flown = ask(fly_request(plan), times,
-                     [&](const Arrived& arrived) { return read_flown(arrived, plan); });
-    if (flown) {
-      if (*flown) (*flown)->fault = with_words((*flown)->fault);
-      return *std::move(flown);
+    auto flown = ask(fly_request(plan), times, [&](const Arrived& arrived) {
+      return read_flown(arrived, plan, duration_of(*course_.the_case, plan));
+    });
+    if (!flown) {
+      Flown none;
+      none.fault = fault_;
+      return none;
     }
-    Flown none;
-    none.fault = fault_;
-    return none;
+    if (!*flown) return *std::move(flown);
+    (*flown)->fault = judged((*flown)->fault, course_.the_case->profile);
+    (*flown)->trace.source = course_.the_case->id_at(plan.configuration);
+    if (auto& attitude = (*flown)->attitude_trace) attitude->source = (*flown)->trace.source;
+    return *std::move(flown);
   }
 
   Result<StepTimes> time_steps(const Subject& subject, const Trace& inputs,
@@ -141,7 +156,7 @@ class PortProcess final : public PortHost {
         ask(time_request(subject, inputs, with_stack), {blob_of(inputs.samples)},
             [&](const Arrived& arrived) { return read_times(arrived, inputs.samples.size()); });
     if (times) {
-      if (*times) (*times)->fault = with_words((*times)->fault);
+      if (*times) (*times)->fault = judged((*times)->fault, subject.profile);
       return *std::move(times);
     }
     StepTimes none;
@@ -161,14 +176,14 @@ class PortProcess final : public PortHost {
   std::string last_words() const { return port_ ? port_->child.last_words() : ""; }
 
  private:
-  // Empty after a fault of the port, in this request or before; fault_ has it.
+  // An error after a fault of the port, in this request or before; fault_ has it.
   template <typename Read>
   auto ask(const std::string& question, const std::vector<Blob>& blobs, Read read)
       -> std::invoke_result_t<Read, const Arrived&> {
     const bool was_asked = std::exchange(was_asked_, true);
     if (fault_) {
       if (was_asked) fault_->what = not_run(fault_->kind);
-      return std::nullopt;
+      return fail(fault_->what);
     }
     ++request_;
     const Patience limit = patience();
@@ -186,13 +201,11 @@ class PortProcess final : public PortHost {
     return limit;
   }
 
-  // Adds the last line that a program printed before it ended or broke the protocol.
-  std::optional<PortFault> with_words(std::optional<PortFault> fault) const {
-    if (fault && is_program(options_.port) &&
-        (fault->kind == PortFault::Kind::crash || fault->kind == PortFault::Kind::protocol)) {
-      fault->what += port_->child.last_printed();
-    }
-    return fault;
+  // The fault of an answer, by the declarations that this process keeps.
+  std::optional<PortFault> judged(std::optional<PortFault> fault,
+                                  const std::string& profile) const {
+    return with_words(held_to(says_, profile, std::move(fault)), port_->child,
+                      is_program(options_.port));
   }
 
   template <typename Read>
@@ -200,6 +213,7 @@ class PortProcess final : public PortHost {
       -> std::invoke_result_t<Read, const Arrived&> {
     const Received received = port_->child.receive(patience);
     Kind kind = received.kind;
+    std::string wrong;
     if (kind == Kind::message) {
       BlobReader blobs(received.blobs, [&](void* place, std::size_t size) {
         const Kind came = port_->child.receive_blob(place, size, patience);
@@ -207,17 +221,20 @@ class PortProcess final : public PortHost {
         return came == Kind::message;
       });
       const Arrived arrived{received.head, blobs, request_, is_program(options_.port)};
-      if (auto answer = read(arrived)) return answer;
+      auto answer = read(arrived);
+      if (answer) return answer;
+      wrong = answer.error().message;
       if (auto fault = read_fault(arrived)) {
-        fault_ = with_words(std::move(fault));
-        return std::nullopt;
+        fault_ = with_words(std::move(fault), port_->child, true);
+        return fail(fault_->what);
       }
     }
-    give_up(kind, when);
-    return std::nullopt;
+    give_up(kind, when, wrong);
+    return fail(fault_->what);
   }
 
-  void give_up(Kind why, const std::string& when) {
+  // `wrong`: what is wrong with a message that arrived.
+  void give_up(Kind why, const std::string& when, const std::string& wrong) {
     if (why != Kind::ended) port_->child.kill();
     const std::string how = port_->child.end();
     const std::string where = when.empty() ? port_->calls->current() : ", " + when;
@@ -240,12 +257,15 @@ class PortProcess final : public PortHost {
             fmt::format("no answer within {}{}{}", text_of(exceeded_, options_), where, words)};
         return;
       default:
-        fault_ = PortFault{PortFault::Kind::protocol, 0,
-                           "the port wrote on the socket on which its process answers"};
+        fault_ =
+            PortFault{PortFault::Kind::protocol, 0,
+                      fmt::format("the port wrote on the socket on which its process answers{}{}",
+                                  wrong.empty() ? "" : ": ", wrong)};
     }
   }
 
   HostOptions options_;
+  Course course_;
   std::optional<PortChild> port_;
   PortSays says_;
   std::uint64_t request_ = 0;
@@ -262,7 +282,7 @@ Result<std::unique_ptr<PortProcess>> start_process(const HostOptions& options,
     if (!launched) return tl::unexpected(launched.error());
     port = *std::move(launched);
   }
-  auto host = std::make_unique<PortProcess>(options, std::move(port));
+  auto host = std::make_unique<PortProcess>(options, course, std::move(port));
   if (auto greeted = host->greet(); !greeted) return tl::unexpected(greeted.error());
   return host;
 }
@@ -322,6 +342,11 @@ Result<PortDescription> describe_callable(const HostOptions& options,
 }
 
 }  // namespace
+
+void hold_to(const PortDescription& port, HostOptions& options) {
+  options.hangs = port.hangs;
+  if (port.hangs.empty()) options.said = port;
+}
 
 Result<PortDescription> describe_port(const HostOptions& options,
                                       const std::vector<std::string>& profiles) {

@@ -72,4 +72,7 @@ struct PortDescription : PortSays {
 Result<PortDescription> describe_port(const HostOptions& options,
                                       const std::vector<std::string>& profiles = {});
 
+// From now on, hosts of these options hold the port to its description.
+void hold_to(const PortDescription& port, HostOptions& options);
+
 }  // namespace attest

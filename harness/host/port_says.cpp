@@ -56,6 +56,12 @@ PortFault no_unit_of(const std::string& profile, const PortSays& said) {
                       profile)};
 }
 
+std::optional<PortFault> held_to(const PortSays& said, const std::string& profile,
+                                 std::optional<PortFault> fault) {
+  if (fault && fault->kind == PortFault::Kind::profile) return no_unit_of(profile, said);
+  return fault;
+}
+
 PortSays PortSays::asked(const Port& port) {
   return {port.name(),
           port.version(),

@@ -34,4 +34,9 @@ std::string change(const PortSays& said, const PortSays& now);
 // NULL.
 PortFault no_unit_of(const std::string& profile, const PortSays& said);
 
+// Returns `fault`, but no_unit_of() in place of one of Kind::profile. The judge's process calls it
+// too: an answer from the port's process may say that the profile is not supported at any time.
+std::optional<PortFault> held_to(const PortSays& said, const std::string& profile,
+                                 std::optional<PortFault> fault);
+
 }  // namespace attest

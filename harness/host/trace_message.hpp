@@ -1,6 +1,7 @@
 // Parts of the messages between a process and a fork of it (host_protocol.hpp): structs are sent as
-// they are in memory, all other data in the JSON of the head. Functions that read a head throw
-// nlohmann::json::exception if a member is missing or of another type.
+// they are in memory, all other data in the JSON of the head. Functions that read a head report a
+// member that is missing, of another type or out of its range to the reader, and then return a
+// value in the range.
 #pragma once
 
 #include <cstddef>
@@ -13,24 +14,34 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/core/json_reader.hpp"
 #include "harness/core/large_pages.hpp"
 #include "harness/loop/unit_driver.hpp"
 #include "harness/plant/plant.hpp"
+#include "harness/process/child.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace attest {
 
 // The values are sent as bits, because JSON has no NaN.
 nlohmann::json changes_json(const std::vector<ParameterChange>& changes);
-std::vector<ParameterChange> changes_from(const nlohmann::json& list);
+// Range: ticks up to `ticks`. A name is any text: the judge compares it with that of the case.
+std::vector<ParameterChange> changes_from(JsonReader& head, const char* key, std::size_t ticks);
 
-// Writes and reads how a port's outputs, or its flight, ended. A process cannot report its own
-// crash or timeout: if it does, the fault is read as one of kind protocol. If the port is a program
-// (`of_program`), the process can report the program's crash.
+// Writes and reads how a port's outputs, or its flight, ended. Range: a tick up to `ticks`, a time
+// from 0 to `longest`. A process cannot report its own crash or timeout. If the port is a program
+// (`of_program`), its process can report the program's crash.
 void set_end(const std::optional<PortFault>& fault, const std::optional<Divergence>& lost,
              nlohmann::json& head);
-std::optional<PortFault> fault_from(const nlohmann::json& head, bool of_program);
-std::optional<Divergence> divergence_from(const nlohmann::json& head);
+std::optional<PortFault> fault_from(JsonReader& head, std::size_t ticks, bool of_program);
+// Adds what the port last printed: before it reported a failure, or, if it is a program, before it
+// ended or broke the protocol.
+std::optional<PortFault> with_words(std::optional<PortFault> fault, const Child& child,
+                                    bool of_program);
+std::optional<Divergence> divergence_from(JsonReader& head, Nanoseconds longest);
+
+// The member `error` of a head.
+tl::unexpected<Error> error_in(JsonReader& head);
 
 // Reads the blobs that follow a head, one after the other.
 class BlobReader {

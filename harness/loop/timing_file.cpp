@@ -39,31 +39,29 @@ std::optional<LoopTick> tick_of(const json& value) {
   return LoopTick{*sampled, *begins, commanded};
 }
 
-// Whether `tick` follows `before` as LoopTiming requires. Ticks are at least 1 us apart, because
-// timestamps are whole microseconds.
-bool follows(const LoopTick& tick, const LoopTiming& before, Nanoseconds last_commanded) {
+// Whether `tick` follows `last` as LoopTiming requires; `last` is null for the first tick.
+bool follows(const LoopTick& tick, const LoopTick* last, Nanoseconds last_commanded) {
   const Nanoseconds commanded = tick.commanded.value_or(std::max(last_commanded, tick.begins));
   const bool ordered = tick.sampled <= tick.begins && tick.begins <= commanded &&
                        last_commanded <= commanded && tick.begins >= Nanoseconds(0);
-  if (before.empty()) return ordered;
-  const LoopTick& last = before.back();
-  return ordered && last.sampled <= tick.sampled &&
-         last.begins + std::chrono::microseconds(1) <= tick.begins;
+  if (last == nullptr) return ordered;
+  return ordered && last->sampled <= tick.sampled &&
+         last->begins + std::chrono::microseconds(1) <= tick.begins;
 }
 
 Result<LoopTiming> ticks_of(const json& values, const std::string& file) {
+  const auto wrong = [&](std::size_t tick) {
+    return fail_at(file, fmt::format("tick {}: {} is not [sampled, begins, commanded] in "
+                                     "nanoseconds up to 1e16, each at or after the one before it",
+                                     tick, text_of(values[tick])));
+  };
   LoopTiming ticks;
-  Nanoseconds last_commanded{0};
   for (const json& value : values) {
     const auto tick = tick_of(value);
-    if (!tick || !follows(*tick, ticks, last_commanded)) {
-      return fail_at(file, fmt::format("tick {}: {} is not [sampled, begins, commanded] in "
-                                       "nanoseconds up to 1e16, each at or after the one before it",
-                                       ticks.size(), text_of(value)));
-    }
-    last_commanded = tick->commanded.value_or(last_commanded);
+    if (!tick) return wrong(ticks.size());
     ticks.push_back(*tick);
   }
+  if (const auto tick = first_disorder(ticks)) return wrong(*tick);
   if (ticks.empty()) return fail_at(file, "has no ticks");
   return ticks;
 }
@@ -86,6 +84,15 @@ json ticks_json(const LoopTiming& timing) {
 }
 
 }  // namespace
+
+std::optional<std::size_t> first_disorder(const LoopTiming& timing) {
+  Nanoseconds last_commanded{0};
+  for (std::size_t i = 0; i < timing.size(); ++i) {
+    if (!follows(timing[i], i > 0 ? &timing[i - 1] : nullptr, last_commanded)) return i;
+    last_commanded = timing[i].commanded.value_or(last_commanded);
+  }
+  return std::nullopt;
+}
 
 Result<TimingFile> read_timing(const std::filesystem::path& path) {
   const std::string file = path.string();

@@ -9,7 +9,9 @@
 // of its attitude unit as "attitude_ticks_ns".
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "harness/casefile/case.hpp"
@@ -30,6 +32,10 @@ struct TimingFile {
 // (with the tick).
 Result<TimingFile> read_timing(const std::filesystem::path& path);
 Result<void> write_timing(const TimingFile& timing, const std::filesystem::path& path);
+
+// The first tick that does not follow the one before it as LoopTiming requires. Ticks have to be at
+// least 1 us apart, because timestamps are whole microseconds.
+std::optional<std::size_t> first_disorder(const LoopTiming& timing);
 
 // The case as the recorded flight flew it: with the duration of the timing, and without metrics
 // whose windows begin after it. REQUIRES: `timing` was recorded with this case.

@@ -77,8 +77,10 @@ std::optional<PortFault> UnitDriver::set_parameters(std::size_t tick,
                                                     std::span<const ParameterChange> changes) {
   for (const ParameterChange& change : changes) {
     const int code = unit_.set_parameter(change.name, change.value);
-    if (code == ATTEST_OK) continue;
-    return fault_of(code, tick, fmt::format("set_parameter({}) at tick {}", change.name, tick));
+    auto fault =
+        fault_of(code, tick, fmt::format("set_parameter({}) at tick {}", change.name, tick));
+    if (fault && code == ATTEST_INVALID) fault->kind = Kind::refused;
+    if (fault) return fault;
   }
   return std::nullopt;
 }

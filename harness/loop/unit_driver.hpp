@@ -17,10 +17,13 @@ namespace attest {
 // The port itself failed, or does not support the request. Wrong outputs are not a PortFault: the
 // comparison finds them.
 struct PortFault {
+  // The port's process may send the kinds up to `protocol`, and `crash` if the port is a program
+  // (trace_message.hpp). The judge's process finds the others itself.
   enum class Kind {
-    profile,      // the profile is not supported
+    profile,      // the profile is not supported, nor was it when the port was described
     unsupported,  // ATTEST_UNSUPPORTED; a module or an instance that it does not make
-    failed,       // ATTEST_FAILED, ATTEST_INVALID
+    failed,       // ATTEST_FAILED; ATTEST_INVALID from another function than set_parameter
+    refused,      // ATTEST_INVALID from set_parameter: a name or a value that the port refuses
     protocol,     // broke the rules of the ABI
     crash,        // its process, or the program, ended
     timeout,      // no answer in time

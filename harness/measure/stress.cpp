@@ -114,7 +114,8 @@ Result<StressResults> judge_live(const StressTask& task, StressMeasurement measu
   if (!measurement.flight) {
     results.push_back(fresh(std::move(measurement.stress)));
     const PortFault no_unit = no_unit_of(task.the_case.profile, task.port);
-    judge(measurement.refusal.value_or(no_unit), results.front().result);
+    const auto refusal = measurement.refusal.value_or(no_unit);
+    judge(*held_to(task.port, task.the_case.profile, refusal), results.front().result);
     return results;
   }
   LiveFlight& flight = *measurement.flight;

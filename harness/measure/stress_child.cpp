@@ -2,14 +2,14 @@
 // messages of the first kind, and then one of another kind:
 //
 //     {"progress": {"time_ns": ..., "deadlines": ..., "missed": ..., "idle": false}}
-//     {"units": [{"stress": {...}, ...}, ...], ...}   the flight. For each unit three blobs follow:
-//                                                     samples, ticks, LoopTick::commanded
+//     {"units": [...], ...}                           the flight (stress_message.hpp)
 //     {"refused": true, ...}                          the port did not make all units; its fault
 //     {"error": {...}}
 //
-// The port's code runs in the child, so the parent accepts no verdict from the child. A port can
-// forge the measurements, such as its own execution time. It cannot forge the verdict on its
-// outputs, because the parent judges them.
+// The port's code runs in the child, so the parent accepts no verdict from the child, and checks
+// the type and the range of each member where it arrives. A port can forge the measurements, such
+// as its own execution time. It cannot forge the verdict on its outputs, because the parent judges
+// them.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -20,11 +20,12 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/core/error_json.hpp"
+#include "harness/core/json_reader.hpp"
 #include "harness/core/json_text.hpp"
 #include "harness/host/port_calls.hpp"
 #include "harness/host/trace_message.hpp"
 #include "harness/measure/stress.hpp"
-#include "harness/measure/stress_json.hpp"
+#include "harness/measure/stress_message.hpp"
 #include "harness/process/child.hpp"
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/judge.hpp"
@@ -35,122 +36,8 @@ namespace {
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto report_every = std::chrono::seconds(1);
-
 std::atomic<bool> asked_to_stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // written by a signal handler
-
-using Times = std::vector<std::optional<Nanoseconds>>;
-
-void send_measured(const StressMeasurement& measured, MessageSocket& parent) {
-  if (!measured.flight) {
-    json refused = {{"refused", true}};
-    set_end(measured.refusal, std::nullopt, refused);
-    parent.send(text_of(refused));
-    return;
-  }
-  const LiveFlight& flight = *measured.flight;
-  json head = {{"units", json::array()}};
-  std::vector<Blob> blobs;
-  const auto add = [&](const StressResult& stress, const LiveUnitRecord& unit,
-                       const Times& commanded) {
-    json of_unit = {{"stress", to_json(stress)},
-                    {"ticks", unit.ticks.size()},
-                    {"samples", unit.samples.size()},
-                    {"commanded", commanded.size()},
-                    {"parameters", changes_json(unit.changes)}};
-    set_end(unit.fault, std::nullopt, of_unit);
-    head["units"].push_back(std::move(of_unit));
-    blobs.insert(blobs.end(), {blob_of(unit.samples), blob_of(unit.ticks), blob_of(commanded)});
-  };
-  add(measured.stress, flight.unit, flight.plant.commanded);
-  if (flight.attitude_unit) {
-    add(*measured.attitude_unit, *flight.attitude_unit, flight.unit.setpoints_received);
-  }
-  set_end(std::nullopt, flight.plant.divergence, head);
-  parent.send(text_of(head), blobs);
-}
-
-// The next blob, of `count` objects. Empty if there are more than `most`, or if it does not arrive.
-template <typename T>
-std::optional<std::vector<T>> read_some(const json& count, std::size_t most, BlobReader& blobs) {
-  const auto wanted = count.get<std::size_t>();
-  return wanted <= most ? blobs.read<T>(wanted) : std::nullopt;
-}
-
-struct MeasuredUnit {
-  StressResult stress;
-  LiveUnitRecord record;
-  Times commanded;
-  std::size_t most = 0;  // the most ticks that the unit can have
-
-  bool is_whole() const { return record.ticks.size() + stress.misses.skipped >= most; }
-};
-
-// Reads the part for one unit from the message of a flight. Empty, or json::exception: it is
-// invalid.
-std::optional<MeasuredUnit> unit_from(const json& head, std::size_t most, bool of_program,
-                                      BlobReader& blobs) {
-  auto stress = stress_from_json(head.at("stress"));
-  if (!stress) return std::nullopt;
-  auto samples = read_some<Sample>(head.at("samples"), most, blobs);
-  auto ticks = samples ? read_some<LiveTick>(head.at("ticks"), most, blobs) : std::nullopt;
-  using Time = Times::value_type;
-  auto commanded = ticks ? read_some<Time>(head.at("commanded"), most, blobs) : std::nullopt;
-  const bool fits = commanded && commanded->size() >= ticks->size() &&
-                    ticks->size() == stress->ticks &&
-                    samples->size() == std::min(ticks->size(), checked_ticks);
-  if (!fits) return std::nullopt;
-  MeasuredUnit unit;
-  unit.stress = *std::move(stress);
-  unit.commanded = *std::move(commanded);
-  unit.most = most;
-  unit.record.samples = *std::move(samples);
-  unit.record.ticks = *std::move(ticks);
-  unit.record.changes = changes_from(head.at("parameters"));
-  unit.record.fault = fault_from(head, of_program);
-  return unit;
-}
-
-// Reads the message of a flight. Empty, or json::exception: it is not one that attest's code in the
-// child would send. For example, a flight may be shorter than its case only after a request to
-// stop, a fault or a divergence, or with a unit that the estimator triggers.
-std::optional<StressMeasurement> measurement_from(const StressTask& task, bool of_program,
-                                                  bool was_asked_to_stop, const json& head,
-                                                  BlobReader& blobs) {
-  const LoopRate& rate = task.configuration.rate;
-  std::vector<Rate> rates{rate.unit};
-  if (task.the_case.attitude_loop) rates.push_back(*rate.attitude_unit);
-  const json& heads = head.at("units");
-  if (!heads.is_array() || heads.size() != rates.size()) return std::nullopt;
-  std::vector<MeasuredUnit> units;
-  for (std::size_t i = 0; i < rates.size(); ++i) {
-    const auto most = static_cast<std::size_t>(tick_count(task.the_case.duration, rates[i]));
-    auto unit = unit_from(heads[i], most, of_program, blobs);
-    if (!unit) return std::nullopt;
-    units.push_back(*std::move(unit));
-  }
-  if (blobs.left() != 0) return std::nullopt;
-  StressMeasurement measured;
-  LiveFlight& flight = measured.flight.emplace();
-  flight.plant.divergence = divergence_from(head);
-  const bool has_fault = std::any_of(units.begin(), units.end(), [](const MeasuredUnit& unit) {
-    return unit.record.fault.has_value();
-  });
-  const bool may_be_short =
-      was_asked_to_stop || has_fault || flight.plant.divergence || task.the_case.unit.on_estimate;
-  const bool is_whole =
-      std::all_of(units.begin(), units.end(), std::mem_fn(&MeasuredUnit::is_whole));
-  if (!is_whole && !may_be_short) return std::nullopt;
-  measured.stress = std::move(units.front().stress);
-  flight.unit = std::move(units.front().record);
-  flight.plant.commanded = std::move(units.front().commanded);
-  if (units.size() == 1) return measured;
-  measured.attitude_unit = std::move(units.back().stress);
-  flight.attitude_unit = std::move(units.back().record);
-  flight.unit.setpoints_received = std::move(units.back().commanded);
-  return measured;
-}
 
 void work(const StressTask& task, const std::string& specification, const PortCalls& calls,
           MessageSocket& parent) {
@@ -240,13 +127,14 @@ class Listener {
     if (why == Received::Kind::too_late || why == Received::Kind::given_up) {
       return gone_wrong(task_, Verdict::timeout, how_it_hangs());
     }
-    return forged();
+    return forged("it is no message");
   }
 
-  StressResults forged() {
+  StressResults forged(const std::string& wrong) {
     child_.kill();
-    return gone_wrong(task_, Verdict::protocol,
-                      "the port wrote on the socket on which its process answers");
+    return gone_wrong(
+        task_, Verdict::protocol,
+        fmt::format("the port wrote on the socket on which its process answers: {}", wrong));
   }
 
   bool hangs() const {
@@ -276,40 +164,40 @@ class Listener {
                                                  const Patience& patience) {
     heard_ = Clock::now();
     const json head = json_from(received.head);
-    if (!head.is_object()) return forged();
-    if (head.contains("error")) {
-      auto error = error_from_json(head["error"]);
-      return Result<StressResults>(tl::unexpected(error ? *error : error.error()));
+    std::string error;
+    JsonReader reader(head, error);
+    if (reader.has("error")) return Result<StressResults>(error_in(reader));
+    if (reader.has("refused")) {
+      StressMeasurement measured;
+      measured.refusal = fault_from(reader, 0, of_program_);
+      if (!error.empty()) return forged(error);
+      return judge_live(task_, std::move(measured));
     }
-    try {
-      if (head.contains("refused")) {
-        StressMeasurement measured;
-        measured.refusal = fault_from(head, of_program_);
-        return judge_live(task_, std::move(measured));
-      }
-      if (head.contains("units")) {
-        auto kind = Received::Kind::no_message;
-        BlobReader blobs(received.blobs, [&](void* place, std::size_t size) {
-          const auto came = child_.receive_blob(place, size, patience);
-          if (came != Received::Kind::message) kind = came;
-          return came == Received::Kind::message;
-        });
-        auto measured = measurement_from(task_, of_program_, is_stopping_, head, blobs);
-        if (!measured) return end_of(kind);
-        return judge_live(task_, *std::move(measured));
-      }
-      take_progress(head.at("progress"));
-    } catch (const json::exception&) {
-      return forged();
+    if (!reader.has("units")) {
+      take_progress(reader.object("progress"));
+      return error.empty() ? std::nullopt : std::optional<Result<StressResults>>(forged(error));
     }
-    return std::nullopt;
+    auto kind = Received::Kind::message;
+    BlobReader blobs(received.blobs, [&](void* place, std::size_t size) {
+      kind = child_.receive_blob(place, size, patience);
+      return kind == Received::Kind::message;
+    });
+    auto measured = measurement_from(task_, of_program_, is_stopping_, reader, blobs);
+    if (kind != Received::Kind::message) return end_of(kind);
+    if (!error.empty()) return forged(error);
+    LiveFlight& flight = *measured.flight;
+    flight.unit.fault = with_words(std::move(flight.unit.fault), child_, of_program_);
+    if (auto& attitude = flight.attitude_unit) {
+      attitude->fault = with_words(std::move(attitude->fault), child_, of_program_);
+    }
+    return judge_live(task_, std::move(measured));
   }
 
-  void take_progress(const json& now) {
+  void take_progress(JsonReader now) {
+    const Nanoseconds time(now.integer("time_ns", 0, longest_of(task_).count()));
     const StressProgress progress{
-        {Nanoseconds(now.at("time_ns").get<std::int64_t>()),
-         now.at("deadlines").get<std::uint64_t>(), now.at("missed").get<std::uint64_t>()},
-        now.at("idle").get<bool>()};
+        {time, now.count("deadlines", INT64_MAX), now.count("missed", INT64_MAX)},
+        now.flag("idle")};
     is_made_ = true;
     idle_ = progress.idle;
     flown_ = progress.live.time;

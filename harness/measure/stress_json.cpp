@@ -1,8 +1,12 @@
 #include "harness/measure/stress_json.hpp"
 
+#include <cstdint>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "harness/core/json_reader.hpp"
+#include "harness/core/printable.hpp"
 #include "harness/verify/verdict_json.hpp"
 
 namespace attest {
@@ -79,25 +83,31 @@ struct Put {
   }
 };
 
-// Throws json::exception if a member is missing or of another type.
+// Longer than any measurement. Sums of such times fit into 64 bits.
+constexpr std::int64_t longest_ns = 1'000'000'000'000'000;
+
+Nanoseconds time_from(JsonReader& in, const char* key) {
+  return Nanoseconds(in.integer(key, 0, longest_ns));
+}
+
+// Reports members that are missing, of another type or out of range to the reader.
 struct Get {
-  const json& in;
+  JsonReader& in;
+  std::string& error;
   void operator()(const char* key, Buckets& buckets) const {
-    for (const json& bucket : in.at(key)) {
-      buckets.push_back({Nanoseconds(bucket.at("from_ns").get<std::int64_t>()),
-                         Nanoseconds(bucket.at("below_ns").get<std::int64_t>()),
-                         bucket.at("count").get<std::uint64_t>()});
+    for (const json& one : in.list(key)) {
+      JsonReader bucket(one, error);
+      buckets.push_back({time_from(bucket, "from_ns"), time_from(bucket, "below_ns"),
+                         bucket.count("count", INT64_MAX)});
     }
   }
   void operator()(const char* key, std::optional<Nanoseconds>& time) const {
-    if (in.contains(key)) time = Nanoseconds(in.at(key).get<std::int64_t>());
+    if (in.has(key)) time = time_from(in, key);
   }
-  void operator()(const char* key, Nanoseconds& time) const {
-    time = Nanoseconds(in.at(key).get<std::int64_t>());
-  }
+  void operator()(const char* key, Nanoseconds& time) const { time = time_from(in, key); }
   template <typename Number>
   void operator()(const char* key, Number& number) const {
-    in.at(key).get_to(number);
+    number = static_cast<Number>(in.count(key, INT64_MAX));
   }
 };
 
@@ -117,36 +127,41 @@ json slow_to_json(const SlowTicks& slow) {
   return out;
 }
 
-SlowTicks slow_from_json(const json& in) {
+SlowTicks slow_from_json(JsonReader in, std::string& error) {
   SlowTicks slow;
-  slow.threshold = Nanoseconds(in.at("threshold_ns").get<std::int64_t>());
-  in.at("count").get_to(slow.count);
-  for (const json& tick : in.at("worst")) {
-    slow.worst.push_back({tick.at("tick").get<std::size_t>(),
-                          Nanoseconds(tick.at("execution_time_ns").get<std::int64_t>()),
-                          Nanoseconds(tick.at("elapsed_ns").get<std::int64_t>())});
+  slow.threshold = time_from(in, "threshold_ns");
+  slow.count = in.count("count", INT64_MAX);
+  for (const json& one : in.list("worst")) {
+    JsonReader tick(one, error);
+    slow.worst.push_back({tick.count("tick", INT64_MAX), time_from(tick, "execution_time_ns"),
+                          time_from(tick, "elapsed_ns")});
   }
-  if (in.contains("rhythm")) {
-    const json& rhythm = in["rhythm"];
-    slow.rhythm =
-        Rhythm{rhythm.at("every_steps"), rhythm.at("first_tick"), rhythm.at("chance_at_most")};
-  }
+  if (!in.has("rhythm")) return slow;
+  JsonReader rhythm = in.object("rhythm");
+  slow.rhythm = Rhythm{rhythm.count("every_steps", INT64_MAX),
+                       rhythm.count("first_tick", INT64_MAX), rhythm.real("chance_at_most")};
   return slow;
 }
 
-StressResult read(const json& in) {
+StressResult read(JsonReader in, std::string& error) {
   StressResult stress;
-  numbers_of(stress, Get{in});
+  numbers_of(stress, Get{in, error});
   spreads_of(stress, [&](const char* key, Percentiles& spread) {
-    members_of_spread(spread, Get{in.at(key)});
+    JsonReader of_spread = in.object(key);
+    members_of_spread(spread, Get{of_spread, error});
   });
-  members_of_usage(stress.unit_usage, Get{in.at("unit")});
-  members_of_usage(stress.plant_usage, Get{in.at("plant")});
-  for (const json& right : in.at("privileges")) {
-    stress.privileges.push_back({right.at("name"), right.at("got"), right.at("why")});
+  JsonReader unit = in.object("unit"), plant = in.object("plant");
+  members_of_usage(stress.unit_usage, Get{unit, error});
+  members_of_usage(stress.plant_usage, Get{plant, error});
+  for (const json& one : in.list("privileges")) {
+    JsonReader right(one, error);
+    stress.privileges.push_back(
+        {printable_part(right.text("name")), right.flag("got"), printable_part(right.text("why"))});
   }
-  stress.slow = slow_from_json(in.at("slow_steps"));
-  if (in.contains("module")) stress.module = module_named(in["module"].get<std::string>());
+  stress.slow = slow_from_json(in.object("slow_steps"), error);
+  if (!in.has("module")) return stress;
+  stress.module = module_named(in.text("module"));
+  if (!stress.module) in.wrong("module", "is no module");
   return stress;
 }
 
@@ -178,13 +193,11 @@ Result<StressResult> stress_from_json(const json& in) {
   if (!in.is_object() || !in.contains("result")) return fail("not the result of a stress run");
   auto result = case_result_from_json(in["result"]);
   if (!result) return tl::unexpected(result.error());
-  try {
-    StressResult stress = read(in);
-    stress.result = std::move(*result);
-    return stress;
-  } catch (const json::exception& error) {
-    return fail(fmt::format("not the result of a stress run: {}", error.what()));
-  }
+  std::string error;
+  StressResult stress = read(JsonReader(in, error), error);
+  if (!error.empty()) return fail(fmt::format("not the result of a stress run: {}", error));
+  stress.result = std::move(*result);
+  return stress;
 }
 
 }  // namespace attest

@@ -167,6 +167,8 @@ Result<Hello> parse_hello(std::string_view line) {
   hello.unsupported_groups =
       members.optional<std::vector<std::string>>("unsupported_groups", "a list of groups");
   read_numbers(members, hello);
+  const auto wrong = wrong_in_declared(hello.name, hello.version, hello.unsupported_groups);
+  if (!wrong.empty()) members.set_error("is wrong: " + wrong);
   if (const std::string error = members.error(); !error.empty()) {
     return fail("its answer to the handshake " + error);
   }

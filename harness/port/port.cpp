@@ -6,13 +6,35 @@
 
 #include <fmt/format.h>
 
+#include "harness/core/printable.hpp"
+
 namespace attest {
+
+std::string wrong_in_name(std::string_view name) {
+  constexpr std::size_t longest = 200;
+  if (name.size() > longest) return fmt::format("is longer than {} bytes", longest);
+  if (printable_part(name) != name) return "has a character that cannot be printed";
+  return "";
+}
+
+std::string wrong_in_declared(std::string_view name, std::string_view version_text,
+                              std::span<const std::string> unsupported_groups) {
+  constexpr std::size_t most_groups = 1000;
+  if (auto wrong = wrong_in_name(name); !wrong.empty()) return "`name` " + wrong;
+  if (auto wrong = wrong_in_name(version_text); !wrong.empty()) return "`version` " + wrong;
+  if (unsupported_groups.size() > most_groups) {
+    return fmt::format("`unsupported_groups` has more than {} groups", most_groups);
+  }
+  for (const std::string& group : unsupported_groups) {
+    const std::string wrong = wrong_in_name(group);
+    if (!wrong.empty()) return "`unsupported_groups` has a group that " + wrong;
+  }
+  return "";
+}
 
 Result<int> parse_fraction_bits(std::string_view arithmetic) {
   constexpr std::string_view prefix = "fixed:";
-  // With fewer bits, wrong ports would pass the tolerance. With more, the tolerance is practically
-  // that of floats.
-  constexpr int fewest = 20, most = 32;
+  constexpr int fewest = fewest_fraction_bits, most = most_fraction_bits;
   int bits = 0;
   const char* const end = arithmetic.data() + arithmetic.size();
   const char* const begin = arithmetic.data() + std::min(prefix.size(), arithmetic.size());

@@ -117,6 +117,18 @@ class Port {
   virtual void finish() {}
 };
 
+// The fraction bits that a port in fixed point can have. With fewer bits, wrong ports would pass
+// the tolerance. With more, the tolerance is practically that of floats.
+inline constexpr int fewest_fraction_bits = 20, most_fraction_bits = 32;
+
+// The error in a name: "is longer than 200 bytes". Empty if it is printable and short enough.
+std::string wrong_in_name(std::string_view name);
+
+// The first error in what a port declares: "`version` is longer than 200 bytes"; empty if there is
+// none.
+std::string wrong_in_declared(std::string_view name, std::string_view version,
+                              std::span<const std::string> unsupported_groups);
+
 // Parses the text of ATTEST_EXTENSION_ARITHMETIC: "fixed:22" -> 22. Errors: other text, bits out of
 // range.
 Result<int> parse_fraction_bits(std::string_view arithmetic);

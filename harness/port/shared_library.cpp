@@ -124,7 +124,10 @@ Result<std::unique_ptr<Port>> open_shared_library(const std::string& path) {
   }
   const auto* unit = reinterpret_cast<const attest_unit* (*)()>(symbol)();
   if (auto checked = check_table(unit, path); !checked) return tl::unexpected(checked.error());
-  return std::make_unique<AbiPort>(*unit, library->handle());
+  auto port = std::make_unique<AbiPort>(*unit, library->handle());
+  const auto wrong = wrong_in_declared(port->name(), port->version(), port->unsupported_groups());
+  if (!wrong.empty()) return fail_at(path, fmt::format("what it declares is wrong: {}", wrong));
+  return port;
 }
 
 }  // namespace attest

@@ -14,7 +14,7 @@
 namespace attest {
 namespace {
 
-constexpr std::size_t stack_bytes = 8u << 20, page_bytes = 4096;
+constexpr std::size_t stack_bytes = PaintedStack::size, page_bytes = 4096;
 constexpr unsigned char paint = 0xa5;
 
 struct Call {

@@ -9,10 +9,12 @@
 
 namespace attest {
 
-// Is as large as the stack of a main thread (8 MiB), with a guard page below. A function that needs
+// Is as large as the stack of a main thread, with a guard page below. A function that needs
 // more gets SIGSEGV, same as in a main thread. For one thread at a time.
 class PaintedStack {
  public:
+  static constexpr std::size_t size = 8u << 20;  // [bytes]
+
   static Result<PaintedStack> make();  // errors: no memory
 
   PaintedStack(PaintedStack&& other) noexcept;

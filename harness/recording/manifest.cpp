@@ -57,6 +57,9 @@ void read_port(const TomlTable& table, Manifest& manifest) {
   manifest.port_name = table.text("name", manifest.port_name);
   manifest.port_version = table.text("version", "");
   manifest.unsupported_groups = texts(table, "unsupported_groups");
+  const auto wrong =
+      wrong_in_declared(manifest.port_name, manifest.port_version, manifest.unsupported_groups);
+  if (!wrong.empty()) table.error("name", wrong);
   if (const std::string arithmetic = table.text("arithmetic", ""); !arithmetic.empty()) {
     const auto bits = parse_fraction_bits(arithmetic);
     if (bits) manifest.fraction_bits = *bits;

@@ -47,7 +47,7 @@ ordered_json results(const RunResult& run) {
     ordered_json entry;
     for (const char* key :
          {"id", "profile", "group", "name", "rate", "vehicle", "plant", "verdict", "reason",
-          "ticks", "deviating_ticks", "first", "worst", "tightest", "metrics"}) {
+          "exact_only", "ticks", "deviating_ticks", "first", "worst", "tightest", "metrics"}) {
       if (all.contains(key)) entry[key] = all[key];
     }
     out.push_back(std::move(entry));
@@ -148,6 +148,7 @@ std::string json_report(const RunResult& run, const std::optional<Diagnosis>& fo
       {"rates", rates(run)},
       {"totals", totals(run)},
       {"conformant", standing_of(run) == Standing::conformant},
+      {"standing", name_of(standing_of(run))},
       {"conformance", conformance_statement(run)},
       {"claims", claims(run)},
       {"suite", suite(run)},

@@ -31,7 +31,7 @@ std::span<const ReportFormat> report_formats() {
        with_diagnosis(code_quality_report)},
       {"--badge",
        "Write an SVG badge: green if the port conforms, amber if the result is "
-       "partial, red if a vector failed or none passed",
+       "partial or of the level events, red if a vector failed or none passed",
        of_verdicts(badge)},
       {"--write-expected",
        "Write the failures as a file for --expected-failures, in which you fill in "

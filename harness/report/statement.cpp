@@ -62,7 +62,7 @@ std::string text_of(const Claim& claim, const RunResult& run) {
   }
   const std::string what = fmt::format("{}, {}{}, {}, {}", profile, name_of(run.level),
                                        arithmetic_of(run), rate_text(run), which_groups(claim));
-  if (claim.conforms()) return "conformant: " + what;
+  if (claim.is_complete()) return (claim.conforms() ? "conformant: " : "events agree: ") + what;
   return fmt::format("partial: {} (because: {})", what,
                      one_line(fmt::format("{}", fmt::join(claim.missing, "; "))));
 }
@@ -88,14 +88,15 @@ std::string subject_of(const RunResult& run) {
   return out;
 }
 
-// "px4-v1.5.5 numeric, fixed point": the last profile to which the port conforms. If the port
-// conforms to no profile, the last profile with a claim.
+// "px4-v1.5.5 numeric, fixed point": the last profile with a complete claim. If there is none, the
+// last profile with a claim.
 std::string on_the_badge(const RunResult& run, Standing standing) {
   std::string profile;
   for (const Claim& claim : claims_of(run)) {
-    if (claim.conforms() || standing == Standing::partial) profile = one_line(claim.profile);
+    if (claim.is_complete() || standing == Standing::partial) profile = one_line(claim.profile);
   }
-  return fmt::format("{} {}{}{}", profile, name_of(run.level),
+  return fmt::format("{} {}{}{}", profile,
+                     standing == Standing::events_agree ? name_of(standing) : name_of(run.level),
                      arithmetic_of(run).empty() ? "" : ", fixed point",
                      standing == Standing::partial ? ", partial" : "");
 }
@@ -104,6 +105,7 @@ const char* colour_of(Standing standing) {
   switch (standing) {
     case Standing::conformant:
       return "#3a7d34";
+    case Standing::events_agree:
     case Standing::partial:
       return "#8a6500";
     case Standing::none:

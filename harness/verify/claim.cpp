@@ -28,6 +28,7 @@ struct Group {
     return std::any_of(rates.begin(), rates.end(),
                        [](const auto& rate) { return rate.second.run > 0; });
   }
+  bool was_compared() const { return passes || fails || expected_failures > 0; }
 };
 
 using Groups = std::map<std::string, Group>;
@@ -46,8 +47,8 @@ bool is_of_another_step(const CaseResult& result, const RunResult& run) {
 void add(const CaseResult& result, const RunResult& run, Group& group) {
   Tally& tally = group.rates[result.rate];
   ++tally.run;
-  const bool is_exact_only = result.verdict == Verdict::skip && run.level != Level::exact &&
-                             result.reason == exact_level_only;
+  const bool is_exact_only =
+      result.verdict == Verdict::skip && run.level != Level::exact && result.exact_only;
   if (result.verdict == Verdict::pass || is_exact_only) ++tally.good;
   group.passes = group.passes || result.verdict == Verdict::pass;
   group.fails = group.fails || fails_a_run(result.verdict);
@@ -72,9 +73,8 @@ std::map<std::string, Groups> groups_of(const RunResult& run) {
 }
 
 bool was_judged(const Groups& groups) {
-  return std::any_of(groups.begin(), groups.end(), [](const auto& group) {
-    return group.second.passes || group.second.fails || group.second.expected_failures > 0;
-  });
+  return std::any_of(groups.begin(), groups.end(),
+                     [](const auto& group) { return group.second.was_compared(); });
 }
 
 // Whether a vector of the group passed, and all its vectors are good at the rates that were run.
@@ -150,6 +150,19 @@ std::string outputs_without(const ChannelSet& not_recorded) {
                      fmt::join(names, ", "));
 }
 
+// Adds the groups of which all vectors were run, but no outputs were compared.
+void say_what_was_not_compared(const Groups& groups, std::vector<std::string>& missing) {
+  std::vector<std::string> names;
+  for (const auto& [name, group] : groups) {
+    const bool is_said = group.unsupported + group.skipped > 0;
+    if (!is_module(name) && group.was_run() && !group.was_compared() && !is_said) {
+      names.push_back(name);
+    }
+  }
+  if (!names.empty())
+    missing.push_back("no output compared of " + few_or_counted(names, "", "groups"));
+}
+
 std::vector<std::string> missing_of(const Groups& groups, const RunResult& run) {
   std::vector<std::string> missing;
   if (!run.suite_is_released) {
@@ -170,6 +183,7 @@ std::vector<std::string> missing_of(const Groups& groups, const RunResult& run) 
     missing.push_back(fmt::format("fixed step of {} Hz", run.fixed_step->to_string()));
   }
   say_what_was_not_run(groups, run, missing);
+  if (!run.fixed_step) say_what_was_not_compared(groups, missing);
   say(groups, &Group::unsupported, "vector unsupported", "vectors unsupported", missing);
   say(groups, &Group::skipped, "vector skipped", "vectors skipped", missing);
   say(groups, &Group::expected_failures, "expected failure", "expected failures", missing);
@@ -179,6 +193,7 @@ std::vector<std::string> missing_of(const Groups& groups, const RunResult& run) 
 Claim claim_of(const std::string& profile, const Groups& groups, const RunResult& run) {
   Claim claim;
   claim.profile = profile;
+  claim.level = run.level;
   claim.has_all_groups = true;
   for (const auto& [name, group] : groups) {
     const bool whole = is_whole(group, run);
@@ -206,13 +221,25 @@ std::vector<Claim> claims_of(const RunResult& run) {
   return claims;
 }
 
+std::string_view name_of(Standing standing) {
+  switch (standing) {
+    case Standing::conformant:
+      return "conformant";
+    case Standing::events_agree:
+      return "events agree";
+    case Standing::partial:
+      return "partial";
+    case Standing::none:
+      break;
+  }
+  return "none";
+}
+
 Standing standing_of(const RunResult& run) {
   const bool is_complete = !run.failed() && run.errors.empty() && !run.stopped_early;
   if (!is_complete || run.count(Verdict::pass) == 0) return Standing::none;
-  const auto claims = claims_of(run);
-  const bool conforms = std::any_of(claims.begin(), claims.end(),
-                                    [](const Claim& claim) { return claim.conforms(); });
-  return conforms ? Standing::conformant : Standing::partial;
+  if (!std::ranges::any_of(claims_of(run), &Claim::is_complete)) return Standing::partial;
+  return run.level == Level::events ? Standing::events_agree : Standing::conformant;
 }
 
 }  // namespace attest

@@ -3,12 +3,17 @@
 //
 // A port conforms to a profile if no case failed, and all cases of the released suite passed: every
 // rate and every group, except the optional modules (mixer, battery estimate). Cases that are
-// compared at the exact level only may be skipped at another level. A port with a fixed step,
+// compared at the exact level only may be skipped at another level (CaseResult::exact_only), but of
+// each group at least one vector must be compared. A port with a fixed step,
 // changed parameters, outputs that were not recorded, or no process of its own does not conform. A
 // claim names the groups that fail, and what is missing.
+//
+// At the level events a port does not conform, because the wide bounds of that level pass some
+// faults of the catalogue (tests/QUALITY.md). The claim is then that its events agree.
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "harness/verify/run_result.hpp"
@@ -17,6 +22,7 @@ namespace attest {
 
 struct Claim {
   std::string profile;
+  Level level = Level::numeric;
   // Groups, in alphabetical order. `whole`: all cases passed, at all rates that were run.
   // `in_part`: some cases passed, and none failed. `failing`: a case failed.
   std::vector<std::string> whole, in_part, failing;
@@ -27,18 +33,21 @@ struct Claim {
   std::vector<std::string>
       missing;  // reasons against conformance: "custom suite", "2 vectors unsupported (tpa)"
 
-  bool conforms() const { return failing.empty() && missing.empty(); }
+  bool is_complete() const { return failing.empty() && missing.empty() && has_all_groups; }
+  bool conforms() const { return is_complete() && level != Level::events; }
 };
 
 // One claim for each profile in which a case passed or failed, sorted by profile. A profile that
 // the port does not support has no claim, because all its cases are skipped.
 std::vector<Claim> claims_of(const RunResult& run);
 
-enum class Standing { conformant, partial, none };
+enum class Standing { conformant, events_agree, partial, none };
+
+std::string_view name_of(Standing standing);  // "events agree"
 
 // The standing of the whole run. `none`: a verdict fails the run, an error occurred, the run
 // stopped early, or no case passed. Otherwise `conformant` if the port conforms to at least one
-// profile.
+// profile, and `events_agree` if a claim at the level events is complete.
 Standing standing_of(const RunResult& run);
 
 }  // namespace attest

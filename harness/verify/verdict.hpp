@@ -29,8 +29,8 @@ enum class Verdict {
 
 inline constexpr int verdict_count = 10;
 
-// The reason of a skipped case that is compared at the exact level only. Below that level a claim
-// of conformance counts such a case like a pass (claim.cpp).
+// The reason of a skipped case that is compared at the exact level only, for people.
+// CaseResult::exact_only is set for such a case.
 inline constexpr std::string_view exact_level_only =
     "on a threshold of the law: compared at the exact level only";
 
@@ -59,7 +59,11 @@ struct CaseResult {
   LoopRate rate;
   std::optional<PlantConfiguration> plant_configuration;  // of a flight
   Verdict verdict = Verdict::pass;
-  std::string reason;     // one line; may be empty for a pass, or if `first` shows the failure
+  std::string reason;  // one line; may be empty for a pass, or if `first` shows the failure
+  // A skip that a claim of conformance counts like a pass: the case is compared at the exact level
+  // only, and the run has another level. The judge sets it from the case. An answer of the port
+  // cannot set it, not even with the same reason.
+  bool exact_only = false;
   std::size_t ticks = 0;  // compared
   std::size_t deviating_ticks = 0;
   std::optional<Deviation> first, worst;

@@ -142,6 +142,7 @@ nlohmann::json to_json(const CaseResult& result) {
       {"deviating_ticks", result.deviating_ticks},
       {"elapsed_s", json_of(result.elapsed_s)},
   };
+  if (result.exact_only) out["exact_only"] = true;
   if (result.first) out["first"] = deviation_to_json(*result.first);
   if (result.worst) out["worst"] = deviation_to_json(*result.worst);
   if (result.tightest) out["tightest"] = headroom_to_json(*result.tightest);
@@ -171,6 +172,10 @@ Result<CaseResult> case_result_from_json(const nlohmann::json& json) {
     out.verdict = *known;
   else
     reader.wrong(fmt::format("there is no verdict `{}`", verdict));
+  out.exact_only = reader.has("exact_only") && reader.flag("exact_only");
+  if (out.exact_only && out.verdict != Verdict::skip) {
+    reader.wrong(fmt::format("`exact_only` is of a skip, and the verdict is {}", verdict));
+  }
   if (const auto rate = LoopRate::parse(reader.text("rate")))
     out.rate = *rate;
   else

@@ -8,7 +8,8 @@
 //
 // A flight also has "vehicle", "plant" and "metrics", a list of {"name": "settles", "measure":
 // "settling_time_s", "value": 0.62, "reference": 0.61, "tolerance": 0.08, "min": "-inf", "max": 1,
-// "within": true}.
+// "within": true}. A skip of a case that is compared at the exact level only has "exact_only":
+// true.
 //
 // `first`, `worst` (same members as `first`) and `tightest` are absent when the result has no such
 // value. JSON has no NaN and no infinity: a number that is not finite is the string "nan", "inf" or
@@ -27,7 +28,8 @@ namespace attest {
 nlohmann::json to_json(const CaseResult& result);
 
 // The inverse of to_json(). Errors: a discarded value (json_from), a missing or wrong member, an
-// unknown verdict, channel or rate. Unknown and derived members (id, stage, within) are ignored.
+// unknown verdict, channel or rate; `exact_only` of another verdict than skip. Unknown and derived
+// members (id, stage, within) are ignored.
 Result<CaseResult> case_result_from_json(const nlohmann::json& json);
 
 }  // namespace attest

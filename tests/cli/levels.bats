@@ -24,6 +24,42 @@ open_loop=(--group anti_windup --group modes --group arming --group attitude --g
   has "partial: px4-v1.5.5, numeric, 11 rates, group tpa (because: only --group"
 }
 
+@test "a case that is compared at the level exact only still judges crashes and failures" {
+  for level in numeric events; do
+    nan_limit() {
+      run "$ATTEST" run --port "lib:$PORTS/port_nan_limit_$1.so" --level $level --no-diagnose \
+        --filter 'px4-v1.5.5/robustness/parameters_limits@250hz' \
+        --filter 'px4-v1.5.5/rates/*_alone@250hz' --json report.json
+    }
+    nan_limit aborts
+    [ "$status" -eq 1 ]
+    has "crash: the port's process was killed by signal 6 (Aborted) in step() at tick 4"
+    nan_limit fails
+    [ "$status" -eq 1 ]
+    has "fail: step at tick 4 returned ATTEST_FAILED; it last printed: limit out of range"
+    nan_limit refuses
+    has "1 skip"
+    grep -q '"exact_only": true' report.json
+  done
+  run "$ATTEST" run --port "lib:$PORTS/port_nan_limit_refuses.so" --level exact --no-diagnose \
+    --filter 'px4-v1.5.5/robustness/parameters_limits@250hz'
+  [ "$status" -eq 1 ]
+  has "fail: set_parameter(MC_ROLLRATE_MAX) at tick 4 returned ATTEST_INVALID"
+}
+
+@test "a run at the level events does not say that a port conforms" {
+  run "$ATTEST" run --level events --group mixer --json report.json --badge badge.svg
+  [ "$status" -eq 0 ]
+  has "partial: px4-v1.5.5, events"
+  grep -q '"standing": "partial"' report.json
+}
+
+@test "the faults that a level catches are counted" {
+  run "$ATTEST" faults --profile px4-v1.5.5 --level numeric yaw-weight-dropped tpa-missing
+  [ "$status" -eq 0 ]
+  has "px4-v1.5.5, level numeric: 2 of 2 detectable faults are caught"
+}
+
 @test "a mixer has no events: it is judged by its values at that level too" {
   run "$ATTEST" run --level events --group mixer --port fault:mixer-output-0-to-1 --no-diagnose
   [ "$status" -eq 1 ]

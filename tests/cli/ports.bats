@@ -113,7 +113,7 @@ TASKS
 @test "a step that fails, and one that is unsupported" {
   judged step_fails
   [ "$status" -eq 1 ]
-  has "ATTEST_FAILED"
+  has "step at tick 20 returned ATTEST_FAILED; it last printed: no solution of the tilt"
   judged unsupported_step
   [ "$status" -eq 2 ]
   has "no vector was compared"

@@ -139,6 +139,43 @@ def protocol_seeds():
     yield text_session()
 
 
+# Answers to request 1 of a process: a letter for the kind, the head, and zeros for the blobs.
+def host_seeds():
+    fault = {"kind": 1, "tick": 2, "what": "step returned ATTEST_UNSUPPORTED"}
+    says = {"name": "a", "version": "1", "unsupported_groups": ["tpa"], "modules": 1}
+    change = {"tick": 0, "name": "MC_ROLL_P", "bits": 0}
+    flown = {"ticks": 3, "parameters": [change]}
+    timed = {"steps": 3, "clock_ns": 20, "stack": 4096}
+    spread = {"count": 1, "min_ns": 1, "median_ns": 2, "max_ns": 3,
+              "buckets": [{"from_ns": 1, "below_ns": 2, "count": 1}]}  # fmt: skip
+    usage = {"cpu_ns": 1, "allocations": 0, "page_faults": 0, "yields": 0, "preemptions": 0}
+    stress = {name: 1 for name in STRESS_NUMBERS} | {name: spread for name in STRESS_SPREADS}
+    stress |= {"unit": usage, "plant": usage, "result": RESULT}
+    stress |= {"privileges": [{"name": "mlockall", "got": True, "why": ""}]}
+    stress |= {"slow_steps": {"threshold_ns": 1, "count": 0, "worst": []}}
+    for kind, head in [
+        ("g", {"says": says}),
+        ("g", {"says": says | {"fraction_bits": 22, "fixed_step": "250"}}),
+        ("g", {"error": {"message": "no such library", "file": "a.so", "line": 1}}),
+        ("d", {}),
+        ("d", {"fault": fault}),
+        ("f", flown),
+        ("f", flown | {"divergence": {"at_ns": 1, "what": "lost"}}),
+        ("t", timed),
+        ("s", stress),
+    ]:
+        yield f"{kind}{json.dumps({'request': 1} | head)}\n".encode()
+
+
+RESULT = {"profile": "px4-v1.5.5", "group": "flight", "name": "hover", "rate": "250",
+          "verdict": "pass", "reason": "", "ticks": 0, "deviating_ticks": 0}  # fmt: skip
+STRESS_NUMBERS = """deadlines ticks late_responses skipped_releases deadline_misses_by_port
+late_starts late_starts_by_port overruns waiting_steps plant_steps plant_late_steps longest_gap_ns
+wall_ns""".split()
+STRESS_SPREADS = """idle_wake_up_latency wake_up_latency execution_time response_time sample_age
+plant_wake_up_latency""".split()
+
+
 def ulog_message(kind, body):
     return struct.pack("<Hc", len(body), kind.encode()) + body
 

@@ -1,8 +1,11 @@
 // Messages that a port could send in place of its process: the judge does not take them as answers.
 #include "harness/host/host_protocol.hpp"
 
+#include <cstdint>
 #include <cstring>
+#include <random>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -10,6 +13,7 @@ namespace attest {
 namespace {
 
 using nlohmann::json;
+using testing::HasSubstr;
 
 // A message as it arrives.
 class Sent {
@@ -70,34 +74,119 @@ TEST(HostProtocol, AFaultHasAllItsMembers) {
   }
 }
 
-// Otherwise a port could report a crash, which does not count as a violation of the protocol.
-TEST(HostProtocol, AProcessDoesNotAnnounceItsOwnDeath) {
-  const json fault = {{"kind", PortFault::Kind::crash}, {"tick", 2}, {"what", "x"}};
+const json greeting = {{"request", 0},
+                       {"says",
+                        {{"name", "mine"},
+                         {"version", "1.0"},
+                         {"unsupported_groups", {"tpa"}},
+                         {"modules", 1},
+                         {"fraction_bits", 22},
+                         {"fixed_step", "250"}}}};
+
+// The error of a greeting with another value at `pointer`; empty if it is accepted.
+std::string wrong_greeting(const char* pointer, const json& value) {
+  json head = greeting;
+  head[json::json_pointer(pointer)] = value;
+  Sent sent(head, {});
+  const auto read = read_greeting(sent.as_answer_to(0));
+  return read ? "" : read.error().message;
+}
+
+TEST(HostProtocol, AGreetingIsRead) {
+  Sent sent(greeting, {});
+  const auto read = read_greeting(sent.as_answer_to(0));
+  ASSERT_TRUE(read && *read) << read.error().message;
+  EXPECT_EQ((*read)->name, "mine");
+  EXPECT_EQ((*read)->fraction_bits, 22);
+  EXPECT_EQ((*read)->fixed_step, Rate::hz(250));
+  EXPECT_TRUE((*read)->modules == only(Module::mc_att_control));
+}
+
+TEST(HostProtocol, EachMemberOfAGreetingHasARange) {
+  const std::string long_name(201, 'x');
+  for (const auto& [pointer, value] :
+       {std::pair<const char*, json>{"/says/fraction_bits", -60},
+        {"/says/fraction_bits", 19},
+        {"/says/fraction_bits", 33},
+        {"/says/fraction_bits", 22.0},
+        {"/says/fraction_bits", 18446744073709551596u},
+        {"/says/fixed_step", "0"},
+        {"/says/fixed_step", "-250"},
+        {"/says/fixed_step", "1e9"},
+        {"/says/fixed_step", 250},
+        {"/says/modules", 1u << module_count},
+        {"/says/modules", -1},
+        {"/says/name", long_name},
+        {"/says/name", "a\nb"},
+        {"/says/version", "\x1b[2J"},
+        {"/says/version", 7},
+        {"/says/unsupported_groups", std::vector<std::string>(1001, "tpa")},
+        {"/says/unsupported_groups", json::array({long_name})},
+        {"/says/unsupported_groups", json::array({7})}}) {
+    const std::string member(std::string_view(pointer).substr(sizeof "/says"));
+    EXPECT_THAT(wrong_greeting(pointer, value), HasSubstr(member)) << value;
+  }
+  EXPECT_EQ(wrong_greeting("/says/fraction_bits", 32), "");
+  EXPECT_EQ(wrong_greeting("/says/fixed_step", "1000/3"), "");
+}
+
+std::string wrong_fault(const json& fault, bool of_program = false) {
+  Sent sent({{"request", 5}, {"fault", fault}}, {three_samples});
+  Arrived arrived = sent.as_answer_to(5);
+  arrived.of_program = of_program;
+  const auto driven = read_driven(arrived, 3);
+  return driven ? "" : driven.error().message;
+}
+
+// A process does not report its own death, nor what only the judge can find out.
+TEST(HostProtocol, AFaultHasAKindThatTheProcessCanFindAndATickOfTheTrace) {
+  using Kind = PortFault::Kind;
+  const auto fault = [](Kind kind, int tick) {
+    return json{{"kind", kind}, {"tick", tick}, {"what", "x"}};
+  };
+  for (const Kind kind :
+       {Kind::profile, Kind::unsupported, Kind::failed, Kind::refused, Kind::protocol}) {
+    EXPECT_EQ(wrong_fault(fault(kind, 3)), "");
+  }
+  for (const Kind kind : {Kind::crash, Kind::timeout, Kind::unanswered, Kind(-1), Kind(99)}) {
+    EXPECT_THAT(wrong_fault(fault(kind, 0)), HasSubstr("`fault.kind`"));
+  }
+  EXPECT_EQ(wrong_fault(fault(Kind::crash, 0), true), "");  // a program runs in another process
+  EXPECT_THAT(wrong_fault(fault(Kind::timeout, 0), true), HasSubstr("`fault.kind`"));
+  EXPECT_THAT(wrong_fault(fault(Kind::failed, 4)), HasSubstr("`fault.tick`"));
+  EXPECT_THAT(wrong_fault(fault(Kind::failed, -1)), HasSubstr("`fault.tick`"));
+}
+
+TEST(HostProtocol, TheTextOfAFaultIsOneShortLine) {
+  const json fault = {{"kind", 2}, {"tick", 2}, {"what", "a\n" + std::string(100'000, 'x')}};
   Sent sent({{"request", 5}, {"fault", fault}}, {three_samples});
   const auto driven = read_driven(sent.as_answer_to(5), 3);
   ASSERT_TRUE(driven && driven->fault);
-  EXPECT_EQ(driven->fault->kind, PortFault::Kind::protocol);
+  EXPECT_THAT(driven->fault->what, testing::StartsWith("a\\x0ax"));
+  EXPECT_LT(driven->fault->what.size(), 5000u);
 }
 
-// A program runs in a process of its own, so its host can.
-TEST(HostProtocol, TheHostOfAProgramAnnouncesItsEnd) {
-  for (const auto& [told, read] :
-       {std::pair(PortFault::Kind::crash, PortFault::Kind::crash),
-        std::pair(PortFault::Kind::timeout, PortFault::Kind::protocol)}) {
-    const json fault = {{"kind", told}, {"tick", 2}, {"what", "x"}};
-    Sent sent({{"request", 5}, {"fault", fault}}, {three_samples});
+TEST(HostProtocol, OnlyAProgramsHostAnswersWithAFaultAlone) {
+  const auto is_fault = [](PortFault::Kind kind, bool of_program) {
+    Sent sent({{"request", 5}, {"fault", {{"kind", kind}, {"tick", 0}, {"what", "x"}}}}, {});
     Arrived arrived = sent.as_answer_to(5);
-    arrived.of_program = true;
-    const auto driven = read_driven(arrived, 3);
-    ASSERT_TRUE(driven && driven->fault);
-    EXPECT_EQ(driven->fault->kind, read);
-  }
+    arrived.of_program = of_program;
+    return read_fault(arrived).has_value();
+  };
+  EXPECT_TRUE(is_fault(PortFault::Kind::crash, true));
+  EXPECT_TRUE(is_fault(PortFault::Kind::protocol, true));
+  EXPECT_FALSE(is_fault(PortFault::Kind::profile, true));
+  EXPECT_FALSE(is_fault(PortFault::Kind::unsupported, true));
+  EXPECT_FALSE(is_fault(PortFault::Kind::protocol, false));
 }
+
+constexpr Nanoseconds ten_seconds{10'000'000'000};
 
 bool is_flown(json head, std::size_t ticks) {
-  head.update({{"request", 5}, {"source", "x"}, {"parameters", json::array()}});
+  head.update({{"request", 5}, {"parameters", json::array()}});
   Sent sent(head, {three_samples, three_of_plant});
-  return read_flown(sent.as_answer_to(5), {{Rate::hz(250), {}}, LoopTiming(ticks)}).has_value();
+  return read_flown(sent.as_answer_to(5), {{Rate::hz(250), {}}, LoopTiming(ticks)}, ten_seconds)
+      .has_value();
 }
 
 // Both traces of a flight of the cascade are there, and both are whole.
@@ -105,9 +194,10 @@ TEST(HostProtocol, AFlightOfTheCascadeHasTwoTraces) {
   FlightTiming timing = LoopTiming(3);
   timing.attitude_unit.resize(3);
   const auto read = [&](json head, const std::vector<std::string>& blobs) {
-    head.update({{"request", 5}, {"source", "x"}, {"parameters", json::array()}, {"ticks", 3}});
+    head.update({{"request", 5}, {"parameters", json::array()}, {"ticks", 3}});
     Sent sent(head, blobs);
-    return read_flown(sent.as_answer_to(5), {{LoopRate(Rate::hz(250), Rate::hz(250)), {}}, timing});
+    return read_flown(sent.as_answer_to(5), {{LoopRate(Rate::hz(250), Rate::hz(250)), {}}, timing},
+                      ten_seconds);
   };
   const json attitude = {{"attitude_ticks", 3}, {"attitude_parameters", json::array()}};
   const auto flown = read(attitude, {three_samples, three_of_plant, three_samples});
@@ -129,6 +219,31 @@ TEST(HostProtocol, AFlightThatEndsEarlySaysWhy) {
   EXPECT_FALSE(is_flown({{"ticks", 3}, {"divergence", {{"at_ns", "1"}}}}, 4));
   EXPECT_FALSE(is_flown({{"ticks", 2}}, 2));
   EXPECT_FALSE(is_flown({{"ticks", -3}}, 3));
+  for (const std::int64_t wrong_ns : {std::int64_t{-1}, ten_seconds.count() + 1}) {
+    EXPECT_FALSE(
+        is_flown({{"ticks", 3}, {"divergence", {{"at_ns", wrong_ns}, {"what", "lost"}}}}, 4));
+  }
+}
+
+TEST(HostProtocol, ParametersOfAFlightHaveATickANameAndBits) {
+  const auto is_right = [](const json& change) {
+    Sent sent({{"request", 5}, {"ticks", 3}, {"parameters", json::array({change})}},
+              {three_samples, three_of_plant});
+    return read_flown(sent.as_answer_to(5), {{Rate::hz(250), {}}, LoopTiming(3)}, ten_seconds)
+        .has_value();
+  };
+  const json right = {{"tick", 3}, {"name", "MC_ROLL_P"}, {"bits", 0xffffffffu}};
+  EXPECT_TRUE(is_right(right));
+  for (const auto& [member, value] : {std::pair<const char*, json>{"tick", 4},
+                                      {"tick", -1},
+                                      {"name", 7},
+                                      {"bits", 0x100000000},
+                                      {"bits", 1.5}}) {
+    json wrong = right;
+    wrong[member] = value;
+    EXPECT_FALSE(is_right(wrong)) << wrong;
+  }
+  EXPECT_FALSE(is_right(json::array({3, "MC_ROLL_P", 0})));
 }
 
 TEST(HostProtocol, TimesAreOfAllSteps) {
@@ -140,6 +255,53 @@ TEST(HostProtocol, TimesAreOfAllSteps) {
   EXPECT_TRUE(is_timed(right, 3));
   EXPECT_FALSE(is_timed(right, 4));
   EXPECT_FALSE(is_timed({{"request", 5}, {"steps", 3}}, 3));
+  EXPECT_FALSE(is_timed({{"request", 5}, {"steps", 3}, {"clock_ns", -1}}, 3));
+  EXPECT_FALSE(is_timed({{"request", 5}, {"steps", 3}, {"clock_ns", 2'000'000'000}}, 3));
+  EXPECT_FALSE(is_timed({{"request", 5}, {"steps", 3}, {"clock_ns", 1}, {"stack", 1u << 30}}, 3));
+}
+
+TEST(HostProtocol, StepsTakeATime) {
+  for (const std::int64_t step_ns : {std::int64_t{-1}, std::int64_t{INT64_MAX}}) {
+    std::string blob(sizeof step_ns, '\0');
+    std::memcpy(blob.data(), &step_ns, sizeof step_ns);
+    Sent sent({{"request", 5}, {"steps", 1}, {"clock_ns", 20}}, {blob});
+    EXPECT_FALSE(read_times(sent.as_answer_to(5), 1)) << step_ns;
+  }
+}
+
+// Each byte of right messages is changed, and pieces are cut out. A message that is still accepted
+// has no value out of range.
+TEST(HostProtocol, NoChangeOfAGreetingGivesAValueOutOfRange) {
+  std::mt19937 random(36);
+  const std::string right = greeting.dump();
+  for (int i = 0; i < 20'000; ++i) {
+    std::string head = right;
+    for (std::size_t changes = 1 + random() % 3; changes > 0; --changes) {
+      const std::size_t at = random() % head.size();
+      if (random() % 3 == 0) {
+        head.erase(at, 1 + random() % 8);
+      } else {
+        head[at] = static_cast<char>(random() % 4 == 0 ? random()
+                                                       : "-0123456789eE.\\\"{}[],"[random() % 22]);
+      }
+    }
+    Sent sent(json(head), {});
+    const auto read = read_greeting(sent.as_answer_to(0));
+    if (!read) {
+      EXPECT_FALSE(read.error().message.empty());
+      continue;
+    }
+    if (!*read) continue;
+    const PortSays& says = **read;
+    EXPECT_EQ(wrong_in_declared(says.name, says.version, says.unsupported_groups), "");
+    if (says.fraction_bits) {
+      EXPECT_GE(*says.fraction_bits, fewest_fraction_bits) << head;
+      EXPECT_LE(*says.fraction_bits, most_fraction_bits) << head;
+    }
+    if (says.fixed_step) {
+      EXPECT_GT(says.fixed_step->period_s(), 0) << head;
+    }
+  }
 }
 
 TEST(HostProtocol, AGreetingIsWholeOrAnError) {

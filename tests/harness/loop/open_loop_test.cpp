@@ -108,7 +108,7 @@ TEST(Drive, SaysWhichParameterWasRefused) {
   trace.parameters = {{0, "GOOD", 1}, {2, "BAD", 2}};
   const auto fault = drive(unit, trace);
   ASSERT_TRUE(fault);
-  EXPECT_EQ(fault->kind, Kind::failed);
+  EXPECT_EQ(fault->kind, Kind::refused);
   EXPECT_EQ(fault->tick, 2u);
   EXPECT_EQ(fault->what, "set_parameter(BAD) at tick 2 returned ATTEST_INVALID");
   unit.bad_parameter = ATTEST_UNSUPPORTED;

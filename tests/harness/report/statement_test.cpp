@@ -71,6 +71,13 @@ TEST(Statement, SaysTheFixedStepOfAPort) {
                         "(because: fixed step of 250 Hz)"));
 }
 
+TEST(Statement, AtTheLevelEventsHasAnotherWord) {
+  RunResult run = run_of({"tpa"});
+  run.level = Level::events;
+  EXPECT_THAT(conformance_statement(run),
+              HasSubstr("events agree: px4-v1.5.5, events, 2 rates, all groups; cases"));
+}
+
 TEST(Statement, SaysWhyThereIsNone) {
   EXPECT_THAT(conformance_statement(sample_run()),
               HasSubstr("none: px4-v1.5.5, 4 groups fail (attitude, flight, mixed, robustness)"));
@@ -93,6 +100,12 @@ TEST(Badge, IsAnSvgThatSaysIt) {
   const pugi::xml_node amber = document.child("svg");
   EXPECT_STREQ(amber.attribute("aria-label").value(), "attest: px4-v1.5.5 exact, partial");
   EXPECT_FALSE(amber.find_child_by_attribute("fill", "#3a7d34"));
+  RunResult of_events = passing_run();
+  of_events.level = Level::events;
+  ASSERT_TRUE(document.load_string(badge(of_events).c_str()));
+  const pugi::xml_node events = document.child("svg");
+  EXPECT_STREQ(events.attribute("aria-label").value(), "attest: px4-v1.5.5 events agree");
+  EXPECT_FALSE(events.find_child_by_attribute("fill", "#3a7d34"));
   ASSERT_TRUE(document.load_string(badge(sample_run()).c_str()));
   EXPECT_STREQ(document.child("svg").attribute("aria-label").value(), "attest: does not conform");
 }

@@ -99,10 +99,41 @@ TEST(Claim, WhatIsCountedApartIsMissing) {
 TEST(Claim, CasesOfTheExactLevelMayBeSkippedAtAnother) {
   RunResult run = complete_run({"attitude", "tpa"});
   run.results.back().verdict = Verdict::skip;
-  run.results.back().reason = exact_level_only;
+  run.results.back().exact_only = true;
   EXPECT_TRUE(only_claim(run).conforms());
   run.level = Level::exact;
   EXPECT_FALSE(only_claim(run).conforms());
+}
+
+// The text can come from the port.
+TEST(Claim, TheReasonDoesNotExcuseASkip) {
+  RunResult run = complete_run({"attitude", "tpa"});
+  run.results.back().verdict = Verdict::skip;
+  run.results.back().reason = exact_level_only;
+  EXPECT_THAT(only_claim(run).missing, ElementsAre("1 vector skipped (tpa)"));
+  EXPECT_EQ(standing_of(run), Standing::partial);
+}
+
+TEST(Claim, AGroupOfWhichNoOutputWasComparedIsMissing) {
+  RunResult run = complete_run({"attitude", "tpa"});
+  for (CaseResult& result : run.results) {
+    if (result.group != "tpa") continue;
+    result.verdict = Verdict::skip;
+    result.exact_only = true;
+  }
+  EXPECT_THAT(only_claim(run).missing, ElementsAre("no output compared of tpa"));
+  EXPECT_EQ(standing_of(run), Standing::partial);
+}
+
+// Faults of the catalogue pass at this level.
+TEST(Claim, AtTheEventsLevelTheEventsAgree) {
+  RunResult run = complete_run({"attitude", "tpa"});
+  run.level = Level::events;
+  EXPECT_TRUE(only_claim(run).is_complete());
+  EXPECT_FALSE(only_claim(run).conforms());
+  EXPECT_EQ(standing_of(run), Standing::events_agree);
+  run.results.back().verdict = Verdict::unsupported;
+  EXPECT_EQ(standing_of(run), Standing::partial);
 }
 
 TEST(Claim, ModulesAreOptional) {

@@ -138,6 +138,17 @@ TEST(VerdictJson, RoundTripsEveryKindOfNumber) {
   }
 }
 
+TEST(VerdictJson, OnlyASkipIsOfTheExactLevelOnly) {
+  CaseResult result = with(Verdict::skip);
+  EXPECT_FALSE(through_json(result).exact_only);
+  result.exact_only = true;
+  EXPECT_TRUE(through_json(result).exact_only);
+  json wrong = to_json(result);
+  wrong["verdict"] = "pass";
+  ASSERT_FALSE(case_result_from_json(wrong));
+  EXPECT_THAT(case_result_from_json(wrong).error().message, HasSubstr("`exact_only`"));
+}
+
 TEST(VerdictJson, RoundTripsAFlight) {
   const double inf = std::numeric_limits<double>::infinity();
   CaseResult result = with(Verdict::fail);
