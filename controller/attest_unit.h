@@ -27,9 +27,11 @@
  * Threads: attest_unit_v1() is called once. The host calls extension() from any thread, but from
  * one at a time. It also calls each instance from one thread at a time. That thread may change
  * between calls: `attest stress` calls create() and destroy() on one thread and the rest on a
- * real-time thread. Several instances may exist at once. Two instances may be called from two
- * threads at the same time. A port that allows only one instance returns NULL from create() while
- * that instance exists. The cases of the group `instances` that need two are then unsupported.
+ * real-time thread. Several instances may exist at once, also of different profiles. Two instances
+ * may be called from two threads at the same time: a static variable with an intermediate result
+ * then has that of the other instance. A port that allows only one instance, or instances of one
+ * profile only, returns NULL from create() while an instance exists. The cases of the group
+ * `instances` that need a second one are then unsupported.
  *
  * Memory: the host owns both structs and all strings that it passes. They are valid during the call
  * only. The unit owns the result of create() until destroy(). The table, `name`, `version` and all

@@ -120,12 +120,17 @@ struct EitherBranch {
   bool any() const { return yaw_wrap || shorter_rotation; }
 };
 
-// The life of another instance of the port, relative to the judged instance.
+// The lives of other instances of the port, relative to the judged instance. Many: each of them
+// makes one step.
 enum class Instances : std::uint8_t {
   one,
-  again,     // the other ran to its end and was destroyed before the judged one was made
-  together,  // both are stepped alternately, with different inputs
-  crossed,   // the other is made first; it runs and is destroyed before the judged one is stepped
+  again,           // one ran to its end and was destroyed before the judged one was made
+  together,        // the judged one and another are stepped alternately, with different inputs
+  crossed,         // one is made first; it runs and is destroyed before the judged one is stepped
+  after_many,      // many were made and destroyed before the judged one was made
+  among_many,      // many are made and destroyed, one after each step of the judged one
+  other_profiles,  // the same, with other profiles; the first is made before the judged one
+  two_threads,     // the judged one and another are stepped at the same time, on two threads
 };
 
 struct Case {

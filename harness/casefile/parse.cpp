@@ -1,9 +1,12 @@
 #include "harness/casefile/parse.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <ranges>
 #include <set>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -43,15 +46,26 @@ EitherBranch parse_either_branch(const TomlTable& root, Module module) {
   return branches;
 }
 
+constexpr std::array<std::pair<std::string_view, Instances>, 7> instances_by_name{{
+    {"again", Instances::again},
+    {"together", Instances::together},
+    {"crossed", Instances::crossed},
+    {"after_many", Instances::after_many},
+    {"among_many", Instances::among_many},
+    {"other_profiles", Instances::other_profiles},
+    {"two_threads", Instances::two_threads},
+}};
+
 Instances parse_instances(const TomlTable& root) {
   constexpr const char* key = "instances";
   if (!root.has(key)) return Instances::one;
   if (root.has("flight")) root.error(key, "is for open loop; leave [flight] out");
   const std::string text = root.text(key);
-  if (text == "again") return Instances::again;
-  if (text == "together") return Instances::together;
-  if (text == "crossed") return Instances::crossed;
-  root.error(key, "must be again, together or crossed");
+  for (const auto& [name, instances] : instances_by_name) {
+    if (text == name) return instances;
+  }
+  root.error(
+      key, fmt::format("must be one of {}", fmt::join(std::views::keys(instances_by_name), ", ")));
   return Instances::one;
 }
 

@@ -79,7 +79,9 @@ Trace keyframes_of(const Trace& flown) {
 
 Result<Trace> filled_in(Trace made, Trace kept, const Subject& subject, bool is_exact) {
   kept = without_history(std::move(kept));
-  if (const auto fault = drive(*open_builtin(), subject, made)) {
+  Subject alone = subject;
+  alone.instances = Instances::one;
+  if (const auto fault = drive(*open_builtin(), alone, made)) {
     return fail_at(kept.source, fmt::format("the reference: {}", fault->what));
   }
   const ChannelSet missing = made.present & channels_of(subject.module, "out/") & ~kept.present;

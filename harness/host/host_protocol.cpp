@@ -25,7 +25,8 @@ json to_json(const Subject& subject) {
           {"mixer", subject.mixer},
           {"instances", subject.instances},
           {"first_tick", subject.part.first_tick},
-          {"is_last", subject.part.is_last}};
+          {"is_last", subject.part.is_last},
+          {"other_profiles", subject.other_profiles}};
 }
 
 json to_json(const PortSays& says) {
@@ -63,7 +64,8 @@ Subject subject_from(const json& in) {
           in.at("module").get<Module>(),
           in.at("mixer").get<std::string>(),
           in.at("instances").get<Instances>(),
-          {in.at("first_tick").get<std::size_t>(), in.at("is_last").get<bool>()}};
+          {in.at("first_tick").get<std::size_t>(), in.at("is_last").get<bool>()},
+          in.at("other_profiles").get<std::vector<std::string>>()};
 }
 
 // Reads the trace of a request. The judge is trusted, so the samples are there.

@@ -133,6 +133,7 @@ class NotedPort final : public Port {
   }
   std::optional<int> fraction_bits() const override { return port_.fraction_bits(); }
   std::optional<Rate> fixed_step() const override { return port_.fixed_step(); }
+  bool is_one_at_a_time() const override { return port_.is_one_at_a_time(); }
   ModuleSet modules() const override { return port_.modules(); }
   std::unique_ptr<Unit> create_unit(Module module, const std::string& profile,
                                     const std::string& definition) override {

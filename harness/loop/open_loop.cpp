@@ -1,7 +1,9 @@
 #include "harness/loop/open_loop.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -9,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "harness/loop/other_instance.hpp"
+#include "harness/loop/two_threads.hpp"
 #include "harness/port/profiles.hpp"
 
 namespace attest {
@@ -78,6 +81,8 @@ class Other {
     return drive_.step();
   }
 
+  bool is_over() const { return drive_.is_over(); }
+
   // Makes all steps. A fault gets tick 0, because the judged instance has not made a step yet.
   std::optional<PortFault> run() {
     auto fault = set_defaults();
@@ -115,6 +120,21 @@ std::optional<PortFault> drive_alternately(Drive judged, Other& other) {
   return std::nullopt;
 }
 
+// The threads do not follow each other's steps, so the steps overlap in any way.
+std::optional<PortFault> drive_on_two_threads(Drive judged, Other& other, std::size_t ticks) {
+  std::optional<PortFault> fault, of_other;
+  const auto judged_step = [&] {
+    fault = judged.step();
+    return !fault && !judged.is_over();
+  };
+  const auto other_step = [&] {
+    of_other = other.step();
+    return !of_other && !other.is_over();
+  };
+  if (!run_on_two_threads(judged_step, other_step, ticks)) return drive_alternately(judged, other);
+  return fault ? fault : of_other;
+}
+
 PortFault makes_only_one() {
   return {PortFault::Kind::unsupported, 0,
           "the port makes no second instance while it has one: create() returned NULL"};
@@ -129,7 +149,8 @@ PortFault makes_no_other() {
 // `create` makes another instance of the subject; null if the port refuses.
 template <typename Create>
 std::optional<PortFault> drive_in_company(std::unique_ptr<Unit> first, Create create,
-                                          const Subject& subject, Trace& trace) {
+                                          bool is_one_at_a_time, const Subject& subject,
+                                          Trace& trace) {
   Other other(*first, subject, trace);
   if (subject.instances == Instances::again) {
     if (auto fault = other.run()) return fault;
@@ -139,9 +160,12 @@ std::optional<PortFault> drive_in_company(std::unique_ptr<Unit> first, Create cr
   if (!judged) {
     return subject.instances == Instances::again ? makes_no_other() : makes_only_one();
   }
-  if (subject.instances == Instances::together) {
-    UnitDriver driver(*judged, subject.module);
-    return drive_alternately(Drive(*judged, driver, trace), other);
+  UnitDriver driver(*judged, subject.module);
+  const Drive drive_judged(*judged, driver, trace);
+  if (subject.instances == Instances::together) return drive_alternately(drive_judged, other);
+  if (subject.instances == Instances::two_threads) {
+    return is_one_at_a_time ? drive_alternately(drive_judged, other)
+                            : drive_on_two_threads(drive_judged, other, trace.samples.size());
   }
   if (subject.instances == Instances::crossed) {
     if (auto fault = other.run()) return fault;
@@ -193,6 +217,91 @@ PortFault makes_none(Port& port, const Subject& subject) {
   return no_profile(subject);
 }
 
+PortFault makes_one_profile(const std::string& profile, const std::string& other) {
+  return {PortFault::Kind::unsupported, 0,
+          fmt::format("the port makes no unit of {} while it has one of {}", other, profile)};
+}
+
+// Many instances, of which each is made, makes the next step, and is destroyed. They have the
+// inputs of the other instance (other_instance.hpp), and default parameters.
+class Many {
+ public:
+  // REQUIRES: the port has the module.
+  Many(Port& port, const Subject& subject, const Trace& judged)
+      : port_(port),
+        subject_(subject),
+        trace_(other_inputs(judged, subject.module, subject.profile)) {}
+
+  bool is_over() const { return tick_ == trace_.samples.size(); }
+
+  std::optional<PortFault> step(bool judged_exists) {
+    const auto unit = make(judged_exists);
+    if (!unit) return unit.error();
+    UnitDriver driver(**unit, subject_.module);
+    auto fault = driver.step(tick_, {}, trace_.samples[tick_]);
+    ++tick_;
+    return fault;
+  }
+
+ private:
+  // Of the profile whose turn it is, or of the judged one's if the port never makes that one.
+  tl::expected<std::unique_ptr<Unit>, PortFault> make(bool judged_exists) {
+    if (const auto& others = subject_.other_profiles; !others.empty()) {
+      const std::string& profile = others[tick_ % others.size()];
+      if (auto unit = port_.create_unit(subject_.module, profile, subject_.mixer)) {
+        made_.insert(profile);
+        return unit;
+      }
+      if (made_.contains(profile)) {
+        return tl::unexpected(makes_one_profile(subject_.profile, profile));
+      }
+    }
+    auto unit = make_unit(port_, subject_);
+    if (!unit && judged_exists) return tl::unexpected(makes_only_one());
+    if (!unit && tick_ > 0) return tl::unexpected(makes_no_other());
+    return unit;
+  }
+
+  Port& port_;
+  const Subject& subject_;
+  Trace trace_;
+  std::size_t tick_ = 0;
+  std::set<std::string> made_;  // profiles
+};
+
+bool are_many(Instances instances) {
+  return instances == Instances::after_many || instances == Instances::among_many ||
+         instances == Instances::other_profiles;
+}
+
+// How many of the many instances are made before the judged one. One of another profile is the very
+// first: a port may take the profile of its first instance for all of them.
+std::size_t count_before(const Subject& subject, const Trace& trace) {
+  if (subject.instances == Instances::after_many) return trace.samples.size();
+  return subject.instances == Instances::other_profiles ? 1 : 0;
+}
+
+std::optional<PortFault> drive_among_many(Port& port, const Subject& subject, Trace& trace) {
+  if (!contains(port.modules(), subject.module)) return lacks_module(port, subject);
+  Many many(port, subject, trace);
+  for (std::size_t left = count_before(subject, trace); left > 0; --left) {
+    if (auto fault = many.step(false)) {
+      fault->tick = 0;  // the judged instance has not made a step yet
+      return fault;
+    }
+  }
+  const auto judged = make_unit(port, subject);
+  if (!judged) return many.is_over() ? makes_no_other() : judged.error();
+  UnitDriver driver(**judged, subject.module);
+  Drive drive_judged(**judged, driver, trace);
+  while (!drive_judged.is_over()) {
+    auto fault = many.is_over() ? drive_judged.advance() : drive_judged.step();
+    if (!fault && !many.is_over()) fault = many.step(true);
+    if (fault) return fault;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<PortFault> drive(Unit& unit, Trace& trace, Module module) {
@@ -205,7 +314,11 @@ std::optional<PortFault> PartDriver::drive(Trace& part, std::size_t first_tick) 
 }
 
 Subject subject_of(const Case& the_case) {
-  return {the_case.profile, the_case.module, the_case.mixer, the_case.instances};
+  Subject subject{the_case.profile, the_case.module, the_case.mixer, the_case.instances, {}, {}};
+  if (the_case.instances != Instances::other_profiles) return subject;
+  std::ranges::remove_copy(the_case.profiles, std::back_inserter(subject.other_profiles),
+                           the_case.profile);
+  return subject;
 }
 
 tl::expected<std::unique_ptr<Unit>, PortFault> make_unit(Port& port, const Subject& subject) {
@@ -218,13 +331,14 @@ tl::expected<std::unique_ptr<Unit>, PortFault> make_unit(Port& port, const Subje
 }
 
 std::optional<PortFault> drive(Port& port, const Subject& subject, Trace& trace) {
+  if (are_many(subject.instances)) return drive_among_many(port, subject, trace);
   auto unit = make_unit(port, subject);
   if (!unit) return unit.error();
   if (subject.instances == Instances::one) return drive(**unit, trace, subject.module);
   const auto create = [&] {
     return port.create_unit(subject.module, subject.profile, subject.mixer);
   };
-  return drive_in_company(*std::move(unit), create, subject, trace);
+  return drive_in_company(*std::move(unit), create, port.is_one_at_a_time(), subject, trace);
 }
 
 }  // namespace attest

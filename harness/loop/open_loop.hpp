@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "harness/casefile/case.hpp"
 #include "harness/loop/unit_driver.hpp"
@@ -31,6 +32,7 @@ struct Subject {
   std::string mixer = {};  // only for Module::mixer: "R: 4x 10000 10000 10000 0"
   Instances instances = Instances::one;
   Part part = {};  // REQUIRES: Instances::one, if the trace has several parts
+  std::vector<std::string> other_profiles = {};  // whose turn it is in Instances::other_profiles
 };
 
 Subject subject_of(const Case& the_case);
@@ -40,9 +42,9 @@ Subject subject_of(const Case& the_case);
 tl::expected<std::unique_ptr<Unit>, PortFault> make_unit(Port& port, const Subject& subject);
 
 // Steps a fresh instance of the subject's module through the trace. `subject.instances` says which
-// other instance of the port exists before it or at the same time. Kind::unsupported: the port
-// cannot make the second instance while the first one exists.
-// REQUIRES: the subject's part is the whole trace.
+// other instances of the port exist before it or at the same time. On two threads, the steps of a
+// port that is one at a time alternate. Kind::unsupported: the port cannot make the second instance
+// while the first one exists. REQUIRES: the subject's part is the whole trace.
 std::optional<PortFault> drive(Port& port, const Subject& subject, Trace& trace);
 
 // Steps one instance through the parts of a trace.

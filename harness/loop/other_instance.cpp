@@ -28,6 +28,9 @@ void change_parameters(Trace& trace, const std::vector<Parameter>& known) {
   }
 }
 
+// With the other sign, and with another absolute value, also for 0.
+double of_another_size(double value) { return -0.6 * value + 0.07; }
+
 double other_value(const Channel& channel, double value, bool is_even_tick) {
   constexpr double later_us = 1000;  // if the time is shared, the judged dt is wrong by this
   switch (channel.quantity) {
@@ -42,9 +45,9 @@ double other_value(const Channel& channel, double value, bool is_even_tick) {
     case Quantity::angular_acceleration:
     case Quantity::angle:
     case Quantity::stick:
-      return -value;
+      return of_another_size(value);
     case Quantity::quaternion:
-      return channel.name.ends_with("[0]") ? value : -value;
+      return channel.name.ends_with("[0]") ? value : of_another_size(value);
     case Quantity::control:
     case Quantity::motor:
       return 1 - value;

@@ -13,7 +13,8 @@ namespace attest {
 // The ticks of `judged`, changed for another instance:
 //
 // - Every topic and parameter_update are new at every tick, so each tick overwrites what is shared.
-// - Times are 1 ms later. Numbers are changed by a rule for each quantity, such as the other sign.
+// - Times are 1 ms later. Numbers are changed by a rule for each quantity, so that their absolute
+//   values differ too.
 // - Flags are inverted at every even tick and equal at the others. So the other instance also runs
 //   the judged one's stages of the law, and changes their state.
 // - Parameters that `judged` sets are set to other values, at the same ticks.

@@ -100,6 +100,10 @@ class Port {
   // The rate of a port with a fixed step; empty for other ports.
   virtual std::optional<Rate> fixed_step() const { return std::nullopt; }
 
+  // Whether calls of different threads never overlap, as those of a program: it gets one request
+  // after the other.
+  virtual bool is_one_at_a_time() const { return false; }
+
   virtual ModuleSet modules() const { return only(Module::mc_att_control); }
 
   // A unit in its power-on state; null if the port does not support the profile or the definition,

@@ -88,6 +88,7 @@ class ProgramPort final : public Port {
   std::vector<std::string> unsupported_groups() const override { return hello_.unsupported_groups; }
   std::optional<int> fraction_bits() const override { return hello_.fraction_bits; }
   std::optional<Rate> fixed_step() const override { return hello_.fixed_step; }
+  bool is_one_at_a_time() const override { return true; }
   ModuleSet modules() const override { return hello_.modules; }
 
   void finish() override { talk_->throw_late(); }

@@ -180,7 +180,8 @@ TEST(CaseErrors, AParameterExistsInEveryProfileOfTheFile) {
 TEST(CaseErrors, Instances) {
   EXPECT_EQ(errors_of("instances = \"together\"\n"), "");
   EXPECT_THAT(errors_of("instances = \"two\"\n"),
-              HasSubstr("6:1: must be again, together or crossed"));
+              HasSubstr("6:1: must be one of again, together, crossed, after_many, "
+                        "among_many, other_profiles, two_threads"));
 }
 
 TEST(CaseErrors, Parameters) {

@@ -1,4 +1,6 @@
 // The other instance of a port, before the judged one or at the same time.
+#include <algorithm>
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,14 +25,21 @@ class CountingPort final : public Port {
  public:
   std::string name() const override { return "counting"; }
   std::string version() const override { return "1"; }
-  std::unique_ptr<Unit> create_unit(Module, const std::string&, const std::string&) override {
-    if (alive_ == most_alive) return nullptr;
+  std::unique_ptr<Unit> create_unit(Module, const std::string& profile,
+                                    const std::string&) override {
+    const bool is_other = alive_ > 0 && profile != profile_;
+    if (alive_ == most_alive || refused == profile || (one_profile_at_a_time && is_other)) {
+      return nullptr;
+    }
     ++alive_;
-    calls.push_back(fmt::format("create {}", ++made_));
+    profile_ = profile;
+    calls.push_back(fmt::format("create {}{}", ++made_, profile == "any" ? "" : " " + profile));
     return std::make_unique<Counting>(*this, made_);
   }
 
   int most_alive = 9;
+  bool one_profile_at_a_time = false;
+  std::string refused;  // a profile
   std::vector<std::string> calls;
 
  private:
@@ -54,6 +63,7 @@ class CountingPort final : public Port {
   };
 
   int made_ = 0, alive_ = 0;
+  std::string profile_;  // of the last instance
 };
 
 class Company : public testing::Test {
@@ -61,7 +71,9 @@ class Company : public testing::Test {
   std::optional<PortFault> drive_with(Instances instances) {
     trace_ = trace_of(2);
     for (Sample& sample : trace_.samples) sample.in.control_state.roll_rate = 1;
-    return drive(port_, Subject{.profile = "any", .instances = instances}, trace_);
+    Subject subject{.profile = "any", .instances = instances};
+    if (instances == Instances::other_profiles) subject.other_profiles = {"first", "second"};
+    return drive(port_, subject, trace_);
   }
 
   CountingPort port_;
@@ -70,21 +82,109 @@ class Company : public testing::Test {
 
 TEST_F(Company, AgainDestroysTheOtherBeforeTheJudgedIsMade) {
   EXPECT_FALSE(drive_with(Instances::again));
-  EXPECT_THAT(port_.calls, ElementsAre("create 1", "step 1 -1", "step 1 -1", "destroy 1",
+  EXPECT_THAT(port_.calls, ElementsAre("create 1", "step 1 -0.53", "step 1 -0.53", "destroy 1",
                                        "create 2", "step 2 1", "step 2 1", "destroy 2"));
   EXPECT_EQ(trace_.samples[1].out.actuator_controls_0.control[0], 1);
 }
 
 TEST_F(Company, TogetherStepsThemAlternately) {
   EXPECT_FALSE(drive_with(Instances::together));
-  EXPECT_THAT(port_.calls, ElementsAre("create 1", "create 2", "step 2 1", "step 1 -1", "step 2 1",
-                                       "step 1 -1", "destroy 2", "destroy 1"));
+  EXPECT_THAT(port_.calls, ElementsAre("create 1", "create 2", "step 2 1", "step 1 -0.53",
+                                       "step 2 1", "step 1 -0.53", "destroy 2", "destroy 1"));
 }
 
 TEST_F(Company, CrossedDestroysTheFirstWhileTheJudgedLives) {
   EXPECT_FALSE(drive_with(Instances::crossed));
-  EXPECT_THAT(port_.calls, ElementsAre("create 1", "create 2", "step 1 -1", "step 1 -1",
+  EXPECT_THAT(port_.calls, ElementsAre("create 1", "create 2", "step 1 -0.53", "step 1 -0.53",
                                        "destroy 1", "step 2 1", "step 2 1", "destroy 2"));
+}
+
+TEST_F(Company, AfterManyDestroysEachOfThemBeforeTheJudgedIsMade) {
+  EXPECT_FALSE(drive_with(Instances::after_many));
+  EXPECT_THAT(port_.calls,
+              ElementsAre("create 1", "step 1 -0.53", "destroy 1", "create 2", "step 2 -0.53",
+                          "destroy 2", "create 3", "step 3 1", "step 3 1", "destroy 3"));
+}
+
+TEST_F(Company, AmongManyMakesOneAfterEachStep) {
+  EXPECT_FALSE(drive_with(Instances::among_many));
+  EXPECT_THAT(port_.calls,
+              ElementsAre("create 1", "step 1 1", "create 2", "step 2 -0.53", "destroy 2",
+                          "step 1 1", "create 3", "step 3 -0.53", "destroy 3", "destroy 1"));
+}
+
+TEST_F(Company, OtherProfilesTakeTurnsFromBeforeTheJudgedOn) {
+  EXPECT_FALSE(drive_with(Instances::other_profiles));
+  EXPECT_THAT(port_.calls,
+              ElementsAre("create 1 first", "step 1 -0.53", "destroy 1", "create 2", "step 2 1",
+                          "create 3 second", "step 3 -0.53", "destroy 3", "step 2 1", "destroy 2"));
+}
+
+TEST_F(Company, AProfileThatThePortDoesNotSupportIsReplacedByItsOwn) {
+  port_.refused = "first";
+  EXPECT_FALSE(drive_with(Instances::other_profiles));
+  EXPECT_THAT(port_.calls, testing::Contains("create 1"));
+  EXPECT_THAT(port_.calls, testing::Contains("create 3 second"));
+}
+
+TEST_F(Company, APortThatHasOneProfileAtATimeDoesNotSupportOthers) {
+  port_.one_profile_at_a_time = true;
+  trace_ = trace_of(3);
+  const auto fault = drive(
+      port_,
+      Subject{
+          .profile = "any", .instances = Instances::other_profiles, .other_profiles = {"first"}},
+      trace_);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->kind, Kind::unsupported);
+  EXPECT_EQ(fault->what, "the port makes no unit of first while it has one of any");
+}
+
+// Its units have their input in a variable that they share while they step.
+class SharingPort final : public Port {
+ public:
+  std::string name() const override { return "sharing"; }
+  std::string version() const override { return "1"; }
+  bool is_one_at_a_time() const override { return one_at_a_time; }
+  std::unique_ptr<Unit> create_unit(Module, const std::string&, const std::string&) override {
+    return std::make_unique<Sharing>();
+  }
+
+  bool one_at_a_time = false;
+
+ private:
+  class Sharing final : public UnitOf<attest_inputs, attest_outputs> {
+   public:
+    int set_parameter(const std::string&, float) override { return ATTEST_OK; }
+    int step(const attest_inputs& in, attest_outputs& out) override {
+      static std::atomic<float> shared;
+      shared = in.control_state.roll_rate;
+      for (std::atomic<int> turn = 0; turn < 100; ++turn) {
+      }
+      out.actuator_controls_0.control[0] = shared;
+      return ATTEST_OK;
+    }
+  };
+};
+
+std::ptrdiff_t wrong_ticks(Instances instances, bool one_at_a_time) {
+  SharingPort port;
+  port.one_at_a_time = one_at_a_time;
+  Trace trace = trace_of(3000);
+  for (Sample& sample : trace.samples) sample.in.control_state.roll_rate = 1;
+  EXPECT_FALSE(drive(port, Subject{.profile = "any", .instances = instances}, trace));
+  return std::ranges::count_if(trace.samples, [](const Sample& sample) {
+    return sample.out.actuator_controls_0.control[0] != 1;
+  });
+}
+
+TEST(TwoThreads, ShowAVariableThatAStepShares) {
+  EXPECT_EQ(wrong_ticks(Instances::together, false), 0);
+  EXPECT_GT(wrong_ticks(Instances::two_threads, false), 0);
+}
+
+TEST(TwoThreads, AlternateForAPortThatIsOneAtATime) {
+  EXPECT_EQ(wrong_ticks(Instances::two_threads, true), 0);
 }
 
 // Notes what each of two rate units is given.
@@ -145,14 +245,15 @@ TEST_F(CompanyOfAUnit, HasOtherInputsAndParameters) {
   EXPECT_THAT(notes, testing::IsSupersetOf({"MC_PITCHRATE_D=0.00225", "MC_YAWRATE_D=0.25"}));
   ASSERT_GE(notes.size(), 6);
   EXPECT_THAT(std::vector(notes.end() - 6, notes.end()),
-              ElementsAre("MC_YAWRATE_P=0.375", "MC_BAT_SCALE_EN=0", "1007 -3 0 updated 17f",
+              ElementsAre("MC_YAWRATE_P=0.375", "MC_BAT_SCALE_EN=0", "1007 -1.73 0 updated 17f",
                           "MC_YAWRATE_P=0.5", "MC_BAT_SCALE_EN=1", "7 3 1 updated 0"));
 }
 
 TEST_F(CompanyOfAUnit, HasOtherFlagsAtEverySecondTick) {
-  EXPECT_THAT(notes_of(trace_of(3), "own"),
-              ElementsAre("1000 -0 1 updated 17f", "1000 -0 0 updated 17f", "1000 -0 1 updated 17f",
-                          "0 0 0 updated 0", "0 0 0 updated 0", "0 0 0 updated 0"));
+  EXPECT_THAT(
+      notes_of(trace_of(3), "own"),
+      ElementsAre("1000 0.07 1 updated 17f", "1000 0.07 0 updated 17f", "1000 0.07 1 updated 17f",
+                  "0 0 0 updated 0", "0 0 0 updated 0", "0 0 0 updated 0"));
 }
 
 TEST_F(CompanyOfAUnit, MayLackAParameterThatTheTraceDoesNotSet) {
@@ -166,6 +267,7 @@ TEST_F(Company, APortThatMakesOneInstanceDoesNotSupportTwo) {
   ASSERT_TRUE(fault);
   EXPECT_EQ(fault->kind, Kind::unsupported);
   EXPECT_FALSE(drive_with(Instances::again));
+  EXPECT_FALSE(drive_with(Instances::after_many));
 }
 
 }  // namespace
