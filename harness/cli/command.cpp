@@ -12,15 +12,17 @@
 namespace attest::cli {
 namespace {
 
-// The vectors of `cases` that failed in a report. Errors: the file is no report, or no such vector
-// failed.
+// The vectors of `cases` that failed in a report, and those without which they may pass. Errors: the
+// file is no report, or no such vector failed.
 Result<std::vector<SelectedCase>> failed_in(const std::string& report,
                                             std::vector<SelectedCase> cases) {
   const auto earlier = read_report(report);
   if (!earlier) return tl::unexpected(earlier.error());
   std::set<std::string> ids;
   for (const CaseResult& result : earlier->results) {
-    if (fails_a_run(result.verdict)) ids.insert(result.id());
+    if (!fails_a_run(result.verdict)) continue;
+    ids.insert(result.id());
+    ids.insert(result.after.begin(), result.after.end());
   }
   cases = keep_vectors(std::move(cases), ids);
   if (!cases.empty()) return cases;

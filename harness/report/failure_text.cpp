@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/host/port_process.hpp"
 #include "harness/report/text.hpp"
 
 namespace attest {
@@ -169,9 +170,17 @@ std::string reproduce_command(const CaseResult& result, const RunResult& run) {
     return one_line(fmt::format("{} run --port {} --timing {}", attest_with_suite(run),
                                 shell_word(run.port), shell_word(run.timing)));
   }
-  std::string out = fmt::format("{} run --port {} --filter {}", attest_with_suite(run),
-                                shell_word(run.port), shell_quoted(result.id()));
+  std::string out = fmt::format("{} run --port {}", attest_with_suite(run), shell_word(run.port));
+  for (const std::string& id : result.after) out += " --filter " + shell_quoted(id);
+  out += " --filter " + shell_quoted(result.id());
   if (run.level != Level::numeric) out += fmt::format(" --level {}", name_of(run.level));
+  for (const ParameterChange& change : run.parameters) {
+    out += fmt::format(" --param {}={}", change.name, change.value);
+  }
+  const double timeout_s = run.limits.timeout_s;
+  if (result.verdict == Verdict::timeout && timeout_s > 0 && timeout_s != default_timeout_s) {
+    out += fmt::format(" --timeout {:g}", timeout_s);
+  }
   return one_line(out);
 }
 

@@ -27,7 +27,8 @@ std::string worst_text(const CaseResult& result);
 // "at most 1.2", "at least 0", "0 to 3".
 std::string metric_bounds(const MetricResult& metric);
 
-// "attest run --port lib:./mine.so --filter 'px4-v1.5.5/attitude/roll_30@250hz'"
+// "attest run --port lib:./mine.so --filter 'px4-v1.5.5/attitude/roll_30@250hz'". Also selects the
+// vectors CaseResult::after, without which the vector may pass.
 std::string reproduce_command(const CaseResult& result, const RunResult& run);
 
 // The command that writes the trace of a flight. REQUIRES: a plant configuration.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "harness/core/error_json.hpp"
@@ -18,10 +19,18 @@ Result<CaseResult> Codec<CaseResult>::decode(const std::string& text) {
   return attest::decode(text).and_then(case_result_from_json);
 }
 
-Result<void> CaseJob::open() {
+Result<void> CaseJob::start() {
+  host_.reset();  // one process of the port at a time
+  judged_by_host_.clear();
+  has_failed_ = false;
   auto host = start_host(options_, {&case_, vehicle_model_.get()});
   if (!host) return tl::unexpected(host.error());
   host_ = *std::move(host);
+  return {};
+}
+
+Result<void> CaseJob::open() {
+  if (auto started = start(); !started) return started;
   auto golden = Golden::open(golden_root_, case_);
   if (!golden) return tl::unexpected(golden.error());
   golden_.emplace(*std::move(golden));
@@ -34,6 +43,31 @@ void CaseJob::close() {
 }
 
 Result<CaseResult> CaseJob::run(std::size_t task) {
+  auto result = judged(task);
+  if (result && fails_a_run(result->verdict) && !judged_by_host_.empty()) {
+    result = repeated_alone(task, *std::move(result));
+  }
+  if (!result) return result;
+  // After a timeout the host answers the other requests at once: the port is not started again.
+  has_failed_ = fails_a_run(result->verdict) && result->verdict != Verdict::timeout;
+  judged_by_host_.push_back(result->id());
+  return result;
+}
+
+Result<CaseResult> CaseJob::repeated_alone(std::size_t task, CaseResult failed) {
+  failed.after = judged_by_host_;
+  if (failed.verdict == Verdict::timeout) return failed;
+  if (auto started = start(); !started) return tl::unexpected(started.error());
+  auto alone = judged(task);
+  if (!alone || fails_a_run(alone->verdict)) return alone;
+  failed.reason += fmt::format(
+      "{}it passes alone, in a new process of the port: an earlier instance "
+      "has left state behind",
+      failed.reason.empty() ? "" : "; ");
+  return failed;
+}
+
+Result<CaseResult> CaseJob::judged(std::size_t task) {
   const RunConfiguration& configuration = configurations_[task];
   if (!vehicle_model_)
     return evaluate_case(case_, configuration.rate.unit, *golden_, *host_, judge_);

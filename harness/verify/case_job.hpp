@@ -28,8 +28,13 @@ struct Codec<CaseResult> {
   static Result<CaseResult> decode(const std::string& text);
 };
 
-// Judges a case in several of its run configurations. Those of a flight all have the same vehicle
-// and plant.
+// Judges a case in several of its run configurations, in one process of the port. Those of a flight
+// all have the same vehicle and plant.
+//
+// A failure after other vectors is repeated in a new process, and the result is that of the
+// repetition. If the vector passes there, the failure stays, and CaseResult::after names the others.
+// So each failure can be reproduced. A timeout is not repeated. After any other failure the next
+// vector has a new process.
 class CaseJob final : public PortJob<CaseResult> {
  public:
   // `vehicle_model` is that of a flight's vehicle; null for open loop.
@@ -46,16 +51,22 @@ class CaseJob final : public PortJob<CaseResult> {
   std::size_t size() const override { return configurations_.size(); }
   Result<void> open() override;
   Result<CaseResult> run(std::size_t task) override;
-  bool is_spent() const override { return host_->is_spent(); }
+  bool is_spent() const override { return !host_ || host_->is_spent() || has_failed_; }
   void close() override;
 
  private:
+  Result<void> start();
+  Result<CaseResult> judged(std::size_t task);
+  Result<CaseResult> repeated_alone(std::size_t task, CaseResult failed);
+
   Case case_;
   std::vector<RunConfiguration> configurations_;
   std::shared_ptr<const VehicleModel> vehicle_model_;
   std::filesystem::path golden_root_;
   JudgeOptions judge_;
   std::unique_ptr<PortHost> host_;
+  std::vector<std::string> judged_by_host_;  // ids of vectors
+  bool has_failed_ = false;                  // a vector, not by a timeout
   std::optional<Golden> golden_;
 };
 

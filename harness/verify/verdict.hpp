@@ -70,6 +70,9 @@ struct CaseResult {
   std::optional<Headroom> tightest;
   std::vector<MetricResult> metrics;  // of a flight without a fault that did not end early
   double elapsed_s = 0;               // wall time; no verdict depends on it
+  // The vectors that the same process of the port ran before, if this failure may depend on them:
+  // it does not occur alone, or it is a timeout, which is not repeated.
+  std::vector<std::string> after;
 
   std::string case_id() const { return profile + "/" + group + "/" + name; }
   RunConfiguration configuration() const { return {rate, plant_configuration}; }

@@ -153,6 +153,7 @@ nlohmann::json to_json(const CaseResult& result) {
   for (const MetricResult& metric : result.metrics) {
     out["metrics"].push_back(metric_to_json(metric));
   }
+  if (!result.after.empty()) out["after"] = result.after;
   return out;
 }
 
@@ -184,6 +185,7 @@ Result<CaseResult> case_result_from_json(const nlohmann::json& json) {
   if (reader.has("worst")) out.worst = deviation_from({reader.member("worst"), error});
   if (reader.has("tightest")) out.tightest = headroom_from({reader.member("tightest"), error});
   if (reader.has("vehicle")) out.plant_configuration = plant_configuration_from({json, error});
+  if (reader.has("after")) out.after = reader.texts("after");
   if (reader.has("metrics")) {
     for (const auto& metric : reader.member("metrics")) {
       out.metrics.push_back(metric_from({metric, error}));
