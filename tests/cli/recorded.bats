@@ -18,12 +18,14 @@ answered() {
 }
 
 @test "recorded outputs are judged as those of any port" {
-  "$ATTEST" vectors vectors --rate 250 --exclude 'mixer/*' --exclude 'px4-v1.1*' >/dev/null
+  # Without the files of 70,000 ticks, which the board needs 10 s to answer.
+  "$ATTEST" vectors vectors --rate 250 --exclude 'mixer/*' --exclude 'px4-v1.1*' \
+    --exclude '*/steps_beyond_16_bits' >/dev/null
   answer
-  run "$ATTEST" run --port recorded:vectors --rate 250
+  run "$ATTEST" run --port recorded:vectors --rate 250 --exclude '*/steps_beyond_16_bits'
   [ "$status" -eq 0 ]
   has "note: 447 of 476 selected vectors have outputs in vectors"
-  has "PASS 404 of 623 vectors conform, 219 skip"
+  has "PASS 404 of 631 vectors conform, 227 skip"
   has "134 skip: a recorded port does not fly"
   has "27 skip: not answered"
   has "partial: px4-v1.5.5, numeric, 1 rate, groups actuators, anti_windup, arming"

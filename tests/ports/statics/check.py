@@ -3,8 +3,9 @@
 
     check.py --attest PATH [--only MODULE:FIELD]...
 
-Each port is a C starter in which one field of an instance is moved to file scope. Every one must
-fail in a case with two instances; the starters themselves must pass. Prints a table. Exits 1 if one
+Each port is a C starter in which one field of an instance is moved to file scope, or a variable of
+a step is static. Every one must fail in a case with several instances; the starters themselves must
+pass. Prints a table. Exits 1 if one
 is judged wrong, 2 if one cannot be made.
 """
 
@@ -25,13 +26,16 @@ CASES += ["--filter", "*/tailsitter/two_*"]
 
 class Module(NamedTuple):
     """`fields` are C declarators. Left out are fields that each step sets before it uses them, and
-    `started` of the units of the cascade: the first tick of a case has parameter_update."""
+    `started` of the units of the cascade: the first tick of a case has parameter_update. `scratch`
+    are declarations inside of functions: such a variable is wrong only if two threads step at the
+    same time."""
 
     starter: str
     files: str  # that use an instance of it, as a regular expression
     instance: str  # the expression before a field
     declared_before: tuple[str, str]  # file and line of the starter
     fields: list[str]
+    scratch: list[str]
 
 
 MODULES = {
@@ -45,6 +49,7 @@ MODULES = {
             *("bool started", "bool have_vehicle_status", "bool on_virtual_topics"),
             *("bool tailsitter", "float rates_prev[3]", "float rates_int[3]"),
         ],
+        ["float err[3];", "float u[3];"],
     ),
     # Fields of `copy`: the topics of the controller.
     "controller_topic": Module(
@@ -57,6 +62,7 @@ MODULES = {
             *("manual_control_setpoint", "battery_status", "vehicle_control_mode"),
             *("actuator_armed", "vehicle_status", "multirotor_motor_limits"),
         ],
+        [],
     ),
     "attitude_unit": Module(
         "c_cascade",
@@ -73,6 +79,7 @@ MODULES = {
             *("uint64_t setpoint_time", "uint8_t reset_counter", "float stick_tilt_max"),
             *("float stick_yaw_max", "stick_state sticks"),
         ],
+        ["float rates[3];", "attitude_setpoint sp = {0};"],
     ),
     "rate_unit": Module(
         "c_cascade",
@@ -87,6 +94,7 @@ MODULES = {
             *("float battery_scale", "rates_setpoint setpoint", "float integral[3]"),
             *("lowpass yaw_torque",),
         ],
+        ["float torque[3], thrust[3];"],
     ),
 }
 
@@ -115,6 +123,19 @@ def share(module: Module, declarator: str, folder: pathlib.Path) -> None:
         path.write_text(text)
 
 
+def make_static(module: Module, declaration: str, folder: pathlib.Path) -> None:
+    found = 0
+    for path in folder.glob("*.c"):
+        if re.fullmatch(module.files, path.name):
+            text = path.read_text()
+            found += text.count(f"\n  {declaration}")
+            # A static variable keeps its value, so it is not initialised in each step.
+            text = text.replace(f"\n  {declaration}", f"\n  static {declaration}")
+            path.write_text(text)
+    if found != 1:
+        sys.exit(f"{module.starter}: `{declaration}` is there {found} times")
+
+
 class Builder:
     """Compiles the starters with a shared variable, each in the same folder."""
 
@@ -129,7 +150,9 @@ class Builder:
             old.unlink()
         for source in (CONTROLLER / "starters" / module.starter).glob("*.[ch]"):
             shutil.copy(source, self._folder)
-        if declarator:
+        if declarator in module.scratch:
+            make_static(module, declarator, self._folder)
+        elif declarator:
             share(module, declarator, self._folder)
         library = self._folder / "port.so"
         objects = [self._object(path) for path in sorted(self._folder.glob("*.c"))]
@@ -172,7 +195,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         builder = Builder(pathlib.Path(folder))
         for name, module in MODULES.items():
-            for declarator in [None, *module.fields]:
+            for declarator in [None, *module.fields, *module.scratch]:
                 if args.only and f"{name}:{declarator}" not in args.only:
                     continue
                 good = passes(args.attest, builder.build(module, declarator))
