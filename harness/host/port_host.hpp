@@ -55,6 +55,9 @@ class PortHost {
   virtual Result<StepTimes> time_steps(const Subject& subject, const Trace& inputs,
                                        bool with_stack) = 0;
 
+  // The CPU time of the port's process so far, as the judge sees it. Empty without such a process.
+  virtual std::optional<Nanoseconds> cpu_time() const { return std::nullopt; }
+
   // Whether the port makes a unit of that profile; also false after a fault of the port.
   virtual bool supports(const std::string& profile) = 0;
 

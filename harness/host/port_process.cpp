@@ -164,6 +164,10 @@ class PortProcess final : public PortHost {
     return none;
   }
 
+  std::optional<Nanoseconds> cpu_time() const override {
+    return port_ ? std::optional<Nanoseconds>(port_->child.usage().running) : std::nullopt;
+  }
+
   bool supports(const std::string& profile) override {
     const auto supports = ask(supports_request(profile), {}, read_supports);
     return supports && *supports;

@@ -83,6 +83,8 @@ void judge_machine(const RealtimeBudget& budget, StressResult& stress) {
   }
 }
 
+std::string in_ms(Nanoseconds time) { return fmt::format("{:.3g} ms", 1000 * in_seconds(time)); }
+
 }  // namespace
 
 void add_skip(CaseResult& result, const std::string& reason) { add(result, Verdict::skip, reason); }
@@ -150,6 +152,21 @@ void judge_timing(const RealtimeBudget& budget, StressResult& stress) {
   judge_machine(budget, stress);
 }
 
+void judge_clock(const Wait& wait, const std::vector<LiveTick>& ticks, StressResult& stress) {
+  // The unit's thread uses less than 20 us a tick for the messages and the record of the tick.
+  constexpr Nanoseconds of_a_tick = std::chrono::microseconds(200);
+  constexpr Nanoseconds of_the_rest = std::chrono::milliseconds(100);
+  Nanoseconds steps{0};
+  for (const LiveTick& tick : ticks) steps += tick.elapsed;
+  const Nanoseconds own =
+      static_cast<std::int64_t>(ticks.size()) * (of_a_tick + wait.spin) + of_the_rest;
+  if (stress.unit_usage.cpu <= 2 * steps + own) return;
+  add(stress.result, Verdict::protocol,
+      fmt::format("the port's clock is wrong: by it, {} steps took {}, but their thread used {} of "
+                  "CPU time",
+                  ticks.size(), in_ms(steps), in_ms(stress.unit_usage.cpu)));
+}
+
 void judge_unit(const StressTask& task, Module module, LiveFlight& flight, bool of_end,
                 StressResult& stress) {
   CaseResult& result = stress.result;
@@ -174,6 +191,7 @@ void judge_unit(const StressTask& task, Module module, LiveFlight& flight, bool 
     add_skip(result, "the flight ended at a fault of the other unit: " + other->fault->what);
   }
   if (of_end) judge_flight_end(task, flight, result);
+  judge_clock(task.live.wait, unit->ticks, stress);
   judge_timing(task.the_case.flight->realtime, stress);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "harness/casefile/case.hpp"
 #include "harness/measure/stress.hpp"
@@ -30,7 +31,11 @@ void judge_flight_end(const StressTask& task, const LiveFlight& flight, CaseResu
 // for these, too many misses or late starts of any cause, or late steps of the plant, give a skip.
 void judge_timing(const RealtimeBudget& budget, StressResult& stress);
 
-// Does all three for one unit of the flight, or judges only its fault if it has one. `of_end`:
+// Verdict `protocol` if the unit's thread used more CPU time than its steps explain: the port
+// shares the process that measures, and may have changed the clock. The kernel counts the CPU time.
+void judge_clock(const Wait& wait, const std::vector<LiveTick>& ticks, StressResult& stress);
+
+// Does all of this for one unit of the flight, or judges only its fault if it has one. `of_end`:
 // judge the end of the flight, which the caller does for one unit only. A flight that a fault of
 // the other unit ended is a skip. Moves the unit's samples out of `flight`. REQUIRES: `stress` has
 // the measurements, and the identity of its result.

@@ -6,6 +6,7 @@
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/core/file.hpp"
+#include "harness/measure/clock_check.hpp"
 #include "harness/trace/csv.hpp"
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/judge.hpp"
@@ -27,7 +28,7 @@ class Stopwatches {
     const Trace inputs = stimulate(the_case, configuration.rate.unit);
     for (int repeat = 0; repeat < options_.repeats; ++repeat) {
       const bool with_stack = options_.stack && repeat + 1 == options_.repeats;
-      auto timed = host_->time_steps(subject_of(the_case), inputs, with_stack);
+      auto timed = timed_steps(subject_of(the_case), inputs, with_stack);
       if (!timed) return tl::unexpected(timed.error());
       if (timed->fault) {
         judge(*timed->fault, times.result);
@@ -44,6 +45,19 @@ class Stopwatches {
   Nanoseconds clock() const { return clock_; }
 
  private:
+  // With a fault of kind protocol if the judge measures other times than the port's process.
+  Result<StepTimes> timed_steps(const Subject& subject, const Trace& inputs, bool with_stack) {
+    const TimedRequest request(*host_);
+    auto timed = host_->time_steps(subject, inputs, with_stack);
+    // A program does not share the process that reads the clock.
+    if (!timed || timed->fault || is_program(host_options_.port)) return timed;
+    request.end(*timed, with_stack, totals_);
+    if (const std::string what = clock_contradiction(totals_); !what.empty()) {
+      timed->fault = PortFault{PortFault::Kind::protocol, 0, what};
+    }
+    return timed;
+  }
+
   static void keep_quickest(std::vector<Nanoseconds> steps, std::vector<Nanoseconds>& quickest) {
     if (quickest.empty()) {
       quickest = std::move(steps);
@@ -58,6 +72,7 @@ class Stopwatches {
   const HostOptions& host_options_;
   std::unique_ptr<PortHost> host_;
   Nanoseconds clock_{0};
+  ClockTotals totals_;
 };
 
 Histogram histogram_for(const TimeOptions& options) {

@@ -294,3 +294,16 @@ CHECK
   run "$ATTEST" sweep-rate --html same --csv same
   [ "$status" -eq 2 ]
 }
+
+@test "a port that hides the time of its steps breaks the protocol" {
+  for port in got code stack thread; do
+    echo "$port"
+    run "$ATTEST" time --port "lib:$PORTS/hostile_clock_$port.so" --profile px4-v1.5.5 \
+      --filter rates/ff_alone@250hz --repeat 2 --no-stack
+    [ "$status" -eq 1 ]
+    has "protocol: its clock is wrong: by it, its"
+  done
+  run "$ATTEST" time --port "lib:$PORTS/hostile_clock_honest.so" --profile px4-v1.5.5 \
+    --filter rates/ff_alone@250hz --repeat 2 --no-stack
+  [ "$status" -eq 0 ]
+}

@@ -69,6 +69,19 @@ TEST_F(StressJudge, OutputsThatAgreePass) {
   EXPECT_EQ(result.ticks, 100u);
 }
 
+TEST_F(StressJudge, AThreadThatUsedMoreThanItsStepsHasAWrongClock) {
+  const std::vector<LiveTick> ticks(100, LiveTick{.elapsed = ms(1)});
+  stress_.unit_usage.cpu = ms(320);
+  judge_clock({}, ticks, stress_);
+  EXPECT_EQ(stress_.result.verdict, Verdict::pass);
+  stress_.unit_usage.cpu = ms(321);
+  judge_clock({.spin = ms(1)}, ticks, stress_);
+  EXPECT_EQ(stress_.result.verdict, Verdict::pass);
+  judge_clock({}, ticks, stress_);
+  EXPECT_EQ(stress_.result.verdict, Verdict::protocol);
+  EXPECT_THAT(stress_.result.reason, HasSubstr("100 steps took 100 ms, but their thread used 321"));
+}
+
 TEST_F(StressJudge, OutputsThatDeviateFail) {
   deviate_from(10);
   const CaseResult result = outputs();
