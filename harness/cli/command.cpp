@@ -12,8 +12,8 @@
 namespace attest::cli {
 namespace {
 
-// The vectors of `cases` that failed in a report, and those without which they may pass. Errors: the
-// file is no report, or no such vector failed.
+// The vectors of `cases` that failed in a report, and those without which they may pass. Errors:
+// the file is no report, or no such vector failed.
 Result<std::vector<SelectedCase>> failed_in(const std::string& report,
                                             std::vector<SelectedCase> cases) {
   const auto earlier = read_report(report);

@@ -1,13 +1,12 @@
 #include "harness/host/port_process.hpp"
 
-#include <algorithm>
-#include <chrono>
 #include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "harness/core/own_arena.hpp"
+#include "harness/host/answer_meter.hpp"
 #include "harness/host/host_here.hpp"
 #include "harness/host/host_protocol.hpp"
 #include "harness/host/port_launcher.hpp"
@@ -17,7 +16,6 @@ namespace attest {
 namespace {
 
 using Kind = Received::Kind;
-using SteadyClock = std::chrono::steady_clock;
 
 // The expected outputs are not sent to the port.
 std::vector<Sample> inputs_of(const Trace& trace) {
@@ -43,55 +41,6 @@ std::string not_run(PortFault::Kind kind) {
   return kind == PortFault::Kind::timeout
              ? "not run: the port had timed out before"
              : "not run: the port had crashed or broken the protocol before";
-}
-
-// Measures an answer of the port. A machine under load must not make a right port late, so the
-// limit is one of CPU time. Sleep has a limit of its own, and the time in which the port waits for
-// a CPU does not count. The limits of a library are for a whole trace. A program may take longer
-// for a trace, so its limits are for each call. The calls are counted in memory that the program
-// cannot write, so it cannot extend the limits.
-class AnswerMeter {
- public:
-  enum class Limit { none, running, asleep, memory };
-
-  AnswerMeter(const HostOptions& options, const PortChild& port)
-      : most_(options.timeout_s), port_(port), is_program_(is_program(options.port)) {}
-
-  // Looks at the processes of the port at most every 100 ms.
-  Limit exceeded() {
-    const auto now = SteadyClock::now();
-    if (now - looked_ < std::chrono::milliseconds(100)) return Limit::none;
-    looked_ = now;
-    const TreeUsage usage = port_.child.usage();
-    if (memory_is_limited() && usage.resident_bytes >> 30 >= max_memory_gib) return Limit::memory;
-    const bool is_new_call =
-        is_program_ && std::exchange(calls_, port_.calls->count()) != port_.calls->count();
-    if (!at_begin_ || is_new_call) {
-      at_begin_ = usage;
-      began_ = now;
-    }
-    const auto running = std::max(usage.running - at_begin_->running, Duration{0});
-    const auto waiting = std::max(usage.waiting - at_begin_->waiting, Duration{0});
-    if (running > most_) return Limit::running;
-    return now - began_ - running - waiting > most_ * longer_asleep ? Limit::asleep : Limit::none;
-  }
-
- private:
-  using Duration = std::chrono::nanoseconds;
-
-  std::chrono::duration<double> most_;
-  const PortChild& port_;
-  bool is_program_;
-  SteadyClock::time_point looked_ = SteadyClock::now(), began_ = looked_;
-  std::optional<TreeUsage> at_begin_;
-  std::uint64_t calls_ = 0;
-};
-
-// "10 s of CPU time"
-std::string text_of(AnswerMeter::Limit exceeded, const HostOptions& options) {
-  return exceeded == AnswerMeter::Limit::asleep
-             ? fmt::format("{:g} s of sleep", options.timeout_s * longer_asleep)
-             : fmt::format("{:g} s of CPU time", options.timeout_s);
 }
 
 class PortProcess final : public PortHost {
@@ -198,7 +147,8 @@ class PortProcess final : public PortHost {
 
   Patience patience() {
     Patience limit;
-    limit.given_up = [this, meter = AnswerMeter(options_, *port_)]() mutable {
+    limit.given_up = [this, meter = AnswerMeter(*port_, options_.timeout_s,
+                                                is_program(options_.port))]() mutable {
       exceeded_ = meter.exceeded();
       return exceeded_ != AnswerMeter::Limit::none || options_.stop();
     };
@@ -256,9 +206,9 @@ class PortProcess final : public PortHost {
         return;
       case Kind::too_late:
       case Kind::given_up:
-        fault_ = PortFault{
-            PortFault::Kind::timeout, 0,
-            fmt::format("no answer within {}{}{}", text_of(exceeded_, options_), where, words)};
+        fault_ = PortFault{PortFault::Kind::timeout, 0,
+                           fmt::format("no answer within {}{}{}",
+                                       text_of(exceeded_, options_.timeout_s), where, words)};
         return;
       default:
         fault_ =

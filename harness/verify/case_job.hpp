@@ -32,9 +32,9 @@ struct Codec<CaseResult> {
 // all have the same vehicle and plant.
 //
 // A failure after other vectors is repeated in a new process, and the result is that of the
-// repetition. If the vector passes there, the failure stays, and CaseResult::after names the others.
-// So each failure can be reproduced. A timeout is not repeated. After any other failure the next
-// vector has a new process.
+// repetition. If the vector passes there, the failure stays, and CaseResult::after names the
+// others. So each failure can be reproduced. A timeout is not repeated. After any other failure the
+// next vector has a new process.
 class CaseJob final : public PortJob<CaseResult> {
  public:
   // `vehicle_model` is that of a flight's vehicle; null for open loop.

@@ -82,7 +82,8 @@ CHECK
 
 @test "vectors that are not run after a timeout name it" {
   cp -r "$SOURCE/controller/starters/c" hangs
-  sed -i 's/^  float dt = .*/&\n  for (volatile int i = 0; dt > 0.0035f \&\& dt < 0.0045f;) i = 0;/' hangs/unit.c
+  local loop='for (volatile int i = 0; dt > 0.0035f \&\& dt < 0.0045f;) i = 0;'
+  sed -i "s/^  float dt = .*/&\n  $loop/" hangs/unit.c
   cc -O2 -std=c11 -ffp-contract=off -fPIC -shared -I"$SOURCE/controller" -o hangs.so hangs/*.c -lm
   run "$ATTEST" run --port lib:./hangs.so --filter 'rates/ff_alone@*' --profile px4-v1.5.5 \
     --timeout 0.5 --no-diagnose --junit junit.xml
