@@ -15,7 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "harness/core/temporary_folder.hpp"
+#include "harness/process/temporary_folder.hpp"
 
 namespace attest::bench {
 namespace {

@@ -111,9 +111,11 @@ std::vector<fs::path> existing(const std::vector<std::string>& paths) {
 std::string filter_of_calls() {
   const int file = ::memfd_create("attest-filter", MFD_CLOEXEC);
   const scmp_filter_ctx filter = ::seccomp_init(SCMP_ACT_ALLOW);
+  const scmp_arg_cmp of_others{0, SCMP_CMP_NE, 0,
+                               0};  // the first argument is a process; 0: its own
   const bool is_made = filter != nullptr && file >= 0 &&
-                       ::seccomp_rule_add(filter, SCMP_ACT_ERRNO(EPERM), SCMP_SYS(prlimit64), 1,
-                                          SCMP_A0(SCMP_CMP_NE, 0)) == 0 &&
+                       ::seccomp_rule_add_array(filter, SCMP_ACT_ERRNO(EPERM), SCMP_SYS(prlimit64),
+                                                1, &of_others) == 0 &&
                        ::seccomp_export_bpf(filter, file) == 0;
   ::seccomp_release(filter);
   std::string program(is_made ? static_cast<std::size_t>(::lseek(file, 0, SEEK_END)) : 0, '\0');
@@ -132,7 +134,7 @@ void enter_filter(const std::string& program) {
 // ---- capabilities -------------------------------------------------------------------------------
 
 // What lets root change other processes, the kernel, the clock, or its own limits.
-constexpr std::array lifting_capabilities{
+constexpr std::array<unsigned, 15> lifting_capabilities{
     CAP_SYS_RESOURCE, CAP_SYS_PTRACE, CAP_SYS_ADMIN, CAP_SYS_MODULE,   CAP_SYS_RAWIO,
     CAP_SYS_BOOT,     CAP_SYS_TIME,   CAP_KILL,      CAP_MKNOD,        CAP_BPF,
     CAP_PERFMON,      CAP_SETPCAP,    CAP_MAC_ADMIN, CAP_MAC_OVERRIDE, CAP_CHECKPOINT_RESTORE};
@@ -141,7 +143,7 @@ void drop_capabilities() {
   __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
   std::array<__user_cap_data_struct, 2> sets{};
   if (::syscall(SYS_capget, &header, sets.data()) != 0) return;
-  for (const int capability : lifting_capabilities) {
+  for (const unsigned capability : lifting_capabilities) {
     ::prctl(PR_CAPBSET_DROP, capability);  // an ordinary user has none to drop
     auto& set = sets.at(CAP_TO_INDEX(capability));
     const std::uint32_t kept = ~CAP_TO_MASK(capability);
