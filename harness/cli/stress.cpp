@@ -203,8 +203,9 @@ int stress_command(const StressOptions& options, const Globals& globals) {
   run.budget = plan->tasks.front().the_case.flight->realtime;
   if (auto done = run_all(*plan, options, globals, run); !done) return report_error(done.error());
   const RunResult all = run_of(run);
-  const std::vector<std::string> missing = rates_not_judged(run);
-  if (missing.size() == all.results.size()) html->reset();  // a page of an earlier run is kept
+  const auto has_flown = [](const StressResult& stress) { return stress.deadlines > 0; };
+  // Without a flight, a page of an earlier run is kept.
+  if (std::ranges::none_of(run.results, has_flown)) html->reset();
   for (const auto& written :
        {write_report(*json, stress_json(run)), write_report(*junit, junit_report(all)),
         write_report(*html, stress_page(run))}) {
@@ -213,7 +214,7 @@ int stress_command(const StressOptions& options, const Globals& globals) {
   if (!globals.quiet) fmt::print("{}", render_stress_end(run, terminal_style(stdout)));
   if (run.interrupted) return exit_interrupted;
   if (all.failed()) return exit_failed;
-  if (!missing.empty()) {
+  if (const auto missing = rates_not_judged(run); !missing.empty()) {
     return report_error(
         {fmt::format("not judged: {} Hz; see the reasons above", fmt::join(missing, " Hz, "))});
   }
