@@ -53,7 +53,7 @@ broken() {
 @test "a flight of another release than the port's has no result" {
   run "$ATTEST" sim hover --rate 250:1000 --port "lib:$STARTER" --html page.html
   [ "$status" -eq 2 ]
-  has "0 ticks -> page.html"
+  [ ! -e page.html ]
   has "skip: the port does not support profile px4-v1.16.0"
   has "attest: error: the port did not fly"
 }

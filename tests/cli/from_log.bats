@@ -32,7 +32,7 @@ from_log=ours/cases/px4-v1.5.5/from_log/gust_from_1s_to_1_5s.toml
   [ "$(cat ours/BASE)" = ../other ]
   run "$ATTEST" vectors "$SOURCE" --from-log gust.ulg
   [ "$status" -eq 2 ]
-  has "is a folder of the suite"
+  has "is in a suite"
 }
 
 @test "a part that the log does not have is an error, and no folder is made" {

@@ -100,7 +100,7 @@ P
   [ -e ours/golden/px4-v1.5.5/rates/long_run/1000hz.csv ]               # a case of the base
   run ours run "${selection[@]}" --json ours/cases/px4-v1.5.5/rates/p_alone.toml
   [ "$status" -eq 2 ]
-  has "is a file of the suite"
+  has "is in a suite"
 
   # The same cases without a base are the same suite.
   cp -r ours copied

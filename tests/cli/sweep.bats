@@ -364,7 +364,7 @@ SWEEP
   has "notes: has other files"
   run "$ATTEST" sweep sweep.toml --out "$SOURCE/models"
   [ "$status" -eq 2 ]
-  has "is a folder of the suite"
+  has "is in a suite"
 }
 
 @test "a full disk is an error, and the sweep continues when there is room" {
