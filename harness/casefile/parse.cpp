@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <ranges>
 #include <set>
 #include <string_view>
 #include <system_error>
@@ -61,11 +60,12 @@ Instances parse_instances(const TomlTable& root) {
   if (!root.has(key)) return Instances::one;
   if (root.has("flight")) root.error(key, "is for open loop; leave [flight] out");
   const std::string text = root.text(key);
+  std::vector<std::string_view> names;
   for (const auto& [name, instances] : instances_by_name) {
     if (text == name) return instances;
+    names.push_back(name);
   }
-  root.error(
-      key, fmt::format("must be one of {}", fmt::join(std::views::keys(instances_by_name), ", ")));
+  root.error(key, fmt::format("must be one of {}", fmt::join(names, ", ")));
   return Instances::one;
 }
 
