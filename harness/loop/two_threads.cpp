@@ -35,20 +35,21 @@ struct Pause {
   std::atomic<bool> is_due{false};  // the timer runs
   std::atomic<SteadyClock::duration> in_all{};
 };
-Pause now;
+Pause the_pause;
 static_assert(std::atomic<SteadyClock::duration>::is_always_lock_free);
 
 extern "C" void pause_until_the_other_has_stepped(int) {
   const int saved = errno;
   constexpr std::size_t whole_step = 2;  // the first may have begun before the pause
-  const std::size_t end = now.others_steps + whole_step;
+  const std::size_t end = the_pause.others_steps + whole_step;
   const auto begin = SteadyClock::now();
-  now.lasts_until = end;
-  while (now.others_steps < end && !now.others_end && SteadyClock::now() < begin + longest_pause) {
+  the_pause.lasts_until = end;
+  while (the_pause.others_steps < end && !the_pause.others_end &&
+         SteadyClock::now() < begin + longest_pause) {
     std::this_thread::yield();
   }
-  now.in_all = now.in_all.load() + (SteadyClock::now() - begin);
-  now.is_due = false;
+  the_pause.in_all = the_pause.in_all.load() + (SteadyClock::now() - begin);
+  the_pause.is_due = false;
   errno = saved;
 }
 
@@ -76,8 +77,8 @@ class PauseTimer {
   // Pauses the thread in 20 to 40 us, which differ so that all parts of a step are hit. A shorter
   // time may be over before this function returns, and the pause would never be in a step.
   void pause_soon() {
-    if (!timer_ || now.is_due || now.in_all.load() > longest_in_all) return;
-    now.is_due = true;
+    if (!timer_ || the_pause.is_due || the_pause.in_all.load() > longest_in_all) return;
+    the_pause.is_due = true;
     delay_ns_ = 20'000 + (delay_ns_ + 7919) % 20'000;
     const itimerspec once{{0, 0}, {0, delay_ns_}};
     ::timer_settime(*timer_, 0, &once, nullptr);
@@ -97,9 +98,9 @@ bool run_on_two_threads(const std::function<bool()>& judged, const std::function
   const std::size_t between_pauses = std::max<std::size_t>(steps / pauses, 1);
   std::atomic<std::size_t> judged_steps = 0;
   std::atomic<bool> judged_end = false;
-  now.others_steps = now.lasts_until = 0;
-  now.others_end = now.is_due = false;
-  now.in_all = SteadyClock::duration(0);
+  the_pause.others_steps = the_pause.lasts_until = 0;
+  the_pause.others_end = the_pause.is_due = false;
+  the_pause.in_all = SteadyClock::duration(0);
   std::optional<std::thread> thread;
   try {
     thread.emplace([&] {
@@ -113,14 +114,15 @@ bool run_on_two_threads(const std::function<bool()>& judged, const std::function
     return false;
   }
   while (!judged_end) {
-    if (now.others_steps >= judged_steps + most_ahead && now.others_steps >= now.lasts_until) {
+    if (the_pause.others_steps >= judged_steps + most_ahead &&
+        the_pause.others_steps >= the_pause.lasts_until) {
       std::this_thread::yield();
       continue;
     }
     if (!other()) break;
-    ++now.others_steps;
+    ++the_pause.others_steps;
   }
-  now.others_end = true;
+  the_pause.others_end = true;
   thread->join();
   return true;
 }
