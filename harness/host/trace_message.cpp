@@ -79,10 +79,10 @@ std::optional<PortFault> fault_from(JsonReader& head, std::size_t ticks, bool of
 
 std::optional<PortFault> with_words(std::optional<PortFault> fault, const Child& child,
                                     bool of_program) {
-  using Kind = PortFault::Kind;
+  using enum PortFault::Kind;
   if (!fault) return fault;
-  const bool has_ended = fault->kind == Kind::crash || fault->kind == Kind::protocol;
-  const bool has_failed = fault->kind == Kind::failed || fault->kind == Kind::refused;
+  const bool has_ended = fault->kind == crash || fault->kind == protocol;
+  const bool has_failed = fault->kind == failed || fault->kind == refused;
   if (has_failed || (of_program && has_ended)) {
     fault->what += child.last_printed();
   }
