@@ -7,9 +7,16 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "harness/core/result.hpp"
+
 namespace attest {
 
-// If the text is not JSON, returns a discarded value (is_discarded()), which is not an object.
+// For text of a user or a port. Errors, with `file` and the place in it: the text is not JSON, or
+// was cut off; an object has a key twice.
+Result<nlohmann::json> parse_json(std::string_view text, const std::string& file);
+
+// For text of attest's own processes. If it is not JSON, returns a discarded value
+// (is_discarded()), which is not an object.
 nlohmann::json json_from(std::string_view text);
 
 // Bytes that are not UTF-8 are replaced by U+FFFD, because the texts of a port may have any bytes.

@@ -98,7 +98,9 @@ Result<TimingFile> read_timing(const std::filesystem::path& path) {
   const std::string file = path.string();
   const auto text = read_file(path, most_bytes);
   if (!text) return tl::unexpected(text.error());
-  const json root = json_from(*text);
+  const auto parsed = parse_json(*text, file);
+  if (!parsed) return tl::unexpected(parsed.error());
+  const json& root = *parsed;
   const auto texts = {"case", "case_sha256", "rate", "vehicle", "plant"};
   bool complete = root.is_object() && root.contains("attest_timing") &&
                   root["attest_timing"] == format && root.contains("ticks_ns") &&

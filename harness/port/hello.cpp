@@ -148,13 +148,15 @@ std::string greeting() {
 }
 
 Result<Hello> parse_hello(std::string_view line) {
-  const json object = json_from(line);
+  const auto parsed = parse_json(line, "");
+  const json object = parsed ? *parsed : json_from(line);
   if (!object.is_object()) {
     return fail(
         fmt::format("its first line on stdout is {}, which is no JSON object; only the "
                     "handshake belongs there, and text for people on stderr",
                     in_backquotes(line)));
   }
+  if (!parsed) return fail("its answer to the handshake " + parsed.error().message);
   Members members(object);
   Hello hello;
   read_protocol(members);

@@ -126,11 +126,13 @@ class TextConversation final : public Conversation {
       broken(kind, fmt::format("has no end within {} bytes", max_line));
     }
     if (!line) ended(kind);
-    json answer = json_from(*line);
+    auto parsed = parse_json(*line, "");
+    json answer = parsed ? *std::move(parsed) : json_from(*line);
     if (!answer.is_object() || !answer.contains("sequence") || !answer.contains("result")) {
       broken(kind, fmt::format("is {}; it must be a JSON object with `sequence` and `result`",
                                in_backquotes(*line)));
     }
+    if (!parsed) broken(kind, parsed.error().message);
     if (answer["sequence"] != sequence) {
       broken(kind, fmt::format("has the sequence number {}; that of the request is {}",
                                text_of(answer["sequence"]), sequence));

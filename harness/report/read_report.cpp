@@ -117,7 +117,9 @@ void check_numbers(JsonReader reader, JsonReader totals, const RunResult& run) {
 Result<RunResult> read_report(const std::string& path) {
   const auto text = read_file(path);
   if (!text) return tl::unexpected(text.error());
-  const json report = json_from(*text);
+  const auto parsed = parse_json(*text, path);
+  if (!parsed) return tl::unexpected(parsed.error());
+  const json& report = *parsed;
   if (!report.is_object() || report.value("schema", json()) != "attest-report-1") {
     return fail_at(path, "is no report of `attest run --json` of this version of the format");
   }

@@ -69,7 +69,9 @@ Result<SweepIdentity> read_identity(const fs::path& folder) {
   const fs::path file = folder / identity_file;
   const auto text = read_file(file);
   if (!text) return tl::unexpected(text.error());
-  const auto json = json_from(*text);
+  const auto parsed = parse_json(*text, file.string());
+  if (!parsed) return tl::unexpected(parsed.error());
+  const nlohmann::json& json = *parsed;
   SweepIdentity identity;
   for (const Named& named : identity_members) {
     if (!json.is_object() || !json.contains(named.key) || !json[named.key].is_string()) {

@@ -150,7 +150,29 @@ T
   [ "$status" -eq 1 ]
   run "$ATTEST" run --rerun-failed "$SOURCE/README.md"
   [ "$status" -eq 2 ]
+  has "README.md:1:1: is not JSON from here on"
+  echo '{"schema": "attest-report-2"}' >other.json
+  run "$ATTEST" run --rerun-failed other.json
+  [ "$status" -eq 2 ]
   has "is no report of \`attest run --json\`"
+}
+
+@test "a JSON file that was cut, spoilt or joined is an error with its place" {
+  "$ATTEST" run --group tpa --rate 250 --json all.json >/dev/null
+  head -c 1000 all.json >cut.json
+  last=$(($(wc -l <cut.json) + 1))
+  : >empty.json
+  sed '3s/:/=/' all.json >spoilt.json
+  sed '2s/.*/&\n  "port": {},/' all.json >joined.json
+  for wrong in "cut.json:$last:[0-9]*: ends inside of the JSON: it is empty or was cut off" \
+    "empty.json:1:1: ends inside of the JSON" "spoilt.json:3:[0-9]*: is not JSON from here on" \
+    "joined.json:[0-9]*:3: has \`port\` twice in one object"; do
+    for command in merge "run --rerun-failed" "run --timing"; do
+      run "$ATTEST" $command "${wrong%%:*}"
+      [ "$status" -eq 2 ]
+      grep -q "attest: error: $wrong" <<<"$output" || { echo "$output" && return 1; }
+    done
+  done
 }
 
 @test "what failed is run again at the same level and with the same parameters only" {

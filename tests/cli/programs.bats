@@ -97,6 +97,8 @@ HEADROOM
 # The unit tests of harness/port have every wrong answer.
 @test "a wrong answer to the handshake is an error before anything runs" {
   refused "program.py hello_is_no_json" "its first line on stdout is \`ready\`, which is no JSON"
+  refused "program.py hello_repeats" "its answer to the handshake has \`version\` twice in one"
+  refused "program.py hello_repeats_escaped" "its answer to the handshake has a key twice"
   refused "program.py hello_misspells" "unknown member \`fixed_setp\`; did you mean \`fixed_step\`?"
   refused "program.py hello_has_no_end" "has no end within 65536 bytes"
   refused "program.py ends_at_once" "exited with status 1 before it answered the handshake"
@@ -110,6 +112,9 @@ HEADROOM
   judged "in_text.py stale"
   [ "$status" -eq 1 ]
   has "protocol: at tick 19: the answer to the request \`step\` has the sequence number 28"
+  judged "in_text.py repeats"
+  [ "$status" -eq 1 ]
+  has "the answer to the request \`step\` has \`out/vehicle_rates_setpoint.roll\` twice in one"
   judged "program.py no_result"
   [ "$status" -eq 1 ]
   has "protocol: step at tick 19 returned 77, which is no ATTEST_ result"

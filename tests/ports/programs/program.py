@@ -34,6 +34,8 @@ HELLO = {
 # What each mode answers to the handshake instead of HELLO.
 HELLOS = {
     "hello_is_no_json": "ready",
+    "hello_repeats": json.dumps(HELLO)[:-1] + ', "version": "2"}',
+    "hello_repeats_escaped": json.dumps(HELLO)[:-1] + ', "v\\u0065rsion": "2"}',
     "hello_misspells": json.dumps(HELLO | {"fixed_setp": "250"}),
     "hello_in_batches": json.dumps(HELLO | {"batch": True}),
 }
