@@ -1,6 +1,7 @@
 #include "harness/sweep/parse_dispersions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -51,7 +52,10 @@ void parse_choice(const TomlTable& table, Distribution& distribution) {
 constexpr double least_part = 1e-6;
 
 void check_part(const TomlTable& table, const Distribution& of) {
-  if (!(of.deviation > 0) || !(of.low < of.high)) return;
+  const auto is_finite = [](double value) { return std::isfinite(value); };
+  const std::array numbers{of.mean, of.deviation, of.low, of.high};
+  const bool are_numbers = std::all_of(numbers.begin(), numbers.end(), is_finite);
+  if (!are_numbers || !(of.deviation > 0) || !(of.low < of.high)) return;
   const double part = normal_probability((of.high - of.mean) / of.deviation) -
                       normal_probability((of.low - of.mean) / of.deviation);
   if (!(part >= least_part)) {

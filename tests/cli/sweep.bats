@@ -349,6 +349,22 @@ SWEEP
   has "--shard 1/6: the sweep has only 5 samples"
 }
 
+@test "numbers of a distribution that are not finite are refused with their place" {
+  make_sweep 10 </dev/null
+  # Two at a time, because they may cancel out.
+  for wrong in 'mean = 1/mean = nan/13' 'mean = 1/mean = inf/13' 'low = 0.85/low = -inf/15' \
+    'high = 1.15/high = inf/16' 'deviation = 0.05/deviation = inf/14'; do
+    for other in "" "s/mean = 1/mean = -inf/" "s/low = 0.85/low = -inf/" \
+      "s/deviation = 0.05/deviation = nan/"; do
+      sed "$other; s/${wrong%/*}/" sweep.toml >wrong.toml
+      run "$ATTEST" sweep wrong.toml --out out
+      [ "$status" -eq 2 ]
+      has "wrong.toml:${wrong##*/}:1: must be"
+      lacks boost
+    done
+  done
+}
+
 @test "the folder of another sweep is not continued" {
   make_sweep 3 </dev/null
   "$ATTEST" -q sweep sweep.toml --out out
