@@ -9,6 +9,16 @@
 #include "harness/casefile/stimulus.hpp"
 
 namespace attest {
+
+Result<void> check_ticks(const Case& the_case, const LoopRate& rate, std::int64_t most) {
+  const std::int64_t ticks = tick_count(the_case.duration, rate.unit);
+  if (ticks <= most) return {};
+  return fail_at(the_case.file.string(),
+                 fmt::format("is {} ticks at {} Hz, and at most {} are possible; use a lower rate "
+                             "or a shorter time",
+                             ticks, rate.to_string(), most));
+}
+
 namespace {
 
 bool walks_too_far(const Signal& signal, const Timeline& timeline) {

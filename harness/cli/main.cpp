@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <new>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -59,8 +60,11 @@ int main(int argc, char** argv) {
   }
   try {
     return flushed(attest::cli::run_command_line(argc, argv));
+  } catch (const std::bad_alloc&) {
+    std::fputs("attest: error: out of memory; `ulimit -v` or the machine limits it\n", stderr);
+    return attest::cli::exit_usage;
   } catch (const std::exception& error) {
-    // Out of memory, or a bug of attest.
+    // A bug of attest.
     std::fputs(fmt::format("attest: error: {}\n", error.what()).c_str(), stderr);
     return attest::cli::exit_usage;
   }

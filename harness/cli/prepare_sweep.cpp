@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/casefile/parse_limits.hpp"
 #include "harness/cli/find_case.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/run_plan.hpp"
@@ -31,6 +32,7 @@ Result<FlightSampler> make_sampler(const SweepOptions& options, const SuiteFolde
   }
   auto& [the_case, plant_configuration, vehicle_model] = *chosen;
   if (auto sane = check_rate(the_case, sweep->rate); !sane) return tl::unexpected(sane.error());
+  if (auto few = check_ticks(the_case, sweep->rate); !few) return tl::unexpected(few.error());
   auto case_text = read_file(the_case.file);
   if (!case_text) return tl::unexpected(case_text.error());
   auto vehicle_text = read_file(vehicle_model->vehicle().file);

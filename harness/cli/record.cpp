@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/casefile/parse_limits.hpp"
 #include "harness/casefile/stimulus.hpp"
 #include "harness/cli/command.hpp"
 #include "harness/cli/find_case.hpp"
@@ -19,6 +20,7 @@ Result<Trace> recorded(const RecordOptions& options, const SuiteFolder& suite) {
   if (!the_case) return tl::unexpected(the_case.error());
   const auto rate = Rate::parse(options.rate);
   if (!rate) return tl::unexpected(rate.error());
+  if (auto few = check_ticks(*the_case, *rate); !few) return tl::unexpected(few.error());
   const auto host = start_host(options.host);
   if (!host) return tl::unexpected(host.error());
   Trace trace = inputs_for((*host)->says(), *the_case, *rate);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "harness/casefile/parse_limits.hpp"
 #include "harness/casefile/stimulus.hpp"
 #include "harness/casefile/task_set.hpp"
 #include "harness/cli/command.hpp"
@@ -54,6 +55,7 @@ Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder
   if (auto checked = check_law(options, *set, the_case); !checked) {
     return tl::unexpected(checked.error());
   }
+  if (auto few = check_ticks(the_case, set->rate()); !few) return tl::unexpected(few.error());
   const RunConfiguration configuration{set->rate(), chosen->plant_configuration};
   const Nanoseconds duration = timeline_of(the_case, configuration.rate.unit).duration;
   auto jobs = simulate(set->tasks, duration);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/casefile/parse_limits.hpp"
 #include "harness/cli/command.hpp"
 #include "harness/cli/find_case.hpp"
 #include "harness/cli/outputs.hpp"
@@ -67,6 +68,7 @@ Result<Sim> prepare_case(const SimOptions& options, const SuiteFolder& suite) {
   auto chosen =
       choose_flight(options.case_name, *rate, options.vehicle, on_all ? "" : options.plant, suite);
   if (!chosen) return tl::unexpected(chosen.error());
+  if (auto few = check_ticks(chosen->the_case, *rate); !few) return tl::unexpected(few.error());
   std::vector<RunConfiguration> configurations;
   for (const PlantKind plant : plant_kinds) {
     const PlantConfiguration& one = chosen->plant_configuration;

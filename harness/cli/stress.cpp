@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/casefile/parse_limits.hpp"
 #include "harness/cli/command.hpp"
 #include "harness/cli/exchange_note.hpp"
 #include "harness/cli/find_case.hpp"
@@ -24,6 +25,10 @@ namespace {
 
 // The idle machine is measured for as long as the flight takes, but at most for this time.
 constexpr double idle_s_max = 5;
+
+// An hour at 8 kHz is 28.8 million. Each takes about 100 bytes of the 4 GiB that the port's process
+// may have.
+constexpr std::int64_t most_deadlines = 30'000'000;
 
 Nanoseconds nanoseconds(double seconds) {
   return Nanoseconds(static_cast<std::int64_t>(seconds * 1e9));
@@ -79,6 +84,9 @@ Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& su
   plan.port = std::move(*port);
   for (const LoopRate& rate : *rates) {
     if (auto sane = check_rate(the_case, rate); !sane) return tl::unexpected(sane.error());
+    if (auto few = check_ticks(the_case, rate, most_deadlines); !few) {
+      return tl::unexpected(few.error());
+    }
   }
   for (const LoopRate& rate : *rates) {
     plan.tasks.push_back({the_case, RunConfiguration{rate, chosen->plant_configuration},

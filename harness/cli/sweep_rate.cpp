@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/casefile/parse_limits.hpp"
 #include "harness/cli/command.hpp"
 #include "harness/cli/find_case.hpp"
 #include "harness/cli/interrupt.hpp"
@@ -54,6 +55,7 @@ Result<RateSweepPlan> make_plan(const RateSweepOptions& options, const SuiteFold
   if (!the_case) return tl::unexpected(the_case.error());
   for (const LoopRate& rate : plan.rates) {
     if (auto sane = check_rate(*the_case, rate); !sane) return tl::unexpected(sane.error());
+    if (auto few = check_ticks(*the_case, rate); !few) return tl::unexpected(few.error());
   }
   const auto plant_configurations = plant_configurations_of(*the_case, options);
   if (!plant_configurations) return tl::unexpected(plant_configurations.error());

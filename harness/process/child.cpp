@@ -10,6 +10,7 @@
 #include <cstring>
 #include <exception>
 #include <initializer_list>
+#include <new>
 #include <optional>
 #include <utility>
 
@@ -83,6 +84,9 @@ void run_in_child(const Barrier* barrier, const ChildFiles& files, const Child::
   MessageSocket socket(files.socket);
   try {
     work(socket);
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "out of memory\n");
+    std::abort();
   } catch (const std::exception& error) {
     fmt::print(stderr, "uncaught exception: {}\n", error.what());
     std::abort();

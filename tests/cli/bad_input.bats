@@ -186,6 +186,42 @@ refused() {
   has "loop: cannot create the file: Too many levels of symbolic links"
 }
 
+@test "more ticks than fit in memory are refused before the port is called" {
+  make_suite
+  sed -i 's/duration_ticks = 30/duration_s = 120/; s/end_ticks = 25/end_s = 1/' \
+    suite/cases/px4-v1.5.5/attitude/roll.toml
+  run "$ATTEST" --suite suite record roll --rate 1000000 --out roll.csv
+  [ "$status" -eq 2 ]
+  has "roll.toml: is 120000000 ticks at 1000000 Hz, and at most 1000000 are possible; use a lower"
+  [ ! -e roll.csv ]
+  run "$ATTEST" stress --rates 1000000 --duration 3600
+  [ "$status" -eq 2 ]
+  has "hover.toml: is 3600000000 ticks at 1000000 Hz, and at most 30000000 are possible"
+  printf '%s\n' '[task.unit]' 'rate_hz = 900000' 'execution_us = 1' 'priority = 2' >tasks.toml
+  run "$ATTEST" schedule tasks.toml
+  [ "$status" -eq 2 ]
+  has "00000 ticks at 900000 Hz, and at most 1000000 are possible"
+  printf '%s\n' 'schema = 1' 'case = "px4-v1.5.5/flight/hover"' 'rate = 1000000' \
+    'design = "monte_carlo"' 'samples = 1' '[disperse.mass]' 'keys = ["vehicle.mass_kg"]' \
+    'distribution = "uniform"' 'low = 1' 'high = 2' >sweep.toml
+  for command in "sim hover --rate 1000000 --out f.csv" "sweep-rate --rates 1000000" \
+    "sweep sweep.toml --out out"; do
+    run "$ATTEST" $command
+    [ "$status" -eq 2 ]
+    has "000000 ticks at 1000000 Hz, and at most 1000000 are possible"
+  done
+}
+
+@test "too little memory is an error that says so" {
+  nm "$ATTEST" | grep -q __asan_init && skip "sanitizers need address space"
+  make_suite
+  sed -i 's/duration_ticks = 30/duration_s = 120/; s/end_ticks = 25/end_s = 1/' \
+    suite/cases/px4-v1.5.5/attitude/roll.toml
+  run bash -c "ulimit -v 500000; exec \"$ATTEST\" --suite suite record roll --rate 8000 --out x.csv"
+  [ "$status" -eq 2 ]
+  [ "$output" = "attest: error: out of memory; \`ulimit -v\` or the machine limits it" ]
+}
+
 @test "an output is never one of the files that are read, with or without a suite" {
   for file in a.csv b.csv; do "$ATTEST" sim gust --rate 250 --out $file; done
   cp "$SOURCE"/golden/recorded/px4-v1.5.5/{fuzz_250hz.csv,provenance.toml} .
