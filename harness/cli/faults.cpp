@@ -84,6 +84,26 @@ int verdict(const std::vector<FaultFinding>& findings) {
   return good ? exit_ok : exit_failed;
 }
 
+// For how many faults the report of most failing vectors names the stage.
+void print_stage_lines(const std::vector<SelfDiagnosis>& results, const std::string& profile) {
+  const auto count = [&](StageLine line) {
+    return std::count_if(results.begin(), results.end(), [line](const SelfDiagnosis& result) {
+      return !result.stage_lines.empty() && result.usual_stage_line() == line;
+    });
+  };
+  for (const SelfDiagnosis& result : results) {
+    const auto& lines = result.stage_lines;
+    if (lines.empty() || result.usual_stage_line() != StageLine::wrong) continue;
+    fmt::print("{}: most reports do not name the stage {}\n", result.fault->id,
+               name_of(result.fault->stage));
+  }
+  fmt::print(
+      "{}: \"look first at\" names the stage of {} faults; of {} more, whose stage has no output, "
+      "a "
+      "later stage; of {} another stage\n",
+      profile, count(StageLine::own), count(StageLine::later), count(StageLine::wrong));
+}
+
 int diagnose_all(const std::vector<SelectedCase>& cases, const std::string& profile) {
   const std::vector<SelfDiagnosis> results = diagnose_catalogue(cases, profile);
   std::size_t named = 0, stages = 0;
@@ -100,6 +120,7 @@ int diagnose_all(const std::vector<SelectedCase>& cases, const std::string& prof
       "{}: {} of {} faults are named first, alone or with faults that match equally well "
       "({:.1f}%); the stage of {} is named\n",
       profile, named, results.size(), part, stages);
+  print_stage_lines(results, profile);
   constexpr double enough = 95;
   return part >= enough ? exit_ok : exit_failed;
 }

@@ -39,8 +39,10 @@ void add_faults(CLI::App& app, const Globals& globals, Action& action) {
               "compared at that level only")
           ->type_name("LEVEL");
   command
-      ->add_flag("--diagnose", options->diagnose,
-                 "Measure instead which faults the diagnosis names")
+      ->add_flag(
+          "--diagnose", options->diagnose,
+          "Measure instead which faults the diagnosis names, and for which the reports name the "
+          "stage")
       ->excludes(bits, ids, level);
   add_jobs(*command, options->jobs, "Number of faults that run at the same time");
   add_examples(*command, {{"attest faults", "measure which faults the open-loop cases catch"},

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <tuple>
 #include <vector>
 
 #include <fmt/format.h>
@@ -13,6 +14,7 @@
 
 #include "harness/compare/events.hpp"
 #include "harness/compare/gross.hpp"
+#include "harness/compare/suspected_stages.hpp"
 #include "harness/core/same_bits.hpp"
 
 namespace attest {
@@ -47,11 +49,29 @@ double excess(const Deviation& deviation) {
 
 }  // namespace
 
+StageSet stages_of(const Deviation& deviation) {
+  return deviation.stages.any() ? deviation.stages : only(channels()[deviation.channel].stage);
+}
+
+Stage stage_of(const Deviation& deviation) {
+  const StageSet stages = stages_of(deviation);
+  const Stage stage = channels()[deviation.channel].stage;
+  return contains(stages, stage) ? stage : static_cast<Stage>(stages._Find_first());
+}
+
+namespace {
+
+bool is_before(const Deviation& a, const Deviation& b) {
+  return std::tuple(a.timestamp_us, stage_of(a)) < std::tuple(b.timestamp_us, stage_of(b));
+}
+
+}  // namespace
+
 Comparison both(Comparison one, const Comparison& other) {
   one.ticks += other.ticks;
   one.deviating_ticks += other.deviating_ticks;
   const auto& first = other.first;
-  if (first && (!one.first || first->timestamp_us < one.first->timestamp_us)) one.first = first;
+  if (first && (!one.first || is_before(*first, *one.first))) one.first = first;
   if (other.worst && (!one.worst || excess(*other.worst) > excess(*one.worst))) {
     one.worst = other.worst;
   }
@@ -66,14 +86,13 @@ Comparison both(Comparison one, const Comparison& other) {
 TickComparer::TickComparer(const ChannelSet& got, const ChannelSet& want,
                            const Tolerances& tolerances)
     : level_(tolerances.level()), allowed_(tolerances, module_of(want)) {
-  const auto table = channels();
   std::vector<std::string_view> missing;
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    if (!table[i].is_output()) continue;
-    if (got[i] && want[i]) chosen_.push_back(i);
-    if (!got[i] && want[i]) missing.push_back(table[i].name);
-    result_.only_got[i] = got[i] && !want[i];
+  for (const std::size_t i : outputs_by_stage(got | want)) {
+    compared_[i] = got[i] && want[i];
+    if (!got[i]) missing.push_back(channels()[i].name);
+    result_.only_got[i] = !want[i];
   }
+  chosen_ = outputs_by_stage(compared_);
   if (!missing.empty()) {
     not_recorded_ = fmt::format("got lacks {}, which want has", fmt::join(missing, ", "));
   } else if (chosen_.empty()) {
@@ -94,9 +113,15 @@ void TickComparer::add(const Sample& got, const Sample& want,
   allowed_.next(want, changes);
   const bool differs = outputs_differ(got, want);
   if (differs && level_ != Level::events) {
-    bool deviates = false;
-    for (const std::size_t channel : chosen_) deviates |= !channel_agrees(channel, got, want);
-    result_.deviating_ticks += deviates ? 1 : 0;
+    const bool is_first = !result_.first;
+    ChannelSet deviating;
+    for (const std::size_t channel : chosen_) {
+      deviating[channel] = !channel_agrees(channel, got, want);
+    }
+    result_.deviating_ticks += deviating.any() ? 1 : 0;
+    if (is_first && deviating.any()) {
+      result_.first->stages = suspected_stages(deviating, compared_, want);
+    }
   }
   ++tick_;
 }
@@ -172,7 +197,8 @@ Deviation deviation_at(std::size_t tick, std::size_t channel, const Trace& got,
           value_of(signal, got.samples[tick]),
           value_of(signal, want),
           0,
-          0};
+          0,
+          suspected_stages(ChannelSet().set(channel), got.present, want)};
 }
 
 void compare_events(const Trace& got, const Trace& want, Comparison& result) {
@@ -184,7 +210,7 @@ void compare_events(const Trace& got, const Trace& want, Comparison& result) {
   const auto non_finite = first_non_finite_event(got, want);
   std::optional<EventDifference> first = non_finite;
   for (const auto& other : {first_event_difference(got, want), first_gross_difference(got, want)}) {
-    if (other && (!first || other->tick < first->tick)) first = other;
+    if (other && (!first || is_before(*other, *first))) first = other;
   }
   if (!first) return;
   result.first = deviation_at(first->tick, first->channel, got, want.samples[first->tick]);
@@ -214,8 +240,9 @@ std::optional<Deviation> first_non_finite(const Trace& got, const Trace& want) {
                   return std::isfinite(float_of(channel, sample));
                 });
   }
+  const std::vector<std::size_t> chosen = outputs_by_stage(judged);
   for (std::size_t tick = 0; tick < got.samples.size(); ++tick) {
-    for (std::size_t i = judged._Find_first(); i < judged.size(); i = judged._Find_next(i)) {
+    for (const std::size_t i : chosen) {
       if (std::isfinite(float_of(channels()[i], got.samples[tick]))) continue;
       // The expected value is taken from the last row of `want` up to that time.
       const auto after = std::upper_bound(

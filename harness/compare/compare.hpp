@@ -29,7 +29,14 @@ struct Deviation {
   double want = 0;
   std::int64_t ulp = 0;  // distance in float32 steps; 0 for flags and NaN, and at the events level
   double tolerance = 0;  // allowed |got - want|; 0 at the levels exact and events
+  // Of a first deviation: the stages that can contain the mistake (suspected_stages.hpp).
+  StageSet stages = {};
 };
+
+// The stages of a first deviation; those of another one: the stage that writes the signal.
+StageSet stages_of(const Deviation& deviation);
+// The stage that a report counts: that of the signal, or else the first one.
+Stage stage_of(const Deviation& deviation);
 
 // How near a passing channel came to failing: ratio = tolerance / |got - want|; 1 is the limit.
 // Infinite when only the sign of a zero differed.
@@ -42,7 +49,7 @@ struct Headroom {
 struct Comparison {
   std::size_t ticks = 0;  // that were compared
   std::size_t deviating_ticks = 0;
-  std::optional<Deviation> first;  // lowest tick, then the order of channels()
+  std::optional<Deviation> first;  // lowest tick, then the first of outputs_by_stage()
   // The largest difference in units of its tolerance, or in ulp at the exact level, among finite
   // floats; the first of equal ones. Empty at the events level.
   std::optional<Deviation> worst;
@@ -57,8 +64,9 @@ struct Comparison {
 
 Comparison compare(const Trace& got, const Trace& want, const Tolerances& tolerances);
 
-// Combines the comparisons of two traces of one flight: takes the earlier first deviation and the
-// larger worst one. REQUIRES: both were compared at the numeric level.
+// Combines the comparisons of two traces of one flight: takes the earlier first deviation, at equal
+// times that of the earlier stage, and the larger worst one. REQUIRES: both were compared at the
+// numeric level.
 Comparison both(Comparison one, const Comparison& other);
 
 // The first NaN or Inf of `got` in a channel that is finite at all ticks of `want`. For flights,
@@ -86,7 +94,8 @@ class TickComparer {
   void note_headroom(std::size_t channel, double difference, double tolerance);
 
   Level level_;
-  std::vector<std::size_t> chosen_;  // outputs that both have; these are compared
+  ChannelSet compared_;              // outputs that both have
+  std::vector<std::size_t> chosen_;  // the same, by stage
   // The message if outputs of `want` are missing in `got`, or `want` has no output; else empty.
   std::string not_recorded_;
   std::size_t tick_ = 0;  // the next one to add

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -174,6 +175,11 @@ bool tells_events(const ChannelSet& present) {
                      [&](const Kind& kind) { return present[channel_of(kind)]; });
 }
 
+bool is_before(const EventDifference& a, const EventDifference& b) {
+  return std::pair(a.tick, channels()[a.channel].stage) <
+         std::pair(b.tick, channels()[b.channel].stage);
+}
+
 std::optional<EventDifference> first_event_difference(const Trace& got, const Trace& want) {
   std::optional<EventDifference> first;
   for (const Kind& kind : kinds) {
@@ -182,12 +188,12 @@ std::optional<EventDifference> first_event_difference(const Trace& got, const Tr
     const Channel& channel = channels()[index];
     const auto of_got = states(kind, got, channel), of_want = states(kind, want, channel);
     const auto tick = first_difference(of_got, of_want);
-    if (!tick || (first && first->tick <= *tick)) continue;
+    if (!tick) continue;
     const bool yes = of_got[*tick] == State::yes;
-    first =
-        EventDifference{*tick, index,
-                        fmt::format("{} is {}, expected {} within a tick", channel.name.substr(4),
-                                    yes ? kind.yes : kind.no, yes ? kind.no : kind.yes)};
+    EventDifference found{*tick, index,
+                          fmt::format("{} is {}, expected {} within a tick", channel.name.substr(4),
+                                      yes ? kind.yes : kind.no, yes ? kind.no : kind.yes)};
+    if (!first || is_before(found, *first)) first = std::move(found);
   }
   return first;
 }

@@ -25,6 +25,9 @@ struct EventDifference {
   std::string what;  // "mc_att_ctrl_status.yaw_rate_integ is moving, expected still within a tick"
 };
 
+// Orders by the tick, at the same tick by the stage of the law.
+bool is_before(const EventDifference& a, const EventDifference& b);
+
 // Mixer and battery estimate have no events. They are judged by their values.
 bool has_events(Module module);
 
@@ -33,7 +36,8 @@ bool tells_events(const ChannelSet& present);
 
 // The first tick at which the traces differ: there a state is true, or is false, in one trace, and
 // the other trace has the opposite at this tick and at both its neighbours. The first and the last
-// tick never differ, because they lack a neighbour. REQUIRES: as many ticks in both.
+// tick never differ, because they lack a neighbour. At the same tick the earlier stage is first.
+// REQUIRES: as many ticks in both.
 std::optional<EventDifference> first_event_difference(const Trace& got, const Trace& want);
 
 }  // namespace attest

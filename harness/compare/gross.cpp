@@ -26,15 +26,9 @@ double floor_of(Quantity quantity) {
   }
 }
 
-bool is_float_output(const Channel& channel) {
-  return channel.is_output() && channel.type == ChannelType::f32;
-}
-
 std::vector<std::size_t> float_outputs_of(const Trace& got, const Trace& want) {
-  std::vector<std::size_t> chosen;
-  for (std::size_t i = 0; i < channels().size(); ++i) {
-    if (is_float_output(channels()[i]) && got.present[i] && want.present[i]) chosen.push_back(i);
-  }
+  std::vector<std::size_t> chosen = outputs_by_stage(got.present & want.present);
+  std::erase_if(chosen, [](std::size_t i) { return channels()[i].type != ChannelType::f32; });
   return chosen;
 }
 

@@ -1,8 +1,10 @@
 #include "harness/diagnosis/diagnose_catalogue.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "harness/casefile/stimulus.hpp"
+#include "harness/compare/compare.hpp"
 #include "harness/golden/golden.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/port/builtin.hpp"
@@ -24,6 +26,72 @@ Rate rate_for(const SelectedCase& selected) {
   return selected.configurations.front().rate.unit;
 }
 
+StageSet first_stages(const Outputs& outputs, const Trace& law) {
+  if (outputs.empty()) return {};
+  Trace got = law;
+  for (std::size_t tick = 0; tick < outputs.size(); ++tick) {
+    got.samples[tick].copy_outputs(outputs[tick].sample());
+  }
+  const Comparison comparison = compare(got, law, Tolerances());
+  return comparison.first ? stages_of(*comparison.first) : StageSet();
+}
+
+// The stages with outputs of their own that contain a stage of the catalogue; empty if there are
+// none. Examples are the input, the mode, the parameters and the time step, which several stages
+// use.
+StageSet visible_stages(faults::Stage stage) {
+  using In = faults::Stage;
+  switch (stage) {
+    case In::tilt:
+    case In::yaw:
+    case In::blend:
+    case In::limit:
+    case In::feed_forward:
+    case In::recovery:
+    case In::autotune:
+      return only(Stage::attitude_law);
+    case In::weathervane:  // resets the yaw integral, too
+      return only(Stage::attitude_law) | only(Stage::integrator);
+    case In::p:  // of both laws
+      return only(Stage::attitude_law) | only(Stage::rate_law);
+    case In::tpa:
+    case In::d:
+    case In::ff:
+    case In::yaw_filter:
+      return only(Stage::rate_law);
+    case In::i:  // the term of the control, and the integral itself
+      return only(Stage::rate_law) | only(Stage::integrator);
+    case In::gate:
+    case In::saturation:
+      return only(Stage::integrator);
+    case In::scaling:
+      return only(Stage::actuators);
+    case In::sticks:
+    case In::yaw_lock:
+    case In::throttle:
+      return only(Stage::sticks);
+    case In::estimator_reset:  // of the setpoint in the attitude law, and of the yaw of the sticks
+      return only(Stage::sticks) | only(Stage::attitude_law);
+    case In::mixer_scaling:
+    case In::mixer_fit:
+    case In::mixer_yaw:
+    case In::mixer_output:
+      return only(Stage::mixer);
+    case In::battery_status:
+      return only(Stage::battery_status);
+    case In::input:
+    case In::guard:
+    case In::mode:
+    case In::arming:
+    case In::parameters:
+    case In::timing:
+    case In::output:
+    case In::latching:
+      return {};
+  }
+  return {};
+}
+
 Answered answered(const SelectedCase& selected) {
   Trace law = stimulate(selected.the_case, rate_for(selected));
   const auto reference = open_builtin();
@@ -34,6 +102,8 @@ Answered answered(const SelectedCase& selected) {
   for (const Outputs& outputs : vector.faults.distinct) {
     vector.of_distinct.push_back(
         distinct_similarity(outputs, right, vector.faults.distinct, subject.module));
+    vector.of_distinct.back().stages = first_stages(outputs, law);
+    vector.of_distinct.back().case_id = selected.the_case.id();
   }
   vector.faults.distinct.clear();  // some hundred megabytes in all
   return vector;
@@ -49,6 +119,20 @@ bool SelfDiagnosis::is_named() const {
              first.ambiguity_group.end();
 }
 
+StageLine stage_line(faults::Stage stage, const StageSet& reported) {
+  const StageSet visible = visible_stages(stage);
+  if (visible.none()) return StageLine::later;
+  return (visible & reported).any() ? StageLine::own : StageLine::wrong;
+}
+
+StageLine SelfDiagnosis::usual_stage_line() const {
+  for (const StageLine line : {StageLine::own, StageLine::later}) {
+    const auto count = std::count(stage_lines.begin(), stage_lines.end(), line);
+    if (2 * static_cast<std::size_t>(count) > stage_lines.size()) return line;
+  }
+  return StageLine::wrong;
+}
+
 bool SelfDiagnosis::is_stage_named() const { return diagnosis && diagnosis->stage == fault->stage; }
 
 std::vector<SelfDiagnosis> diagnose_catalogue(const std::vector<SelectedCase>& cases,
@@ -62,11 +146,14 @@ std::vector<SelfDiagnosis> diagnose_catalogue(const std::vector<SelectedCase>& c
   for (std::size_t i = 0; i < catalogue.size(); ++i) {
     if (!catalogue[i]->is_detectable(profile)) continue;
     std::vector<VectorSimilarity> of_fault;
+    std::vector<StageLine> lines;
     for (const Answered& vector : vectors) {
       const std::size_t index = vector.faults.of_fault[i];
       of_fault.push_back(of_each_fault(vector.of_distinct[index], vector.faults));
+      const StageSet& stages = of_fault.back().stages;
+      if (stages.any()) lines.push_back(stage_line(catalogue[i]->stage, stages));
     }
-    results.push_back({catalogue[i], diagnose(of_fault)});
+    results.push_back({catalogue[i], diagnose(of_fault), std::move(lines)});
   }
   return results;
 }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/casefile/stimulus.hpp"
+#include "harness/compare/compare.hpp"
 #include "harness/core/error_json.hpp"
 #include "harness/golden/branch_alternatives.hpp"
 #include "harness/loop/open_loop.hpp"
@@ -66,9 +67,13 @@ json to_json(const VectorDiagnosis& diagnosis) {
   if (!diagnosis) return nullptr;
   json rows = json::array();
   for (const Similarity& one : diagnosis->similarities) {
-    rows.push_back({one.matched, one.intersection, one.union_size});
+    rows.push_back({one.matched, one.intersection, one.union_size, one.deviates ? 1 : 0});
   }
-  return {{"ticks", diagnosis->ticks}, {"deviates", diagnosis->deviates}, {"faults", rows}};
+  return {{"ticks", diagnosis->ticks},
+          {"deviates", diagnosis->deviates},
+          {"faults", rows},
+          {"stages", diagnosis->stages.to_ulong()},
+          {"case", diagnosis->case_id}};
 }
 
 VectorDiagnosis diagnosis_from(const json& in) {
@@ -77,9 +82,11 @@ VectorDiagnosis diagnosis_from(const json& in) {
   out.ticks = in.at("ticks").get<std::size_t>();
   out.deviates = in.at("deviates").get<bool>();
   for (const json& row : in.at("faults")) {
-    out.similarities.push_back(
-        {row.at(0).get<std::size_t>(), row.at(1).get<std::size_t>(), row.at(2).get<std::size_t>()});
+    const auto number = [&row](std::size_t i) { return row.at(i).get<std::size_t>(); };
+    out.similarities.push_back({number(0), number(1), number(2), number(3) != 0});
   }
+  out.stages = StageSet(in.at("stages").get<unsigned long>());
+  out.case_id = in.at("case").get<std::string>();
   return out;
 }
 
@@ -112,8 +119,13 @@ Result<VectorDiagnosis> DiagnosisJob::run(std::size_t) {
     if (!others) return tl::unexpected(others.error());
     law = on_the_branch_of(got, law, *others, tolerances);
   }
-  return similarity(outputs_of(got), outputs_of(law), answers_of_faults(law, subject, partner_),
-                    subject.module, tolerances);
+  VectorSimilarity found =
+      similarity(outputs_of(got), outputs_of(law), answers_of_faults(law, subject, partner_),
+                 subject.module, tolerances);
+  const Comparison comparison = compare(got, law, tolerances);
+  if (comparison.first) found.stages = stages_of(*comparison.first);
+  found.case_id = case_.id();
+  return found;
 }
 
 Jobs<VectorDiagnosis> diagnosis_jobs(const std::vector<SelectedCase>& cases,

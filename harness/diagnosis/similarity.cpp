@@ -60,8 +60,10 @@ Similarity similarity_of(const OutputTable& outputs, const Outputs& port, const 
                          const Outputs& fault, const std::vector<Mask>& port_deviates) {
   Similarity result;
   for (std::size_t tick = 0; tick < port.size(); ++tick) {
-    result.matched += difference(outputs, port[tick], fault[tick]) == 0 ? 1 : 0;
+    const Mask parted = difference(outputs, port[tick], fault[tick]);
+    result.matched += parted == 0 ? 1 : 0;
     const Mask fault_deviates = difference(outputs, fault[tick], law[tick]);
+    result.deviates = result.deviates || fault_deviates != 0;
     const Mask in_both = port_deviates[tick] & fault_deviates;
     const Mask in_either = port_deviates[tick] | fault_deviates;
     result.intersection += static_cast<std::size_t>(std::popcount(in_both));
@@ -138,7 +140,8 @@ VectorSimilarity distinct_similarity(const Outputs& port, const Outputs& law,
 }
 
 VectorSimilarity of_each_fault(const VectorSimilarity& distinct, const FaultAnswers& faults) {
-  VectorSimilarity result{distinct.ticks, distinct.deviates, {}};
+  VectorSimilarity result = distinct;
+  result.similarities.clear();
   result.similarities.reserve(faults.of_fault.size());
   for (const std::size_t index : faults.of_fault) {
     result.similarities.push_back(distinct.similarities[index]);

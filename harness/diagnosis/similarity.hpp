@@ -20,12 +20,15 @@ struct Similarity {
   std::size_t matched = 0;       // ticks at which fault and port have the same outputs
   std::size_t intersection = 0;  // values at which both deviate from the law
   std::size_t union_size = 0;    // values at which at least one deviates from the law
+  bool deviates = false;         // the fault deviates from the law
 };
 
 struct VectorSimilarity {
   std::size_t ticks = 0;
   bool deviates = false;                 // the port deviates from the law
   std::vector<Similarity> similarities;  // of each fault, or of each of FaultAnswers::distinct
+  StageSet stages = {};                  // of the port's first deviation (Deviation::stages)
+  std::string case_id = {};
 };
 
 // The outputs of all modules in a Sample. Those of modules other than the subject's are zero.

@@ -82,7 +82,7 @@ std::string first_stages(const RunResult& run) {
   std::array<std::size_t, stage_count> counts{};
   for (const CaseResult& result : run.results) {
     if (!fails_a_run(result.verdict) || !result.first) continue;
-    ++counts[static_cast<std::size_t>(channels()[result.first->channel].stage)];
+    ++counts[static_cast<std::size_t>(stage_of(*result.first))];
   }
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < counts.size(); ++i) {

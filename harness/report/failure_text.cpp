@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/host/port_process.hpp"
 #include "harness/report/text.hpp"
@@ -82,7 +83,8 @@ std::string first_deviation(const Deviation& deviation, Level level) {
       "  first at tick {}, timestamp {} us, in {}\n{}{}"
       "  look first at the {}: no output of an earlier stage deviates up to this tick\n",
       deviation.tick, deviation.timestamp_us, channel_with_unit(channel) + of_unit(channel),
-      values(channel, deviation), indented_distance(deviation, level), name_of(channel.stage));
+      values(channel, deviation), indented_distance(deviation, level),
+      stages_text(stages_of(deviation)));
 }
 
 // "attest", with --suite if it was given.
@@ -151,7 +153,16 @@ std::string failure_headline(const CaseResult& result) {
   const Channel& channel = channels()[deviation.channel];
   return fmt::format("{}; first at tick {}: {} got {}, want {} ({})", out, deviation.tick,
                      channel.name, decimal(channel, deviation.got),
-                     decimal(channel, deviation.want), name_of(channel.stage));
+                     decimal(channel, deviation.want), stages_text(stages_of(deviation)));
+}
+
+std::string stages_text(const StageSet& stages) {
+  std::vector<std::string_view> names = names_of(stages);
+  if (names.empty()) return {};
+  const std::string_view last = names.back();
+  names.pop_back();
+  if (names.empty()) return std::string(last);
+  return fmt::format("{} or the {}", fmt::join(names, ", the "), last);
 }
 
 std::string metric_bounds(const MetricResult& metric) {

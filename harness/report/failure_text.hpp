@@ -24,6 +24,9 @@ std::string finding_text(const CaseResult& result, Level level);
 // is the first deviation, or unknown.
 std::string worst_text(const CaseResult& result);
 
+// "rate law or the integrator", of Deviation::stages.
+std::string stages_text(const StageSet& stages);
+
 // "at most 1.2", "at least 0", "0 to 3".
 std::string metric_bounds(const MetricResult& metric);
 

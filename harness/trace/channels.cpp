@@ -81,6 +81,17 @@ Module module_of(const ChannelSet& channels) {
   return Module::mc_att_control;
 }
 
+std::vector<std::size_t> outputs_by_stage(const ChannelSet& set) {
+  std::vector<std::size_t> outputs;
+  for (std::size_t i = 0; i < channel_table.size(); ++i) {
+    if (set[i] && channel_table[i].is_output()) outputs.push_back(i);
+  }
+  std::stable_sort(outputs.begin(), outputs.end(), [](std::size_t a, std::size_t b) {
+    return channel_table[a].stage < channel_table[b].stage;
+  });
+  return outputs;
+}
+
 ChannelSet channels_named(std::string_view name) {
   ChannelSet set;
   for (std::size_t i = 0; i < channel_table.size(); ++i) set[i] = channel_table[i].name == name;
@@ -151,12 +162,29 @@ std::string_view name_of(Stage stage) {
       return "rate law";
     case Stage::integrator:
       return "integrator";
+    case Stage::actuators:
+      return "actuators";
     case Stage::mixer:
       return "mixer";
     case Stage::battery_status:
       return "battery status";
   }
   return "";
+}
+
+std::optional<Stage> stage_named(std::string_view name) {
+  for (std::size_t i = 0; i < stage_count; ++i) {
+    if (name_of(static_cast<Stage>(i)) == name) return static_cast<Stage>(i);
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string_view> names_of(const StageSet& stages) {
+  std::vector<std::string_view> names;
+  for (std::size_t i = 0; i < stage_count; ++i) {
+    if (stages[i]) names.push_back(name_of(static_cast<Stage>(i)));
+  }
+  return names;
 }
 
 double value_of(const Channel& channel, const Sample& sample) {

@@ -45,18 +45,25 @@ enum class Quantity : std::uint8_t {
   current,               // A
 };
 
-// The stage of the law that writes an output, in the order of the data flow; `input` for an input.
-// If the outputs of several stages deviate, the first of these stages is the one to examine.
+// The stage of the law that writes an output; `input` for an input. The order is that of the data
+// flow within a step, of all modules: the only place for it. If the outputs of several stages
+// deviate in one step, the mistake is in the first of them, or before it.
 enum class Stage : std::uint8_t {
   input,
   sticks,
   attitude_law,
-  rate_law,
-  integrator,
+  rate_law,    // uses the integrals of the step before
+  integrator,  // moves them
+  actuators,   // thrust, scaling by the battery, landing gear
   mixer,
   battery_status
 };
 inline constexpr auto stage_count = static_cast<std::size_t>(Stage::battery_status) + 1;
+using StageSet = std::bitset<stage_count>;  // by enumerator
+inline StageSet only(Stage stage) { return StageSet().set(static_cast<std::size_t>(stage)); }
+inline bool contains(const StageSet& set, Stage stage) {
+  return set[static_cast<std::size_t>(stage)];
+}
 
 struct Channel {
   std::string_view name;  // with its prefix
@@ -90,6 +97,9 @@ ChannelSet channels_of(Module module, std::string_view prefix = "");
 // The module of the first of these channels, without timestamp; mc_att_control if there is none.
 Module module_of(const ChannelSet& channels);
 
+// The outputs of a set, by stage, and within a stage in column order.
+std::vector<std::size_t> outputs_by_stage(const ChannelSet& set);
+
 // The channels of that name, one for each module that has it. There is only one timestamp.
 ChannelSet channels_named(std::string_view name);
 // The names of the channels of a set, each once.
@@ -104,6 +114,8 @@ std::vector<std::string_view> updated_topics(Module module);
 
 std::string_view unit_of(Quantity quantity);  // "rad/s"; empty for dimensionless
 std::string_view name_of(Stage stage);        // "attitude law"
+std::optional<Stage> stage_named(std::string_view name);
+std::vector<std::string_view> names_of(const StageSet& stages);
 
 // Reads a member as double: exact for f32, u8 and bit; for u64 up to 2^53 (285 years of us).
 double value_of(const Channel& channel, const Sample& sample);

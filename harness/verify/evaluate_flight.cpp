@@ -122,7 +122,8 @@ Result<void> judge_ticks(const Case& the_case, const Flown& flown, const Referen
       tolerances_of(the_case, Level::numeric, fraction_bits, flown.trace.samples.size());
   auto comparison = compare_units(flown, the_case.profile, tolerances, fraction_bits);
   if (!comparison) return tl::unexpected(comparison.error());
-  if (comparison->agrees()) {
+  const bool answers_agree = comparison->agrees();
+  if (answers_agree) {
     comparison = with_tightest(compare_rows(flown.trace, reference.rows, horizon_s, tolerances),
                                *comparison);
   }
@@ -130,6 +131,8 @@ Result<void> judge_ticks(const Case& the_case, const Flown& flown, const Referen
     if (!comparison->first) comparison->first = non_finite;
     comparison->got_non_finite = true;
   }
+  // Each output agrees with the reference's for the same inputs, so the inputs differ.
+  if (answers_agree && comparison->first) comparison->first->stages = only(Stage::input);
   judge(*comparison, result);
   return {};
 }

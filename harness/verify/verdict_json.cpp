@@ -31,12 +31,13 @@ json deviation_to_json(const Deviation& deviation) {
   json out = {
       {"tick", deviation.tick},
       {"timestamp_us", deviation.timestamp_us},
-      {"stage", name_of(channel.stage)},
+      {"stage", name_of(stage_of(deviation))},
       {"got", json_of(deviation.got)},
       {"want", json_of(deviation.want)},
       {"ulp", deviation.ulp},
       {"tolerance", json_of(deviation.tolerance)},
   };
+  if (deviation.stages.any()) out["stages"] = attest::names_of(deviation.stages);
   name_channel(deviation.channel, out);
   if (channel.type == ChannelType::f32) {
     out["got_bits"] = float_bits(deviation.got);
@@ -78,6 +79,16 @@ double with_bits(JsonReader& reader, double value, const char* key) {
   return hex && std::isnan(value) && std::isnan(exact) ? static_cast<double>(exact) : value;
 }
 
+StageSet stages_from(JsonReader& reader, const char* key) {
+  StageSet stages;
+  for (const std::string& name : reader.texts(key)) {
+    const auto stage = stage_named(name);
+    if (stage) stages |= only(*stage);
+    if (!stage) reader.wrong(fmt::format("there is no stage `{}`", name));
+  }
+  return stages;
+}
+
 Deviation deviation_from(JsonReader reader) {
   Deviation out;
   out.tick = reader.count("tick");
@@ -87,6 +98,7 @@ Deviation deviation_from(JsonReader reader) {
   out.want = with_bits(reader, reader.real("want"), "want_bits");
   out.ulp = reader.integer("ulp");
   out.tolerance = reader.real("tolerance");
+  if (reader.has("stages")) out.stages = stages_from(reader, "stages");
   return out;
 }
 

@@ -31,6 +31,17 @@ load common
   lacks "it looks like"
 }
 
+@test "a mistake in the sticks is shown in the stage sticks" {
+  for fault in acro-pitch-reversed cascade-sticks-exchanged cascade-acro-pitch-reversed; do
+    run "$ATTEST" run --port "fault:$fault" --rate 250 --group sticks,acro,modes --no-diagnose \
+      --exclude 'px4-v1.14.4/*' --exclude 'px4-v1.15.4/*' --verbose
+    [ "$status" -eq 1 ]
+    has "look first at the sticks"
+    lacks "look first at the attitude law:"
+    lacks "look first at the rate law:"
+  done
+}
+
 @test "a mistake that is in no catalogue is caught and its stage named" {
   run "$ATTEST" run --port "lib:$PORTS/port_blend_from_100.so" --rate 250 --group large_angle
   [ "$status" -eq 1 ]

@@ -229,7 +229,7 @@ void add_failure(const CaseResult& result, const RunResult& run, data& row) {
     set_text(failure, "tick", fmt::to_string(first.tick));
     set_text(failure, "time", fmt::to_string(first.timestamp_us));
     set_text(failure, "signal", channel_with_unit(channel));
-    set_text(failure, "stage", name_of(channel.stage));
+    set_text(failure, "stage", stages_text(stages_of(first)));
     set_text(failure, "got", value_text(channel, first.got));
     set_text(failure, "want", value_text(channel, first.want));
     set_text(failure, "distance", distance_text(first, run.level));

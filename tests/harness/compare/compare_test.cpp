@@ -253,6 +253,13 @@ TEST(Both, TheFirstIsTheEarlierAndTheWorstIsTheLarger) {
     EXPECT_EQ(all.tightest->ratio, 3);
     EXPECT_FALSE(all.got_non_finite);
   }
+  // Both units step at the same time.
+  attitude.first->timestamp_us = rate.first->timestamp_us;
+  rate.first->channel = *find_channel(Module::rate_unit, "out/vehicle_torque_setpoint.xyz[0]");
+  attitude.first->channel = *find_channel(Module::attitude_unit, "out/vehicle_rates_setpoint.yaw");
+  for (const Comparison& all : {both(rate, attitude), both(attitude, rate)}) {
+    EXPECT_EQ(all.first->channel, attitude.first->channel);
+  }
   attitude.got_non_finite = true;
   EXPECT_TRUE(both(rate, attitude).got_non_finite);
 }

@@ -104,13 +104,15 @@ Suspect suspect(const char* first, const std::vector<const char*>& others = {}) 
 }
 
 SelfDiagnosis diagnosed(const char* fault, std::vector<Suspect> suspects) {
-  SelfDiagnosis self{faults::find_fault(fault), Diagnosis()};
+  SelfDiagnosis self{faults::find_fault(fault), Diagnosis(), {}};
   self.diagnosis->suspects = std::move(suspects);
   self.diagnosis->stage = faults::Stage::yaw;
   return self;
 }
 
-SelfDiagnosis not_diagnosed(const char* fault) { return {faults::find_fault(fault), std::nullopt}; }
+SelfDiagnosis not_diagnosed(const char* fault) {
+  return {faults::find_fault(fault), std::nullopt, {}};
+}
 
 TEST(SelfDiagnosis, AFaultIsNamedWhenItIsFirstOrAsGoodAsTheFirst) {
   EXPECT_TRUE(diagnosed(the_fault, {suspect(the_fault, {another}), suspect(a_third)}).is_named());
@@ -128,6 +130,31 @@ TEST(SelfDiagnosis, TheStageIsNamedWhenItIsThatOfTheFault) {
   EXPECT_TRUE(diagnosed(the_fault, {}).is_stage_named());
   EXPECT_FALSE(diagnosed(another, {}).is_stage_named());
   EXPECT_FALSE(not_diagnosed(the_fault).is_stage_named());
+}
+
+TEST(StageLine, IsTheFaultsOwnStageIfThatHasOutputs) {
+  using In = faults::Stage;
+  EXPECT_EQ(stage_line(In::yaw, only(Stage::attitude_law)), StageLine::own);
+  EXPECT_EQ(stage_line(In::yaw, only(Stage::sticks) | only(Stage::attitude_law)), StageLine::own);
+  EXPECT_EQ(stage_line(In::sticks, only(Stage::attitude_law)), StageLine::wrong);
+  EXPECT_EQ(stage_line(In::timing, only(Stage::rate_law)), StageLine::later);
+}
+
+TEST(StageLine, OfAFaultIsThatOfMostOfItsVectors) {
+  SelfDiagnosis self = not_diagnosed(the_fault);
+  self.stage_lines = {StageLine::own, StageLine::wrong, StageLine::own};
+  EXPECT_EQ(self.usual_stage_line(), StageLine::own);
+  self.stage_lines.push_back(StageLine::wrong);
+  EXPECT_EQ(self.usual_stage_line(), StageLine::wrong);
+}
+
+TEST(DiagnoseCatalogue, HasTheStageLineOfEachFailingVector) {
+  Cases cases;
+  cases.add("level", "", {250});
+  cases.add("loud", attenuated, {250});
+  const auto results = diagnose_catalogue(cases, newest);
+  EXPECT_THAT(of("tpa-missing", results).stage_lines, testing::ElementsAre(StageLine::own));
+  EXPECT_THAT(of("yaw-reversed", results).stage_lines, testing::IsEmpty());
 }
 
 }  // namespace

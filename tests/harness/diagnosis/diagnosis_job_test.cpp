@@ -150,7 +150,9 @@ TEST(DiagnosisCodec, AResultComesBackAsItWas) {
     return Codec<VectorDiagnosis>::decode(Codec<VectorDiagnosis>::encode(result));
   };
   for (const bool deviates : {true, false}) {
-    const auto one = back(VectorSimilarity{30, deviates, {{1, 2, 3}, {4, 5, 6}}});
+    const StageSet stages = only(Stage::sticks) | only(Stage::actuators);
+    const auto one =
+        back(VectorSimilarity{30, deviates, {{1, 2, 3}, {4, 5, 6, true}}, stages, "modes/acro"});
     ASSERT_TRUE(one && *one);
     EXPECT_EQ((*one)->ticks, 30u);
     EXPECT_EQ((*one)->deviates, deviates);
@@ -158,6 +160,10 @@ TEST(DiagnosisCodec, AResultComesBackAsItWas) {
     const Similarity& last = (*one)->similarities[1];
     EXPECT_THAT((std::array{last.matched, last.intersection, last.union_size}),
                 ElementsAre(4, 5, 6));
+    EXPECT_TRUE(last.deviates);
+    EXPECT_FALSE((*one)->similarities[0].deviates);
+    EXPECT_EQ((*one)->stages, stages);
+    EXPECT_EQ((*one)->case_id, "modes/acro");
   }
   const auto none = back(VectorDiagnosis());
   ASSERT_TRUE(none);

@@ -66,7 +66,17 @@ TEST(FailureText, AFlagHasNeitherBitsNorADistance) {
   const std::string text = failure_text(result, passing_run());
   EXPECT_THAT(text, HasSubstr("in out/actuator_controls_0.published\n    got   0\n    want  1\n"));
   EXPECT_THAT(text, Not(HasSubstr("off by")));
-  EXPECT_THAT(text, HasSubstr("look first at the rate law"));
+  EXPECT_THAT(text, HasSubstr("look first at the actuators"));
+}
+
+TEST(FailureText, HasAllStagesThatCanBeWrong) {
+  Deviation first = deviation("out/actuator_controls_0.control[0]", 3, 0, 1, 0);
+  first.stages = only(Stage::rate_law) | only(Stage::integrator);
+  EXPECT_THAT(failure_text(failing(first), passing_run()),
+              HasSubstr("  look first at the rate law or the integrator: no output of an earlier"));
+  first.stages |= only(Stage::sticks);
+  EXPECT_THAT(failure_headline(failing(first)),
+              HasSubstr("(sticks, the rate law or the integrator)"));
 }
 
 TEST(FailureText, NanIsSaidInWordsNotAsADifference) {
@@ -104,12 +114,13 @@ TEST(FailureText, WordsOfAPortStayOnTheirLine) {
 
 TEST(FindingText, IsTheDifferenceWithoutTheCase) {
   const CaseResult result = failing(deviation("out/actuator_controls_0.published", 3, 0, 1, 0));
-  EXPECT_EQ(finding_text(result, Level::numeric),
-            "  first at tick 3, timestamp 12000 us, in out/actuator_controls_0.published\n"
-            "    got   0\n"
-            "    want  1\n"
-            "  look first at the rate law: no output of an earlier stage deviates up to this tick\n"
-            "  2 of 500 ticks deviate\n");
+  EXPECT_EQ(
+      finding_text(result, Level::numeric),
+      "  first at tick 3, timestamp 12000 us, in out/actuator_controls_0.published\n"
+      "    got   0\n"
+      "    want  1\n"
+      "  look first at the actuators: no output of an earlier stage deviates up to this tick\n"
+      "  2 of 500 ticks deviate\n");
   EXPECT_EQ(finding_text(passed("attitude", "roll_30", Rate::hz(250)), Level::numeric), "");
 }
 

@@ -175,8 +175,13 @@ TEST(Channels, HaveTheStageThatWritesThem) {
   EXPECT_EQ(channel("out/vehicle_rates_setpoint.roll").stage, Stage::attitude_law);
   EXPECT_EQ(channel("out/actuator_controls_0.control[0]").stage, Stage::rate_law);
   EXPECT_EQ(channel("out/mc_att_ctrl_status.yaw_rate_integ").stage, Stage::integrator);
+  EXPECT_EQ(channel("out/actuator_controls_0.control[3]").stage, Stage::actuators);
   for (const Channel& c : channels()) EXPECT_EQ(c.is_output(), c.name.starts_with("out/"));
   EXPECT_EQ(name_of(Stage::attitude_law), "attitude law");
+  for (std::size_t i = 0; i < stage_count; ++i) {
+    EXPECT_EQ(stage_named(name_of(static_cast<Stage>(i))), static_cast<Stage>(i));
+  }
+  EXPECT_FALSE(stage_named("torsion"));
 }
 
 TEST(Channels, HaveUnits) {

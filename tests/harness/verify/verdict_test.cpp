@@ -213,10 +213,26 @@ TEST(VerdictJson, IsWhatTheHeaderSays) {
   EXPECT_EQ(out["first"]["got_bits"], "0xbf800000");
   EXPECT_EQ(out["first"]["want"], "nan");
   EXPECT_EQ(out["first"]["want_bits"], "0x7fc00000");
+  EXPECT_FALSE(out["first"].contains("stages"));
   EXPECT_FALSE(out.contains("tightest"));
   result.first->channel =
       *find_channel(Module::mc_att_control, "out/vehicle_rates_setpoint.published");
   EXPECT_FALSE(to_json(result)["first"].contains("got_bits"));
+}
+
+TEST(VerdictJson, HasTheStagesOfTheFirstDeviation) {
+  CaseResult result = with(Verdict::fail);
+  result.first = Deviation{};
+  result.first->channel = *find_channel(Module::mc_att_control, "out/vehicle_rates_setpoint.roll");
+  result.first->stages = only(Stage::sticks);
+  EXPECT_EQ(to_json(result)["first"]["stage"], "sticks");
+  result.first->stages |= only(Stage::attitude_law);
+  json out = to_json(result);
+  EXPECT_EQ(out["first"]["stage"], "attitude law");
+  EXPECT_EQ(out["first"]["stages"], json({"sticks", "attitude law"}));
+  EXPECT_EQ(through_json(result).first->stages, result.first->stages);
+  out["first"]["stages"][0] = "torsion";
+  EXPECT_THAT(case_result_from_json(out).error().message, HasSubstr("no stage `torsion`"));
 }
 
 TEST(VerdictJson, WordsThatAreNotUtf8AreRepaired) {
