@@ -46,7 +46,14 @@ std::optional<Diagnosis> diagnosed(const RunResult& run, const Examined& examine
   };
   auto diagnosis =
       diagnose(vectors(nullptr), [&](const faults::Fault& fault) { return vectors(&fault); });
-  if (!interrupted()) return diagnosis;
+  if (!interrupted()) {
+    for (const SelectedCase& one : examined.cases) {
+      if (diagnosis && one.the_case.id() == diagnosis->specific_case) {
+        diagnosis->why = one.the_case.why;
+      }
+    }
+    return diagnosis;
+  }
   // This diagnosis used only some of the vectors. The verdicts are complete.
   fmt::print(stderr, "attest: interrupted; the reports do not have the probable mistake\n");
   return std::nullopt;

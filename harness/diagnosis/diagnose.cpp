@@ -1,6 +1,7 @@
 #include "harness/diagnosis/diagnose.hpp"
 
 #include <algorithm>
+#include <map>
 #include <tuple>
 
 namespace attest {
@@ -17,6 +18,10 @@ constexpr double passing_part = 0.95;
 // unexplained. In a short vector, a fault may match by chance: the fault integral-in-12-bits
 // matched 1 of the 24 failing vectors of a port with a tanh in its integrator.
 constexpr double least_part = 0.1;
+
+// The share of the failing vectors that all suspects together must explain, and the share of the
+// deviating values that the nearest fault must have in common with the port.
+constexpr double least_explained = 0.5, least_in_common = 0.5;
 
 struct Record {
   std::size_t fault = 0;               // index in the catalogue
@@ -112,13 +117,40 @@ bool is_enough(std::size_t explained, std::size_t left) {
   return static_cast<double>(explained) >= least_part * static_cast<double>(left);
 }
 
+// Keeps the nearest fault only if it has at least half of the deviating values in common.
 void find_nearest(const std::vector<Record>& records, Diagnosis& diagnosis) {
   const auto nearest =
       std::max_element(records.begin(), records.end(), [](const Record& a, const Record& b) {
         return std::tuple(a.jaccard_index(), a.matched) < std::tuple(b.jaccard_index(), b.matched);
       });
+  if (nearest->jaccard_index() < least_in_common) return;
   diagnosis.nearest = faults::catalogue()[nearest->fault];
   diagnosis.jaccard_index = nearest->jaccard_index();
+}
+
+void find_first_stages(const std::vector<VectorSimilarity>& vectors,
+                       const std::vector<std::size_t>& failing, Diagnosis& diagnosis) {
+  std::map<unsigned long, std::size_t> counts;
+  for (const std::size_t v : failing) ++counts[vectors[v].stages.to_ulong()];
+  for (const auto& [stages, count] : counts) {
+    if (count <= diagnosis.in_first_stages) continue;
+    diagnosis.first_stages = StageSet(stages);
+    diagnosis.in_first_stages = count;
+  }
+}
+
+void find_specific_case(const std::vector<VectorSimilarity>& vectors,
+                        const std::vector<std::size_t>& failing, Diagnosis& diagnosis) {
+  const auto shown_in = [&](std::size_t v) {
+    std::size_t shown = 0;
+    for (const Similarity& one : vectors[v].similarities) shown += one.deviates ? 1 : 0;
+    return shown;
+  };
+  const auto best =
+      std::min_element(failing.begin(), failing.end(),
+                       [&](std::size_t a, std::size_t b) { return shown_in(a) < shown_in(b); });
+  diagnosis.specific_case = vectors[*best].case_id;
+  diagnosis.shown_by_it = shown_in(*best);
 }
 
 void find_suspects(const std::vector<Record>& records, std::vector<std::size_t> left,
@@ -172,8 +204,16 @@ std::optional<Diagnosis> diagnose(const std::vector<VectorSimilarity>& vectors,
   if (combined_with && diagnosis.unexplained > 0) {
     find_pair(records, failing, combined_with, diagnosis);
   }
-  const auto& suspects = diagnosis.suspects;
-  diagnosis.stage = (suspects.empty() ? diagnosis.nearest : suspects.front().fault)->stage;
+  auto& suspects = diagnosis.suspects;
+  const auto explained = static_cast<double>(failing.size() - diagnosis.unexplained);
+  if (explained < least_explained * static_cast<double>(failing.size())) {
+    suspects.clear();
+    diagnosis.unexplained = failing.size();
+  }
+  find_first_stages(vectors, failing, diagnosis);
+  find_specific_case(vectors, failing, diagnosis);
+  const faults::Fault* const named = suspects.empty() ? diagnosis.nearest : suspects.front().fault;
+  if (named) diagnosis.stage = named->stage;
   return diagnosis;
 }
 

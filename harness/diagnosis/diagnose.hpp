@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "controller/faults/fault.hpp"
@@ -24,17 +25,27 @@ struct Suspect {
 struct Diagnosis {
   std::size_t vectors = 0, failing = 0;
   std::size_t unexplained = 0;  // failing vectors that no suspect matches at every tick
-  // At most three, the best first. Each suspect explains at least a tenth of the failing vectors
-  // that the suspects before it do not explain. An exception is a pair of suspects, of which the
+  // At most three, the best first; empty if together they explain less than half of the failing
+  // vectors. Each suspect explains at least a tenth of the failing vectors that the suspects before
+  // it do not explain. An exception is a pair of suspects, of which the
   // second has the first as Suspect::with: the first may explain fewer.
   std::vector<Suspect> suspects;
-  // Stage of the first suspect; without a suspect, of `nearest`.
-  faults::Stage stage = faults::Stage::input;
-  // The fault with the largest Jaccard index.
+  // Stage of the first suspect; without a suspect, of `nearest`. Empty if both are missing.
+  std::optional<faults::Stage> stage;
+  // The fault with the largest Jaccard index, if that is at least a half; else null. In a trial
+  // with the wrong ports of tests/ports/mistakes, most names below a half were wrong.
   const faults::Fault* nearest = nullptr;
-  // Of `nearest`, 0 to 1: the number of values at which both the fault and the port deviate,
-  // divided by the number of values at which at least one of them does.
+  // Of `nearest`, 0 to 1: the number of values at which the fault and the port deviate in the same
+  // way, divided by the number of values at which at least one of them deviates.
   double jaccard_index = 0;
+  // The stages of the first deviation in most of the failing vectors, and their number.
+  StageSet first_stages;
+  std::size_t in_first_stages = 0;
+  // The failing case in which the fewest faults of the catalogue deviate, and their number. The
+  // fewer mistakes a case shows, the more its failure says about the mistake. At a tie the first.
+  std::string specific_case;
+  std::size_t shown_by_it = 0;
+  std::string why;  // its `why`, filled in by the caller of diagnose()
 };
 
 // Runs the same vectors again, with each fault of the catalogue combined with the given fault.

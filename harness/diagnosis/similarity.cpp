@@ -64,7 +64,7 @@ Similarity similarity_of(const OutputTable& outputs, const Outputs& port, const 
     result.matched += parted == 0 ? 1 : 0;
     const Mask fault_deviates = difference(outputs, fault[tick], law[tick]);
     result.deviates = result.deviates || fault_deviates != 0;
-    const Mask in_both = port_deviates[tick] & fault_deviates;
+    const Mask in_both = port_deviates[tick] & fault_deviates & ~parted;
     const Mask in_either = port_deviates[tick] | fault_deviates;
     result.intersection += static_cast<std::size_t>(std::popcount(in_both));
     result.union_size += static_cast<std::size_t>(std::popcount(in_either));

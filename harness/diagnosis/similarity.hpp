@@ -18,7 +18,7 @@ namespace attest {
 // One fault compared with the port.
 struct Similarity {
   std::size_t matched = 0;       // ticks at which fault and port have the same outputs
-  std::size_t intersection = 0;  // values at which both deviate from the law
+  std::size_t intersection = 0;  // values at which both deviate from the law, and are the same
   std::size_t union_size = 0;    // values at which at least one deviates from the law
   bool deviates = false;         // the fault deviates from the law
 };

@@ -7,7 +7,11 @@
 
 namespace attest {
 
-// "it looks like:\n  `quat-order-xyzw`: ...", with a newline at its end.
+// "7 of 9 failing vectors deviate first in the rate law"
+std::string first_stages(const Diagnosis& diagnosis);
+
+// "it looks like:\n  `quat-order-xyzw`: ...", then the most specific failing case; with a newline
+// at its end.
 std::string diagnosis_text(const Diagnosis& diagnosis);
 
 }  // namespace attest

@@ -4,6 +4,7 @@
 
 #include "harness/core/json_reader.hpp"
 #include "harness/core/json_text.hpp"
+#include "harness/report/failure_text.hpp"
 #include "harness/report/statement.hpp"
 #include "harness/verify/claim.hpp"
 #include "harness/verify/verdict_json.hpp"
@@ -85,11 +86,18 @@ ordered_json diagnosis(const Diagnosis& found) {
                         {"ambiguity_group", others}});
     if (suspect.with) suspects.back()["with"] = suspect.with->id;
   }
-  return {{"stage", name_of(found.stage)},
-          {"vectors", found.vectors},
-          {"failing_vectors", found.failing},
-          {"suspects", suspects},
-          {"nearest", {{"fault", found.nearest->id}, {"jaccard_index", found.jaccard_index}}}};
+  ordered_json out = {
+      {"stage", found.stage ? std::string(name_of(*found.stage)) : stages_text(found.first_stages)},
+      {"vectors", found.vectors},
+      {"failing_vectors", found.failing},
+      {"first_stages", attest::names_of(found.first_stages)},
+      {"suspects", suspects}};
+  if (found.nearest) {
+    out["nearest"] = {{"fault", found.nearest->id}, {"jaccard_index", found.jaccard_index}};
+  }
+  out["specific_case"] = {
+      {"case", found.specific_case}, {"faults", found.shown_by_it}, {"why", one_line(found.why)}};
+  return out;
 }
 
 ordered_json claims(const RunResult& run) {

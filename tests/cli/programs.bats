@@ -71,8 +71,8 @@ HEADROOM
   grep -q 'thrust \* thrust' wrong/law.py
   run "$ATTEST" run --port "proc:$PYTHON wrong/port.py" --rate 250 --group tpa
   [ "$status" -eq 1 ]
-  has "no fault of the catalogue; the nearest is"
-  has "in the stage TPA"
+  has "it looks like no fault of the catalogue"
+  has "first stage to differ: rate law in "
 }
 
 @test "a program that cannot be started is an error before anything runs" {

@@ -1,5 +1,5 @@
 // Wrong in a way that is not in the catalogue of faults: it blends with the shortest rotation from
-// 100 deg of tilt error instead of 90. Must fail, and the stage `blend` must be named.
+// 100 deg of tilt error instead of 90. Must fail, and the attitude law must be named.
 #include "tests/ports/law_port.hpp"
 
 namespace {

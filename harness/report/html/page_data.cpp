@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "harness/report/conclusion.hpp"
+#include "harness/report/diagnosis_text.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/html/embedded.hpp"
 #include "harness/report/html/page_parts.hpp"
@@ -101,14 +102,19 @@ void add_diagnosis(const std::optional<Diagnosis>& found, data& page) {
   if (!found) return;
   data diagnosis;
   diagnosis.set("suspects", list_of(found->suspects, suspect_to_data));
-  if (found->suspects.empty()) {
+  if (found->suspects.empty() && found->nearest == nullptr) {
+    set_text(diagnosis, "unlike", first_stages(*found));
+  } else if (found->suspects.empty()) {
     data nearest;
     set_text(nearest, "id", found->nearest->id);
     set_text(nearest, "what", found->nearest->what);
-    set_text(nearest, "stage", name_of(found->stage));
+    set_text(nearest, "stage", name_of(*found->stage));
     set_text(nearest, "percent", fmt::format("{:.0f}", 100 * found->jaccard_index));
     diagnosis.set("nearest", nearest);
   }
+  set_text(diagnosis, "specific_case", found->specific_case);
+  set_text(diagnosis, "shown_by_it", counted(found->shown_by_it, "fault"));
+  set_text(diagnosis, "why", one_line(found->why));
   page.set("diagnosis", diagnosis);
 }
 

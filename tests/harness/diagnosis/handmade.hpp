@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -37,6 +38,9 @@ class HandMade {
     vectors_.assign(failing, vector);
     vector.deviates = false;
     vectors_.insert(vectors_.end(), passing, vector);
+    for (std::size_t i = 0; i < vectors_.size(); ++i) {
+      vectors_[i].case_id = "case " + std::to_string(i);
+    }
   }
 
   Similarity& of(const char* id, std::size_t vector) {
@@ -52,6 +56,12 @@ class HandMade {
   HandMade& deviates(const char* id, std::size_t vector, std::size_t both, std::size_t either) {
     of(id, vector).intersection = both;
     of(id, vector).union_size = either;
+    return *this;
+  }
+
+  // The stages of the port's first deviation.
+  HandMade& deviates_first(std::size_t vector, const StageSet& stages) {
+    vectors_.at(vector).stages = stages;
     return *this;
   }
 

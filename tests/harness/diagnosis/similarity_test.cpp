@@ -159,12 +159,23 @@ TEST(Similarity, ATickMatchesWhereTheFaultAnswersAsThePort) {
   EXPECT_EQ(similarity_of_one(law, port, law).matched, 1u);
 }
 
-TEST(Similarity, AValueIsInBothWhereBothDeviateFromTheLaw) {
-  // Roll in both, though by another amount; pitch of the port; yaw of the fault.
-  const Similarity one = similarity_of_one({rates(5, 0, 3)}, {rates(1, 2, 0)}, {zero});
+TEST(Similarity, AValueIsInBothWhereBothDeviateInTheSameWay) {
+  // Roll in both; pitch of the port; yaw of the fault.
+  const Similarity one = similarity_of_one({rates(1, 0, 3)}, {rates(1, 2, 0)}, {zero});
   EXPECT_EQ(one.matched, 0u);
   EXPECT_EQ(one.intersection, 1u);
   EXPECT_EQ(one.union_size, 3u);
+}
+
+TEST(Similarity, AnotherValueAtTheSamePlaceIsNotInBoth) {
+  const Similarity one = similarity_of_one({rates(5)}, {rates(1)}, {zero});
+  EXPECT_EQ(one.intersection, 0u);
+  EXPECT_EQ(one.union_size, 1u);
+}
+
+TEST(Similarity, KnowsWhetherTheFaultDeviates) {
+  EXPECT_TRUE(similarity_of_one({rates(1), zero}, {zero, zero}, {zero, zero}).deviates);
+  EXPECT_FALSE(similarity_of_one({zero, zero}, {rates(1), zero}, {zero, zero}).deviates);
 }
 
 TEST(Similarity, OtherValuesAreNotInBothThoughTheyAreAsMany) {

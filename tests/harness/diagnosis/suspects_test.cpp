@@ -146,7 +146,7 @@ TEST(Suspects, TheSecondExplainsWhatTheFirstDoesNot) {
 TEST(Suspects, AFaultThatNoInputTellsFromTheLawIsNeverNamed) {
   const char* const equivalent = "limits-exchanged";
   HandMade vectors(2, 1);
-  vectors.matches(equivalent, 0, 3).deviates(equivalent, 0, 5, 5).deviates(tpa_fault, 0, 1, 5);
+  vectors.matches(equivalent, 0, 3).deviates(equivalent, 0, 5, 5).deviates(tpa_fault, 0, 4, 5);
   const auto found = diagnose(vectors);
   ASSERT_TRUE(found);
   EXPECT_THAT(found->suspects, IsEmpty());
@@ -166,6 +166,36 @@ TEST(Suspects, WithoutOneTheStageIsThatOfTheFaultThatDeviatesInTheSamePlaces) {
   EXPECT_EQ(found->nearest->id, yaw_fault);
   EXPECT_DOUBLE_EQ(found->jaccard_index, 0.75);
   EXPECT_EQ(found->stage, faults::Stage::yaw);
+}
+
+TEST(Suspects, WithLessThanHalfOfTheValuesInCommonNoFaultIsNamed) {
+  for (const std::size_t in_common : {9u, 10u}) {
+    const auto found = diagnose(HandMade(1, 1).deviates(yaw_fault, 0, in_common, 20));
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->nearest != nullptr, in_common == 10);
+    EXPECT_EQ(found->stage.has_value(), in_common == 10);
+  }
+}
+
+TEST(Suspects, TheStagesAreThoseOfMostFailingVectors) {
+  HandMade vectors(4, 2);
+  const StageSet rates = only(Stage::rate_law) | only(Stage::integrator);
+  vectors.deviates_first(0, only(Stage::sticks)).deviates_first(1, rates).deviates_first(2, rates);
+  vectors.deviates_first(3, only(Stage::rate_law));
+  const auto found = diagnose(vectors);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->first_stages, rates);
+  EXPECT_EQ(found->in_first_stages, 2u);
+}
+
+TEST(Suspects, TheSpecificCaseIsTheFailingOneInWhichTheFewestFaultsDeviate) {
+  HandMade vectors(3, 1);
+  for (const std::size_t vector : {0u, 1u, 2u}) vectors.of(yaw_fault, vector).deviates = true;
+  vectors.of(tilt_fault, 0).deviates = true;
+  const auto found = diagnose(vectors);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->specific_case, "case 1");  // the first of two, and case 3 passes
+  EXPECT_EQ(found->shown_by_it, 1u);
 }
 
 TEST(Suspects, TheFirstDecidesTheStageThoughAnotherIsNearer) {
