@@ -99,8 +99,7 @@ void print_stage_lines(const std::vector<SelfDiagnosis>& results, const std::str
   }
   fmt::print(
       "{}: \"look first at\" names the stage of {} faults; of {} more, whose stage has no output, "
-      "a "
-      "later stage; of {} another stage\n",
+      "it names a later stage; of {} another stage\n",
       profile, count(StageLine::own), count(StageLine::later), count(StageLine::wrong));
 }
 
