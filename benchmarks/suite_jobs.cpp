@@ -1,7 +1,7 @@
 // The whole suite on the reference at the numeric level, from the case files to the verdicts, with
 // one, two and (given four processors) four workers. Further runs have the port in the judge's
-// process: the floor of the cost of separate processes. At one rate this cost is highest, because
-// each case then has a process for one vector.
+// process: the floor of the cost of separate processes. At one rate this cost is highest: only
+// four vectors share a process.
 #include <thread>
 
 #include <benchmark/benchmark.h>

@@ -28,45 +28,44 @@ struct Codec<CaseResult> {
   static Result<CaseResult> decode(const std::string& text);
 };
 
-// Judges a case in several of its run configurations, in one process of the port. Those of a flight
-// all have the same vehicle and plant.
+// Judges vectors in one process of the port. Those of flights are all of one case, with the same
+// vehicle and plant.
 //
 // A failure after other vectors is repeated in a new process, and the result is that of the
 // repetition. If the vector passes there, the failure stays, and CaseResult::after names the
-// others. So each failure can be reproduced. A timeout is not repeated. After any other failure the
-// next vector has a new process.
+// others. So each failure can be reproduced. A timeout is not repeated; the other vectors of its
+// case time out too. After any other failure the next vector has a new process.
 class CaseJob final : public PortJob<CaseResult> {
  public:
-  // `vehicle_model` is that of a flight's vehicle; null for open loop.
-  CaseJob(Case the_case, std::vector<RunConfiguration> configurations,
-          std::shared_ptr<const VehicleModel> vehicle_model, std::filesystem::path golden_root,
-          JudgeOptions judge, HostOptions options)
-      : PortJob(std::move(options)),
-        case_(std::move(the_case)),
-        configurations_(std::move(configurations)),
-        vehicle_model_(std::move(vehicle_model)),
-        golden_root_(std::move(golden_root)),
-        judge_(std::move(judge)) {}
+  // `vehicle_model` is that of the flights' vehicle; null for open loop.
+  CaseJob(const std::vector<SelectedCase>& cases, std::shared_ptr<const VehicleModel> vehicle_model,
+          std::filesystem::path golden_root, JudgeOptions judge, HostOptions options);
 
-  std::size_t size() const override { return configurations_.size(); }
+  std::size_t size() const override { return vectors_.size(); }
   Result<void> open() override;
   Result<CaseResult> run(std::size_t task) override;
-  bool is_spent() const override { return !host_ || host_->is_spent() || has_failed_; }
+  bool is_spent() const override { return !host_ || host_->is_spent() || needs_new_process_; }
   void close() override;
 
  private:
-  Result<void> start();
-  Result<CaseResult> judged(std::size_t task);
-  Result<CaseResult> repeated_alone(std::size_t task, CaseResult failed);
+  struct Vector {
+    std::shared_ptr<const Case> the_case;
+    RunConfiguration configuration;
+  };
 
-  Case case_;
-  std::vector<RunConfiguration> configurations_;
+  Result<void> start();
+  Result<void> open_golden(const Vector& vector);
+  Result<CaseResult> judged(const Vector& vector);
+  Result<CaseResult> repeated_alone(const Vector& vector, CaseResult failed);
+
+  std::vector<Vector> vectors_;
   std::shared_ptr<const VehicleModel> vehicle_model_;
   std::filesystem::path golden_root_;
   JudgeOptions judge_;
   std::unique_ptr<PortHost> host_;
   std::vector<std::string> judged_by_host_;  // ids of vectors
-  bool has_failed_ = false;                  // a vector, not by a timeout
+  bool needs_new_process_ = false;           // for the next vector
+  std::shared_ptr<const Case> golden_of_;
   std::optional<Golden> golden_;
 };
 
@@ -91,9 +90,10 @@ class TimedJob final : public PortJob<CaseResult> {
   std::filesystem::path saved_traces_;
 };
 
-// The jobs of the selected cases, in the order of the cases. An open-loop case is one job. A flight
-// is one job for each plant configuration, so that several workers fly it at the same time. Errors:
-// a vehicle cannot be loaded.
+// The jobs of the selected cases, in the order of the cases. An open-loop case is one job, or
+// several cases of one group are if together they have only few vectors. A flight is one job for
+// each plant configuration, so that several workers fly it at the same time. Errors: a vehicle
+// cannot be loaded.
 Result<Jobs<CaseResult>> case_jobs(const std::vector<SelectedCase>& cases,
                                    const std::filesystem::path& golden_root,
                                    VehicleModels& vehicle_models, const JudgeOptions& judge,

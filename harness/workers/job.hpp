@@ -94,9 +94,11 @@ class Collector {
  public:
   Collector(std::size_t jobs, const JobOptions<R>& options) : options_(options), of_jobs_(jobs) {}
 
-  // fail() and take() return false if the jobs after `job` are not needed.
+  // fail() and take() return false if the jobs after `job` are not needed. An error that several
+  // tasks in a row have is kept once.
   bool fail(std::size_t job, const Error& error) {
-    of_jobs_[job].errors.push_back(error);
+    std::vector<Error>& errors = of_jobs_[job].errors;
+    if (errors.empty() || errors.back().to_string() != error.to_string()) errors.push_back(error);
     return !options_.fail_fast;
   }
   bool take(std::size_t job, Result<R> result) {

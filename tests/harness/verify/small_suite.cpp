@@ -43,8 +43,8 @@ HostOptions host_of(const std::string& port) {
 JobResults<CaseResult> SmallSuite::run(const HostOptions& host, int processes) const {
   Jobs<CaseResult> jobs;
   for (const Case& the_case : cases_) {
-    jobs.push_back(std::make_unique<CaseJob>(the_case, the_case.configurations(), nullptr, golden(),
-                                             JudgeOptions{}, host));
+    const std::vector<SelectedCase> of_job{{the_case, the_case.configurations()}};
+    jobs.push_back(std::make_unique<CaseJob>(of_job, nullptr, golden(), JudgeOptions{}, host));
   }
   JobOptions<CaseResult> options;
   options.processes = processes;
