@@ -153,7 +153,7 @@ TEST(Events, AtTheSameTickTheEarlierStageIsFirst) {
 constexpr const char* rates_sp = "out/vehicle_rates_setpoint.roll";
 constexpr const char* control = "out/actuator_controls_0.control[1]";
 constexpr const char* thrust = "out/actuator_controls_0.control[3]";
-constexpr const char* integral = "out/mc_att_ctrl_status.pitch_rate_integ";
+constexpr const char* pitch_integral = "out/mc_att_ctrl_status.pitch_rate_integ";
 
 // The names of the stages of the first deviation if these outputs of the controller deviate.
 std::vector<std::string_view> suspected(const Trace& want, std::vector<const char*> deviating) {
@@ -171,16 +171,17 @@ void unpublish(Trace& trace, const char* topic) {
 TEST(SuspectedStages, OfTheOuterLoopOneStageIsSuspected) {
   const Trace want = sample_trace(4);
   EXPECT_THAT(suspected(want, {rates_sp}), ElementsAre("attitude law"));
-  EXPECT_THAT(suspected(want, {integral, thrust, control, rates_sp}), ElementsAre("attitude law"));
+  EXPECT_THAT(suspected(want, {pitch_integral, thrust, control, rates_sp}),
+              ElementsAre("attitude law"));
 }
 
 TEST(SuspectedStages, TheRateLoopSharesValuesThatAreNoOutputs) {
   const Trace want = sample_trace(4);
   EXPECT_THAT(suspected(want, {control}), ElementsAre("rate law"));
-  EXPECT_THAT(suspected(want, {integral}), ElementsAre("integrator"));
+  EXPECT_THAT(suspected(want, {pitch_integral}), ElementsAre("integrator"));
   EXPECT_THAT(suspected(want, {thrust}), ElementsAre("actuators"));
   EXPECT_THAT(suspected(want, {control, thrust}), ElementsAre("rate law", "actuators"));
-  EXPECT_THAT(suspected(want, {integral, control}), ElementsAre("rate law", "integrator"));
+  EXPECT_THAT(suspected(want, {pitch_integral, control}), ElementsAre("rate law", "integrator"));
 }
 
 TEST(SuspectedStages, TheBatteryMayScaleTheControls) {
@@ -188,7 +189,7 @@ TEST(SuspectedStages, TheBatteryMayScaleTheControls) {
   for (const auto& [scale, scales] : {std::pair{0.0f, false}, {1.0f, false}, {1.1f, true}}) {
     for (Sample& sample : want.samples) sample.in.battery_status.scale = scale;
     EXPECT_EQ(suspected(want, {control}).size(), scales ? 2u : 1u) << scale;
-    EXPECT_THAT(suspected(want, {integral}), ElementsAre("integrator"));
+    EXPECT_THAT(suspected(want, {pitch_integral}), ElementsAre("integrator"));
   }
 }
 
@@ -230,9 +231,10 @@ TEST(SuspectedStages, AFlagDoesNotDependOnValuesThatAreNotPublished) {
 TEST(SuspectedStages, AStageThatRunsAndPublishesNothingIsSuspectedToo) {
   Trace want = sample_trace(4);
   unpublish(want, "actuator_controls_0");  // as with the circuit breaker
-  EXPECT_THAT(suspected(want, {integral}), ElementsAre("rate law", "integrator"));
+  EXPECT_THAT(suspected(want, {pitch_integral}), ElementsAre("rate law", "integrator"));
   unpublish(want, "vehicle_rates_setpoint");  // as before the first vehicle_status
-  EXPECT_THAT(suspected(want, {integral}), ElementsAre("attitude law", "rate law", "integrator"));
+  EXPECT_THAT(suspected(want, {pitch_integral}),
+              ElementsAre("attitude law", "rate law", "integrator"));
 }
 
 TEST(SuspectedStages, AStageThatDoesNotRunIsNotSuspected) {
