@@ -94,6 +94,17 @@ void allow_all_but(const std::vector<fs::path>& hidden, const fs::path& path, in
 // there.
 constexpr const char* control_groups = "/sys/fs/cgroup";
 
+// Through the devices of disks root can read and change every file.
+std::vector<std::string> disks() {
+  std::vector<std::string> found;
+  std::error_code unreadable;
+  for (const auto& entry : fs::directory_iterator("/dev", unreadable)) {
+    std::error_code ignored;
+    if (entry.is_block_file(ignored)) found.push_back(entry.path());
+  }
+  return found;
+}
+
 std::vector<fs::path> existing(const std::vector<std::string>& paths) {
   std::vector<fs::path> found;
   for (const std::string& path : paths) {
@@ -179,6 +190,7 @@ Result<Barrier> Barrier::make(const BarrierOptions& options) {
   }
   Barrier barrier(rules, std::move(filter));
   std::vector<std::string> hidden = options.hidden, readable = options.readable;
+  for (const std::string& disk : disks()) hidden.push_back(disk);
   hidden.emplace_back(control_groups);
   readable.emplace_back(control_groups);
   allow_all_but(existing(hidden), "/", rules);

@@ -96,6 +96,13 @@ needs_scopes() {
   has "fail: differs from the golden"
 }
 
+@test "disks cannot be read past their files" {
+  needs_landlock
+  attacked reads_disk
+  [ "$status" -eq 1 ]
+  has "fail: differs from the golden"
+}
+
 @test "limits cannot be raised, and shared memory counts" {
   for attack in raises_files raises_memory raises_of_parent; do
     attacked $attack

@@ -10,8 +10,10 @@
  *     stops, kills, queues                                   signals to the processes above
  *     raises_files, raises_memory, raises_of_parent          limits
  *     freezes                                                writes a file of control groups
+ *     reads_disk                                             the device of a disk
  *     makes_shared                                           5 GiB of shared memory */
 #define _GNU_SOURCE
+#include <dirent.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <stdint.h>
@@ -145,6 +147,20 @@ static int freezes(void) {
          mkdir("/sys/fs/cgroup/freezer/attack", 0700) == 0;
 }
 
+/* Root can read every file of a disk through its device. */
+static int reads_disk(void) {
+  DIR* devices = opendir("/dev");
+  int is_read = 0;
+  for (struct dirent* entry; devices != NULL && (entry = readdir(devices)) != NULL && !is_read;) {
+    char path[300];
+    struct stat status;
+    snprintf(path, sizeof path, "/dev/%s", entry->d_name);
+    is_read = stat(path, &status) == 0 && S_ISBLK(status.st_mode) && opens(path, O_RDONLY);
+  }
+  if (devices != NULL) closedir(devices);
+  return is_read;
+}
+
 /* Judged: crash, because the limit of memory counts shared memory too. */
 static int makes_shared(void) {
   const size_t piece = (size_t)1 << 26;
@@ -169,6 +185,7 @@ static int step(void* self, const attest_inputs* in, attest_outputs* out) {
   (void)reads_by_link, (void)reads_by_root, (void)reads_by_program, (void)reads_memory;
   (void)opens_memory, (void)traces, (void)stops, (void)kills, (void)queues, (void)raises_files;
   (void)raises_memory, (void)raises_of_parent, (void)makes_shared, (void)freezes;
+  (void)reads_disk;
   return result;
 }
 
