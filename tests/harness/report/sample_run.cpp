@@ -152,7 +152,7 @@ RunResult sample_run() {
   run.suite_sha256 = std::string(64, 'a');
   run.port_sha256 = std::string(64, 'b');
   run.date = "2026-03-31";
-  run.limits = {true, 10, 4, 16};
+  run.limits = {true, 10, 4, 16, {}};
   run.cases_version = "1.0";
   run.golden_version = "1.1";
   add_attitude(run.results);
@@ -189,7 +189,7 @@ RunResult passing_run() {
   run.suite_sha256 = std::string(64, 'a');
   run.suite_is_released = true;
   run.date = "2026-03-31";
-  run.limits = {true, 10, 4, 16};
+  run.limits = {true, 10, 4, 16, {}};
   return run;
 }
 

@@ -130,7 +130,7 @@ static int queues_one(pid_t process) {
 }
 static int queues(void) { return on_any_above(queues_one); }
 
-static int raises(pid_t process, int resource) {
+static int raises(pid_t process, __rlimit_resource_t resource) {
   struct rlimit limit = {RLIM_INFINITY, RLIM_INFINITY};
   return prlimit(process, resource, &limit, NULL) == 0;
 }
