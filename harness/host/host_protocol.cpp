@@ -242,10 +242,10 @@ std::string supports_request(const std::string& profile) {
   return text_of({{"do", "supports"}, {"profile", profile}});
 }
 
-Result<Driven> read_driven(const Arrived& arrived, std::size_t ticks) {
+Result<Driven> read_driven(const Arrived& arrived, std::size_t ticks, std::size_t ticks_before) {
   return read_answer(arrived, [&](JsonReader& head) {
     return Driven{objects_from<Sample>(arrived, ticks, "samples", head),
-                  fault_from(head, ticks, arrived.of_program)};
+                  fault_from(head, ticks_before + ticks, arrived.of_program)};
   });
 }
 

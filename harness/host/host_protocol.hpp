@@ -58,12 +58,12 @@ struct Arrived {
 // Errors of the readers: the message is not a valid answer to that request; the text names the
 // member. A valid answer has all `ticks` ticks. A flight or a timing may have fewer, if the answer
 // has the fault or divergence that ended it. The error in a result of a reader is that of an answer
-// with "error".
+// with "error". `ticks_before`: of the trace, before its part in this answer.
 struct Driven {
   std::vector<Sample> samples;
   std::optional<PortFault> fault;
 };
-Result<Driven> read_driven(const Arrived& arrived, std::size_t ticks);
+Result<Driven> read_driven(const Arrived& arrived, std::size_t ticks, std::size_t ticks_before = 0);
 // The traces of the result have no `source`. `duration`: of the case.
 Result<Result<Flown>> read_flown(const Arrived& arrived, const FlightPlan& plan,
                                  Nanoseconds duration);

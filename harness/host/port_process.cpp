@@ -75,8 +75,9 @@ class PortProcess final : public PortHost {
   std::optional<PortFault> drive(const Subject& subject, Trace& trace) override {
     const std::vector<Sample> inputs = inputs_of(trace);
     const auto driven =
-        ask(drive_request(subject, trace), {blob_of(inputs)},
-            [&](const Arrived& arrived) { return read_driven(arrived, inputs.size()); });
+        ask(drive_request(subject, trace), {blob_of(inputs)}, [&](const Arrived& arrived) {
+          return read_driven(arrived, inputs.size(), subject.part.first_tick);
+        });
     if (!driven) return fault_;
     set_outputs(driven->samples, trace);
     return judged(driven->fault, subject.profile);
