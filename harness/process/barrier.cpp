@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <climits>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -16,7 +17,6 @@
 #include <linux/filter.h>
 #include <linux/landlock.h>
 #include <seccomp.h>
-#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -118,20 +118,25 @@ std::vector<fs::path> existing(const std::vector<std::string>& paths) {
 // ---- system calls -------------------------------------------------------------------------------
 
 // A filter that refuses to change the limits of other processes, which a user may do to all of his
-// processes. Landlock does not refuse that. Empty: no memory.
+// processes. Landlock does not refuse that. Empty: errno has the reason.
 std::string filter_of_calls() {
-  const int file = ::memfd_create("attest-filter", MFD_CLOEXEC);
+  std::array<int, 2> pipe{-1, -1};  // not a file, because `ulimit -f` may forbid to write one
+  if (::pipe2(pipe.data(), O_CLOEXEC) != 0) return {};
   const scmp_filter_ctx filter = ::seccomp_init(SCMP_ACT_ALLOW);
-  const scmp_arg_cmp of_others{0, SCMP_CMP_NE, 0,
-                               0};  // the first argument is a process; 0: its own
-  const bool is_made = filter != nullptr && file >= 0 &&
+  // The first argument is a process; 0: its own.
+  const scmp_arg_cmp of_others{0, SCMP_CMP_NE, 0, 0};
+  const bool is_made = filter != nullptr &&
                        ::seccomp_rule_add_array(filter, SCMP_ACT_ERRNO(EPERM), SCMP_SYS(prlimit64),
                                                 1, &of_others) == 0 &&
-                       ::seccomp_export_bpf(filter, file) == 0;
+                       ::seccomp_export_bpf(filter, pipe[1]) == 0;
+  const int reason = errno;
   ::seccomp_release(filter);
-  std::string program(is_made ? static_cast<std::size_t>(::lseek(file, 0, SEEK_END)) : 0, '\0');
-  if (::pread(file, program.data(), program.size(), 0) < 0) program.clear();
-  ::close(file);
+  ::close(pipe[1]);
+  std::string program(PIPE_BUF, '\0');
+  const ssize_t size = is_made ? ::read(pipe[0], program.data(), program.size()) : 0;
+  ::close(pipe[0]);
+  program.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+  errno = reason;
   return program;
 }
 
@@ -177,7 +182,11 @@ std::vector<std::string> missing_parts(const BarrierParts& parts) {
 }
 
 Result<Barrier> Barrier::make(const BarrierOptions& options) {
+  const auto cannot = [] {
+    return fail(fmt::format("cannot make the barrier around a port: {}", std::strerror(errno)));
+  };
   std::string filter = filter_of_calls();
+  if (filter.empty()) return cannot();
   if (landlock_abi() < 1) return Barrier(-1, std::move(filter));
   const bool has_scopes = landlock_abi() >= abi_of_scopes;
   const RulesetAttributes attributes{rights_of_folder(), 0,
@@ -185,9 +194,7 @@ Result<Barrier> Barrier::make(const BarrierOptions& options) {
   // Older kernels know only the first member.
   const std::size_t size = has_scopes ? sizeof attributes : sizeof attributes.handled_access_fs;
   const int rules = static_cast<int>(::syscall(SYS_landlock_create_ruleset, &attributes, size, 0));
-  if (rules < 0) {
-    return fail(fmt::format("cannot make the barrier around a port: {}", std::strerror(errno)));
-  }
+  if (rules < 0) return cannot();
   Barrier barrier(rules, std::move(filter));
   std::vector<std::string> hidden = options.hidden, readable = options.readable;
   for (const std::string& disk : disks()) hidden.push_back(disk);
