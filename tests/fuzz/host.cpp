@@ -31,9 +31,9 @@ BlobReader blobs_of(std::string_view bytes, std::vector<std::size_t> sizes) {
 }
 
 template <typename T>
-const T* accepted(const Result<T>& read) {
+bool is_accepted(const Result<T>& read) {
   if (!read) require_readable(read.error().message);
-  return read ? &*read : nullptr;
+  return read.has_value();
 }
 
 void require_sane(const std::optional<PortFault>& fault, bool of_program) {
@@ -50,8 +50,8 @@ void require_sane(const std::vector<ParameterChange>& changes) {
 }
 
 void greet(const Arrived& arrived) {
-  const auto* greeting = accepted(read_greeting(arrived));
-  if (greeting == nullptr || accepted(*greeting) == nullptr) return;
+  const auto greeting = read_greeting(arrived);
+  if (!is_accepted(greeting) || !is_accepted(*greeting)) return;
   const PortSays& says = **greeting;
   require(wrong_in_declared(says.name, says.version, says.unsupported_groups).empty(),
           "printable declarations");
@@ -61,16 +61,16 @@ void greet(const Arrived& arrived) {
 }
 
 void drive(const Arrived& arrived) {
-  if (const auto* driven = accepted(read_driven(arrived, ticks))) {
-    require(driven->samples.size() == ticks, "a sample for each tick");
-    require_sane(driven->fault, arrived.of_program);
-  }
+  const auto driven = read_driven(arrived, ticks);
+  if (!is_accepted(driven)) return;
+  require(driven->samples.size() == ticks, "a sample for each tick");
+  require_sane(driven->fault, arrived.of_program);
 }
 
 void fly(const Arrived& arrived) {
   const FlightPlan plan{{Rate::hz(250), {}}, LoopTiming(ticks)};
-  const auto* flown = accepted(read_flown(arrived, plan, duration));
-  if (flown == nullptr || accepted(*flown) == nullptr) return;
+  const auto flown = read_flown(arrived, plan, duration);
+  if (!is_accepted(flown) || !is_accepted(*flown)) return;
   const Flown& flight = **flown;
   require(flight.trace.samples.size() <= ticks, "at most the ticks of the plan");
   require_sane(flight.fault, arrived.of_program);
@@ -81,8 +81,8 @@ void fly(const Arrived& arrived) {
 }
 
 void time(const Arrived& arrived) {
-  const auto* times = accepted(read_times(arrived, ticks));
-  if (times == nullptr || accepted(*times) == nullptr) return;
+  const auto times = read_times(arrived, ticks);
+  if (!is_accepted(times) || !is_accepted(*times)) return;
   require((*times)->clock >= Nanoseconds(0), "a clock that takes time");
   for (const Nanoseconds step : (*times)->steps) require(step >= Nanoseconds(0), "a duration");
 }

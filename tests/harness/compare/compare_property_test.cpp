@@ -90,7 +90,9 @@ RC_GTEST_PROP(Compare, OfTwoDeviationsTheEarlierIsReported, ()) {
   const Trace want = sample_trace(trace_ticks);
   const Place a = any_float_output(), b = any_float_output();
   const Trace got = moved(moved(want, a, 50, Tolerances()), b, 50, Tolerances());
-  const auto order = [](const Place& place) { return std::pair(place.tick, place.channel); };
+  const auto order = [](const Place& place) {
+    return std::tuple(place.tick, channels()[place.channel].stage, place.channel);
+  };
   const Place first = order(a) < order(b) ? a : b;
   const Comparison comparison = compare(got, want, Tolerances());
   RC_ASSERT(comparison.first.has_value());

@@ -63,7 +63,7 @@ TEST(JsonReader, KeepsTheFirstError) {
   EXPECT_EQ(error_of([](JsonReader& one) { one.flag("x"); }), "`x` is not true or false");
   EXPECT_EQ(error_of([](JsonReader& one) { one.integer("x"); }), "`x` is not an integer");
   EXPECT_EQ(error_of([](JsonReader& one) { one.real("x"); }), "`x` is not a number");
-  EXPECT_EQ(error_of([](JsonReader& one) { one.object("x"); }), "not an object");
+  EXPECT_EQ(error_of([](JsonReader& one) { one.object("x"); }), "`x` is not an object");
   EXPECT_EQ(error_of([](JsonReader& one) { one.text("y"); }), "`y` is missing");
 }
 

@@ -152,7 +152,7 @@ RunResult sample_run() {
   run.suite_sha256 = std::string(64, 'a');
   run.port_sha256 = std::string(64, 'b');
   run.date = "2026-03-31";
-  run.limits = {true, 10, 4, 16, {}};
+  run.limits = {true, 10, 4, 16, {true, true}};
   run.cases_version = "1.0";
   run.golden_version = "1.1";
   add_attitude(run.results);
@@ -182,14 +182,17 @@ RunResult passing_run() {
   for (const char* name : {"pitch_5", "roll_30", "yaw_step"}) {
     for (const LoopRate& rate : run.rates) {
       run.results.push_back(passed("attitude", name, rate));
+      const std::string id = run.results.back().case_id();
+      run.case_files[id] = "cases/" + id + ".toml";
       ++run.suite["px4-v1.5.5/attitude"][rate];
     }
   }
+  run.golden_folder = "golden";
   run.selected = run.results.size();
   run.suite_sha256 = std::string(64, 'a');
   run.suite_is_released = true;
   run.date = "2026-03-31";
-  run.limits = {true, 10, 4, 16, {}};
+  run.limits = {true, 10, 4, 16, {true, true}};
   return run;
 }
 
