@@ -11,9 +11,9 @@
 #include <unistd.h>
 
 #include "harness/cli/command.hpp"
-#include "harness/cli/interrupt.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
+#include "harness/core/interrupt.hpp"
 #include "harness/golden/blessing.hpp"
 #include "harness/golden/golden_lock.hpp"
 #include "harness/report/text.hpp"

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/core/interrupt.hpp"
 #include "harness/report/read_report.hpp"
 
 namespace attest::cli {
@@ -32,6 +33,10 @@ Result<std::vector<SelectedCase>> failed_in(const std::string& report,
 }  // namespace
 
 int report_error(const Error& error) {
+  if (interrupted()) {
+    std::fputs("attest: interrupted\n", stderr);
+    return exit_interrupted;
+  }
   // Not through fmt::print: it throws when stderr cannot be written.
   std::fputs(fmt::format("attest: error: {}\n", error.to_string()).c_str(), stderr);
   return exit_usage;

@@ -34,7 +34,8 @@ struct Globals {
   std::shared_ptr<BarrierOptions> barrier = std::make_shared<BarrierOptions>();
 };
 
-// Prints "attest: error: <file:line: message>" on stderr, and returns exit_usage.
+// Prints "attest: error: <file:line: message>" on stderr, and returns exit_usage. If the command
+// was interrupted, prints that and returns exit_interrupted.
 int report_error(const Error& error);
 
 // Errors: those of LoopRate::parse().

@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "harness/cli/interrupt.hpp"
 #include "harness/cli/run_plan.hpp"
+#include "harness/core/interrupt.hpp"
 #include "harness/diagnosis/diagnosis_job.hpp"
 #include "harness/report/conclusion.hpp"
 #include "harness/report/github.hpp"
@@ -56,6 +56,7 @@ std::optional<Diagnosis> diagnosed(const RunResult& run, const Examined& examine
   }
   // This diagnosis used only some of the vectors. The verdicts are complete.
   fmt::print(stderr, "attest: interrupted; the reports do not have the probable mistake\n");
+  forget_interrupt();
   return std::nullopt;
 }
 

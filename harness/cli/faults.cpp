@@ -4,8 +4,8 @@
 #include <fmt/ranges.h>
 
 #include "harness/cli/command.hpp"
-#include "harness/cli/interrupt.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/core/interrupt.hpp"
 #include "harness/core/suggestion.hpp"
 #include "harness/diagnosis/diagnose_catalogue.hpp"
 #include "harness/diagnosis/fault_job.hpp"

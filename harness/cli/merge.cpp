@@ -15,11 +15,11 @@
 
 #include "harness/cli/command.hpp"
 #include "harness/cli/conclude.hpp"
-#include "harness/cli/interrupt.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/released_suite.hpp"
 #include "harness/cli/run_plan.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/core/interrupt.hpp"
 #include "harness/core/version.hpp"
 #include "harness/report/read_report.hpp"
 #include "harness/sweep/identity.hpp"

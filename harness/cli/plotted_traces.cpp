@@ -1,5 +1,6 @@
 #include "harness/cli/plotted_traces.hpp"
 
+#include "harness/core/interrupt.hpp"
 #include <algorithm>
 #include <set>
 #include <string>
@@ -7,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "harness/cli/interrupt.hpp"
 #include "harness/plant/vehicle_models.hpp"
 #include "harness/report/html/plots.hpp"
 #include "harness/report/report_format.hpp"

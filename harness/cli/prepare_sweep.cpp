@@ -6,9 +6,9 @@
 
 #include "harness/casefile/parse_limits.hpp"
 #include "harness/cli/find_case.hpp"
-#include "harness/cli/interrupt.hpp"
 #include "harness/cli/run_plan.hpp"
 #include "harness/core/file.hpp"
+#include "harness/core/interrupt.hpp"
 #include "harness/core/version.hpp"
 #include "harness/loop/flight.hpp"
 

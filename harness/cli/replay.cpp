@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -173,7 +172,7 @@ class Replay {
     const Tolerances tolerances(level_);
     if (options_.html.empty()) return evaluate_parts(trace, subject, *host_, tolerances);
     Trace whole, got;
-    const auto read = trace.next_part(std::numeric_limits<std::size_t>::max(), whole);
+    const auto read = trace.next_part(whole_trace, whole);
     if (!read) return tl::unexpected(read.error());
     CaseResult result = evaluate_trace(whole, subject, *host_, tolerances, &got);
     auto written = write_page({result.verdict},

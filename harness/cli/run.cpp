@@ -5,11 +5,11 @@
 
 #include "harness/cli/command.hpp"
 #include "harness/cli/conclude.hpp"
-#include "harness/cli/interrupt.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/plotted_traces.hpp"
 #include "harness/cli/run_plan.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/core/interrupt.hpp"
 #include "harness/report/progress.hpp"
 
 namespace attest::cli {

@@ -13,9 +13,9 @@
 #include <fmt/ranges.h>
 
 #include "harness/cli/find_case.hpp"
-#include "harness/cli/interrupt.hpp"
 #include "harness/cli/released_suite.hpp"
 #include "harness/core/file.hpp"
+#include "harness/core/interrupt.hpp"
 #include "harness/core/version.hpp"
 #include "harness/golden/recorded.hpp"
 #include "harness/port/port.hpp"

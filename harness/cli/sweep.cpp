@@ -11,12 +11,12 @@
 #include <fmt/format.h>
 
 #include "harness/cli/command.hpp"
-#include "harness/cli/interrupt.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/prepare_sweep.hpp"
 #include "harness/cli/shard_plan.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
+#include "harness/core/interrupt.hpp"
 #include "harness/report/html/sweep_page.hpp"
 #include "harness/report/progress.hpp"
 #include "harness/report/sweep_summary_text.hpp"

@@ -6,10 +6,10 @@
 
 #include "harness/cli/command.hpp"
 #include "harness/cli/exchange_note.hpp"
-#include "harness/cli/interrupt.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
+#include "harness/core/interrupt.hpp"
 #include "harness/host/step_timer.hpp"
 #include "harness/measure/vector_times.hpp"
 #include "harness/realtime/instructions.hpp"

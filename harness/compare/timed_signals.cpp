@@ -175,6 +175,7 @@ struct Row {
 Result<TimedSignals> signals_of_csv(const std::filesystem::path& path) {
   auto rows = CsvRows::open(path);
   if (!rows) return tl::unexpected(rows.error());
+  if (auto limited = rows->limit_size(); !limited) return tl::unexpected(limited.error());
   TimedSignals signals{path.string(), {}, {}};
   std::vector<CsvColumn> columns;
   bool has_time = false;

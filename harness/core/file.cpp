@@ -16,6 +16,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "harness/core/interrupt.hpp"
+
 namespace attest {
 namespace {
 
@@ -56,22 +58,45 @@ class Descriptor {
   int descriptor_;
 };
 
-// Calls use(block) for each block of the file, until a call returns an error.
-template <typename Use>
-Result<void> for_each_block(const fs::path& path, Use use) {
-  const auto opened = open_regular_file(path);
+// The same as the public function, and stores the status of the file.
+Result<int> open_regular_file(const fs::path& path, struct stat& status) {
+  // Without O_NONBLOCK, opening a pipe waits for a writer.
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  if (file < 0) return system_failure(path, "cannot open the file");
+  if (::fstat(file, &status) != 0) {
+    auto failure = system_failure(path, "cannot open the file");
+    ::close(file);
+    return failure;
+  }
+  if (S_ISREG(status.st_mode)) return file;
+  ::close(file);
+  return fail_at(path.string(), fmt::format("not a regular file but {}", kind_of(status.st_mode)));
+}
+
+// Calls begin(size) and then use(block) for each block of the file. Errors: more than `most_bytes`,
+// which is checked before the file is read, and again while it is read, because it may grow.
+template <typename Begin, typename Use>
+Result<void> for_each_block(const fs::path& path, std::uintmax_t most_bytes, Begin begin, Use use) {
+  struct stat status {};
+  const auto opened = open_regular_file(path, status);
   if (!opened) return tl::unexpected(opened.error());
   const Descriptor file(*opened);
+  std::uintmax_t size = static_cast<std::uintmax_t>(status.st_size);
+  if (size <= most_bytes) begin(size);
+  size = size <= most_bytes ? 0 : size;
   std::array<char, std::size_t{64} * 1024> block;
-  while (true) {
+  while (size <= most_bytes) {
+    if (interrupted()) return fail_at(path.string(), "not read to its end: interrupted");
     const ssize_t count = ::read(file.get(), block.data(), block.size());
     if (count == 0) return {};
-    if (count > 0) {
-      auto used = use(std::string_view(block.data(), static_cast<std::size_t>(count)));
-      if (!used) return used;
-    }
-    if (count < 0 && errno != EINTR) return system_failure(path, "cannot read the file");
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return system_failure(path, "cannot read the file");
+    size += static_cast<std::uintmax_t>(count);
+    if (size <= most_bytes) use(std::string_view(block.data(), static_cast<std::size_t>(count)));
   }
+  return fail_at(path.string(), fmt::format("is larger than {} MiB, the most that such a file may "
+                                            "have",
+                                            most_bytes >> 20));
 }
 
 // OpenSSL fails here only without memory or with a broken installation, so the process aborts.
@@ -115,36 +140,15 @@ int take_stdout() {
 }  // namespace
 
 Result<int> open_regular_file(const fs::path& path) {
-  // Without O_NONBLOCK, opening a pipe waits for a writer.
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-  if (file < 0) return system_failure(path, "cannot open the file");
-  struct stat status;
-  if (::fstat(file, &status) != 0) {
-    auto failure = system_failure(path, "cannot open the file");
-    ::close(file);
-    return failure;
-  }
-  if (S_ISREG(status.st_mode)) return file;
-  ::close(file);
-  return fail_at(path.string(), fmt::format("not a regular file but {}", kind_of(status.st_mode)));
+  struct stat status {};
+  return open_regular_file(path, status);
 }
 
 Result<std::string> read_file(const fs::path& path, std::uintmax_t most_bytes) {
-  std::error_code unknown;
-  const std::uintmax_t size = fs::file_size(path, unknown);
   std::string text;
-  const auto too_large = [&] {
-    return fail_at(path.string(), fmt::format("is larger than {} MiB, the most that such a file "
-                                              "may have",
-                                              most_bytes >> 20));
-  };
-  if (!unknown && size > most_bytes) return too_large();
-  if (!unknown) text.reserve(size);
-  const auto done = for_each_block(path, [&](std::string_view block) -> Result<void> {
-    if (text.size() + block.size() > most_bytes) return too_large();
-    text += block;
-    return {};
-  });
+  const auto done = for_each_block(
+      path, most_bytes, [&](std::uintmax_t size) { text.reserve(size); },
+      [&](std::string_view block) { text += block; });
   if (!done) return tl::unexpected(done.error());
   return text;
 }
@@ -175,12 +179,10 @@ std::string sha256(std::string_view bytes) {
   return hash.hex();
 }
 
-Result<std::string> sha256_of_file(const fs::path& path) {
+Result<std::string> sha256_of_file(const fs::path& path, std::uintmax_t most_bytes) {
   Sha256 hash;
-  const auto done = for_each_block(path, [&](std::string_view block) -> Result<void> {
-    hash.add(block);
-    return {};
-  });
+  const auto done = for_each_block(
+      path, most_bytes, [](std::uintmax_t) {}, [&](std::string_view block) { hash.add(block); });
   if (!done) return tl::unexpected(done.error());
   return hash.hex();
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -33,7 +34,10 @@ std::string path_from_here(const std::filesystem::path& path);
 
 // SHA-256 as 64 lower-case hex digits, as `sha256sum` prints it.
 std::string sha256(std::string_view bytes);
-Result<std::string> sha256_of_file(const std::filesystem::path& path);
+// Errors: those of open_regular_file(), unreadable, more than `most_bytes`.
+Result<std::string> sha256_of_file(
+    const std::filesystem::path& path,
+    std::uintmax_t most_bytes = std::numeric_limits<std::uintmax_t>::max());
 
 // A file that gets its name at commit(), when it is complete. Until then it is a temporary file in
 // the same folder. Open it early, to find an unwritable path before the work. Without commit() the

@@ -10,8 +10,11 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/mman.h>
 #include <unistd.h>
+
+#include "harness/core/interrupt.hpp"
 
 namespace attest {
 namespace {
@@ -29,9 +32,21 @@ bool has_writer(int pipe, std::string& begin) {
   return count != 0;
 }
 
+// Waits for bytes, or for an interrupt: a blocking read() would be restarted after the signal.
+// Returns what read() returns; -1 after an interrupt.
+ssize_t read_when_ready(int pipe, std::string& block) {
+  constexpr int look_again_ms = 100;
+  while (!interrupted()) {
+    pollfd readable{pipe, POLLIN, 0};
+    if (::poll(&readable, 1, look_again_ms) <= 0) continue;
+    const ssize_t count = ::read(pipe, block.data(), block.size());
+    if (count >= 0 || (errno != EINTR && errno != EAGAIN)) return count;
+  }
+  return -1;
+}
+
 // Copies `begin`, then the rest of the pipe. Returns the error; empty if all is copied.
 std::string copy_all(int pipe, int copy, std::string begin) {
-  ::fcntl(pipe, F_SETFL, ::fcntl(pipe, F_GETFL) & ~O_NONBLOCK);
   std::string block = std::move(begin);
   std::size_t copied = 0;
   while (copied <= most_bytes) {
@@ -40,11 +55,9 @@ std::string copy_all(int pipe, int copy, std::string begin) {
     if (written < 0) return std::strerror(errno);
     copied += block.size();
     block.resize(std::size_t{64} * 1024);
-    ssize_t count = -1;
-    do count = ::read(pipe, block.data(), block.size());
-    while (count < 0 && errno == EINTR);
+    const ssize_t count = read_when_ready(pipe, block);
     if (count == 0) return "";
-    if (count < 0) return std::strerror(errno);
+    if (count < 0) return interrupted() ? "interrupted" : std::strerror(errno);
     block.resize(static_cast<std::size_t>(count));
   }
   return "it has more than 1024 MiB, the most that a trace may have there";
@@ -58,7 +71,7 @@ std::string copy_from(const std::filesystem::path& path, int copy,
   const auto end = Clock::now() + writer_within;
   std::string begin;
   bool is_written = has_writer(pipe, begin);
-  while (!is_written && Clock::now() < end) {
+  while (!is_written && Clock::now() < end && !interrupted()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
     is_written = has_writer(pipe, begin);
   }

@@ -80,7 +80,7 @@ class Times {
     if (row == rows) {
       return fmt::format("ends after tick {} of {}: it is cut off", rows - 1, ticks);
     }
-    if (row == ticks) return fmt::format("has {} rows for {} ticks", rows, ticks);
+    if (row == ticks) return fmt::format("has more rows than the {} ticks", ticks);
     if (std::string unit = other_unit(); !unit.empty()) return unit;
     if (is_reordered()) {
       return fmt::format(
@@ -160,8 +160,8 @@ std::string wrong_rows(const Table& table, const ColumnChannels& channel_of,
   }
   const std::size_t rows = table.front().values.size(), ticks = trace.samples.size();
   if (rows == ticks) return "";
-  return fmt::format("has {} rows for {} ticks; write a row for each row of the inputs", rows,
-                     ticks);
+  return fmt::format("has {} for {} ticks; write a row for each row of the inputs",
+                     rows > ticks ? "more rows" : fmt::format("{} rows", rows), ticks);
 }
 
 // A message about the outputs of the trace's module that the table lacks; empty if it has all.

@@ -14,7 +14,7 @@
 namespace attest {
 namespace {
 
-Result<Table> read_csv_table(const std::filesystem::path& path) {
+Result<Table> read_csv_table(const std::filesystem::path& path, std::size_t most_rows) {
   auto rows = CsvRows::open(path, CsvRows::Unnamed::allowed);
   if (!rows) return tl::unexpected(rows.error());
   Table table;
@@ -25,12 +25,13 @@ Result<Table> read_csv_table(const std::filesystem::path& path) {
   }
   std::vector<double> row(columns.size());
   rows->set_columns(std::move(columns));
-  while (true) {
+  for (std::size_t count = 0; count < most_rows; ++count) {
     const auto more = rows->next(row.data());
     if (!more) return tl::unexpected(more.error());
     if (!*more) return table;
     for (std::size_t i = 0; i < row.size(); ++i) table[i].values.push_back(row[i]);
   }
+  return table;
 }
 
 Result<void> check_lengths(const std::filesystem::path& path, const Table& table) {
@@ -47,7 +48,7 @@ Result<void> check_lengths(const std::filesystem::path& path, const Table& table
 }
 
 Result<Table> read_as(const std::filesystem::path& path, TableFormat format,
-                      const std::vector<std::string>& names) {
+                      const std::vector<std::string>& names, std::size_t most_rows) {
   switch (format) {
     case TableFormat::mat:
       return read_mat(path);
@@ -56,7 +57,7 @@ Result<Table> read_as(const std::filesystem::path& path, TableFormat format,
     case TableFormat::csv:
       break;
   }
-  return read_csv_table(path);
+  return read_csv_table(path, most_rows);
 }
 
 }  // namespace
@@ -84,8 +85,8 @@ Result<TableFormat> parse_table_format(std::string_view name) {
 }
 
 Result<Table> read_table(const std::filesystem::path& path, TableFormat format,
-                         const std::vector<std::string>& names) {
-  auto table = read_as(path, format, names);
+                         const std::vector<std::string>& names, std::size_t most_rows) {
+  auto table = read_as(path, format, names, most_rows);
   if (!table) return table;
   if (auto checked = check_lengths(path, *table); !checked) return tl::unexpected(checked.error());
   return table;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -106,7 +105,7 @@ Result<std::optional<std::string>> rows_of(const fs::path& folder, const SampleC
   if (!extent) return tl::unexpected(extent.error());
   there = extent->rows;
   if (extent->is_cut || there != range.size()) return std::nullopt;
-  auto text = read_file(file, std::numeric_limits<std::uintmax_t>::max());
+  auto text = read_file(file, extent->bytes);
   if (!text) return tl::unexpected(text.error());
   return text->substr(columns.header().size());
 }

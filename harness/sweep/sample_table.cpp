@@ -4,15 +4,16 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <functional>
 #include <optional>
+#include <string>
 #include <system_error>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "harness/core/file.hpp"
+#include "harness/core/interrupt.hpp"
 #include "harness/sweep/table_extent.hpp"
 
 namespace attest {
@@ -61,23 +62,40 @@ class TableReader {
   Result<TableExtent> read(const OnRow& on_row) {
     const auto opened = open_regular_file(file_);
     if (!opened) return tl::unexpected(opened.error());
-    std::FILE* const stream = ::fdopen(*opened, "r");
-    if (stream == nullptr) return tl::unexpected(table_error(file_, "cannot be read"));
-    char* line = nullptr;
-    std::size_t capacity = 0;
-    Result<void> taken;
-    while (taken) {
-      const ssize_t size = ::getline(&line, &capacity, stream);
-      if (size <= 0) break;
-      taken = take({line, static_cast<std::size_t>(size)}, on_row);
-    }
-    std::free(line);
-    std::fclose(stream);
+    const Result<void> taken = take_all(*opened, on_row);
+    ::close(*opened);
+    if (interrupted()) return fail_at(file_.string(), "not read to its end: interrupted");
     if (!taken && wrong_ == WrongLine::is_error) return tl::unexpected(taken.error());
     return extent_;
   }
 
  private:
+  // Takes all lines, until one is wrong.
+  Result<void> take_all(int descriptor, const OnRow& on_row) {
+    constexpr std::size_t block_bytes = std::size_t{64} * 1024, most_in_line = std::size_t{1} << 20;
+    std::string text;  // not taken yet
+    Result<void> taken;
+    while (taken && !interrupted()) {
+      const std::size_t searched = text.size();
+      text.resize(searched + block_bytes);
+      const ssize_t count = ::read(descriptor, text.data() + searched, block_bytes);
+      if (count < 0 && errno != EINTR) {
+        return tl::unexpected(table_error(file_, "cannot be read"));
+      }
+      text.resize(searched + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+      if (count == 0) return text.empty() ? taken : take(text, on_row);
+      std::size_t begin = 0;
+      for (std::size_t end = text.find('\n', searched); taken && end != std::string::npos;
+           end = text.find('\n', begin)) {
+        taken = take(std::string_view(text).substr(begin, end + 1 - begin), on_row);
+        begin = end + 1;
+      }
+      text.erase(0, begin);
+      if (text.size() > most_in_line) return wrong(lines_ + 1, "is longer than any row");
+    }
+    return taken;
+  }
+
   Result<void> take(std::string_view line, const OnRow& on_row) {
     extent_.is_cut = line.back() != '\n';
     if (extent_.is_cut) return {};

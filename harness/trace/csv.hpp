@@ -18,6 +18,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "harness/core/result.hpp"
@@ -25,6 +26,16 @@
 #include "harness/trace/trace_parts.hpp"
 
 namespace attest {
+
+struct Provenance;  // provenance.hpp includes this header
+
+// A trace whose files were read before. A caller that checks the hash of a file uses it, so that
+// the bytes that are parsed are those that were hashed.
+struct TraceText {
+  std::filesystem::path file;  // for messages
+  std::string_view text;
+  const Provenance& provenance;  // of the file's folder
+};
 
 // Reads the whole trace, from a pipe too, with the constants of a provenance.toml in the same
 // folder. A file with a column of mixer traces (mixer_csv.hpp) has all channels in its columns, so
@@ -37,11 +48,16 @@ namespace attest {
 // not increase, no rows, a wrong provenance.toml or base; those of RereadableFile::open().
 Result<Trace> read_csv(const std::filesystem::path& path, TraceNeed need);
 
+// The same without access to files. `base`: the trace of the same name in the folder that
+// Provenance::base names; null if the provenance names none.
+Result<Trace> parse_csv(const TraceText& trace, const TraceText* base, TraceNeed need);
+
 // Reads a trace tick by tick, in memory that does not grow with the length of the trace. But the
 // content of a pipe is kept in memory.
 class TraceReader final : public TraceParts {
  public:
   static Result<TraceReader> open(const std::filesystem::path& path, TraceNeed need);
+  static Result<TraceReader> open(const TraceText& trace, const TraceText* base, TraceNeed need);
   TraceReader(TraceReader&&) noexcept;
   ~TraceReader() override;
 
@@ -54,7 +70,7 @@ class TraceReader final : public TraceParts {
   Result<bool> next(Sample& sample, std::vector<ParameterChange>& changes);
 
   Result<void> next_part(std::size_t most, Trace& part) override;
-  Result<void> rewind() override;
+  Result<void> rewind() override;  // REQUIRES: opened with a path
 
  private:
   struct Impl;

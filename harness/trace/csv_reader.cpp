@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -25,13 +24,12 @@ class Base {
     const auto place = (path.parent_path() / folder / path.filename()).lexically_normal();
     const auto provenance = provenance_in(place.parent_path());
     if (!provenance) return tl::unexpected(provenance.error());
-    if (!provenance->base.empty()) {
-      return fail_at(path.string(),
-                     fmt::format("its base {} has a base itself; name that one", place.string()));
-    }
-    auto reader = TraceReader::open(place, TraceNeed::outputs);
-    if (!reader) return tl::unexpected(reader.error());
-    return std::unique_ptr<Base>(new Base(std::move(*reader)));
+    return make(path, place, *provenance, TraceReader::open(place, TraceNeed::outputs));
+  }
+
+  static Result<std::unique_ptr<Base>> open(const TraceText& trace, const TraceText& base) {
+    return make(trace.file, base.file, base.provenance,
+                TraceReader::open(base, nullptr, TraceNeed::outputs));
   }
 
   const ChannelSet& present() const { return reader_.present(); }
@@ -60,6 +58,18 @@ class Base {
   }
 
  private:
+  static Result<std::unique_ptr<Base>> make(const std::filesystem::path& path,
+                                            const std::filesystem::path& place,
+                                            const Provenance& provenance,
+                                            Result<TraceReader> reader) {
+    if (!provenance.base.empty()) {
+      return fail_at(path.string(),
+                     fmt::format("its base {} has a base itself; name that one", place.string()));
+    }
+    if (!reader) return tl::unexpected(reader.error());
+    return std::unique_ptr<Base>(new Base(std::move(*reader)));
+  }
+
   explicit Base(TraceReader reader) : reader_(std::move(reader)) {}
 
   TraceReader reader_;
@@ -124,16 +134,16 @@ class ParameterColumns {
 }  // namespace
 
 struct TraceReader::Impl {
-  RereadableFile source;
+  std::optional<RereadableFile> source;  // empty: `rows` has the whole text
   TraceNeed need;
   CsvRows rows;
-  bool counts_rows = false;  // instead of a column of timestamps
+  std::unique_ptr<Base> base{};  // null: the trace has all of its columns itself
+  bool counts_rows = false;      // instead of a column of timestamps
   ChannelSet present{};
   ParameterColumns parameters{{}};
   std::vector<std::string> ignored{};        // names of columns
   std::vector<ParameterChange> constants{};  // parameters of the provenance, set at tick 0
   std::vector<char> row{};
-  std::unique_ptr<Base> base{};  // null: the trace has all of its columns itself
   std::size_t tick = 0;
   std::uint64_t last_timestamp = 0;
 
@@ -144,7 +154,7 @@ struct TraceReader::Impl {
     if (!rows) return tl::unexpected(rows.error());
     auto impl = std::make_unique<Impl>(Impl{std::move(source), need, std::move(*rows)});
     const auto done =
-        has_mixer_columns(impl->rows) ? impl->set_mixer_columns() : impl->set_columns();
+        has_mixer_columns(impl->rows) ? impl->set_mixer_columns() : impl->read_provenance();
     if (!done) return tl::unexpected(done.error());
     return impl;
   }
@@ -159,8 +169,8 @@ struct TraceReader::Impl {
     return {};
   }
 
-  Result<void> set_columns() {
-    const std::filesystem::path& path = source.path();
+  Result<void> read_provenance() {
+    const std::filesystem::path& path = source->path();
     const auto provenance = provenance_in(path.parent_path());
     if (!provenance) return tl::unexpected(provenance.error());
     if (!provenance->base.empty()) {
@@ -168,15 +178,19 @@ struct TraceReader::Impl {
       if (!opened) return tl::unexpected(opened.error());
       base = std::move(*opened);
     }
-    const Module module = module_of_file(rows, *provenance, base.get());
+    return set_columns(*provenance);
+  }
+
+  // REQUIRES: `base` is open if the provenance names one.
+  Result<void> set_columns(const Provenance& provenance) {
+    const Module module = module_of_file(rows, provenance, base.get());
     auto layout = layout_of(rows, module, need);
     if (!layout) return tl::unexpected(layout.error());
     present = layout->present;
     parameters = ParameterColumns(std::move(layout->parameters));
     ignored = std::move(layout->ignored);
     Sample common{};
-    if (auto done =
-            apply_constants(provenance->constants, rows, module, common, present, constants);
+    if (auto done = apply_constants(provenance.constants, rows, module, common, present, constants);
         !done) {
       return done;
     }
@@ -265,14 +279,31 @@ Result<TraceReader> TraceReader::open(const std::filesystem::path& path, TraceNe
   return TraceReader(*std::move(impl));
 }
 
+Result<TraceReader> TraceReader::open(const TraceText& trace, const TraceText* base,
+                                      TraceNeed need) {
+  auto rows = CsvRows::of(trace.text, trace.file);
+  if (!rows) return tl::unexpected(rows.error());
+  auto impl = std::make_unique<Impl>(Impl{std::nullopt, need, std::move(*rows)});
+  if (base != nullptr) {
+    auto opened = Base::open(trace, *base);
+    if (!opened) return tl::unexpected(opened.error());
+    impl->base = std::move(*opened);
+  }
+  if (auto set = impl->set_columns(trace.provenance); !set) return tl::unexpected(set.error());
+  return TraceReader(std::move(impl));
+}
+
 Result<void> TraceReader::rewind() {
-  auto again = Impl::open(std::move(impl_->source), impl_->rows.file(), impl_->need);
+  auto again = Impl::open(*std::move(impl_->source), impl_->rows.file(), impl_->need);
   if (!again) return tl::unexpected(again.error());
   impl_ = *std::move(again);
   return {};
 }
 
 Result<void> TraceReader::next_part(std::size_t most, Trace& part) {
+  if (most == whole_trace) {
+    if (auto limited = impl_->rows.limit_size(); !limited) return limited;
+  }
   part.source = file();
   part.present = present();
   part.ignored_columns = ignored();
@@ -290,16 +321,6 @@ Result<void> TraceReader::next_part(std::size_t most, Trace& part) {
     part.parameters.insert(part.parameters.end(), changes.begin(), changes.end());
   }
   return {};
-}
-
-Result<Trace> read_csv(const std::filesystem::path& path, TraceNeed need) {
-  auto reader = TraceReader::open(path, need);
-  if (!reader) return tl::unexpected(reader.error());
-  Trace trace;
-  if (auto read = reader->next_part(std::numeric_limits<std::size_t>::max(), trace); !read) {
-    return tl::unexpected(read.error());
-  }
-  return trace;
 }
 
 }  // namespace attest

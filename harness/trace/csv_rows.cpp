@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "harness/core/file.hpp"
+#include "harness/core/interrupt.hpp"
 
 namespace attest {
 namespace {
@@ -64,6 +65,19 @@ Result<CsvRows> CsvRows::open(const std::filesystem::path& path, Unnamed unnamed
   return rows;
 }
 
+Result<CsvRows> CsvRows::of(std::string_view text, const std::filesystem::path& path) {
+  CsvRows rows;
+  rows.file_ = path.string();
+  rows.buffer_ = std::make_unique_for_overwrite<char[]>(text.size() + 1);
+  std::copy(text.begin(), text.end(), rows.buffer_.get());
+  rows.end_ = text.size();
+  rows.at_end_of_file_ = true;
+  if (const auto done = rows.read_header(Unnamed::refused); !done) {
+    return tl::unexpected(done.error());
+  }
+  return rows;
+}
+
 Result<void> CsvRows::read_header(Unnamed unnamed) {
   const auto more = next_line();
   if (!more) return tl::unexpected(more.error());
@@ -93,6 +107,7 @@ Result<void> CsvRows::read_header(Unnamed unnamed) {
 Result<void> CsvRows::fill() {
   std::memmove(buffer_.get(), buffer_.get() + begin_, end_ - begin_);
   end_ -= std::exchange(begin_, 0);
+  if (interrupted()) return fail_at(file_, "not read to its end: interrupted");
   const std::size_t room = buffer_size - end_;
   const std::size_t count = std::fread(buffer_.get() + end_, 1, room, stream_.get());
   if (count < room) {
@@ -104,6 +119,20 @@ Result<void> CsvRows::fill() {
   }
   end_ += count;
   unread_ -= std::min<std::uintmax_t>(count, unread_);
+  if (count > bytes_left_) return too_large();
+  bytes_left_ -= count;
+  return {};
+}
+
+tl::unexpected<Error> CsvRows::too_large() const {
+  return fail_at(file_,
+                 fmt::format("is larger than {} GiB, the most that a trace in memory may have",
+                             most_csv_bytes >> 30));
+}
+
+Result<void> CsvRows::limit_size() {
+  if (unread_ > most_csv_bytes) return too_large();
+  bytes_left_ = most_csv_bytes;
   return {};
 }
 

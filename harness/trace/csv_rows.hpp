@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -25,6 +26,9 @@
 
 namespace attest {
 
+// The size of a CSV file of which all rows are kept in memory. They take about 2.5 times as much.
+inline constexpr std::uintmax_t most_csv_bytes = std::uintmax_t{4} << 30;
+
 class CsvRows {
  public:
   // `unnamed`: whether one column may be without a name, as row numbers often are. Errors:
@@ -33,6 +37,12 @@ class CsvRows {
   enum class Unnamed { refused, allowed };
   static Result<CsvRows> open(const std::filesystem::path& path, Unnamed unnamed = Unnamed::refused,
                               std::string name = {});
+  // The same for a file that was read before: `text` has its bytes, which are copied.
+  static Result<CsvRows> of(std::string_view text, const std::filesystem::path& path);
+
+  // For a caller that keeps all rows in memory. Errors: the file is larger than most_csv_bytes now,
+  // and in next(), if it grows beyond.
+  Result<void> limit_size();
 
   const std::string& file() const { return file_; }
   const std::vector<std::string>& header() const { return header_; }
@@ -60,18 +70,20 @@ class CsvRows {
   CsvRows() = default;
   Result<bool> next_line();
   Result<void> fill();
+  tl::unexpected<Error> too_large() const;
   Result<void> read_header(Unnamed unnamed);
   bool parse_line(char* row) const;
   tl::unexpected<Error> diagnose(char* row) const;
   tl::unexpected<Error> fail_at_place(std::string_view place, std::string message) const;
 
   std::string file_;
-  std::unique_ptr<std::FILE, Close> stream_;
-  std::unique_ptr<char[]> buffer_;
-  std::size_t begin_ = 0;  // of the unread text in buffer_
+  std::unique_ptr<std::FILE, Close> stream_;  // null: buffer_ has the whole text
+  std::unique_ptr<char[]> buffer_;            // with room for a line end after the text
+  std::size_t begin_ = 0;                     // of the unread text in buffer_
   std::size_t end_ = 0;
   bool at_end_of_file_ = false;
   std::uintmax_t unread_ = 0;  // bytes of the file that are not yet in buffer_
+  std::uintmax_t bytes_left_ = std::numeric_limits<std::uintmax_t>::max();
 
   std::string_view line_;  // the line last read, without its end
   int line_number_ = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,10 @@
 #include "harness/trace/trace.hpp"
 
 namespace attest {
+
+// As the number of ticks of next_part(): all. A reader of a file then limits its size, because the
+// trace is in memory as a whole.
+inline constexpr std::size_t whole_trace = std::numeric_limits<std::size_t>::max();
 
 class TraceParts {
  public:

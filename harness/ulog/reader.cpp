@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "harness/core/file.hpp"
+#include "harness/core/interrupt.hpp"
 #include "harness/core/printable.hpp"
 #include "harness/core/suggestion.hpp"
 
@@ -17,6 +18,7 @@ namespace {
 using enum DamageKind;
 
 constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
+constexpr std::uint64_t most_file_bytes = std::uint64_t{16} << 30;
 constexpr std::string_view file_magic = "ULog\x01\x12\x35";
 constexpr std::string_view sync_magic = "\x2F\x73\x13\x20\x25\x0C\xBB\x12";
 constexpr std::size_t header_bytes = 16;
@@ -51,6 +53,10 @@ Result<Reader> Reader::open(const std::filesystem::path& path) {
   std::setvbuf(reader.stream_.get(), nullptr, _IONBF, 0);  // buffer_ is the buffer
   ::fseeko(reader.stream_.get(), 0, SEEK_END);
   reader.file_size_ = static_cast<std::uint64_t>(::ftello(reader.stream_.get()));
+  if (reader.file_size_ > most_file_bytes) {
+    return fail_at(reader.file_, fmt::format("is larger than {} GiB, the most that a log may have",
+                                             most_file_bytes >> 30));
+  }
   reader.buffer_.reset(new char[buffer_bytes]);
   if (auto read = reader.read_header(); !read) return tl::unexpected(read.error());
   reader.start();
@@ -132,14 +138,15 @@ void Reader::fill_buffer(std::uint64_t offset) {
   if (std::ferror(stream_.get()) != 0) {
     read_failure_ = Error{"cannot read: " + std::generic_category().message(errno), file_};
   }
+  if (interrupted()) read_failure_ = Error{"not read to its end: interrupted", file_};
   buffer_begin_ = offset;
   buffer_end_ = offset + kept + read;
 }
 
 Result<bool> Reader::next(Message& message) {
   while (true) {
+    if (read_failure_) return tl::unexpected(*read_failure_);
     if (position_ >= end_) {
-      if (read_failure_) return tl::unexpected(*read_failure_);
       if (section_ + 1 == section_ends_.size()) return false;
       position_ = end_;
       end_ = section_ends_[++section_];
@@ -265,7 +272,7 @@ bool Reader::refuse(DamageKind kind, const std::string& why) {
 // no sync message follows; otherwise its length was wrong (garbage).
 void Reader::resynchronise(bool is_cut_off) {
   bool is_found = false;
-  for (position_ = offset_; position_ < end_ && !is_found;) {
+  for (position_ = offset_; position_ < end_ && !is_found && !read_failure_;) {
     const std::string_view bytes = bytes_at(position_, sync_magic.size());
     if (bytes.size() < sync_magic.size()) break;
     const auto found = bytes.find(sync_magic);

@@ -1,8 +1,8 @@
-#include "harness/cli/interrupt.hpp"
+#include "harness/core/interrupt.hpp"
 
 #include <csignal>
 
-namespace attest::cli {
+namespace attest {
 namespace {
 
 volatile std::sig_atomic_t noted = 0;
@@ -21,4 +21,6 @@ void note_interrupts() {
 
 bool interrupted() { return noted != 0; }
 
-}  // namespace attest::cli
+void forget_interrupt() { noted = 0; }
+
+}  // namespace attest
