@@ -9,7 +9,7 @@
 int main(int count, char** arguments) {
   if (count != 2) return EXIT_FAILURE;
   const attest::cli::SuiteFolder suite{arguments[1], {}};
-  const auto hash = suite.sha256();
+  const auto hash = suite.hash();
   if (!hash) {
     fmt::print(stderr, "{}\n", hash.error().to_string());
     return EXIT_FAILURE;
@@ -19,7 +19,7 @@ int main(int count, char** arguments) {
   // If a case is malformed, there are no groups. With "none" instead of the hash, each run counts
   // the vectors itself, and reports the malformed case.
   fmt::print("const char* const released_suite_vectors =\n\"{}\\n\"\n",
-             groups.empty() ? "none" : *hash);
+             groups.empty() ? "none" : hash->sha256);
   for (const auto& [group, rates] : groups) {
     for (const auto& [rate, vectors] : rates) {
       fmt::print("\"{} {} {}\\n\"\n", group, rate.to_string(), vectors);

@@ -124,13 +124,13 @@ Result<void> check_parts(const std::vector<Part>& parts) {
 }
 
 Result<void> check_suite(const SuiteFolder& suite, const RunResult& run) {
-  const auto sha256 = suite.sha256();
-  if (!sha256) return tl::unexpected(sha256.error());
-  if (*sha256 == run.suite_sha256) return {};
+  const auto hash = suite.hash();
+  if (!hash) return tl::unexpected(hash.error());
+  if (hash->sha256 == run.suite_sha256) return {};
   return fail_at(suite.root.string(),
                  fmt::format("is suite {:.12}, but the reports are of {:.12}; name theirs with "
                              "--suite DIR",
-                             *sha256, run.suite_sha256));
+                             hash->sha256, run.suite_sha256));
 }
 
 // Puts the results in the order of the suite, which is that of a run without shards. Errors: a

@@ -1,6 +1,5 @@
 #include "harness/cli/plotted_traces.hpp"
 
-#include "harness/core/interrupt.hpp"
 #include <algorithm>
 #include <set>
 #include <string>
@@ -8,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/core/interrupt.hpp"
 #include "harness/plant/vehicle_models.hpp"
 #include "harness/report/html/plots.hpp"
 #include "harness/report/report_format.hpp"
@@ -41,8 +41,9 @@ void PlottedTraces::save(const RunPlan& plan, const SuiteFolder& suite,
   for (const CaseResult* result : vectors_to_plot(plan.run)) ids.insert(result->id());
   if (!temporary_ || !options.timing.empty() || ids.empty()) return;
   VehicleModels vehicle_models(suite.models());
-  const auto jobs = case_jobs(keep_vectors(plan.cases, ids), suite.golden(), vehicle_models,
-                              {plan.run.level, folder_, plan.run.parameters}, plan.host);
+  const auto jobs =
+      case_jobs(keep_vectors(plan.cases, ids), suite.golden(), vehicle_models,
+                {plan.run.level, folder_, plan.run.parameters, plan.suite}, plan.host);
   JobOptions<CaseResult> again;
   again.processes = options.jobs;
   again.in_process = plan.host.in_process;

@@ -7,7 +7,7 @@
 
 namespace attest::cli {
 
-// Its hash (SuiteFolder::sha256). It is compiled in from golden/SUITE.sha256, because a suite
+// Its hash (SuiteFolder::hash). It is compiled in from golden/SUITE.sha256, because a suite
 // cannot prove itself that it is the released one.
 std::string released_suite_sha256();
 

@@ -66,8 +66,8 @@ Result<void> check_recorded(const std::vector<SelectedCase>& cases, const RunPla
 // Stores the parameters of --param. Errors: a parameter that no selected case can have; a recorded
 // port, or a suite whose reference is a port, because their outputs are known only for the
 // parameters of the cases.
-Result<void> set_parameters(const RunOptions& options, const SuiteFolder& suite,
-                            const std::vector<SelectedCase>& cases, RunPlan& plan) {
+Result<void> set_parameters(const RunOptions& options, const std::vector<SelectedCase>& cases,
+                            RunPlan& plan) {
   const auto folder = recorded_folder(options.host.port);
   if (folder && !options.parameters.empty()) {
     return fail(
@@ -75,7 +75,7 @@ Result<void> set_parameters(const RunOptions& options, const SuiteFolder& suite,
                     "cases; leave --param out",
                     *folder));
   }
-  if (!suite.reference().empty() && !options.parameters.empty()) {
+  if (!plan.run.suite_reference.empty() && !options.parameters.empty()) {
     return fail(
         "--param: only attest's own law can compute the expected outputs for other parameters, and "
         "the reference of this suite is a port; leave --param out");
@@ -125,16 +125,24 @@ void leave_out_other_laws(const RunPlan& plan, std::vector<SelectedCase>& cases)
   if (!std::all_of(cases.begin(), cases.end(), is_other)) std::erase_if(cases, is_other);
 }
 
+// The suite was hashed before its cases were read.
+Result<void> check_case(const Case& the_case, const RunPlan& plan) {
+  return plan.suite->check(the_case.file, the_case.sha256);
+}
+
 // Plans the selected cases. Their ticks are those of the case files, not of a recorded timing.
 Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, RunPlan& plan) {
   auto cases = options.select.cases_in(suite.case_folders());
   if (!cases) return tl::unexpected(cases.error());
-  if (auto set = set_parameters(options, suite, *cases, plan); !set) return set;
+  for (const SelectedCase& selected : *cases) {
+    if (auto same = check_case(selected.the_case, plan); !same) return same;
+  }
+  if (auto set = set_parameters(options, *cases, plan); !set) return set;
   if (auto same = check_rerun(options, plan.run); !same) return same;
-  if (!suite.reference().empty() || !plan.run.parameters.empty()) {
+  if (!plan.run.suite_reference.empty() || !plan.run.parameters.empty()) {
     std::erase_if(*cases, [](const SelectedCase& one) { return one.the_case.flight.has_value(); });
     if (cases->empty())
-      return fail(fmt::format("only flights are selected: {}", suite.reference().empty()
+      return fail(fmt::format("only flights are selected: {}", plan.run.suite_reference.empty()
                                                                    ? "--param leaves them out"
                                                                    : own_law_only));
   }
@@ -153,8 +161,9 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
   }
   if (auto checked = check_recorded(*cases, plan); !checked) return checked;
   VehicleModels vehicle_models(suite.models());
-  auto jobs = case_jobs(*cases, suite.golden(), vehicle_models,
-                        {plan.run.level, options.save_traces, plan.run.parameters}, plan.host);
+  auto jobs =
+      case_jobs(*cases, suite.golden(), vehicle_models,
+                {plan.run.level, options.save_traces, plan.run.parameters, plan.suite}, plan.host);
   if (!jobs) return tl::unexpected(jobs.error());
   plan.jobs = *std::move(jobs);
   plan.run.selection = options.select.narrowing();
@@ -175,6 +184,10 @@ Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, Run
   }
   auto flight = find_timed_flight(options.timing, suite);
   if (!flight) return tl::unexpected(flight.error());
+  const bool is_of_suite = plan.suite->has(flight->the_case.file);
+  if (is_of_suite) {
+    if (auto same = check_case(flight->the_case, plan); !same) return same;
+  }
   if (auto asked = ask_port({flight->the_case.profile}, plan); !asked) return asked;
   plan.run.selected = 1;
   plan.run.timing = options.timing;
@@ -200,21 +213,28 @@ Result<std::string> date_of_run() {
   return fmt::format("{:%Y-%m-%d}", fmt::gmtime(now));
 }
 
-// Adds the suite, the port, the limits and the date to the run.
-Result<void> identify(const RunOptions& options, const SuiteFolder& suite, RunResult& run) {
+// Hashes the suite. REQUIRES: the port was not yet started.
+Result<void> identify(const SuiteFolder& suite, RunPlan& plan) {
+  RunResult& run = plan.run;
   run.cases_version = suite.version_of(suite.cases());
   run.golden_version = suite.version_of(suite.golden());
   run.suite_reference = suite.reference();
+  auto hash = suite.hash();
+  if (!hash) return tl::unexpected(hash.error());
+  run.suite_sha256 = hash->sha256;
+  run.suite_is_released = run.suite_sha256 == released_suite_sha256();
+  plan.suite = std::make_shared<const FileHashes>(std::move(hash->files));
+  run.suite = vectors_by_group(suite, run.suite_sha256);
+  return {};
+}
+
+// Adds the port, the limits and the date to the run.
+Result<void> identify(const RunOptions& options, RunResult& run) {
   run.attest_version = version;
   run.port = options.host.port;
   run.limits = {!options.host.in_process, options.host.timeout_s,
                 memory_is_limited() ? std::optional(max_memory_gib) : std::nullopt, max_file_mib,
                 barrier_parts()};
-  auto hash = suite.sha256();
-  if (!hash) return tl::unexpected(hash.error());
-  run.suite_sha256 = *hash;
-  run.suite = vectors_by_group(suite, *hash);
-  run.suite_is_released = run.suite_sha256 == released_suite_sha256();
   auto of_port = sha256_of_port(run.port);
   if (!of_port) return tl::unexpected(of_port.error());
   run.port_sha256 = *std::move(of_port);
@@ -264,6 +284,7 @@ Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
   plan.host = options.host;
   plan.host.stop = interrupted;
   plan.run.level = *level;
+  if (auto known = identify(suite, plan); !known) return tl::unexpected(known.error());
   if (!options.expected_failures.empty()) {
     auto expected = read_expected(options.expected_failures, suite);
     if (!expected) return tl::unexpected(expected.error());
@@ -272,9 +293,7 @@ Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite) {
   const auto planned =
       options.timing.empty() ? plan_cases(options, suite, plan) : plan_timed(options, suite, plan);
   if (!planned) return tl::unexpected(planned.error());
-  // This comes after the port was loaded, because loading gives a better error for a file that is
-  // not a library.
-  if (auto known = identify(options, suite, plan.run); !known) {
+  if (auto known = identify(options, plan.run); !known) {
     return tl::unexpected(known.error());
   }
   return plan;

@@ -21,6 +21,7 @@ struct RunPlan {
   std::vector<SelectedCase> cases;
   HostOptions host;
   Jobs<CaseResult> jobs;
+  std::shared_ptr<const FileHashes> suite;  // of its files, before the port was first started
 };
 
 // Asks the port for its declarations, and prints notes about the port. Errors: wrong options; the

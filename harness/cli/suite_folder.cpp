@@ -122,7 +122,7 @@ VectorsByGroup SuiteFolder::vectors_by_group() const {
   return groups;
 }
 
-Result<std::string> SuiteFolder::sha256() const {
+Result<SuiteHash> SuiteFolder::hash() const {
   std::map<std::string, fs::path> files;
   if (base) {
     if (auto added = add_files(*base, *base / "cases", files); !added) {
@@ -132,13 +132,16 @@ Result<std::string> SuiteFolder::sha256() const {
   for (const fs::path& folder : {cases(), golden()}) {
     if (auto added = add_files(root, folder, files); !added) return tl::unexpected(added.error());
   }
+  SuiteHash suite;
   std::string lines;
   for (const auto& [path, file] : files) {
-    auto hash = sha256_of_file(file);
+    auto hash = sha256_of_file(file, most_text_bytes);
     if (!hash) return tl::unexpected(hash.error());
     lines += fmt::format("{}  {}\n", *hash, path);
+    suite.files.add(file, *std::move(hash));
   }
-  return attest::sha256(lines);
+  suite.sha256 = sha256(lines);
+  return suite;
 }
 
 std::optional<fs::path> data_folder() {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "harness/casefile/parse.hpp"
+#include "harness/core/file.hpp"
 #include "harness/core/result.hpp"
 #include "harness/schedule/rate.hpp"
 
@@ -18,6 +19,12 @@ using VectorsByGroup = std::map<std::string, std::map<LoopRate, std::size_t>>;
 
 // The file in a suite's folder that names its base: another suite, whose cases the suite also has.
 inline constexpr const char* base_file = "BASE";
+
+// The hash of a suite, and those of the files from which it was computed.
+struct SuiteHash {
+  std::string sha256;
+  FileHashes files;
+};
 
 struct SuiteFolder {
   std::filesystem::path root;
@@ -58,7 +65,7 @@ struct SuiteFolder {
   // The hash covers all content that verdicts depend on: a case file has all inputs, a provenance
   // file has the hashes of its traces and vehicles, and a run checks the traces and the vehicles
   // against these hashes. `ci/suite-hash` prints the same hash. Errors: a file that cannot be read.
-  Result<std::string> sha256() const;
+  Result<SuiteHash> hash() const;
 };
 
 // The data of this attest: share/attest of the installation that this program is in; else the

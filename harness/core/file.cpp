@@ -189,6 +189,30 @@ Result<std::string> sha256_of_file(const fs::path& path, std::uintmax_t most_byt
 
 namespace {
 
+// Most paths are in normal form already, and std::filesystem takes 5 us to find that out.
+std::string normal_form(const fs::path& path) {
+  const std::string& text = path.native();
+  const bool is_normal = !text.starts_with('.') && text.find("/.") == std::string::npos &&
+                         text.find("//") == std::string::npos;
+  return is_normal ? text : path.lexically_normal().native();
+}
+
+}  // namespace
+
+void FileHashes::add(const fs::path& path, std::string sha256) {
+  hashes_[normal_form(path)] = std::move(sha256);
+}
+
+bool FileHashes::has(const fs::path& path) const { return hashes_.contains(normal_form(path)); }
+
+Result<void> FileHashes::check(const fs::path& path, const std::string& sha256) const {
+  const auto known = hashes_.find(normal_form(path));
+  if (known != hashes_.end() && known->second == sha256) return {};
+  return fail_at(path.string(), "changed during the run; run again while no program writes to it");
+}
+
+namespace {
+
 // True if `path` must be written to directly: a terminal, pipe or device. Also any file named in
 // /dev or /proc: /dev/stdout may lead to a regular file, and a rename would take that file away
 // from its other writers.

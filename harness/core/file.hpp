@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 
 #include "harness/core/result.hpp"
 
@@ -38,6 +39,21 @@ std::string sha256(std::string_view bytes);
 Result<std::string> sha256_of_file(
     const std::filesystem::path& path,
     std::uintmax_t most_bytes = std::numeric_limits<std::uintmax_t>::max());
+
+// The SHA-256 of files at the start of a run.
+class FileHashes {
+ public:
+  void add(const std::filesystem::path& path, std::string sha256);
+  bool has(const std::filesystem::path& path) const;
+
+  // `sha256` is the hash of the bytes that the caller parses. It does not help to hash the file on
+  // disk, which may be replaced before or after it is read. Errors: the file had another hash, or
+  // was not there.
+  Result<void> check(const std::filesystem::path& path, const std::string& sha256) const;
+
+ private:
+  std::unordered_map<std::string, std::string> hashes_;  // by path, in lexically normal form
+};
 
 // A file that gets its name at commit(), when it is complete. Until then it is a temporary file in
 // the same folder. Open it early, to find an unwritable path before the work. Without commit() the

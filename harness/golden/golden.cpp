@@ -1,5 +1,6 @@
 #include "harness/golden/golden.hpp"
 
+#include <array>
 #include <cstdio>
 #include <system_error>
 #include <utility>
@@ -125,30 +126,55 @@ fs::path golden_folder(const fs::path& golden_root, const Case& the_case) {
   return golden_root / the_case.profile / the_case.group / the_case.name;
 }
 
-Golden::Golden(fs::path folder, Provenance provenance)
-    : folder_(std::move(folder)), provenance_(std::move(provenance)) {}
+namespace {
 
-Result<Golden> Golden::open(const fs::path& golden_root, const Case& the_case) {
+// The text of a provenance. Errors: it has another hash in `suite`.
+Result<std::string> provenance_text(const fs::path& file, const FileHashes* suite) {
+  auto text = read_file(file);
+  if (!text || suite == nullptr) return text;
+  if (auto same = suite->check(file, sha256(*text)); !same) {
+    return tl::unexpected(same.error());
+  }
+  return text;
+}
+
+// The provenance in the folder `base` of another golden.
+Result<Provenance> provenance_of_base(const fs::path& base, const FileHashes* suite) {
+  const fs::path file = base / provenance_name;
+  const auto text = provenance_text(file, suite);
+  if (!text) return tl::unexpected(text.error());
+  if (auto intact = check_seal(*text, file); !intact) return tl::unexpected(intact.error());
+  return parse_provenance(*text, file);
+}
+
+}  // namespace
+
+Result<Golden> Golden::open(const fs::path& golden_root, const Case& the_case,
+                            const FileHashes* suite) {
   const fs::path folder = golden_folder(golden_root, the_case);
   if (!fs::exists(folder / provenance_name)) {
     return fail_at(folder.string(),
                    fmt::format("no golden for {}; {}", the_case.id(), how_to_bless(the_case)));
   }
-  auto provenance = read_provenance(folder / provenance_name);
+  const auto text = provenance_text(folder / provenance_name, suite);
+  if (!text) return tl::unexpected(text.error());
+  auto provenance = parse_provenance(*text, folder / provenance_name);
   if (!provenance) return tl::unexpected(provenance.error());
   if (provenance->case_sha256 != the_case.sha256) {
     return fail_at((folder / provenance_name).string(),
                    fmt::format("the golden is stale: {} has changed since it was blessed; {} anew",
                                the_case.file.string(), how_to_bless(the_case)));
   }
-  if (auto intact = check_seal(folder / provenance_name); !intact) {
+  if (auto intact = check_seal(*text, folder / provenance_name); !intact) {
     return tl::unexpected(intact.error());
   }
-  if (!provenance->base.empty()) {
-    const fs::path base = (folder / provenance->base / provenance_name).lexically_normal();
-    if (auto intact = check_seal(base); !intact) return tl::unexpected(intact.error());
-  }
-  return Golden(folder, std::move(*provenance));
+  Golden golden(folder);
+  golden.provenance_ = std::move(*provenance);
+  if (golden.provenance_.base.empty()) return golden;
+  auto of_base = provenance_of_base((folder / golden.provenance_.base).lexically_normal(), suite);
+  if (!of_base) return tl::unexpected(of_base.error());
+  golden.of_base_ = std::move(*of_base);
+  return golden;
 }
 
 Result<Trace> Golden::read(const RunConfiguration& configuration) const {
@@ -178,25 +204,24 @@ Result<Trace> Golden::read_file(const std::string& name) const {
     return fail_at((folder_ / provenance_name).string(),
                    fmt::format("no golden {}; `attest bless` makes it", name));
   }
-  if (auto intact = check_bytes(path, blessed->second); !intact) {
-    return tl::unexpected(intact.error());
-  }
-  if (!provenance_.base.empty()) {
-    const auto of_base = provenance_.base_sha256.find(name);
-    const bool is_known = of_base != provenance_.base_sha256.end();
-    const fs::path base = (folder_ / provenance_.base / name).lexically_normal();
-    if (auto intact = check_bytes(base, is_known ? of_base->second : ""); !intact) {
-      return tl::unexpected(intact.error());
-    }
-  }
+  const auto text = blessed_text(path, blessed->second);
+  if (!text) return tl::unexpected(text.error());
+  const TraceText own{path, *text, provenance_};
   // The case makes all inputs, so the file may lack some.
-  return read_csv(path, TraceNeed::outputs);
+  if (!of_base_) return parse_csv(own, nullptr, TraceNeed::outputs);
+  const auto of_base = provenance_.base_sha256.find(name);
+  const bool is_known = of_base != provenance_.base_sha256.end();
+  const fs::path base = (folder_ / provenance_.base / name).lexically_normal();
+  const auto base_text = blessed_text(base, is_known ? of_base->second : "");
+  if (!base_text) return tl::unexpected(base_text.error());
+  const TraceText below{base, *base_text, *of_base_};
+  return parse_csv(own, &below, TraceNeed::outputs);
 }
 
-Result<void> Golden::check_bytes(const fs::path& path, const std::string& blessed) const {
-  auto hash = sha256_of_file(path);
-  if (!hash) return tl::unexpected(hash.error());
-  if (*hash == blessed) return {};
+// The text of a trace. Errors: its hash is not `blessed`.
+Result<std::string> Golden::blessed_text(const fs::path& path, const std::string& blessed) const {
+  auto text = attest::read_file(path);
+  if (!text || sha256(*text) == blessed) return text;
   return fail_at(
       path.string(),
       fmt::format("is not the file that was blessed (its SHA-256 is another than in {}); "
@@ -206,11 +231,11 @@ Result<void> Golden::check_bytes(const fs::path& path, const std::string& blesse
 
 Result<ReferenceFlight> Golden::read_flight(const RunConfiguration& configuration,
                                             const Vehicle& vehicle) const {
-  for (const fs::path& file : vehicle.files()) {
+  const std::array<const std::string*, 2> loaded{&vehicle.sha256, &vehicle.mjcf_sha256};
+  for (std::size_t i = 0; i < loaded.size(); ++i) {
+    const fs::path file = vehicle.files()[i];
     const auto blessed = provenance_.models.find(file.filename().string());
-    auto hash = sha256_of_file(file);
-    if (!hash) return tl::unexpected(hash.error());
-    if (blessed != provenance_.models.end() && blessed->second == *hash) continue;
+    if (blessed != provenance_.models.end() && blessed->second == *loaded[i]) continue;
     const char* const why = blessed == provenance_.models.end() ? "is new" : "has changed";
     return fail_at((folder_ / provenance_name).string(),
                    fmt::format("the golden is stale: {} {} since it was blessed; `attest "

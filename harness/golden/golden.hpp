@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "harness/casefile/case.hpp"
+#include "harness/core/file.hpp"
 #include "harness/core/result.hpp"
 #include "harness/golden/branch_alternatives.hpp"
 #include "harness/golden/reference_flight.hpp"
@@ -25,32 +26,38 @@ namespace attest {
 // The golden of one case, open for reading.
 class Golden {
  public:
-  // Errors: the golden is missing, was made from another version of the case file, or its
-  // provenance or that of its base was edited. The message names the remedy.
-  static Result<Golden> open(const std::filesystem::path& golden_root, const Case& the_case);
+  // `suite`: the hashes of the suite's files when the run began; null: not compared. Errors: the
+  // golden is missing, was made from another version of the case file, or its provenance or that of
+  // its base was edited, or has another hash in `suite`. The message names the remedy.
+  static Result<Golden> open(const std::filesystem::path& golden_root, const Case& the_case,
+                             const FileHashes* suite = nullptr);
 
-  // Errors: no trace for that configuration, bytes that differ from the blessed ones, a broken CSV.
+  // Errors: no trace for that configuration, a broken CSV, bytes that differ from the blessed ones.
+  // The bytes that are hashed are those that are parsed, also of the base: a file that is replaced
+  // during the run is never judged against.
   Result<Trace> read(const RunConfiguration& configuration) const;
 
   // The goldens on other branches; empty for a case without Case::either_branch. Errors: those of
   // read().
   Result<BranchAlternatives> read_branch_alternatives(const RunConfiguration& configuration) const;
 
-  // The rows, horizon and metrics of a flight. Errors: those of read(); a file of the vehicle is
-  // new or has changed since the golden was made; no horizon.
+  // The rows, horizon and metrics of a flight. Errors: those of read(); a file from which the
+  // vehicle was loaded is new or has changed since the golden was made; no horizon.
   Result<ReferenceFlight> read_flight(const RunConfiguration& configuration,
                                       const Vehicle& vehicle) const;
 
   const Provenance& provenance() const { return provenance_; }
 
  private:
-  Golden(std::filesystem::path folder, Provenance provenance);
+  explicit Golden(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   Result<Trace> read_file(const std::string& name) const;
-  Result<void> check_bytes(const std::filesystem::path& path, const std::string& blessed) const;
+  Result<std::string> blessed_text(const std::filesystem::path& path,
+                                   const std::string& blessed) const;
 
   std::filesystem::path folder_;
   Provenance provenance_;
+  std::optional<Provenance> of_base_;
 };
 
 // The key of a metric in Provenance::metrics.

@@ -83,19 +83,34 @@ void install_callbacks() {
 struct Delete {
   void operator()(mjModel* model) const { mj_deleteModel(model); }
   void operator()(mjData* data) const { mj_deleteData(data); }
+  void operator()(mjVFS* files) const {
+    mj_deleteVFS(files);
+    delete files;
+  }
 };
 using Model = std::unique_ptr<mjModel, Delete>;
 using Data = std::unique_ptr<mjData, Delete>;
+using Files = std::unique_ptr<mjVFS, Delete>;
 
 // ---- loading ------------------------------------------------------------------------------------
 
-Result<Model> compile(const std::filesystem::path& xml) {
+// MuJoCo's file system in memory (2 MB), with one file. MuJoCo reads other files from disk.
+Files in_memory(std::string_view text, const std::filesystem::path& path) {
+  Files files(new mjVFS);
+  mj_defaultVFS(files.get());
+  mj_makeEmptyFileVFS(files.get(), path.filename().c_str(), static_cast<int>(text.size()));
+  std::copy(text.begin(), text.end(), static_cast<char*>(files->filedata[0]));
+  return files;
+}
+
+Result<Model> compile(std::string_view mjcf, const std::filesystem::path& xml) {
   constexpr int error_size = 1000;
   char text[error_size] = "";
   warning.clear();
   Model model;
   try {
-    model.reset(mj_loadXML(xml.c_str(), nullptr, text, error_size));
+    const Files files = in_memory(mjcf, xml);
+    model.reset(mj_loadXML(xml.c_str(), files.get(), text, error_size));
   } catch (const MujocoError& error) {
     return fail_at(xml.string(), "MuJoCo: " + one_line(error.what), line_in(error.what));
   }
@@ -317,10 +332,11 @@ class CompiledModel final : public MujocoModel {
 
 }  // namespace
 
-Result<std::shared_ptr<const MujocoModel>> MujocoModel::load(const std::filesystem::path& xml,
-                                                             const Vehicle& vehicle) {
+Result<std::shared_ptr<const MujocoModel>> MujocoModel::parse(std::string_view text,
+                                                              const std::filesystem::path& xml,
+                                                              const Vehicle& vehicle) {
   install_callbacks();
-  auto model = compile(xml);
+  auto model = compile(text, xml);
   if (!model) return tl::unexpected(model.error());
   const auto numbers = numbers_of(**model, xml);
   if (!numbers) return tl::unexpected(numbers.error());

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string_view>
 
 #include "harness/core/result.hpp"
 #include "harness/plant/plant.hpp"
@@ -13,10 +14,12 @@ namespace attest {
 // A compiled MuJoCo model. Immutable; any number of plants may use it.
 class MujocoModel {
  public:
-  // Errors: XML that MuJoCo refuses, with its line; the errors of numbers_of(); a model that
-  // disagrees with the vehicle's TOML, with the quantity and both values.
-  static Result<std::shared_ptr<const MujocoModel>> load(const std::filesystem::path& xml,
-                                                         const Vehicle& vehicle);
+  // `text` is that of the file `xml`; files that it includes are read from disk. Errors: XML that
+  // MuJoCo refuses, with its line; the errors of numbers_of(); a model that disagrees with the
+  // vehicle's TOML, with the quantity and both values.
+  static Result<std::shared_ptr<const MujocoModel>> parse(std::string_view text,
+                                                          const std::filesystem::path& xml,
+                                                          const Vehicle& vehicle);
   virtual ~MujocoModel() = default;
 
   // A copy with the numbers of another vehicle. Errors: another number of rotors; those of MuJoCo.

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/core/file.hpp"
 #include "harness/core/suggestion.hpp"
 #include "harness/plant/mujoco_plant.hpp"
 #include "harness/plant/ode_plant.hpp"
@@ -20,6 +21,7 @@ class LoadedModel final : public VehicleModel {
   const Vehicle& vehicle() const override { return vehicle_; }
 
   Result<std::shared_ptr<const VehicleModel>> with_numbers_of(Vehicle vehicle) const override {
+    vehicle.mjcf_sha256 = vehicle_.mjcf_sha256;
     auto model = model_->with_numbers_of(vehicle);
     if (!model) return tl::unexpected(model.error());
     return std::make_shared<const LoadedModel>(std::move(vehicle), *std::move(model));
@@ -103,7 +105,11 @@ Result<std::shared_ptr<const VehicleModel>> VehicleModel::load(const std::filesy
   auto vehicle = read_vehicle(toml);
   if (!vehicle) return tl::unexpected(vehicle.error());
   if (!vehicle->mjcf_of.empty()) return load_with_other_mjcf(models, *std::move(vehicle));
-  auto model = MujocoModel::load(models / (name + ".xml"), *vehicle);
+  const auto file = models / (name + ".xml");
+  const auto mjcf = read_file(file);
+  if (!mjcf) return tl::unexpected(mjcf.error());
+  vehicle->mjcf_sha256 = sha256(*mjcf);
+  auto model = MujocoModel::parse(*mjcf, file, *vehicle);
   if (!model) return tl::unexpected(model.error());
   return std::make_shared<const LoadedModel>(std::move(*vehicle), std::move(*model));
 }

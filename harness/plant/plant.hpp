@@ -91,7 +91,7 @@ class VehicleModel {
   // Reads models/<name>.toml and models/<name>.xml. A vehicle with the key `mjcf_of` has the MuJoCo
   // model of that other vehicle, with its own numbers. Errors, with file and, if known, line: no
   // such vehicle (with the known ones), an unsuitable `mjcf_of`, the errors of read_vehicle() and
-  // of MujocoModel::load().
+  // of MujocoModel::parse().
   static Result<std::shared_ptr<const VehicleModel>> load(const std::filesystem::path& models,
                                                           const std::string& name);
   virtual ~VehicleModel() = default;

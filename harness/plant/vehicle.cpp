@@ -232,6 +232,7 @@ Result<Vehicle> parse_vehicle(std::string_view text, const fs::path& file) {
   Vehicle vehicle;
   vehicle.name = file.stem().string();
   vehicle.file = file;
+  vehicle.sha256 = sha256(text);
   read_root(toml->root(), vehicle);
   if (auto done = toml->finish(); !done) return tl::unexpected(done.error());
   return vehicle;

@@ -60,6 +60,10 @@ struct Vehicle {
   // models/<name>.xml.
   std::string mjcf_of;
 
+  // Of the files() from which the vehicle was loaded. A model that is read later from disk may be
+  // another one. `mjcf_sha256` is empty until VehicleModel::load().
+  std::string sha256, mjcf_sha256;
+
   // The files of the vehicle: models/<name>.toml, and models/<name>.xml or the .xml of `mjcf_of`.
   std::vector<std::filesystem::path> files() const;
 

@@ -54,10 +54,9 @@ std::string last_name(const std::string& path) {
 }
 
 std::string identity_of(const SweepFile& sweep, const NominalFlight& nominal) {
-  const std::string& xml = nominal.vehicle_model->vehicle().files().back().string();
   std::string all =
       fmt::format("attest sweep 1\n{}\n{}\n{}\n{}\n", sha256(sweep.text), sha256(nominal.case_text),
-                  sha256(nominal.vehicle_text), sha256(read_file(xml).value_or("")));
+                  sha256(nominal.vehicle_text), nominal.vehicle_model->vehicle().mjcf_sha256);
   all += fmt::format("{} {} {} {}\n", nominal.the_case.id(), nominal.plant_configuration.vehicle,
                      name_of(nominal.plant_configuration.plant), sweep.design.samples);
   return sha256(all);

@@ -159,7 +159,12 @@ void write_constants(const std::map<std::string, double>& constants, TomlWriter&
 }  // namespace
 
 Result<Provenance> read_provenance(const std::filesystem::path& file) {
-  const auto toml = TomlFile::read(file);
+  return read_file(file).and_then(
+      [&](const std::string& text) { return parse_provenance(text, file); });
+}
+
+Result<Provenance> parse_provenance(std::string_view text, const std::filesystem::path& file) {
+  const auto toml = TomlFile::parse(text, file.string());
   if (!toml) return tl::unexpected(toml.error());
   const TomlTable root = toml->root();
   Provenance provenance;
@@ -221,15 +226,13 @@ constexpr std::string_view seal_prefix = "# SHA-256 of the lines above: ";
 
 }  // namespace
 
-std::string sealed(const std::string& toml) {
+std::string sealed(std::string_view toml) {
   return fmt::format("{}{}{}\n", toml, seal_prefix, sha256(toml));
 }
 
-Result<void> check_seal(const std::filesystem::path& file) {
-  const auto text = read_file(file);
-  if (!text) return tl::unexpected(text.error());
-  const std::size_t seal = text->rfind(seal_prefix);
-  if (seal != std::string::npos && *text == sealed(text->substr(0, seal))) return {};
+Result<void> check_seal(std::string_view text, const std::filesystem::path& file) {
+  const std::size_t seal = text.rfind(seal_prefix);
+  if (seal != std::string_view::npos && text == sealed(text.substr(0, seal))) return {};
   return fail_at(file.string(),
                  "was changed after it was blessed (the SHA-256 in its last line is of other "
                  "text); restore it from version control, or bless it anew");

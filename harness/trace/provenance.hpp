@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "harness/core/result.hpp"
@@ -44,6 +45,8 @@ inline constexpr const char* provenance_name = "provenance.toml";
 // key, a constant that names no channel or parameter, the constant `timestamp`, a constant that is
 // not a value of its channel, a negative tolerance.
 Result<Provenance> read_provenance(const std::filesystem::path& file);
+// The same for the text of the file.
+Result<Provenance> parse_provenance(std::string_view text, const std::filesystem::path& file);
 
 // The provenance of a folder; an empty one if the folder has no such file. Errors: those of
 // read_provenance().
@@ -57,10 +60,10 @@ Result<void> add_origin(const std::filesystem::path& folder, const std::string& 
                         const std::map<std::string, std::string>& mixers);
 
 // Appends the SHA-256 of the text as a last line, which is a comment in TOML.
-std::string sealed(const std::string& toml);
+std::string sealed(std::string_view toml);
 
-// Errors: the file cannot be read, was changed after it was sealed, or has no seal.
-Result<void> check_seal(const std::filesystem::path& file);
+// `text` is that of the file. Errors: it was changed after it was sealed, or has no seal.
+Result<void> check_seal(std::string_view text, const std::filesystem::path& file);
 
 // Divides the columns of traces that will be in one folder. A channel that has the same value in
 // every sample of all traces (by bits, NaN = NaN) goes to `constants`. So does a parameter that has

@@ -84,7 +84,7 @@ Result<CaseResult> CaseJob::repeated_alone(const Vector& vector, CaseResult fail
 
 Result<void> CaseJob::open_golden(const Vector& vector) {
   if (golden_of_ == vector.the_case) return {};
-  auto golden = Golden::open(golden_root_, *vector.the_case);
+  auto golden = Golden::open(golden_root_, *vector.the_case, judge_.suite.get());
   if (!golden) return tl::unexpected(golden.error());
   golden_.emplace(*std::move(golden));
   golden_of_ = vector.the_case;

@@ -118,6 +118,22 @@ TEST_F(GoldenTest, BytesThatWereNotBlessedAreAnError) {
   EXPECT_FALSE(golden->read(at(100)));
 }
 
+TEST_F(GoldenTest, ThatWasBlessedAnewDuringTheRunIsAnError) {
+  bless(root(), a_case());
+  const fs::path provenance = folder() / "provenance.toml";
+  FileHashes at_start;
+  at_start.add(provenance, *sha256_of_file(provenance));
+  EXPECT_TRUE(Golden::open(root() / ".", a_case(), &at_start));
+  const std::string text = *read_file(provenance);
+  const std::string toml = text.substr(0, text.rfind("# SHA-256"));
+  ASSERT_TRUE(write_file(provenance, sealed(toml + "# another\n")));
+  EXPECT_TRUE(Golden::open(root(), a_case()));
+  const auto anew = Golden::open(root(), a_case(), &at_start);
+  ASSERT_FALSE(anew);
+  EXPECT_EQ(anew.error().file, provenance.string());
+  EXPECT_THAT(anew.error().message, HasSubstr("changed during the run"));
+}
+
 // One profile feeds the setpoint forward, the other its change: one control differs.
 class TwoProfiles : public GoldenTest {
  protected:
@@ -139,6 +155,20 @@ class TwoProfiles : public GoldenTest {
 
   Case first_, other_;
 };
+
+TEST_F(TwoProfiles, TheBaseMustNotChangeDuringTheRun) {
+  FileHashes at_start;
+  for (const Case& the_case : {first_, other_}) {
+    const fs::path provenance = golden_folder(root(), the_case) / "provenance.toml";
+    at_start.add(provenance, *sha256_of_file(provenance));
+  }
+  EXPECT_TRUE(Golden::open(root(), other_, &at_start));
+  at_start.add(golden_folder(root(), first_) / "provenance.toml", "another");
+  const auto golden = Golden::open(root(), other_, &at_start);
+  ASSERT_FALSE(golden);
+  EXPECT_THAT(golden.error().to_string(),
+              HasSubstr("px4-v1.5.5/tests/the_case/provenance.toml: changed during the run"));
+}
 
 TEST_F(TwoProfiles, EachIsReadWhole) {
   for (const Case& the_case : {first_, other_}) {
@@ -246,6 +276,7 @@ class GoldenOfAFlight : public GoldenTest {
   void SetUp() override {
     vehicle_.file = root().parent_path() / "bee.toml";
     for (const fs::path& file : vehicle_.files()) ASSERT_TRUE(write_file(file, "of a bee\n"));
+    vehicle_.sha256 = vehicle_.mjcf_sha256 = sha256("of a bee\n");
   }
 
   // The horizons are 0.1 s, 0.2 s; the metrics 0, 1.
@@ -289,8 +320,13 @@ TEST_F(GoldenOfAFlight, OfAVehicleThatItDoesNotListOrThatChangedItIsStale) {
   EXPECT_THAT(read_at(100).error().message, HasSubstr("bee.xml is new since it was blessed"));
   bless_with(vehicle_.files());
   ASSERT_TRUE(write_file(vehicle_.file, "of another bee\n"));
+  EXPECT_TRUE(read_at(100)) << "the vehicle was loaded before";
+  vehicle_.sha256 = sha256("of another bee\n");
   ASSERT_FALSE(read_at(100));
   EXPECT_THAT(read_at(100).error().message, HasSubstr("bee.toml has changed since it was blessed"));
+  vehicle_.sha256 = vehicle_.mjcf_sha256;
+  vehicle_.mjcf_sha256 = sha256("of another bee\n");
+  EXPECT_THAT(read_at(100).error().message, HasSubstr("bee.xml has changed since it was blessed"));
 }
 
 TEST_F(GoldenOfAFlight, ReportsWhatBlessingWouldChange) {
