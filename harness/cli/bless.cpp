@@ -96,17 +96,12 @@ Result<void> check_kind(const BlessOptions& options, const Globals& globals,
 }
 
 // "starter-c 1.0 (lib:./mine.so, SHA-256 ab12...)"
-Result<std::string> description_of(const HostOptions& port) {
-  const auto description = describe_port(port);
+Result<std::string> description_of(HostOptions& port) {
+  const auto description = prepare_port(port);
   if (!description) return tl::unexpected(description.error());
-  std::string hashes;
-  for (const std::string& file : files_of(port.port)) {
-    const auto hash = sha256_of_file(file);
-    if (!hash) return tl::unexpected(hash.error());
-    hashes += ", SHA-256 " + *hash;
-  }
-  return one_line(
-      fmt::format("{} {} ({}{})", description->name, description->version, port.port, hashes));
+  const std::string hash = port.files->sha256();
+  return one_line(fmt::format("{} {} ({}{}{})", description->name, description->version, port.port,
+                              hash.empty() ? "" : ", SHA-256 ", hash));
 }
 
 void print_left_out(const PendingGoldens& pending) {
@@ -165,6 +160,9 @@ Result<int> bless_selected(const BlessOptions& options, const Globals& globals) 
   auto pending = write_new_goldens(*cases, *blessing);
   if (auto go_on = check_not_interrupted(); !go_on) return tl::unexpected(go_on.error());
   if (!pending) return tl::unexpected(pending.error());
+  if (blessing->port) {
+    if (auto same = check_port(*blessing->port); !same) return tl::unexpected(same.error());
+  }
 
   print_left_out(*pending);
   if (pending->unchanged > 0) fmt::print("{} unchanged\n", pending->unchanged);

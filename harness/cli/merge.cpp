@@ -70,6 +70,8 @@ const std::vector<Property>& properties() {
       {"reference of the suite", [](const RunResult& run) { return run.suite_reference; }},
       {"port", [](const RunResult& run) { return run.port; }},
       {"hash of the port", [](const RunResult& run) { return run.port_sha256; }},
+      {"list of files of the port",
+       [](const RunResult& run) { return fmt::format("{}", fmt::join(run.port_files, ",")); }},
       {"name of the port",
        [](const RunResult& run) { return run.port_name + " " + run.port_version; }},
       {"declaration of the port", declarations_of},
@@ -187,7 +189,9 @@ std::optional<HostOptions> host_for(const MergeOptions& options, const Globals& 
   host.stop = interrupted;
   host.barrier = globals.barrier;
   // The code of another port is not called.
-  if (const auto sha256 = sha256_of_port(host.port); sha256 && *sha256 == run.port_sha256) {
+  auto files = PortFiles::read(host.port, run.port_files);
+  if (files && files->sha256() == run.port_sha256) {
+    host.files = std::make_shared<const PortFiles>(*std::move(files));
     if (const auto port = describe_port(host)) {
       hold_to(*port, host);
       return host;

@@ -52,9 +52,7 @@ Result<FlightsOptions> flights_of(const SweepOptions& options) {
   flights.host = options.host;
   flights.host.stop = interrupted;
   if (!flights.with_port) return flights;
-  const auto port = describe_port(options.host);
-  if (!port) return tl::unexpected(port.error());
-  hold_to(*port, flights.host);
+  if (auto port = prepare_port(flights.host); !port) return tl::unexpected(port.error());
   return flights;
 }
 
@@ -75,10 +73,8 @@ Result<PreparedSweep> prepare_sweep(const SweepOptions& options, const SuiteFold
   identity.sweep_sha256 = sampler->sha256();
   identity.shard = shard->to_string();
   if (flights->with_port) {
-    auto sha256 = sha256_of_port(options.host.port);
-    if (!sha256) return tl::unexpected(sha256.error());
     identity.port = options.host.port;
-    identity.port_sha256 = *std::move(sha256);
+    identity.port_sha256 = flights->host.files->sha256();
   }
   return PreparedSweep{*std::move(sampler), *std::move(flights), *shard, std::move(identity)};
 }

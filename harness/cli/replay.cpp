@@ -134,6 +134,12 @@ class Replay {
       auto done = replay(file);
       if (!done) return report_error(done.error());
     }
+    host_.reset();
+    if (auto same = check_port(options_.host); !same) return report_error(same.error());
+    if (!page_.empty()) {
+      const auto written = write_file(options_.html, page_);
+      if (!written) return report_error(written.error());
+    }
     if (!options_.json.empty()) {
       const auto written = write_file(
           options_.json,
@@ -175,9 +181,7 @@ class Replay {
     const auto read = trace.next_part(whole_trace, whole);
     if (!read) return tl::unexpected(read.error());
     CaseResult result = evaluate_trace(whole, subject, *host_, tolerances, &got);
-    auto written = write_page({result.verdict},
-                              [&] { return trace_page(whole, got, result, options_.host.port); });
-    if (!written) return tl::unexpected(written.error());
+    keep_page({result.verdict}, [&] { return trace_page(whole, got, result, options_.host.port); });
     return result;
   }
 
@@ -220,8 +224,9 @@ class Replay {
     }
     std::vector<Verdict> verdicts;
     for (const LogResult& found : results) verdicts.push_back(found.result.verdict);
-    return write_page(
-        verdicts, [&] { return log_page(*log, results, options_.log_limits, options_.host.port); });
+    keep_page(verdicts,
+              [&] { return log_page(*log, results, options_.log_limits, options_.host.port); });
+    return {};
   }
 
   Result<void> judge_unit(const FlightLog& log, const LoggedUnit& unit,
@@ -238,10 +243,9 @@ class Replay {
 
   // Makes the page only if it is wanted and has a result. Otherwise an old page is kept.
   template <typename MakePage>
-  Result<void> write_page(const std::vector<Verdict>& verdicts, MakePage make_page) const {
+  void keep_page(const std::vector<Verdict>& verdicts, MakePage make_page) {
     const bool any_result = std::any_of(verdicts.begin(), verdicts.end(), is_judged);
-    if (options_.html.empty() || !any_result) return {};
-    return write_file(options_.html, make_page());
+    if (!options_.html.empty() && any_result) page_ = make_page();
   }
 
   void count(const CaseResult& result) {
@@ -276,6 +280,7 @@ class Replay {
   std::size_t failed_ = 0;
   bool are_logs_ = false;  // a file was a flight log, which cannot prove conformance
   std::vector<nlohmann::ordered_json> entries_;
+  std::string page_;
 };
 
 }  // namespace
@@ -285,14 +290,13 @@ int replay_command(const ReplayOptions& options, const Globals& globals) {
   if (!level) return report_error(level.error());
   if (auto checked = check_reports(options, globals); !checked)
     return report_error(checked.error());
-  const auto port = describe_port(options.host);
+  ReplayOptions held = options;
+  const auto port = prepare_port(held.host);
   if (!port) return report_error(port.error());
   std::string arithmetic;
   if (port->fraction_bits && *level == Level::numeric) {
     arithmetic = fmt::format(" for fixed point with {} fraction bits", *port->fraction_bits);
   }
-  ReplayOptions held = options;
-  hold_to(*port, held.host);
   return Replay(held, globals, *level, std::move(arithmetic)).run();
 }
 

@@ -44,6 +44,7 @@ bool run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
   run.results = std::move(outcome.results);
   run.errors = std::move(outcome.errors);
   run.stopped_early = outcome.stopped_early;
+  if (auto same = check_port(plan.host); !same) run.errors.push_back(same.error());
   return !interrupted();
 }
 

@@ -28,10 +28,10 @@
 namespace attest::cli {
 namespace {
 
-// Stores the port's description and the profiles that it supports. The port must give the same
-// answers during the run. A port that hangs here has no description and is not asked again.
+// Stores the port's hash, its description and the profiles that it supports. The port must give the
+// same answers during the run. A port that hangs here has no description and is not asked again.
 Result<void> ask_port(const std::vector<std::string>& profiles, RunPlan& plan) {
-  const auto port = describe_port(plan.host, profiles);
+  const auto port = prepare_port(plan.host, profiles);
   if (!port) return tl::unexpected(port.error());
   for (const auto& [profile, words] : port->refusals) {
     if (words.empty()) continue;
@@ -43,7 +43,8 @@ Result<void> ask_port(const std::vector<std::string>& profiles, RunPlan& plan) {
   plan.run.fraction_bits = port->fraction_bits;
   plan.run.fixed_step = port->fixed_step;
   plan.run.not_recorded = port->not_recorded;
-  hold_to(*port, plan.host);
+  plan.run.port_sha256 = plan.host.files->sha256();
+  plan.run.port_files = port->files;
   return {};
 }
 
@@ -235,9 +236,6 @@ Result<void> identify(const RunOptions& options, RunResult& run) {
   run.limits = {!options.host.in_process, options.host.timeout_s,
                 memory_is_limited() ? std::optional(max_memory_gib) : std::nullopt, max_file_mib,
                 barrier_parts()};
-  auto of_port = sha256_of_port(run.port);
-  if (!of_port) return tl::unexpected(of_port.error());
-  run.port_sha256 = *std::move(of_port);
   auto date = date_of_run();
   if (!date) return tl::unexpected(date.error());
   run.date = *date;
@@ -258,17 +256,6 @@ Result<ExpectedFailures> read_expected(const std::string& file, const SuiteFolde
 }
 
 }  // namespace
-
-Result<std::string> sha256_of_port(const std::string& port) {
-  std::vector<std::string> hashes;
-  for (const std::string& file : files_of(port)) {
-    auto hash = sha256_of_file(file);
-    if (!hash) return tl::unexpected(hash.error());
-    hashes.push_back(*std::move(hash));
-  }
-  if (hashes.size() <= 1) return hashes.empty() ? "" : hashes.front();
-  return sha256(fmt::format("{}\n", fmt::join(hashes, "\n")));
-}
 
 void name_files(const std::vector<SelectedCase>& cases, const SuiteFolder& suite, RunResult& run) {
   for (const SelectedCase& selected : cases) {

@@ -31,10 +31,6 @@ Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite);
 // Stores the paths of the case files and of the goldens in `run`, for its reports.
 void name_files(const std::vector<SelectedCase>& cases, const SuiteFolder& suite, RunResult& run);
 
-// SHA-256 of the port's file, or of the hashes of its files if it has several. Empty: the port has
-// no file. Errors: a file that cannot be read.
-Result<std::string> sha256_of_port(const std::string& port);
-
 // Why a suite whose reference is a port has neither flights nor diagnosis.
 inline constexpr const char* own_law_only =
     "flights and the diagnosis need attest's own law, and the reference of this suite is a port";

@@ -36,6 +36,7 @@ Result<void> check_law(const ScheduleOptions& options, const TaskSet& set, const
 }
 
 struct SchedulePlan {
+  HostOptions host;
   TaskSet set;
   std::vector<std::vector<TaskJob>> jobs;
   Jobs<CaseResult> flights;  // two flights: with every tick in time, and as scheduled
@@ -48,8 +49,9 @@ Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder
   const auto chosen =
       choose_flight(options.case_name, set->rate(), options.vehicle, options.plant, suite);
   if (!chosen) return tl::unexpected(chosen.error());
-  const auto port = describe_port(options.host);
-  if (!port) return tl::unexpected(port.error());
+  SchedulePlan plan;
+  plan.host = options.host;
+  if (auto port = prepare_port(plan.host); !port) return tl::unexpected(port.error());
 
   const Case& the_case = chosen->the_case;
   if (auto checked = check_law(options, *set, the_case); !checked) {
@@ -60,7 +62,6 @@ Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder
   const Nanoseconds duration = timeline_of(the_case, configuration.rate.unit).duration;
   auto jobs = simulate(set->tasks, duration);
   if (!jobs) return fail_at(options.tasks, jobs.error().message);
-  SchedulePlan plan;
   plan.scheduled = {the_case.id(), the_case.sha256, configuration, in_seconds(duration),
                     timing_of(*set, *jobs)};
   if (set->attitude_unit && plan.scheduled.ticks.attitude_unit.empty()) {
@@ -70,7 +71,7 @@ Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder
   in_time.ticks = flight_timing(the_case, configuration.rate);
   for (const TimingFile& timing : {in_time, plan.scheduled}) {
     plan.flights.push_back(std::make_unique<TimedJob>(the_case, timing, chosen->vehicle_model,
-                                                      std::filesystem::path(), options.host));
+                                                      std::filesystem::path(), plan.host));
   }
   plan.set = std::move(*set);
   plan.jobs = std::move(*jobs);
@@ -99,6 +100,7 @@ int schedule_command(const ScheduleOptions& options, const Globals& globals) {
   }
   const JobResults<CaseResult> outcome = run_jobs(plan->flights, JobOptions<CaseResult>());
   if (!outcome.errors.empty()) return report_error(outcome.errors.front());
+  if (auto same = check_port(plan->host); !same) return report_error(same.error());
   const CaseResult& scheduled = outcome.results[1];
   if (!globals.quiet) fmt::print("{}", render_flights(outcome.results[0], scheduled));
   for (const CaseResult& result : outcome.results) {

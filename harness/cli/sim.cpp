@@ -145,9 +145,15 @@ void print(const CaseResult& result, const SimOptions& options, bool is_written)
 int sim_command(const SimOptions& options, const Globals& globals) {
   auto sim = prepare(options, globals);
   if (!sim) return report_error(sim.error());
+  HostOptions host = options.host;
+  // If a file is no port, the error of loading it is the better one.
+  if (auto files = PortFiles::read(host.port)) {
+    host.files = std::make_shared<const PortFiles>(*std::move(files));
+  }
   PortSays says;
-  const auto flights = fly_all(*sim, options.host, says);
+  const auto flights = fly_all(*sim, host, says);
   if (!flights) return report_error(flights.error());
+  if (auto same = check_port(host); !same) return report_error(same.error());
   // Files of an earlier command are kept if no flight has a result.
   const bool any_result =
       std::any_of(flights->begin(), flights->end(),

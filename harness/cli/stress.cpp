@@ -51,6 +51,7 @@ Result<LiveOptions> live_options(const StressOptions& options) {
 struct StressPlan {
   std::vector<StressTask> tasks;
   LoadKind load = LoadKind::cpu;
+  HostOptions host;
   PortDescription port;
 };
 
@@ -74,12 +75,13 @@ Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& su
     return fail("--record-timing records one rate; name it with --rates");
   }
   Case& the_case = chosen->the_case;
-  auto port = describe_port(options.host, {the_case.profile});
+  StressPlan plan;
+  plan.host = options.host;
+  auto port = prepare_port(plan.host, {the_case.profile});
   if (!port) return tl::unexpected(port.error());
 
   the_case.duration = {options.duration_s, Span::In::seconds};
   set_budget(options, the_case.flight->realtime);
-  StressPlan plan;
   plan.load = *load;
   plan.port = std::move(*port);
   for (const LoopRate& rate : *rates) {
@@ -163,7 +165,7 @@ Result<void> run_all(const StressPlan& plan, const StressOptions& options, const
     if (interrupted()) break;
     const auto progress = [&](const StressProgress& now) { line.show(task, now); };
     const auto judge = options.cyclictest ? idle_by_cyclictest(task) : std::nullopt;
-    auto results = run_stress(task, options.host, interrupted, progress);
+    auto results = run_stress(task, plan.host, interrupted, progress);
     if (!results) return tl::unexpected(results.error());
     line.erase();
     if (run.results.empty() && !globals.quiet)
@@ -210,6 +212,7 @@ int stress_command(const StressOptions& options, const Globals& globals) {
   run.live = plan->tasks.front().live;
   run.budget = plan->tasks.front().the_case.flight->realtime;
   if (auto done = run_all(*plan, options, globals, run); !done) return report_error(done.error());
+  if (auto same = check_port(plan->host); !same) return report_error(same.error());
   const RunResult all = run_of(run);
   const auto has_flown = [](const StressResult& stress) { return stress.deadlines > 0; };
   // Without a flight, a page of an earlier run is kept.

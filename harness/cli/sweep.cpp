@@ -89,6 +89,7 @@ Result<std::uint64_t> fly_missing(const PreparedSweep& sweep, const fs::path& fo
     return tl::unexpected(flown.error());
   }
   if (interrupted()) return table->next();
+  if (auto same = check_port(flights.host); !same) return tl::unexpected(same.error());
   if (auto finished = table->finish(); !finished) return tl::unexpected(finished.error());
   return table->next();
 }

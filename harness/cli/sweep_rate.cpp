@@ -23,6 +23,7 @@ namespace {
 struct RateSweepPlan {
   Case the_case;
   std::vector<LoopRate> rates;
+  HostOptions host;
   PortSays port;
   Jobs<RateSweepResult> jobs;
 };
@@ -59,17 +60,16 @@ Result<RateSweepPlan> make_plan(const RateSweepOptions& options, const SuiteFold
   }
   const auto plant_configurations = plant_configurations_of(*the_case, options);
   if (!plant_configurations) return tl::unexpected(plant_configurations.error());
-  const auto port = describe_port(options.host);
+  plan.host = options.host;
+  plan.host.stop = interrupted;
+  const auto port = prepare_port(plan.host);
   if (!port) return tl::unexpected(port.error());
-  HostOptions host = options.host;
-  hold_to(*port, host);
-  host.stop = interrupted;
   VehicleModels vehicle_models(suite.models());
   for (const PlantConfiguration& plant_configuration : *plant_configurations) {
     auto vehicle_model = vehicle_models.get(plant_configuration.vehicle);
     if (!vehicle_model) return tl::unexpected(vehicle_model.error());
     plan.jobs.push_back(std::make_unique<RateSweepJob>(*the_case, plant_configuration, plan.rates,
-                                                       *std::move(vehicle_model), host));
+                                                       *std::move(vehicle_model), plan.host));
   }
   plan.the_case = std::move(*the_case);
   plan.port = *port;
@@ -98,6 +98,7 @@ int sweep_rate_command(const RateSweepOptions& options, const Globals& globals) 
   if (interrupted()) return exit_interrupted;
   for (const Error& error : outcome.errors) report_error(error);
   if (!outcome.errors.empty()) return exit_usage;
+  if (auto same = check_port(plan->host); !same) return report_error(same.error());
   // Files of an earlier command are kept if no flight has a result.
   const bool any_result =
       std::any_of(outcome.results.begin(), outcome.results.end(),

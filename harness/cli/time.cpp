@@ -65,11 +65,9 @@ Result<void> check(const TimeCommandOptions& options, const std::string& suite) 
 
 // The host options of the command; Ctrl-C then stops the port.
 Result<HostOptions> host_for(const TimeCommandOptions& options) {
-  const auto port = describe_port(options.host);
-  if (!port) return tl::unexpected(port.error());
   HostOptions host = options.host;
   host.stop = interrupted;
-  hold_to(*port, host);
+  if (auto port = prepare_port(host); !port) return tl::unexpected(port.error());
   return host;
 }
 
@@ -151,6 +149,7 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
     run.instructions = counted(options, *suite, slowest->result.id());
     if (interrupted()) return exit_interrupted;
   }
+  if (auto same = check_port(*host); !same) return report_error(same.error());
   if (const auto written = write_reports(options, run); !written) {
     return report_error(written.error());
   }

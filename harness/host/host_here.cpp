@@ -115,9 +115,9 @@ bool HostHere::supports(const std::string& profile) {
 
 Result<std::unique_ptr<PortHost>> open_host_here(const std::string& port,
                                                  std::optional<PortSays> said, Course course,
-                                                 const PortCalls* calls) {
+                                                 const PortCalls* calls, const PortFiles* files) {
   const DefaultFloatEnvironment callers;  // a library may change it when it is loaded
-  auto opened = open_port(port);
+  auto opened = open_port(port, files);
   if (!opened) return tl::unexpected(opened.error());
   return std::make_unique<HostHere>(*std::move(opened), std::move(said), course, calls);
 }

@@ -7,6 +7,7 @@
 #include "harness/core/float_environment.hpp"
 #include "harness/host/port_calls.hpp"
 #include "harness/host/port_host.hpp"
+#include "harness/port/port_files.hpp"
 #include "harness/realtime/painted_stack.hpp"
 
 namespace attest {
@@ -45,12 +46,13 @@ class HostHere final : public PortHost {
   std::optional<PaintedStack> stack_;
 };
 
-// Opens the port with open_port(). A change that the port makes to the floating point environment
-// while it is loaded does not reach the caller. The other arguments are those of HostHere. Errors:
-// those of open_port().
+// Opens the port with open_port(port, files). A change that the port makes to the floating point
+// environment while it is loaded does not reach the caller. The other arguments are those of
+// HostHere. Errors: those of open_port().
 Result<std::unique_ptr<PortHost>> open_host_here(const std::string& port,
                                                  std::optional<PortSays> said = {},
                                                  Course course = {},
-                                                 const PortCalls* calls = nullptr);
+                                                 const PortCalls* calls = nullptr,
+                                                 const PortFiles* files = nullptr);
 
 }  // namespace attest

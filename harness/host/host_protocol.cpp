@@ -12,6 +12,7 @@
 #include "harness/core/error_json.hpp"
 #include "harness/core/json_text.hpp"
 #include "harness/core/printable.hpp"
+#include "harness/port/hello.hpp"
 #include "harness/realtime/painted_stack.hpp"
 
 namespace attest {
@@ -36,6 +37,7 @@ json to_json(const PortSays& says) {
               {"modules", says.modules.to_ulong()}};
   if (says.fraction_bits) out["fraction_bits"] = *says.fraction_bits;
   if (says.fixed_step) out["fixed_step"] = says.fixed_step->to_string();
+  if (!says.files.empty()) out["files"] = says.files;
   return out;
 }
 
@@ -44,8 +46,12 @@ PortSays says_from(JsonReader in) {
   says.name = in.text("name");
   says.version = in.text("version");
   says.unsupported_groups = in.texts("unsupported_groups");
-  const auto wrong = wrong_in_declared(says.name, says.version, says.unsupported_groups);
-  if (!wrong.empty()) in.wrong(wrong);
+  if (in.has("files")) says.files = in.texts("files");
+  for (const std::string& wrong :
+       {wrong_in_declared(says.name, says.version, says.unsupported_groups),
+        wrong_in_files(says.files)}) {
+    if (!wrong.empty()) in.wrong(wrong);
+  }
   if (in.has("fraction_bits")) {
     const auto bits = in.integer("fraction_bits", fewest_fraction_bits, most_fraction_bits);
     says.fraction_bits = static_cast<int>(bits);

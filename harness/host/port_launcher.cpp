@@ -25,7 +25,9 @@ struct Served {
 
 // Runs in the port's process.
 void serve(const Served& served, const PortCalls& calls, MessageSocket& judge) {
-  auto host = open_host_here(served.options->port, served.options->said, served.course, &calls);
+  const HostOptions& options = *served.options;
+  auto host =
+      open_host_here(options.port, options.said, served.course, &calls, options.files.get());
   if (!host) {
     refuse(host.error(), 0, judge);
     return;

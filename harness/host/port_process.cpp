@@ -247,7 +247,9 @@ Result<std::unique_ptr<PortProcess>> start_process(const HostOptions& options,
 Result<std::unique_ptr<PortHost>> start_host(const HostOptions& options, const Course& course) {
   if (options.start) return options.start(options, course);
   if (const auto folder = recorded_folder(options.port)) return open_recorded_host(*folder);
-  if (options.in_process) return open_host_here(options.port, options.said, course);
+  if (options.in_process) {
+    return open_host_here(options.port, options.said, course, nullptr, options.files.get());
+  }
   auto process = start_process(options, course);
   if (!process) return tl::unexpected(process.error());
   return *std::move(process);
@@ -315,6 +317,31 @@ Result<PortDescription> describe_port(const HostOptions& options,
   Result<PortDescription> described;
   in_own_arena([&] { described = describe_callable(options, profiles); });
   return described;
+}
+
+Result<PortDescription> prepare_port(HostOptions& options,
+                                     const std::vector<std::string>& profiles) {
+  const auto store = [&](Result<PortFiles> files) {
+    return files.map([&](PortFiles& read) {
+      options.files = std::make_shared<const PortFiles>(std::move(read));
+    });
+  };
+  const auto hashed = store(PortFiles::read(options.port));
+  auto port = describe_port(options, profiles);
+  // If a file is no port, the error of loading it is the better one.
+  if (!port) return port;
+  if (!hashed) return tl::unexpected(hashed.error());
+  if (is_program(options.port) && !port->files.empty()) {
+    if (auto again = store(PortFiles::read(options.port, port->files)); !again) {
+      return tl::unexpected(again.error());
+    }
+  }
+  hold_to(*port, options);
+  return port;
+}
+
+Result<void> check_port(const HostOptions& options) {
+  return options.files ? options.files->check(PortFiles::Untouched::hashed) : Result<void>();
 }
 
 }  // namespace attest

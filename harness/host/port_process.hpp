@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "harness/host/port_host.hpp"
+#include "harness/port/port_files.hpp"
 #include "harness/process/barrier.hpp"
 
 namespace attest {
@@ -31,6 +32,9 @@ struct HostOptions {
   // The declarations that the port made before the run. It must not change them. Empty: those that
   // it makes when it is loaded.
   std::optional<PortSays> said = {};
+  // The port's files when the run began. It is not loaded if they have other bytes then; null: not
+  // compared.
+  std::shared_ptr<const PortFiles> files = nullptr;
   double timeout_s = default_timeout_s;
   bool in_process = false;  // for a debugger: no process of its own, no protection
   // Never null. Hides what the port must not see: the suite, recorded outputs.
@@ -74,5 +78,14 @@ Result<PortDescription> describe_port(const HostOptions& options,
 
 // From now on, hosts of these options hold the port to its description.
 void hold_to(const PortDescription& port, HostOptions& options);
+
+// Hashes the port's files before its code runs for the first time, describes the port, and calls
+// hold_to(). Later hosts of these options load the same bytes. Errors: those of describe_port() and
+// PortFiles::read().
+Result<PortDescription> prepare_port(HostOptions& options,
+                                     const std::vector<std::string>& profiles = {});
+
+// At the end of the work with a port. Errors: its files have other bytes than HostOptions::files.
+Result<void> check_port(const HostOptions& options);
 
 }  // namespace attest

@@ -22,6 +22,10 @@ std::string text_of(const ModuleSet& set) {
   return fmt::format("{}", fmt::join(names, ","));
 }
 
+std::string text_of(const std::vector<std::string>& names) {
+  return fmt::format("{}", fmt::join(names, ","));
+}
+
 }  // namespace
 
 std::string change(const PortSays& said, const PortSays& now) {
@@ -32,14 +36,14 @@ std::string change(const PortSays& said, const PortSays& now) {
         "the same each time",
         what, after, before);
   };
-  const std::string groups = fmt::format("{}", fmt::join(said.unsupported_groups, ","));
-  const std::string groups_now = fmt::format("{}", fmt::join(now.unsupported_groups, ","));
   for (const std::string& difference :
        {changed("name", said.name, now.name), changed("version", said.version, now.version),
-        changed("attest.unsupported_groups", groups, groups_now),
+        changed("attest.unsupported_groups", text_of(said.unsupported_groups),
+                text_of(now.unsupported_groups)),
         changed("attest.arithmetic", text_of(said.fraction_bits), text_of(now.fraction_bits)),
         changed("attest.fixed_step", text_of(said.fixed_step), text_of(now.fixed_step)),
-        changed("list of modules", text_of(said.modules), text_of(now.modules))}) {
+        changed("list of modules", text_of(said.modules), text_of(now.modules)),
+        changed("list of files", text_of(said.files), text_of(now.files))}) {
     if (!difference.empty()) return difference;
   }
   return "";
@@ -71,7 +75,8 @@ PortSays PortSays::asked(const Port& port) {
           port.modules(),
           {},
           false,
-          {}};
+          {},
+          port.files()};
 }
 
 }  // namespace attest

@@ -39,10 +39,10 @@ using Clock = std::chrono::steady_clock;
 std::atomic<bool> asked_to_stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // written by a signal handler
 
-void work(const StressTask& task, const std::string& specification, const PortCalls& calls,
+void work(const StressTask& task, const HostOptions& host, const PortCalls& calls,
           MessageSocket& parent) {
   std::signal(SIGTERM, [](int) { asked_to_stop.store(true); });
-  auto port = open_port(specification);
+  auto port = open_port(host.port, host.files.get());
   if (!port) {
     parent.send(text_of({{"error", to_json(port.error())}}));
     return;
@@ -226,8 +226,8 @@ Result<StressResults> run_stress(const StressTask& task, const HostOptions& host
   const auto calls = PortCalls::make();
   if (!calls) return tl::unexpected(calls.error());
   auto child = Child::spawn(
-      Child::Runs::code_of_others,
-      [&](MessageSocket& parent) { work(task, host.port, *calls, parent); }, *host.barrier);
+      Child::Runs::code_of_others, [&](MessageSocket& parent) { work(task, host, *calls, parent); },
+      *host.barrier);
   if (!child) return tl::unexpected(child.error());
   return Listener(task, is_program(host.port), *calls, *child, progress).listen(stop);
 }

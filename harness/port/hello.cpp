@@ -143,6 +143,20 @@ void read_numbers(Members& members, Hello& hello) {
 
 }  // namespace
 
+std::string wrong_in_files(const std::vector<std::string>& names) {
+  constexpr std::size_t most_files = 1000, most_bytes = 4096;
+  if (names.size() > most_files) {
+    return fmt::format("`files` has {} names; at most {} are possible", names.size(), most_files);
+  }
+  for (const std::string& name : names) {
+    if (name.empty()) return "`files` has an empty name; each is the path of a file";
+    if (name.size() >= most_bytes || name.find('\0') != std::string::npos) {
+      return fmt::format("`files` has {}, which cannot be the path of a file", in_backquotes(name));
+    }
+  }
+  return "";
+}
+
 std::string greeting() {
   return text_of({{"attest", version}, {"protocol", protocol_version}}) + '\n';
 }
@@ -169,8 +183,13 @@ Result<Hello> parse_hello(std::string_view line) {
   hello.unsupported_groups =
       members.optional<std::vector<std::string>>("unsupported_groups", "a list of groups");
   read_numbers(members, hello);
-  const auto wrong = wrong_in_declared(hello.name, hello.version, hello.unsupported_groups);
-  if (!wrong.empty()) members.set_error("is wrong: " + wrong);
+  hello.files = members.optional<std::vector<std::string>>(
+      "files", "a list of the paths of further files of the port");
+  for (const std::string& wrong :
+       {wrong_in_declared(hello.name, hello.version, hello.unsupported_groups),
+        wrong_in_files(hello.files)}) {
+    if (!wrong.empty()) members.set_error("is wrong: " + wrong);
+  }
   if (const std::string error = members.error(); !error.empty()) {
     return fail("its answer to the handshake " + error);
   }

@@ -26,7 +26,12 @@ struct Hello {
   std::vector<std::string> unsupported_groups;
   std::optional<int> fraction_bits;
   std::optional<Rate> fixed_step;
+  std::vector<std::string> files;  // further files of the program, which the port's hash covers
 };
+
+// What is wrong with Hello::files: too many names, or a name that is empty, too long or no text;
+// empty if nothing is wrong.
+std::string wrong_in_files(const std::vector<std::string>& names);
 
 // The line that attest writes first, with its line feed.
 std::string greeting();

@@ -8,6 +8,7 @@
 #include "harness/port/builtin.hpp"
 #include "harness/port/fault_port.hpp"
 #include "harness/port/port.hpp"
+#include "harness/port/port_files.hpp"
 #include "harness/port/program_port.hpp"
 #include "harness/port/shared_library.hpp"
 #include "harness/process/program.hpp"
@@ -58,7 +59,12 @@ std::vector<std::string> files_of(const std::string& specification) {
 
 bool is_program(const std::string& specification) { return specification.starts_with("proc:"); }
 
-Result<std::unique_ptr<Port>> open_port(const std::string& specification) {
+Result<std::unique_ptr<Port>> open_port(const std::string& specification, const PortFiles* files) {
+  if (files != nullptr) {
+    if (auto same = files->check(PortFiles::Untouched::skipped); !same) {
+      return tl::unexpected(same.error());
+    }
+  }
   if (specification == "builtin") return open_builtin();
   if (const auto fault = after("fault:", specification)) return open_fault(*fault);
   if (const auto library = after("lib:", specification)) return open_shared_library(*library);

@@ -106,6 +106,9 @@ class Port {
 
   virtual ModuleSet modules() const { return only(Module::mc_att_control); }
 
+  // The files that a program names in the handshake, as paths from the folder in which it runs.
+  virtual std::vector<std::string> files() const { return {}; }
+
   // A unit in its power-on state; null if the port does not support the profile or the definition,
   // or allows no further instance now. Only the mixer has a `definition`. The port must outlive the
   // unit. REQUIRES: the port has the module.
@@ -152,10 +155,14 @@ inline constexpr const char* callable_port_kinds =
 // no functions to call. start_host() opens it.
 std::optional<std::string> recorded_folder(const std::string& specification);
 
+class PortFiles;
+
 // Opens a port of a kind in `callable_port_kinds`. Loading a library runs its code, and a program
 // may not answer: a caller that must survive a bad port does this in a child process. Errors:
 // unknown kind, unknown fault; missing library, missing symbol, wrong ABI version, incomplete
-// function table; those of open_program().
-Result<std::unique_ptr<Port>> open_port(const std::string& specification);
+// function table; those of open_program(). `files`, if not null: the port is loaded only if they
+// have the bytes that were hashed; otherwise the errors of PortFiles::check().
+Result<std::unique_ptr<Port>> open_port(const std::string& specification,
+                                        const PortFiles* files = nullptr);
 
 }  // namespace attest

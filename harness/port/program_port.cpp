@@ -90,6 +90,7 @@ class ProgramPort final : public Port {
   std::optional<Rate> fixed_step() const override { return hello_.fixed_step; }
   bool is_one_at_a_time() const override { return true; }
   ModuleSet modules() const override { return hello_.modules; }
+  std::vector<std::string> files() const override { return hello_.files; }
 
   void finish() override { talk_->throw_late(); }
 

@@ -127,6 +127,7 @@ ordered_json port(const RunResult& run) {
   ordered_json out = {
       {"specification", run.port}, {"name", run.port_name}, {"version", run.port_version}};
   if (!run.port_sha256.empty()) out["sha256"] = run.port_sha256;
+  if (!run.port_files.empty()) out["files"] = run.port_files;
   if (run.fraction_bits) out["fraction_bits"] = *run.fraction_bits;
   if (run.fixed_step) out["fixed_step"] = run.fixed_step->to_string();
   if (run.not_recorded.any()) {

@@ -29,6 +29,7 @@ void read_port(JsonReader reader, RunResult& run) {
   run.port_name = reader.text("name");
   run.port_version = reader.text("version");
   if (reader.has("sha256")) run.port_sha256 = reader.text("sha256");
+  if (reader.has("files")) run.port_files = reader.texts("files");
   if (reader.has("fraction_bits")) {
     run.fraction_bits = static_cast<int>(reader.integer("fraction_bits"));
   }

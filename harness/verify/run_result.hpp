@@ -48,12 +48,13 @@ struct RunResult {
   std::map<std::string, std::string> case_files;  // "profile/group/name" -> the case file
   std::string golden_folder;
   std::string cases_version = "unversioned", golden_version = "unversioned";  // of the suite
-  std::string suite_reference;     // the port that made the goldens; empty: attest's reference
-  std::string suite_sha256;        // of the suite's content
-  bool suite_is_released = false;  // this attest was released with that content
-  std::string port_sha256;         // of the port's files; empty: the port is part of attest
-  Limits limits;                   // of the port
-  std::string date;                // of the run, UTC: "2026-03-31"
+  std::string suite_reference;          // the port that made the goldens; empty: attest's reference
+  std::string suite_sha256;             // of the suite's content
+  bool suite_is_released = false;       // this attest was released with that content
+  std::string port_sha256;              // of the port's files; empty: the port is part of attest
+  std::vector<std::string> port_files;  // that a program named in the handshake
+  Limits limits;                        // of the port
+  std::string date;                     // of the run, UTC: "2026-03-31"
   std::vector<CaseResult> results;
   std::vector<Error> errors;   // of the environment, such as a golden that cannot be read
   bool stopped_early = false;  // vectors were left out, for example after --fail-fast

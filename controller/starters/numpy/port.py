@@ -7,6 +7,7 @@ An exception ends the program; attest then reports the last line of the tracebac
 """
 
 import json
+import os
 import struct
 import sys
 
@@ -86,6 +87,15 @@ class Program:
             answers.flush()
 
 
+def files_of_program():
+    """The modules next to this file, as paths from the folder in which the program runs. The hash
+    of the port covers them, and attest notices when one of them changes during a run."""
+    folder = os.path.dirname(os.path.abspath(__file__))
+    files = [getattr(module, "__file__", None) for module in sys.modules.values()]
+    own = [file for file in files if file and os.path.dirname(os.path.abspath(file)) == folder]
+    return sorted(os.path.relpath(file) for file in own)
+
+
 def shake_hands(requests, answers):
     if json.loads(requests.readline())["protocol"] != 1:
         sys.exit(f"{NAME} speaks version 1 of the protocol only")
@@ -96,6 +106,7 @@ def shake_hands(requests, answers):
         "profiles": PROFILES,
         "frames": "binary",
         "batch": True,
+        "files": files_of_program(),
     }
     answers.write(json.dumps(greeting).encode() + b"\n")
     answers.flush()
