@@ -96,11 +96,21 @@ Result<void> set_parameters(const RunOptions& options, const std::vector<Selecte
 }
 
 // Checks the report of --rerun-failed. Errors: its level or parameters differ from those of this
-// run, so other vectors may fail.
-Result<void> check_rerun(const RunOptions& options, const RunResult& run) {
+// run, so other vectors may fail; it contradicts the suite, if it is of the same suite and attest.
+Result<void> check_rerun(const RunOptions& options, const SuiteFolder& suite,
+                         const RunResult& run) {
   if (options.select.rerun_failed.empty()) return {};
-  const auto earlier = read_report(options.select.rerun_failed);
+  auto earlier = read_report(options.select.rerun_failed);
   if (!earlier) return tl::unexpected(earlier.error());
+  const bool is_of_suite = earlier->suite_sha256 == run.suite_sha256;
+  if (is_of_suite && earlier->attest_version == version) {
+    const auto cases = select_cases(suite.case_folders(), {});
+    if (!cases) return tl::unexpected(cases.error());
+    earlier->suite_is_released = run.suite_is_released;
+    if (auto checked = check_against(*cases, *earlier, options.select.rerun_failed); !checked) {
+      return checked;
+    }
+  }
   const auto options_of = [](const RunResult& of) {
     std::string text = fmt::format("--level {}", name_of(of.level));
     for (const ParameterChange& change : of.parameters) {
@@ -139,7 +149,7 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
     if (auto same = check_case(selected.the_case, plan); !same) return same;
   }
   if (auto set = set_parameters(options, *cases, plan); !set) return set;
-  if (auto same = check_rerun(options, plan.run); !same) return same;
+  if (auto same = check_rerun(options, suite, plan.run); !same) return same;
   if (!plan.run.suite_reference.empty() || !plan.run.parameters.empty()) {
     std::erase_if(*cases, [](const SelectedCase& one) { return one.the_case.flight.has_value(); });
     if (cases->empty())

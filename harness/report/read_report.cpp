@@ -1,5 +1,10 @@
 #include "harness/report/read_report.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,7 +14,10 @@
 #include "harness/core/file.hpp"
 #include "harness/core/json_reader.hpp"
 #include "harness/core/json_text.hpp"
+#include "harness/port/port.hpp"
+#include "harness/report/statement.hpp"
 #include "harness/trace/channels.hpp"
+#include "harness/verify/claim.hpp"
 #include "harness/verify/verdict_json.hpp"
 
 namespace attest {
@@ -24,6 +32,14 @@ LoopRate rate_from(JsonReader& reader, const std::string& text) {
   return {};
 }
 
+// A count of something that a limit or a format allows, as an int.
+int small_count(JsonReader& reader, const char* key) {
+  constexpr std::uint64_t most = 1'000'000'000;
+  const std::uint64_t count = reader.count(key);
+  if (count > most) reader.wrong(fmt::format("`{}` is {}, which is too large", key, count));
+  return static_cast<int>(std::min(count, most));
+}
+
 void read_port(JsonReader reader, RunResult& run) {
   run.port = reader.text("specification");
   run.port_name = reader.text("name");
@@ -31,7 +47,9 @@ void read_port(JsonReader reader, RunResult& run) {
   if (reader.has("sha256")) run.port_sha256 = reader.text("sha256");
   if (reader.has("files")) run.port_files = reader.texts("files");
   if (reader.has("fraction_bits")) {
-    run.fraction_bits = static_cast<int>(reader.integer("fraction_bits"));
+    const auto bits = parse_fraction_bits(fmt::format("fixed:{}", reader.integer("fraction_bits")));
+    if (bits) run.fraction_bits = *bits;
+    if (!bits) reader.wrong(bits.error().message);
   }
   if (reader.has("fixed_step")) run.fixed_step = rate_from(reader, reader.text("fixed_step")).unit;
   if (!reader.has("not_recorded")) return;
@@ -54,10 +72,11 @@ void read_limits(JsonReader reader, RunResult& run) {
   run.limits.own_process = reader.flag("own_process");
   if (!run.limits.own_process) return;
   run.limits.timeout_s = reader.real("timeout_s");
-  if (reader.has("memory_gib")) {
-    run.limits.memory_gib = static_cast<int>(reader.integer("memory_gib"));
+  if (!std::isfinite(run.limits.timeout_s) || run.limits.timeout_s <= 0) {
+    reader.wrong(fmt::format("`timeout_s` is {}; it is a time in seconds", run.limits.timeout_s));
   }
-  run.limits.file_mib = static_cast<int>(reader.integer("file_mib"));
+  if (reader.has("memory_gib")) run.limits.memory_gib = small_count(reader, "memory_gib");
+  run.limits.file_mib = small_count(reader, "file_mib");
   JsonReader barrier = reader.object("barrier");
   run.limits.barrier = {barrier.flag("files"), barrier.flag("signals")};
 }
@@ -81,10 +100,78 @@ void read_selection(JsonReader reader, RunResult& run) {
   }
 }
 
+bool is_negative_or_nan(double value) { return !(value >= 0); }
+
+// A number in the result that attest does not write; empty if there is none.
+std::string impossible_number(const CaseResult& result) {
+  for (const auto& deviation : {result.first, result.worst}) {
+    if (deviation && is_negative_or_nan(deviation->tolerance)) {
+      return fmt::format("a tolerance of {}", deviation->tolerance);
+    }
+  }
+  if (result.tightest && is_negative_or_nan(result.tightest->ratio)) {
+    return fmt::format("a headroom of {}", result.tightest->ratio);
+  }
+  for (const MetricResult& metric : result.metrics) {
+    if (metric.tolerance < 0 || std::isnan(metric.min) || std::isnan(metric.max)) {
+      return fmt::format("impossible bounds of the metric `{}`", metric.name);
+    }
+  }
+  return "";
+}
+
+// What contradicts a verdict that says that all compared outputs were right; empty if nothing does.
+std::string sign_of_failure(const CaseResult& result) {
+  if (result.first || result.worst) return "has a deviation";
+  if (result.deviating_ticks > 0)
+    return fmt::format("has {} deviating ticks", result.deviating_ticks);
+  const bool passes = result.verdict == Verdict::pass || result.verdict == Verdict::xpass;
+  if (!passes) return "";
+  if (result.ticks == 0) return "has no tick that was compared";
+  if (result.tightest && result.tightest->ratio < 1) {
+    return fmt::format("has a headroom of {}, below 1", result.tightest->ratio);
+  }
+  for (const MetricResult& metric : result.metrics) {
+    if (!metric.within()) return fmt::format("has the metric `{}` out of its bounds", metric.name);
+  }
+  const bool has_reason = result.verdict == Verdict::pass && !result.reason.empty();
+  return has_reason ? fmt::format("has the reason `{}`", result.reason) : "";
+}
+
+// What in the result contradicts the rest of the report; empty if nothing does.
+std::string contradiction(const CaseResult& result, const RunResult& run) {
+  if (std::string number = impossible_number(result); !number.empty()) return "has " + number;
+  const auto& rates = run.rates;
+  if (std::find(rates.begin(), rates.end(), result.rate) == rates.end()) {
+    return fmt::format("is at {} Hz, which `rates` does not have", result.rate.to_string());
+  }
+  if (result.exact_only && run.level == Level::exact) {
+    return "is skipped as a vector of the exact level, which is the level of the run";
+  }
+  const bool is_right = !fails_a_run(result.verdict) || result.verdict == Verdict::xpass;
+  if (!is_right || result.verdict == Verdict::xfail) return "";
+  const std::string sign = sign_of_failure(result);
+  return sign.empty() ? ""
+                      : fmt::format("has the verdict {}, but {}", name_of(result.verdict), sign);
+}
+
 void read_results(JsonReader& reader, RunResult& run) {
+  std::set<std::string> known;
   for (const json& one : reader.list("results")) {
     auto result = case_result_from_json(one);
     if (!result) return reader.wrong(result.error().message);
+    const std::string id = result->id();
+    std::string error;
+    const std::string stated = JsonReader(one, error).text("id");
+    if (stated != id) {
+      reader.wrong(fmt::format("contradicts itself: {} has the members of {}", stated, id));
+    }
+    if (!known.insert(id).second) {
+      reader.wrong(fmt::format("contradicts itself: it has {} twice", id));
+    }
+    if (const std::string what = contradiction(*result, run); !what.empty()) {
+      reader.wrong(fmt::format("contradicts itself: {} {}", id, what));
+    }
     run.results.push_back(*std::move(result));
   }
   for (const json& one : reader.list("errors")) {
@@ -115,7 +202,7 @@ void check_numbers(JsonReader reader, JsonReader totals, const RunResult& run) {
 
 }  // namespace
 
-Result<RunResult> read_report(const std::string& path) {
+Result<ReadReport> read_report(const std::string& path) {
   const auto text = read_file(path);
   if (!text) return tl::unexpected(text.error());
   const auto parsed = parse_json(*text, path);
@@ -126,7 +213,9 @@ Result<RunResult> read_report(const std::string& path) {
   }
   std::string error;
   JsonReader reader(report, error);
-  RunResult run;
+  ReadReport run;
+  run.conformant = reader.flag("conformant");
+  run.conformance = reader.text("conformance");
   run.attest_version = reader.text("attest_version");
   const auto level = parse_level(reader.text("level"));
   if (level) run.level = *level;
@@ -143,6 +232,51 @@ Result<RunResult> read_report(const std::string& path) {
   if (error.empty()) check_numbers(reader, reader.object("totals"), run);
   if (!error.empty()) return fail_at(path, error);
   return run;
+}
+
+namespace {
+
+// What in the result contradicts the level of its case; empty if nothing does.
+std::string_view contradiction_of_level(const CaseResult& result, const Case& the_case,
+                                        Level level) {
+  if (result.exact_only && !the_case.exact_only) {
+    return "is skipped as a vector of the exact level, but its case is compared at every level";
+  }
+  const bool passes = result.verdict == Verdict::pass || result.verdict == Verdict::xpass;
+  return passes && the_case.exact_only && level != Level::exact
+             ? "passes, but its case is compared at the exact level only"
+             : "";
+}
+
+}  // namespace
+
+Result<void> check_against(const std::vector<SelectedCase>& cases, const ReadReport& report,
+                           const std::string& path) {
+  std::map<std::string, const Case*> vectors;
+  RunResult run = report;
+  for (const SelectedCase& selected : cases) {
+    const Case& the_case = selected.the_case;
+    auto& rates = run.suite[the_case.profile + "/" + the_case.group];
+    for (const RunConfiguration& configuration : the_case.configurations()) {
+      vectors.emplace(the_case.id_at(configuration), &the_case);
+      ++rates[configuration.rate];
+    }
+  }
+  for (const CaseResult& result : run.results) {
+    const auto found = vectors.find(result.id());
+    if (found == vectors.end()) {
+      return fail_at(path, fmt::format("{} is no vector of the suite", result.id()));
+    }
+    const std::string_view wrong = contradiction_of_level(result, *found->second, run.level);
+    if (!wrong.empty()) return fail_at(path, fmt::format("{} {}", result.id(), wrong));
+  }
+  const bool conforms = standing_of(run) == Standing::conformant;
+  const std::string statement = conformance_statement(run);
+  if (conforms == report.conformant && statement == report.conformance) return {};
+  return fail_at(path,
+                 fmt::format("contradicts itself: it states `{}`{}, but its results give `{}`",
+                             report.conformance,
+                             report.conformant == conforms ? "" : " and `conformant`", statement));
 }
 
 }  // namespace attest

@@ -55,8 +55,8 @@ shards() {
   run "$ATTEST" merge p1.json p2.json
   [ "$status" -eq 2 ]
   has "but the reports are of 000000000000; name theirs with --suite DIR"
-  sed 's/"name": "both_tilted"/"name": "both_bent"/' part1.json >p1.json
-  sed 's/"name": "both_tilted"/"name": "both_bent"/' part2.json >p2.json
+  sed 's/both_tilted/both_bent/' part1.json >p1.json
+  sed 's/both_tilted/both_bent/' part2.json >p2.json
   run "$ATTEST" merge p1.json p2.json
   [ "$status" -eq 2 ]
   has "/attitude/both_bent@250hz is no vector of the suite"
@@ -108,18 +108,104 @@ report = json.load(open("part1.json"))
 passing = [r for r in report["results"] if r["verdict"] != "fail"]
 write("fewer.json", results=passing)
 write("consistent.json", results=passing, totals=dict(report["totals"], fail=0))
-write("passing.json", results=[dict(r, verdict="pass") for r in report["results"]])
 P
-  for file in fewer passing; do
-    run "$ATTEST" merge $file.json part2.json --json merged.json
-    [ "$status" -eq 2 ]
-    has "$file.json: contradicts itself: its totals have"
-  done
+  run "$ATTEST" merge fewer.json part2.json --json merged.json
+  [ "$status" -eq 2 ]
+  has "fewer.json: contradicts itself: its totals have"
   run "$ATTEST" merge consistent.json part2.json --json merged.json
   [ "$status" -eq 2 ]
   has "consistent.json: contradicts itself:"
   has "vectors were selected, but it has"
   [ ! -e merged.json ]
+}
+
+# edited CODE: the report in edited.json is that of fails.json, changed by the Python statements.
+# `result` is the first failing vector, `other` one that passed, `becomes` changes its verdict.
+edited() {
+  "$PYTHON" - "$1" <<'P'
+import json, sys
+report = json.load(open("fails.json"))
+results, totals = report["results"], report["totals"]
+result = next((r for r in results if r["verdict"] == "fail"), results[0])
+other = next(r for r in results if r["verdict"] == "pass")
+
+def becomes(verdict, **members):
+    totals[result["verdict"]] -= 1
+    totals[verdict] += 1
+    for member in ("first", "worst", "metrics"):
+        result.pop(member, None)
+    result.update(dict(verdict=verdict, reason="", deviating_ticks=0), **members)
+
+exec(sys.argv[1])
+json.dump(report, open("edited.json", "w"))
+P
+}
+
+# refused MESSAGE: by `merge` and by `run --rerun-failed`.
+refused() {
+  for command in "merge edited.json --json merged.json" "run --rerun-failed edited.json"; do
+    # shellcheck disable=SC2086
+    run "$ATTEST" $command
+    echo "$command: $status"
+    [ "$status" -eq 2 ]
+    has "edited.json: "
+    has "$1"
+    [ ! -e merged.json ]
+  done
+}
+
+@test "an edited verdict is refused, and the vector and the contradiction are named" {
+  "$ATTEST" run --group tpa --rate 250 --port fault:tpa-missing --no-diagnose --json fails.json \
+    >/dev/null || true
+  edited 'totals["fail"] -= 1; totals["pass"] += 1; result["verdict"] = "pass"'
+  refused "contradicts itself: px4-v1.5.5/tpa/"
+  refused "@250hz has the verdict pass, but has a deviation"
+  edited 'becomes("pass", deviating_ticks=12)'
+  refused "has the verdict pass, but has 12 deviating ticks"
+  edited 'becomes("unsupported", deviating_ticks=12)'
+  refused "has the verdict unsupported, but has 12 deviating ticks"
+  edited 'becomes("pass", reason="the process died")'
+  refused 'has the verdict pass, but has the reason `the process died`'
+  edited 'becomes("pass", ticks=0)'
+  refused "has the verdict pass, but has no tick that was compared"
+  channel=out/vehicle_rates_setpoint.roll
+  edited "becomes('pass', tightest={'ratio': 0.5, 'tick': 1, 'channel': '$channel'})"
+  refused "has the verdict pass, but has a headroom of 0.5, below 1"
+  edited 'result["first"]["tolerance"] = -1'
+  refused "has a tolerance of -1"
+  edited 'result["first"]["tolerance"] = "nan"'
+  refused "has a tolerance of nan"
+  edited 'result["rate"] = "333"; result["id"] = result["id"].replace("@250hz", "@333hz")'
+  refused '@333hz is at 333 Hz, which `rates` does not have'
+  edited 'result.update(name=other["name"])'
+  refused "has the members of"
+  edited 'result.update(other); totals["fail"] -= 1; totals["pass"] += 1'
+  refused "twice"
+  edited 'report["limits"]["timeout_s"] = "nan"'
+  refused '`timeout_s` is nan'
+  edited 'report["limits"]["file_mib"] = -1'
+  refused '`limits.file_mib` is not a count'
+  # What the suite contradicts.
+  edited 'becomes("skip", exact_only=True)'
+  refused "is skipped as a vector of the exact level, but its case is compared at every level"
+  edited 'result.update(name="bent", id="px4-v1.5.5/tpa/bent@250hz")'
+  refused "px4-v1.5.5/tpa/bent@250hz is no vector of the suite"
+  edited 'for result in [r for r in results if r["verdict"] == "fail"]: becomes("pass")'
+  run "$ATTEST" merge edited.json
+  [ "$status" -eq 2 ]
+  has 'edited.json: contradicts itself: it states `partial: px4-v1.3.4'
+  has 'none: px4-v1.5.5'
+  has ', but its results give `partial: '
+  edited 'report["conformant"] = True'
+  refused 'and `conformant`, but its results give `partial: '
+}
+
+@test "a pass of a flight whose metric is out of its bounds is refused" {
+  "$ATTEST" run --filter '*/hover@250hz-iris-ode' --no-diagnose --json fails.json >/dev/null
+  edited 'result["metrics"][0]["value"] = 1e6'
+  refused "out of its bounds"
+  edited 'result["metrics"][0]["max"] = "nan"'
+  refused "has impossible bounds of the metric"
 }
 
 @test "what failed in a report is run again" {
