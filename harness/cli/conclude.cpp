@@ -1,12 +1,13 @@
 #include "harness/cli/conclude.hpp"
 
 #include <cstdlib>
-#include <fstream>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "harness/cli/run_plan.hpp"
 #include "harness/core/interrupt.hpp"
@@ -20,8 +21,7 @@ namespace {
 
 Result<void> write_reports(std::vector<ReportFile>& reports, const Report& report) {
   for (auto& [file, format] : reports) {
-    if (auto written = file.write(format.render(report)); !written) return written;
-    if (auto committed = file.commit(); !committed) return committed;
+    if (auto written = file.commit(format.render(report)); !written) return written;
   }
   return {};
 }
@@ -84,9 +84,14 @@ void write_for_github(const RunResult& run, double wall_s,
   fmt::print("{}", github_annotations(run));
   const char* const summary = std::getenv("GITHUB_STEP_SUMMARY");
   if (summary == nullptr || *summary == '\0') return;
-  std::ofstream file(summary, std::ios::app);
-  file << github_summary(run, wall_s, diagnosis);
-  if (!file.flush()) fmt::print(stderr, "attest: note: {} cannot be written\n", summary);
+  // A port may have replaced the file by a pipe without a reader, or by a link.
+  constexpr int flags = O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+  const int file = ::open(summary, flags, 0644);
+  const std::string text = github_summary(run, wall_s, diagnosis);
+  const bool is_written =
+      file >= 0 && ::write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  if (file >= 0) ::close(file);
+  if (!is_written) fmt::print(stderr, "attest: note: {} cannot be written\n", summary);
 }
 
 }  // namespace

@@ -35,9 +35,11 @@ Result<void> record(const RecordOptions& options, const Globals& globals) {
   const auto checked =
       check_outputs({options.out}, {options.host.port, {options.case_name}}, globals.suite);
   if (!checked) return tl::unexpected(checked.error());
+  auto file = AtomicFile::open(options.out);
+  if (!file) return tl::unexpected(file.error());
   const auto trace = recorded(options, *suite);
   if (!trace) return tl::unexpected(trace.error());
-  return write_trace(options.out, *trace);
+  return write_trace(*std::move(file), *trace);
 }
 
 }  // namespace

@@ -130,22 +130,21 @@ class Replay {
         out_(options.json == "-" || options.html == "-" ? stderr : stdout) {}
 
   int run() {
+    auto json = AtomicFile::open(options_.json);
+    if (!json) return report_error(json.error());
+    auto html = AtomicFile::open(options_.html);
+    if (!html) return report_error(html.error());
     for (const std::string& file : options_.files) {
       auto done = replay(file);
       if (!done) return report_error(done.error());
     }
     host_.reset();
     if (auto same = check_port(options_.host); !same) return report_error(same.error());
-    if (!page_.empty()) {
-      const auto written = write_file(options_.html, page_);
-      if (!written) return report_error(written.error());
-    }
-    if (!options_.json.empty()) {
-      const auto written = write_file(
-          options_.json,
-          replay_json(options_.host.port, name_of(level_), options_.log_limits, entries_));
-      if (!written) return report_error(written.error());
-    }
+    const auto page = page_.empty() ? Result<void>() : html->commit(page_);
+    if (!page) return report_error(page.error());
+    const auto written = json->commit(
+        replay_json(options_.host.port, name_of(level_), options_.log_limits, entries_));
+    if (!written) return report_error(written.error());
     conclude();
     if (failed_ > 0) return exit_failed;
     if (passed_ > 0) return exit_ok;

@@ -60,11 +60,11 @@ int run_command(const RunOptions& options, const Globals& globals) {
   }
   const auto traces = PlottedTraces::prepare(options);
   if (!traces) return report_error(traces.error());
+  auto reports = open_reports(options.report);
+  if (!reports) return report_error(reports.error());
   auto plan = make_plan(traces->planned(options), *suite);
   if (!plan) return report_error(plan.error());
   plan->run.suite_folder = globals.suite;
-  auto reports = open_reports(options.report);
-  if (!reports) return report_error(reports.error());
   if (!run_all(options, globals, *plan)) {
     fmt::print(stderr, "attest: interrupted; no report was written\n");
     return exit_interrupted;

@@ -87,6 +87,8 @@ int schedule_command(const ScheduleOptions& options, const Globals& globals) {
       check_outputs({options.record_timing},
                     {options.host.port, {options.tasks, options.case_name}}, globals.suite);
   if (!checked) return report_error(checked.error());
+  auto timing = AtomicFile::open(options.record_timing);
+  if (!timing) return report_error(timing.error());
   const auto plan = make_plan(options, *suite);
   if (!plan) return report_error(plan.error());
   if (!globals.quiet) {
@@ -94,7 +96,7 @@ int schedule_command(const ScheduleOptions& options, const Globals& globals) {
                render_delays(plan->set, plan->jobs, plan->scheduled.ticks));
   }
   if (!options.record_timing.empty()) {
-    if (auto written = write_timing(plan->scheduled, options.record_timing); !written) {
+    if (auto written = write_timing(plan->scheduled, *std::move(timing)); !written) {
       return report_error(written.error());
     }
   }

@@ -93,6 +93,21 @@ Result<Sim> prepare(const SimOptions& options, const Globals& globals) {
   return prepare_case(options, *suite);
 }
 
+// Opened before the port's code runs.
+struct SimFiles {
+  AtomicFile out, attitude, html;
+
+  static Result<SimFiles> open(const SimOptions& options) {
+    auto out = AtomicFile::open(options.out);
+    if (!out) return tl::unexpected(out.error());
+    auto attitude = AtomicFile::open(attitude_file(options.out));
+    if (!attitude) return tl::unexpected(attitude.error());
+    auto html = AtomicFile::open(options.html);
+    if (!html) return tl::unexpected(html.error());
+    return SimFiles{*std::move(out), *std::move(attitude), *std::move(html)};
+  }
+};
+
 // Each flight has a fresh process of the port.
 Result<std::vector<SimulatedFlight>> fly_all(const Sim& sim, const HostOptions& options,
                                              PortSays& says) {
@@ -109,17 +124,17 @@ Result<std::vector<SimulatedFlight>> fly_all(const Sim& sim, const HostOptions& 
 }
 
 Result<void> write(const std::vector<SimulatedFlight>& flights, const PortSays& port,
-                   const SimOptions& options) {
+                   SimFiles files) {
   const Flown& flown = flights.front().flown;
-  if (!options.out.empty() && !flown.trace.samples.empty()) {
-    if (auto written = write_trace(options.out, flown.trace); !written) return written;
-    const std::string second = attitude_file(options.out);
-    if (flown.attitude_trace && !second.empty()) {
-      if (auto written = write_trace(second, *flown.attitude_trace); !written) return written;
+  if (!files.out.path().empty() && !flown.trace.samples.empty()) {
+    if (auto written = write_trace(std::move(files.out), flown.trace); !written) return written;
+    if (flown.attitude_trace && !files.attitude.path().empty()) {
+      auto written = write_trace(std::move(files.attitude), *flown.attitude_trace);
+      if (!written) return written;
     }
   }
-  if (options.html.empty()) return {};
-  return write_file(options.html, flight_page(flights, port));
+  if (files.html.path().empty()) return {};
+  return files.html.commit(flight_page(flights, port));
 }
 
 void print(const CaseResult& result, const SimOptions& options, bool is_written) {
@@ -145,10 +160,12 @@ void print(const CaseResult& result, const SimOptions& options, bool is_written)
 int sim_command(const SimOptions& options, const Globals& globals) {
   auto sim = prepare(options, globals);
   if (!sim) return report_error(sim.error());
+  auto files = SimFiles::open(options);
+  if (!files) return report_error(files.error());
   HostOptions host = options.host;
   // If a file is no port, the error of loading it is the better one.
-  if (auto files = PortFiles::read(host.port)) {
-    host.files = std::make_shared<const PortFiles>(*std::move(files));
+  if (auto of_port = PortFiles::read(host.port)) {
+    host.files = std::make_shared<const PortFiles>(*std::move(of_port));
   }
   PortSays says;
   const auto flights = fly_all(*sim, host, says);
@@ -158,7 +175,7 @@ int sim_command(const SimOptions& options, const Globals& globals) {
   const bool any_result =
       std::any_of(flights->begin(), flights->end(),
                   [](const SimulatedFlight& flight) { return is_judged(flight.result.verdict); });
-  const auto written = any_result ? write(*flights, says, options) : Result<void>();
+  const auto written = any_result ? write(*flights, says, *std::move(files)) : Result<void>();
   if (!written) return report_error(written.error());
   bool any_fails = false;
   for (const SimulatedFlight& flight : *flights) {

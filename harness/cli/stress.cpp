@@ -75,6 +75,12 @@ Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& su
     return fail("--record-timing records one rate; name it with --rates");
   }
   Case& the_case = chosen->the_case;
+  std::shared_ptr<AtomicFile> timing;
+  if (!options.record_timing.empty()) {
+    auto file = AtomicFile::open(options.record_timing);
+    if (!file) return tl::unexpected(file.error());
+    timing = std::make_shared<AtomicFile>(*std::move(file));
+  }
   StressPlan plan;
   plan.host = options.host;
   auto port = prepare_port(plan.host, {the_case.profile});
@@ -93,8 +99,8 @@ Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& su
   for (const LoopRate& rate : *rates) {
     plan.tasks.push_back({the_case, RunConfiguration{rate, chosen->plant_configuration},
                           chosen->vehicle_model, plan.port, *live,
-                          nanoseconds(std::min(options.duration_s, idle_s_max)),
-                          options.record_timing, nanoseconds(options.host.timeout_s)});
+                          nanoseconds(std::min(options.duration_s, idle_s_max)), timing,
+                          nanoseconds(options.host.timeout_s)});
   }
   return plan;
 }
@@ -129,19 +135,6 @@ class StressProgressLine {
   bool visible_, drawn_ = false;
   TerminalStyle style_;
 };
-
-Result<std::optional<AtomicFile>> open_report(const std::string& path) {
-  if (path.empty()) return std::optional<AtomicFile>();
-  auto file = AtomicFile::open(path);
-  if (!file) return tl::unexpected(file.error());
-  return std::optional<AtomicFile>(std::move(*file));
-}
-
-Result<void> write_report(std::optional<AtomicFile>& file, const std::string& text) {
-  if (!file) return {};
-  if (auto written = file->write(text); !written) return written;
-  return file->commit();
-}
 
 // Empty: cyclictest gave no result. If it is installed, a note explains the missing row of the
 // report.
@@ -194,14 +187,14 @@ int stress_command(const StressOptions& options, const Globals& globals) {
       check_outputs({options.html, options.json, options.junit, options.record_timing},
                     {options.host.port, {options.case_name}}, globals.suite);
   if (!checked) return report_error(checked.error());
+  auto json = AtomicFile::open(options.json);
+  if (!json) return report_error(json.error());
+  auto junit = AtomicFile::open(options.junit);
+  if (!junit) return report_error(junit.error());
+  auto html = AtomicFile::open(options.html);
+  if (!html) return report_error(html.error());
   const auto plan = make_plan(options, *suite);
   if (!plan) return report_error(plan.error());
-  auto json = open_report(options.json);
-  if (!json) return report_error(json.error());
-  auto junit = open_report(options.junit);
-  if (!junit) return report_error(junit.error());
-  auto html = open_report(options.html);
-  if (!html) return report_error(html.error());
 
   note_interrupts();
   StressRun run;
@@ -216,10 +209,9 @@ int stress_command(const StressOptions& options, const Globals& globals) {
   const RunResult all = run_of(run);
   const auto has_flown = [](const StressResult& stress) { return stress.deadlines > 0; };
   // Without a flight, a page of an earlier run is kept.
-  if (std::ranges::none_of(run.results, has_flown)) html->reset();
-  for (const auto& written :
-       {write_report(*json, stress_json(run)), write_report(*junit, junit_report(all)),
-        write_report(*html, stress_page(run))}) {
+  const bool has_page = std::ranges::any_of(run.results, has_flown);
+  for (const auto& written : {json->commit(stress_json(run)), junit->commit(junit_report(all)),
+                              has_page ? html->commit(stress_page(run)) : Result<void>()}) {
     if (!written) return report_error(written.error());
   }
   if (!globals.quiet) fmt::print("{}", render_stress_end(run, terminal_style(stdout)));

@@ -102,17 +102,31 @@ std::vector<std::uint64_t> worst_samples_of(const SweepSummary& summary) {
   return {samples.begin(), samples.end()};
 }
 
+// Opened before the port's code runs.
+struct SweepFiles {
+  AtomicFile html, hdf5;
+
+  static Result<SweepFiles> open(const SweepOptions& options) {
+    auto html = AtomicFile::open(options.html);
+    if (!html) return tl::unexpected(html.error());
+    auto hdf5 = AtomicFile::open(options.hdf5);
+    if (!hdf5) return tl::unexpected(hdf5.error());
+    return SweepFiles{*std::move(html), *std::move(hdf5)};
+  }
+};
+
 Result<void> write_columns(const PreparedSweep& sweep, const SweepOptions& options,
-                           const SampleColumns& columns, const SampleData& data) {
+                           const SampleColumns& columns, const SampleData& data, AtomicFile& file) {
   if (options.hdf5.empty()) return {};
   const auto bytes = hdf5_table(sweep.sampler, sweep.identity, columns, data);
   if (!bytes) return fail_at(options.hdf5, bytes.error().message);
-  return write_file(options.hdf5, *bytes);
+  return file.commit(*bytes);
 }
 
 // Makes the reports, the kept flights and the text on stdout from the complete table of the folder.
 Result<SweepSummary> report(const PreparedSweep& sweep, const SweepOptions& options,
-                            const SuiteFolder& suite, std::uint64_t samples, bool quiet) {
+                            const SuiteFolder& suite, std::uint64_t samples, bool quiet,
+                            SweepFiles files) {
   const fs::path folder = options.out;
   const SampleColumns columns = sweep.columns();
   const auto data = read_samples(folder / sample_file, columns, {0, samples});
@@ -125,16 +139,17 @@ Result<SweepSummary> report(const PreparedSweep& sweep, const SweepOptions& opti
     return tl::unexpected(done.error());
   }
   const auto written =
-      write_file(folder / "report.json", summary_json(sweep.identity, columns, summary));
+      write_file(folder / "report.json", summary_json(sweep.identity, columns, summary),
+                 AtomicFile::Special::replaced);
   if (!written) return tl::unexpected(written.error());
-  if (auto done = write_columns(sweep, options, columns, *data); !done) {
+  if (auto done = write_columns(sweep, options, columns, *data, files.hdf5); !done) {
     return tl::unexpected(done.error());
   }
   const fs::path shown = worst.empty() ? fs::path() : kept;
   if (!options.html.empty()) {
     const std::string page =
         sweep_page({sweep.sampler, columns, *data, summary, sweep.identity, shown});
-    if (auto done = write_file(options.html, page); !done) return tl::unexpected(done.error());
+    if (auto done = files.html.commit(page); !done) return tl::unexpected(done.error());
   }
   if (!quiet) {
     fmt::print("{}", render_summary(sweep.sampler, columns, summary, sweep.identity.port, shown));
@@ -200,6 +215,8 @@ int sweep_command(const SweepOptions& options, const Globals& globals) {
   if (auto checked = check_options(options, globals.suite); !checked) {
     return report_error(checked.error());
   }
+  auto files = SweepFiles::open(options);
+  if (!files) return report_error(files.error());
   const auto sweep = prepare_sweep(options, *suite);
   if (!sweep) return report_error(sweep.error());
   if (auto checked = check_shard(*sweep, options); !checked) return report_error(checked.error());
@@ -237,7 +254,7 @@ int sweep_command(const SweepOptions& options, const Globals& globals) {
     }
     return exit_ok;
   }
-  const auto summary = report(*sweep, options, *suite, samples, globals.quiet);
+  const auto summary = report(*sweep, options, *suite, samples, globals.quiet, *std::move(files));
   if (!summary) return report_error(summary.error());
   return summary->passes() ? exit_ok : exit_failed;
 }

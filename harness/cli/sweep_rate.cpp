@@ -84,6 +84,10 @@ int sweep_rate_command(const RateSweepOptions& options, const Globals& globals) 
   const auto checked = check_outputs({options.csv, options.html},
                                      {options.host.port, {options.case_name}}, globals.suite);
   if (!checked) return report_error(checked.error());
+  auto csv = AtomicFile::open(options.csv);
+  if (!csv) return report_error(csv.error());
+  auto html = AtomicFile::open(options.html);
+  if (!html) return report_error(html.error());
   const auto plan = make_plan(options, *suite);
   if (!plan) return report_error(plan.error());
   note_interrupts();
@@ -108,13 +112,13 @@ int sweep_rate_command(const RateSweepOptions& options, const Globals& globals) 
   }
 
   const std::vector<RateSweepRow> rows = rate_sweep_rows(outcome.results);
-  if (auto written = write_file(options.csv, rate_sweep_csv(rows, plan->rates)); !written) {
+  if (auto written = csv->commit(rate_sweep_csv(rows, plan->rates)); !written) {
     return report_error(written.error());
   }
   if (!options.html.empty()) {
     const RateSweepRun run{options.host.port, plan->port, plan->the_case, plan->rates,
                            outcome.results};
-    if (auto written = write_file(options.html, rate_sweep_page(run)); !written) {
+    if (auto written = html->commit(rate_sweep_page(run)); !written) {
       return report_error(written.error());
     }
   }

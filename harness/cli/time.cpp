@@ -98,11 +98,6 @@ int report_untimed(const TimeRun& run) {
   return report_error({"no vector was timed: every selected vector was skipped or unsupported"});
 }
 
-Result<void> write_reports(const TimeCommandOptions& options, const TimeRun& run) {
-  if (auto written = write_file(options.json, time_json(run)); !written) return written;
-  return options.html.empty() ? Result<void>() : write_file(options.html, time_page(run));
-}
-
 int report(const TimeCommandOptions& options, const TimeRun& run, bool quiet) {
   const bool over = run.times.steps.over_limit() > run.allowed;
   const bool failed = over || is_wrong(run);
@@ -126,6 +121,12 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
   }
   const auto cases = open_loop_cases(options, *suite);
   if (!cases) return report_error(cases.error());
+  auto json = AtomicFile::open(options.json);
+  if (!json) return report_error(json.error());
+  auto html = AtomicFile::open(options.html);
+  if (!html) return report_error(html.error());
+  auto worst = AtomicFile::open(options.measure.worst);
+  if (!worst) return report_error(worst.error());
   const auto host = host_for(options);
   if (!host) return report_error(host.error());
 
@@ -142,7 +143,7 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
   const VectorTimes* const slowest = run.times.with_slowest_step();
   if (!slowest) return report_untimed(run);
   if (!options.measure.worst.empty()) {
-    const auto written = write_slowest(run.times, *cases, *host, options.measure.worst);
+    const auto written = write_slowest(run.times, *cases, *host, *std::move(worst));
     if (!written) return report_error(written.error());
   }
   if (options.instructions) {
@@ -150,8 +151,10 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
     if (interrupted()) return exit_interrupted;
   }
   if (auto same = check_port(*host); !same) return report_error(same.error());
-  if (const auto written = write_reports(options, run); !written) {
-    return report_error(written.error());
+  for (const auto& written :
+       {json->commit(time_json(run)),
+        options.html.empty() ? Result<void>() : html->commit(time_page(run))}) {
+    if (!written) return report_error(written.error());
   }
   return report(options, run, globals.quiet);
 }

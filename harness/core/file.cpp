@@ -13,6 +13,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <openssl/evp.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -153,26 +154,6 @@ Result<std::string> read_file(const fs::path& path, std::uintmax_t most_bytes) {
   return text;
 }
 
-fs::path behind_links(fs::path path) {
-  constexpr int most = 40;  // as Linux
-  fs::path target = path;
-  std::error_code failed;
-  for (int i = 0; i < most; ++i) {
-    if (!fs::is_symlink(fs::symlink_status(target, failed))) return target;
-    target = target.parent_path() / fs::read_symlink(target, failed);
-  }
-  return path;
-}
-
-std::string path_from_here(const fs::path& path) {
-  std::error_code failed;
-  const fs::path absolute = fs::weakly_canonical(fs::absolute(path, failed), failed);
-  if (failed) return path.string();
-  const fs::path relative = absolute.lexically_relative(fs::current_path(failed));
-  const bool is_below = !failed && !relative.empty() && *relative.begin() != "..";
-  return is_below ? relative.string() : absolute.string();
-}
-
 std::string sha256(std::string_view bytes) {
   Sha256 hash;
   hash.add(bytes);
@@ -185,30 +166,6 @@ Result<std::string> sha256_of_file(const fs::path& path, std::uintmax_t most_byt
       path, most_bytes, [](std::uintmax_t) {}, [&](std::string_view block) { hash.add(block); });
   if (!done) return tl::unexpected(done.error());
   return hash.hex();
-}
-
-namespace {
-
-// Most paths are in normal form already, and std::filesystem takes 5 us to find that out.
-std::string normal_form(const fs::path& path) {
-  const std::string& text = path.native();
-  const bool is_normal = !text.starts_with('.') && text.find("/.") == std::string::npos &&
-                         text.find("//") == std::string::npos;
-  return is_normal ? text : path.lexically_normal().native();
-}
-
-}  // namespace
-
-void FileHashes::add(const fs::path& path, std::string sha256) {
-  hashes_[normal_form(path)] = std::move(sha256);
-}
-
-bool FileHashes::has(const fs::path& path) const { return hashes_.contains(normal_form(path)); }
-
-Result<void> FileHashes::check(const fs::path& path, const std::string& sha256) const {
-  const auto known = hashes_.find(normal_form(path));
-  if (known != hashes_.end() && known->second == sha256) return {};
-  return fail_at(path.string(), "changed during the run; run again while no program writes to it");
 }
 
 namespace {
@@ -233,101 +190,128 @@ std::string random_suffix() {
 
 constexpr mode_t new_file_mode = 0644;  // the umask applies, as for any new file
 
-// Calls `create` with random names in the folder of `target` until one is free, at most 100 times.
-// Stores the name in `temporary`. Returns the result of `create`, or -1 with errno.
+// Calls `create` with random names that contain `name` until one is free, at most 100 times. Stores
+// the name in `temporary`. Returns the result of `create`, or -1 with errno.
 template <typename Create>
-int with_free_name(const fs::path& target, fs::path& temporary, Create create) {
+int with_free_name(const std::string& name, std::string& temporary, Create create) {
   constexpr int attempts = 100;
   for (int i = 0; i < attempts; ++i) {
-    temporary = target;
-    temporary.replace_filename(fmt::format(".{}.{}", target.filename().string(), random_suffix()));
-    const int created = create(temporary);
+    temporary = fmt::format(".{}.{}", name, random_suffix());
+    const int created = create(temporary.c_str());
     if (created >= 0 || errno != EEXIST) return created;
   }
   return -1;
 }
 
-// Creates a new file in the folder of `target`. Returns its descriptor, or -1 with errno. The file
-// has no name, so that it disappears when this process is killed. If the file system does not
-// support this, the file gets a name, which is stored in `temporary`.
-int create_in_folder_of(const fs::path& target, fs::path& temporary) {
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  const int nameless = ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, new_file_mode);
-  if (nameless >= 0) return nameless;
-  return with_free_name(target, temporary, [](const fs::path& name) {
-    return ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, new_file_mode);
-  });
-}
-
-// Gives a file without a name the name `name`. Returns 0, or -1 with errno (EEXIST if the name is
-// taken).
-int give_name(int file, const fs::path& name) {
+// Gives a file without a name the name `name` in `folder`. Returns 0, or -1 with errno (EEXIST if
+// the name is taken).
+int link_into(int folder, int file, const char* name) {
   const std::string source = fmt::format("/proc/self/fd/{}", file);
-  return ::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW);
-}
-
-// Gives a file without a name a random name in the folder of `target`, and stores it in
-// `temporary`. Returns 0, or -1 with errno.
-int name_in_folder_of(int file, const fs::path& target, fs::path& temporary) {
-  return with_free_name(target, temporary,
-                        [&](const fs::path& name) { return give_name(file, name); });
+  return ::linkat(AT_FDCWD, source.c_str(), folder, name, AT_SYMLINK_FOLLOW);
 }
 
 }  // namespace
 
-AtomicFile::AtomicFile(fs::path path, fs::path target, fs::path temporary, int descriptor)
-    : path_(std::move(path)),
-      target_(std::move(target)),
-      temporary_(std::move(temporary)),
-      descriptor_(descriptor) {}
-
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept
     : path_(std::move(other.path_)),
-      target_(std::exchange(other.target_, fs::path())),
-      temporary_(std::exchange(other.temporary_, fs::path())),
-      descriptor_(std::exchange(other.descriptor_, -1)) {}
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      folder_(std::exchange(other.folder_, -1)),
+      name_(std::move(other.name_)),
+      temporary_(std::exchange(other.temporary_, std::string())) {}
 
 AtomicFile::~AtomicFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (!temporary_.empty()) ::unlinkat(folder_, temporary_.c_str(), 0);
+  if (folder_ >= 0) ::close(folder_);
 }
 
-Result<AtomicFile> AtomicFile::open(const fs::path& path) {
+Result<AtomicFile> AtomicFile::open(const fs::path& path, Special special) {
+  if (path.empty()) return AtomicFile("", -1);
   if (path == "-") {
     const int file = take_stdout();
-    return file < 0 ? Result<AtomicFile>(system_failure("stdout", "cannot write"))
-                    : AtomicFile("stdout", "", "", file);
+    if (file < 0) return system_failure("stdout", "cannot write");
+    return AtomicFile("stdout", file);
   }
   if (!path.has_filename()) return fail_at(path.string(), "not a file name; name a file");
   struct stat status;
-  const bool exists = ::stat(path.c_str(), &status) == 0;
+  const bool replaces = special == Special::replaced;
+  const bool exists = (replaces ? ::lstat : ::stat)(path.c_str(), &status) == 0;
   if (!exists && errno == ELOOP) return system_failure(path, "cannot create the file");
   if (exists && S_ISDIR(status.st_mode)) {
     return fail_at(path.string(), "is a directory; name a file");
   }
+  if (replaces) return open_new(path, path);
   if (exists && ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0) {
     return system_failure(path, "cannot write the file");
   }
-  if (exists && is_written_in_place(path, status)) {
-    const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-    if (file < 0) return system_failure(path, "cannot write the file");
-    return AtomicFile(path, "", "", file);
-  }
+  if (exists && is_written_in_place(path, status)) return open_in_place(path);
   // A symbolic link stays, and the file that it points to is made or replaced, as by a shell.
   std::error_code failed;
   fs::path target = exists ? fs::canonical(path, failed) : behind_links(path);
   if (failed) return fail_at(path.string(), "cannot find the file: " + failed.message());
-  fs::path temporary;
-  const int file = create_in_folder_of(target, temporary);
-  if (file < 0 && !exists && target != path) {
-    return system_failure(path,
-                          fmt::format("cannot create {}, to which it links", target.string()));
+  return open_new(path, target);
+}
+
+Result<AtomicFile> AtomicFile::open_in_place(const fs::path& path) {
+  constexpr int look_again_ms = 10, attempts = 500;
+  // Without O_NONBLOCK, opening a pipe waits for a reader.
+  constexpr int flags = O_WRONLY | O_APPEND | O_CLOEXEC;
+  int file = ::open(path.c_str(), flags | O_NONBLOCK);
+  for (int i = 0; file < 0 && errno == ENXIO && i < attempts && !interrupted(); ++i) {
+    ::poll(nullptr, 0, look_again_ms);
+    file = ::open(path.c_str(), flags | O_NONBLOCK);
   }
-  if (file < 0) return system_failure(path, "cannot create the file");
-  return AtomicFile(path, std::move(target), std::move(temporary), file);
+  if (file < 0) return system_failure(path, "cannot write the file");
+  ::fcntl(file, F_SETFL, ::fcntl(file, F_GETFL) & ~O_NONBLOCK);
+  return AtomicFile(path, file);
+}
+
+Result<AtomicFile> AtomicFile::open_new(const fs::path& path, const fs::path& target) {
+  AtomicFile file(path, -1);
+  file.name_ = target.filename().string();
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  file.folder_ = ::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+  if (file.folder_ >= 0) file.descriptor_ = file.create();
+  if (file.descriptor_ >= 0) return file;
+  const int why = errno;
+  std::error_code ignored;
+  const bool is_link = fs::is_symlink(fs::symlink_status(path, ignored));
+  errno = why;
+  if (!is_link) return system_failure(path, "cannot create the file");
+  return system_failure(path, fmt::format("cannot create {}, to which it links", target.string()));
+}
+
+// Creates a new file in the folder. Returns its descriptor, or -1 with errno. The file has no name,
+// so that it disappears when this process is killed. If the file system does not support this, the
+// file gets a temporary name.
+int AtomicFile::create() {
+  const int nameless = ::openat(folder_, ".", O_WRONLY | O_TMPFILE | O_CLOEXEC, new_file_mode);
+  if (nameless >= 0) return nameless;
+  return with_free_name(name_, temporary_, [&](const char* name) {
+    return ::openat(folder_, name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, new_file_mode);
+  });
+}
+
+// Gives the file its name. Returns 0, or -1 with errno. If there is no old file, a nameless file
+// gets the name directly. Otherwise it gets a temporary name, and is then renamed. A kill between
+// these steps leaves the temporary file.
+int AtomicFile::give_name() {
+  if (temporary_.empty()) {
+    if (link_into(folder_, descriptor_, name_.c_str()) == 0) return 0;
+    const int named = with_free_name(
+        name_, temporary_, [&](const char* name) { return link_into(folder_, descriptor_, name); });
+    if (named != 0) {
+      temporary_.clear();
+      return -1;
+    }
+  }
+  if (::renameat(folder_, temporary_.c_str(), folder_, name_.c_str()) != 0) return -1;
+  temporary_.clear();
+  return 0;
 }
 
 Result<void> AtomicFile::write(std::string_view bytes) {
+  if (descriptor_ < 0) return {};
   while (!bytes.empty()) {
     const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
     if (count < 0 && errno == EINTR) continue;
@@ -338,36 +322,29 @@ Result<void> AtomicFile::write(std::string_view bytes) {
 }
 
 Result<void> AtomicFile::commit() {
-  const bool in_place = target_.empty();
+  if (descriptor_ < 0) return {};
   // Pipes and terminals cannot be flushed to disk.
+  const bool in_place = folder_ < 0;
   if (!in_place && ::fsync(descriptor_) != 0) {
     return system_failure(path_, "cannot write the file");
   }
-  const bool has_no_name = !in_place && temporary_.empty();
-  // If there is no old file, a nameless file gets the name `target_` directly. Otherwise it gets a
-  // temporary name, and is then renamed. A kill between these steps leaves the temporary file.
-  const bool is_in_place = in_place || (has_no_name && give_name(descriptor_, target_) == 0);
-  if (has_no_name && !is_in_place && name_in_folder_of(descriptor_, target_, temporary_) != 0) {
-    temporary_.clear();
-    return system_failure(path_, "cannot replace the file");
-  }
+  if (!in_place && give_name() != 0) return system_failure(path_, "cannot replace the file");
   if (::close(std::exchange(descriptor_, -1)) != 0) {
     return system_failure(path_, "cannot write the file");
   }
-  if (is_in_place) return {};
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
-    return system_failure(path_, "cannot replace the file");
-  }
-  temporary_.clear();
   return {};
 }
 
-Result<void> write_file(const std::filesystem::path& path, std::string_view bytes) {
-  if (path.empty()) return {};
-  auto file = AtomicFile::open(path);
+Result<void> AtomicFile::commit(std::string_view bytes) {
+  if (auto written = write(bytes); !written) return written;
+  return commit();
+}
+
+Result<void> write_file(const std::filesystem::path& path, std::string_view bytes,
+                        AtomicFile::Special special) {
+  auto file = AtomicFile::open(path, special);
   if (!file) return tl::unexpected(file.error());
-  if (auto written = file->write(bytes); !written) return written;
-  return file->commit();
+  return file->commit(bytes);
 }
 
 }  // namespace attest

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 
 #include "harness/core/result.hpp"
 
@@ -56,13 +57,23 @@ class FileHashes {
 };
 
 // A file that gets its name at commit(), when it is complete. Until then it is a temporary file in
-// the same folder. Open it early, to find an unwritable path before the work. Without commit() the
-// destructor removes it. If the file system supports files without a name (O_TMPFILE), it also
-// disappears when the process is killed before commit(). /dev/stdout, devices and pipes are written
-// to directly. `-` is stdout; all that the process prints there after open() goes to stderr.
+// the same folder. Open it before the work, and before the code of a port runs: open() follows
+// links and opens the folder, so what appears later at the path, such as a link or a pipe, is
+// replaced, and neither followed nor opened. open() also finds an unwritable path. Without commit()
+// the destructor removes the file. If the file system supports files without a name (O_TMPFILE), it
+// also disappears when the process is killed before commit().
+//
+// /dev/stdout, devices and pipes are written to directly. `-` is stdout; all that the process
+// prints there after open() goes to stderr. An empty path is no file: nothing is written.
 class AtomicFile {
  public:
-  static Result<AtomicFile> open(const std::filesystem::path& path);
+  // What open() does with a link, pipe or device at the path. `replaced`: for files in a folder
+  // that this command made, in which a port can have made it.
+  enum class Special { used, replaced };
+  // Errors: no file name, a directory, a file that cannot be written or made; a pipe that has no
+  // reader for 5 s.
+  static Result<AtomicFile> open(const std::filesystem::path& path,
+                                 Special special = Special::used);
   AtomicFile(AtomicFile&& other) noexcept;
   AtomicFile& operator=(AtomicFile&&) = delete;
   ~AtomicFile();
@@ -73,18 +84,26 @@ class AtomicFile {
   // Flushes the file to disk and gives it its name. Errors (disk full, directory gone) leave the
   // old file as it was. A file that is written to directly is only closed.
   Result<void> commit();
+  Result<void> commit(std::string_view bytes);  // write() before
 
  private:
-  AtomicFile(std::filesystem::path path, std::filesystem::path target,
-             std::filesystem::path temporary, int descriptor);
+  AtomicFile(std::filesystem::path path, int descriptor)
+      : path_(std::move(path)), descriptor_(descriptor) {}
+  static Result<AtomicFile> open_in_place(const std::filesystem::path& path);
+  static Result<AtomicFile> open_new(const std::filesystem::path& path,
+                                     const std::filesystem::path& target);
+  int create();
+  int give_name();
 
-  std::filesystem::path path_;       // as given, or "stdout"; for messages
-  std::filesystem::path target_;     // path_ with links followed; empty: written directly
-  std::filesystem::path temporary_;  // name until commit(); empty if the file has none
-  int descriptor_;                   // -1 once committed
+  std::filesystem::path path_;  // as given, or "stdout"; for messages
+  int descriptor_;              // -1: no file, or committed
+  int folder_ = -1;             // of the file; -1: written directly
+  std::string name_;            // in folder_: that of path_, with links followed
+  std::string temporary_;       // in folder_, until commit(); empty if the file has no name
 };
 
 // Writes a whole file with AtomicFile. For an empty path it does nothing.
-Result<void> write_file(const std::filesystem::path& path, std::string_view bytes);
+Result<void> write_file(const std::filesystem::path& path, std::string_view bytes,
+                        AtomicFile::Special special = AtomicFile::Special::used);
 
 }  // namespace attest

@@ -135,6 +135,11 @@ Result<TimingFile> read_timing(const std::filesystem::path& path) {
 }
 
 Result<void> write_timing(const TimingFile& timing, const std::filesystem::path& path) {
+  return AtomicFile::open(path).and_then(
+      [&](AtomicFile&& file) { return write_timing(timing, std::move(file)); });
+}
+
+Result<void> write_timing(const TimingFile& timing, AtomicFile file) {
   json root = {{"attest_timing", format},
                {"case", timing.case_id},
                {"case_sha256", timing.case_sha256},
@@ -146,7 +151,7 @@ Result<void> write_timing(const TimingFile& timing, const std::filesystem::path&
   if (timing.configuration.rate.attitude_unit) {
     root[attitude_ticks] = ticks_json(timing.ticks.attitude_unit);
   }
-  return write_file(path, text_of(root) + "\n");
+  return file.commit(text_of(root) + "\n");
 }
 
 Case with_timing(Case the_case, const TimingFile& timing) {

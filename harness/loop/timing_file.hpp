@@ -15,6 +15,7 @@
 #include <string>
 
 #include "harness/casefile/case.hpp"
+#include "harness/core/file.hpp"
 #include "harness/core/result.hpp"
 #include "harness/schedule/loop_timing.hpp"
 
@@ -31,6 +32,8 @@ struct TimingFile {
 // Errors, with the file: it cannot be read or written; it is not a timing file; its times decrease
 // (with the tick).
 Result<TimingFile> read_timing(const std::filesystem::path& path);
+Result<void> write_timing(const TimingFile& timing, AtomicFile file);
+// The same for the path of a file.
 Result<void> write_timing(const TimingFile& timing, const std::filesystem::path& path);
 
 // The first tick that does not follow the one before it as LoopTiming requires. Ticks have to be at

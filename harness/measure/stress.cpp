@@ -119,10 +119,10 @@ Result<StressResults> judge_live(const StressTask& task, StressMeasurement measu
     return results;
   }
   LiveFlight& flight = *measurement.flight;
-  if (!task.record_timing.empty()) {
+  if (task.record_timing) {
     const TimingFile timing{task.the_case.id(), task.the_case.sha256, task.configuration,
                             task.the_case.duration.amount, flight.timing()};
-    if (auto written = write_timing(timing, task.record_timing); !written) {
+    if (auto written = write_timing(timing, std::move(*task.record_timing)); !written) {
       return tl::unexpected(written.error());
     }
   }

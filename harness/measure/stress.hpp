@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/casefile/case.hpp"
+#include "harness/core/file.hpp"
 #include "harness/host/port_process.hpp"
 #include "harness/host/port_says.hpp"
 #include "harness/plant/plant.hpp"
@@ -70,7 +71,7 @@ struct StressTask {
   PortSays port;  // the port's declarations before the run
   LiveOptions live;
   Nanoseconds idle_duration{0};
-  std::string record_timing;                       // file for the timing; empty: not written
+  std::shared_ptr<AtomicFile> record_timing;       // for the timing; null: not written
   Nanoseconds timeout = std::chrono::seconds(10);  // for each answer of the port
 };
 

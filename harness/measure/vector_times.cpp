@@ -148,7 +148,7 @@ Result<CorpusTimes> time_corpus(const std::vector<SelectedCase>& cases, const Ti
 }
 
 Result<void> write_slowest(const CorpusTimes& times, const std::vector<SelectedCase>& cases,
-                           const HostOptions& host, const std::filesystem::path& file) {
+                           const HostOptions& host, AtomicFile file) {
   const VectorTimes* slowest = times.with_slowest_step();
   const Case* the_case = slowest ? find_case(cases, slowest->result.case_id()) : nullptr;
   if (!the_case) return fail("no vector was timed, so there is no slowest step to write");
@@ -160,7 +160,7 @@ Result<void> write_slowest(const CorpusTimes& times, const std::vector<SelectedC
   subject.instances = Instances::one;  // as it was timed
   if (const auto fault = (*started)->drive(subject, trace)) return fail(fault->what);
   trace.present = channels_of(the_case->module);
-  return write_csv(file, trace, all_columns(trace));
+  return write_csv(std::move(file), trace, all_columns(trace));
 }
 
 }  // namespace attest

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/casefile/select.hpp"
+#include "harness/core/file.hpp"
 #include "harness/host/port_process.hpp"
 #include "harness/realtime/histogram.hpp"
 #include "harness/verify/verdict.hpp"
@@ -58,6 +59,6 @@ Result<CorpusTimes> time_corpus(const std::vector<SelectedCase>& cases, const Ti
 // replay`. Runs the port again. Errors: no vector was timed, the port cannot be opened or has a
 // fault, the file cannot be written.
 Result<void> write_slowest(const CorpusTimes& times, const std::vector<SelectedCase>& cases,
-                           const HostOptions& host, const std::filesystem::path& file);
+                           const HostOptions& host, AtomicFile file);
 
 }  // namespace attest

@@ -20,13 +20,14 @@ Result<void> keep(const FlightSampler& sampler, std::uint64_t index, const fs::p
   std::error_code failed;
   fs::create_directories(cases, failed);
   if (failed) return fail_at(cases.string(), "cannot be made: " + failed.message());
-  auto written = write_file(cases / (kept_name(the_case.name, index) + ".toml"), sample->case_text);
+  auto written = write_file(cases / (kept_name(the_case.name, index) + ".toml"), sample->case_text,
+                            AtomicFile::Special::replaced);
   if (!written) return written;
   // The kept vehicle has no MJCF file, so its `mjcf_of` names the vehicle that has it.
   const std::string& other = sampler.nominal().vehicle_model->vehicle().mjcf_of;
   const std::string mjcf = other.empty() ? fmt::format("mjcf_of = \"{}\"\n", vehicle) : "";
   return write_file(folder / "models" / (kept_name(vehicle, index) + ".toml"),
-                    mjcf + sample->vehicle_text);
+                    mjcf + sample->vehicle_text, AtomicFile::Special::replaced);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include <string_view>
 #include <vector>
 
+#include "harness/core/file.hpp"
 #include "harness/core/result.hpp"
 #include "harness/trace/trace.hpp"
 #include "harness/trace/trace_parts.hpp"
@@ -89,9 +90,11 @@ struct CsvColumns {
 // Without plant/ columns.
 CsvColumns all_columns(const Trace& trace);
 
-// Writes with AtomicFile, so the file appears when it is complete. Errors: the file cannot be
-// written; a parameter that a column cannot represent, because it has no value at tick 0, or
-// because it changes at a tick without in/updated.parameter_update.
+// Writes the file, and commits it. Errors: the file cannot be written; a parameter that a column
+// cannot represent, because it has no value at tick 0, or because it changes at a tick without
+// in/updated.parameter_update.
+Result<void> write_csv(AtomicFile file, const Trace& trace, const CsvColumns& columns);
+// The same for the path of a file.
 Result<void> write_csv(const std::filesystem::path& path, const Trace& trace,
                        const CsvColumns& columns);
 

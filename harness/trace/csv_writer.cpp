@@ -72,14 +72,17 @@ CsvColumns all_columns(const Trace& trace) {
 
 Result<void> write_csv(const std::filesystem::path& path, const Trace& trace,
                        const CsvColumns& columns) {
+  return AtomicFile::open(path).and_then(
+      [&](AtomicFile&& file) { return write_csv(std::move(file), trace, columns); });
+}
+
+Result<void> write_csv(AtomicFile file, const Trace& trace, const CsvColumns& columns) {
   for (const std::string& parameter : columns.parameters) {
     if (auto checked = check_changes(trace, parameter); !checked) return checked;
   }
-  auto file = AtomicFile::open(path);
-  if (!file) return tl::unexpected(file.error());
   const std::vector<const Channel*> inputs = chosen(columns.channels, false);
   const std::vector<const Channel*> outputs = chosen(columns.channels, true);
-  CsvText text(*file);
+  CsvText text(file);
   for (const Channel* channel : inputs) text.name(channel->name);
   for (const std::string& parameter : columns.parameters) {
     text.name(fmt::format("{}{}", parameter_prefix, parameter));
@@ -104,7 +107,7 @@ Result<void> write_csv(const std::filesystem::path& path, const Trace& trace,
     text.end_row();
   }
   if (auto written = text.finish(); !written) return written;
-  return file->commit();
+  return file.commit();
 }
 
 }  // namespace attest

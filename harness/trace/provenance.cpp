@@ -279,7 +279,7 @@ Result<void> add_origin(const std::filesystem::path& folder, const std::string& 
   if (!provenance) return tl::unexpected(provenance.error());
   provenance->profile = profile;
   for (const auto& [stem, mixer] : mixers) provenance->mixers[stem] = mixer;
-  return write_file(folder / provenance_name, to_toml(*provenance));
+  return write_file(folder / provenance_name, to_toml(*provenance), AtomicFile::Special::replaced);
 }
 
 }  // namespace attest

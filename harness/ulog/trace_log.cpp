@@ -232,36 +232,40 @@ Result<void> write_ticks(const Trace& trace, const Topics& topics, ulog::Writer&
   return {};
 }
 
-Result<void> write_log(const std::filesystem::path& path, const Trace& trace) {
+Result<void> write_log(AtomicFile file, const Trace& trace) {
   const Module module = module_of(trace.present);
   if (!info_of(module).has_updated) {
-    return fail_at(path.string(),
+    return fail_at(file.path().string(),
                    "a ULog is for traces of the controller or of a unit of it; write a .csv");
   }
   const std::uint64_t start = trace.samples.empty() ? 0 : trace.samples.front().in.timestamp;
-  auto writer = ulog::Writer::open(path, start);
-  if (!writer) return tl::unexpected(writer.error());
+  ulog::Writer writer(std::move(file), start);
   const std::vector<LogTopic> layout = log_topics(module);  // the topics refer to it
   const Topics topics = topics_of(trace, layout);
-  if (auto set = writer->info("sys_name", "attest"); !set) return set;
+  if (auto set = writer.info("sys_name", "attest"); !set) return set;
   if (!trace.source.empty()) {
-    if (auto set = writer->info("attest_source", trace.source); !set) return set;
+    if (auto set = writer.info("attest_source", trace.source); !set) return set;
   }
-  if (auto set = write_parameters(PendingChanges(trace.parameters).take_until(0), *writer); !set) {
+  if (auto set = write_parameters(PendingChanges(trace.parameters).take_until(0), writer); !set) {
     return set;
   }
-  if (auto defined = define_topics(topics, *writer); !defined) return defined;
-  if (auto written = write_ticks(trace, topics, *writer); !written) return written;
-  return writer->commit();
+  if (auto defined = define_topics(topics, writer); !defined) return defined;
+  if (auto written = write_ticks(trace, topics, writer); !written) return written;
+  return writer.commit();
 }
 
 }  // namespace
 
 Result<void> write_trace(const std::filesystem::path& path, const Trace& trace) {
-  if (path.extension() == ".ulg") return write_log(path, trace);
+  return AtomicFile::open(path).and_then(
+      [&](AtomicFile&& file) { return write_trace(std::move(file), trace); });
+}
+
+Result<void> write_trace(AtomicFile file, const Trace& trace) {
+  if (file.path().extension() == ".ulg") return write_log(std::move(file), trace);
   CsvColumns columns = all_columns(trace);
   columns.plant = !trace.plant.empty();
-  return write_csv(path, trace, columns);
+  return write_csv(std::move(file), trace, columns);
 }
 
 }  // namespace attest

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "harness/core/file.hpp"
 #include "harness/core/result.hpp"
 #include "harness/trace/trace.hpp"
 
@@ -18,6 +19,8 @@ namespace attest {
 // published. If the module reads and publishes a topic, its own samples are in instance 0, those of
 // other modules in instance 1. Parameters are logged with their first values, and again when they
 // change. Errors: the file cannot be written; a ULog of a mixer or battery estimate.
+Result<void> write_trace(AtomicFile file, const Trace& trace);
+// The same for the path of a file.
 Result<void> write_trace(const std::filesystem::path& path, const Trace& trace);
 
 }  // namespace attest

@@ -48,14 +48,15 @@ Result<void> check_fields(const Format& format) {
 
 }  // namespace
 
-Result<Writer> Writer::open(const std::filesystem::path& path, std::uint64_t start_us) {
-  auto file = AtomicFile::open(path);
-  if (!file) return tl::unexpected(file.error());
-  Writer writer(*std::move(file));
-  writer.block_ = "ULog\x01\x12\x35\x01" + stored(start_us);
+Writer::Writer(AtomicFile file, std::uint64_t start_us) : file_(std::move(file)) {
+  block_ = "ULog\x01\x12\x35\x01" + stored(start_us);
   const std::string no_flags(40, '\0');
-  writer.block_ += stored(static_cast<std::uint16_t>(no_flags.size())) + 'B' + no_flags;
-  return writer;
+  block_ += stored(static_cast<std::uint16_t>(no_flags.size())) + 'B' + no_flags;
+}
+
+Result<Writer> Writer::open(const std::filesystem::path& path, std::uint64_t start_us) {
+  return AtomicFile::open(path).map(
+      [&](AtomicFile&& file) { return Writer(std::move(file), start_us); });
 }
 
 Result<void> Writer::write(char type, std::initializer_list<std::string_view> parts) {

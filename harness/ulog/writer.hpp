@@ -26,6 +26,7 @@ namespace attest::ulog {
 class Writer {
  public:
   // `start_us`: since the start of the system.
+  Writer(AtomicFile file, std::uint64_t start_us);
   static Result<Writer> open(const std::filesystem::path& path, std::uint64_t start_us);
 
   Result<void> info(std::string_view name, std::string_view text);  // also an error: empty text
@@ -46,7 +47,6 @@ class Writer {
   Result<void> commit();
 
  private:
-  explicit Writer(AtomicFile file) : file_(std::move(file)) {}
   Result<void> write(char type, std::initializer_list<std::string_view> parts);
   Result<void> write_value(char type, std::string_view key, std::string_view value);
 

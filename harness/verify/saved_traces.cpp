@@ -20,6 +20,9 @@ Result<void> make_below(std::filesystem::path folder, const std::filesystem::pat
     std::error_code failed;
     std::filesystem::create_directory(folder /= name, failed);
     if (failed) return fail_at(folder.string(), "cannot be made: " + failed.message());
+    if (std::filesystem::is_symlink(folder)) {
+      return fail_at(folder.string(), "is a link, which attest did not make");
+    }
   }
   return {};
 }
@@ -33,13 +36,19 @@ Result<void> write_traces(const TraceFiles& files, const std::string& label, con
   }
   if (auto added = add_origin(folder, subject.profile, mixers); !added) return added;
   CsvColumns columns = all_columns(traces.want);
-  auto written = write_csv(files.want, traces.want, columns);
+  const auto write = [](const std::filesystem::path& path, const Trace& trace,
+                        const CsvColumns& of_trace) {
+    return AtomicFile::open(path, AtomicFile::Special::replaced).and_then([&](AtomicFile&& file) {
+      return write_csv(std::move(file), trace, of_trace);
+    });
+  };
+  auto written = write(files.want, traces.want, columns);
   if (!written || traces.got.samples.empty()) return written;
   columns.plant = !traces.got.plant.empty();
-  written = write_csv(files.got, traces.got, columns);
+  written = write(files.got, traces.got, columns);
   if (!written || traces.tolerances.level() == Level::events) return written;
   const Trace allowed = allowed_deviations(traces.want, traces.tolerances);
-  return write_csv(files.tolerance, allowed, all_columns(allowed));
+  return write(files.tolerance, allowed, all_columns(allowed));
 }
 
 std::string label_of(const CaseResult& result, Module module) {

@@ -215,13 +215,70 @@ TEST(AtomicFile, AppendsToAnOrdinaryFileBehindAFileDescriptor) {
   EXPECT_EQ(read_file(path), "before\nafter\n");
 }
 
+TEST(AtomicFile, OfAnEmptyPathIsNoFile) {
+  auto file = AtomicFile::open("");
+  ASSERT_TRUE(file);
+  EXPECT_TRUE(file->commit("text"));
+}
+
+// Puts a pipe or a link to `victim` at the path.
+class Redirected : public testing::TestWithParam<bool> {
+ protected:
+  Redirected() { std::ofstream(victim_) << "kept"; }
+
+  void redirect() const {
+    fs::remove(path_);
+    if (GetParam()) {
+      ASSERT_EQ(::mkfifo(path_.c_str(), 0600), 0);
+    } else {
+      fs::create_symlink(victim_, path_);
+    }
+  }
+  void expect_file_only() const {
+    EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(path_)));
+    EXPECT_EQ(*read_file(path_), "text");
+    EXPECT_EQ(*read_file(victim_), "kept");
+  }
+
+  TemporaryDirectory directory_;
+  fs::path path_ = directory_.path() / "report", victim_ = directory_.path() / "victim";
+};
+
+INSTANTIATE_TEST_SUITE_P(PipeOrLink, Redirected, testing::Bool());
+
+TEST_P(Redirected, AfterOpenTheFileReplacesIt) {
+  auto file = AtomicFile::open(path_);
+  ASSERT_TRUE(file);
+  redirect();
+  EXPECT_TRUE(file->commit("text"));
+  expect_file_only();
+}
+
+TEST_P(Redirected, BeforeOpenItIsReplacedIfWanted) {
+  redirect();
+  EXPECT_TRUE(write_file(path_, "text", AtomicFile::Special::replaced));
+  expect_file_only();
+}
+
+TEST(AtomicFile, StaysInTheFolderThatItWasOpenedIn) {
+  const TemporaryDirectory directory;
+  const fs::path folder = directory.path() / "folder", moved = directory.path() / "moved";
+  fs::create_directory(folder);
+  auto file = AtomicFile::open(folder / "report");
+  ASSERT_TRUE(file);
+  fs::rename(folder, moved);
+  fs::create_directory_symlink(directory.path(), folder);
+  EXPECT_TRUE(file->commit("text"));
+  EXPECT_EQ(*read_file(moved / "report"), "text");
+  EXPECT_FALSE(fs::exists(directory.path() / "report"));
+}
+
 TEST(AtomicFile, SaysAtOnceWhyItCannot) {
   const TemporaryDirectory directory;
   const std::string here = directory.path().string();
   EXPECT_EQ(AtomicFile::open(here).error().to_string(), here + ": is a directory; name a file");
   EXPECT_EQ(AtomicFile::open(here + "/").error().to_string(),
             here + "/: not a file name; name a file");
-  EXPECT_EQ(AtomicFile::open("").error().to_string(), "not a file name; name a file");
   EXPECT_EQ(AtomicFile::open(here + "/no/a.csv").error().to_string(),
             here + "/no/a.csv: cannot create the file: No such file or directory");
 }

@@ -28,9 +28,10 @@ inline StressMeasurement one_tick_flight(Nanoseconds commanded) {
 
 inline Result<TimingFile> written_times(StressTask task, StressMeasurement measured) {
   const TemporaryDirectory directory;
-  task.record_timing = directory.path() / "timing.json";
+  const auto path = directory.path() / "timing.json";
+  task.record_timing = std::make_shared<AtomicFile>(*AtomicFile::open(path));
   const auto judged = judge_live(task, std::move(measured));
-  return judged ? read_timing(task.record_timing) : tl::unexpected(judged.error());
+  return judged ? read_timing(path) : tl::unexpected(judged.error());
 }
 
 }  // namespace attest

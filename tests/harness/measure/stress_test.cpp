@@ -196,9 +196,8 @@ TEST(JudgeLive, WritesTheTimesOfTheFlightWhereTheTaskSaysSo) {
 }
 
 TEST(JudgeLive, TimesThatCannotBeWrittenAreAnError) {
-  const TemporaryDirectory directory;
   StressTask task = hover_task();
-  task.record_timing = directory.path() / "no_such_folder" / "timing.json";
+  task.record_timing = std::make_shared<AtomicFile>(*AtomicFile::open("/dev/full"));
   EXPECT_FALSE(judge_live(task, measured_flight()));
 }
 

@@ -51,7 +51,7 @@ class WriteSlowest : public testing::Test {
     HostOptions here;
     here.in_process = true;
     here.start = start;
-    return write_slowest(times_, cases_, here, file_);
+    return write_slowest(times_, cases_, here, *AtomicFile::open(file_));
   }
 
   Trace written() {
