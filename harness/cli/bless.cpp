@@ -195,9 +195,7 @@ int bless_command(const BlessOptions& options, const Globals& globals) {
         {"stdin is not a terminal; pass --yes to replace goldens without a question"});
   }
   const auto code = bless_selected(options, globals);
-  if (code) return *code;
-  report_error(code.error());
-  return interrupted() ? exit_interrupted : exit_usage;
+  return code ? *code : report_error(code.error());
 }
 
 }  // namespace attest::cli

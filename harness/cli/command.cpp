@@ -33,8 +33,10 @@ Result<std::vector<SelectedCase>> failed_in(const std::string& report,
 }  // namespace
 
 int report_error(const Error& error) {
-  if (interrupted()) {
-    std::fputs("attest: interrupted\n", stderr);
+  if (interrupted()) {  // a reader may have ended with another message
+    const bool says_more = error.message.starts_with("interrupted");
+    std::fputs(fmt::format("attest: {}\n", says_more ? error.message : "interrupted").c_str(),
+               stderr);
     return exit_interrupted;
   }
   // Not through fmt::print: it throws when stderr cannot be written.

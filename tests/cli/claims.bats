@@ -48,7 +48,8 @@ hash_of_program() {
 
 @test "the hash of a program covers all files that its command names" {
   echo "import sys; sys.path.insert(0, '$SOURCE/controller/starters/python')" >port.py
-  echo "import port; port.main()" >>port.py
+  # The files that the handshake names come after these.
+  echo "import port; port.files_of_program = lambda: []; port.main()" >>port.py
   before=$(hash_of_program 1)
   [ "$before" = "$(sha256sum "$PYTHON" port.py "$SOURCE/README.md" | cut -d ' ' -f 1 |
     sha256sum | cut -d ' ' -f 1)" ]
