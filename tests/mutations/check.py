@@ -3,10 +3,10 @@
 
     check.py [--only NAME]... [--room ROOM]... [--applies]
 
-A folder here has the name of a room of harness/. Each of its patches is applied to a copy of the
-tree; then the room's tests are built and run. The mutation is noticed if they fail. The text at the
-head of a patch describes the mutation. A line `Survives: why` there marks a mutation that the tests
-need not notice. It is an error if they notice a marked mutation.
+A folder here has the name of a room of harness/, or is `elementary`. Each of its patches is
+applied to a copy of the tree; then the room's tests are built and run. The mutation is noticed if
+they fail. The text at the head of a patch describes the mutation. A line `Survives: why` there
+marks a mutation that the tests need not notice. It is an error if they notice a marked mutation.
 
 Prints a table and the score. Exits 1 if fewer than 95% are noticed, an unmarked mutation survives
 or a marked one is noticed; 2 if a patch does not apply or the code does not compile. --applies only
