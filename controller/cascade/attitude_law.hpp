@@ -13,6 +13,7 @@
 
 #include "controller/cascade/gains.hpp"
 #include "controller/cascade/rotation.hpp"
+#include "controller/elementary/elementary.hpp"
 #include "controller/reference/inline.hpp"
 
 namespace attest::cascade {
@@ -59,10 +60,10 @@ struct AttitudeStages {
 
   // The rotation by the share of the yaw error that is corrected.
   ATTEST_INLINE static Q weighted_yaw(Scalar w, Scalar z, Scalar weight) {
-    using std::acos;
-    using std::asin;
-    using std::cos;
-    using std::sin;
+    using elementary::acos;
+    using elementary::asin;
+    using elementary::cos;
+    using elementary::sin;
     return {cos(weight * acos(w)), Scalar(0), Scalar(0), sin(weight * asin(z))};
   }
 

@@ -13,6 +13,7 @@
 
 #include "controller/cascade/profile.hpp"
 #include "controller/cascade/scalar_math.hpp"
+#include "controller/elementary/elementary.hpp"
 #include "controller/reference/inline.hpp"
 #include "controller/reference/ordered.hpp"
 
@@ -134,8 +135,8 @@ ATTEST_INLINE Quaternion<Scalar> shortest_rotation(const Vector3<Scalar>& a,
 // A rotation by |{x, y}| [rad] about the horizontal axis {x, y, 0}.
 template <typename Scalar>
 ATTEST_INLINE Quaternion<Scalar> rotation_about(Scalar x, Scalar y) {
-  using std::cos;
-  using std::sin;
+  using elementary::cos;
+  using elementary::sin;
   const Vector3<Scalar> v(x, y, Scalar(0));
   const Scalar angle = length(v);
   if (angle < Scalar(1e-10f)) return identity<Scalar>();
@@ -147,8 +148,8 @@ ATTEST_INLINE Quaternion<Scalar> rotation_about(Scalar x, Scalar y) {
 // A rotation by `yaw` [rad] about z.
 template <typename Scalar>
 ATTEST_INLINE Quaternion<Scalar> yaw_rotation(Scalar yaw) {
-  using std::cos;
-  using std::sin;
+  using elementary::cos;
+  using elementary::sin;
   return {cos(yaw / Scalar(2)), Scalar(0), Scalar(0), sin(yaw / Scalar(2))};
 }
 
@@ -156,8 +157,8 @@ ATTEST_INLINE Quaternion<Scalar> yaw_rotation(Scalar yaw) {
 template <typename Scalar>
 int pole_at(Scalar R20) {
   constexpr float half_pi = 1.57079637f, near_pole = 0.001f;
+  using elementary::asin;
   using std::abs;
-  using std::asin;
   const Scalar pitch = asin(-R20);
   if (abs(pitch - Scalar(half_pi)) < Scalar(near_pole)) return 1;
   return abs(pitch + Scalar(half_pi)) < Scalar(near_pole) ? -1 : 0;
@@ -167,8 +168,8 @@ int pole_at(Scalar R20) {
 // axis, and the whole angle counts as yaw.
 template <typename Scalar>
 Scalar heading(const Quaternion<Scalar>& q, const ProfileTraits& law) {
+  using elementary::atan2;
   using std::abs;
-  using std::atan2;
   const Scalar two = 2;
   const Scalar R20 = two * (q[1] * q[3] - q[0] * q[2]);
   // asin is expensive, so pole_at() is called only near a pole: asin(0.99) is 0.14 rad short of it.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "controller/elementary/elementary.hpp"
 #include "controller/faults/groups.hpp"
 
 namespace attest::faults {
@@ -51,7 +52,7 @@ void change_tilt_axis(FaultyLaw& law, Axis axis) {
     tilt.cosine = ordered::dot<float>(R_WB.col(2), R_WD.col(2));
     if (tilt.sine > 0) {
       tilt.axis_B = tilt.rotation_B / tilt.sine;
-      tilt.rotation_B = tilt.axis_B * std::atan2(tilt.sine, tilt.cosine);
+      tilt.rotation_B = tilt.axis_B * elementary::atan2(tilt.sine, tilt.cosine);
     }
     return tilt;
   };
@@ -146,43 +147,45 @@ const Fault attitude_list[] = {
     {"tilt-by-asin", "attitude", Stage::tilt, "uses asin instead of atan2", "a tilt beyond 90 deg",
      "atan2 arguments",
      [](FaultyLaw& law) {
-       change_tilt_angle(law, [](float s, float) { return std::asin(std::min(s, 1.0f)); });
+       change_tilt_angle(law, [](float s, float) { return elementary::asin(std::min(s, 1.0f)); });
      }},
     {"tilt-by-acos", "attitude", Stage::tilt, "uses acos, which has no resolution near 0",
      "a tilt of a fraction of a degree", "atan2 arguments",
      [](FaultyLaw& law) {
-       change_tilt_angle(law, [](float, float c) { return std::acos(std::clamp(c, -1.0f, 1.0f)); });
+       change_tilt_angle(
+           law, [](float, float c) { return elementary::acos(std::clamp(c, -1.0f, 1.0f)); });
      }},
     {"tilt-atan2-exchanged", "attitude", Stage::tilt, "exchanges the arguments of atan2",
      "any tilt except 45 deg", "atan2 arguments",
      [](FaultyLaw& law) {
-       change_tilt_angle(law, [](float s, float c) { return std::atan2(c, s); });
+       change_tilt_angle(law, [](float s, float c) { return elementary::atan2(c, s); });
      }},
     {"tilt-atan", "attitude", Stage::tilt, "uses atan(s / c)", "a tilt beyond 90 deg",
      "atan2 arguments",
      [](FaultyLaw& law) {
-       change_tilt_angle(law, [](float s, float c) { return std::atan(s / c); });
+       change_tilt_angle(law, [](float s, float c) { return elementary::atan2(s / c, 1.0f); });
      }},
     {"tilt-in-degrees", "attitude", Stage::tilt, "leaves the tilt in degrees", "any tilt error",
      "degrees",
      [](FaultyLaw& law) {
-       change_tilt_angle(law, [](float s, float c) { return std::atan2(s, c) * (180 / pi); });
+       change_tilt_angle(law,
+                         [](float s, float c) { return elementary::atan2(s, c) * (180 / pi); });
      }},
     {"tilt-halved", "attitude", Stage::tilt, "uses half of the angle, as in a quaternion",
      "any tilt error", "quaternion order",
      [](FaultyLaw& law) {
-       change_tilt_angle(law, [](float s, float c) { return std::atan2(s, c) / 2; });
+       change_tilt_angle(law, [](float s, float c) { return elementary::atan2(s, c) / 2; });
      }},
     {"tilt-not-normalised", "attitude", Stage::tilt, "does not divide the axis by its length",
      "any tilt error", "a missing normalisation",
      [](FaultyLaw& law) {
-       change_tilt_angle(law, [](float s, float c) { return std::atan2(s, c) * s; });
+       change_tilt_angle(law, [](float s, float c) { return elementary::atan2(s, c) * s; });
      }},
     {"tilt-dead-zone", "attitude", Stage::tilt, "treats tilts below 0.01 rad as 0",
      "a tilt error below 0.6 deg", "a helpful extra",
      [](FaultyLaw& law) {
        change_tilt_angle(law, [](float sine, float cosine) {
-         const float angle = std::atan2(sine, cosine);
+         const float angle = elementary::atan2(sine, cosine);
          return angle < 0.01f ? 0.0f : angle;
        });
      }},

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "controller/elementary/elementary.hpp"
 #include "controller/faults/cascade_change.hpp"
 #include "controller/faults/groups.hpp"
 
@@ -27,7 +28,8 @@ Quat conjugated(const Quat& q) { return {q[0], -q[1], -q[2], -q[3]}; }
 Vector rotation_angle(const Quat& error) {
   const Vector axis = cascade::imaginary_part(error);
   const float sine = cascade::length(axis);
-  return sine < 1e-9f ? Vector(axis * 2) : Vector(axis * (2 * std::atan2(sine, error[0]) / sine));
+  return sine < 1e-9f ? Vector(axis * 2)
+                      : Vector(axis * (2 * elementary::atan2(sine, error[0]) / sine));
 }
 
 template <int one, int other>

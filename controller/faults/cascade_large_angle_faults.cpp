@@ -2,6 +2,7 @@
 // axes of a half turn, headings near the poles.
 #include <cmath>
 
+#include "controller/elementary/elementary.hpp"
 #include "controller/faults/cascade_change.hpp"
 #include "controller/faults/groups.hpp"
 
@@ -37,7 +38,7 @@ void change_half_turn_axis(FaultyLaw& law, Axis axis) {
 Scalar heading_without_poles(const Quat& q, const CascadeTraits& law) {
   const float R00 = law.squares_heading ? q[0] * q[0] + q[1] * q[1] - q[2] * q[2] - q[3] * q[3]
                                         : 1 - 2 * (q[2] * q[2] + q[3] * q[3]);
-  return std::atan2(2 * (q[1] * q[2] + q[0] * q[3]), R00);
+  return elementary::atan2(2 * (q[1] * q[2] + q[0] * q[3]), R00);
 }
 
 const Fault half_turn_list[] = {
@@ -137,9 +138,9 @@ const Fault half_turn_list[] = {
          const Vector axis = cascade::imaginary_part(r);
          const float half = cascade::length(axis);
          if (half < 0.70710678f) return r;
-         const float angle = std::asin(std::min(1.0f, 2 * half * std::abs(r[0])));
-         const Vector imaginary = axis * (std::sin(angle / 2) / half);
-         return Quat(std::cos(angle / 2), imaginary[0], imaginary[1], imaginary[2]);
+         const float angle = elementary::asin(std::min(1.0f, 2 * half * std::abs(r[0])));
+         const Vector imaginary = axis * (elementary::sin(angle / 2) / half);
+         return Quat(elementary::cos(angle / 2), imaginary[0], imaginary[1], imaginary[2]);
        };
      }},
     {"cascade-error-sign-of-w", "large_angle", Stage::tilt,

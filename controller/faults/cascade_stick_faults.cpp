@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "controller/elementary/elementary.hpp"
 #include "controller/faults/cascade_change.hpp"
 #include "controller/faults/groups.hpp"
 
@@ -31,8 +32,8 @@ void change_tilt_limit(FaultyLaw& law, Limit limit) {
 
 // Rotates by the roll angle first, then by the pitch angle.
 Quat tilt_of_angles(const Vector& v) {
-  const Quat roll(std::cos(v[0] / 2), std::sin(v[0] / 2), 0, 0);
-  const Quat pitch(std::cos(v[1] / 2), 0, std::sin(v[1] / 2), 0);
+  const Quat roll(elementary::cos(v[0] / 2), elementary::sin(v[0] / 2), 0, 0);
+  const Quat pitch(elementary::cos(v[1] / 2), 0, elementary::sin(v[1] / 2), 0);
   return product(pitch, roll);
 }
 
@@ -209,7 +210,7 @@ const Fault stick_list[] = {
      "takes the heading from q0 and q3 alone", "a large tilt", "a shortcut",
      [](FaultyLaw& law) {
        law.attitude_unit.sticks.heading = [](const Quat& q, const CascadeTraits&) {
-         return cascade::wrap(2 * std::atan2(q[3], q[0]));
+         return cascade::wrap(2 * elementary::atan2(q[3], q[0]));
        };
      }},
     {"cascade-vtol-tilt-missing", "sticks", Stage::sticks,

@@ -1,6 +1,7 @@
 // Mistakes of the rate unit of the cascade in the low-pass of the yaw torque.
 #include <cmath>
 
+#include "controller/elementary/elementary.hpp"
 #include "controller/faults/cascade_change.hpp"
 #include "controller/faults/groups.hpp"
 
@@ -116,7 +117,7 @@ const Fault yaw_filter_list[] = {
        change_yaw_filter(law, [](LowPass& filter, Scalar torque, Scalar dt_s,
                                  const RateUnitGains& gains, const CascadeTraits&) {
          const float tau_s = gains.yaw_torque_tau_s;
-         const float weight = tau_s > 0 ? 1 - std::exp(-dt_s / tau_s) : 1.0f;
+         const float weight = tau_s > 0 ? 1 - elementary::exp(-dt_s / tau_s) : 1.0f;
          return filter.state += weight * (torque - filter.state);
        });
      }},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "controller/elementary/elementary.hpp"
 #include "controller/faults/cascade_change.hpp"
 #include "controller/faults/groups.hpp"
 
@@ -14,7 +15,7 @@ template <typename Angle>
 void change_yaw_angle(FaultyLaw& law, Angle angle) {
   law.attitude_unit.attitude.weighted_yaw = [angle](Scalar w, Scalar z, Scalar weight) {
     const Scalar half = angle(w, z, weight);
-    return Quat(std::cos(half), 0, 0, std::sin(half));
+    return Quat(elementary::cos(half), 0, 0, elementary::sin(half));
   };
 }
 
@@ -71,7 +72,7 @@ const Fault yaw_weight_list[] = {
     {"cascade-yaw-weight-ignored", "yaw_weight", Stage::blend, "corrects the whole yaw error",
      "any yaw error", "a missing weight",
      [](FaultyLaw& law) {
-       change_yaw_angle(law, [](Scalar, Scalar z, Scalar) { return std::asin(z); });
+       change_yaw_angle(law, [](Scalar, Scalar z, Scalar) { return elementary::asin(z); });
      }},
     {"cascade-yaw-dropped", "yaw_weight", Stage::blend, "does not correct yaw", "any yaw error",
      "a missing term",
@@ -79,24 +80,27 @@ const Fault yaw_weight_list[] = {
     {"cascade-yaw-by-acos", "yaw_weight", Stage::blend, "takes the yaw angle from acos: no sign",
      "a yaw error to the left", "a sign",
      [](FaultyLaw& law) {
-       change_yaw_angle(law, [](Scalar w, Scalar, Scalar weight) { return weight * std::acos(w); });
+       change_yaw_angle(
+           law, [](Scalar w, Scalar, Scalar weight) { return weight * elementary::acos(w); });
      }},
     {"cascade-yaw-weight-on-sine", "yaw_weight", Stage::blend,
      "weighs the sine of the yaw, not its angle", "a yaw error of 120 deg", "another weight",
      [](FaultyLaw& law) {
-       change_yaw_angle(law, [](Scalar, Scalar z, Scalar weight) { return std::asin(weight * z); });
+       change_yaw_angle(
+           law, [](Scalar, Scalar z, Scalar weight) { return elementary::asin(weight * z); });
      }},
     {"cascade-yaw-weight-twice", "yaw_weight", Stage::blend, "applies the weight twice",
      "any yaw error", "a factor twice",
      [](FaultyLaw& law) {
-       change_yaw_angle(
-           law, [](Scalar, Scalar z, Scalar weight) { return weight * weight * std::asin(z); });
+       change_yaw_angle(law, [](Scalar, Scalar z, Scalar weight) {
+         return weight * weight * elementary::asin(z);
+       });
      }},
     {"cascade-yaw-weight-inverted", "yaw_weight", Stage::blend,
      "corrects the share 1 - MC_YAW_WEIGHT", "any yaw error", "a complement",
      [](FaultyLaw& law) {
        change_yaw_angle(
-           law, [](Scalar, Scalar z, Scalar weight) { return (1 - weight) * std::asin(z); });
+           law, [](Scalar, Scalar z, Scalar weight) { return (1 - weight) * elementary::asin(z); });
      }},
     {"cascade-not-reduced", "yaw_weight", Stage::blend,
      "corrects the whole error in one rotation, without priority of the tilt", "a yaw error",

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "controller/elementary/elementary.hpp"
 #include "controller/faults/groups.hpp"
 
 namespace attest::faults {
@@ -38,7 +39,7 @@ const Fault yaw_list[] = {
     {"yaw-reversed", "attitude", Stage::yaw, "has the yaw error's sign wrong", "any yaw error",
      "handedness",
      [](FaultyLaw& law) {
-       change_yaw_error(law, [](float s, float c) { return -std::atan2(s, c); });
+       change_yaw_error(law, [](float s, float c) { return -elementary::atan2(s, c); });
      }},
     {"yaw-as-sine", "attitude", Stage::yaw, "uses the sine as the yaw error",
      "a yaw error of 20 deg", "a small-angle shortcut",
@@ -46,13 +47,13 @@ const Fault yaw_list[] = {
     {"yaw-atan2-exchanged", "attitude", Stage::yaw, "exchanges the arguments of the yaw's atan2",
      "any yaw error except 45 deg", "atan2 arguments",
      [](FaultyLaw& law) {
-       change_yaw_error(law, [](float s, float c) { return std::atan2(c, s); });
+       change_yaw_error(law, [](float s, float c) { return elementary::atan2(c, s); });
      }},
     {"yaw-positive", "attitude", Stage::yaw, "wraps the yaw error to 0 .. 2 pi",
      "a yaw error to the left", "angle wrapping",
      [](FaultyLaw& law) {
        change_yaw_error(law, [](float s, float c) {
-         const float angle = std::atan2(s, c);
+         const float angle = elementary::atan2(s, c);
          return angle < 0 ? angle + 2 * pi : angle;
        });
      }},
@@ -62,7 +63,7 @@ const Fault yaw_list[] = {
      [](FaultyLaw& law) {
        law.attitude.yaw_error = [](const Vector& nose, const Matrix& R_WD, float weight) {
          const Vector x = R_WD.col(0);
-         return std::atan2(ordered::cross(nose, x)[2], ordered::dot(nose, x)) * weight;
+         return elementary::atan2(ordered::cross(nose, x)[2], ordered::dot(nose, x)) * weight;
        };
      }},
     {"yaw-about-x", "attitude", Stage::yaw, "computes the yaw error's sine along x_sp",
@@ -70,7 +71,7 @@ const Fault yaw_list[] = {
      [](FaultyLaw& law) {
        law.attitude.yaw_error = [](const Vector& nose, const Matrix& R_WD, float weight) {
          const Vector x = R_WD.col(0);
-         return std::atan2(ordered::dot(ordered::cross(nose, x), x), ordered::dot(nose, x)) *
+         return elementary::atan2(ordered::dot(ordered::cross(nose, x), x), ordered::dot(nose, x)) *
                 weight;
        };
      }},
@@ -115,7 +116,7 @@ const Fault yaw_list[] = {
      "yaw with a large tilt error", "a small-angle shortcut",
      [](FaultyLaw& law) {
        change_rodrigues(law, [](const Tilt& t) {
-         return std::pair(std::atan2(t.sine, t.cosine), 1 - t.cosine);
+         return std::pair(elementary::atan2(t.sine, t.cosine), 1 - t.cosine);
        });
      }},
     {"cross-matrix-not-zeroed", "attitude", Stage::yaw,

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <utility>
 
+#include "controller/elementary/elementary.hpp"
 #include "controller/reference/gains.hpp"
 #include "controller/reference/inline.hpp"
 #include "controller/reference/ordered.hpp"
@@ -51,7 +52,7 @@ struct AttitudeStages {
     tilt.rotation_B = ordered::transpose_times(R_WB, ordered::cross(z_B_W, z_D_W));
     tilt.sine = ordered::length(tilt.rotation_B);
     tilt.cosine = ordered::dot(z_B_W, z_D_W);
-    using std::atan2;
+    using elementary::atan2;
     if (tilt.sine > Scalar(0)) {
       const Scalar angle = atan2(tilt.sine, tilt.cosine);
       tilt.axis_B = tilt.rotation_B / tilt.sine;
@@ -80,7 +81,7 @@ struct AttitudeStages {
   ATTEST_INLINE static Scalar yaw_error(const Vector& nose_W, const Matrix& R_WD, Scalar weight) {
     const Vector x_D_W = R_WD.col(0);
     const Vector z_D_W = R_WD.col(2);
-    using std::atan2;  // a user-defined scalar type provides its own overload
+    using elementary::atan2;  // a user-defined scalar type provides its own overload
     return atan2(ordered::dot(ordered::cross(nose_W, x_D_W), z_D_W), ordered::dot(nose_W, x_D_W)) *
            weight;
   }

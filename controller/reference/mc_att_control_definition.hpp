@@ -6,6 +6,7 @@
 
 #include "controller/reference/inline.hpp"
 #include "controller/reference/mc_att_control.hpp"
+#include "controller/reference/tailsitter_recovery_definition.hpp"
 
 namespace attest::reference {
 
