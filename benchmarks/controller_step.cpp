@@ -1,10 +1,14 @@
-// One step of the reference against the same law written by hand in C (the C starter). Both run
-// through the ABI and come from the same compiler. The inputs are recorded from the firmware, with
-// every mode, every tilt and parameter changes.
+// One step of the reference against the same law written by hand in C (the C starter), and against
+// the same law with the C library's elementary functions. All run through the ABI and come from the
+// same compiler. The inputs are recorded from the firmware, with every mode, every tilt and
+// parameter changes.
 #include <benchmark/benchmark.h>
 
+#include "benchmarks/host_functions.hpp"
 #include "controller/attest_unit.h"
+#include "controller/reference/mc_att_control_definition.hpp"
 #include "controller/reference/unit.hpp"
+#include "controller/reference/unit_table.hpp"
 #include "harness/trace/csv.hpp"
 
 extern "C" const attest_unit* attest_floor_unit(void);
@@ -36,9 +40,16 @@ void step(benchmark::State& state, const attest_unit* unit) {
 
 void reference_step(benchmark::State& state) { step(state, reference::reference_unit()); }
 void by_hand_step(benchmark::State& state) { step(state, attest_floor_unit()); }
+void host_functions_step(benchmark::State& state) {
+  using Controller = reference::McAttControl<HostFloat>;
+  static constexpr attest_unit unit = reference::UnitTable<Controller>::named("host", "1");
+  step(state, &unit);
+}
 
 BENCHMARK(reference_step)->Name("step/reference");
 BENCHMARK(by_hand_step)->Name("step/by_hand");
+BENCHMARK(reference_step)->Name("elementary/controller_own");
+BENCHMARK(host_functions_step)->Name("elementary/controller_host");
 
 }  // namespace
 }  // namespace attest::bench
