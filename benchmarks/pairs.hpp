@@ -14,7 +14,7 @@ struct Pair {
   std::string what;      // "controller step"
   std::string measured;  // names of the two benchmarks
   std::string floor;
-  double bound;            // of measured time / floor time; 0: one of the bounds below
+  double bound;            // of measured time / floor time; 0: one below; infinity: no bound
   std::string claim;       // the bound in words: "at most 1.15x the hand-written law"
   double beyond_s = 0;     // bound of the difference of the two times
   double at_most_s = 0;    // bound of the measured time; the floor shows what the machine adds
