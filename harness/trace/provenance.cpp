@@ -83,15 +83,6 @@ std::map<std::string, double> read_numbers(const TomlTable& root, std::string_vi
   return numbers;
 }
 
-std::map<std::string, double> read_tolerances(const TomlTable& root) {
-  constexpr const char* key = "tolerances";
-  const auto tolerances = read_numbers(root, key);
-  for (const auto& [stem, value] : tolerances) {
-    if (!(value >= 0)) root.table(key).error(stem, "a tolerance must not be negative");
-  }
-  return tolerances;
-}
-
 // Two values have the same canonical bits if they are the same in a trace file: -0 and 0 differ,
 // all NaN are equal.
 std::uint64_t canonical_bits(double value) {
@@ -179,7 +170,6 @@ Result<Provenance> parse_provenance(std::string_view text, const std::filesystem
   }
   if (root.has("covers")) provenance.covers = root.texts("covers");
   provenance.mixers = read_texts(root, "mixers");
-  provenance.tolerances = read_tolerances(root);
   provenance.sha256 = read_texts(root, "sha256");
   provenance.base = root.text("base", "");
   provenance.base_sha256 = read_texts(root, "base_sha256");
@@ -211,7 +201,6 @@ std::string to_toml(const Provenance& provenance) {
   set("base", provenance.base);
   write_constants(provenance.constants, toml);
   for (const auto& [stem, geometry] : provenance.mixers) toml.set("mixers", stem, geometry);
-  for (const auto& [stem, value] : provenance.tolerances) toml.set("tolerances", stem, value);
   for (const auto& [name, hash] : provenance.sha256) toml.set("sha256", name, hash);
   for (const auto& [name, hash] : provenance.base_sha256) toml.set("base_sha256", name, hash);
   for (const auto& [stem, value] : provenance.horizon_s) toml.set("horizon_s", stem, value);

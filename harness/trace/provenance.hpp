@@ -24,9 +24,6 @@ struct Provenance {
   std::map<std::string, double> constants;  // channel or in/parameter.<NAME> -> value
   std::map<std::string, std::string>
       mixers;  // stem of a mixer trace -> "R: 4x 8000 9000 5000 1500"
-  // Stem of a trace -> absolute tolerance of its outputs. Only for traces whose last bits depend on
-  // the platform's transcendental functions.
-  std::map<std::string, double> tolerances;
   std::map<std::string, std::string> sha256;  // file name -> hash
   // A folder of other traces, as a path relative to this folder; empty if there is no base. A trace
   // here takes the columns and constants that it lacks from the trace of the same name there.

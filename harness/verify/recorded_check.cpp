@@ -43,21 +43,13 @@ Result<void> check_bytes(const fs::path& file, const Provenance& provenance) {
                  "provenance.toml); restore it from version control");
 }
 
-Tolerances tolerances_for(const fs::path& file, const Provenance& provenance) {
-  const auto stated = provenance.tolerances.find(file.stem().string());
-  if (stated == provenance.tolerances.end()) return Tolerances(Level::exact);
-  Tolerances tolerances(Level::numeric);
-  tolerances.set("", {stated->second, 0});
-  return tolerances;
-}
-
 // Describes the difference; empty when the trace conforms.
-Result<std::string> trace_difference(const fs::path& file, const Provenance& provenance) {
+Result<std::string> trace_difference(const fs::path& file) {
   const auto recorded = read_recorded(file);
   if (!recorded) return tl::unexpected(recorded.error());
   HostHere reference(open_builtin());
-  const CaseResult result = evaluate_trace(recorded->trace, recorded->subject, reference,
-                                           tolerances_for(file, provenance));
+  const CaseResult result =
+      evaluate_trace(recorded->trace, recorded->subject, reference, Tolerances(Level::exact));
   if (result.verdict == Verdict::pass) return std::string();
   if (!result.first) return result.reason;
   return fmt::format("{} at tick {}", channels()[result.first->channel].name, result.first->tick);
@@ -69,7 +61,7 @@ Result<std::string> difference(const fs::path& file) {
   if (auto intact = check_bytes(file, *provenance); !intact) {
     return tl::unexpected(intact.error());
   }
-  return trace_difference(file, *provenance);
+  return trace_difference(file);
 }
 
 }  // namespace

@@ -106,12 +106,6 @@ TEST_F(ProvenanceFile, NamesWhatIsWrongWithAConstant) {
             "10:1: `in/parameter.P` must be a number, found text");
 }
 
-TEST_F(ProvenanceFile, AToleranceIsANumberThatIsNotNegative) {
-  EXPECT_EQ(error_of("[tolerances]\na = 0\nb = 1e-3\n"), "");
-  EXPECT_EQ(error_of("[tolerances]\na = -1\nb = nan\n"),
-            "2:1: a tolerance must not be negative\n3:1: a tolerance must not be negative");
-}
-
 TEST_F(ProvenanceFile, NamesUnknownKeysAndMissingFiles) {
   EXPECT_EQ(error_of("compilr = 'gcc'\n"), "1:1: unknown key `compilr`; did you mean `compiler`?");
   const std::string missing = (directory_.path() / "missing.toml").string();
