@@ -5,7 +5,8 @@
 // - A result is not equal to a midpoint: except at 0 and at acos(1), a function of an algebraic
 //   number is transcendental here (Lindemann 1882).
 // - One argument: all 2^32 were compared with MPFR (tests/controller/elementary).
-// - atan2: a result of at least 2^-42 has an error below 2^-138 of itself. There are fewer than 2^48
+// - atan2: a result of at least 2^-42 has an error below 2^-138 of itself. There are fewer than
+// 2^48
 //   ratios of two significands, in 80 exponents. If the results lie as if at random, the smallest
 //   distance from a midpoint is near 2^-80 of the result. The nearest pair that a search found is
 //   2^-89 away (hard_cases.txt): t = y / x misses the midpoint by almost exactly t^3 / 3, so
