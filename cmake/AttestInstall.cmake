@@ -1,8 +1,9 @@
 # `cmake --install` installs for port authors: the attest binary with its manual pages and the
 # completion for shells, the ABI headers, the cases with their goldens, the starters, the schemas of
-# the reports, and the CMake package `attest` with
+# the reports, a library of the elementary functions, and the CMake package `attest` with
 #
 #     attest::unit     the ABI headers, for the port to link (C or C++)
+#     attest::math     the elementary functions of attest_math.h, for the port to link
 #     attest::attest   the binary, for add_test(COMMAND attest::attest run --port lib:...)
 include(CMakePackageConfigHelpers)
 
@@ -10,8 +11,10 @@ set(ATTEST_INSTALL_CMAKEDIR ${CMAKE_INSTALL_LIBDIR}/cmake/attest)
 set(ATTEST_INSTALL_DATADIR ${CMAKE_INSTALL_DATADIR}/attest)
 
 install(TARGETS attest_unit EXPORT attestTargets)
+install(TARGETS attest_elementary EXPORT attestTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS attest EXPORT attestTargets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(FILES controller/attest_unit.h controller/attest_actuation.h controller/attest_cascade.h
+              controller/attest_math.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY cases golden models DESTINATION ${ATTEST_INSTALL_DATADIR})
 # Excludes the results of builds in the source tree.
@@ -22,6 +25,7 @@ install(
   REGEX "/(build|target|__pycache__)$" EXCLUDE)
 # For `attest new-port`.
 install(FILES controller/attest_unit.h controller/attest_actuation.h controller/attest_cascade.h
+              controller/attest_math.h
         DESTINATION ${ATTEST_INSTALL_DATADIR}/include)
 install(FILES ci/examples/github-action.yml ci/examples/github-actions.yml
               ci/examples/gitlab-ci.yml

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
 #include "law.h"
 #include "vector.h"
 
@@ -71,7 +72,7 @@ static void attitude_error(const float R[9], const float R_sp[9], float yaw_w, f
 
   float R_rp[9]; /* R with its thrust axis turned onto that of the setpoint */
   if (sine > 0.0f) {
-    const float angle = atan2f(sine, cosine);
+    const float angle = law_atan2(sine, cosine);
     float axis[3];
     for (int i = 0; i < 3; i++) {
       axis[i] = e[i] / sine;
@@ -86,7 +87,7 @@ static void attitude_error(const float R[9], const float R_sp[9], float yaw_w, f
   column(R_sp, 0, x_sp);
   column(R_rp, 0, x_rp);
   cross(x_rp, x_sp, x_cross);
-  e[2] = atan2f(dot(x_cross, z_sp), dot(x_rp, x_sp)) * yaw_w;
+  e[2] = law_atan2(dot(x_cross, z_sp), dot(x_rp, x_sp)) * yaw_w;
 
   if (cosine < 0.0f) mix_direct_rotation(Rt, R_sp, cosine, yaw_w, e);
 }

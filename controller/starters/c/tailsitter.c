@@ -7,6 +7,7 @@
  */
 #include <math.h>
 
+#include "elementary.h"
 #include "law.h"
 #include "vector.h"
 
@@ -17,7 +18,7 @@ static void product(const float p[4], const float q[4], float out[4]) {
   out[3] = p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0];
 }
 
-static float sigmoid(float v) { return 1.0f / (1.0f + expf(-v)); }
+static float sigmoid(float v) { return 1.0f / (1.0f + law_exp(-v)); }
 
 /* Returns the angle [rad] between the thrust axis and that of the setpoint. `direction` [rad] is
  * that of the tilt axis in the body's x-y plane, counted from y. */
@@ -30,11 +31,11 @@ static float tilt_error(const float q[4], const float q_sp_conj[4], const float 
   multiply_vector(R_err, z_B, z_I);
   const float cosine = dot(z_I, z_B);
   float tilt = cosine > 0.0f ? 0.0f : LAW_PI;
-  if (-1.0f < cosine && cosine < 1.0f) tilt = acosf(cosine);
+  if (-1.0f < cosine && cosine < 1.0f) tilt = law_acos(cosine);
   if (fminf(fabsf(tilt), fabsf(tilt - LAW_PI)) > 1e-5f) cross(z_I, z_B, axis_I);
   transpose(R, Rt);
   multiply_vector(Rt, axis_I, axis);
-  *direction = atan2f(axis[0], axis[1]);
+  *direction = law_atan2(axis[0], axis[1]);
   return tilt;
 }
 
@@ -70,7 +71,7 @@ static void recovery_rates(float tilt, float direction, float rates_sp[3]) {
   const float roll =
       -3.997f * x + roll_share * roll_share * (3.997f * x * sigmoid(4.013f * (2.133f - x)));
   const float pitch = pitch_share * (-1.676f * x * sigmoid(2.642f * (0.3586f - x)) +
-                                     1.676f * x * expf(2.642f * (0.3586f - LAW_PI)) *
+                                     1.676f * x * law_exp(2.642f * (0.3586f - LAW_PI)) *
                                          sigmoid(2.642f * (LAW_PI - 0.3586f)));
   const float yaw = yaw_share * (2.726f * (x - LAW_PI) * sigmoid(2.298f * (x - 1.75f)) -
                                  2.726f * (x - LAW_PI) * sigmoid(-1.75f * 2.298f));

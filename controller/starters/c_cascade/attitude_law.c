@@ -5,6 +5,7 @@
  * After D. Brescianini, M. Hehn, R. D'Andrea, "Nonlinear Quadrocopter Attitude Control" (2013).
  */
 #include "attitude.h"
+#include "elementary.h"
 
 void attitude_law_set_gains(attitude_law* law, const float p[3], float yaw_weight,
                             const float rate_max_deg[3]) {
@@ -42,8 +43,8 @@ static quat target(const attitude_law* law, quat q) {
   const quat mix = quat_canonical(quat_multiply(quat_inverse(reduced), law->q_d));
   const float cosine = clamp(mix.w, -1.0f, 1.0f);
   const float sine = clamp(mix.z, -1.0f, 1.0f);
-  const quat yaw = {cosf(law->yaw_weight * acosf(cosine)), 0.0f, 0.0f,
-                    sinf(law->yaw_weight * asinf(sine))};
+  const quat yaw = {law_cos(law->yaw_weight * law_acos(cosine)), 0.0f, 0.0f,
+                    law_sin(law->yaw_weight * law_asin(sine))};
   return quat_multiply(reduced, yaw);
 }
 

@@ -12,6 +12,8 @@
 #include <float.h>
 #include <math.h>
 
+#include "elementary.h"
+
 typedef struct vec3 {
   float x, y, z;
 } vec3;
@@ -105,12 +107,12 @@ static inline quat quat_between(vec3 a, vec3 b) {
 static inline quat quat_of_rotation_vector(vec3 v) {
   const float angle = length(v);
   if (angle < 1e-10f) return (quat){1.0f, 0.0f, 0.0f, 0.0f};
-  const vec3 imaginary = scale(scale(v, 1.0f / angle), sinf(angle / 2.0f));
-  return (quat){cosf(angle / 2.0f), imaginary.x, imaginary.y, imaginary.z};
+  const vec3 imaginary = scale(scale(v, 1.0f / angle), law_sin(angle / 2.0f));
+  return (quat){law_cos(angle / 2.0f), imaginary.x, imaginary.y, imaginary.z};
 }
 
 static inline quat quat_of_yaw(float yaw) {
-  return (quat){cosf(yaw / 2.0f), 0.0f, 0.0f, sinf(yaw / 2.0f)};
+  return (quat){law_cos(yaw / 2.0f), 0.0f, 0.0f, law_sin(yaw / 2.0f)};
 }
 
 /* Element 0, 0 of the rotation matrix, in the two ways in which the profiles compute it. They agree
@@ -126,13 +128,13 @@ static inline float quat_yaw(quat q, float r00) {
   /* The law asks whether the pitch is within 0.001 rad of a quarter turn. asin(0.99) is 0.14 rad
    * short of it, so most steps can save the asin. */
   if (!(fabsf(sin_pitch) < 0.99f)) {
-    const float pitch = asinf(sin_pitch);
+    const float pitch = law_asin(sin_pitch);
     const float r12 = 2.0f * (q.y * q.z - q.w * q.x);
     const float r02 = 2.0f * (q.w * q.y + q.x * q.z);
-    if (fabsf(pitch - 1.57079637f) < 0.001f) return atan2f(r12, r02);
-    if (fabsf(pitch + 1.57079637f) < 0.001f) return atan2f(-r12, -r02);
+    if (fabsf(pitch - 1.57079637f) < 0.001f) return law_atan2(r12, r02);
+    if (fabsf(pitch + 1.57079637f) < 0.001f) return law_atan2(-r12, -r02);
   }
-  return atan2f(2.0f * (q.x * q.y + q.w * q.z), r00);
+  return law_atan2(2.0f * (q.x * q.y + q.w * q.z), r00);
 }
 
 #endif /* ATTEST_STARTER_QUATERNION_H */

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "elementary.hpp"
+
 namespace starter {
 
 namespace {
@@ -38,13 +40,13 @@ Vec3 attitude_error(const Mat3& R, const Mat3& R_sp, float yaw_w) noexcept {
   Mat3 R_rp = R;  // R with its thrust axis turned onto that of the setpoint
   if (sine > 0.0f) {
     const Vec3 axis = e / sine;
-    e = axis * std::atan2(sine, cosine);
+    e = axis * atan2(sine, cosine);
     R_rp = turned(R, axis, sine, cosine);
   }
 
   const Vec3 x_sp = R_sp.column(0);
   const Vec3 x_rp = R_rp.column(0);
-  e[2] = std::atan2(dot(cross(x_rp, x_sp), z_sp), dot(x_rp, x_sp)) * yaw_w;
+  e[2] = atan2(dot(cross(x_rp, x_sp), z_sp), dot(x_rp, x_sp)) * yaw_w;
 
   if (cosine < 0.0f) {
     // Beyond 90 deg of tilt error the law mixes in the direct rotation.

@@ -3,13 +3,15 @@
 
 #include <cmath>
 
+#include "elementary.hpp"
+
 namespace starter {
 
 namespace {
 
 constexpr float half_pi = pi / 2.0f;
 
-float sigmoid(float v) noexcept { return 1.0f / (1.0f + std::exp(-v)); }
+float sigmoid(float v) noexcept { return 1.0f / (1.0f + exp(-v)); }
 
 struct Tilt {
   float angle = 0.0f;      // [rad] between the thrust axis and that of the setpoint
@@ -22,10 +24,10 @@ Tilt tilt_of(const AttitudeTask& task, const Mat3& R) noexcept {
   const float cosine = dot(z_I, z_B);
   Tilt tilt;
   tilt.angle = cosine > 0.0f ? 0.0f : pi;
-  if (-1.0f < cosine && cosine < 1.0f) tilt.angle = std::acos(cosine);
+  if (-1.0f < cosine && cosine < 1.0f) tilt.angle = acos(cosine);
   const float to_parallel = std::fmin(std::fabs(tilt.angle), std::fabs(tilt.angle - pi));
   const Vec3 axis = R.transposed() * (to_parallel > 1e-5f ? cross(z_I, z_B) : z_B);
-  tilt.direction = std::atan2(axis[0], axis[1]);
+  tilt.direction = atan2(axis[0], axis[1]);
   return tilt;
 }
 
@@ -51,7 +53,7 @@ Vec3 recovery_rates(const Tilt& tilt) noexcept {
   const float pitch =
       (1.38f * y + 0.8725f * y * y) *
       (-1.676f * x * sigmoid(2.642f * (0.3586f - x)) +
-       1.676f * x * std::exp(2.642f * (0.3586f - pi)) * sigmoid(2.642f * (pi - 0.3586f)));
+       1.676f * x * exp(2.642f * (0.3586f - pi)) * sigmoid(2.642f * (pi - 0.3586f)));
   const float yaw =
       (3.168f * y - 0.3913f * y * y) * (2.726f * (x - pi) * sigmoid(2.298f * (x - 1.75f)) -
                                         2.726f * (x - pi) * sigmoid(-1.75f * 2.298f));

@@ -33,21 +33,21 @@ def clamp(value, low, high):
     return np.where(value < low, low, np.where(value > high, high, value))
 
 
-# The firmware calls these functions of the C library. Those of numpy give other last bits: in
-# float32 they depend on the processor, and a float64 result that is rounded differs as well.
+# The law's functions are rounded to the nearest float32. The double functions of the C library,
+# rounded, give it for nearly every argument. Those of numpy depend on the processor.
 _libm = ctypes.CDLL(None)  # the libraries that Python is linked with
 
 
 def _from_libm(name, arguments):
     function = getattr(_libm, name)
-    function.argtypes = [ctypes.c_float] * arguments
-    function.restype = ctypes.c_float
+    function.argtypes = [ctypes.c_double] * arguments
+    function.restype = ctypes.c_double
     return lambda *values: f32(function(*values))
 
 
-atan2 = _from_libm("atan2f", 2)
-acos = _from_libm("acosf", 1)
-exp = _from_libm("expf", 1)
+atan2 = _from_libm("atan2", 2)
+acos = _from_libm("acos", 1)
+exp = _from_libm("exp", 1)
 
 
 # A sum that begins with 0 is never -0.

@@ -67,18 +67,18 @@ def is_finite(number):
 
 
 def _of_libm(name, arguments=1):
-    """A function of the C library, which Python is linked with. Another library may give other
-    last bits, except for sqrtf and floorf."""
+    """A double function of the C library, which Python is linked with, rounded to binary32. This is
+    the nearest number of binary32, also where the library's own float function is not."""
     function = getattr(ctypes.CDLL(None), name)
-    function.argtypes = (Binary32,) * arguments
-    function.restype = Binary32
-    return function
+    function.argtypes = (ctypes.c_double,) * arguments
+    function.restype = ctypes.c_double
+    return lambda *numbers: Binary32(function(*(number.value for number in numbers)))
 
 
-square_root = _of_libm("sqrtf")
-floor = _of_libm("floorf")
-sin = _of_libm("sinf")
-cos = _of_libm("cosf")
-asin = _of_libm("asinf")
-acos = _of_libm("acosf")
-atan2 = _of_libm("atan2f", 2)
+square_root = _of_libm("sqrt")
+floor = _of_libm("floor")
+sin = _of_libm("sin")
+cos = _of_libm("cos")
+asin = _of_libm("asin")
+acos = _of_libm("acos")
+atan2 = _of_libm("atan2", 2)

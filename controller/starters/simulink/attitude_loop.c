@@ -118,7 +118,7 @@ static void attitude_error(const real32_T rtu_R[9], const real32_T rtu_R_sp[9], 
   Sine = sqrtf(rt_dot(rty_e, rty_e));
   Cosine = rt_dot(&rtu_R[6], &rtu_R_sp[6]);
   if (Sine > 0.0F) {
-    Angle = atan2f(Sine, Cosine);
+    Angle = rt_atan2(Sine, Cosine);
     for (i = 0; i < 3; i++) {
       rtb_Axis[i] = rty_e[i] / Sine;
       rty_e[i] = rtb_Axis[i] * Angle;
@@ -129,7 +129,7 @@ static void attitude_error(const real32_T rtu_R[9], const real32_T rtu_R_sp[9], 
   }
   rt_cross(&rtb_R_rp[0], &rtu_R_sp[0], rtb_Cross);
   rty_e[2] =
-      atan2f(rt_dot(rtb_Cross, &rtu_R_sp[6]), rt_dot(&rtb_R_rp[0], &rtu_R_sp[0])) * rtu_yaw_w;
+      rt_atan2(rt_dot(rtb_Cross, &rtu_R_sp[6]), rt_dot(&rtb_R_rp[0], &rtu_R_sp[0])) * rtu_yaw_w;
   if (Cosine < 0.0F) {
     direct_rotation(rtu_R, rtu_R_sp, Cosine * Cosine * rtu_yaw_w, rty_e);
   }

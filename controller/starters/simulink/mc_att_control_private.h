@@ -8,6 +8,8 @@
 #ifndef RTW_HEADER_mc_att_control_private_h_
 #define RTW_HEADER_mc_att_control_private_h_
 
+#include <math.h>
+
 #include "mc_att_control.h"
 
 #define RT_PIF 3.14159274F /* the single nearest to pi */
@@ -15,6 +17,13 @@
 /* Subsystems of other files. They set rtDW.RatesSp_DSTATE from the latched attitude setpoint. */
 void mc_att_control_attitude_loop(RT_MODEL* rtM);
 void mc_att_control_tailsitter(RT_MODEL* rtM);
+
+/* The nearest single. The functions of single precision are often off by the last bit. */
+static inline real32_T rt_acos(real32_T u) { return (real32_T)acos((double)u); }
+static inline real32_T rt_atan2(real32_T u0, real32_T u1) {
+  return (real32_T)atan2((double)u0, (double)u1);
+}
+static inline real32_T rt_exp(real32_T u) { return (real32_T)exp((double)u); }
 
 /* NaN passes through. */
 static inline real32_T rt_saturate(real32_T u, real32_T lower, real32_T upper) {

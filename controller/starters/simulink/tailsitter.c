@@ -15,7 +15,7 @@ static void quat_multiply(const real32_T u0[4], const real32_T u1[4], real32_T y
   y[3] = ((u0[0] * u1[3] + u0[1] * u1[2]) - u0[2] * u1[1]) + u0[3] * u1[0];
 }
 
-static real32_T sigmoid(real32_T u) { return 1.0F / (expf(-u) + 1.0F); }
+static real32_T sigmoid(real32_T u) { return 1.0F / (rt_exp(-u) + 1.0F); }
 
 /* Subsystem '<S2>/Tilt': angle between the thrust axes [rad], and the direction [rad] of the tilt
  * axis in the body's x-y plane, counted from y. */
@@ -36,7 +36,7 @@ static void tilt_error(const real32_T rtu_q[4], const real32_T rtu_q_sp_conj[4],
   }
   Cosine = -rtb_Thrust[2];
   if (Cosine > -1.0F && Cosine < 1.0F) {
-    *rty_Angle = acosf(Cosine);
+    *rty_Angle = rt_acos(Cosine);
   } else {
     *rty_Angle = Cosine > 0.0F ? 0.0F : RT_PIF;
   }
@@ -45,7 +45,7 @@ static void tilt_error(const real32_T rtu_q[4], const real32_T rtu_q_sp_conj[4],
   }
   rt_quat2dcm(rtu_q, rtb_R);
   rt_transpose_times_vector(rtb_R, rtb_Axis, rtb_Body);
-  *rty_Direction = atan2f(rtb_Body[0], rtb_Body[1]);
+  *rty_Direction = rt_atan2(rtb_Body[0], rtb_Body[1]);
 }
 
 /* Subsystem '<S2>/Recovery': the fit covers one quadrant, the others follow by symmetry. */
@@ -74,7 +74,7 @@ static void recovery_rates(real32_T rtu_Angle, real32_T rtu_Direction, real32_T 
   Share = y / half_pi;
   rty_Rates[0] = -3.997F * x + Share * Share * (3.997F * x * sigmoid((2.133F - x) * 4.013F));
   rty_Rates[1] = (1.38F * y + 0.8725F * y * y) * (-1.676F * x * sigmoid((0.3586F - x) * 2.642F) +
-                                                  1.676F * x * expf((0.3586F - RT_PIF) * 2.642F) *
+                                                  1.676F * x * rt_exp((0.3586F - RT_PIF) * 2.642F) *
                                                       sigmoid((RT_PIF - 0.3586F) * 2.642F));
   rty_Rates[2] =
       (3.168F * y - 0.3913F * y * y) * ((x - RT_PIF) * 2.726F * sigmoid((x - 1.75F) * 2.298F) -

@@ -2,13 +2,13 @@
 //! The control law of PX4 mc_att_control: attitude error to rates setpoint, rate error to controls.
 //!
 //! It has no clock, no topics and no ABI types. All arithmetic is f32, from left to right. Rust
-//! never fuses `a * b + c`, so results have the same bits on every IEEE machine. The exceptions are
-//! `atan2`, `acos` and `exp`, whose last bits depend on the platform.
+//! never fuses `a * b + c`, so results have the same bits on every IEEE machine. `atan2`, `acos`
+//! and `exp` are computed in f64 and rounded: the nearest f32 for nearly every argument.
 //!
 //! Frames: world is NED, body is FRD. Vectors are {roll, pitch, yaw} about the axes of the body.
 
 use crate::parameters::Gains;
-use crate::vector::{limited, Matrix, Quaternion, Vector};
+use crate::vector::{atan2, limited, Matrix, Quaternion, Vector};
 
 /// The index of yaw in a vector.
 const YAW: usize = 2;
@@ -219,13 +219,13 @@ fn attitude_error(r: &Matrix, r_sp: &Matrix, yaw_weight: f32) -> Vector {
     let mut r_tilted = *r;
     if sine > 0.0 {
         let axis = error / sine;
-        error = axis * sine.atan2(cosine);
+        error = axis * atan2(sine, cosine);
         r_tilted = *r * rodrigues(axis, sine, cosine);
     }
 
     let (x_sp, x_tilted) = (r_sp.column(0), r_tilted.column(0));
     let yaw_sine = x_tilted.cross(x_sp).dot(z_sp);
-    error[YAW] = yaw_sine.atan2(x_tilted.dot(x_sp)) * yaw_weight;
+    error[YAW] = atan2(yaw_sine, x_tilted.dot(x_sp)) * yaw_weight;
 
     if cosine < 0.0 {
         let direct_weight = cosine * cosine * yaw_weight;

@@ -6,7 +6,7 @@ use std::f32::consts::{FRAC_PI_2, PI};
 
 use crate::law::AttitudeSetpoint;
 use crate::parameters::{radians, Gains};
-use crate::vector::{limited, Quaternion, Vector};
+use crate::vector::{atan2, exp, limited, Quaternion, Vector};
 
 /// Direction of the thrust in the body frame.
 const THRUST_AXIS: Vector = Vector([0.0, 0.0, -1.0]);
@@ -67,7 +67,7 @@ fn angle_of_cosine(cosine: f32) -> f32 {
     } else if cosine <= -1.0 {
         PI
     } else {
-        cosine.acos()
+        f64::from(cosine).acos() as f32
     }
 }
 
@@ -83,12 +83,12 @@ fn small_tilt_rates(q: Quaternion, q_sp: Quaternion, gains: &Gains) -> Vector {
 /// Rates [rad/s] for a tilt error [rad] about `axis` in the body frame. The polynomials approximate
 /// an optimal trajectory in one quadrant of directions; the signs unfold the other three.
 fn recovery_rates(tilt: f32, axis: Vector) -> Vector {
-    let (direction, signs) = first_quadrant(axis[0].atan2(axis[1]));
+    let (direction, signs) = first_quadrant(atan2(axis[0], axis[1]));
     let (x, y) = (tilt, FRAC_PI_2 - direction);
     let roll_share = y / FRAC_PI_2;
 
     let roll = -3.997 * x + roll_share * roll_share * (3.997 * x * sigmoid(4.013 * (2.133 - x)));
-    let at_pi = (2.642f32 * (0.3586 - PI)).exp() * sigmoid(2.642 * (PI - 0.3586));
+    let at_pi = exp(2.642f32 * (0.3586 - PI)) * sigmoid(2.642 * (PI - 0.3586));
     let pitch = (1.38 * y + 0.8725 * (y * y))
         * (-1.676 * x * sigmoid(2.642 * (0.3586 - x)) + 1.676 * x * at_pi);
     let yaw = (3.168 * y - 0.3913 * (y * y))
@@ -112,5 +112,5 @@ fn first_quadrant(direction: f32) -> (f32, Vector) {
 }
 
 fn sigmoid(v: f32) -> f32 {
-    1.0 / (1.0 + (-v).exp())
+    1.0 / (1.0 + exp(-v))
 }

@@ -19,6 +19,15 @@ pub struct Matrix(pub [[f32; 3]; 3]);
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quaternion(pub [f32; 4]);
 
+/// The nearest f32, same as exp(). The functions of f32 are often off by the last bit.
+pub fn atan2(y: f32, x: f32) -> f32 {
+    f64::from(y).atan2(f64::from(x)) as f32
+}
+
+pub fn exp(x: f32) -> f32 {
+    f64::from(x).exp() as f32
+}
+
 /// Limits `value` to [low, high]. NaN passes. `f32::clamp` panics on limits that are NaN
 /// or swapped, which parameters can cause.
 pub fn limited(value: f32, low: f32, high: f32) -> f32 {
