@@ -51,7 +51,9 @@ class WriteSlowest : public testing::Test {
     HostOptions here;
     here.in_process = true;
     here.start = start;
-    return write_slowest(times_, cases_, here, *AtomicFile::open(file_));
+    auto file = AtomicFile::open(file_);
+    if (!file) return tl::unexpected(file.error());
+    return write_slowest(times_, cases_, here, *std::move(file));
   }
 
   Trace written() {
