@@ -112,8 +112,7 @@ namespace {
 
 using CasesOfJob = std::vector<SelectedCase>;
 
-// With a process for each vector, a run at one rate takes about 1.5 times as long as in the judge's
-// process; with one for four vectors about 1.15 times (`ci/bench`, "suite at 250 Hz").
+// One launch of a process for four vectors instead of four (`ci/bench`, "suite at 250 Hz").
 constexpr std::size_t enough_vectors = 4;
 
 const std::optional<PlantConfiguration>& plant_of(const SelectedCase& selected) {
