@@ -109,15 +109,13 @@ struct SimFiles {
 };
 
 // Each flight has a fresh process of the port.
-Result<std::vector<SimulatedFlight>> fly_all(const Sim& sim, const HostOptions& options,
-                                             PortSays& says) {
+Result<std::vector<SimulatedFlight>> fly_all(const Sim& sim, const HostOptions& options) {
   std::vector<SimulatedFlight> flights;
   for (const RunConfiguration& configuration : sim.configurations) {
     const auto host = start_host(options, {&sim.the_case, sim.vehicle_model.get()});
     if (!host) return tl::unexpected(host.error());
     auto flight = simulate_flight(sim.the_case, {configuration, sim.timing}, **host);
     if (!flight) return tl::unexpected(flight.error());
-    says = (*host)->says();
     flights.push_back(*std::move(flight));
   }
   return flights;
@@ -163,19 +161,16 @@ int sim_command(const SimOptions& options, const Globals& globals) {
   auto files = SimFiles::open(options);
   if (!files) return report_error(files.error());
   HostOptions host = options.host;
-  // If a file is no port, the error of loading it is the better one.
-  if (auto of_port = PortFiles::read(host.port)) {
-    host.files = std::make_shared<const PortFiles>(*std::move(of_port));
-  }
-  PortSays says;
-  const auto flights = fly_all(*sim, host, says);
+  const auto port = prepare_port(host);
+  if (!port) return report_error(port.error());
+  const auto flights = fly_all(*sim, host);
   if (!flights) return report_error(flights.error());
   if (auto same = check_port(host); !same) return report_error(same.error());
   // Files of an earlier command are kept if no flight has a result.
   const bool any_result =
       std::any_of(flights->begin(), flights->end(),
                   [](const SimulatedFlight& flight) { return is_judged(flight.result.verdict); });
-  const auto written = any_result ? write(*flights, says, *std::move(files)) : Result<void>();
+  const auto written = any_result ? write(*flights, *port, *std::move(files)) : Result<void>();
   if (!written) return report_error(written.error());
   bool any_fails = false;
   for (const SimulatedFlight& flight : *flights) {

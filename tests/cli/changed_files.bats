@@ -213,6 +213,13 @@ PORT
   judged_meanwhile "$program" --timeout 120
   echo "# changed again" >>starter/law.py
   is_changed starter/law.py
+
+  rm go
+  in_first_step "$ATTEST" sim tilt_step_30 --vehicle iris --plant ode --rate 250 \
+    --port "$program" --timeout 120 --html page.html
+  echo "# and again" >>starter/law.py
+  is_changed starter/law.py
+  [ ! -e page.html ]
 }
 
 @test "the files that a program names are checked" {
