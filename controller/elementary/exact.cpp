@@ -6,13 +6,12 @@
 //   number is transcendental here (Lindemann 1882).
 // - One argument: all 2^32 were compared with MPFR (tests/controller/elementary).
 // - atan2: a result of at least 2^-42 has an error below 2^-138 of itself. There are fewer than
-// 2^48
-//   ratios of two significands, in 80 exponents. If the results lie as if at random, the smallest
-//   distance from a midpoint is near 2^-80 of the result. The nearest pair that a search found is
-//   2^-89 away (hard_cases.txt): t = y / x misses the midpoint by almost exactly t^3 / 3, so
-//   t^5 / 5 decides. A ratio misses a midpoint by at least 2^-49 of itself. So this occurs only for
-//   t above 2^-24, and t^4 / 5 is above 2^-99 there. This is an argument, and not a proof. Smaller
-//   results are quotients, see quotient().
+//   2^48 ratios of two significands, in 80 exponents. If the results lie as if at random, the
+//   smallest distance from a midpoint is near 2^-80 of the result. The nearest pair that a search
+//   found is 2^-89 away (hard_cases.txt): t = y / x misses the midpoint by almost exactly t^3 / 3,
+//   so t^5 / 5 decides. A ratio misses a midpoint by at least 2^-49 of itself. So this occurs only
+//   for t above 2^-24, and t^4 / 5 is above 2^-99 there. This does not prove it for every pair.
+//   Smaller results are quotients, see quotient().
 //
 // Methods: J.-M. Muller et al., Handbook of Floating-Point Arithmetic, chapters 10 and 11.
 #include "controller/elementary/exact.hpp"
