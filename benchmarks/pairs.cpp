@@ -97,6 +97,7 @@ bool run_alternating(const std::string& filter, PairReporter& reporter) {
 }
 
 const std::vector<Pair>& pairs() {
+  constexpr const char* unbounded = "no bound: the C library's is not correctly rounded";
   static const std::vector<Pair> list = {
       {"controller step", "step/reference", "step/by_hand", 1.15,
        "at most 1.15x the law written by hand in C"},
@@ -108,20 +109,13 @@ const std::vector<Pair>& pairs() {
        "elementary/controller_host", 1.15, "at most 1.15x the C library's functions"},
       {"step of the attitude unit, the same", "elementary/attitude_own", "elementary/attitude_host",
        1.15, "at most 1.15x the C library's functions"},
-      {"sin", "elementary/sin_own", "elementary/sin_host", no_bound,
-       "no bound: the C library's is not correctly rounded"},
-      {"cos", "elementary/cos_own", "elementary/cos_host", no_bound,
-       "no bound: the C library's is not correctly rounded"},
-      {"tan", "elementary/tan_own", "elementary/tan_host", no_bound,
-       "no bound: the C library's is not correctly rounded"},
-      {"asin", "elementary/asin_own", "elementary/asin_host", no_bound,
-       "no bound: the C library's is not correctly rounded"},
-      {"acos", "elementary/acos_own", "elementary/acos_host", no_bound,
-       "no bound: the C library's is not correctly rounded"},
-      {"exp", "elementary/exp_own", "elementary/exp_host", no_bound,
-       "no bound: the C library's is not correctly rounded"},
-      {"atan2", "elementary/atan2_own", "elementary/atan2_host", no_bound,
-       "no bound: the C library's is not correctly rounded"},
+      {"sin", "elementary/sin_own", "elementary/sin_host", no_bound, unbounded},
+      {"cos", "elementary/cos_own", "elementary/cos_host", no_bound, unbounded},
+      {"tan", "elementary/tan_own", "elementary/tan_host", no_bound, unbounded},
+      {"asin", "elementary/asin_own", "elementary/asin_host", no_bound, unbounded},
+      {"acos", "elementary/acos_own", "elementary/acos_host", no_bound, unbounded},
+      {"exp", "elementary/exp_own", "elementary/exp_host", no_bound, unbounded},
+      {"atan2", "elementary/atan2_own", "elementary/atan2_host", no_bound, unbounded},
       // A poll() for each answer is 10% of a bare exchange. It finds out that a program has ended
       // although its children keep its pipe open, which read() cannot.
       {"step of a program, on one CPU", "program/step", "program/bare_pipe", 1.30,
