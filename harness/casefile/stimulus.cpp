@@ -293,8 +293,10 @@ Trace stimulate(const Case& the_case, const Rate& rate) {
   trace.source = fmt::format("{}@{}", the_case.id(), rate.label());
   trace.present = channels_of(the_case);
   Stimulus stimulus(the_case, rate);
+  const std::vector<Nanoseconds> ticks = unit_ticks(the_case, rate);
+  trace.samples.reserve(ticks.size());
   Sample sample{};
-  for (const Nanoseconds now : unit_ticks(the_case, rate)) {
+  for (const Nanoseconds now : ticks) {
     stimulus.tick(trace.samples.size(), now, sample, trace.parameters);
     trace.samples.push_back(sample);
   }
