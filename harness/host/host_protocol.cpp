@@ -74,10 +74,13 @@ Subject subject_from(const json& in) {
           in.at("other_profiles").get<std::vector<std::string>>()};
 }
 
-// Reads the trace of a request. The judge is trusted, so the samples are there.
-Trace trace_from(const json& head, BlobReader& blobs) {
+// Reads the trace of a request. The judge is trusted, so the inputs are there.
+Trace trace_from(const json& head, Module module, BlobReader& blobs) {
   Trace trace;
-  trace.samples = blobs.read<Sample>(head.at("ticks").get<std::size_t>()).value();
+  const std::size_t ticks = head.at("ticks").get<std::size_t>();
+  trace.samples.resize(ticks);
+  const Block inputs = info_of(module).all_inputs();
+  inputs.paste(blobs.read<std::byte>(ticks * inputs.size).value(), trace.samples);
   std::string error;
   JsonReader reader(head, error);
   trace.parameters = changes_from(reader, "parameters", SIZE_MAX);
@@ -101,10 +104,12 @@ class Answerer {
 
  private:
   bool drive(const json& head) {
-    Trace trace = trace_from(head, question_.blobs);
+    const Subject subject = subject_from(head.at("subject"));
+    Trace trace = trace_from(head, subject.module, question_.blobs);
     json answer = json::object();
-    set_end(host_.drive(subject_from(head.at("subject")), trace), {}, answer);
-    return send(std::move(answer), {blob_of(trace.samples)});
+    set_end(host_.drive(subject, trace), {}, answer);
+    const std::vector<std::byte> outputs = info_of(subject.module).out.copy(trace.samples);
+    return send(std::move(answer), {blob_of(outputs)});
   }
 
   bool fly(const json& head) {
@@ -134,9 +139,9 @@ class Answerer {
   }
 
   bool time(const json& head) {
-    const Trace trace = trace_from(head, question_.blobs);
-    const auto times =
-        host_.time_steps(subject_from(head.at("subject")), trace, head.at("stack").get<bool>());
+    const Subject subject = subject_from(head.at("subject"));
+    const Trace trace = trace_from(head, subject.module, question_.blobs);
+    const auto times = host_.time_steps(subject, trace, head.at("stack").get<bool>());
     if (!times) return refuse(times.error(), question_.request, judge_);
     json answer = {{"clock_ns", times->clock.count()}, {"steps", times->steps.size()}};
     if (times->stack_bytes) answer["stack"] = *times->stack_bytes;
@@ -176,7 +181,7 @@ std::vector<T> objects_from(const Arrived& arrived, std::size_t count, const cha
                             JsonReader& head) {
   auto objects = arrived.blobs.read<T>(count);
   if (objects) return *std::move(objects);
-  head.wrong(fmt::format("the {} are not those of {} ticks", what, count));
+  head.wrong(fmt::format("the {} have a wrong size", what));
   return {};
 }
 
@@ -248,10 +253,13 @@ std::string supports_request(const std::string& profile) {
   return text_of({{"do", "supports"}, {"profile", profile}});
 }
 
-Result<Driven> read_driven(const Arrived& arrived, std::size_t ticks, std::size_t ticks_before) {
+Result<Driven> read_driven(const Arrived& arrived, const Subject& subject, std::size_t ticks) {
+  const std::size_t size = ticks * info_of(subject.module).out.size;
   return read_answer(arrived, [&](JsonReader& head) {
-    return Driven{objects_from<Sample>(arrived, ticks, "samples", head),
-                  fault_from(head, ticks_before + ticks, arrived.of_program)};
+    Driven driven;
+    driven.outputs = objects_from<std::byte>(arrived, size, "outputs", head);
+    driven.fault = fault_from(head, subject.part.first_tick + ticks, arrived.of_program);
+    return driven;
   });
 }
 

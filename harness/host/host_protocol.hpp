@@ -4,15 +4,15 @@
 // only if there was one.
 //
 //     process -> {"request": 0, "says": {...}}              once, when the port is loaded
-//     judge   -> {"do": "drive", "subject": ..., ...}       samples, with inputs only
-//     process -> {"request": 1, "fault": {...}}             the same samples with outputs
+//     judge   -> {"do": "drive", "subject": ..., ...}       the module's inputs, tick by tick
+//     process -> {"request": 1, "fault": {...}}             its outputs
 //     judge   -> {"do": "fly", "rate": "250", ...}          LoopTicks of the unit, those of the
 //                                                           attitude unit (empty: no cascade)
 //     process -> {"request": 2, "fault", "divergence", "parameters", ...}
 //                                                           samples, plant samples
 //                of the cascade also "attitude_ticks", "attitude_parameters"
 //                                                           and the attitude unit's samples
-//     judge   -> {"do": "time", "subject": ..., ...}        samples, with inputs only
+//     judge   -> {"do": "time", "subject": ..., ...}        the module's inputs, tick by tick
 //     process -> {"request": 3, "fault", "clock_ns", "steps", "stack"}
 //                                                           nanoseconds of each step
 //     judge   -> {"do": "supports", "profile": ...}
@@ -60,10 +60,10 @@ struct Arrived {
 // has the fault or divergence that ended it. The error in a result of a reader is that of an answer
 // with "error". `ticks_before`: of the trace, before its part in this answer.
 struct Driven {
-  std::vector<Sample> samples;
+  std::vector<std::byte> outputs;  // of the subject's module (ModuleInfo::out)
   std::optional<PortFault> fault;
 };
-Result<Driven> read_driven(const Arrived& arrived, std::size_t ticks, std::size_t ticks_before = 0);
+Result<Driven> read_driven(const Arrived& arrived, const Subject& subject, std::size_t ticks);
 // The traces of the result have no `source`. `duration`: of the case.
 Result<Result<Flown>> read_flown(const Arrived& arrived, const FlightPlan& plan,
                                  Nanoseconds duration);

@@ -17,19 +17,6 @@ namespace {
 
 using Kind = Received::Kind;
 
-// The expected outputs are not sent to the port.
-std::vector<Sample> inputs_of(const Trace& trace) {
-  std::vector<Sample> inputs = trace.samples;
-  for (Sample& sample : inputs) sample.clear_outputs();
-  return inputs;
-}
-
-void set_outputs(const std::vector<Sample>& answered, Trace& trace) {
-  for (std::size_t i = 0; i < trace.samples.size(); ++i) {
-    trace.samples[i].copy_outputs(answered[i]);
-  }
-}
-
 // A flight that diverges does so before this time.
 Nanoseconds duration_of(const Case& the_case, const FlightPlan& plan) {
   const Rate& rate = plan.configuration.rate.unit;
@@ -73,13 +60,14 @@ class PortProcess final : public PortHost {
   const PortSays& says() const override { return says_; }
 
   std::optional<PortFault> drive(const Subject& subject, Trace& trace) override {
-    const std::vector<Sample> inputs = inputs_of(trace);
+    const ModuleInfo& module = info_of(subject.module);
+    const std::vector<std::byte> inputs = module.all_inputs().copy(trace.samples);
     const auto driven =
         ask(drive_request(subject, trace), {blob_of(inputs)}, [&](const Arrived& arrived) {
-          return read_driven(arrived, inputs.size(), subject.part.first_tick);
+          return read_driven(arrived, subject, trace.samples.size());
         });
     if (!driven) return fault_;
-    set_outputs(driven->samples, trace);
+    module.out.paste(driven->outputs, trace.samples);
     return judged(driven->fault, subject.profile);
   }
 
@@ -102,8 +90,9 @@ class PortProcess final : public PortHost {
 
   Result<StepTimes> time_steps(const Subject& subject, const Trace& inputs,
                                bool with_stack) override {
+    const auto sent = info_of(subject.module).all_inputs().copy(inputs.samples);
     auto times =
-        ask(time_request(subject, inputs, with_stack), {blob_of(inputs.samples)},
+        ask(time_request(subject, inputs, with_stack), {blob_of(sent)},
             [&](const Arrived& arrived) { return read_times(arrived, inputs.samples.size()); });
     if (times) {
       if (*times) (*times)->fault = judged((*times)->fault, subject.profile);

@@ -15,7 +15,6 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/core/json_reader.hpp"
-#include "harness/core/large_pages.hpp"
 #include "harness/loop/unit_driver.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/process/child.hpp"
@@ -60,9 +59,7 @@ class BlobReader {
     static_assert(std::is_trivially_copyable_v<T>);
     if (left() == 0 || sizes_[next_] != count * sizeof(T)) return std::nullopt;
     ++next_;
-    std::vector<T> objects;
-    reserve_large(objects, count);
-    objects.resize(count);
+    std::vector<T> objects(count);
     if (!read_(objects.data(), count * sizeof(T))) return std::nullopt;
     return objects;
   }

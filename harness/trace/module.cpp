@@ -46,6 +46,24 @@ void Sample::copy_outputs(const Sample& from) {
   std::memcpy(outputs().data(), from.outputs().data(), outputs().size());
 }
 
+std::vector<std::byte> Block::copy(std::span<const Sample> samples) const {
+  std::vector<std::byte> copied(samples.size() * size);
+  std::byte* to = copied.data();
+  for (const Sample& sample : samples) {
+    std::memcpy(to, in(sample), size);
+    to += size;
+  }
+  return copied;
+}
+
+void Block::paste(std::span<const std::byte> copied, std::span<Sample> samples) const {
+  const std::byte* from = copied.data();
+  for (Sample& sample : samples) {
+    std::memcpy(in(sample), from, size);
+    from += size;
+  }
+}
+
 std::span<const ModuleInfo> modules() { return infos; }
 
 const ModuleInfo& info_of(Module module) { return infos[static_cast<std::size_t>(module)]; }

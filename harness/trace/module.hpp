@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "controller/attest_actuation.h"
 #include "controller/attest_cascade.h"
@@ -72,6 +73,11 @@ struct Block {
     return reinterpret_cast<const std::byte*>(&sample) + offset;
   }
   void* in(Sample& sample) const { return reinterpret_cast<std::byte*>(&sample) + offset; }
+
+  // Those of all samples, one after the other.
+  std::vector<std::byte> copy(std::span<const Sample> samples) const;
+  // REQUIRES: `copied` has `size` bytes for each sample.
+  void paste(std::span<const std::byte> copied, std::span<Sample> samples) const;
 };
 
 struct ModuleInfo {
@@ -80,6 +86,7 @@ struct ModuleInfo {
   std::string_view title;  // for messages: "battery estimate"
   const char* extension;   // the id that has it: ATTEST_EXTENSION_MIXER; null: controller
   Block in, out;
+  Block all_inputs() const { return {0, in.offset + in.size}; }  // with the timestamp
   bool has_updated;  // its inputs have `updated`: a bit for each topic that is new
 };
 

@@ -61,9 +61,9 @@ void greet(const Arrived& arrived) {
 }
 
 void drive(const Arrived& arrived) {
-  const auto driven = read_driven(arrived, ticks);
+  const auto driven = read_driven(arrived, {}, ticks);
   if (!is_accepted(driven)) return;
-  require(driven->samples.size() == ticks, "a sample for each tick");
+  require(driven->outputs.size() == ticks * sizeof(attest_outputs), "outputs for each tick");
   require_sane(driven->fault, arrived.of_program);
 }
 

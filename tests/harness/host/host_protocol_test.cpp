@@ -42,35 +42,36 @@ class Sent {
 };
 
 std::string zeros(std::size_t count) { return std::string(count, '\0'); }
+const std::string three_outputs = zeros(3 * sizeof(attest_outputs));
 const std::string three_samples = zeros(3 * sizeof(Sample));
 const std::string three_of_plant = zeros(3 * sizeof(PlantSample));
 
 bool is_driven(const json& head, const std::vector<std::string>& blobs) {
   Sent sent(head, blobs);
-  return read_driven(sent.as_answer_to(5), 3).has_value();
+  return read_driven(sent.as_answer_to(5), {}, 3).has_value();
 }
 
 TEST(HostProtocol, OnlyAWholeAnswerToTheRequestIsOne) {
   const json right = {{"request", 5}};
-  EXPECT_TRUE(is_driven(right, {three_samples}));
-  EXPECT_FALSE(is_driven({{"request", 4}}, {three_samples}));
-  EXPECT_FALSE(is_driven({{"request", "5"}}, {three_samples}));
-  EXPECT_FALSE(is_driven(json::object(), {three_samples}));
-  EXPECT_FALSE(is_driven(json::array({5}), {three_samples}));
-  EXPECT_FALSE(is_driven("no JSON", {three_samples}));
+  EXPECT_TRUE(is_driven(right, {three_outputs}));
+  EXPECT_FALSE(is_driven({{"request", 4}}, {three_outputs}));
+  EXPECT_FALSE(is_driven({{"request", "5"}}, {three_outputs}));
+  EXPECT_FALSE(is_driven(json::object(), {three_outputs}));
+  EXPECT_FALSE(is_driven(json::array({5}), {three_outputs}));
+  EXPECT_FALSE(is_driven("no JSON", {three_outputs}));
   EXPECT_FALSE(is_driven(right, {}));
-  EXPECT_FALSE(is_driven(right, {three_samples.substr(1)}));
-  EXPECT_FALSE(is_driven(right, {three_samples + three_samples}));
-  EXPECT_FALSE(is_driven(right, {three_samples, three_samples}));
+  EXPECT_FALSE(is_driven(right, {three_outputs.substr(1)}));
+  EXPECT_FALSE(is_driven(right, {three_outputs + three_outputs}));
+  EXPECT_FALSE(is_driven(right, {three_outputs, three_outputs}));
 }
 
 TEST(HostProtocol, AFaultHasAllItsMembers) {
   const json fault = {{"kind", 1}, {"tick", 2}, {"what", "x"}};
-  EXPECT_TRUE(is_driven({{"request", 5}, {"fault", fault}}, {three_samples}));
+  EXPECT_TRUE(is_driven({{"request", 5}, {"fault", fault}}, {three_outputs}));
   for (const char* member : {"kind", "tick", "what"}) {
     json broken = fault;
     broken.erase(member);
-    EXPECT_FALSE(is_driven({{"request", 5}, {"fault", broken}}, {three_samples})) << member;
+    EXPECT_FALSE(is_driven({{"request", 5}, {"fault", broken}}, {three_outputs})) << member;
   }
 }
 
@@ -131,10 +132,10 @@ TEST(HostProtocol, EachMemberOfAGreetingHasARange) {
 }
 
 std::string wrong_fault(const json& fault, bool of_program = false) {
-  Sent sent({{"request", 5}, {"fault", fault}}, {three_samples});
+  Sent sent({{"request", 5}, {"fault", fault}}, {three_outputs});
   Arrived arrived = sent.as_answer_to(5);
   arrived.of_program = of_program;
-  const auto driven = read_driven(arrived, 3);
+  const auto driven = read_driven(arrived, {}, 3);
   return driven ? "" : driven.error().message;
 }
 
@@ -159,8 +160,8 @@ TEST(HostProtocol, AFaultHasAKindThatTheProcessCanFindAndATickOfTheTrace) {
 
 TEST(HostProtocol, TheTextOfAFaultIsOneShortLine) {
   const json fault = {{"kind", 2}, {"tick", 2}, {"what", "a\n" + std::string(100'000, 'x')}};
-  Sent sent({{"request", 5}, {"fault", fault}}, {three_samples});
-  const auto driven = read_driven(sent.as_answer_to(5), 3);
+  Sent sent({{"request", 5}, {"fault", fault}}, {three_outputs});
+  const auto driven = read_driven(sent.as_answer_to(5), {}, 3);
   ASSERT_TRUE(driven && driven->fault);
   EXPECT_THAT(driven->fault->what, testing::StartsWith("a\\x0ax"));
   EXPECT_LT(driven->fault->what.size(), 5000u);
