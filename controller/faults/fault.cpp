@@ -9,7 +9,7 @@ namespace attest::faults {
 
 std::string_view name_of(Stage stage) {
   // In the order of the enumerators.
-  constexpr std::array<std::string_view, 34> names{"input",
+  constexpr std::array<std::string_view, 35> names{"input",
                                                    "tilt",
                                                    "yaw",
                                                    "blend",
@@ -42,7 +42,8 @@ std::string_view name_of(Stage stage) {
                                                    "estimator reset",
                                                    "autotune",
                                                    "saturation",
-                                                   "yaw filter"};
+                                                   "yaw filter",
+                                                   "elementary functions"};
   return names[static_cast<std::size_t>(stage)];
 }
 

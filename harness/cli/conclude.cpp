@@ -34,7 +34,8 @@ std::optional<Diagnosis> diagnosed(const RunResult& run, const Examined& examine
   options.stop = interrupted;
   const auto vectors = [&](const faults::Fault* partner) {
     std::vector<VectorSimilarity> similarities;
-    const auto jobs = diagnosis_jobs(examined.cases, run.results, examined.host, partner);
+    const auto jobs =
+        diagnosis_jobs(examined.cases, run.results, examined.host, partner, run.level);
     auto outcome = run_jobs(jobs, options);
     if (!outcome.errors.empty() && !interrupted()) {
       fmt::print(stderr, "attest: diagnosis: {}\n", outcome.errors.front().to_string());

@@ -1,6 +1,7 @@
 #include "harness/diagnosis/diagnose.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <map>
 #include <tuple>
 
@@ -188,10 +189,70 @@ void find_pair(const std::vector<Record>& records, const std::vector<std::size_t
   diagnosis.unexplained = all.size() - explained;
 }
 
+// A suspect that makes these calls. Empty if the calls are refuted, because they do not explain a
+// vector that passes or deviates by more than rounding, or if they explain too little.
+std::optional<Suspect> suspect_that_calls(LibraryCalls calls,
+                                          const std::vector<VectorSimilarity>& vectors) {
+  Suspect suspect;
+  suspect.fault = &port_that_calls(calls);
+  for (const VectorSimilarity& vector : vectors) {
+    const bool passes = vector.library[0] == vector.ticks;
+    const bool is_explained = vector.library[calls] == vector.ticks;
+    if (!is_explained && (passes || vector.deviates)) return std::nullopt;
+    if (passes) continue;
+    suspect.matched += vector.library[calls];
+    suspect.ticks += vector.ticks;
+    suspect.explained += is_explained ? 1 : 0;
+    ++suspect.failing;
+  }
+  const double enough = least_explained * static_cast<double>(suspect.failing);
+  if (suspect.explained == 0 || static_cast<double>(suspect.explained) < enough)
+    return std::nullopt;
+  return suspect;
+}
+
+// Of those that explain the most vectors, the one with the fewest functions.
+std::optional<Suspect> find_library_calls(const std::vector<VectorSimilarity>& vectors) {
+  std::optional<Suspect> best;
+  std::tuple<std::size_t, int, std::size_t> best_rank;
+  for (LibraryCalls calls = 1; calls < library_call_sets; ++calls) {
+    auto suspect = suspect_that_calls(calls, vectors);
+    if (!suspect) continue;
+    const std::tuple rank(suspect->explained, -std::popcount(calls), suspect->matched);
+    if (!best || rank > best_rank) {
+      best = std::move(suspect);
+      best_rank = rank;
+    } else if (rank == best_rank && best->ambiguity_group.size() < most_in_group) {
+      best->ambiguity_group.push_back(suspect->fault);
+    }
+  }
+  return best;
+}
+
+std::optional<Diagnosis> diagnose_library_calls(const std::vector<VectorSimilarity>& vectors) {
+  const auto lacks_library = [](const VectorSimilarity& one) { return one.library.empty(); };
+  if (std::any_of(vectors.begin(), vectors.end(), lacks_library)) return std::nullopt;
+  const auto suspect = find_library_calls(vectors);
+  if (!suspect) return std::nullopt;
+  std::vector<std::size_t> failing;
+  for (std::size_t v = 0; v < vectors.size(); ++v) {
+    if (vectors[v].library[0] != vectors[v].ticks) failing.push_back(v);
+  }
+  Diagnosis diagnosis;
+  diagnosis.vectors = vectors.size();
+  diagnosis.failing = failing.size();
+  diagnosis.unexplained = failing.size() - suspect->explained;
+  diagnosis.stage = suspect->fault->stage;
+  diagnosis.suspects = {*suspect};
+  find_first_stages(vectors, failing, diagnosis);
+  return diagnosis;
+}
+
 }  // namespace
 
 std::optional<Diagnosis> diagnose(const std::vector<VectorSimilarity>& vectors,
                                   const CombinedWith& combined_with) {
+  if (auto found = diagnose_library_calls(vectors)) return found;
   const std::vector<std::size_t> failing = failing_of(vectors);
   if (failing.empty()) return std::nullopt;
   Diagnosis diagnosis;

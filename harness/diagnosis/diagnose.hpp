@@ -15,7 +15,7 @@ namespace attest {
 
 // A fault whose outputs match the port's.
 struct Suspect {
-  const faults::Fault* fault = nullptr;
+  const faults::Fault* fault = nullptr;    // of the catalogue, or port_that_calls() (c_library.hpp)
   std::size_t matched = 0, ticks = 0;      // it matches `matched` of all ticks of failing vectors
   std::size_t explained = 0, failing = 0;  // it matches `explained` of the failing vectors wholly
   std::vector<const faults::Fault*> ambiguity_group;  // at most four, which match equally well
@@ -51,10 +51,15 @@ struct Diagnosis {
 // Runs the same vectors again, with each fault of the catalogue combined with the given fault.
 using CombinedWith = std::function<std::vector<VectorSimilarity>(const faults::Fault&)>;
 
-// Empty when no vector fails. If the suspects leave failing vectors unexplained, `combined_with` is
-// called with the fault that explains the most of all failing vectors, unless it explains none. The
-// best combination replaces the suspects if it explains more failing vectors than they do, and a
-// tenth or more of those that this fault leaves unexplained.
+// Empty when no vector fails. At the level exact: if functions of the C library explain half of the
+// failing vectors, the smallest set of them is the only suspect, and no other fault is searched. It
+// must explain all vectors that pass or deviate at the level numeric, so a mistake refutes it.
+// Otherwise a vector fails here if it deviates at the level numeric.
+//
+// If the suspects leave failing vectors unexplained, `combined_with` is called with the fault that
+// explains the most of all failing vectors, unless it explains none. The best combination replaces
+// the suspects if it explains more failing vectors than they do, and a tenth or more of those that
+// this fault leaves unexplained.
 std::optional<Diagnosis> diagnose(const std::vector<VectorSimilarity>& vectors,
                                   const CombinedWith& combined_with = {});
 

@@ -87,6 +87,7 @@ StageSet visible_stages(faults::Stage stage) {
     case In::timing:
     case In::output:
     case In::latching:
+    case In::functions:
       return {};
   }
   return {};

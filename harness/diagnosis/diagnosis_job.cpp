@@ -52,11 +52,11 @@ std::vector<Vector> vectors_of(const std::vector<SelectedCase>& cases,
 }
 
 void add_spread(const std::vector<Vector>& vectors, const HostOptions& options,
-                const faults::Fault* partner, Jobs<VectorDiagnosis>& jobs) {
+                const faults::Fault* partner, Level level, Jobs<VectorDiagnosis>& jobs) {
   const std::size_t count = std::min(vectors.size(), most_vectors);
   for (std::size_t i = 0; i < count; ++i) {
     const auto& [the_case, rate] = vectors[i * vectors.size() / count];
-    jobs.push_back(std::make_unique<DiagnosisJob>(*the_case, rate, partner, options));
+    jobs.push_back(std::make_unique<DiagnosisJob>(*the_case, rate, partner, options, level));
   }
 }
 
@@ -73,7 +73,8 @@ json to_json(const VectorDiagnosis& diagnosis) {
           {"deviates", diagnosis->deviates},
           {"faults", rows},
           {"stages", diagnosis->stages.to_ulong()},
-          {"case", diagnosis->case_id}};
+          {"case", diagnosis->case_id},
+          {"library", diagnosis->library}};
 }
 
 VectorDiagnosis diagnosis_from(const json& in) {
@@ -87,6 +88,7 @@ VectorDiagnosis diagnosis_from(const json& in) {
   }
   out.stages = StageSet(in.at("stages").get<unsigned long>());
   out.case_id = in.at("case").get<std::string>();
+  out.library = in.at("library").get<LibraryMatches>();
   return out;
 }
 
@@ -111,9 +113,15 @@ Result<VectorDiagnosis> DiagnosisJob::run(std::size_t) {
   if ((*host)->drive(subject, got)) return std::nullopt;
   const auto reference = open_builtin();
   if (drive(*reference, subject, law)) return std::nullopt;
+  const auto at = [&](Level level) {
+    return tolerances_of(case_, case_.numeric_only ? Level::numeric : level, port.fraction_bits,
+                         law.samples.size());
+  };
+  const bool is_exact = level_ == Level::exact && partner_ == nullptr;
+  auto library = is_exact ? library_matches(got, port, case_, at(level_)) : LibraryMatches();
+  if (!library) return tl::unexpected(library.error());
   if (port.is_recorded) fill_in(port.not_recorded, law, got);
-  const Tolerances tolerances =
-      tolerances_of(case_, Level::numeric, port.fraction_bits, law.samples.size());
+  const Tolerances tolerances = at(Level::numeric);
   if (case_.either_branch.any()) {
     const auto others = branch_alternatives(case_, law);
     if (!others) return tl::unexpected(others.error());
@@ -122,15 +130,18 @@ Result<VectorDiagnosis> DiagnosisJob::run(std::size_t) {
   VectorSimilarity found =
       similarity(outputs_of(got), outputs_of(law), answers_of_faults(law, subject, partner_),
                  subject.module, tolerances);
-  const Comparison comparison = compare(got, law, tolerances);
+  Comparison comparison = compare(got, law, tolerances);
+  if (is_exact && !comparison.first) comparison = compare(got, law, at(level_));
   if (comparison.first) found.stages = stages_of(*comparison.first);
   found.case_id = case_.id();
+  found.library = *std::move(library);
   return found;
 }
 
 Jobs<VectorDiagnosis> diagnosis_jobs(const std::vector<SelectedCase>& cases,
                                      const std::vector<CaseResult>& results,
-                                     const HostOptions& options, const faults::Fault* partner) {
+                                     const HostOptions& options, const faults::Fault* partner,
+                                     Level level) {
   const auto failed = [](const CaseResult& result) {
     return result.first && fails_a_run(result.verdict);
   };
@@ -138,8 +149,8 @@ Jobs<VectorDiagnosis> diagnosis_jobs(const std::vector<SelectedCase>& cases,
   Jobs<VectorDiagnosis> jobs;
   const auto failing = vectors_of(cases, results, failed);
   if (failing.empty()) return jobs;
-  add_spread(failing, options, partner, jobs);
-  add_spread(vectors_of(cases, results, passed), options, partner, jobs);
+  add_spread(failing, options, partner, level, jobs);
+  add_spread(vectors_of(cases, results, passed), options, partner, level, jobs);
   return jobs;
 }
 

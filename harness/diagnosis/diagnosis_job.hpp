@@ -26,11 +26,15 @@ struct Codec<VectorDiagnosis> {
 // Runs port and faults on one vector.
 class DiagnosisJob final : public PortJob<VectorDiagnosis> {
  public:
-  // With a `partner`, each fault is combined with it. REQUIRES: an open-loop case, which outlives
-  // this.
+  // With a `partner`, each fault is combined with it. `level`: of the verdict. REQUIRES: an
+  // open-loop case, which outlives this.
   DiagnosisJob(const Case& the_case, const Rate& rate, const faults::Fault* partner,
-               HostOptions options)
-      : PortJob(std::move(options)), case_(the_case), rate_(rate), partner_(partner) {}
+               HostOptions options, Level level = Level::numeric)
+      : PortJob(std::move(options)),
+        case_(the_case),
+        rate_(rate),
+        partner_(partner),
+        level_(level) {}
 
   std::size_t size() const override { return 1; }
   Result<VectorDiagnosis> run(std::size_t task) override;
@@ -39,6 +43,7 @@ class DiagnosisJob final : public PortJob<VectorDiagnosis> {
   const Case& case_;
   Rate rate_;
   const faults::Fault* partner_;
+  Level level_;
 };
 
 // Jobs for up to 48 vectors that failed with a deviation, and for up to 48 vectors that passed.
@@ -48,6 +53,7 @@ class DiagnosisJob final : public PortJob<VectorDiagnosis> {
 Jobs<VectorDiagnosis> diagnosis_jobs(const std::vector<SelectedCase>& cases,
                                      const std::vector<CaseResult>& results,
                                      const HostOptions& options,
-                                     const faults::Fault* partner = nullptr);
+                                     const faults::Fault* partner = nullptr,
+                                     Level level = Level::numeric);
 
 }  // namespace attest

@@ -10,6 +10,7 @@
 
 #include "controller/faults/fault.hpp"
 #include "harness/compare/tolerance.hpp"
+#include "harness/diagnosis/c_library.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/trace/trace.hpp"
 
@@ -29,6 +30,7 @@ struct VectorSimilarity {
   std::vector<Similarity> similarities;  // of each fault, or of each of FaultAnswers::distinct
   StageSet stages = {};                  // of the port's first deviation (Deviation::stages)
   std::string case_id = {};
+  LibraryMatches library = {};  // at the level exact
 };
 
 // The outputs of all modules in a Sample. Those of modules other than the subject's are zero.

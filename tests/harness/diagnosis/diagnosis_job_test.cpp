@@ -12,8 +12,10 @@
 namespace attest {
 namespace {
 
+using testing::Each;
 using testing::ElementsAre;
 using testing::IsEmpty;
+using testing::Lt;
 using testing::SizeIs;
 
 // A vector on which a dropped yaw weight and a missing attenuation change the outputs.
@@ -95,6 +97,19 @@ TEST_F(DiagnosisJobTest, WithAPartnerEachFaultIsTriedTogetherWithIt) {
   EXPECT_EQ(of_fault(**together, "limits-exchanged").matched, 0u);
 }
 
+// This case calls atan2 alone, whose results some libraries round correctly.
+TEST_F(DiagnosisJobTest, AtTheLevelExactTheCallsOfTheCLibraryAreTried) {
+  const auto found = [&](const char* port, Level level) {
+    return DiagnosisJob(suite_[0], Rate::hz(250), nullptr, here(port), level).run(0).value();
+  };
+  const LibraryMatches right = found("builtin", Level::exact)->library;
+  ASSERT_THAT(right, SizeIs(library_call_sets));
+  constexpr LibraryCalls atan2f = 1 << 5;
+  for (LibraryCalls calls = 0; calls < atan2f; ++calls) EXPECT_EQ(right[calls], 30u) << calls;
+  EXPECT_THAT(found("fault:tpa-missing", Level::exact)->library, Each(Lt(30u)));
+  EXPECT_THAT(found("builtin", Level::numeric)->library, IsEmpty());
+}
+
 TEST_F(DiagnosisJobTest, APortThatGoesWrongHasNoDiagnosis) {
   HostOptions hangs = host_of("builtin");
   hangs.hangs = "no answer";
@@ -151,8 +166,8 @@ TEST(DiagnosisCodec, AResultComesBackAsItWas) {
   };
   for (const bool deviates : {true, false}) {
     const StageSet stages = only(Stage::sticks) | only(Stage::actuators);
-    const auto one =
-        back(VectorSimilarity{30, deviates, {{1, 2, 3}, {4, 5, 6, true}}, stages, "modes/acro"});
+    const auto one = back(
+        VectorSimilarity{30, deviates, {{1, 2, 3}, {4, 5, 6, true}}, stages, "modes/acro", {7, 8}});
     ASSERT_TRUE(one && *one);
     EXPECT_EQ((*one)->ticks, 30u);
     EXPECT_EQ((*one)->deviates, deviates);
@@ -164,6 +179,7 @@ TEST(DiagnosisCodec, AResultComesBackAsItWas) {
     EXPECT_FALSE((*one)->similarities[0].deviates);
     EXPECT_EQ((*one)->stages, stages);
     EXPECT_EQ((*one)->case_id, "modes/acro");
+    EXPECT_THAT((*one)->library, ElementsAre(7, 8));
   }
   const auto none = back(VectorDiagnosis());
   ASSERT_TRUE(none);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -62,6 +63,20 @@ class HandMade {
   // The stages of the port's first deviation.
   HandMade& deviates_first(std::size_t vector, const StageSet& stages) {
     vectors_.at(vector).stages = stages;
+    return *this;
+  }
+
+  // These sets of calls of the C library give the port's outputs.
+  HandMade& explained_by(std::size_t vector, std::initializer_list<LibraryCalls> sets) {
+    for (const LibraryCalls calls : sets) {
+      matches_with(vector, calls, ticks);
+    }
+    return *this;
+  }
+  // With these calls, the reference has the port's outputs at `matched` ticks.
+  HandMade& matches_with(std::size_t vector, LibraryCalls calls, std::size_t matched) {
+    vectors_.at(vector).library.resize(library_call_sets);
+    vectors_.at(vector).library[calls] = matched;
     return *this;
   }
 

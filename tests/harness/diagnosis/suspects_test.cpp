@@ -210,5 +210,73 @@ TEST(Suspects, TheFirstDecidesTheStageThoughAnotherIsNearer) {
   EXPECT_EQ(found->jaccard_index, 1);
 }
 
+// ---- functions of the C library -----------------------------------------------------------------
+
+constexpr LibraryCalls asinf = 1 << 2, acosf = 1 << 3, atan2f = 1 << 5;
+
+TEST(LibraryCalls, TheSmallestSetThatExplainsAllVectorsIsTheOnlySuspect) {
+  const auto found = diagnose(HandMade(2, 1)
+                                  .matches(yaw_fault, 0, 3)
+                                  .deviates_first(0, only(Stage::sticks))
+                                  .deviates_first(1, only(Stage::sticks))
+                                  .explained_by(0, {asinf, asinf | acosf, asinf | atan2f, 63})
+                                  .explained_by(1, {atan2f, asinf | atan2f, acosf | atan2f, 63})
+                                  .explained_by(2, {0, asinf, atan2f, asinf | atan2f, 63}));
+  ASSERT_TRUE(found);
+  ASSERT_THAT(suspected(*found), ElementsAre("libm-asinf-atan2f"));
+  const Suspect& first = found->suspects.front();
+  EXPECT_EQ(first.explained, 2u);
+  EXPECT_EQ(first.failing, 2u);
+  EXPECT_EQ(first.matched, 2 * ticks);
+  EXPECT_EQ(first.ticks, 2 * ticks);
+  EXPECT_THAT(first.ambiguity_group, IsEmpty());
+  EXPECT_EQ(found->vectors, 3u);
+  EXPECT_EQ(found->failing, 2u);
+  EXPECT_EQ(found->unexplained, 0u);
+  EXPECT_EQ(found->first_stages, only(Stage::sticks));
+}
+
+TEST(LibraryCalls, SetsOfTheSameSizeAreEquallyGood) {
+  const auto found = diagnose(HandMade(1, 0).explained_by(0, {atan2f, asinf, asinf | atan2f}));
+  ASSERT_TRUE(found);
+  ASSERT_THAT(suspected(*found), ElementsAre("libm-asinf"));
+  EXPECT_THAT(ids_of(found->suspects.front().ambiguity_group), ElementsAre("libm-atan2f"));
+}
+
+TEST(LibraryCalls, APassingVectorThatTheCallsWouldFailRefutesThem) {
+  const auto found = diagnose(HandMade(1, 1).explained_by(0, {asinf}).explained_by(1, {0, atan2f}));
+  ASSERT_TRUE(found);
+  EXPECT_THAT(found->suspects, IsEmpty());
+}
+
+TEST(LibraryCalls, ADeviationBeyondRoundingThatTheyDoNotExplainRefutesThem) {
+  const auto found = diagnose(HandMade(3, 0)
+                                  .explained_by(0, {asinf})
+                                  .explained_by(1, {asinf})
+                                  .matches_with(2, asinf, ticks - 1));
+  ASSERT_TRUE(found);
+  EXPECT_THAT(found->suspects, IsEmpty());
+}
+
+// Vectors that pass at the level numeric.
+TEST(LibraryCalls, TheyNeedToExplainHalfOfTheDeviationsByRounding) {
+  HandMade half(0, 2);
+  half.explained_by(0, {asinf}).matches_with(1, asinf, 4);
+  const auto found = diagnose(half);
+  ASSERT_TRUE(found);
+  ASSERT_THAT(suspected(*found), ElementsAre("libm-asinf"));
+  EXPECT_EQ(found->suspects.front().explained, 1u);
+  EXPECT_EQ(found->suspects.front().failing, 2u);
+  EXPECT_EQ(found->suspects.front().matched, ticks + 4);
+  EXPECT_EQ(found->unexplained, 1u);
+  HandMade third(0, 3);
+  third.explained_by(0, {asinf}).matches_with(1, asinf, 4).matches_with(2, asinf, 4);
+  EXPECT_FALSE(diagnose(third));
+}
+
+TEST(LibraryCalls, APortThatPassesIsNotDiagnosed) {
+  EXPECT_FALSE(diagnose(HandMade(0, 2).explained_by(0, {0, asinf}).explained_by(1, {0, asinf})));
+}
+
 }  // namespace
 }  // namespace attest
