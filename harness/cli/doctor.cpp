@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "controller/elementary/fixed_arguments.hpp"
 #include "controller/reference/profile.hpp"
 #include "harness/casefile/select.hpp"
 #include "harness/cli/command.hpp"
@@ -27,6 +28,26 @@ void examine_arithmetic(Examination& examination) {
   volatile float product = tiny * 1.0f;
   examination.check(product != 0 && std::fegetround() == FE_TONEAREST, "arithmetic",
                     "binary32, round to nearest, denormals kept");
+}
+
+// Of this build, because a compiler may have made other code of them than that which was tested.
+void examine_functions(Examination& examination) {
+  std::vector<std::string_view> all, wrong;
+  for (const elementary::FixedFunction& function : elementary::fixed_functions) {
+    all.push_back(function.name);
+    if (!elementary::is_correct(function)) wrong.push_back(function.name);
+  }
+  if (wrong.empty()) {
+    return examination.good("functions",
+                            fmt::format("{}: correctly rounded at {} fixed arguments each",
+                                        fmt::join(all, ", "), elementary::fixed_pairs));
+  }
+  examination.bad(
+      "functions",
+      fmt::format("{}: not correctly rounded, so no verdict of this attest is valid. It "
+                  "was compiled wrongly, or its file is damaged: install it anew, or "
+                  "build it with another compiler and without -ffast-math",
+                  fmt::join(wrong, ", ")));
 }
 
 void examine_cases(const SuiteFolder& suite, Examination& examination) {
@@ -94,6 +115,7 @@ int doctor_command(const DoctorOptions& options, const Globals& globals) {
   examination.good("attest", fmt::format("{}, built by {}", version, compiler()));
   examination.good("machine", fmt::format("{} processors", std::thread::hardware_concurrency()));
   examine_arithmetic(examination);
+  examine_functions(examination);
   if (const auto suite = find_suite(globals.suite)) {
     examine_cases(*suite, examination);
     examine_reference(*suite, examination);

@@ -43,6 +43,31 @@ load common
   lacks "px4-v1.5.5/battery_status"
 }
 
+# damaged VALUE: ./damaged is attest, in whose constants a bit of VALUE has changed.
+damaged() {
+  "$PYTHON" - "$ATTEST" "$1" <<'SCRIPT'
+import math, struct, sys
+
+data = bytearray(open(sys.argv[1], "rb").read())
+value = struct.pack("<d", eval(sys.argv[2]))
+assert data.count(value) == 1, data.count(value)
+data[data.index(value) + 5] ^= 1
+open("damaged", "wb").write(data)
+SCRIPT
+  chmod +x damaged
+}
+
+@test "doctor finds an elementary function that is not correctly rounded" {
+  blessed_suite
+  run "$ATTEST" --suite suite doctor
+  [ "$status" -eq 0 ]
+  has "functions  sin, cos, tan, asin, acos, exp, atan2: correctly rounded"
+  damaged 'math.atan(9 / 16)'
+  run ./damaged --suite suite doctor
+  [ "$status" -eq 2 ]
+  has "BAD    functions  atan2: not correctly rounded, so no verdict of this attest is valid"
+}
+
 # The port does not depend on the suite, and doctor examines a small one sooner.
 @test "doctor lets a port do its first steps" {
   blessed_suite

@@ -13,9 +13,6 @@ namespace {
 constexpr std::uint64_t chunk_size = 1 << 20;  // arguments that one thread takes at a time
 constexpr std::size_t wrong_kept = 5;
 
-// FNV-1a, with words in place of bytes.
-void add_to_hash(std::uint64_t& hash, std::uint64_t word) { hash = (hash ^ word) * 0x100000001b3; }
-
 void check(const Function& f, Arguments at, Truth want, Swept& swept) {
   const float got = f.fast(at.y, at.x);
   ++swept.arguments;
@@ -85,25 +82,6 @@ Swept sweep_pairs(const Function& f, std::uint64_t count, unsigned threads) {
     check(f, {y, x}, truth(f, y, x), swept);
     check(f, {y, -x}, truth(f, y, -x), swept);
   });
-}
-
-Arguments random_pair(std::uint64_t i) {
-  const std::uint64_t bits = random_bits(i);
-  const auto y = static_cast<std::uint32_t>(bits);
-  auto x = static_cast<std::uint32_t>(bits >> 32);
-  if (i % 2 == 1) {
-    const int exponent = static_cast<int>(y >> 23 & 0xff) + static_cast<int>(x >> 23 & 63) - 32;
-    x = (x & 0x807fffff) | static_cast<std::uint32_t>(std::clamp(exponent, 0, 254)) << 23;
-  }
-  return {std::bit_cast<float>(y), std::bit_cast<float>(x)};
-}
-
-// SplitMix64 (Steele, Lea, Flood 2014).
-std::uint64_t random_bits(std::uint64_t i) {
-  std::uint64_t z = (i + 1) * 0x9e3779b97f4a7c15;
-  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
-  z = (z ^ z >> 27) * 0x94d049bb133111eb;
-  return z ^ z >> 31;
 }
 
 }  // namespace attest::elementary

@@ -4,13 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "controller/elementary/fixed_arguments.hpp"
 #include "tests/controller/elementary/functions.hpp"
 
 namespace attest::elementary {
-
-struct Arguments {
-  float y, x;
-};
 
 struct Swept {
   std::uint64_t arguments = 0;
@@ -25,14 +22,7 @@ struct Swept {
 // their size, each with both signs.
 Swept sweep_arguments(const Function& f, std::uint64_t every, unsigned threads);
 
-// `count` pairs at random, each with both signs of x. In half of the pairs all bits are random. In
-// the other half the exponents differ by at most 32.
+// `count` pairs of random_pair(), each also with the other sign of x.
 Swept sweep_pairs(const Function& f, std::uint64_t count, unsigned threads);
-
-// The i-th pair of sweep_pairs(), with the sign of x as it came.
-Arguments random_pair(std::uint64_t i);
-
-// 64 bits at random, for each i.
-std::uint64_t random_bits(std::uint64_t i);
 
 }  // namespace attest::elementary
