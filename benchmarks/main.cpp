@@ -1,6 +1,5 @@
 // Prints the table of ratios (ci/bench). Google Benchmark's options apply, such as
 // --benchmark_filter=step and --benchmark_min_time=0.5.
-#include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <string>
@@ -13,7 +12,6 @@
 #include "benchmarks/memory.hpp"
 #include "benchmarks/pairs.hpp"
 #include "benchmarks/shards.hpp"
-#include "harness/core/file.hpp"
 #include "harness/core/version.hpp"
 
 namespace {
@@ -52,14 +50,8 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "--benchmark_filter={}: no benchmark of that name\n", filter);
     return 2;
   }
-  std::string text =
-      fmt::format("attest {}, {}, {}, {} processors, {}\n\n{}", attest::version, attest::compiler(),
-                  cpu_model(), std::thread::hardware_concurrency(), today(), reporter.table(met)) +
-      memory + shards;
-  fmt::print("{}", text);
-  if (const char* const path = std::getenv("ATTEST_BENCH_JSON")) {
-    auto file = attest::AtomicFile::open(path);
-    if (!file || !file->write(reporter.json()) || !file->commit()) return 2;
-  }
+  fmt::print("attest {}, {}, {}, {} processors, {}\n\n{}", attest::version, attest::compiler(),
+             cpu_model(), std::thread::hardware_concurrency(), today(), reporter.table(met));
+  fmt::print("{}{}", memory, shards);
   return met ? 0 : 1;
 }

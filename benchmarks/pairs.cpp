@@ -5,7 +5,6 @@
 #include <limits>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace attest::bench {
 namespace {
@@ -181,21 +180,6 @@ const PairReporter::Times* PairReporter::find(const std::string& name) const {
   const auto found = std::find_if(times_.begin(), times_.end(),
                                   [&](const Times& times) { return times.name == name; });
   return found == times_.end() ? nullptr : &*found;
-}
-
-std::string PairReporter::json() const {
-  nlohmann::ordered_json out = nlohmann::json::array();
-  for (const Pair& pair : pairs()) {
-    const Times* measured = find(pair.measured);
-    const Times* floor = find(pair.floor);
-    if (!measured || !floor) continue;
-    out.push_back({{"figure", pair.what},
-                   {"measured_s", measured->seconds},
-                   {"floor_s", floor->seconds},
-                   {"ratio", median(by_turn(measured->seconds, floor->seconds, std::divides{}))},
-                   {"claim", pair.claim}});
-  }
-  return out.dump(1) + "\n";
 }
 
 std::string PairReporter::table(bool& met) const {

@@ -36,10 +36,6 @@ class PairReporter : public benchmark::BenchmarkReporter {
   // Markdown, with the bounds that were missed. Sets `met` to false when one was.
   std::string table(bool& met) const;
 
-  // Every turn: [{"figure": ..., "measured_s": [...], "floor_s": [...], "ratio": 1.03,
-  // "claim": ...}, ...]
-  std::string json() const;
-
  private:
   struct Times {
     std::string name;
