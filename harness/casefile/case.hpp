@@ -111,15 +111,6 @@ struct ToleranceOverride {
   Tolerance tolerance;
 };
 
-// The ties of the attitude law that a case reaches: there both directions of rotation are equally
-// correct. At such a tick a port's outputs may be those of either branch.
-struct EitherBranch {
-  bool yaw_wrap = false;          // a yaw error of 180 deg
-  bool shorter_rotation = false;  // beyond 90 deg of tilt, a direct rotation of 180 deg
-
-  bool any() const { return yaw_wrap || shorter_rotation; }
-};
-
 // The lives of other instances of the port, relative to the judged instance. Many: each of them
 // makes one step.
 enum class Instances : std::uint8_t {
@@ -154,7 +145,6 @@ struct Case {
   // Compared by tolerances at the exact level, too: its bits depend on the platform (exp and acos),
   // not on the law.
   bool numeric_only = false;
-  EitherBranch either_branch;
   Instances instances = Instances::one;
   std::optional<Flight> flight;               // empty: open loop, every input is scripted
   std::optional<AttitudeLoop> attitude_loop;  // only in a flight of the cascade

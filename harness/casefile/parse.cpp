@@ -28,23 +28,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-EitherBranch parse_either_branch(const TomlTable& root, Module module) {
-  constexpr const char* key = "either_branch";
-  EitherBranch branches;
-  if (!root.has(key)) return branches;
-  for (const std::string& decision : root.texts(key)) {
-    branches.yaw_wrap |= decision == "yaw_wrap";
-    branches.shorter_rotation |= decision == "shorter_rotation";
-    if (decision != "yaw_wrap" && decision != "shorter_rotation") {
-      root.error(key, fmt::format("no decision `{}`; use yaw_wrap, shorter_rotation", decision));
-    }
-  }
-  if (root.has("level") || root.has("flight") || module != Module::mc_att_control) {
-    root.error(key, "is for the controller in open loop, at any level");
-  }
-  return branches;
-}
-
 constexpr std::array<std::pair<std::string_view, Instances>, 7> instances_by_name{{
     {"again", Instances::again},
     {"together", Instances::together},
@@ -286,11 +269,6 @@ void parse_body(const TomlTable& root, Case& parsed) {
     parsed.exact_only = level == "exact";
     parsed.numeric_only = level == "numeric";
     if (level != "numeric" && level != "exact") root.error("level", "must be numeric or exact");
-  }
-  parsed.either_branch = parse_either_branch(root, parsed.module);
-  if (parsed.either_branch.any() && most_ticks(parsed) > 1000) {
-    root.error("either_branch",
-               "is for cases of at most 1000 ticks, whose goldens keep every tick");
   }
   parsed.instances = parse_instances(root);
   parse_units(root, parsed);

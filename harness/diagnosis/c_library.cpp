@@ -18,7 +18,6 @@
 #include "controller/reference/mc_att_control_definition.hpp"
 #include "controller/reference/unit_table.hpp"
 #include "harness/compare/compare.hpp"
-#include "harness/golden/branch_alternatives.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/port/abi_port.hpp"
 #include "harness/verify/judge.hpp"
@@ -77,11 +76,6 @@ Result<std::size_t> matches(Trace got, LibraryCalls calls, const PortSays& port,
   for (Sample& sample : law.samples) sample.clear_outputs();
   if (drive(in_chosen, subject, law)) return 0;
   if (port.is_recorded) fill_in(port.not_recorded, law, got);
-  if (the_case.either_branch.any()) {
-    const auto others = branch_alternatives(the_case, law);
-    if (!others) return tl::unexpected(others.error());
-    law = on_the_branch_of(got, law, *others, tolerances);
-  }
   return law.samples.size() - compare(got, law, tolerances).deviating_ticks;
 }
 

@@ -9,7 +9,6 @@
 #include "harness/casefile/stimulus.hpp"
 #include "harness/compare/compare.hpp"
 #include "harness/core/error_json.hpp"
-#include "harness/golden/branch_alternatives.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/port/builtin.hpp"
 #include "harness/verify/evaluate.hpp"
@@ -122,11 +121,6 @@ Result<VectorDiagnosis> DiagnosisJob::run(std::size_t) {
   if (!library) return tl::unexpected(library.error());
   if (port.is_recorded) fill_in(port.not_recorded, law, got);
   const Tolerances tolerances = at(Level::numeric);
-  if (case_.either_branch.any()) {
-    const auto others = branch_alternatives(case_, law);
-    if (!others) return tl::unexpected(others.error());
-    law = on_the_branch_of(got, law, *others, tolerances);
-  }
   VectorSimilarity found =
       similarity(outputs_of(got), outputs_of(law), answers_of_faults(law, subject, partner_),
                  subject.module, tolerances);

@@ -21,11 +21,6 @@ std::string file_name(const RunConfiguration& configuration) {
   return configuration.label() + ".csv";
 }
 
-std::string file_name(const RunConfiguration& configuration,
-                      const std::string& branch_alternative) {
-  return fmt::format("{}.{}.csv", configuration.label(), branch_alternative);
-}
-
 std::string how_to_bless(const Case& the_case) {
   return fmt::format("`attest bless --filter '{}' --reason \"...\"` makes it", the_case.id());
 }
@@ -43,10 +38,7 @@ Result<std::string> write_trace(const fs::path& path, const Trace& trace, CsvCol
 
 std::vector<Trace> samples_of(const std::vector<GoldenTrace>& traces) {
   std::vector<Trace> samples;
-  for (const GoldenTrace& trace : traces) {
-    samples.push_back(trace.trace);
-    for (const auto& [branch, other] : trace.branch_alternatives) samples.push_back(other);
-  }
+  for (const GoldenTrace& trace : traces) samples.push_back(trace.trace);
   return samples;
 }
 
@@ -77,18 +69,11 @@ Result<void> write_folder(const fs::path& folder, const Case& the_case,
   provenance.compiler = compiler();
   provenance.reason = making.reason;
   provenance.constants = division.constants;
-  const auto write = [&](const std::string& name, const Trace& trace) -> Result<void> {
+  for (const auto& [configuration, trace, is_whole, horizon_s, metrics] : traces) {
+    const std::string name = file_name(configuration);
     auto hash = write_trace(folder / name, trace, division.columns);
     if (!hash) return tl::unexpected(hash.error());
     provenance.sha256[name] = *hash;
-    return {};
-  };
-  for (const auto& [configuration, trace, is_whole, horizon_s, metrics, branch_alternatives] :
-       traces) {
-    if (auto written = write(file_name(configuration), trace); !written) return written;
-    for (const auto& [branch, other] : branch_alternatives) {
-      if (auto written = write(file_name(configuration, branch), other); !written) return written;
-    }
     if (!the_case.mixer.empty()) provenance.mixers[configuration.label()] = the_case.mixer;
     if (horizon_s) provenance.horizon_s[configuration.label()] = *horizon_s;
     for (const auto& [metric, value] : metrics) {
@@ -178,26 +163,7 @@ Result<Golden> Golden::open(const fs::path& golden_root, const Case& the_case,
 }
 
 Result<Trace> Golden::read(const RunConfiguration& configuration) const {
-  return read_file(file_name(configuration));
-}
-
-Result<BranchAlternatives> Golden::read_branch_alternatives(
-    const RunConfiguration& configuration) const {
-  const std::string prefix = configuration.label() + ".", suffix = ".csv";
-  BranchAlternatives others;
-  for (const auto& [name, hash] : provenance_.sha256) {
-    const bool is_of_configuration =
-        name.starts_with(prefix) && name.size() > prefix.size() + suffix.size();
-    if (!is_of_configuration) continue;
-    auto trace = read_file(name);
-    if (!trace) return tl::unexpected(trace.error());
-    const std::size_t length = name.size() - prefix.size() - suffix.size();
-    others[name.substr(prefix.size(), length)] = std::move(*trace);
-  }
-  return others;
-}
-
-Result<Trace> Golden::read_file(const std::string& name) const {
+  const std::string name = file_name(configuration);
   const fs::path path = folder_ / name;
   const auto blessed = provenance_.sha256.find(name);
   if (blessed == provenance_.sha256.end()) {
@@ -220,7 +186,7 @@ Result<Trace> Golden::read_file(const std::string& name) const {
 
 // The text of a trace. Errors: its hash is not `blessed`.
 Result<std::string> Golden::blessed_text(const fs::path& path, const std::string& blessed) const {
-  auto text = attest::read_file(path);
+  auto text = read_file(path);
   if (!text || sha256(*text) == blessed) return text;
   return fail_at(
       path.string(),

@@ -17,7 +17,6 @@
 #include "harness/casefile/case.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/result.hpp"
-#include "harness/golden/branch_alternatives.hpp"
 #include "harness/golden/reference_flight.hpp"
 #include "harness/trace/provenance.hpp"
 
@@ -37,10 +36,6 @@ class Golden {
   // during the run is never judged against.
   Result<Trace> read(const RunConfiguration& configuration) const;
 
-  // The goldens on other branches; empty for a case without Case::either_branch. Errors: those of
-  // read().
-  Result<BranchAlternatives> read_branch_alternatives(const RunConfiguration& configuration) const;
-
   // The rows, horizon and metrics of a flight. Errors: those of read(); a file from which the
   // vehicle was loaded is new or has changed since the golden was made; no horizon.
   Result<ReferenceFlight> read_flight(const RunConfiguration& configuration,
@@ -51,7 +46,6 @@ class Golden {
  private:
   explicit Golden(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  Result<Trace> read_file(const std::string& name) const;
   Result<std::string> blessed_text(const std::filesystem::path& path,
                                    const std::string& blessed) const;
 
@@ -79,7 +73,6 @@ struct GoldenTrace {
   bool is_whole = true;  // false: keyframes, of a flight or a long case
   std::optional<double> horizon_s = std::nullopt;
   std::map<std::string, double> metrics = {};
-  BranchAlternatives branch_alternatives = {};  // of a case with Case::either_branch
 };
 
 // The golden of a case's first profile: the base of the goldens of its other profiles.

@@ -116,15 +116,10 @@ Changes changes_of(const Golden& golden, const std::vector<GoldenTrace>& traces)
   Changes changes;
   for (const GoldenTrace& made : traces) {
     const auto old_trace = golden.read(made.configuration);
-    const auto old_others = golden.read_branch_alternatives(made.configuration);
-    if (!old_trace || !old_others || old_others->size() != made.branch_alternatives.size()) {
+    if (old_trace) {
+      changes.add(*old_trace, made.trace);
+    } else {
       changes.add_replaced();
-      continue;
-    }
-    changes.add(*old_trace, made.trace);
-    for (const auto& [branch, other] : made.branch_alternatives) {
-      const auto old_other = old_others->find(branch);
-      if (old_other != old_others->end()) changes.add(old_other->second, other);
     }
   }
   return changes;

@@ -7,7 +7,6 @@
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/compare/compare.hpp"
-#include "harness/golden/branch_alternatives.hpp"
 #include "harness/golden/keyframes.hpp"
 #include "harness/golden/reference_flight.hpp"
 #include "harness/host/host_here.hpp"
@@ -36,9 +35,6 @@ Result<std::optional<GoldenTrace>> open_loop_trace(const Case& the_case,
   }
   GoldenTrace golden{configuration, std::move(trace)};
   if (!reference.is_own()) return golden;
-  auto others = branch_alternatives(the_case, golden.trace);
-  if (!others) return tl::unexpected(others.error());
-  golden.branch_alternatives = std::move(*others);
   golden.is_whole = keeps_every_tick(golden.trace.samples.size());
   if (!golden.is_whole) golden.trace = keyframes_of(golden.trace);
   return golden;

@@ -38,11 +38,10 @@ struct MadeGolden {
   std::string left_out = {};  // why there is no golden of this case; empty if there is one
 };
 
-// The golden of a port keeps every tick, and has no branch alternatives, which only attest's own
-// law can compute. A port gets no goldens of flights, because flights are compared with attest's
-// own law at each tick. If a port does not support the case, `left_out` is set. `stop` is called
-// before each configuration. Errors: `stop` returned true; the reference fails, or gives other
-// outputs the second time; those of reference_flight() and branch_alternatives().
+// The golden of a port keeps every tick. A port gets no goldens of flights, because flights are
+// compared with attest's own law at each tick. If a port does not support the case, `left_out` is
+// set. `stop` is called before each configuration. Errors: `stop` returned true; the reference
+// fails, or gives other outputs the second time; those of reference_flight().
 Result<MadeGolden> make_golden(const Case& the_case, Reference& reference,
                                VehicleModels& vehicle_models, const std::function<bool()>& stop);
 

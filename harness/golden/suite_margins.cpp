@@ -5,12 +5,6 @@
 namespace attest {
 namespace {
 
-// Whether the case is at this tie on purpose, so that both branches are correct.
-bool stands_on(const EitherBranch& branches, Decision decision) {
-  return (branches.yaw_wrap && decision == Decision::yaw_wrap) ||
-         (branches.shorter_rotation && decision == Decision::shorter_rotation);
-}
-
 void add(const Case& the_case, const RunConfiguration& configuration, SuiteMargins& all) {
   const auto meter = margin_meter(subject_of(the_case));
   if (!meter) {
@@ -21,7 +15,6 @@ void add(const Case& the_case, const RunConfiguration& configuration, SuiteMargi
   ++all.vectors;
   for (std::size_t i = 0; i < decision_count; ++i) {
     const auto decision = static_cast<Decision>(i);
-    if (stands_on(the_case.either_branch, decision)) continue;
     const VectorMargin one{&the_case, configuration, decision, found[decision]};
     if (is_nearer(decision, one.margin, all.nearest[i].margin)) all.nearest[i] = one;
     if (!found.is_safe(decision)) all.too_near.push_back(one);

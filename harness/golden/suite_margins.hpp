@@ -25,9 +25,8 @@ struct SuiteMargins {
   std::vector<VectorMargin> too_near;                  // unsafe; in the order of the cases
 };
 
-// Measures the selected open-loop cases, without those for the exact level only. A decision at
-// which a case is at a tie on purpose (Case::either_branch) is left out for this case. The result
-// is valid as long as `cases`.
+// Measures the selected open-loop cases, without those for the exact level only. The result is
+// valid as long as `cases`.
 SuiteMargins suite_margins(const std::vector<SelectedCase>& cases);
 
 }  // namespace attest

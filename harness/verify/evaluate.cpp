@@ -8,7 +8,6 @@
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/compare/events.hpp"
-#include "harness/golden/branch_alternatives.hpp"
 #include "harness/golden/keyframes.hpp"
 #include "harness/golden/recorded.hpp"
 #include "harness/host/host_here.hpp"
@@ -23,47 +22,33 @@
 namespace attest {
 namespace {
 
-struct Expected {
-  Trace want;
-  BranchAlternatives branch_alternatives;
-};
-
 // Drives a fresh unit through `answered`, which has the inputs of the vector, and judges its
-// outputs. After a fault, `answered` keeps only the ticks before it. At a tie of the law every
-// branch is correct, but the exact level accepts the law's own branch only. `of_branches`: the
-// tolerances that decide which branch the port took.
-void run_and_judge(Trace& answered, const Expected& expected, const Subject& subject,
-                   PortHost& host, const Tolerances& tolerances, const Tolerances& of_branches,
-                   const std::filesystem::path& saved_traces, CaseResult& result) {
+// outputs. After a fault, `answered` keeps only the ticks before it.
+void run_and_judge(Trace& answered, const Trace& want, const Subject& subject, PortHost& host,
+                   const Tolerances& tolerances, const std::filesystem::path& saved_traces,
+                   CaseResult& result) {
   if (declines(host.says(), result)) return;
   const auto fault = host.drive(subject, answered);
   if (host.says().is_recorded && !fault &&
-      !leaves_values_to_judge(host.says().not_recorded, expected.want)) {
+      !leaves_values_to_judge(host.says().not_recorded, want)) {
     result.verdict = Verdict::skip;
     result.reason = "no value is recorded: the manifest lists every output under not_recorded";
     return;
   }
-  if (host.says().is_recorded) fill_in(host.says().not_recorded, expected.want, answered);
-  const Trace* want = &expected.want;
-  Trace on_branch;
+  if (host.says().is_recorded) fill_in(host.says().not_recorded, want, answered);
   if (fault && !leaves_ticks_to_judge(*fault)) {
     judge(*fault, result);
   } else {
-    if (fault) leave_out_from(fault->tick, expected.want, answered);
-    if (!expected.branch_alternatives.empty() && tolerances.level() != Level::exact) {
-      on_branch =
-          on_the_branch_of(answered, expected.want, expected.branch_alternatives, of_branches);
-      want = &on_branch;
-    }
-    judge(compare(answered, *want, tolerances), result);
+    if (fault) leave_out_from(fault->tick, want, answered);
+    judge(compare(answered, want, tolerances), result);
     if (host.says().is_recorded && fails_a_run(result.verdict)) {
-      explain_recording(answered, *want, result);
+      explain_recording(answered, want, result);
     }
     if (fault) judge_after(*fault, result);
   }
   if (fault) answered.keep_first(fault->tick);
   if (!saves_traces(saved_traces, result)) return;
-  save_traces(saved_traces, subject, {answered, *want, tolerances}, result);
+  save_traces(saved_traces, subject, {answered, want, tolerances}, result);
 }
 
 // Runs a case that is compared at the exact level only at another level: its outputs are not
@@ -82,7 +67,7 @@ void run_uncompared(Trace inputs, const Subject& subject, PortHost& host, CaseRe
 
 struct Prepared {
   Trace answered;  // inputs only, so far
-  Expected expected;
+  Trace want;
 };
 
 Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& golden) {
@@ -93,7 +78,7 @@ Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& g
   if (has_keyframes && !keeps_every_tick(made.samples.size())) {
     auto whole = filled_in(made, *want, subject_of(the_case), !the_case.numeric_only);
     if (!whole) return tl::unexpected(whole.error());
-    return Prepared{std::move(made), {std::move(*whole), {}}};
+    return Prepared{std::move(made), std::move(*whole)};
   }
   if (const ChannelSet missing = made.present & ~want->present; missing.any()) {
     return fail_at(want->source,
@@ -107,9 +92,7 @@ Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& g
                                "it anew, or restore it from version control",
                                *tick, the_case.file.string()));
   }
-  auto others = golden.read_branch_alternatives({rate, std::nullopt});
-  if (!others) return tl::unexpected(others.error());
-  return Prepared{std::move(made), {std::move(*want), std::move(*others)}};
+  return Prepared{std::move(made), std::move(*want)};
 }
 
 // For inputs that differ from those of the golden: `begun` is the case with the times for a port
@@ -132,14 +115,10 @@ Result<Prepared> prepare_varied(const Case& the_case, const Case& begun, const R
   for (const ParameterChange& parameter : parameters) {
     override_parameter(parameter, prepared.answered);
   }
-  prepared.expected.want = prepared.answered;
-  if (const auto fault = reference.drive(subject_of(begun), prepared.expected.want)) {
+  prepared.want = prepared.answered;
+  if (const auto fault = reference.drive(subject_of(begun), prepared.want)) {
     return fail_at(the_case.file.string(), "the reference: " + fault->what);
   }
-  if (!begun.either_branch.any()) return prepared;
-  auto others = branch_alternatives(begun, prepared.expected.want);
-  if (!others) return tl::unexpected(others.error());
-  prepared.expected.branch_alternatives = std::move(*others);
   return prepared;
 }
 
@@ -197,9 +176,8 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
   if (numeric_for_exact || numeric_for_events) level = Level::numeric;
   const auto bits = host.says().fraction_bits;
   const std::size_t ticks = prepared->answered.samples.size();
-  run_and_judge(prepared->answered, prepared->expected, subject_of(the_case), host,
-                tolerances_of(the_case, level, bits, ticks),
-                tolerances_of(the_case, Level::numeric, bits, ticks), options.save_traces, result);
+  run_and_judge(prepared->answered, prepared->want, subject_of(the_case), host,
+                tolerances_of(the_case, level, bits, ticks), options.save_traces, result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }
@@ -225,7 +203,7 @@ CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHos
   for (Sample& sample : answered.samples) sample.clear_outputs();
   const Tolerances allowed =
       tolerances_of_trace(tolerances, subject.module, host.says(), recorded.samples.size());
-  run_and_judge(answered, {recorded, {}}, subject, host, allowed, allowed, {}, result);
+  run_and_judge(answered, recorded, subject, host, allowed, {}, result);
   result.elapsed_s = stopwatch.elapsed_s();
   if (got != nullptr) *got = std::move(answered);
   return result;

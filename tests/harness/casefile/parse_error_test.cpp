@@ -89,8 +89,6 @@ TEST(CaseErrors, Rates) {
   EXPECT_THAT(errors_of("rates_hz = [250]\n"), HasSubstr("missing key `rates_why`"));
   EXPECT_EQ(errors_of(why), "6:1: explains `rates_hz`, which is not there");
   EXPECT_EQ(errors_of(why + "rates_hz = []\n"), "7:1: names no rate");
-  EXPECT_EQ(errors_of(why + "rates_hz = []\neither_branch = [\"yaw_wrap\"]\n"),
-            "7:1: names no rate");
   EXPECT_EQ(errors_of(why + "rates_hz = [250, 100, 250.0]\n"), "7:1: names a rate twice");
   EXPECT_THAT(errors_of(why + "rates_hz = [0]\n"), HasSubstr("7:1: `0` is not a rate"));
   EXPECT_THAT(errors_of(why + "rates_hz = [-250]\n"), HasSubstr("is not a rate"));
@@ -156,16 +154,6 @@ TEST(CaseErrors, JitterKeepsTicksApart) {
   EXPECT_EQ(errors_of("[unit]\njitter = 0.99\n"), "");
   EXPECT_EQ(errors_of("[unit]\njitter = 0.9999\n"),
             "7:1: leaves less than 1 us between ticks at 8000 Hz");
-}
-
-TEST(CaseErrors, EitherBranch) {
-  EXPECT_EQ(errors_of("either_branch = [\"yaw_wrap\", \"shorter_rotation\"]\n"), "");
-  EXPECT_EQ(errors_of("either_branch = [\"yaw\"]\n"),
-            "6:1: no decision `yaw`; use yaw_wrap, shorter_rotation");
-  EXPECT_THAT(errors_of("either_branch = [\"yaw_wrap\"]\nlevel = \"exact\"\n"),
-              HasSubstr("6:1: is for the controller in open loop"));
-  EXPECT_THAT(errors_of("either_branch = [\"yaw_wrap\"]\nmodule = \"rate_unit\"\n"),
-              HasSubstr("6:1: is for the controller in open loop"));
 }
 
 TEST(CaseErrors, AParameterExistsInEveryProfileOfTheFile) {

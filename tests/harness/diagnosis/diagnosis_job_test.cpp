@@ -143,23 +143,6 @@ TEST_F(DiagnosisJobTest, APortWithAFixedStepIsGivenTheCaseFromOnePeriodOn) {
   EXPECT_TRUE((*wrong)->deviates);
 }
 
-// The law turns to the left, this port to the right.
-TEST_F(DiagnosisJobTest, OnAThresholdEitherBranchIsRight) {
-  suite_.add_unblessed("turned",
-                       "either_branch = [\"yaw_wrap\"]\n[control_state]\nq.yaw_deg = 180\n"
-                       "[vehicle_attitude_setpoint]\nthrust = 0.15\n");
-  Case turned = suite_[1];
-  const HostOptions port = here("fault:yaw-positive");
-  const auto ran = [&] { return DiagnosisJob(turned, Rate::hz(250), nullptr, port).run(0); };
-  auto found = ran();
-  ASSERT_TRUE(found && *found);
-  EXPECT_FALSE((*found)->deviates);
-  turned.either_branch = {};
-  found = ran();
-  ASSERT_TRUE(found && *found);
-  EXPECT_TRUE((*found)->deviates);
-}
-
 TEST(DiagnosisCodec, AResultComesBackAsItWas) {
   const auto back = [](const Result<VectorDiagnosis>& result) {
     return Codec<VectorDiagnosis>::decode(Codec<VectorDiagnosis>::encode(result));

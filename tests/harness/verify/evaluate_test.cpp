@@ -87,53 +87,6 @@ TEST_F(EvaluateTest, AMissingGoldenIsOneErrorForAllRates) {
   EXPECT_THAT(outcome.errors[0].message, HasSubstr("no golden for px4-v1.5.5/tests/pitch"));
 }
 
-// Returns the given outputs for any inputs.
-class Reciting final : public PortHost {
- public:
-  explicit Reciting(Trace answers) : answers_(std::move(answers)) {}
-
-  const PortSays& says() const override { return says_; }
-  std::optional<PortFault> drive(const Subject&, Trace& trace) override {
-    for (std::size_t i = 0; i < trace.samples.size(); ++i) {
-      trace.samples[i].out = answers_.samples[i].out;
-    }
-    return std::nullopt;
-  }
-  Result<Flown> fly(const FlightPlan&) override { return fail("no flights"); }
-  Result<StepTimes> time_steps(const Subject&, const Trace&, bool) override {
-    return fail("no times");
-  }
-  bool supports(const std::string&) override { return true; }
-
- private:
-  Trace answers_;
-  PortSays says_;
-};
-
-TEST_F(EvaluateTest, AnotherSideIsAsRightButNotAtTheExactLevel) {
-  suite_.add_unblessed(
-      "turned",
-      "either_branch = [\"yaw_wrap\"]\n"
-      "[control_state]\nq.yaw_deg = { signal = \"step\", from = 180, to = 100, at_ticks = 5 }\n"
-      "[vehicle_attitude_setpoint]\nthrust = 0.15\n");
-  const Case& turned = suite_[0];
-  std::vector<GoldenTrace> traces = answers_of_reference(turned);
-  for (GoldenTrace& one : traces) {
-    one.branch_alternatives = branch_alternatives(turned, one.trace).value();
-  }
-  ASSERT_TRUE(NewGolden::write(suite_.golden(), turned, traces, {}, {"a test"})->put_in_place());
-  const auto golden = Golden::open(suite_.golden(), turned);
-  const auto verdict_on = [&](const Trace& answers, Level level) {
-    Reciting port(answers);
-    return evaluate_case(turned, Rate::hz(100), *golden, port, {level})->verdict;
-  };
-  const Trace& law = traces[0].trace;
-  const Trace& other = traces[0].branch_alternatives.at("yaw_wrap");
-  EXPECT_EQ(verdict_on(law, Level::exact), Verdict::pass);
-  EXPECT_EQ(verdict_on(other, Level::numeric), Verdict::pass);
-  EXPECT_EQ(verdict_on(other, Level::exact), Verdict::fail);
-}
-
 // The case is unchanged, but its inputs are not: this happens if the harness changes.
 TEST_F(EvaluateTest, AGoldenWithOtherInputsIsAnError) {
   suite_.add_unblessed("pitch", pitching);
