@@ -4,8 +4,9 @@
 #include <array>
 #include <cstdlib>
 #include <optional>
-#include <span>
 #include <string_view>
+
+#include "controller/profile_range.hpp"
 
 namespace attest::cascade {
 
@@ -66,24 +67,18 @@ constexpr ProfileTraits traits_of(Profile profile) {
   std::abort();  // the value is not an enumerator
 }
 
-// Successive profiles: those that have a certain parameter, or whose cases detect a certain fault.
-struct ProfileRange {
-  Profile newest;
-  Profile oldest;
-  constexpr bool contains(Profile profile) const { return newest <= profile && profile <= oldest; }
-};
-
-inline constexpr ProfileRange all_profiles{Profile::px4_v1_16_0, Profile::px4_v1_14_4};
-inline constexpr ProfileRange from_v1_16_0{Profile::px4_v1_16_0, Profile::px4_v1_16_0};
-inline constexpr ProfileRange from_v1_15_4{Profile::px4_v1_16_0, Profile::px4_v1_15_4};
-inline constexpr ProfileRange until_v1_15_4{Profile::px4_v1_15_4, Profile::px4_v1_14_4};
+using ProfileRange = attest::ProfileRange<Profile>;
+inline constexpr Profile newest = every_profile.front(), oldest = every_profile.back();
+inline constexpr ProfileRange all_profiles{newest, oldest};
+inline constexpr ProfileRange from_v1_16_0{newest, Profile::px4_v1_16_0};
+inline constexpr ProfileRange from_v1_15_4{newest, Profile::px4_v1_15_4};
+inline constexpr ProfileRange until_v1_15_4{Profile::px4_v1_15_4, oldest};
 inline constexpr ProfileRange only_v1_15_4{Profile::px4_v1_15_4, Profile::px4_v1_15_4};
 inline constexpr ProfileRange only_v1_14_4{Profile::px4_v1_14_4, Profile::px4_v1_14_4};
 
-// In the order of every_profile.
-std::span<const std::string_view> profile_names();
 constexpr std::string_view name_of(Profile profile) { return traits_of(profile).name; }
-
-std::optional<Profile> profile_from_name(std::string_view name);
+constexpr std::optional<Profile> profile_from_name(std::string_view name) {
+  return profile_named(name, every_profile);
+}
 
 }  // namespace attest::cascade

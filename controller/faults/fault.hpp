@@ -61,7 +61,7 @@ std::string_view name_of(Stage stage);  // "integrator gate"
 // Profiles of one law: of the controller, or of the cascade.
 class ProfileSet {
  public:
-  constexpr ProfileSet(reference::ProfileSet profiles) : controller_(profiles) {}
+  constexpr ProfileSet(reference::ProfileRange profiles) : controller_(profiles) {}
   constexpr ProfileSet(cascade::ProfileRange profiles) : cascade_(profiles) {}
 
   // Returns false if no profile has that name.
@@ -70,7 +70,7 @@ class ProfileSet {
   bool is_of_law_of(std::string_view profile) const;
 
  private:
-  std::optional<reference::ProfileSet> controller_;
+  std::optional<reference::ProfileRange> controller_;
   std::optional<cascade::ProfileRange> cascade_;
 };
 

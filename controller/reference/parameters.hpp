@@ -42,7 +42,7 @@ struct ParameterInfo {
   std::string_view unit;  // "1" when dimensionless
   ParameterType type;
   std::string_view description;
-  ProfileSet profiles = all_profiles;  // versions of the law that have the parameter
+  ProfileRange profiles = all_profiles;  // versions of the law that have the parameter
 };
 
 // Every parameter of the law, in a fixed order.

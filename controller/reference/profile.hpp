@@ -2,18 +2,17 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <cstdlib>
-#include <initializer_list>
 #include <optional>
-#include <span>
 #include <string_view>
+
+#include "controller/profile_range.hpp"
 
 namespace attest::reference {
 
 enum class Profile { px4_v1_5_5, px4_v1_3_4 };
 
-// Newest first.
+// Newest first, in the order of the enumerators.
 inline constexpr std::array<Profile, 2> every_profile{Profile::px4_v1_5_5, Profile::px4_v1_3_4};
 
 // All differences between the profiles, except their parameters (parameters.hpp).
@@ -54,39 +53,15 @@ constexpr ProfileTraits traits_of(Profile profile) {
   std::abort();  // the value is not an enumerator
 }
 
-// A set of profiles: those that have a certain parameter, or whose cases detect a certain fault.
-class ProfileSet {
- public:
-  constexpr ProfileSet(std::initializer_list<Profile> profiles)
-      : ProfileSet(std::span(profiles.begin(), profiles.size())) {}
-  constexpr explicit ProfileSet(std::span<const Profile> profiles) {
-    for (const Profile profile : profiles) bits_ |= bit(profile);
-  }
-  constexpr bool contains(Profile profile) const { return (bits_ & bit(profile)) != 0; }
+using ProfileRange = attest::ProfileRange<Profile>;
+inline constexpr Profile newest = every_profile.front(), oldest = every_profile.back();
+inline constexpr ProfileRange all_profiles{newest, oldest};
+inline constexpr ProfileRange from_v1_5_5{newest, Profile::px4_v1_5_5};
+inline constexpr ProfileRange only_v1_3_4{Profile::px4_v1_3_4, Profile::px4_v1_3_4};
 
- private:
-  static constexpr std::uint32_t bit(Profile profile) {
-    return 1u << static_cast<unsigned>(profile);
-  }
-  std::uint32_t bits_ = 0;
-};
-
-// `first` and all newer profiles.
-constexpr ProfileSet profiles_from(Profile first) {
-  std::size_t count = 0;
-  while (every_profile[count] != first) ++count;
-  return ProfileSet(std::span(every_profile).first(count + 1));
-}
-
-inline constexpr ProfileSet all_profiles{std::span(every_profile)};
-inline constexpr ProfileSet from_v1_5_5 = profiles_from(Profile::px4_v1_5_5);
-inline constexpr ProfileSet only_v1_3_4{Profile::px4_v1_3_4};
-static_assert(!from_v1_5_5.contains(Profile::px4_v1_3_4));
-
-// In the order of every_profile.
-std::span<const std::string_view> profile_names();
 constexpr std::string_view name_of(Profile profile) { return traits_of(profile).name; }
-
-std::optional<Profile> profile_from_name(std::string_view name);
+constexpr std::optional<Profile> profile_from_name(std::string_view name) {
+  return profile_named(name, every_profile);
+}
 
 }  // namespace attest::reference

@@ -14,15 +14,17 @@ namespace {
 
 std::vector<ProfileInfo> make_profiles() {
   std::vector<ProfileInfo> all;
-  for (const std::string_view name : reference::profile_names()) {
+  for (const reference::Profile profile : reference::every_profile) {
+    const std::string_view name = reference::name_of(profile);
     ModuleSet modules = only(Module::mc_att_control);
     if (actuation::is_profile(name.data())) {
       modules |= only(Module::mixer) | only(Module::battery_status);
     }
     all.push_back({name, modules});
   }
-  for (const std::string_view name : cascade::profile_names()) {
-    all.push_back({name, only(Module::attitude_unit) | only(Module::rate_unit)});
+  for (const cascade::Profile profile : cascade::every_profile) {
+    all.push_back(
+        {cascade::name_of(profile), only(Module::attitude_unit) | only(Module::rate_unit)});
   }
   return all;
 }
