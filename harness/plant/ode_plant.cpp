@@ -101,13 +101,29 @@ class Dynamics {
   std::size_t count_;
 };
 
-int right_hand_side(realtype, N_Vector y, N_Vector dy, void* dynamics) {
+int right_hand_side(sunrealtype, N_Vector y, N_Vector dy, void* dynamics) {
   static_cast<const Dynamics*>(dynamics)->derivative(N_VGetArrayPointer(y), N_VGetArrayPointer(dy));
   return 0;
 }
 
-// Without this, SUNDIALS would print its errors. check() reports them by the returned flag.
-void silent(int, const char*, const char*, char*, void*) {}
+// The names of SUNDIALS 7 for what SUNDIALS 6 has under other names. silence() keeps both from
+// printing their errors, because check() reports them by the returned flag.
+#if SUNDIALS_VERSION_MAJOR < 7
+constexpr void* SUN_COMM_NULL = nullptr;
+constexpr auto& ARKodeEvolve = ERKStepEvolve;
+constexpr auto& ARKodeFree = ERKStepFree;
+constexpr auto& ARKodeReset = ERKStepReset;
+constexpr auto& ARKodeSetFixedStep = ERKStepSetFixedStep;
+constexpr auto& ARKodeSetInterpolantType = ERKStepSetInterpolantType;
+constexpr auto& ARKodeSetMaxNumSteps = ERKStepSetMaxNumSteps;
+constexpr auto& ARKodeSetOrder = ERKStepSetOrder;
+constexpr auto& ARKodeSetStopTime = ERKStepSetStopTime;
+constexpr auto& ARKodeSetUserData = ERKStepSetUserData;
+constexpr auto& ARKodeSStolerances = ERKStepSStolerances;
+void silence(SUNContext, void* integrator) { ERKStepSetErrFile(integrator, nullptr); }
+#else
+void silence(SUNContext context, void*) { SUNContext_ClearErrHandlers(context); }
+#endif
 
 // The calls that are checked by made() fail only if memory is missing.
 template <typename T>
@@ -120,22 +136,22 @@ class ErkPlant final : public OdePlant {
  public:
   ErkPlant(const Vehicle& vehicle, const OdeOptions& options)
       : vehicle_(vehicle), dynamics_(vehicle), count_(vehicle.rotors.size()) {
-    SUNContext_Create(nullptr, &context_);
+    SUNContext_Create(SUN_COMM_NULL, &context_);
     y_ = made(N_VNew_Serial(rotors + static_cast<sunindextype>(count_), context_));
     // One pass over the vectors instead of several; this saves 15-22% of the time.
     N_VEnableFusedOps_Serial(y_, SUNTRUE);
     N_VConst(0, y_);
     integrator_ = made(ERKStepCreate(right_hand_side, 0, y_, context_));
-    ERKStepSetErrHandlerFn(integrator_, silent, nullptr);
-    ERKStepSetUserData(integrator_, &dynamics_);
-    ERKStepSetOrder(integrator_, options.order);
-    ERKStepSetInterpolantType(integrator_, ARK_INTERP_LAGRANGE);
-    ERKStepSStolerances(integrator_, options.relative_tolerance, options.absolute_tolerance);
-    ERKStepSetMaxNumSteps(integrator_, 100'000);
-    if (options.fixed_step_s > 0) ERKStepSetFixedStep(integrator_, options.fixed_step_s);
+    silence(context_, integrator_);
+    ARKodeSetUserData(integrator_, &dynamics_);
+    ARKodeSetOrder(integrator_, options.order);
+    ARKodeSetInterpolantType(integrator_, ARK_INTERP_LAGRANGE);
+    ARKodeSStolerances(integrator_, options.relative_tolerance, options.absolute_tolerance);
+    ARKodeSetMaxNumSteps(integrator_, 100'000);
+    if (options.fixed_step_s > 0) ARKodeSetFixedStep(integrator_, options.fixed_step_s);
   }
   ~ErkPlant() override {
-    ERKStepFree(&integrator_);
+    ARKodeFree(&integrator_);
     N_VDestroy(y_);
     SUNContext_Free(&context_);
   }
@@ -178,11 +194,11 @@ class ErkPlant final : public OdePlant {
     if (lost_ || to <= now_) return lost_;
     const double end = in_seconds(to);
     // Without a reset the integrator would reuse a stage of its last step, which had other inputs.
-    if (stale_) ERKStepReset(integrator_, in_seconds(now_), y_);
+    if (stale_) ARKodeReset(integrator_, in_seconds(now_), y_);
     stale_ = false;
-    ERKStepSetStopTime(integrator_, end);
+    ARKodeSetStopTime(integrator_, end);
     double reached = 0;
-    const int flag = ERKStepEvolve(integrator_, end, y_, &reached, ARK_NORMAL);
+    const int flag = ARKodeEvolve(integrator_, end, y_, &reached, ARK_NORMAL);
     now_ = to;
     read();
     check(flag);
