@@ -19,9 +19,6 @@
 namespace attest {
 namespace {
 
-// The ABI of libmatio 1.5; Debian 12 has 1.5.23.
-constexpr const char* matio_soname = "libmatio.so.11";
-
 // The functions of matio.h that are in use. libmatio is loaded when the first MAT file is read or
 // written. Linked in, it would bring 33 more libraries (HDF5, curl, Kerberos) into each process,
 // and every fork would copy their pages.
@@ -38,9 +35,9 @@ struct Matio {
 };
 
 Result<Matio> load_matio() {
-  auto library = DynamicLibrary::open(matio_soname);
+  auto library = DynamicLibrary::open(ATTEST_MATIO_SONAME);
   if (!library) {
-    return fail(fmt::format("MAT files need libmatio11: {}", library.error().message));
+    return fail("MAT files need libmatio: " + library.error().message);
   }
   Matio matio{*library};
   const bool has_all =
@@ -50,9 +47,10 @@ Result<Matio> load_matio() {
       library->find("Mat_VarFree", matio.var_free) &&
       library->find("Mat_VarReadNext", matio.var_read_next) &&
       library->find("Mat_VarWrite", matio.var_write);
-  if (!has_all) return fail(fmt::format("{} has not all functions of matio.h", matio_soname));
-  // This keeps libmatio from printing the errors that it finds, because attest reports them.
-  matio.log_init_func("attest", [](int, char*) {});
+  if (!has_all) return fail(ATTEST_MATIO_SONAME " has not all functions of matio.h");
+  // This keeps libmatio from printing the errors that it finds, because attest reports them. The
+  // message is a const char* only in newer versions of matio.h.
+  matio.log_init_func("attest", [](int, auto*) {});
   return matio;
 }
 

@@ -57,9 +57,6 @@ struct Hdf5Library {
   const hid_t* of_dataset = nullptr;
 };
 
-// The ABI of HDF5 1.10, serial; Debian 12 has 1.10.8.
-constexpr const char* hdf5_soname = "libhdf5_serial.so.103";
-
 bool find_all(const DynamicLibrary& in, Hdf5Library& hdf5) {
   return in.find("H5open", hdf5.open) && in.find("H5Eset_auto2", hdf5.set_error_printer) &&
          in.find("H5Pcreate", hdf5.create_properties) &&
@@ -88,13 +85,13 @@ bool find_identifiers(const DynamicLibrary& in, Hdf5Library& hdf5) {
 }
 
 Result<Hdf5Library> load_hdf5() {
-  auto library = DynamicLibrary::open(hdf5_soname);
+  auto library = DynamicLibrary::open(ATTEST_HDF5_SONAME);
   if (!library) {
-    return fail(fmt::format("HDF5 files need libhdf5-103-1: {}", library.error().message));
+    return fail("HDF5 files need libhdf5: " + library.error().message);
   }
   Hdf5Library hdf5{*library};
   if (!find_all(*library, hdf5) || !find_identifiers(*library, hdf5) || hdf5.open() < 0) {
-    return fail(fmt::format("{} has not all functions of HDF5 1.10", hdf5_soname));
+    return fail(ATTEST_HDF5_SONAME " has not all functions of hdf5.h");
   }
   // By default libhdf5 prints its errors; attest reports them instead.
   hdf5.set_error_printer(H5E_DEFAULT, nullptr, nullptr);
