@@ -20,7 +20,7 @@ struct ProfileRange {
 // The version of which name_of() is `name`.
 template <typename Profile, std::size_t count>
 constexpr std::optional<Profile> profile_named(std::string_view name,
-                                              const std::array<Profile, count>& all) {
+                                               const std::array<Profile, count>& all) {
   for (const Profile profile : all) {
     if (name_of(profile) == name) return profile;
   }
