@@ -97,7 +97,7 @@ std::optional<Rhythm> find_rhythm(const std::vector<std::size_t>& events, std::s
     if (chance > false_alarms) continue;
     const auto first =
         std::find_if(sample.events.begin(), sample.events.end(),
-                     [&, phase = phase](std::size_t tick) { return tick % every == phase; });
+                     [&, rest = phase](std::size_t tick) { return tick % every == rest; });
     return Rhythm{every, *first, chance};
   }
   return std::nullopt;

@@ -122,8 +122,8 @@ class Times {
     const std::size_t last = std::min(times_us_.size(), trace_.samples.size()) - 1;
     for (const auto& [name, factor] : units) {
       if (name == unit_) continue;
-      const auto fits = [&, factor = factor](std::size_t row) {
-        const double time_us = times_us_[row] / microseconds(unit_) * factor;
+      const auto fits = [&, scale = factor](std::size_t row) {
+        const double time_us = times_us_[row] / microseconds(unit_) * scale;
         return std::abs(time_us - static_cast<double>(at(row))) <= allowed_us_;
       };
       if (!fits(0) || !fits(last)) continue;
