@@ -124,8 +124,8 @@ void add_new_port(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("folder", options->folder, "The new folder")->type_name("DIR")->required();
   command
       ->add_option("--lang", options->language,
-                   "Port to start from: `c`, `cpp`, `numpy`, `python`, `rust` or `simulink` for "
-                   "v1.5.5 and v1.3.4; `c_cascade` or `python_cascade` for v1.14 to v1.16")
+                   "Port to start from: `c`, `cpp`, `python`, `rust` or `simulink` for v1.5.5 and "
+                   "v1.3.4; `c_cascade` or `python_cascade` for v1.14 to v1.16")
       ->type_name("LANG")
       ->required();
   add_examples(

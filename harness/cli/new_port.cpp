@@ -32,7 +32,6 @@ constexpr std::array languages{
     Language{"c", "C", "cc", true},
     Language{"c_cascade", "C, with both units of PX4 v1.14 to v1.16", "cc", true},
     Language{"cpp", "C++", "c++", true},
-    Language{"numpy", "Python with numpy", "python3", false},
     Language{"python", "Python", "python3", false},
     Language{"python_cascade", "Python, with both units of PX4 v1.14 to v1.16", "python3", false},
     Language{"rust", "Rust", "cargo", false},

@@ -32,10 +32,6 @@ made() {
   lacks "px4-v1.5.5"
 }
 @test "a new port in C++" { made cpp c++; }
-@test "a new port in Python with numpy" {
-  python3 -c "import numpy" 2>/dev/null || skip "no numpy for $(command -v python3)"
-  made numpy python3
-}
 @test "a new port in Python" { made python python3; }
 @test "a new port in Python of the cascade" {
   made python_cascade python3
@@ -49,7 +45,7 @@ made() {
   run "$ATTEST" new-port mine --lang pyton
   [ "$status" -eq 2 ]
   has "no starter in \`pyton\`; did you mean \`python\`?"
-  has "; there are c, c_cascade, cpp, numpy, python, python_cascade, rust, simulink"
+  has "; there are c, c_cascade, cpp, python, python_cascade, rust, simulink"
   [ ! -e mine ]
   mkdir mine
   echo mine >mine/file

@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
 """Runs the commands of a document as its reader would.
 
-    docs.py [--bin DIR] [--prefix DIR] [--need TOOL]... [--need-module MODULE]...
-            --scratch DIR DOCUMENT
+    docs.py [--bin DIR] [--prefix DIR] [--need TOOL]... --scratch DIR DOCUMENT
 
 Takes the ```sh blocks of DOCUMENT in order, in one shell, in a fresh copy of the repository below
 the scratch directory: at its root, or for a starter in the starter's folder, where its reader is.
@@ -175,32 +174,17 @@ def environment_of(arguments: argparse.Namespace) -> dict[str, str]:
     return environment
 
 
-def has_module(module: str) -> bool:
-    """Whether the python3 of the document's commands has it. It may be another one than this."""
-    done = subprocess.run(
-        ["python3", "-c", f"import {module}"], stderr=subprocess.DEVNULL, check=False
-    )
-    return done.returncode == 0
-
-
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("document", help="relative to the root of the repository")
     parser.add_argument("--bin", type=pathlib.Path, help="folder of the attest binary")
     parser.add_argument("--prefix", type=pathlib.Path, help="where attest is installed")
     parser.add_argument("--need", action="append", default=[], help="skip without this program")
-    parser.add_argument(
-        "--need-module", action="append", default=[], help="skip where python3 cannot import it"
-    )
     parser.add_argument("--scratch", type=pathlib.Path, required=True)
     arguments = parser.parse_args()
     for tool in arguments.need:
         if shutil.which(tool) is None:
             print(f"skipped: {tool} is not installed")
-            return SKIPPED
-    for module in arguments.need_module:
-        if not has_module(module):
-            print(f"skipped: python3 cannot import {module}")
             return SKIPPED
     return run(
         arguments.document,

@@ -76,10 +76,6 @@ class Documents(unittest.TestCase):
         text = "```sh\ntest -f README.md\ntest -f ../../a.h\ntest -e ../../../cases # exit 1\n```\n"
         self.assert_passes(text, "controller/starters/c/README.md")
 
-    def test_a_module_of_python_may_be_missing(self):
-        self.assertTrue(docs.has_module("json"))
-        self.assertFalse(docs.has_module("no_such_module_here"))
-
     def test_a_failing_command_is_named_with_its_line(self):
         self.assert_fails("# Title\n\n```sh\ntrue\nfalse\n```\n", "README.md:5: exit status 1")
         self.assert_fails("\n```sh\ntrue\n```\n\n```sh\nfalse | cat\n```\n", "README.md:7:")
