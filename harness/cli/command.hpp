@@ -173,7 +173,7 @@ struct SweepOptions {
   std::uint64_t samples = 0;  // 0: those of the file
   std::string shard = "1/1";
   std::string out;                 // folder
-  std::string html, hdf5;          // files; empty: not written
+  std::string html;                // file; empty: not written
   int keep_worst = 0;              // number of flights, of each requirement
   std::vector<std::string> merge;  // folders of shards to join; empty: fly
   std::string plan;                // the program that flies the shards; empty: fly here

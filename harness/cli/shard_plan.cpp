@@ -151,7 +151,6 @@ Command command_of(const PreparedSweep& sweep, const SweepOptions& options,
     add(command.report, "--keep-worst", fmt::to_string(options.keep_worst));
   }
   if (!options.html.empty()) add(command.report, "--html", options.html);
-  if (!options.hdf5.empty()) add(command.report, "--hdf5", options.hdf5);
   return command;
 }
 
@@ -260,9 +259,8 @@ Result<void> check(const Kind& kind, const PreparedSweep& sweep, const SweepOpti
   names.insert(names.end(), command.report.begin(), command.report.end());
   if (auto checked = check_names(names); !checked) return checked;
   if (kind.shares_folder) return {};
-  for (const std::string& file : {options.html, options.hdf5}) {
-    if (file.empty()) continue;
-    return fail_at(file,
+  if (!options.html.empty()) {
+    return fail_at(options.html,
                    "a CI service keeps only the folder of the results; leave it out, and make "
                    "it from that folder");
   }

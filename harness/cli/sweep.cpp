@@ -21,7 +21,6 @@
 #include "harness/report/progress.hpp"
 #include "harness/report/sweep_summary_text.hpp"
 #include "harness/sweep/early_stop.hpp"
-#include "harness/sweep/hdf5_table.hpp"
 #include "harness/sweep/keep_flights.hpp"
 #include "harness/sweep/merge_shards.hpp"
 #include "harness/sweep/summary_json.hpp"
@@ -102,31 +101,10 @@ std::vector<std::uint64_t> worst_samples_of(const SweepSummary& summary) {
   return {samples.begin(), samples.end()};
 }
 
-// Opened before the port's code runs.
-struct SweepFiles {
-  AtomicFile html, hdf5;
-
-  static Result<SweepFiles> open(const SweepOptions& options) {
-    auto html = AtomicFile::open(options.html);
-    if (!html) return tl::unexpected(html.error());
-    auto hdf5 = AtomicFile::open(options.hdf5);
-    if (!hdf5) return tl::unexpected(hdf5.error());
-    return SweepFiles{*std::move(html), *std::move(hdf5)};
-  }
-};
-
-Result<void> write_columns(const PreparedSweep& sweep, const SweepOptions& options,
-                           const SampleColumns& columns, const SampleData& data, AtomicFile& file) {
-  if (options.hdf5.empty()) return {};
-  const auto bytes = hdf5_table(sweep.sampler, sweep.identity, columns, data);
-  if (!bytes) return fail_at(options.hdf5, bytes.error().message);
-  return file.commit(*bytes);
-}
-
 // Makes the reports, the kept flights and the text on stdout from the complete table of the folder.
 Result<SweepSummary> report(const PreparedSweep& sweep, const SweepOptions& options,
                             const SuiteFolder& suite, std::uint64_t samples, bool quiet,
-                            SweepFiles files) {
+                            AtomicFile html) {
   const fs::path folder = options.out;
   const SampleColumns columns = sweep.columns();
   const auto data = read_samples(folder / sample_file, columns, {0, samples});
@@ -142,14 +120,11 @@ Result<SweepSummary> report(const PreparedSweep& sweep, const SweepOptions& opti
       write_file(folder / "report.json", summary_json(sweep.identity, columns, summary),
                  AtomicFile::Special::replaced);
   if (!written) return tl::unexpected(written.error());
-  if (auto done = write_columns(sweep, options, columns, *data, files.hdf5); !done) {
-    return tl::unexpected(done.error());
-  }
   const fs::path shown = worst.empty() ? fs::path() : kept;
   if (!options.html.empty()) {
     const std::string page =
         sweep_page({sweep.sampler, columns, *data, summary, sweep.identity, shown});
-    if (auto done = files.html.commit(page); !done) return tl::unexpected(done.error());
+    if (auto done = html.commit(page); !done) return tl::unexpected(done.error());
   }
   if (!quiet) {
     fmt::print("{}", render_summary(sweep.sampler, columns, summary, sweep.identity.port, shown));
@@ -186,19 +161,15 @@ Result<void> check_apart(const std::string& file, const SweepOptions& options) {
 Result<void> check_options(const SweepOptions& options, const std::string& suite) {
   if (options.out.empty()) return fail("needs --out, the folder of the results");
   if (auto apart = check_output_folder(options.out, suite); !apart) return apart;
-  for (const std::string& file : {options.html, options.hdf5}) {
-    if (auto apart = check_apart(file, options); !apart) return apart;
-  }
-  return check_outputs({options.html, options.hdf5}, {options.host.port, {options.file}}, suite);
+  if (auto apart = check_apart(options.html, options); !apart) return apart;
+  return check_outputs({options.html}, {options.host.port, {options.file}}, suite);
 }
 
 // Errors: shards together with an option or key that needs all samples in one sweep.
 Result<void> check_shard(const PreparedSweep& sweep, const SweepOptions& options) {
   const bool is_part = sweep.shard.count > 1;
-  for (const std::string& file : {options.html, options.hdf5}) {
-    if (is_part && !file.empty()) {
-      return fail_at(file, "needs all samples, so a shard cannot write it; use --merge");
-    }
+  if (is_part && !options.html.empty()) {
+    return fail_at(options.html, "needs all samples, so a shard cannot write it; use --merge");
   }
   const bool has_shards = is_part || !options.merge.empty() || !options.plan.empty();
   if (!sweep.sampler.sweep().stop_when_decided || !has_shards) return {};
@@ -215,8 +186,8 @@ int sweep_command(const SweepOptions& options, const Globals& globals) {
   if (auto checked = check_options(options, globals.suite); !checked) {
     return report_error(checked.error());
   }
-  auto files = SweepFiles::open(options);
-  if (!files) return report_error(files.error());
+  auto html = AtomicFile::open(options.html);  // before the port's code runs
+  if (!html) return report_error(html.error());
   const auto sweep = prepare_sweep(options, *suite);
   if (!sweep) return report_error(sweep.error());
   if (auto checked = check_shard(*sweep, options); !checked) return report_error(checked.error());
@@ -254,7 +225,7 @@ int sweep_command(const SweepOptions& options, const Globals& globals) {
     }
     return exit_ok;
   }
-  const auto summary = report(*sweep, options, *suite, samples, globals.quiet, *std::move(files));
+  const auto summary = report(*sweep, options, *suite, samples, globals.quiet, *std::move(html));
   if (!summary) return report_error(summary.error());
   return summary->passes() ? exit_ok : exit_failed;
 }

@@ -220,9 +220,6 @@ void add_sweep(CLI::App& app, const Globals& globals, Action& action) {
       ->required()
       ->group(option_group::reports);
   add_sweep_parts(*command, *options);
-  command->add_option("--hdf5", options->hdf5, "Write the samples as columns of an HDF5 file")
-      ->type_name("F.h5")
-      ->group(option_group::reports);
   add_page(*command, options->html,
            "a page with the requirements, distributions, sensitivities and worst flights");
   add_shard_plan(*command, *options);
@@ -236,8 +233,6 @@ void add_sweep(CLI::App& app, const Globals& globals, Action& action) {
         "fly the reference, keep the three worst flights of each requirement, and write a page"},
        {"attest sweep SWEEP.toml --port lib:./libmine.so --out results",
         "fly port and reference on the same samples, and test whether they differ"},
-       {"attest sweep SWEEP.toml --out results --hdf5 results.h5",
-        "also write an HDF5 file; samples that exist are not flown again"},
        {"attest sweep SWEEP.toml --shard 2/4 --out part2", "fly the second quarter of the samples"},
        {"attest sweep SWEEP.toml --merge part1 part2 part3 part4 --out results",
         "join the four shards"},

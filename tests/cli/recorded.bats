@@ -127,6 +127,13 @@ CHECK
   has "is for a fixed step of 250 Hz; write these vectors to another folder"
 }
 
+@test "attest does not load libmatio until a MAT file needs it" {
+  run ldd "$ATTEST"
+  [ "$status" -eq 0 ]
+  lacks matio
+  lacks hdf5 # which libmatio uses
+}
+
 # as_mat CSV MISSING: writes the table as a MAT file next to it, as MATLAB does. The last variable
 # has MISSING values less than its dimensions say.
 as_mat() {

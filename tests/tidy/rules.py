@@ -99,7 +99,6 @@ _OWNED_BY_ONE = {
     "MuJoCo": re.compile(r'\s*#\s*include\s*[<"]mujoco/'),
     "SUNDIALS": re.compile(r'\s*#\s*include\s*[<"](?:arkode|nvector|sun\w+)/'),
     "dlopen": re.compile(r".*\bdlopen\s*\("),
-    "HDF5": re.compile(r'\s*#\s*include\s*[<"]hdf5\.h'),
     "the parser of nlohmann_json": re.compile(r".*\bjson::parse\s*\("),
     "libmatio": re.compile(r'\s*#\s*include\s*[<"]matio\.h'),
     "zlib": re.compile(r'\s*#\s*include\s*[<"]zlib\.h'),
