@@ -120,9 +120,7 @@ void add_vectors(CLI::App& app, const Globals& globals, Action& action) {
       "Write no files; report vectors so near to a threshold of the law that correct "
       "ports may differ");
   lint->excludes(folder);
-  command
-      ->add_option("--format", options->format,
-                   "Format of the files: `csv`, `mat` (MATLAB) or `npy` (numpy)")
+  command->add_option("--format", options->format, "Format of the files: `csv` or `mat` (MATLAB)")
       ->type_name("FORMAT")
       ->capture_default_str()
       ->excludes(lint);

@@ -56,8 +56,7 @@ class RecordedHost final : public PortHost {
       return unanswered("not answered: the folder has no outputs of this vector");
     }
     // One row more than there are ticks shows that the file has too many.
-    const auto table = read_table((*file)->path, (*file)->format, manifest_.column_order,
-                                  trace.samples.size() + 1);
+    const auto table = read_table((*file)->path, (*file)->format, trace.samples.size() + 1);
     if (!table) return unusable(table.error());
     auto set = set_recorded_outputs(*table, manifest_, (*file)->path.string(), trace);
     if (!set) return unusable(set.error());

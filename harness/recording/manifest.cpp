@@ -17,10 +17,8 @@ namespace {
 constexpr const char* heading =
     "# The inputs that `attest vectors` wrote, and how their outputs are to be read.\n"
     "#\n"
-    "# Write the outputs for PROFILE/GROUP/NAME/RATE.csv next to it, as RATE.out.csv, "
-    "RATE.out.mat\n"
-    "# or RATE.out.npy: a column for each output signal (`attest list --channels`), a row for "
-    "each\n"
+    "# Write the outputs for PROFILE/GROUP/NAME/RATE.csv next to it, as RATE.out.csv or\n"
+    "# RATE.out.mat: a column for each output signal (`attest list --channels`), a row for each\n"
     "# row of the inputs. A column `timestamp` is checked if there is one. Then:\n"
     "#\n"
     "#     attest run --port recorded:FOLDER\n"
@@ -29,9 +27,8 @@ constexpr const char* heading =
     "#\n"
     "#     [port]     name, version; arithmetic = \"fixed:22\" of a port in fixed point;\n"
     "#                unsupported_groups\n"
-    "#     [outputs]  time: the unit of `timestamp`, \"s\", \"ms\" or \"us\"; column_order of an "
-    "NPY\n"
-    "#                file without names; not_recorded: outputs that you do not have\n"
+    "#     [outputs]  time: the unit of `timestamp`, \"s\", \"ms\" or \"us\"; not_recorded:\n"
+    "#                outputs that you do not have\n"
     "#     [columns]  your name = \"its signal\", for columns that have other names\n"
     "\n";
 
@@ -77,7 +74,6 @@ void read_outputs(const TomlTable& table, Manifest& manifest) {
   if (manifest.time != "s" && manifest.time != "ms" && manifest.time != "us") {
     table.error("time", fmt::format("`{}` is no unit of time; write s, ms or us", manifest.time));
   }
-  manifest.column_order = texts(table, "column_order");
   for (const std::string& name : texts(table, "not_recorded")) {
     manifest.not_recorded |= outputs_named(name, table, "not_recorded");
   }
@@ -115,7 +111,6 @@ Result<void> write_manifest(const std::filesystem::path& folder, const Manifest&
   toml.set("port", "arithmetic", arithmetic);
   if (manifest.fixed_step) toml.set("port", "fixed_step_hz", manifest.fixed_step->to_string());
   toml.set("outputs", "time", manifest.time);
-  toml.set("outputs", "column_order", manifest.column_order);
   std::vector<std::string> not_recorded;
   for (const std::string_view name : names_of(manifest.not_recorded)) {
     not_recorded.emplace_back(name);

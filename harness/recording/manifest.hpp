@@ -2,8 +2,8 @@
 // next to them are to be read.
 //
 //     DIR/manifest.toml
-//     DIR/px4-v1.5.5/attitude/roll_30/250hz.csv       inputs; or .mat, .npy
-//     DIR/px4-v1.5.5/attitude/roll_30/250hz.out.csv   outputs, by the user; or .mat, .npy
+//     DIR/px4-v1.5.5/attitude/roll_30/250hz.csv       inputs; or .mat
+//     DIR/px4-v1.5.5/attitude/roll_30/250hz.out.csv   outputs, by the user; or .mat
 //
 // `attest vectors` writes it. The user changes values in the tables [port], [outputs] and
 // [columns].
@@ -35,9 +35,8 @@ struct Manifest {
   std::optional<Rate> fixed_step;  // if set, the first timestamp is one period
 
   // [outputs]
-  std::string time = "us";                // unit of the column `timestamp`: "s", "ms" or "us"
-  std::vector<std::string> column_order;  // of an NPY file without names
-  ChannelSet not_recorded;                // outputs that the files do not have; not judged
+  std::string time = "us";  // unit of the column `timestamp`: "s", "ms" or "us"
+  ChannelSet not_recorded;  // outputs that the files do not have; not judged
 
   // [columns]: from a name in the files of outputs to the name of a channel.
   std::map<std::string, std::string> columns;

@@ -25,7 +25,7 @@ constexpr std::uint32_t version_5 = 0x0100;
 constexpr std::uint32_t matrix = 14, compressed = 15;  // types of elements
 constexpr std::uint32_t first_numeric_class = 6, last_numeric_class = 15;
 
-constexpr std::uintmax_t most_in_file = std::uintmax_t{1} << 30;   // same as NPY files
+constexpr std::uintmax_t most_in_file = std::uintmax_t{1} << 30;   // read into memory
 constexpr std::size_t most_decompressed = std::size_t{256} << 20;  // one hour at 8 kHz: 230 MB
 
 std::uint32_t integer_in(std::string_view bytes, bool is_big_endian) {

@@ -7,7 +7,6 @@
 
 #include "harness/core/suggestion.hpp"
 #include "harness/recording/mat_file.hpp"
-#include "harness/recording/npy_file.hpp"
 #include "harness/trace/csv.hpp"
 #include "harness/trace/csv_rows.hpp"
 
@@ -47,19 +46,6 @@ Result<void> check_lengths(const std::filesystem::path& path, const Table& table
   return {};
 }
 
-Result<Table> read_as(const std::filesystem::path& path, TableFormat format,
-                      const std::vector<std::string>& names, std::size_t most_rows) {
-  switch (format) {
-    case TableFormat::mat:
-      return read_mat(path);
-    case TableFormat::npy:
-      return read_npy(path, names);
-    case TableFormat::csv:
-      break;
-  }
-  return read_csv_table(path, most_rows);
-}
-
 }  // namespace
 
 std::string_view name_of(TableFormat format) {
@@ -68,8 +54,6 @@ std::string_view name_of(TableFormat format) {
       return "csv";
     case TableFormat::mat:
       return "mat";
-    case TableFormat::npy:
-      return "npy";
   }
   return "";
 }
@@ -85,8 +69,8 @@ Result<TableFormat> parse_table_format(std::string_view name) {
 }
 
 Result<Table> read_table(const std::filesystem::path& path, TableFormat format,
-                         const std::vector<std::string>& names, std::size_t most_rows) {
-  auto table = read_as(path, format, names, most_rows);
+                         std::size_t most_rows) {
+  auto table = format == TableFormat::mat ? read_mat(path) : read_csv_table(path, most_rows);
   if (!table) return table;
   if (auto checked = check_lengths(path, *table); !checked) return tl::unexpected(checked.error());
   return table;
@@ -94,14 +78,7 @@ Result<Table> read_table(const std::filesystem::path& path, TableFormat format,
 
 Result<void> write_inputs(const std::filesystem::path& path, TableFormat format,
                           const Trace& trace) {
-  switch (format) {
-    case TableFormat::mat:
-      return write_mat(path, inputs_of(trace));
-    case TableFormat::npy:
-      return write_npy(path, inputs_of(trace));
-    case TableFormat::csv:
-      break;
-  }
+  if (format == TableFormat::mat) return write_mat(path, inputs_of(trace));
   Trace inputs = trace;
   for (std::size_t i = 0; i < channels().size(); ++i) {
     if (channels()[i].is_output()) inputs.present.reset(i);

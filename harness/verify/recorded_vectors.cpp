@@ -113,7 +113,7 @@ Result<RecordedVectors> check_recorded_vectors(const std::filesystem::path& fold
       }
       if (found.answered++ > 0) continue;
       found.first = (*file)->path.string();
-      const auto table = read_table(found.first, (*file)->format, manifest->column_order, 1);
+      const auto table = read_table(found.first, (*file)->format, 1);
       if (table) found.ignored = ignored_columns(*table, *manifest, the_case.module);
     }
   }

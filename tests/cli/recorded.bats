@@ -105,15 +105,13 @@ CHECK
   has "note: $out: these columns are ignored: temperature"
 }
 
-@test "inputs as MAT and NPY files; a fixed step begins one period after zero" {
+@test "inputs as MAT files; a fixed step begins one period after zero" {
   filter=(--filter px4-v1.5.5/attitude/roll_pitch_and_yaw@250hz)
   "$ATTEST" vectors mat --format mat "${filter[@]}" >/dev/null
   head -c 19 mat/px4-v1.5.5/attitude/roll_pitch_and_yaw/250hz.mat | grep -q "MATLAB 5.0 MAT-file"
-  "$ATTEST" vectors npy --format npy "${filter[@]}" >/dev/null
-  head -c 200 npy/px4-v1.5.5/attitude/roll_pitch_and_yaw/250hz.npy | grep -aq "('timestamp', '<u8')"
   run "$ATTEST" vectors xls --format xls "${filter[@]}"
   [ "$status" -eq 2 ]
-  has "no format \`xls\`; there are csv, mat, npy"
+  has "no format \`xls\`; there are csv, mat"
 
   "$ATTEST" vectors vectors --fixed-step 250 --group attitude --profile px4-v1.5.5 >/dev/null
   inputs=vectors/px4-v1.5.5/attitude/roll_pitch_and_yaw/250hz.csv

@@ -22,36 +22,18 @@ class TableFile : public testing::Test {
  protected:
   std::filesystem::path path(const std::string& name) const { return directory_.path() / name; }
 
-  Result<Table> read(const std::string& name, TableFormat format, const std::string& bytes,
-                     const std::vector<std::string>& names = {}) {
+  Result<Table> read(const std::string& name, TableFormat format, const std::string& bytes) {
     EXPECT_TRUE(write_file(path(name), bytes));
-    return read_table(path(name), format, names);
+    return read_table(path(name), format);
   }
 
-  std::string error(const std::string& name, TableFormat format, const std::string& bytes,
-                    const std::vector<std::string>& names = {}) {
-    const auto table = read(name, format, bytes, names);
+  std::string error(const std::string& name, TableFormat format, const std::string& bytes) {
+    const auto table = read(name, format, bytes);
     return table ? "no error" : table.error().to_string();
   }
 
   TemporaryDirectory directory_;
 };
-
-// A file as numpy.save() writes it: the header is padded so that the elements begin at 64 bytes.
-std::string npy(const std::string& descr, const std::string& shape, const std::string& elements,
-                const std::string& fortran_order = "False") {
-  std::string header =
-      "{'descr': " + descr + ", 'fortran_order': " + fortran_order + ", 'shape': " + shape + ", }";
-  header.resize((header.size() + 10) / 64 * 64 + 64 - 10 - 1, ' ');
-  header += '\n';
-  std::string bytes("\x93NUMPY\x01\x00", 8);
-  bytes += static_cast<char>(header.size() % 256);
-  bytes += static_cast<char>(header.size() / 256);
-  return bytes + header + elements;
-}
-
-// 1.5 and -2 as little-endian floats.
-const std::string one_and_a_half("\x00\x00\xc0\x3f", 4), minus_two("\x00\x00\x00\xc0", 4);
 
 Trace two_ticks() {
   Trace trace;
@@ -74,7 +56,7 @@ TEST_F(TableFile, InputsReadBackTheSameInEachFormat) {
   for (const TableFormat format : table_formats) {
     const auto file = path(std::string("inputs.") + std::string(name_of(format)));
     ASSERT_TRUE(write_inputs(file, format, trace));
-    const auto table = read_table(file, format, {});
+    const auto table = read_table(file, format);
     ASSERT_TRUE(table) << table.error().to_string();
     ASSERT_EQ(table->size(), inputs.size()) << name_of(format);
     for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -92,58 +74,10 @@ TEST_F(TableFile, InputsReadBackTheSameInEachFormat) {
   }
 }
 
-TEST_F(TableFile, AStructuredArrayOfNumpyHasNames) {
-  const auto table = read("a.npy", TableFormat::npy,
-                          npy("[('x', '<f4'), ('', '|V2'), ('n', '|u1')]", "(2,)",
-                              one_and_a_half + "zz\x07" + minus_two + "zz\x08"));
-  ASSERT_TRUE(table) << table.error().to_string();
-  ASSERT_EQ(table->size(), 2u);
-  EXPECT_EQ((*table)[0].name, "x");
-  EXPECT_THAT((*table)[0].values, ElementsAre(1.5, -2));
-  EXPECT_EQ((*table)[1].name, "n");
-  EXPECT_THAT((*table)[1].values, ElementsAre(7, 8));
-}
-
-TEST_F(TableFile, AnArrayOfTwoDimensionsNeedsNamesInTheOrderOfItsColumns) {
-  const std::string elements = one_and_a_half + minus_two + minus_two + minus_two;
-  const std::string rows = npy("'<f4'", "(2, 2)", elements);
-  auto table = read("a.npy", TableFormat::npy, rows, {"x", "y"});
-  ASSERT_TRUE(table) << table.error().to_string();
-  EXPECT_THAT((*table)[0].values, ElementsAre(1.5, -2));
-  EXPECT_THAT((*table)[1].values, ElementsAre(-2, -2));
-  const std::string first_column_first =
-      npy("'<f4'", "(2, 2)", minus_two + minus_two + one_and_a_half + minus_two, "True");
-  table = read("a.npy", TableFormat::npy, first_column_first, {"x", "y"});
-  ASSERT_TRUE(table);
-  EXPECT_THAT((*table)[0].values, ElementsAre(-2, -2));
-  EXPECT_THAT((*table)[1].values, ElementsAre(1.5, -2));
-
-  EXPECT_THAT(error("a.npy", TableFormat::npy, rows), HasSubstr("has no names; write a"));
-  EXPECT_THAT(error("a.npy", TableFormat::npy, npy("'<f4'", "(1, 4)", elements), {"x"}),
-              HasSubstr("it is transposed: save the array's .T"));
-  EXPECT_THAT(error("a.npy", TableFormat::npy, npy("'<f4'", "(4,)", elements), {"x"}),
-              HasSubstr("is an array of 1 dimension(s); it needs two"));
-}
-
-TEST_F(TableFile, ADamagedNpyFileIsAnError) {
-  const std::string whole = npy("[('x', '<f4')]", "(2,)", one_and_a_half + minus_two);
-  ASSERT_TRUE(read("a.npy", TableFormat::npy, whole));
-  for (std::size_t size = 0; size < whole.size(); ++size) {
-    EXPECT_THAT(error("a.npy", TableFormat::npy, whole.substr(0, size)),
-                testing::AnyOf(HasSubstr("is no NPY file"), HasSubstr("is cut off")));
-  }
-  const std::string huge = npy("[('x', '<f4')]", "(18446744073709551615,)", one_and_a_half);
-  EXPECT_THAT(error("a.npy", TableFormat::npy, huge), HasSubstr("is cut off"));
-  for (const char* descr : {"[('x', '>f4')]", "[('x', '<c8')]", "[('x', '<f2')]", "'<O8'", "[]"}) {
-    EXPECT_THAT(error("a.npy", TableFormat::npy, npy(descr, "(1,)", one_and_a_half)),
-                HasSubstr("is no NPY file of little-endian integers, floats or booleans"));
-  }
-}
-
 TEST_F(TableFile, ADamagedMatFileIsAnErrorOrLacksVariables) {
   ASSERT_TRUE(write_inputs(path("a.mat"), TableFormat::mat, two_ticks()));
   const std::string whole = read_file(path("a.mat")).value();
-  const std::size_t columns = read_table(path("a.mat"), TableFormat::mat, {})->size();
+  const std::size_t columns = read_table(path("a.mat"), TableFormat::mat)->size();
   for (std::size_t size = 0; size < whole.size(); size += 61) {
     const auto table = read("b.mat", TableFormat::mat, whole.substr(0, size));
     EXPECT_TRUE(!table || table->size() < columns);
@@ -154,7 +88,7 @@ TEST_F(TableFile, ADamagedMatFileIsAnErrorOrLacksVariables) {
 TEST_F(TableFile, AMatFileThatEndsInsideAVariableIsCutOff) {
   ASSERT_TRUE(write_inputs(path("a.mat"), TableFormat::mat, two_ticks()));
   const std::string whole = read_file(path("a.mat")).value();
-  const std::size_t columns = read_table(path("a.mat"), TableFormat::mat, {})->size();
+  const std::size_t columns = read_table(path("a.mat"), TableFormat::mat)->size();
   ASSERT_EQ(error("b.mat", TableFormat::mat, whole), "no error");
   for (std::size_t missing = 1; missing < 300; ++missing) {
     const auto table = read("b.mat", TableFormat::mat, whole.substr(0, whole.size() - missing));
@@ -204,7 +138,7 @@ std::string with_compressed_variables(const std::string& mat, std::size_t missin
 TEST_F(TableFile, AMatVariableWithFewerValuesThanItsDimensionsIsAnError) {
   ASSERT_TRUE(write_inputs(path("a.mat"), TableFormat::mat, two_ticks()));
   const std::string whole = read_file(path("a.mat")).value();
-  const std::size_t columns = read_table(path("a.mat"), TableFormat::mat, {})->size();
+  const std::size_t columns = read_table(path("a.mat"), TableFormat::mat)->size();
   const auto compressed = read("b.mat", TableFormat::mat, with_compressed_variables(whole));
   ASSERT_TRUE(compressed) << compressed.error().to_string();
   EXPECT_EQ(compressed->size(), columns);
