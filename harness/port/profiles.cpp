@@ -98,15 +98,6 @@ std::vector<Parameter> parameters_of(Module module, const ProfileInfo& profile) 
   return {};
 }
 
-bool is_integer_parameter(Module module, std::string_view name) {
-  for (const ProfileInfo& profile : known_profiles()) {
-    for (const Parameter& parameter : parameters_of(module, profile)) {
-      if (parameter.name == name && parameter.is_integer) return true;
-    }
-  }
-  return false;
-}
-
 std::vector<std::string> parameter_names(Module module, std::string_view profile) {
   const ProfileInfo* const known = find_profile(profile);
   std::vector<std::string> names;

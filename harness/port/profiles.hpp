@@ -42,9 +42,6 @@ struct Parameter {
 // profile does not have the module.
 std::vector<Parameter> parameters_of(Module module, const ProfileInfo& profile);
 
-// True if the module has an integer parameter of that name in some profile.
-bool is_integer_parameter(Module module, std::string_view name);
-
 // The names of a module's parameters. If the profile is not known, those of all profiles.
 std::vector<std::string> parameter_names(Module module, std::string_view profile);
 

@@ -1,8 +1,6 @@
-// The clock that a loop waits on. Simulated time jumps to each deadline (here); real time passes
-// (realtime/pacer.hpp).
+// The clock that a real-time loop waits on: that of the machine (realtime/pacer.hpp), or a scripted
+// one in tests.
 #pragma once
-
-#include <algorithm>
 
 #include "harness/core/time.hpp"
 
@@ -18,16 +16,6 @@ class Clock {
   // Waits until `deadline`, or returns at once if it has passed. Returns now(), which may be later
   // than `deadline`.
   virtual Nanoseconds wait_until(Nanoseconds deadline) = 0;
-};
-
-// wait_until() does not wait: it sets the time to the deadline, unless this has passed.
-class SimulatedClock final : public Clock {
- public:
-  Nanoseconds now() override { return now_; }
-  Nanoseconds wait_until(Nanoseconds deadline) override { return now_ = std::max(now_, deadline); }
-
- private:
-  Nanoseconds now_{0};
 };
 
 }  // namespace attest
