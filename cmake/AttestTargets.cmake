@@ -46,28 +46,6 @@ function(attest_library name)
                                                                           ${ARG_PRIVATE})
 endfunction()
 
-# attest_loaded_library(NAME HEADER file LIBRARY name PACKAGE name): the target attest_NAME, for a
-# library that attest loads when it runs. It has the header, and the macro ATTEST_NAME_SONAME, the
-# file name of the ABI that the header describes, such as "libmatio.so.11".
-function(attest_loaded_library name)
-  cmake_parse_arguments(ARG "" "HEADER;LIBRARY;PACKAGE" "" ${ARGN})
-  string(TOUPPER ${name} upper)
-  find_path(ATTEST_${upper}_INCLUDE ${ARG_HEADER} PATH_SUFFIXES hdf5/serial
-            DOC "Folder that has ${ARG_HEADER}")
-  find_library(ATTEST_${upper}_LIBRARY NAMES ${ARG_LIBRARY} DOC "The shared library")
-  mark_as_advanced(ATTEST_${upper}_INCLUDE ATTEST_${upper}_LIBRARY)
-  get_filename_component(file "${ATTEST_${upper}_LIBRARY}" REALPATH)
-  get_filename_component(file "${file}" NAME)
-  if(NOT ATTEST_${upper}_INCLUDE OR NOT file MATCHES "^lib.+\\.so\\.[0-9]+")
-    message(FATAL_ERROR "${ARG_HEADER} or lib${ARG_LIBRARY}.so is missing: install "
-                        "${ARG_PACKAGE}, or run ci/bootstrap")
-  endif()
-  add_library(attest_${name} INTERFACE)
-  target_include_directories(attest_${name} SYSTEM INTERFACE "${ATTEST_${upper}_INCLUDE}")
-  target_compile_definitions(attest_${name}
-                             INTERFACE ATTEST_${upper}_SONAME="${CMAKE_MATCH_0}")
-endfunction()
-
 # attest_embed(SOURCE NAME=FILE ...): the source includes these files (harness/core/embed.hpp).
 # ATTEST_NAME is the path of a file in it.
 function(attest_embed source)
